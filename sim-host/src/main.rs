@@ -1,0 +1,2 @@
+//! The `drivemon` command line.
+fn main() {}
