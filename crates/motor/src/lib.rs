@@ -3,6 +3,8 @@
 //!
 //! Without default features this crate is `no_std` and carries what the monitor core needs.
 
+#[cfg(feature = "std")]
+pub mod dynamic;
 mod params;
 
 pub use params::{GammaParams, InvGammaParams, Mechanics, TParams};

@@ -1,0 +1,145 @@
+//! Right-hand side and Runge-Kutta step.
+
+use super::{DynamicState, Hooks, Linear, NoEffects, Terminal, Winding};
+use crate::{Mechanics, TParams};
+use num_complex::Complex64;
+
+/// Everything that flows in the motor at one instant; what hooks may look at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flow {
+    /// Time, s.
+    pub t: f64,
+    /// Winding currents and resistances.
+    pub winding: Winding,
+    /// Terminal voltage and current.
+    pub terminal: Terminal,
+    /// Electromagnetic torque, N m.
+    pub tau_em: f64,
+    /// Load torque, N m.
+    pub tau_load: f64,
+    /// Total viscous friction, N m s.
+    pub friction: f64,
+    /// Moment of inertia, kg m2.
+    pub inertia: f64,
+    /// Pole pairs.
+    pub n_p: f64,
+}
+
+/// Configuration of the dynamic model: parameters, mechanics and effects. Holds no state.
+#[derive(Clone, Debug)]
+pub struct Dynamic<H = NoEffects> {
+    linear: Linear,
+    mechanics: Mechanics<f64>,
+    friction: f64,
+    inv_inertia: f64,
+    hooks: H,
+}
+
+impl Dynamic<NoEffects> {
+    /// The motor without effects.
+    pub fn new(params: &TParams<f64>, mechanics: &Mechanics<f64>) -> Self {
+        Self::with_effects(params, mechanics, NoEffects)
+    }
+}
+
+impl<H: Hooks> Dynamic<H> {
+    /// The motor with effects.
+    pub fn with_effects(params: &TParams<f64>, mechanics: &Mechanics<f64>, hooks: H) -> Self {
+        Self {
+            linear: Linear::new(params),
+            mechanics: *mechanics,
+            friction: mechanics.total_friction(),
+            inv_inertia: 1.0 / mechanics.inertia,
+            hooks,
+        }
+    }
+
+    /// The effects in force.
+    pub fn hooks(&self) -> &H {
+        &self.hooks
+    }
+
+    /// Everything that flows at one instant, for supply voltage `u` (V) and load torque `tau_load` (N m).
+    #[inline(always)]
+    pub fn flow(
+        &self,
+        t: f64,
+        state: &DynamicState<H::Extra>,
+        u: Complex64,
+        tau_load: f64,
+    ) -> Flow {
+        let winding = self.hooks.winding(&self.linear, t, state);
+        let terminal = self.hooks.terminal(t, state, &winding, u);
+        let tau_em = 1.5 * self.mechanics.n_p * (state.psi_s.conj() * winding.i_s).im;
+        Flow {
+            t,
+            winding,
+            terminal,
+            tau_em,
+            tau_load,
+            friction: self.friction,
+            inertia: self.mechanics.inertia,
+            n_p: self.mechanics.n_p,
+        }
+    }
+
+    /// Rate of change of the state, per second.
+    #[inline(always)]
+    pub fn rate(
+        &self,
+        t: f64,
+        state: &DynamicState<H::Extra>,
+        u: Complex64,
+        tau_load: f64,
+    ) -> DynamicState<H::Extra> {
+        let flow = self.flow(t, state, u, tau_load);
+        let omega_el = self.mechanics.n_p * state.omega_mech;
+        let spin = Complex64::new(-omega_el * state.psi_r.im, omega_el * state.psi_r.re);
+        let tau = flow.tau_em - self.friction * state.omega_mech - tau_load;
+        let mut rate = DynamicState {
+            psi_s: flow.terminal.u - flow.terminal.i * flow.winding.r_s,
+            psi_r: spin - flow.winding.i_r * flow.winding.r_r,
+            omega_mech: tau * self.inv_inertia,
+            theta_mech: state.omega_mech,
+            extra: super::Extra::ZERO,
+        };
+        self.hooks.finish(&flow, state, &mut rate);
+        rate
+    }
+
+    /// One classical Runge-Kutta step of length `h` (s) from time `t` (s).
+    ///
+    /// `supply(t)` is the stator voltage vector in V; `load(t, omega_mech)` the load torque in N m. Both are
+    /// asked at `t`, `t + h/2` and `t + h`: a held voltage is a closure that ignores its argument.
+    #[inline(always)]
+    pub fn step(
+        &self,
+        state: &mut DynamicState<H::Extra>,
+        t: f64,
+        h: f64,
+        supply: impl Fn(f64) -> Complex64,
+        load: impl Fn(f64, f64) -> f64,
+    ) {
+        let held = self.hooks.held_voltage(&self.linear, t, state);
+        let (t_mid, t_end) = (t + 0.5 * h, t + h);
+        let u_mid = supply(t_mid) + held;
+        let at = |t: f64, x: &DynamicState<H::Extra>, u| self.rate(t, x, u, load(t, x.omega_mech));
+        let k1 = at(t, state, supply(t) + held);
+        let k2 = at(t_mid, &state.advanced(0.5 * h, &k1), u_mid);
+        let k3 = at(t_mid, &state.advanced(0.5 * h, &k2), u_mid);
+        let k4 = at(t_end, &state.advanced(h, &k3), supply(t_end) + held);
+        let inner = k1.advanced(2.0, &k2).advanced(2.0, &k3).advanced(1.0, &k4);
+        *state = state.advanced(h / 6.0, &inner);
+    }
+
+    /// Current that an ammeter in the supply line reads, A, stationary frame.
+    #[inline(always)]
+    pub fn current(&self, t: f64, state: &DynamicState<H::Extra>, u: Complex64) -> Complex64 {
+        self.flow(t, state, u, 0.0).terminal.i
+    }
+
+    /// Electromagnetic torque, N m.
+    pub fn torque(&self, t: f64, state: &DynamicState<H::Extra>) -> f64 {
+        self.flow(t, state, Complex64::new(0.0, 0.0), 0.0).tau_em
+    }
+}
