@@ -3,8 +3,16 @@
 //!
 //! Without default features this crate is `no_std` and carries what the monitor core needs.
 
+pub mod connection;
+#[cfg(feature = "file")]
+pub mod document;
 #[cfg(feature = "std")]
 pub mod dynamic;
+#[cfg(feature = "file")]
+pub mod motor_file;
 mod params;
+pub mod temperature;
 
+#[cfg(feature = "file")]
+pub use motor_file::MotorFile;
 pub use params::{GammaParams, InvGammaParams, Mechanics, TParams};

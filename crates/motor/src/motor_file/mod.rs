@@ -1,0 +1,125 @@
+//! The motor file: one TOML file per machine, the only configuration there is.
+//!
+//! Every number is validated once, here; what a [`MotorFile`] holds is physically possible.
+
+mod effects;
+mod monitor;
+mod nameplate;
+mod parameters;
+mod sensors;
+mod write;
+
+#[cfg(test)]
+mod malformed;
+#[cfg(test)]
+mod tests;
+
+pub use effects::{EffectEntry, EffectParameter, EffectValue};
+pub use monitor::{FieldCurrent, Frame, LoadKind, MonitorSettings};
+pub use nameplate::{Connection, Nameplate};
+pub use sensors::Sensors;
+
+use crate::document::{Document, FileError, read_text};
+use crate::{Mechanics, TParams};
+use std::path::Path;
+
+/// Everything that is known about one motor and the instrument at its terminals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotorFile {
+    /// What people call the machine.
+    pub name: String,
+    /// The plate on its housing.
+    pub nameplate: Nameplate,
+    /// T model per equivalent star phase, rotor referred to the stator.
+    pub parameters: TParams<f64>,
+    /// Temperature at which `parameters` hold, degC, when it is known.
+    pub parameter_temperature_degc: Option<f64>,
+    /// Inertia, friction and pole pairs.
+    pub mechanics: Mechanics<f64>,
+    /// What is known about the load torque.
+    pub load: LoadKind,
+    /// Ranges, resolution and corrections of the sensors.
+    pub sensors: Sensors,
+    /// How the residuals are formed and judged.
+    pub monitor: MonitorSettings,
+    /// Physical effects beyond the T model, in the order of the file.
+    pub effects: Vec<EffectEntry>,
+}
+
+impl MotorFile {
+    /// Reads and validates a motor file.
+    ///
+    /// # Errors
+    /// An unreadable file, or all problems of its content with line, key, range and remedy.
+    pub fn read(path: impl AsRef<Path>) -> Result<MotorFile, FileError> {
+        let path = path.as_ref();
+        let text = read_text(path)?;
+        MotorFile::parse(&text, &path.display().to_string())
+    }
+
+    /// Validates the text of a motor file; `file_label` is the name that errors print.
+    ///
+    /// # Errors
+    /// All problems of the content with line, key, range and remedy.
+    pub fn parse(text: &str, file_label: &str) -> Result<MotorFile, FileError> {
+        let document = Document::parse(text, file_label)?;
+        let motor = read_document(&document);
+        document.finish(motor)
+    }
+
+    /// Checks every `[[effects]]` entry with the library of effects.
+    ///
+    /// `check` gives, for an entry it cannot accept, the key to blame (`name` or a parameter) and the
+    /// message with the remedy; the error adds file and line.
+    ///
+    /// # Errors
+    /// One problem for each entry that `check` refuses.
+    pub fn check_effects(
+        &self,
+        file_label: &str,
+        check: impl Fn(&EffectEntry) -> Result<(), (String, String)>,
+    ) -> Result<(), FileError> {
+        let problems: Vec<_> = self
+            .effects
+            .iter()
+            .filter_map(|effect| {
+                let (key, message) = check(effect).err()?;
+                Some(effect.problem(file_label, &key, message))
+            })
+            .collect();
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(FileError::new(problems))
+        }
+    }
+
+    /// The file as TOML text; [`MotorFile::parse`] reads the same motor back.
+    pub fn to_toml(&self) -> String {
+        write::to_toml(self)
+    }
+}
+
+fn read_document(document: &Document) -> Option<MotorFile> {
+    let root = document.root();
+    let name = root.text("name", "what people call this machine");
+    let nameplate = nameplate::read(&root);
+    let electrical = parameters::read(&root, nameplate.as_ref());
+    let load = monitor::read_load(&root);
+    let sensors = sensors::read(&root, nameplate.as_ref());
+    let monitor = monitor::read(&root);
+    let effects = effects::read(&root);
+    root.finish();
+    let electrical = electrical?;
+    Some(MotorFile {
+        name: name?,
+        nameplate: nameplate?,
+        parameters: electrical.t_model,
+        parameter_temperature_degc: electrical.temperature_degc,
+        mechanics: electrical.mechanics,
+        load: load?,
+        sensors: sensors?,
+        monitor: monitor?,
+        effects: effects?,
+    })
+}

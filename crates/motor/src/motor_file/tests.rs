@@ -1,0 +1,171 @@
+use super::*;
+
+pub(super) const SMALLEST: &str = r#"name = "2.2 kW laboratory motor"
+[nameplate]
+pole_pairs = 2
+power_watt = 2200.0
+voltage_line_rms_volt = 400.0
+current_rms_amp = 5.0
+frequency_hz = 50.0
+torque_nm = 14.6
+connection = "star"
+[parameters]
+stator_resistance_ohm = 3.7
+rotor_resistance_ohm = 2.297
+stator_leakage_henry = 0.010735
+rotor_leakage_henry = 0.010735
+magnetizing_inductance_henry = 0.23426
+inertia_kg_m2 = 0.015
+friction_nm_s = 0.0
+load_friction_nm_s = 0.0
+"#;
+
+const FULL: &str = r#"
+speed_rpm = 1440
+"#;
+
+fn smallest() -> MotorFile {
+    MotorFile::parse(SMALLEST, "motor.toml").expect("valid")
+}
+
+/// The same motor with every optional key, effects with numbers and with formulas.
+fn largest_text() -> String {
+    let text = SMALLEST
+        .replace(
+            "connection = \"star\"\n",
+            &format!("connection = \"delta\"{FULL}"),
+        )
+        .replace("inertia", "temperature_degc = 75.0\ninertia");
+    format!(
+        r#"{text}
+[load]
+kind = "free"
+[sensors]
+voltage_full_scale_volt = 600.0
+current_full_scale_amp = 60
+speed_full_scale_rad_s = 200.0
+torque_full_scale_nm = 40.0
+noise_sigma_fraction_of_full_scale = 0.002
+adc_bits = 14
+encoder_pulses_per_revolution = 2048
+voltage_offset_volt = [-1.0, 0.5, 1e-3]
+current_offset_amp = [0.1, 0.0, -0.1]
+voltage_gain = [1.0, 1.01, 0.99]
+current_gain = [1.0, -1.0, 1.0]
+[monitor]
+frame = "voltage"
+field_current = "nominal"
+nominal_field_current_amp = 3.25
+threshold_percent = [1, 2, 3, 4]
+window_cycles = 10
+persistence_windows = 4
+hysteresis = 0.7
+[[effects]]
+name = "core-loss"
+core_loss_resistance_ohm = 980.0
+[[effects]]
+name = "expression"
+voltage_d = "k * i_d * \"x\""
+k = -1.5e-7
+"#
+    )
+}
+
+fn without_lines(mut motor: MotorFile) -> MotorFile {
+    for effect in &mut motor.effects {
+        effect.line = 0;
+        effect.parameters.iter_mut().for_each(|p| p.line = 0);
+    }
+    motor
+}
+
+#[test]
+fn the_smallest_file_gets_the_documented_defaults() {
+    let motor = smallest();
+    assert_eq!(motor.mechanics.n_p, 2.0);
+    assert_eq!(motor.load, LoadKind::Friction);
+    assert_eq!(motor.monitor, MonitorSettings::default());
+    assert_eq!(motor.monitor.threshold_percent, [0.6, 3.0, 4.0, 0.3]);
+    assert_eq!(motor.sensors.adc_bits, 12);
+    assert_eq!(motor.sensors.encoder_pulses_per_revolution, 1024);
+    // 2 * 400 V * sqrt(2/3), and 10 * 5 A * sqrt(2).
+    assert!((motor.sensors.voltage_full_scale_volt - 653.197_264_742_181).abs() < 1e-9);
+    assert!((motor.sensors.current_full_scale_amp - 70.710_678_118_654_76).abs() < 1e-9);
+    // 12 bits over +-70.71 A.
+    assert!((motor.sensors.amp_per_code() - 70.710_678_118_654_76 / 2048.0).abs() < 1e-12);
+    assert!(motor.effects.is_empty());
+}
+
+#[test]
+fn every_optional_key_is_read() {
+    let motor = MotorFile::parse(&largest_text(), "motor.toml").expect("valid");
+    assert_eq!(motor.nameplate.connection, Connection::Delta);
+    assert_eq!(motor.nameplate.speed_rpm, Some(1440.0));
+    assert!((motor.nameplate.rated_slip() - 0.04).abs() < 1e-12);
+    assert_eq!(motor.parameter_temperature_degc, Some(75.0));
+    assert_eq!(motor.load, LoadKind::Free);
+    assert_eq!(motor.sensors.current_full_scale_amp, 60.0);
+    assert_eq!(motor.sensors.current_gain, [1.0, -1.0, 1.0]);
+    assert_eq!(motor.monitor.frame, Frame::Voltage);
+    assert_eq!(motor.monitor.field_current, FieldCurrent::Nominal);
+    assert_eq!(motor.monitor.nominal_field_current_amp, Some(3.25));
+    assert_eq!(
+        motor.effects[0].number("core_loss_resistance_ohm"),
+        Some(980.0)
+    );
+    assert_eq!(motor.effects[1].text("voltage_d"), Some("k * i_d * \"x\""));
+    assert_eq!(motor.effects[1].number("k"), Some(-1.5e-7));
+}
+
+#[test]
+fn what_is_written_reads_back_the_same() {
+    for text in [SMALLEST.to_owned(), largest_text()] {
+        let motor = without_lines(MotorFile::parse(&text, "motor.toml").expect("valid"));
+        let again = MotorFile::parse(&motor.to_toml(), "written").expect("readable");
+        assert_eq!(without_lines(again), motor);
+    }
+}
+
+#[test]
+fn nameplate_quantities_follow_from_the_plate() {
+    let plate = smallest().nameplate;
+    assert!((plate.phase_voltage_amplitude() - 326.598_632_371_090_5).abs() < 1e-9);
+    assert!((plate.current_amplitude() - 7.071_067_811_865_475).abs() < 1e-12);
+    assert!((plate.omega_sync() - 314.159_265_358_979_3).abs() < 1e-12);
+    assert!((plate.synchronous_speed_mech() - 157.079_632_679_489_66).abs() < 1e-12);
+    // 2200 W / 14.6 N m.
+    assert!((plate.rated_speed_mech() - 150.684_931_506_849_3).abs() < 1e-9);
+}
+
+#[test]
+fn an_effect_refused_by_the_library_is_named_with_its_line() {
+    let text = largest_text();
+    let motor = MotorFile::parse(&text, "motor.toml").expect("valid");
+    let line = 1 + text
+        .lines()
+        .position(|l| l.starts_with("k = "))
+        .expect("there");
+    let error = motor
+        .check_effects("motor.toml", |effect| match effect.number("k") {
+            Some(_) => Err(("k".to_owned(), "is too small: write above 0".to_owned())),
+            None => Ok(()),
+        })
+        .expect_err("refused");
+    let expected = format!("motor.toml:{line}: effects.expression.k: is too small: write above 0");
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn all_problems_of_a_file_are_reported_together() {
+    let text = SMALLEST
+        .replace("pole_pairs = 2", "pole_pairs = 0")
+        .replace("= 0.015", "= -1.0")
+        .replace("name = ", "label = ");
+    let error = MotorFile::parse(&text, "motor.toml").expect_err("three problems");
+    let lines: Vec<_> = error
+        .problems()
+        .iter()
+        .map(|problem| problem.line)
+        .collect();
+    assert_eq!(lines, [1, 1, 3, 16], "{error}");
+}
