@@ -1,0 +1,364 @@
+//! How the columns of a file become channels: names, units, scales, as flags or sidecar say.
+
+use crate::channel::{Channel, Quantity};
+use crate::error::Error;
+use crate::suggest::closest;
+use crate::units::Unit;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// What a column may become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Target {
+    /// The clock, `t`.
+    Time,
+    /// A channel.
+    Channel(Channel),
+}
+
+impl Target {
+    /// The target that a file or a flag calls `name`.
+    pub fn parse(name: &str) -> Option<Target> {
+        match name {
+            "t" => Some(Target::Time),
+            _ => Channel::parse(name).map(Target::Channel),
+        }
+    }
+
+    /// What it measures.
+    pub fn quantity(self) -> Quantity {
+        match self {
+            Target::Time => Quantity::Time,
+            Target::Channel(channel) => channel.quantity(),
+        }
+    }
+
+    /// Every target, the clock first.
+    pub fn all() -> impl Iterator<Item = Target> {
+        std::iter::once(Target::Time).chain(Channel::all().map(Target::Channel))
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Target::Time => f.write_str("t"),
+            Target::Channel(channel) => channel.fmt(f),
+        }
+    }
+}
+
+/// How one column becomes a channel: `SI = unit(scale (raw - offset))`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnMap {
+    /// Name of the column in the file; the target's own name when absent.
+    pub name: Option<String>,
+    /// Unit of `scale (raw - offset)`; SI when absent.
+    pub unit: Option<Unit>,
+    /// Factor, finite and not 0; 1 when absent.
+    pub scale: Option<f64>,
+    /// Raw reading at zero, in the column's own unit; 0 when absent.
+    pub offset: Option<f64>,
+}
+
+impl ColumnMap {
+    /// The SI value of a raw reading.
+    pub fn to_si(&self, quantity: Quantity, raw: f64) -> f64 {
+        let unit = self.unit.unwrap_or_else(|| Unit::si(quantity));
+        unit.to_si(self.scale.unwrap_or(1.0) * (raw - self.offset.unwrap_or(0.0)))
+    }
+
+    /// The conversion in words: `speed = 1.0144 x (speed_raw + 2.11) rad/s`.
+    pub(crate) fn sentence(&self, target: Target, column: &str) -> Option<String> {
+        if *self == ColumnMap::default() {
+            return None;
+        }
+        let unit = self.unit.unwrap_or_else(|| Unit::si(target.quantity()));
+        let shifted = match self.offset {
+            Some(offset) if offset < 0.0 => format!("({column} + {})", -offset),
+            Some(offset) if offset > 0.0 => format!("({column} - {offset})"),
+            _ => column.to_owned(),
+        };
+        let scaled = match self.scale {
+            Some(scale) => format!("{scale} x {shifted}"),
+            None => shifted,
+        };
+        Some(format!(
+            "{target} = {scaled} in {}, user's assumption",
+            unit.name
+        ))
+    }
+
+    fn over(self, below: ColumnMap) -> ColumnMap {
+        ColumnMap {
+            name: self.name.or(below.name),
+            unit: self.unit.or(below.unit),
+            scale: self.scale.or(below.scale),
+            offset: self.offset.or(below.offset),
+        }
+    }
+}
+
+/// Everything that a user may say about how a file is to be read. `None` means: not said.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mapping {
+    /// Per target; a target that is not mapped is read from the column of its own name, in SI.
+    pub columns: BTreeMap<Target, ColumnMap>,
+    /// Whether `va vb vc` hold the line voltages v_ab, v_bc, v_ca.
+    pub line_voltages: Option<bool>,
+    /// Sampling rate, Hz, of a file without a usable `t`; a `t` column is then ignored.
+    pub sample_rate_hz: Option<f64>,
+    /// Whether rows with empty or NaN cells are dropped (a gap in time) instead of refused.
+    pub skip_missing: Option<bool>,
+    /// What separates the columns; a comma when absent.
+    pub delimiter: Option<u8>,
+    /// Whether numbers are written `3,7`.
+    pub decimal_comma: Option<bool>,
+    /// Pulses per turn of the encoder behind a column of counts.
+    pub encoder_pulses_per_revolution: Option<u32>,
+}
+
+/// Rates between one sample in ten seconds and 100 MHz.
+const RATES_HZ: std::ops::RangeInclusive<f64> = 0.1..=1e8;
+
+impl Mapping {
+    /// `--column TARGET=NAME`: the target is read from the column `NAME`.
+    ///
+    /// # Errors
+    /// Text that is not `TARGET=NAME`, or an unknown target.
+    pub fn set_column(&mut self, flag: &str) -> Result<(), Error> {
+        let (target, name) = split("--column", flag)?;
+        self.entry(target).name = Some(name.to_owned());
+        Ok(())
+    }
+
+    /// `--unit TARGET=UNIT`.
+    ///
+    /// # Errors
+    /// Text that is not `TARGET=UNIT`, an unknown target, or a unit of another quantity.
+    pub fn set_unit(&mut self, flag: &str) -> Result<(), Error> {
+        let (target, name) = split("--unit", flag)?;
+        let unit = Unit::parse(target.quantity(), name).map_err(|known| {
+            let message = format!("`{name}` is not a unit of {target}");
+            Error::at(
+                COMMAND_LINE,
+                0,
+                "--unit",
+                message,
+                format!("use one of {known}"),
+            )
+        })?;
+        self.entry(target).unit = Some(unit);
+        Ok(())
+    }
+
+    /// `--scale TARGET=FACTOR`.
+    ///
+    /// # Errors
+    /// Text that is not `TARGET=FACTOR`, an unknown target, or a factor that is 0 or not finite.
+    pub fn set_scale(&mut self, flag: &str) -> Result<(), Error> {
+        let (target, text) = split("--scale", flag)?;
+        let scale = number("--scale", text)?;
+        if scale == 0.0 {
+            let remedy = "give a factor other than 0";
+            return Err(Error::at(
+                COMMAND_LINE,
+                0,
+                "--scale",
+                "the factor is 0",
+                remedy,
+            ));
+        }
+        self.entry(target).scale = Some(scale);
+        Ok(())
+    }
+
+    /// `--offset TARGET=RAW`: the raw reading at zero.
+    ///
+    /// # Errors
+    /// Text that is not `TARGET=RAW`, an unknown target, or a number that is not finite.
+    pub fn set_offset(&mut self, flag: &str) -> Result<(), Error> {
+        let (target, text) = split("--offset", flag)?;
+        self.entry(target).offset = Some(number("--offset", text)?);
+        Ok(())
+    }
+
+    /// `--sample-rate HZ`.
+    ///
+    /// # Errors
+    /// A rate outside 0.1 Hz to 100 MHz.
+    pub fn set_sample_rate(&mut self, rate_hz: f64) -> Result<(), Error> {
+        if !RATES_HZ.contains(&rate_hz) {
+            let message = format!("{rate_hz} Hz is not a sampling rate");
+            let remedy = "give samples per second, 0.1 to 1e8";
+            return Err(Error::at(COMMAND_LINE, 0, "--sample-rate", message, remedy));
+        }
+        self.sample_rate_hz = Some(rate_hz);
+        Ok(())
+    }
+
+    /// `--delimiter C`: one ASCII character, or `tab`.
+    ///
+    /// # Errors
+    /// Anything else.
+    pub fn set_delimiter(&mut self, text: &str) -> Result<(), Error> {
+        self.delimiter = Some(delimiter(text).ok_or_else(|| {
+            let message = format!("`{text}` does not separate columns");
+            Error::at(COMMAND_LINE, 0, "--delimiter", message, DELIMITERS)
+        })?);
+        Ok(())
+    }
+
+    /// The mapping of a target, made when absent.
+    pub fn entry(&mut self, target: Target) -> &mut ColumnMap {
+        self.columns.entry(target).or_default()
+    }
+
+    /// This mapping where it says something, the other one elsewhere: flags over a sidecar.
+    pub fn over(self, below: Mapping) -> Mapping {
+        let mut columns = below.columns;
+        for (target, map) in self.columns {
+            let merged = map.over(columns.remove(&target).unwrap_or_default());
+            columns.insert(target, merged);
+        }
+        Mapping {
+            columns,
+            line_voltages: self.line_voltages.or(below.line_voltages),
+            sample_rate_hz: self.sample_rate_hz.or(below.sample_rate_hz),
+            skip_missing: self.skip_missing.or(below.skip_missing),
+            delimiter: self.delimiter.or(below.delimiter),
+            decimal_comma: self.decimal_comma.or(below.decimal_comma),
+            encoder_pulses_per_revolution: self
+                .encoder_pulses_per_revolution
+                .or(below.encoder_pulses_per_revolution),
+        }
+    }
+}
+
+pub(crate) const COMMAND_LINE: &str = "command line";
+pub(crate) const DELIMITERS: &str = "use one of `,` `;` `|` `tab`";
+
+/// The byte that a flag or sidecar calls a delimiter.
+pub(crate) fn delimiter(text: &str) -> Option<u8> {
+    match text {
+        "," => Some(b','),
+        ";" => Some(b';'),
+        "|" => Some(b'|'),
+        "tab" | "\t" => Some(b'\t'),
+        _ => None,
+    }
+}
+
+fn split<'f>(flag: &str, text: &'f str) -> Result<(Target, &'f str), Error> {
+    let Some((target, value)) = text.split_once('=').filter(|(_, value)| !value.is_empty()) else {
+        let message = format!("`{text}` is not of the form CHANNEL=VALUE");
+        let remedy = format!("write for example {flag} speed={}", example(flag));
+        return Err(Error::at(COMMAND_LINE, 0, flag, message, remedy));
+    };
+    match Target::parse(target) {
+        Some(target) => Ok((target, value)),
+        None => {
+            let message = format!("`{target}` is not a channel");
+            Err(Error::at(COMMAND_LINE, 0, flag, message, channels(target)))
+        }
+    }
+}
+
+fn example(flag: &str) -> &'static str {
+    match flag {
+        "--column" => "speed_raw",
+        "--unit" => "rpm",
+        "--scale" => "1.02",
+        _ => "-2.11",
+    }
+}
+
+/// The remedy for a name that is not a channel.
+pub(crate) fn channels(misspelt: &str) -> String {
+    let names: Vec<String> = Target::all().map(|target| target.to_string()).collect();
+    match closest(misspelt, names.iter().map(String::as_str)) {
+        Some(meant) => format!("did you mean `{meant}`?"),
+        None => "use one of t, va vb vc, ia ib ic, speed, torque, temperature; \
+                 a second probe has a 2 behind its name"
+            .to_owned(),
+    }
+}
+
+fn number(flag: &str, text: &str) -> Result<f64, Error> {
+    text.trim()
+        .parse::<f64>()
+        .ok()
+        .filter(|x| x.is_finite())
+        .ok_or_else(|| {
+            let message = format!("`{text}` is not a finite number");
+            let remedy = "write it with a decimal point, as 1.02";
+            Error::at(COMMAND_LINE, 0, flag, message, remedy)
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPEED: Target = Target::Channel(Channel::SPEED);
+
+    /// The tachometer of the 4 kW laboratory motor: raw -2.11 at rest, 152.43 at 1497 rpm.
+    fn tachometer() -> Mapping {
+        let mut mapping = Mapping::default();
+        mapping.set_column("speed=speed_raw").unwrap();
+        mapping.set_unit("speed=rpm").unwrap();
+        mapping.set_scale("speed=9.6868").unwrap();
+        mapping.set_offset("speed=-2.11").unwrap();
+        mapping
+    }
+
+    #[test]
+    fn offset_comes_before_scale_and_scale_before_unit() {
+        let map = &tachometer().columns[&SPEED];
+        let rest = map.to_si(Quantity::Speed, -2.11);
+        let no_load = map.to_si(Quantity::Speed, 152.43);
+        assert_eq!(rest, 0.0);
+        // 1497 rpm in rad/s; the scale above has five digits.
+        let expected = 1497.0 * std::f64::consts::TAU / 60.0;
+        assert!((no_load - expected).abs() < 2e-5 * expected, "{no_load}");
+    }
+
+    #[test]
+    fn the_assumption_is_a_sentence() {
+        let sentence = tachometer().columns[&SPEED].sentence(SPEED, "speed_raw");
+        let expected = "speed = 9.6868 x (speed_raw + 2.11) in rpm, user's assumption";
+        assert_eq!(sentence.as_deref(), Some(expected));
+        assert_eq!(ColumnMap::default().sentence(SPEED, "speed"), None);
+    }
+
+    #[test]
+    fn flags_win_over_the_sidecar_field_by_field() {
+        let mut flags = Mapping::default();
+        flags.set_scale("speed=2").unwrap();
+        let merged = flags.over(tachometer());
+        let map = &merged.columns[&SPEED];
+        assert_eq!((map.scale, map.offset), (Some(2.0), Some(-2.11)));
+        assert_eq!(map.name.as_deref(), Some("speed_raw"));
+    }
+
+    #[test]
+    fn wrong_flags_say_what_is_right() {
+        let mut m = Mapping::default();
+        let cases = [
+            (m.set_column("speed"), "CHANNEL=VALUE"),
+            (m.set_column("spead=x"), "did you mean `speed`"),
+            (m.set_unit("speed=kmh"), "rad/s, rpm"),
+            (m.set_scale("speed=0"), "other than 0"),
+            (m.set_scale("speed=1,02"), "decimal point"),
+            (m.set_offset("speed=nan"), "finite"),
+            (m.set_sample_rate(-1.0), "samples per second"),
+            (m.set_delimiter("comma"), "use one of"),
+        ];
+        for (result, expected) in cases {
+            let error = result.unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+            assert_eq!(error.exit_code(), 2);
+        }
+        assert_eq!(m, Mapping::default());
+    }
+}

@@ -1,0 +1,107 @@
+//! From raw columns to a recording in SI: units, line voltages, the third current, encoder counts.
+
+use super::plan::Plan;
+use super::{Raw, clock, encoder};
+use crate::channel::Channel;
+use crate::error::Error;
+use crate::mapping::{Mapping, Target};
+use crate::metadata::Metadata;
+use crate::recording::Recording;
+
+pub(super) fn recording(
+    file: &str,
+    mut raw: Raw,
+    plan: Plan,
+    mapping: &Mapping,
+    metadata: Metadata,
+) -> Result<Recording, Error> {
+    let t = clock::clock(file, &mut raw, mapping)?;
+    let mut recording = Recording::new(file, t, metadata)?;
+    recording.assumptions = plan.notes;
+    note_clock(&mut recording, &raw, mapping);
+    for (target, values) in raw.columns {
+        if let Target::Channel(channel) = target {
+            let values = converted(&recording, channel, values, mapping)?;
+            recording.set(channel, values)?;
+        }
+    }
+    if plan.line_voltages {
+        phase_voltages(&mut recording)?;
+    }
+    third_of_three(&mut recording, Channel::CURRENTS, "no neutral conductor")?;
+    Ok(recording)
+}
+
+fn note_clock(recording: &mut Recording, raw: &Raw, mapping: &Mapping) {
+    if let Some(rate_hz) = mapping.sample_rate_hz {
+        let note = format!("one sample every 1/{rate_hz} s, user's assumption");
+        recording.assumptions.push(note);
+    }
+    if raw.skipped > 0 {
+        let note = format!(
+            "{} rows without a number were dropped, as the user asked",
+            raw.skipped
+        );
+        recording.assumptions.push(note);
+    }
+}
+
+fn converted(
+    recording: &Recording,
+    channel: Channel,
+    values: Vec<f64>,
+    mapping: &Mapping,
+) -> Result<Vec<f64>, Error> {
+    let Some(map) = mapping.columns.get(&Target::Channel(channel)) else {
+        return Ok(values);
+    };
+    let quantity = channel.quantity();
+    if !map.unit.is_some_and(|unit| unit.counts) {
+        return Ok(values.into_iter().map(|x| map.to_si(quantity, x)).collect());
+    }
+    let mut sensors = recording.metadata.sensors.clone();
+    let pulses = mapping.encoder_pulses_per_revolution;
+    sensors.encoder_pulses_per_revolution = pulses.or(sensors.encoder_pulses_per_revolution);
+    let scaled: Vec<f64> = values.into_iter().map(|x| map.to_si(quantity, x)).collect();
+    encoder::speed(recording.name(), recording.t(), &scaled, &sensors)
+}
+
+/// Phase voltages from line voltages, zero sequence taken as 0: `va = (vab - vca)/3`, cyclically.
+fn phase_voltages(recording: &mut Recording) -> Result<(), Error> {
+    third_of_three(recording, Channel::VOLTAGES, "line voltages add up to 0")?;
+    let Some([ab, bc, ca]) = recording.voltages() else {
+        let message = "phase voltages need at least two line voltages";
+        return Err(Error::at(
+            recording.name(),
+            0,
+            "va",
+            message,
+            "add the columns vab and vbc",
+        ));
+    };
+    let third = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| (x - y) / 3.0).collect();
+    let phases: [Vec<f64>; 3] = [third(ab, ca), third(bc, ab), third(ca, bc)];
+    for (channel, values) in Channel::VOLTAGES.into_iter().zip(phases) {
+        recording.derive(channel, values)?;
+    }
+    Ok(())
+}
+
+/// Computes the one that is missing of three which add up to zero.
+fn third_of_three(recording: &mut Recording, three: [Channel; 3], why: &str) -> Result<(), Error> {
+    let missing = three.map(|channel| recording.channel(channel).is_none());
+    let Some(k) = missing.iter().position(|missing| *missing) else {
+        return Ok(());
+    };
+    let [first, second] = [three[(k + 1) % 3], three[(k + 2) % 3]];
+    let (Some(x), Some(y)) = (recording.channel(first), recording.channel(second)) else {
+        return Ok(());
+    };
+    let values = x.iter().zip(y).map(|(x, y)| -(x + y)).collect();
+    recording.derive(three[k], values)?;
+    if three == Channel::CURRENTS {
+        let note = format!("{} = -({first} + {second}): {why}, assumed", three[k]);
+        recording.assumptions.push(note);
+    }
+    Ok(())
+}

@@ -1,0 +1,247 @@
+//! A file's bytes as text, unpacked, with everything that is not a table named for what it is.
+
+use crate::error::Error;
+use flate2::read::MultiGzDecoder;
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+use std::rc::Rc;
+
+/// How far reading has come, in bytes of the file as it lies on the disk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Bytes read so far.
+    pub bytes_read: u64,
+    /// Bytes in all; 0 when unknown (a pipe).
+    pub bytes_total: u64,
+}
+
+/// An opened file, ready to be parsed as text.
+pub(crate) struct Source {
+    pub reader: Box<dyn Read>,
+    pub bytes_read: Rc<Cell<u64>>,
+    pub bytes_total: u64,
+}
+
+/// A line of a table has a few hundred bytes; this is some other file.
+const LONGEST_LINE: usize = 1 << 16;
+const BUFFER: usize = 1 << 16;
+const GZIP: [u8; 2] = [0x1F, 0x8B];
+
+/// Opens a file, unpacks it if it is gzip, and refuses what is not text.
+pub(crate) fn open(path: &Path) -> Result<Source, Error> {
+    let name = path.display().to_string();
+    let metadata = std::fs::metadata(path).map_err(|error| Error::io(path, &error))?;
+    if metadata.is_dir() {
+        return Err(Error::bad(
+            &name,
+            "is a folder",
+            "name a .csv or .csv.gz file in it",
+        ));
+    }
+    let bytes_read = Rc::new(Cell::new(0));
+    let counted = Counted {
+        file: File::open(path).map_err(|error| Error::io(path, &error))?,
+        bytes_read: Rc::clone(&bytes_read),
+    };
+    Ok(Source {
+        reader: text(counted, &name)?,
+        bytes_read,
+        bytes_total: if metadata.is_file() {
+            metadata.len()
+        } else {
+            0
+        },
+    })
+}
+
+fn text(counted: Counted, name: &str) -> Result<Box<dyn Read>, Error> {
+    let mut packed = BufReader::with_capacity(BUFFER, counted);
+    let head = packed.fill_buf().map_err(|error| broken(name, 0, &error))?;
+    let (is_gzip, is_named_gzip) = (head.starts_with(&GZIP), name.ends_with(".gz"));
+    match (is_gzip, is_named_gzip) {
+        (true, true) => plain(
+            BufReader::with_capacity(BUFFER, MultiGzDecoder::new(packed)),
+            name,
+        ),
+        (false, false) => plain(packed, name),
+        (true, false) => {
+            let remedy = format!("rename it to {name}.gz");
+            Err(Error::bad(
+                name,
+                "is gzip-compressed, but its name does not end in .gz",
+                remedy,
+            ))
+        }
+        (false, true) if head.is_empty() => Err(empty(name)),
+        (false, true) => {
+            let remedy = "rename it without .gz, or compress it";
+            Err(Error::bad(
+                name,
+                "is named .gz, but is not gzip-compressed",
+                remedy,
+            ))
+        }
+    }
+}
+
+fn plain<R: BufRead + 'static>(mut reader: R, name: &str) -> Result<Box<dyn Read>, Error> {
+    let head = reader.fill_buf().map_err(|error| broken(name, 0, &error))?;
+    if head.is_empty() {
+        return Err(empty(name));
+    }
+    refuse_foreign(head, name)?;
+    if head.starts_with(b"\xEF\xBB\xBF") {
+        reader.consume(3);
+    }
+    Ok(Box::new(LineGuard {
+        reader,
+        line: 1,
+        length: 0,
+    }))
+}
+
+fn empty(name: &str) -> Error {
+    let remedy =
+        "record again; the first line names the columns, for example t,va,vb,vc,ia,ib,ic,speed";
+    Error::bad(name, "is empty", remedy)
+}
+
+/// Beginnings of formats that are measurements, but not in text.
+const FORMATS: [(&[u8], &str); 5] = [
+    (b"PAR1", "a Parquet file"),
+    (b"MATLAB 5.0", "a MAT-file, version 5"),
+    (
+        b"\x89HDF\r\n\x1A\n",
+        "an HDF5 file (also MAT-file, version 7.3)",
+    ),
+    (b"TDSm", "a TDMS file"),
+    (b"PK\x03\x04", "a zip archive (also a spreadsheet)"),
+];
+
+fn refuse_foreign(head: &[u8], name: &str) -> Result<(), Error> {
+    if let Some((_, format)) = FORMATS.iter().find(|(magic, _)| head.starts_with(magic)) {
+        let message = format!("is {format}");
+        return Err(Error::unsupported(
+            name,
+            message,
+            "export it as .csv or .csv.gz",
+        ));
+    }
+    if head.starts_with(&GZIP) {
+        return Err(Error::bad(
+            name,
+            "is gzip-compressed twice",
+            "unpack it once",
+        ));
+    }
+    if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") {
+        return Err(Error::bad(name, "is UTF-16 text", "save it as UTF-8 text"));
+    }
+    match head.iter().position(|&byte| byte == 0) {
+        Some(at) => {
+            let message = format!("holds a zero byte at offset {at}: it is binary or UTF-16");
+            Err(Error::bad(
+                name,
+                message,
+                "save it as UTF-8 text with comma-separated columns",
+            ))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Counts the bytes that come off the disk.
+struct Counted {
+    file: File,
+    bytes_read: Rc<Cell<u64>>,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let n = self.file.read(buffer)?;
+        self.bytes_read.set(self.bytes_read.get() + n as u64);
+        Ok(n)
+    }
+}
+
+/// Refuses a line that would fill the memory, and binary content behind a textual beginning.
+struct LineGuard<R> {
+    reader: R,
+    line: u64,
+    length: usize,
+}
+
+impl<R: Read> Read for LineGuard<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let n = self.reader.read(buffer)?;
+        for &byte in &buffer[..n] {
+            match byte {
+                b'\n' | b'\r' => {
+                    self.length = 0;
+                    self.line += u64::from(byte == b'\n');
+                }
+                0 => return Err(self.refuse("holds a zero byte: the file is binary or damaged")),
+                _ => self.length += 1,
+            }
+            if self.length > LONGEST_LINE {
+                return Err(self.refuse("is longer than 65536 bytes: this is not a table"));
+            }
+        }
+        Ok(n)
+    }
+}
+
+impl<R> LineGuard<R> {
+    fn refuse(&self, message: &'static str) -> io::Error {
+        io::Error::other(BadLine {
+            line: self.line,
+            message,
+        })
+    }
+}
+
+#[derive(Debug)]
+struct BadLine {
+    line: u64,
+    message: &'static str,
+}
+
+impl std::fmt::Display for BadLine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.message)
+    }
+}
+
+impl std::error::Error for BadLine {}
+
+/// An error while reading, at the line that was reached.
+pub(crate) fn broken(name: &str, line: u64, error: &io::Error) -> Error {
+    if let Some(bad) = error
+        .get_ref()
+        .and_then(|inner| inner.downcast_ref::<BadLine>())
+    {
+        let remedy = "export it as text, one sample per line, columns separated by commas";
+        return Error::at(
+            name,
+            bad.line,
+            "",
+            format!("the line {}", bad.message),
+            remedy,
+        );
+    }
+    let damaged = matches!(
+        error.kind(),
+        io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData
+    );
+    let (message, remedy) = if damaged {
+        (
+            "the gzip stream is truncated or damaged",
+            "copy or record the file again",
+        )
+    } else {
+        ("cannot be read", "check the file and the disk")
+    };
+    Error::at(name, line, "", format!("{message} ({error})"), remedy)
+}
