@@ -169,3 +169,25 @@ fn all_problems_of_a_file_are_reported_together() {
         .collect();
     assert_eq!(lines, [1, 1, 3, 16], "{error}");
 }
+
+/// The motor files of `data/peer`, when they are beside the project.
+#[test]
+fn the_peers_motor_files_are_valid() {
+    let Some(folder) = shared_data().map(|data| data.join("peer")) else {
+        eprintln!("skipped: set DRIVE_MONITOR_SHARED_DATA to the folder with `peer`");
+        return;
+    };
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("readable") {
+        let path = entry.expect("readable").path().join("motor.toml");
+        MotorFile::read(&path).unwrap_or_else(|error| panic!("{error}"));
+        count += 1;
+    }
+    assert!(count >= 9, "{count} motor files");
+}
+
+fn shared_data() -> Option<std::path::PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let path = std::env::var_os("DRIVE_MONITOR_SHARED_DATA").map_or_else(beside, Into::into);
+    path.join("peer").is_dir().then_some(path)
+}
