@@ -8,6 +8,7 @@ pub mod connection;
 pub mod document;
 #[cfg(feature = "std")]
 pub mod dynamic;
+pub mod effects;
 #[cfg(feature = "file")]
 pub mod motor_file;
 mod params;

@@ -19,6 +19,8 @@ pub struct Winding {
 /// What the stator terminals see at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terminal {
+    /// Voltage of the supply, before anything between it and the motor, V.
+    pub supply: Complex64,
     /// Voltage that drives the stator circuit, V.
     pub u: Complex64,
     /// Current through the stator resistance, A: what an ammeter in the supply line reads.
@@ -57,7 +59,11 @@ pub trait Hooks {
         winding: &Winding,
         u: Complex64,
     ) -> Terminal {
-        Terminal { u, i: winding.i_s }
+        Terminal {
+            supply: u,
+            u,
+            i: winding.i_s,
+        }
     }
 
     /// Last word on the rates: extra voltages, torques and the rates of extra states.

@@ -1,0 +1,48 @@
+//! Core loss behind the stator resistance: `i = (i_s + g u)/(1 + g R_s)`, `g` one over the loss resistance.
+
+use super::steady::steady_effect;
+use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
+use num_traits::Float;
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "core-loss",
+    form: "",
+    kind: Kind::Physics,
+    applies: Applies::Always,
+    parameters: &[
+        Parameter::positive("core_loss_resistance_ohm", "ohm", Scale::Conductance, 0.02)
+            .written(Written::Reciprocal),
+    ],
+    symptom: "a small current in phase with the voltage; losses at no load",
+    look_alikes: &["windage", "coulomb-friction", "stator_resistance_ohm"],
+    separating_test: "a no-load voltage sweep together with a coast-down; one voltage and frequency cannot tell it from friction",
+};
+
+/// Core loss behind the stator resistance: `i = (i_s + g u)/(1 + g R_s)`, `g` one over the loss resistance.
+#[derive(Clone, Copy, Debug)]
+pub struct CoreLoss;
+
+steady_effect!(CoreLoss, DESCRIPTOR, correct);
+
+fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+    let g = p[0];
+    point.i_s = point.i_s * (F::one() + g * point.motor.r_s) - point.u_s * g;
+}
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::CoreLoss;
+    use crate::dynamic::{Terminal, Winding};
+    use crate::effects::{At, Effect, Hook};
+
+    impl Effect for CoreLoss {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Terminal]
+        }
+
+        fn terminal(&self, p: &[f64], _at: &At<'_>, winding: &Winding, terminal: &mut Terminal) {
+            let g = p[0];
+            terminal.i = (terminal.i + terminal.u * g) / (1.0 + g * winding.r_s);
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! An effect in the dynamic model.
+
+use super::{Inputs, Outputs, Rated, SteadyEffect};
+use crate::TParams;
+use crate::dynamic::{Flow, Terminal, Winding};
+use num_complex::Complex64;
+
+/// A second rotor circuit beside the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cage {
+    /// Resistance, ohm.
+    pub r: f64,
+    /// Leakage inductance, H, > 0.
+    pub l: f64,
+    /// Flux linkage, V s.
+    pub psi: Complex64,
+}
+
+/// Parameters of the windings at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instantaneous {
+    /// T model at this instant.
+    pub motor: TParams<f64>,
+    /// A second cage, if there is one.
+    pub cage: Option<Cage>,
+}
+
+/// What an effect may look at inside the dynamic model.
+#[derive(Clone, Copy, Debug)]
+pub struct At<'a> {
+    /// Time, s.
+    pub t: f64,
+    /// Stator flux linkage, V s.
+    pub psi_s: Complex64,
+    /// Rotor flux linkage, V s.
+    pub psi_r: Complex64,
+    /// Mechanical speed, rad/s.
+    pub omega_mech: f64,
+    /// Shaft angle, rad.
+    pub theta_mech: f64,
+    /// Supply frequency, rad/s.
+    pub omega_sync: f64,
+    /// The effect's own extra states.
+    pub extra: &'a [f64],
+    /// Rated quantities.
+    pub rated: &'a Rated<f64>,
+    /// Constant parameters of the motor.
+    pub motor: &'a TParams<f64>,
+}
+
+impl At<'_> {
+    /// Slip, 1 at standstill.
+    pub fn slip(&self) -> f64 {
+        1.0 - self.rated.n_p * self.omega_mech / self.omega_sync
+    }
+}
+
+/// What an effect may change in the rates of the state, per second.
+#[derive(Debug)]
+pub struct Rates<'a> {
+    /// Stator flux linkage, V.
+    pub psi_s: Complex64,
+    /// Rotor flux linkage, V.
+    pub psi_r: Complex64,
+    /// Speed, rad/s2.
+    pub omega_mech: f64,
+    /// The effect's own extra states.
+    pub extra: &'a mut [f64],
+}
+
+/// Places where an effect takes part; a simulation calls nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hook {
+    /// [`Effect::inputs`].
+    Inputs,
+    /// [`Effect::motor`].
+    Motor,
+    /// [`Effect::parameters`].
+    Parameters,
+    /// [`Effect::magnetizing`].
+    Magnetizing,
+    /// [`Effect::held_voltage`].
+    HeldVoltage,
+    /// [`Effect::terminal`].
+    Terminal,
+    /// [`Effect::finish`].
+    Finish,
+    /// [`Effect::outputs`].
+    Outputs,
+}
+
+/// A physical effect. Stateless: parameters come as a slice in the order of the descriptor.
+pub trait Effect: SteadyEffect {
+    /// Hooks in which this effect takes part.
+    fn hooks(&self) -> &'static [Hook];
+
+    /// Number of states it adds to the model.
+    fn extra_states(&self) -> usize {
+        0
+    }
+
+    /// Turns measured inputs into the true ones.
+    fn inputs(&self, _p: &[f64], _rated: &Rated<f64>, _inputs: &mut Inputs) {}
+
+    /// Changes the motor's constant parameters once, before the simulation.
+    fn motor(&self, _p: &[f64], _rated: &Rated<f64>, _motor: &mut TParams<f64>) {}
+
+    /// Changes parameters from instant to instant. `i_s` is the stator current of the linear motor, A.
+    fn parameters(&self, _p: &[f64], _at: &At<'_>, _i_s: Complex64, _now: &mut Instantaneous) {}
+
+    /// Factor by which the magnetizing current exceeds the linear one at the air-gap flux `x` (over rated
+    /// flux), and the factor's derivative.
+    fn magnetizing(&self, _p: &[f64], _x: f64) -> (f64, f64) {
+        (1.0, 0.0)
+    }
+
+    /// Voltage added for a whole step, decided at its beginning, V.
+    fn held_voltage(&self, _p: &[f64], _at: &At<'_>, _i_s: Complex64) -> Complex64 {
+        Complex64::new(0.0, 0.0)
+    }
+
+    /// Changes voltage and current at the terminals.
+    fn terminal(&self, _p: &[f64], _at: &At<'_>, _winding: &Winding, _terminal: &mut Terminal) {}
+
+    /// Changes the rates of the state.
+    fn finish(&self, _p: &[f64], _at: &At<'_>, _flow: &Flow, _rates: &mut Rates<'_>) {}
+
+    /// Turns true outputs into what the instruments show.
+    fn outputs(&self, _p: &[f64], _rated: &Rated<f64>, _outputs: &mut Outputs) {}
+}

@@ -1,0 +1,45 @@
+//! The voltages are turned against the currents: `u e^(j delta)`.
+
+use super::steady::steady_effect;
+use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use num_complex::Complex;
+use num_traits::Float;
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "frame-rotation",
+    form: "",
+    kind: Kind::Sensor,
+    applies: Applies::Always,
+    parameters: &[Parameter::size("rotation_rad", "rad", Scale::Own, 0.03)],
+    symptom: "positive-sequence current error in quadrature",
+    look_alikes: &["sample-delay", "sensor-filter"],
+    separating_test: "harmonics in the supply: a rotation turns all orders alike",
+};
+
+/// The voltages are turned against the currents: `u e^(j delta)`.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameRotation;
+
+steady_effect!(FrameRotation, DESCRIPTOR, correct);
+
+fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+    point.u_s = point.u_s * Complex::new(p[0].cos(), p[0].sin());
+}
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::FrameRotation;
+    use crate::effects::{Effect, Hook, Inputs, Rated};
+    use num_complex::Complex64;
+
+    impl Effect for FrameRotation {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Inputs]
+        }
+
+        fn inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) {
+            let turn = Complex64::from_polar(1.0, p[0]);
+            inputs.u_s.iter_mut().for_each(|u| *u *= turn);
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! The torque channel shows `gain` times the truth.
+
+use super::steady::{steady_effect, unchanged};
+use super::{Applies, Descriptor, Kind, Parameter, Scale, Written};
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "load-gain",
+    form: "",
+    kind: Kind::Sensor,
+    applies: Applies::Always,
+    parameters: &[Parameter::size("load_gain", "-", Scale::Own, 0.02).written(Written::OnePlus)],
+    symptom: "speed and current errors proportional to the load",
+    look_alikes: &["voltage-gain", "current-gain", "rotor_resistance_ohm"],
+    separating_test: "a calibrated torque sensor",
+};
+
+/// The torque channel shows `gain` times the truth.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadGain;
+
+steady_effect!(LoadGain, DESCRIPTOR, unchanged);
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::LoadGain;
+    use crate::effects::{Effect, Hook, Inputs, Rated};
+
+    impl Effect for LoadGain {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Inputs]
+        }
+
+        fn inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) {
+            let back = 1.0 / (1.0 + p[0]);
+            inputs.tau_load.iter_mut().for_each(|tau| *tau *= back);
+        }
+    }
+}

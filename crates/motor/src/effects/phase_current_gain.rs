@@ -1,0 +1,43 @@
+//! Each current channel shows its own gain times the truth.
+
+use super::steady::{steady_effect, unchanged};
+use super::{Applies, Descriptor, Kind, Parameter, Scale, Written};
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "phase-current-gain",
+    form: "",
+    kind: Kind::Sensor,
+    applies: Applies::Always,
+    parameters: &[
+        Parameter::size("current_gain_a", "-", Scale::Own, 0.02).written(Written::OnePlus),
+        Parameter::size("current_gain_b", "-", Scale::Own, 0.02).written(Written::OnePlus),
+        Parameter::size("current_gain_c", "-", Scale::Own, 0.02).written(Written::OnePlus),
+    ],
+    symptom: "zero and negative sequence in the current error, in phase with the current",
+    look_alikes: &["current-offset", "stator-asymmetry"],
+    separating_test: "the sum of the phase currents names the channel",
+};
+
+/// Each current channel shows its own gain times the truth.
+#[derive(Clone, Copy, Debug)]
+pub struct PhaseCurrentGain;
+
+steady_effect!(PhaseCurrentGain, DESCRIPTOR, unchanged);
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::PhaseCurrentGain;
+    use crate::effects::{Effect, Hook, Outputs, Rated};
+
+    impl Effect for PhaseCurrentGain {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Outputs]
+        }
+
+        fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
+            for i in &mut outputs.i_s_abc {
+                i.iter_mut().zip(p).for_each(|(x, g)| *x *= 1.0 + g);
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The currents are sampled later than the voltages: `i(t - d)`.
+
+use super::steady::steady_effect;
+use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use num_complex::Complex;
+use num_traits::Float;
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "sample-delay",
+    form: "",
+    kind: Kind::Sensor,
+    applies: Applies::Always,
+    parameters: &[Parameter::size("delay_s", "s", Scale::Own, 1e-4)],
+    symptom: "positive-sequence current error in quadrature",
+    look_alikes: &["sensor-filter", "frame-rotation"],
+    separating_test: "harmonics in the supply: delay turns each in proportion to its order",
+};
+
+/// The currents are sampled later than the voltages: `i(t - d)`.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleDelay;
+
+steady_effect!(SampleDelay, DESCRIPTOR, correct);
+
+fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+    let phase = point.omega_sync * p[0];
+    point.i_s = point.i_s * Complex::new(phase.cos(), phase.sin());
+}
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::SampleDelay;
+    use crate::effects::signals::delayed;
+    use crate::effects::{Effect, Hook, Outputs, Rated};
+
+    impl Effect for SampleDelay {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Outputs]
+        }
+
+        fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
+            let samples = p[0] / outputs.t_sample;
+            outputs.each_current(|_, x| delayed(x, samples));
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The current channels are low-passed: `1/(1 + tau s)`.
+
+use super::steady::steady_effect;
+use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use num_complex::Complex;
+use num_traits::Float;
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "sensor-filter",
+    form: "",
+    kind: Kind::Sensor,
+    applies: Applies::Always,
+    parameters: &[Parameter::size(
+        "filter_time_constant_s",
+        "s",
+        Scale::Own,
+        1e-4,
+    )],
+    symptom: "positive-sequence current error in quadrature, transients rounded",
+    look_alikes: &["sample-delay", "frame-rotation"],
+    separating_test: "harmonics in the supply: a filter also weakens them",
+};
+
+/// The current channels are low-passed: `1/(1 + tau s)`.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorFilter;
+
+steady_effect!(SensorFilter, DESCRIPTOR, correct);
+
+fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+    point.i_s = point.i_s * Complex::new(F::one(), point.omega_sync * p[0]);
+}
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::SensorFilter;
+    use crate::effects::signals::low_passed;
+    use crate::effects::{Effect, Hook, Outputs, Rated};
+
+    impl Effect for SensorFilter {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Outputs]
+        }
+
+        fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
+            let t_sample = outputs.t_sample;
+            outputs.each_current(|_, x| low_passed(x, p[0], t_sample));
+        }
+    }
+}

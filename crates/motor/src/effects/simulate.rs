@@ -1,0 +1,231 @@
+//! A motor with effects, driven by measured signals.
+
+use super::{EffectConfig, EffectStack, Hook, Inputs, Outputs, Rated, Timeline, extra_states};
+use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, phases};
+use crate::{Mechanics, TParams};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// A motor with its effects: what a simulation is about.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    /// Electrical parameters.
+    pub motor: TParams<f64>,
+    /// Mechanical parameters.
+    pub mechanics: Mechanics<f64>,
+    /// Rated quantities.
+    pub rated: Rated<f64>,
+    /// Effects in force.
+    pub effects: Vec<EffectConfig>,
+}
+
+/// How the voltage behaves between its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Between {
+    /// Held until the next sample: one step per sample.
+    Held,
+    /// Smooth: one Runge-Kutta step spans two sampling intervals and uses all three samples.
+    Smooth,
+}
+
+impl Between {
+    /// Samples per integration step.
+    pub fn stride(self) -> usize {
+        match self {
+            Between::Held => 1,
+            Between::Smooth => 2,
+        }
+    }
+}
+
+/// What the speed does.
+#[derive(Clone, Copy, Debug)]
+pub enum SpeedSource<'a> {
+    /// Follows from the torques.
+    Free,
+    /// Follows from the torques and is drawn to these values (rad/s, one per input sample) at a rate in 1/s.
+    Observed(&'a [f64], f64),
+    /// Is given: one value per input sample, rad/s.
+    Imposed(&'a [f64]),
+}
+
+/// A run of a plant: inputs and how to treat them.
+#[derive(Clone, Debug)]
+pub struct Run<'a> {
+    /// Measured inputs, before any correction by effects.
+    pub inputs: &'a Inputs,
+    /// Behaviour between samples.
+    pub between: Between,
+    /// Source of the speed.
+    pub speed: SpeedSource<'a>,
+    /// Supply frequency and measured shaft angle.
+    pub timeline: &'a Arc<Timeline>,
+    /// Speed at the first sample, rad/s; `None` starts de-energised from standstill.
+    pub running_at: Option<f64>,
+}
+
+impl DynamicState {
+    /// Steady state of the linear motor on voltage `u` (V, at this instant), at `omega_mech` (rad/s).
+    pub fn running(
+        motor: &TParams<f64>,
+        n_p: f64,
+        u: Complex64,
+        omega_sync: f64,
+        omega_mech: f64,
+    ) -> Self {
+        let j_omega = Complex64::new(0.0, omega_sync);
+        let j_slip = Complex64::new(0.0, omega_sync - n_p * omega_mech);
+        // Rotor: 0 = R_r i_r + j w_slip (L_m i_s + L_r i_r).
+        let ratio = -(j_slip * motor.l_m) / (motor.r_r + j_slip * motor.l_r());
+        let l_seen = motor.l_s() + ratio * motor.l_m;
+        let i_s = u / (motor.r_s + j_omega * l_seen);
+        Self {
+            psi_s: l_seen * i_s,
+            psi_r: (motor.l_m + ratio * motor.l_r()) * i_s,
+            omega_mech,
+            ..Self::rest()
+        }
+    }
+}
+
+/// Simulates a plant and returns what the instruments would show, one row per integration step.
+///
+/// # Panics
+/// If the effects need more than eight extra states or the input signals differ in length.
+pub fn simulate(plant: &Plant, run: &Run<'_>) -> Outputs {
+    let uses = |hook: Hook| {
+        let all = plant.effects.iter();
+        all.filter(move |e| e.effect.hooks().contains(&hook))
+    };
+    let mut corrected = None;
+    for e in uses(Hook::Inputs) {
+        let inputs = corrected.get_or_insert_with(|| run.inputs.clone());
+        e.effect.inputs(&e.values, &plant.rated, inputs);
+    }
+    let inputs = corrected.as_ref().unwrap_or(run.inputs);
+    let mut motor = plant.motor;
+    for e in uses(Hook::Motor) {
+        e.effect.motor(&e.values, &plant.rated, &mut motor);
+    }
+    let mut outputs = run_with_hooks(plant, &motor, run, inputs);
+    outputs.u_zero = vec![0.0; outputs.omega_mech.len()];
+    for e in uses(Hook::Outputs) {
+        e.effect.outputs(&e.values, &plant.rated, &mut outputs);
+    }
+    outputs
+}
+
+/// Chooses the cheapest set of hooks that holds the plant's effects.
+fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &Inputs) -> Outputs {
+    let inside = |e: &EffectConfig| {
+        let outer = [Hook::Inputs, Hook::Motor, Hook::Outputs];
+        e.effect.hooks().iter().any(|h| !outer.contains(h))
+    };
+    let start = start_state(plant, motor, run, inputs);
+    if !plant.effects.iter().any(inside) {
+        let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
+        return integrate(&model, start, run, inputs);
+    }
+    let (mechanics, timeline) = (&plant.mechanics, run.timeline.clone());
+    if extra_states(&plant.effects) == 0 {
+        let stack = EffectStack::<0>::new(&plant.effects, motor, &plant.rated, timeline);
+        let model = Dynamic::with_effects(motor, mechanics, stack);
+        return integrate(&model, DynamicState::with_extra(&start), run, inputs);
+    }
+    let stack = EffectStack::<8>::new(&plant.effects, motor, &plant.rated, timeline);
+    let model = Dynamic::with_effects(motor, mechanics, stack);
+    integrate(&model, DynamicState::with_extra(&start), run, inputs)
+}
+
+fn start_state(
+    plant: &Plant,
+    motor: &TParams<f64>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+) -> DynamicState {
+    let running = |omega_mech| {
+        let omega_sync = run.timeline.omega_sync[0];
+        let n_p = plant.mechanics.n_p;
+        DynamicState::running(motor, n_p, inputs.u_s[0], omega_sync, omega_mech)
+    };
+    run.running_at.map_or_else(DynamicState::rest, running)
+}
+
+/// Integrates over all inputs and records every step.
+fn integrate<H: Hooks>(
+    model: &Dynamic<H>,
+    mut state: DynamicState<H::Extra>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+) -> Outputs {
+    let stride = run.between.stride();
+    let h = inputs.t_sample * stride as f64;
+    let steps = inputs.u_s.len().saturating_sub(1) / stride;
+    let mut out = Outputs {
+        t_sample: h,
+        ..Outputs::default()
+    };
+    out.i_s_abc.reserve(steps + 1);
+    out.omega_mech.reserve(steps + 1);
+    out.theta_mech.reserve(steps + 1);
+    for step in 0..=steps {
+        let k = step * stride;
+        let t = inputs.t_sample * k as f64;
+        steer(&mut state, run.speed, k, h);
+        let i = model.current(t, &state, inputs.u_s[k]);
+        out.i_s_abc.push(phases(i));
+        out.omega_mech.push(state.omega_mech);
+        let theta = run.timeline.theta_at(t, state.theta_mech);
+        out.theta_mech.push(theta);
+        if step < steps {
+            advance(model, &mut state, run.between, inputs, k);
+        }
+    }
+    out.u_measured = (0..=steps).map(|k| run.inputs.u_s[k * stride]).collect();
+    out
+}
+
+/// Imposes or draws the speed.
+#[inline(always)]
+fn steer<X>(state: &mut DynamicState<X>, speed: SpeedSource<'_>, k: usize, h: f64) {
+    match speed {
+        SpeedSource::Free => {}
+        SpeedSource::Imposed(omega) => state.omega_mech = omega[k],
+        SpeedSource::Observed(omega, rate) => {
+            state.omega_mech += (rate * h).min(1.0) * (omega[k] - state.omega_mech);
+        }
+    }
+}
+
+/// One integration step from input sample `k`.
+#[inline(always)]
+fn advance<H: Hooks>(
+    model: &Dynamic<H>,
+    state: &mut DynamicState<H::Extra>,
+    between: Between,
+    inputs: &Inputs,
+    k: usize,
+) {
+    let (u, tau) = (&inputs.u_s, &inputs.tau_load);
+    let t = inputs.t_sample * k as f64;
+    match between {
+        Between::Held => {
+            model.step(state, t, inputs.t_sample, |_| u[k], |_, _| tau[k]);
+        }
+        Between::Smooth => {
+            let h = 2.0 * inputs.t_sample;
+            let (first, middle, last) = (u[k], u[k + 1], u[k + 2]);
+            let supply = |x: f64| {
+                if x <= t {
+                    first
+                } else if x >= t + h {
+                    last
+                } else {
+                    middle
+                }
+            };
+            let mean = 0.5 * (tau[k] + tau[k + 1]);
+            model.step(state, t, h, supply, |_, _| mean);
+        }
+    }
+}

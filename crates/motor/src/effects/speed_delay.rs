@@ -1,0 +1,38 @@
+//! The speed channel is late: `w(t - d)`.
+
+use super::steady::{steady_effect, unchanged};
+use super::{Applies, Descriptor, Kind, Parameter, Scale};
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "speed-delay",
+    form: "",
+    kind: Kind::Sensor,
+    applies: Applies::Always,
+    parameters: &[Parameter::size("delay_s", "s", Scale::Own, 2e-3)],
+    symptom: "the speed lags in ramps",
+    look_alikes: &["inertia_kg_m2"],
+    separating_test: "a fast ramp with the current as reference",
+};
+
+/// The speed channel is late: `w(t - d)`.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedDelay;
+
+steady_effect!(SpeedDelay, DESCRIPTOR, unchanged);
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::SpeedDelay;
+    use crate::effects::signals::delayed;
+    use crate::effects::{Effect, Hook, Outputs, Rated};
+
+    impl Effect for SpeedDelay {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Outputs]
+        }
+
+        fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
+            outputs.omega_mech = delayed(&outputs.omega_mech, p[0] / outputs.t_sample);
+        }
+    }
+}

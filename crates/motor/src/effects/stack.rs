@@ -1,0 +1,290 @@
+//! Several effects at work in one dynamic model.
+
+use super::effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
+use super::{EffectConfig, Rated};
+use crate::TParams;
+use crate::dynamic::{DynamicState, Extra, Flow, Hooks, Linear, Terminal, Winding};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// An effect with its parameters and the place of its extra states.
+#[derive(Clone, Debug)]
+struct Active {
+    effect: &'static dyn Effect,
+    p: Vec<f64>,
+    states: core::ops::Range<usize>,
+}
+
+/// What effects need to know about time: supply frequency (slip) and measured shaft angle (once per turn).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timeline {
+    /// Time between samples, s.
+    pub t_sample: f64,
+    /// Supply frequency, rad/s; at least one sample, held beyond the last.
+    pub omega_sync: Vec<f64>,
+    /// Measured shaft angle, rad; empty: the simulated one counts.
+    pub theta_mech: Vec<f64>,
+}
+
+impl Timeline {
+    /// The same frequency at all times, no measured angle.
+    pub fn constant(omega_sync: f64) -> Self {
+        Self {
+            t_sample: 1.0,
+            omega_sync: vec![omega_sync],
+            theta_mech: Vec::new(),
+        }
+    }
+
+    #[inline]
+    fn sync_at(&self, t: f64) -> f64 {
+        let k = (t / self.t_sample).max(0.0) as usize;
+        self.omega_sync[k.min(self.omega_sync.len() - 1)]
+    }
+
+    /// Measured angle at `t`, or `simulated` without one.
+    #[inline]
+    pub(crate) fn theta_at(&self, t: f64, simulated: f64) -> f64 {
+        let Some(last) = self.theta_mech.len().checked_sub(1) else {
+            return simulated;
+        };
+        let x = (t / self.t_sample).max(0.0);
+        let k = (x as usize).min(last);
+        let next = self.theta_mech[(k + 1).min(last)];
+        self.theta_mech[k] + (next - self.theta_mech[k]) * (x - k as f64)
+    }
+}
+
+/// Effects sorted by the hooks they use, so that a simulation pays only for what is there.
+#[derive(Clone, Debug)]
+pub struct EffectStack<const N: usize> {
+    rated: Rated<f64>,
+    motor: TParams<f64>,
+    timeline: Arc<Timeline>,
+    parameters: Vec<Active>,
+    magnetizing: Vec<Active>,
+    held_voltage: Vec<Active>,
+    terminal: Vec<Active>,
+    finish: Vec<Active>,
+}
+
+/// Number of extra states that a list of effects needs.
+pub fn extra_states(effects: &[EffectConfig]) -> usize {
+    effects.iter().map(|e| e.effect.extra_states()).sum()
+}
+
+impl<const N: usize> EffectStack<N> {
+    /// The effects on a motor whose constant parameters (after [`Effect::motor`]) are `motor`.
+    ///
+    /// # Panics
+    /// If the effects need more than `N` extra states: see [`extra_states`].
+    pub fn new(
+        effects: &[EffectConfig],
+        motor: &TParams<f64>,
+        rated: &Rated<f64>,
+        timeline: Arc<Timeline>,
+    ) -> Self {
+        assert!(extra_states(effects) <= N, "too many extra states");
+        let mut active = place(effects);
+        // Two masses split whatever torque the others leave on the shaft: states come last.
+        active.sort_by_key(|a| a.states.len());
+        let with = |hook: Hook| -> Vec<Active> {
+            let uses = |a: &&Active| a.effect.hooks().contains(&hook);
+            active.iter().filter(uses).cloned().collect()
+        };
+        Self {
+            rated: *rated,
+            motor: *motor,
+            timeline,
+            parameters: with(Hook::Parameters),
+            magnetizing: with(Hook::Magnetizing),
+            held_voltage: with(Hook::HeldVoltage),
+            terminal: with(Hook::Terminal),
+            finish: with(Hook::Finish),
+        }
+    }
+
+    #[inline]
+    fn at<'a>(&'a self, t: f64, state: &'a DynamicState<[f64; N]>, active: &Active) -> At<'a> {
+        At {
+            t,
+            psi_s: state.psi_s,
+            psi_r: state.psi_r,
+            omega_mech: state.omega_mech,
+            theta_mech: self.timeline.theta_at(t, state.theta_mech),
+            omega_sync: self.timeline.sync_at(t),
+            extra: &state.extra[active.states.clone()],
+            rated: &self.rated,
+            motor: &self.motor,
+        }
+    }
+
+    /// Parameters at this instant.
+    fn instantaneous(
+        &self,
+        t: f64,
+        state: &DynamicState<[f64; N]>,
+        i_s: Complex64,
+    ) -> Instantaneous {
+        let mut now = Instantaneous {
+            motor: self.motor,
+            cage: None,
+        };
+        for active in &self.parameters {
+            let at = self.at(t, state, active);
+            active.effect.parameters(&active.p, &at, i_s, &mut now);
+        }
+        now
+    }
+
+    /// Factor on the magnetizing current at air-gap flux `x` (over rated), and its derivative.
+    fn magnetizing_factor(&self, x: f64) -> (f64, f64) {
+        let add = |(f, slope), active: &Active| {
+            let (g, dg) = active.effect.magnetizing(&active.p, x);
+            (f + g - 1.0, slope + dg)
+        };
+        self.magnetizing.iter().fold((1.0, 0.0), add)
+    }
+
+    /// Air-gap flux of a star of branches: `psi (a + f(|psi|)/L_m) = sum`, solved for its magnitude.
+    fn air_gap_flux(&self, sum: Complex64, admittance: f64, l_m: f64) -> Complex64 {
+        let (drive, flux_rated) = (sum.norm(), self.rated.flux());
+        let linear = drive / (admittance + 1.0 / l_m);
+        if self.magnetizing.is_empty() || drive == 0.0 {
+            return sum * (linear / drive.max(f64::MIN_POSITIVE));
+        }
+        let mut x = linear;
+        for _ in 0..12 {
+            let (f, slope) = self.magnetizing_factor(x / flux_rated);
+            let excess = x * (admittance + f / l_m) - drive;
+            let gradient = admittance + (f + x * slope / flux_rated) / l_m;
+            let step = excess / gradient;
+            x = (x - step).max(0.0);
+            if step.abs() < 1e-9 * flux_rated {
+                break;
+            }
+        }
+        sum * (x / drive)
+    }
+
+    /// Currents of a T model with magnetizing branch, two leakages and perhaps a second cage.
+    fn star(&self, state: &DynamicState<[f64; N]>, now: &Instantaneous) -> Winding {
+        let m = &now.motor;
+        let (a_s, a_r) = (1.0 / m.l_ls, 1.0 / m.l_lr);
+        let (a_c, sum_c) = now.cage.map_or((0.0, Complex64::ZERO), cage_share);
+        let sum = state.psi_s * a_s + state.psi_r * a_r + sum_c;
+        let psi_m = self.air_gap_flux(sum, a_s + a_r + a_c, m.l_m);
+        Winding {
+            i_s: (state.psi_s - psi_m) * a_s,
+            i_r: (state.psi_r - psi_m) * a_r,
+            r_s: m.r_s,
+            r_r: m.r_r,
+        }
+    }
+}
+
+fn cage_share(cage: Cage) -> (f64, Complex64) {
+    (1.0 / cage.l, cage.psi / cage.l)
+}
+
+/// Gives each effect its range of extra states.
+fn place(effects: &[EffectConfig]) -> Vec<Active> {
+    let mut next = 0;
+    let mut put = |config: &EffectConfig| {
+        let start = next;
+        next += config.effect.extra_states();
+        Active {
+            effect: config.effect,
+            p: config.values.clone(),
+            states: start..next,
+        }
+    };
+    effects.iter().map(&mut put).collect()
+}
+
+impl<const N: usize> Hooks for EffectStack<N> {
+    type Extra = [f64; N];
+
+    #[inline]
+    fn held_voltage(&self, linear: &Linear, t: f64, state: &DynamicState<[f64; N]>) -> Complex64 {
+        let mut u = Complex64::ZERO;
+        if self.held_voltage.is_empty() {
+            return u;
+        }
+        let i_s = self.winding(linear, t, state).i_s;
+        for active in &self.held_voltage {
+            let at = self.at(t, state, active);
+            u += active.effect.held_voltage(&active.p, &at, i_s);
+        }
+        u
+    }
+
+    #[inline]
+    fn winding(&self, linear: &Linear, t: f64, state: &DynamicState<[f64; N]>) -> Winding {
+        let winding = linear.winding(state.psi_s, state.psi_r);
+        if self.parameters.is_empty() && self.magnetizing.is_empty() {
+            return winding;
+        }
+        let now = self.instantaneous(t, state, winding.i_s);
+        if self.magnetizing.is_empty() && now.cage.is_none() {
+            return Linear::new(&now.motor).winding(state.psi_s, state.psi_r);
+        }
+        self.star(state, &now)
+    }
+
+    #[inline]
+    fn terminal(
+        &self,
+        t: f64,
+        state: &DynamicState<[f64; N]>,
+        winding: &Winding,
+        u: Complex64,
+    ) -> Terminal {
+        let mut terminal = Terminal {
+            supply: u,
+            u,
+            i: winding.i_s,
+        };
+        for active in &self.terminal {
+            let at = self.at(t, state, active);
+            active
+                .effect
+                .terminal(&active.p, &at, winding, &mut terminal);
+        }
+        terminal
+    }
+
+    #[inline]
+    fn finish(
+        &self,
+        flow: &Flow,
+        state: &DynamicState<[f64; N]>,
+        rate: &mut DynamicState<[f64; N]>,
+    ) {
+        for active in &self.finish {
+            let at = self.at(flow.t, state, active);
+            let mut rates = Rates {
+                psi_s: rate.psi_s,
+                psi_r: rate.psi_r,
+                omega_mech: rate.omega_mech,
+                extra: &mut rate.extra[active.states.clone()],
+            };
+            active.effect.finish(&active.p, &at, flow, &mut rates);
+            (rate.psi_s, rate.psi_r) = (rates.psi_s, rates.psi_r);
+            rate.omega_mech = rates.omega_mech;
+        }
+    }
+}
+
+impl<const N: usize> DynamicState<[f64; N]> {
+    /// A plain state with all extra states at rest.
+    pub fn with_extra(plain: &DynamicState) -> Self {
+        Self {
+            psi_s: plain.psi_s,
+            psi_r: plain.psi_r,
+            omega_mech: plain.omega_mech,
+            theta_mech: plain.theta_mech,
+            extra: Extra::ZERO,
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Windage: `k w abs(w)`.
+
+use super::steady::steady_effect;
+use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use num_traits::Float;
+
+static DESCRIPTOR: Descriptor = Descriptor {
+    name: "windage",
+    form: "",
+    kind: Kind::Physics,
+    applies: Applies::Always,
+    parameters: &[Parameter::positive(
+        "windage_nm_s2",
+        "N m s2",
+        Scale::TorquePerSpeedSquared,
+        0.1,
+    )],
+    symptom: "the coast-down is steeper at high speed than the model",
+    look_alikes: &["coulomb-friction", "friction_nm_s", "core-loss"],
+    separating_test: "a coast-down: without it windage hides in B",
+};
+
+/// Windage: `k w abs(w)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Windage;
+
+steady_effect!(Windage, DESCRIPTOR, correct);
+
+fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+    point.tau_extra = point.tau_extra + p[0] * point.omega_mech * point.omega_mech.abs();
+}
+
+#[cfg(feature = "std")]
+mod dynamic {
+    use super::Windage;
+    use crate::dynamic::Flow;
+    use crate::effects::{At, Effect, Hook, Rates};
+
+    impl Effect for Windage {
+        fn hooks(&self) -> &'static [Hook] {
+            &[Hook::Finish]
+        }
+
+        fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {
+            rates.omega_mech -= p[0] * at.omega_mech * at.omega_mech.abs() / flow.inertia;
+        }
+    }
+}
