@@ -96,6 +96,13 @@ impl Error {
         }
     }
 
+    pub(crate) fn of(problems: Vec<Problem>) -> Error {
+        Error {
+            class: Class::BadInput,
+            problems,
+        }
+    }
+
     /// Who is to act.
     pub fn class(&self) -> Class {
         self.class

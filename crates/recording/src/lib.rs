@@ -6,19 +6,23 @@
 
 mod channel;
 mod error;
+mod load_table;
 mod mapping;
 mod metadata;
 mod read;
 mod recording;
+mod sidecar;
 mod source;
 mod suggest;
 mod units;
 
 pub use channel::{Channel, Quantity, Signal};
 pub use error::{Class, Error, Problem};
+pub use load_table::{LoadPoint, LoadTable, TableColumn};
 pub use mapping::{ColumnMap, Mapping, Target};
 pub use metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
-pub use read::read_recording;
+pub use read::{Source, read_any, read_load_table, read_recording};
 pub use recording::Recording;
+pub use sidecar::{Sidecar, sidecar_path};
 pub use source::Progress;
 pub use units::{UNITS, Unit};

@@ -6,6 +6,7 @@ use crate::suggest::closest;
 use crate::units::Unit;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 
 /// What a column may become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -116,6 +117,8 @@ pub struct Mapping {
     pub decimal_comma: Option<bool>,
     /// Pulses per turn of the encoder behind a column of counts.
     pub encoder_pulses_per_revolution: Option<u32>,
+    /// The sidecar to read instead of the one beside the recording.
+    pub sidecar: Option<PathBuf>,
 }
 
 /// Rates between one sample in ten seconds and 100 MHz.
@@ -231,6 +234,7 @@ impl Mapping {
             encoder_pulses_per_revolution: self
                 .encoder_pulses_per_revolution
                 .or(below.encoder_pulses_per_revolution),
+            sidecar: self.sidecar.or(below.sidecar),
         }
     }
 }

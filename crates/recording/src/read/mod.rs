@@ -5,29 +5,92 @@ mod csv_file;
 mod encoder;
 mod finish;
 mod plan;
+mod table;
 
 use crate::error::Error;
+use crate::load_table::LoadTable;
 use crate::mapping::{Mapping, Target};
 use crate::metadata::Metadata;
 use crate::recording::Recording;
+use crate::sidecar::Sidecar;
 use crate::source::Progress;
 use csv_file::CsvFile;
 use plan::Plan;
 use std::collections::BTreeMap;
 use std::path::Path;
+use table::Kind;
+
+/// What a file turned out to hold.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// Samples over time.
+    Recording(Recording),
+    /// Operating points.
+    LoadTable(LoadTable),
+}
 
 /// Reads a recording, `.csv` or `.csv.gz`, with the sidecar beside it; `flags` win over the sidecar.
 ///
 /// # Errors
-/// Whatever is wrong with the file or its sidecar, with file, line, column and remedy.
+/// Whatever is wrong with the file or its sidecar, with file, line, column and remedy; also a load
+/// table.
 pub fn read_recording(
     path: &Path,
     flags: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Recording, Error> {
-    let metadata = Metadata::default();
-    let csv = CsvFile::open(path, flags)?;
-    recording_of(csv, metadata, flags, progress)
+    match read_any(path, flags, progress)? {
+        Source::Recording(recording) => Ok(recording),
+        Source::LoadTable(table) => {
+            let remedy = "name a recording: columns t, va vb vc, ia ib ic, speed";
+            let message = "is a load table, not a recording in time";
+            Err(Error::unsupported(table.name(), message, remedy))
+        }
+    }
+}
+
+/// Reads a load table, `.csv` or `.csv.gz`.
+///
+/// # Errors
+/// Whatever is wrong with the file, with file, line, column and remedy; also a recording.
+pub fn read_load_table(
+    path: &Path,
+    flags: &Mapping,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<LoadTable, Error> {
+    match read_any(path, flags, progress)? {
+        Source::LoadTable(table) => Ok(table),
+        Source::Recording(recording) => {
+            let remedy = "name a table with power_watt, current_rms_amp, speed_rpm and the like";
+            let message = "is a recording in time, not a load table";
+            Err(Error::unsupported(recording.name(), message, remedy))
+        }
+    }
+}
+
+/// Reads whatever the file holds, told by the names of its columns.
+///
+/// # Errors
+/// Whatever is wrong with the file or its sidecar, with file, line, column and remedy.
+pub fn read_any(
+    path: &Path,
+    flags: &Mapping,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Source, Error> {
+    // A file that cannot be opened is the first thing to say, before anything about its sidecar.
+    std::fs::metadata(path).map_err(|error| Error::io(path, &error))?;
+    let sidecar = match &flags.sidecar {
+        Some(path) => Sidecar::read(path)?,
+        None => Sidecar::beside(path)?,
+    };
+    let mapping = flags.clone().over(sidecar.mapping);
+    let csv = CsvFile::open(path, &mapping)?;
+    match table::kind(&csv, &mapping)? {
+        Kind::LoadTable => table::load_table(csv, progress).map(Source::LoadTable),
+        Kind::Recording => {
+            recording_of(csv, sidecar.metadata, &mapping, progress).map(Source::Recording)
+        }
+    }
 }
 
 fn recording_of(

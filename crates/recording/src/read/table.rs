@@ -1,0 +1,122 @@
+//! Load tables from files, and telling them from recordings.
+
+use super::csv_file::{CsvFile, shown};
+use super::plan::list;
+use crate::error::Error;
+use crate::load_table::{LoadTable, TableColumn, sufficient};
+use crate::mapping::{Mapping, Target};
+use crate::source::Progress;
+use crate::suggest::closest;
+use std::collections::BTreeMap;
+
+/// What a file holds, by the names of its columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Recording,
+    LoadTable,
+}
+
+/// Tells a load table from a recording.
+pub(super) fn kind(csv: &CsvFile, mapping: &Mapping) -> Result<Kind, Error> {
+    let of_table = csv
+        .header
+        .iter()
+        .find(|name| TableColumn::parse(name).is_some());
+    let mapped = |name: &String| {
+        mapping
+            .columns
+            .values()
+            .any(|map| map.name.as_ref() == Some(name))
+    };
+    let electrical = |name: &String| matches!(Target::parse(name), Some(Target::Channel(channel)) if channel.is_electrical());
+    let of_recording = csv
+        .header
+        .iter()
+        .find(|name| electrical(name) || mapped(name));
+    match (of_table, of_recording) {
+        (Some(table), Some(recording)) => {
+            let (table, recording) = (shown(table), shown(recording));
+            let message =
+                format!("`{table}` belongs to a load table, `{recording}` to a recording in time");
+            let remedy = "put the two into two files";
+            Err(Error::at(&csv.name, csv.header_line, "", message, remedy))
+        }
+        (Some(_), None) => Ok(Kind::LoadTable),
+        (None, _) => Ok(Kind::Recording),
+    }
+}
+
+/// Reads a load table of which the header has been read.
+pub(super) fn load_table(
+    mut csv: CsvFile,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<LoadTable, Error> {
+    let (used, notes) = assign(&csv)?;
+    sufficient(&csv.name, used.iter().map(|(column, _)| *column))?;
+    let mut columns: BTreeMap<TableColumn, Vec<f64>> = BTreeMap::new();
+    csv.for_each_row(progress, |cells| {
+        for (column, k) in &used {
+            let x = cells
+                .number(*k, column.name())?
+                .ok_or_else(|| cells.missing(column.name()))?;
+            if let Some((complaint, remedy)) = column.complaint(x) {
+                let message = format!("{x} {complaint}");
+                return Err(Error::at(
+                    cells.file,
+                    cells.line,
+                    column.name(),
+                    message,
+                    remedy,
+                ));
+            }
+            columns.entry(*column).or_default().push(x);
+        }
+        Ok(())
+    })?;
+    let mut table = LoadTable::new(&csv.name, columns_or_empty(columns, &used))?;
+    table.assumptions = notes;
+    Ok(table)
+}
+
+/// A table without rows still has its columns, so that the error is about the rows.
+fn columns_or_empty(
+    mut columns: BTreeMap<TableColumn, Vec<f64>>,
+    used: &[(TableColumn, usize)],
+) -> BTreeMap<TableColumn, Vec<f64>> {
+    for (column, _) in used {
+        columns.entry(*column).or_default();
+    }
+    columns
+}
+
+type Used = Vec<(TableColumn, usize)>;
+
+fn assign(csv: &CsvFile) -> Result<(Used, Vec<String>), Error> {
+    let (mut used, mut notes) = (Vec::new(), Vec::new());
+    for (k, name) in csv.header.iter().enumerate() {
+        match TableColumn::parse(name) {
+            Some(column) => used.push((column, k)),
+            None => notes.push(stranger(csv, name)?),
+        }
+    }
+    Ok((used, notes))
+}
+
+fn stranger(csv: &CsvFile, name: &str) -> Result<String, Error> {
+    let absent = TableColumn::ALL.iter().map(|column| column.name());
+    let absent = absent.filter(|known| !csv.header.iter().any(|name| name == known));
+    match closest(name, absent) {
+        None => Ok(format!("column {} is not used", shown(name))),
+        Some(meant) => {
+            let message = "is not a known column of a load table";
+            let remedy = format!("did you mean `{meant}`? The file has {}", list(&csv.header));
+            Err(Error::at(
+                &csv.name,
+                csv.header_line,
+                &shown(name),
+                message,
+                remedy,
+            ))
+        }
+    }
+}
