@@ -9,9 +9,12 @@ pub mod document;
 #[cfg(feature = "std")]
 pub mod dynamic;
 pub mod effects;
+#[cfg(feature = "std")]
+pub mod load;
 #[cfg(feature = "file")]
 pub mod motor_file;
 mod params;
+pub mod steady_state;
 pub mod temperature;
 
 #[cfg(feature = "file")]

@@ -142,3 +142,64 @@ impl<F: Float> From<InvGammaParams<F>> for TParams<F> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::steady_state::tests::{motors, seeded};
+    use proptest::prelude::*;
+
+    /// Relative difference of two positive numbers.
+    fn off(a: f64, b: f64) -> f64 {
+        (a / b - 1.0).abs()
+    }
+
+    proptest! {
+        #![proptest_config(seeded())]
+
+        /// `sigma` without cancellation against the definition; both rounded, hence 1e-13 at sigma >= 0.02.
+        #[test]
+        fn the_leakage_factor_is_its_definition(p in motors()) {
+            let definition = 1.0 - p.l_m * p.l_m / (p.l_s() * p.l_r());
+            prop_assert!((p.sigma() - definition).abs() < 1e-14);
+            prop_assert!(p.sigma() > 0.0 && p.sigma() < 1.0);
+            prop_assert!(off(p.l_a(), definition * p.l_s()) < 1e-12);
+        }
+
+        /// What the terminals can see: `L_s`, `sigma L_s` and the rotor time constant.
+        #[test]
+        fn all_models_have_the_same_invariants(p in motors()) {
+            let (gamma, inv) = (p.to_gamma(), p.to_inv_gamma());
+            for other in [TParams::from(gamma), TParams::from(inv)] {
+                prop_assert!(off(other.l_s(), p.l_s()) < 1e-14);
+                prop_assert!(off(other.l_a(), p.l_a()) < 1e-13);
+                // The rotor time constant.
+                prop_assert!(off(other.l_r() / other.r_r, p.l_r() / p.r_r) < 1e-14);
+            }
+            // sigma L_s and L_m^2/L_r, as documented on the type.
+            prop_assert!(off(inv.l_sigma, p.l_a()) < 1e-13);
+            prop_assert!(off(inv.l_m, p.l_m * p.l_m / p.l_r()) < 1e-15);
+        }
+
+        /// Converting there and back is the same model.
+        #[test]
+        fn gamma_and_inverse_gamma_convert_into_each_other(p in motors()) {
+            let inv = p.to_inv_gamma();
+            let back = TParams::from(TParams::from(inv).to_gamma()).to_inv_gamma();
+            for (a, b) in [(inv.r_r, back.r_r), (inv.l_sigma, back.l_sigma), (inv.l_m, back.l_m)] {
+                prop_assert!(off(a, b) < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn frictions_add() {
+        let mechanics = Mechanics {
+            n_p: 2.0,
+            inertia: 0.01,
+            friction: 0.25,
+            load_friction: 0.5,
+        };
+        assert_eq!(mechanics.total_friction(), 0.75);
+    }
+}
