@@ -1,2 +1,43 @@
-#![no_std]
-//! The monitor core.
+#![cfg_attr(not(test), no_std)]
+//! The monitor core: from ADC code to lamp. `no_std`, no allocation, f32, no hardware.
+//!
+//! One sample's way: [`Converter`] (codes to SI) -> [`SyncConfig`] (angle of the supply) ->
+//! phasors of whole cycles -> once per cycle: residuals -> thresholds -> signature -> lamps.
+
+mod config;
+mod convert;
+mod encoder;
+mod frames;
+mod health;
+mod intake;
+mod lamps;
+mod monitor;
+mod operating_point;
+mod panel;
+mod phasor;
+mod report;
+mod residuals;
+mod sample;
+mod signature;
+mod supply;
+mod sync;
+mod threshold;
+mod window;
+
+pub use config::{ConfigError, LoadKind, MonitorConfig};
+pub use convert::{ChannelScale, Converter};
+pub use encoder::{EncoderConfig, EncoderState, SpeedReading};
+pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
+pub use health::{HealthConfig, Phase, SensorFinding};
+pub use lamps::{Lamp, Lamps};
+pub use monitor::{Monitor, MonitorState};
+pub use operating_point::{Frame, OperatingPoint, Rehearsal};
+pub use phasor::{CHANNELS, ChannelCycle, CyclePhasors};
+pub use report::{NotJudged, Report};
+pub use residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
+pub use sample::{ClippedChannels, RawSample, Sample, SpeedSample};
+pub use signature::{Candidates, FAULTS, Fault, TABLE_1};
+pub use supply::{SupplyConfig, SupplyFinding};
+pub use sync::{SyncConfig, SyncState, SyncTick};
+pub use threshold::{ComparatorConfig, ComparatorState};
+pub use window::{MAX_WINDOW_CYCLES, Window};

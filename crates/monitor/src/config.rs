@@ -1,0 +1,149 @@
+//! Everything the monitor must know before the first sample, validated once.
+
+use motor::{Mechanics, TParams};
+
+use crate::convert::Converter;
+use crate::operating_point::{Frame, Rehearsal};
+use crate::residuals::{FieldCurrent, RESIDUALS};
+use crate::threshold::ComparatorConfig;
+use crate::window::MAX_WINDOW_CYCLES;
+
+/// What drives the shaft's load, as the motor file declares it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LoadKind {
+    /// `B_l w`, the paper's case: a change is a fault.
+    #[default]
+    Friction,
+    /// A torque channel exists.
+    Measured,
+    /// Anything: r2, r3 and r4 say nothing about the motor.
+    Free,
+}
+
+/// Configuration of the monitor. SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MonitorConfig {
+    /// Sampling time, s, in 2e-5..=2e-3.
+    pub t_sample: f32,
+    /// Codes to SI; unused when samples arrive in SI.
+    pub converter: Converter,
+    /// Counts per revolution of the encoder (four per pulse), > 0.
+    pub encoder_counts_per_revolution: f32,
+    /// Electrical parameters per star phase.
+    pub params: TParams<f32>,
+    /// Pole pairs, inertia, friction.
+    pub mechanics: Mechanics<f32>,
+    /// Rated phase voltage, amplitude, V, > 0.
+    pub rated_voltage: f32,
+    /// Rated phase current, amplitude, A, > 0.
+    pub rated_current: f32,
+    /// Rated frequency, rad/s, > 0.
+    pub rated_omega: f32,
+    /// Rated torque, N m, > 0.
+    pub rated_torque: f32,
+    /// Where the d axis lies.
+    pub frame: Frame,
+    /// Source of the field current.
+    pub field: FieldCurrent,
+    /// Kind of load.
+    pub load: LoadKind,
+    /// Thresholds of r1..r4 as shares of their scales, > 0.
+    pub thresholds: [f32; RESIDUALS],
+    /// Supply cycles in a window, 2..=[`MAX_WINDOW_CYCLES`].
+    pub window_cycles: usize,
+    /// Persistence and hysteresis of all comparators.
+    pub comparator: ComparatorConfig,
+    /// Gains for rehearsing sensor faults; 1 in service.
+    pub rehearsal: Rehearsal,
+}
+
+/// A parameter outside its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConfigError {
+    /// Name of the field.
+    pub parameter: &'static str,
+    /// What it was.
+    pub value: f32,
+    /// Smallest and largest allowed value.
+    pub range: [f32; 2],
+}
+
+impl core::fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let [least, greatest] = self.range;
+        let (name, value) = (self.parameter, self.value);
+        write!(f, "{name} = {value} is outside {least}..={greatest}")
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
+/// Larger than anything a motor can have; keeps the single-precision arithmetic away from overflow.
+const HUGE: f32 = 1e6;
+const TINY: f32 = 1e-9;
+
+impl MonitorConfig {
+    /// Checks every range, so that nothing in the sample path can fail.
+    ///
+    /// # Errors
+    /// The first parameter that is not a number or lies outside its range.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        let positive = [TINY, HUGE];
+        let non_negative = [0.0, HUGE];
+        let p = &self.params;
+        let checks = [
+            ("t_sample", self.t_sample, [2e-5, 2e-3]),
+            (
+                "encoder_counts_per_revolution",
+                self.encoder_counts_per_revolution,
+                [1.0, HUGE],
+            ),
+            ("r_s", p.r_s, positive),
+            ("r_r", p.r_r, positive),
+            ("l_ls", p.l_ls, non_negative),
+            ("l_lr", p.l_lr, non_negative),
+            ("l_ls + l_lr", p.l_ls + p.l_lr, positive),
+            ("l_m", p.l_m, positive),
+            ("n_p", self.mechanics.n_p, [1.0, 50.0]),
+            ("inertia", self.mechanics.inertia, positive),
+            ("friction", self.mechanics.friction, non_negative),
+            ("load_friction", self.mechanics.load_friction, non_negative),
+            ("rated_voltage", self.rated_voltage, positive),
+            ("rated_current", self.rated_current, positive),
+            ("rated_omega", self.rated_omega, positive),
+            ("rated_torque", self.rated_torque, positive),
+            (
+                "window_cycles",
+                self.window_cycles as f32,
+                [2.0, MAX_WINDOW_CYCLES as f32],
+            ),
+            (
+                "persistence",
+                f32::from(self.comparator.persistence),
+                [1.0, 255.0],
+            ),
+            ("hysteresis", self.comparator.hysteresis, [0.1, 1.0]),
+        ];
+        let thresholds = self
+            .thresholds
+            .map(|value| ("thresholds", value, [1e-5, HUGE]));
+        checks
+            .into_iter()
+            .chain(thresholds)
+            .try_for_each(check_range)
+    }
+}
+
+fn check_range(
+    (parameter, value, [least, greatest]): (&'static str, f32, [f32; 2]),
+) -> Result<(), ConfigError> {
+    if (least..=greatest).contains(&value) {
+        Ok(())
+    } else {
+        Err(ConfigError {
+            parameter,
+            value,
+            range: [least, greatest],
+        })
+    }
+}

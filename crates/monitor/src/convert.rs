@@ -1,0 +1,152 @@
+//! From ADC codes to SI units: the one place where codes become volts and amperes.
+
+use crate::frames::Abc;
+use crate::sample::{ClippedChannels, RawSample, Sample, SpeedSample};
+
+/// Codes within this distance of a rail count as clipped: a converter's last code is reached
+/// before its input stops rising.
+const RAIL_MARGIN_CODES: u16 = 1;
+
+/// How one group of three channels turns codes into SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChannelScale {
+    /// V or A per code.
+    pub unit_per_code: f32,
+    /// Code of 0 V or 0 A.
+    pub zero_code: f32,
+    /// Gain correction of each channel, 1 when uncalibrated.
+    pub gain: Abc,
+    /// Offset of each channel, V or A, subtracted after scaling.
+    pub offset: Abc,
+}
+
+/// Calibration of the six analogue channels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Converter {
+    /// Phase voltages.
+    pub voltage: ChannelScale,
+    /// Phase currents.
+    pub current: ChannelScale,
+    /// Largest code of the converter, `2^bits - 1`.
+    pub max_code: u16,
+}
+
+impl ChannelScale {
+    /// A bipolar channel whose range `-full_scale..full_scale` (V or A) spans all codes of `bits` bits.
+    pub fn bipolar(full_scale: f32, bits: u8) -> Self {
+        let codes = (1_u32 << bits.min(16)) as f32;
+        ChannelScale {
+            unit_per_code: 2.0 * full_scale / codes,
+            zero_code: codes / 2.0,
+            gain: Abc::splat(1.0),
+            offset: Abc::default(),
+        }
+    }
+
+    fn convert(&self, codes: [u16; 3]) -> Abc {
+        let raw = Abc::from_array(codes.map(|code| f32::from(code) - self.zero_code));
+        raw.zip(self.gain, |x, gain| x * self.unit_per_code * gain)
+            .zip(self.offset, |x, offset| x - offset)
+    }
+}
+
+impl Converter {
+    /// Uncalibrated bipolar channels: full scales in V and A, resolution in bits (at most 16).
+    pub fn bipolar(voltage_full_scale: f32, current_full_scale: f32, bits: u8) -> Self {
+        Converter {
+            voltage: ChannelScale::bipolar(voltage_full_scale, bits),
+            current: ChannelScale::bipolar(current_full_scale, bits),
+            max_code: ((1_u32 << bits.min(16)) - 1) as u16,
+        }
+    }
+
+    /// One instant in SI units, with the channels at a rail marked.
+    pub fn convert(&self, raw: &RawSample) -> Sample {
+        Sample {
+            u_s_abc: Some(self.voltage.convert(raw.voltage_codes)),
+            i_s_abc: Some(self.current.convert(raw.current_codes)),
+            speed: SpeedSample::Count(raw.encoder_count),
+            tau_load: None,
+            clipped: self.clipped(raw),
+        }
+    }
+
+    fn clipped(&self, raw: &RawSample) -> ClippedChannels {
+        let mut clipped = ClippedChannels::NONE;
+        for (phase, &code) in raw.voltage_codes.iter().enumerate() {
+            if self.at_rail(code) {
+                clipped.mark_voltage(phase);
+            }
+        }
+        for (phase, &code) in raw.current_codes.iter().enumerate() {
+            if self.at_rail(code) {
+                clipped.mark_current(phase);
+            }
+        }
+        clipped
+    }
+
+    fn at_rail(&self, code: u16) -> bool {
+        code <= RAIL_MARGIN_CODES || code >= self.max_code.saturating_sub(RAIL_MARGIN_CODES)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_become_volts_and_amperes() {
+        let converter = Converter::bipolar(600.0, 60.0, 12);
+        let sample = converter.convert(&RawSample {
+            voltage_codes: [2048, 3072, 1024],
+            current_codes: [2048, 2049, 2047],
+            encoder_count: 7,
+        });
+        assert_eq!(
+            sample.u_s_abc,
+            Some(Abc {
+                a: 0.0,
+                b: 300.0,
+                c: -300.0
+            })
+        );
+        let lsb = 120.0 / 4096.0;
+        assert_eq!(
+            sample.i_s_abc,
+            Some(Abc {
+                a: 0.0,
+                b: lsb,
+                c: -lsb
+            })
+        );
+        assert_eq!(sample.speed, SpeedSample::Count(7));
+        assert!(!sample.clipped.any());
+    }
+
+    #[test]
+    fn calibration_corrects_gain_then_offset() {
+        let mut converter = Converter::bipolar(2048.0, 2048.0, 12);
+        converter.voltage.gain.b = 1.1;
+        converter.voltage.offset.b = 5.0;
+        let sample = converter.convert(&RawSample {
+            voltage_codes: [2148; 3],
+            ..RawSample::default()
+        });
+        let voltages = sample.u_s_abc.unwrap_or_default();
+        assert_eq!(voltages.a, 100.0);
+        assert!((voltages.b - 105.0).abs() < 1e-4); // f32 rounding of 110
+    }
+
+    #[test]
+    fn both_rails_are_marked_per_channel() {
+        let converter = Converter::bipolar(600.0, 60.0, 12);
+        let sample = converter.convert(&RawSample {
+            voltage_codes: [4095, 2048, 2048],
+            current_codes: [2048, 2048, 0],
+            encoder_count: 0,
+        });
+        assert!(sample.clipped.voltage(0) && sample.clipped.current(2));
+        assert!(!sample.clipped.voltage(1) && !sample.clipped.current(0));
+    }
+}

@@ -1,0 +1,208 @@
+//! Shaft speed from a quadrature encoder by the M/T method, or the mean of a measured speed.
+//!
+//! M/T: counts between two edges divided by the time between the same two edges, so that neither
+//! the start nor the end of a window costs a count (Ohmae et al., IEEE Trans. Ind. Electron.
+//! IE-29(3), 1982, doi:10.1109/TIE.1982.356669). Edge times are known to one sample here.
+
+use core::f32::consts::TAU;
+
+use crate::sample::SpeedSample;
+
+/// The encoder and what it can plausibly deliver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EncoderConfig {
+    /// Sampling time, s.
+    pub t_sample: f32,
+    /// Counts per revolution: four per pulse of a quadrature encoder.
+    pub counts_per_revolution: f32,
+    /// Highest mechanical speed that is believed, rad/s; a faster count is a glitch.
+    pub omega_mech_max: f32,
+}
+
+/// Counting since the last window end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EncoderState {
+    last_count: Option<u16>,
+    /// Counts since the reference edge.
+    counts: i32,
+    /// Samples since the reference edge.
+    samples: u32,
+    /// Samples from the reference edge to the latest edge, and the counts up to it.
+    latest_edge: u32,
+    counts_at_edge: i32,
+    glitches: u16,
+    /// Mean of a measured speed in this window.
+    sum: f32,
+    measured: u32,
+    missing: u32,
+}
+
+/// What one window says about the shaft.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpeedReading {
+    /// Mean mechanical speed, rad/s; `None` without a sensor.
+    pub omega_mech: Option<f32>,
+    /// Counts that were too fast to be true and were left out.
+    pub glitches: u16,
+    /// No edge came in this window: the shaft stands, or the encoder is dead.
+    pub silent: bool,
+}
+
+impl EncoderConfig {
+    /// Takes the sensor's value at one sample.
+    pub fn update(&self, state: &mut EncoderState, speed: SpeedSample) {
+        match speed {
+            SpeedSample::None => state.missing = state.missing.saturating_add(1),
+            SpeedSample::RadPerSecond(omega) if omega.is_finite() => {
+                state.sum += omega;
+                state.measured = state.measured.saturating_add(1);
+            }
+            SpeedSample::RadPerSecond(_) => state.missing = state.missing.saturating_add(1),
+            SpeedSample::Count(count) => self.count(state, count),
+        }
+    }
+
+    fn count(&self, state: &mut EncoderState, count: u16) {
+        let Some(last) = state.last_count.replace(count) else {
+            return;
+        };
+        state.samples = state.samples.saturating_add(1);
+        // Two's complement: right across the wrap and in both directions.
+        let delta = i32::from(count.wrapping_sub(last) as i16);
+        if delta.unsigned_abs() as f32 > self.counts_per_sample_max() {
+            state.glitches = state.glitches.saturating_add(1);
+            return;
+        }
+        if delta != 0 {
+            state.counts = state.counts.saturating_add(delta);
+            state.counts_at_edge = state.counts;
+            state.latest_edge = state.samples;
+        }
+    }
+
+    /// One count more than the fastest shaft delivers: the phase of the edges is arbitrary.
+    fn counts_per_sample_max(&self) -> f32 {
+        self.omega_mech_max * self.counts_per_revolution / TAU * self.t_sample + 1.0
+    }
+
+    /// Ends a window: its mean speed; the latest edge becomes the reference of the next window.
+    pub fn close_window(&self, state: &mut EncoderState) -> SpeedReading {
+        let reading = SpeedReading {
+            omega_mech: self.mean_speed(state),
+            glitches: state.glitches,
+            silent: state.latest_edge == 0 && state.measured == 0,
+        };
+        state.counts -= state.counts_at_edge;
+        state.samples -= state.latest_edge;
+        (state.counts_at_edge, state.latest_edge, state.glitches) = (0, 0, 0);
+        (state.sum, state.measured, state.missing) = (0.0, 0, 0);
+        reading
+    }
+
+    fn mean_speed(&self, state: &EncoderState) -> Option<f32> {
+        if state.missing > state.measured {
+            return None;
+        }
+        if state.measured > 0 {
+            return Some(state.sum / state.measured as f32);
+        }
+        state.last_count?;
+        if state.latest_edge == 0 {
+            return Some(0.0);
+        }
+        let revolutions = state.counts_at_edge as f32 / self.counts_per_revolution;
+        Some(TAU * revolutions / (state.latest_edge as f32 * self.t_sample))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const CONFIG: EncoderConfig = EncoderConfig {
+        t_sample: 1e-4,
+        counts_per_revolution: 4096.0,
+        omega_mech_max: 700.0,
+    };
+
+    /// Counter value of an ideal encoder at sample `k` of a shaft at constant speed.
+    fn count_at(k: u32, omega: f64) -> u16 {
+        let counts = omega * f64::from(k) * 1e-4 * 4096.0 / core::f64::consts::TAU + 0.3;
+        (counts.floor() as i64) as u16
+    }
+
+    fn speed_over(windows: u32, samples: u32, omega: f64) -> f32 {
+        let mut state = EncoderState::default();
+        let mut reading = SpeedReading::default();
+        for k in 0..windows * samples {
+            CONFIG.update(&mut state, SpeedSample::Count(count_at(k, omega)));
+            if k % samples == samples - 1 {
+                reading = CONFIG.close_window(&mut state);
+            }
+        }
+        reading.omega_mech.unwrap_or(f32::NAN)
+    }
+
+    proptest! {
+        /// An edge is known to one sample (M/T's T) or one count (its M), whichever is coarser.
+        #[test]
+        fn any_speed_and_direction_is_measured(omega in -600.0f64..600.0) {
+            prop_assume!(omega.abs() > 1.0);
+            let counts_in_window = (omega.abs() * 0.02 * 4096.0 / core::f64::consts::TAU).max(1.0);
+            let resolution = (2.0 / 200.0_f64).min(2.0 / counts_in_window);
+            let measured = f64::from(speed_over(3, 200, omega));
+            prop_assert!((measured / omega - 1.0).abs() <= resolution + 1e-5, "{measured} for {omega}");
+        }
+    }
+
+    #[test]
+    fn the_counter_wrap_is_invisible() {
+        // 70 000 counts pass in this time: the 16-bit counter wraps.
+        let omega = 70_000.0 / 4096.0 * core::f64::consts::TAU / 2.0;
+        assert!((f64::from(speed_over(100, 200, omega)) / omega - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_standing_shaft_is_zero_and_silent() {
+        let mut state = EncoderState::default();
+        for _ in 0..200 {
+            CONFIG.update(&mut state, SpeedSample::Count(17));
+        }
+        let reading = CONFIG.close_window(&mut state);
+        assert_eq!(reading.omega_mech, Some(0.0));
+        assert!(reading.silent);
+    }
+
+    #[test]
+    fn a_glitch_is_left_out_and_counted() {
+        let mut state = EncoderState::default();
+        for k in 0..400 {
+            let glitch = if k == 250 { 9000 } else { 0 };
+            CONFIG.update(
+                &mut state,
+                SpeedSample::Count(count_at(k, 150.0).wrapping_add(glitch)),
+            );
+        }
+        let reading = CONFIG.close_window(&mut state);
+        assert_eq!(reading.glitches, 2, "the jump there and the jump back");
+        // Two of 400 intervals are lost with their counts.
+        assert!((reading.omega_mech.unwrap_or(0.0) / 150.0 - 1.0).abs() < 2.5 / 400.0 + 1e-3);
+    }
+
+    #[test]
+    fn a_reversal_changes_the_sign() {
+        assert!(speed_over(2, 200, -150.0) < -149.0);
+    }
+
+    #[test]
+    fn no_sensor_is_no_speed_and_a_measured_speed_is_averaged() {
+        let mut state = EncoderState::default();
+        CONFIG.update(&mut state, SpeedSample::None);
+        assert_eq!(CONFIG.close_window(&mut state).omega_mech, None);
+        for omega in [100.0, 102.0] {
+            CONFIG.update(&mut state, SpeedSample::RadPerSecond(omega));
+        }
+        assert_eq!(CONFIG.close_window(&mut state).omega_mech, Some(101.0));
+    }
+}

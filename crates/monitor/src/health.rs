@@ -1,0 +1,217 @@
+//! Plausibility of the measured channels themselves: dead, clipped or contradicting sensors.
+
+use crate::frames::magnitude;
+use crate::window::Window;
+
+/// A phase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Phase a.
+    A,
+    /// Phase b.
+    B,
+    /// Phase c.
+    C,
+}
+
+impl Phase {
+    /// All phases in order.
+    pub const ALL: [Phase; 3] = [Phase::A, Phase::B, Phase::C];
+
+    /// Lower-case letter.
+    pub const fn letter(self) -> &'static str {
+        match self {
+            Phase::A => "a",
+            Phase::B => "b",
+            Phase::C => "c",
+        }
+    }
+}
+
+/// A finding about a sensor, independent of the motor model's thresholds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorFinding {
+    /// A voltage channel shows nothing while the others do.
+    DeadVoltage(Phase),
+    /// A current channel shows nothing while the others do.
+    DeadCurrent(Phase),
+    /// No voltage channel shows anything, yet currents flow.
+    VoltagesMissing,
+    /// The currents do not add up to zero although there is no fourth wire.
+    CurrentSum,
+    /// The speed contradicts what voltages and currents say about the slip.
+    SpeedImplausible,
+}
+
+/// Limits of the plausibility checks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HealthConfig {
+    /// Rated phase voltage, amplitude, V.
+    pub rated_voltage: f32,
+    /// Rated phase current, amplitude, A.
+    pub rated_current: f32,
+}
+
+/// A channel below this share of the mean of its neighbours is dead: a lost phase of a running
+/// motor still carries some half of the voltage by induction.
+const DEAD_SHARE: f32 = 0.1;
+/// Voltages and currents below this share of rated cannot be told from nothing.
+const SILENT_SHARE: f32 = 0.05;
+/// Zero over positive sequence of the currents that no pair of current sensors within 15 % gives.
+const CURRENT_SUM_SHARE: f32 = 0.1;
+/// Contradiction between measured and implied speed, as a share of synchronous speed. The implied
+/// speed of a locked rotor errs by some 0.3 (saturated leakage, deep bars); a lost encoder by 0.9.
+const SPEED_CONTRADICTION: f32 = 0.4;
+
+impl HealthConfig {
+    /// Whether the supply is there at all.
+    pub fn has_supply(&self, window: &Window) -> bool {
+        magnitude(window.u_s.positive) > SILENT_SHARE * self.rated_voltage
+    }
+
+    /// Whether the motor draws current at all.
+    pub fn has_current(&self, window: &Window) -> bool {
+        amplitudes(window, 3)
+            .iter()
+            .any(|&x| x > SILENT_SHARE * self.rated_current)
+    }
+
+    /// Checks the voltage channels.
+    pub fn check_voltages(&self, window: &Window) -> Option<SensorFinding> {
+        let voltages = amplitudes(window, 0);
+        if voltages
+            .iter()
+            .all(|&u| u < SILENT_SHARE * self.rated_voltage)
+        {
+            let flowing = self.has_current(window);
+            return flowing.then_some(SensorFinding::VoltagesMissing);
+        }
+        dead_channel(&voltages).map(SensorFinding::DeadVoltage)
+    }
+
+    /// Checks the current channels.
+    pub fn check_currents(&self, window: &Window) -> Option<SensorFinding> {
+        if !self.has_current(window) {
+            return None;
+        }
+        let zero = magnitude(window.i_s.zero);
+        if zero < CURRENT_SUM_SHARE * magnitude(window.i_s.positive) {
+            return None;
+        }
+        let dead = dead_channel(&amplitudes(window, 3)).map(SensorFinding::DeadCurrent);
+        dead.or(Some(SensorFinding::CurrentSum))
+    }
+
+    /// Checks the electrical speed against the one that voltages and currents imply, all in rad/s.
+    pub fn check_speed(
+        &self,
+        omega_sync: f32,
+        measured: f32,
+        implied: f32,
+    ) -> Option<SensorFinding> {
+        let contradiction = (measured - implied).abs() > SPEED_CONTRADICTION * omega_sync;
+        contradiction.then_some(SensorFinding::SpeedImplausible)
+    }
+}
+
+/// Fundamental amplitudes of three channels from `first` on.
+fn amplitudes(window: &Window, first: usize) -> [f32; 3] {
+    let mut result = [0.0; 3];
+    for (amplitude, channel) in result.iter_mut().zip(window.channels.iter().skip(first)) {
+        *amplitude = magnitude(channel.phasor);
+    }
+    result
+}
+
+fn dead_channel([a, b, c]: &[f32; 3]) -> Option<Phase> {
+    let neighbours = [(a, b + c), (b, a + c), (c, a + b)];
+    Phase::ALL
+        .into_iter()
+        .zip(neighbours)
+        .find(|(_, (own, others))| **own < DEAD_SHARE * 0.5 * others)
+        .map(|(phase, _)| phase)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frames::Sequence;
+    use num_complex::Complex32;
+
+    const CONFIG: HealthConfig = HealthConfig {
+        rated_voltage: 325.0,
+        rated_current: 7.0,
+    };
+
+    /// A balanced window with a gain on each channel.
+    fn window(voltage_gains: [f32; 3], current_gains: [f32; 3]) -> Window {
+        let mut window = Window::default();
+        for phase in 0..3 {
+            let axis = Complex32::from_polar(1.0, -(phase as f32) * core::f32::consts::TAU / 3.0);
+            window.channels[phase].phasor = axis * 325.0 * voltage_gains[phase];
+            window.channels[3 + phase].phasor = axis * 5.0 * current_gains[phase];
+        }
+        let [ua, ub, uc, ia, ib, ic] = window.channels.map(|channel| channel.phasor);
+        window.u_s = Sequence::from_phases([ua, ub, uc]);
+        window.i_s = Sequence::from_phases([ia, ib, ic]);
+        window
+    }
+
+    #[test]
+    fn healthy_channels_raise_nothing() {
+        let window = window([1.0, 1.02, 0.99], [1.0, 0.97, 1.03]);
+        assert_eq!(CONFIG.check_voltages(&window), None);
+        assert_eq!(CONFIG.check_currents(&window), None);
+    }
+
+    #[test]
+    fn each_dead_channel_is_named() {
+        for phase in 0..3 {
+            let mut gains = [1.0; 3];
+            gains[phase] = 0.01;
+            let expected = Phase::ALL[phase];
+            let window = window(gains, gains);
+            assert_eq!(
+                CONFIG.check_voltages(&window),
+                Some(SensorFinding::DeadVoltage(expected))
+            );
+            assert_eq!(
+                CONFIG.check_currents(&window),
+                Some(SensorFinding::DeadCurrent(expected))
+            );
+        }
+    }
+
+    #[test]
+    fn an_open_motor_phase_is_no_sensor_fault() {
+        // One phase open: the other two carry opposite currents, the sum stays zero.
+        let mut window = window([1.0; 3], [1.0; 3]);
+        let current = Complex32::new(5.0, 0.0);
+        window.i_s = Sequence::from_phases([Complex32::ZERO, current, -current]);
+        assert_eq!(CONFIG.check_currents(&window), None);
+    }
+
+    #[test]
+    fn a_gain_error_of_half_shows_in_the_sum() {
+        let window = window([1.0; 3], [1.5, 1.0, 1.0]);
+        assert_eq!(
+            CONFIG.check_currents(&window),
+            Some(SensorFinding::CurrentSum)
+        );
+    }
+
+    #[test]
+    fn currents_without_voltages_are_a_sensor_and_silence_is_not() {
+        assert_eq!(
+            CONFIG.check_voltages(&window([0.0; 3], [1.0; 3])),
+            Some(SensorFinding::VoltagesMissing)
+        );
+        assert_eq!(CONFIG.check_voltages(&window([0.0; 3], [0.0; 3])), None);
+    }
+
+    #[test]
+    fn a_lost_encoder_is_told_from_a_locked_rotor() {
+        assert!(CONFIG.check_speed(314.0, 0.0, 300.0).is_some());
+        assert!(CONFIG.check_speed(314.0, 0.0, 60.0).is_none());
+    }
+}

@@ -1,0 +1,61 @@
+//! The lamps on the panel door.
+
+use crate::residuals::RESIDUALS;
+
+/// What one lamp shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lamp {
+    /// Dark.
+    #[default]
+    Off,
+    /// Steady light.
+    On,
+    /// Slow blinking, 1 Hz: waiting or not judged.
+    Blink,
+}
+
+impl Lamp {
+    /// On or off.
+    pub const fn lit(on: bool) -> Self {
+        if on { Lamp::On } else { Lamp::Off }
+    }
+
+    /// Stable name used in files: `off`, `on` or `blink`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Lamp::Off => "off",
+            Lamp::On => "on",
+            Lamp::Blink => "blink",
+        }
+    }
+}
+
+/// All lamps at one moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lamps {
+    /// On: the motor is being judged. Blink: powered, but not judged now.
+    pub run: Lamp,
+    /// On: residual r1..r4 beyond its threshold.
+    pub r: [Lamp; RESIDUALS],
+    /// On: a sensor is dead, contradicts the others, or is the likeliest cause. Blink: a channel clips or is invalid.
+    pub sensor: Lamp,
+    /// On: supply lost, wrong order, out of range or unbalanced. Blink: searching for the supply's frequency.
+    pub line: Lamp,
+    /// On: the load differs from the one declared (load kind `free`). Blink: transient, not judged.
+    pub load: Lamp,
+    /// On: a fault persists.
+    pub fault: Lamp,
+}
+
+impl Lamps {
+    /// Nothing but RUN shows.
+    pub fn is_quiet(&self) -> bool {
+        let others = [self.sensor, self.line, self.load, self.fault];
+        others.iter().chain(&self.r).all(|&lamp| lamp != Lamp::On)
+    }
+
+    /// Which of r1..r4 are on.
+    pub fn pattern(&self) -> [bool; RESIDUALS] {
+        self.r.map(|lamp| lamp == Lamp::On)
+    }
+}

@@ -1,0 +1,333 @@
+//! The monitor: one sample in, one report per supply cycle out.
+
+use num_complex::Complex32;
+
+use crate::config::{ConfigError, LoadKind, MonitorConfig};
+use crate::encoder::{EncoderConfig, EncoderState};
+use crate::frames::AlphaBeta;
+use crate::health::{HealthConfig, SensorFinding};
+use crate::intake::{Admitted, IntakeState};
+use crate::operating_point::{Frame, OperatingPoint};
+use crate::panel::{PanelConfig, PanelState};
+use crate::phasor::{CyclePhasors, PhasorState};
+use crate::report::{NotJudged, Report};
+use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
+use crate::sample::{RawSample, Sample};
+use crate::supply::{SupplyConfig, SupplyFinding};
+use crate::sync::{SyncConfig, SyncState};
+use crate::window::{Cycle, Window, WindowState};
+
+/// The monitor's configuration in the form that the sample path uses. Shared, never changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Monitor {
+    config: MonitorConfig,
+    sync: SyncConfig,
+    encoder: EncoderConfig,
+    model: ResidualModel,
+    health: HealthConfig,
+    supply: SupplyConfig,
+    panel: PanelConfig,
+    idle_samples: u32,
+}
+
+/// All that changes from sample to sample; a few kilobytes, no allocation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MonitorState {
+    intake: IntakeState,
+    sync: SyncState,
+    phasor: PhasorState,
+    encoder: EncoderState,
+    window: WindowState,
+    panel: PanelState,
+    measured: [bool; 2],
+    samples: u64,
+    since_report: u32,
+}
+
+/// Supply frequencies that lock, rad/s: 5..100 Hz with a tenth to spare.
+const OMEGA_RANGE: [f32; 2] = [28.0, 690.0];
+/// Share of rated voltage (current, where voltages are missing) that counts as a supply.
+const LEAST_REFERENCE: f32 = 0.05;
+/// Fastest believable shaft, as a multiple of the synchronous speed at the highest frequency.
+const OVERSPEED: f32 = 1.5;
+/// Without a supply a report comes at this interval, s.
+const IDLE_REPORT_S: f32 = 0.1;
+/// Lowest and highest supply voltage as shares of rated: wider than IEC 60034-1 zone B (0.9..1.1),
+/// because a motor may be run outside it and still be judged.
+const VOLTAGE_RANGE: [f32; 2] = [0.75, 1.2];
+/// Negative-sequence voltage beyond which IEC 60034-26 and NEMA MG 1 14.36 derate heavily.
+const MAX_UNBALANCE: f32 = 0.03;
+/// A window counts as steady when the neglected derivative terms stay below this share of the threshold.
+const STEADY_SHARE: f32 = 0.5;
+
+impl Monitor {
+    /// Prepares a monitor.
+    ///
+    /// # Errors
+    /// A parameter outside its range.
+    pub fn new(config: MonitorConfig) -> Result<Self, ConfigError> {
+        config.validate()?;
+        let [omega_min, omega_max] = OMEGA_RANGE;
+        Ok(Monitor {
+            sync: SyncConfig {
+                t_sample: config.t_sample,
+                omega_min,
+                omega_max,
+                min_amplitude: LEAST_REFERENCE,
+            },
+            encoder: EncoderConfig {
+                t_sample: config.t_sample,
+                counts_per_revolution: config.encoder_counts_per_revolution,
+                omega_mech_max: OVERSPEED * omega_max / config.mechanics.n_p,
+            },
+            model: ResidualModel {
+                params: config.params,
+                mechanics: config.mechanics,
+                field: config.field,
+                rated_torque: config.rated_torque,
+            },
+            health: HealthConfig {
+                rated_voltage: config.rated_voltage,
+                rated_current: config.rated_current,
+            },
+            supply: SupplyConfig {
+                rated_voltage: config.rated_voltage,
+                rated_omega: config.rated_omega,
+                voltage_range: VOLTAGE_RANGE,
+                max_unbalance: MAX_UNBALANCE,
+            },
+            panel: PanelConfig::new(&config),
+            idle_samples: (IDLE_REPORT_S / config.t_sample) as u32,
+            config,
+        })
+    }
+
+    /// The configuration it was made from.
+    pub fn config(&self) -> &MonitorConfig {
+        &self.config
+    }
+
+    /// Takes one instant in ADC codes. See [`Monitor::update`].
+    pub fn update_raw(&self, state: &mut MonitorState, raw: &RawSample) -> Option<Report> {
+        self.update(state, &self.config.converter.convert(raw))
+    }
+
+    /// Takes one instant in SI units; a report comes once per supply cycle, or every 0.1 s without a supply.
+    pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Option<Report> {
+        let admitted = state.intake.admit(sample, self.config.t_sample);
+        state.samples = state.samples.wrapping_add(1);
+        state.since_report = state.since_report.saturating_add(1);
+        let reference = self.reference(state, &admitted);
+        let tick = self.sync.update(&mut state.sync, reference);
+        self.encoder.update(&mut state.encoder, sample.speed);
+        if tick.restarted {
+            self.restart(state);
+        }
+        match state
+            .phasor
+            .update(&tick, admitted.u_s_abc, admitted.i_s_abc)
+        {
+            Some(phasors) => Some(self.close_cycle(state, phasors)),
+            None => self.idle_report(state),
+        }
+    }
+
+    /// Phase a without zero sequence, of the voltage or, where there is none, of the current; 1 is rated.
+    fn reference(&self, state: &MonitorState, admitted: &Admitted) -> f32 {
+        let u = AlphaBeta::from(admitted.u_s_abc).alpha / self.config.rated_voltage;
+        let i = AlphaBeta::from(admitted.i_s_abc).alpha / self.config.rated_current;
+        let [u_peak, i_peak] = state.intake.peaks();
+        let no_voltage = u_peak < LEAST_REFERENCE * self.config.rated_voltage;
+        let current = i_peak > LEAST_REFERENCE * self.config.rated_current;
+        if no_voltage && current { i } else { u }
+    }
+
+    fn restart(&self, state: &mut MonitorState) {
+        state.window.clear();
+        state.intake.close_cycle();
+        self.encoder.close_window(&mut state.encoder);
+    }
+
+    fn close_cycle(&self, state: &mut MonitorState, phasors: CyclePhasors) -> Report {
+        let tally = state.intake.close_cycle();
+        state.measured = tally.measured();
+        let cycle = Cycle {
+            phasors,
+            speed: self.encoder.close_window(&mut state.encoder),
+            tau_load: tally.tau_load(),
+            clipped: tally.clipped,
+            invalid_samples: tally.invalid,
+        };
+        state.window.push(cycle, self.config.window_cycles);
+        let window = state
+            .window
+            .measure(self.config.window_cycles, self.config.t_sample)
+            .filter(|_| state.sync.is_locked());
+        self.report(state, window)
+    }
+
+    fn idle_report(&self, state: &mut MonitorState) -> Option<Report> {
+        let searching = state.sync.omega() == 0.0;
+        if !searching || state.since_report < self.idle_samples {
+            return None;
+        }
+        state.window.clear();
+        self.encoder.close_window(&mut state.encoder);
+        state.measured = state.intake.close_cycle().measured();
+        Some(self.report(state, None))
+    }
+
+    fn report(&self, state: &mut MonitorState, window: Option<Window>) -> Report {
+        state.since_report = 0;
+        let mut report = Report {
+            sample_index: state.samples,
+            window,
+            ..Report::default()
+        };
+        match &window {
+            Some(window) => self.examine(state.measured, window, &mut report),
+            None => self.explain_silence(state, &mut report),
+        }
+        self.panel.show(&mut state.panel, &mut report);
+        report
+    }
+
+    fn explain_silence(&self, state: &MonitorState, report: &mut Report) {
+        let [u_peak, i_peak] = state.intake.peaks();
+        let dark = u_peak < LEAST_REFERENCE * self.config.rated_voltage
+            && i_peak < LEAST_REFERENCE * self.config.rated_current;
+        let searching = state.sync.omega() == 0.0;
+        report.supply = (dark && state.measured[0]).then_some(SupplyFinding::Lost);
+        report.not_judged = Some(match (report.supply, searching) {
+            (Some(finding), _) => NotJudged::Supply(finding),
+            (None, true) => NotJudged::NotLocked,
+            (None, false) => NotJudged::Settling,
+        });
+    }
+
+    /// Everything that one complete window can say, and whether thresholds may be applied to it.
+    fn examine(&self, measured: [bool; 2], window: &Window, report: &mut Report) {
+        let [voltages, currents] = measured;
+        report.sensor = self.check_channels(measured, window);
+        if voltages && self.health.has_supply(window) {
+            report.supply = self.supply.check(window);
+        }
+        report.not_judged = self.obstacle(measured, window, report);
+        if voltages && currents {
+            self.evaluate(window, report);
+        }
+    }
+
+    fn check_channels(
+        &self,
+        [voltages, currents]: [bool; 2],
+        window: &Window,
+    ) -> Option<SensorFinding> {
+        let of_voltages = || self.health.check_voltages(window).filter(|_| voltages);
+        let of_currents = || self.health.check_currents(window).filter(|_| currents);
+        of_voltages().or_else(of_currents)
+    }
+
+    /// The first reason, in the order in which a person would mend it, why this window cannot be judged.
+    fn obstacle(
+        &self,
+        [voltages, currents]: [bool; 2],
+        window: &Window,
+        report: &Report,
+    ) -> Option<NotJudged> {
+        let reasons = [
+            (!voltages, NotJudged::NoVoltages),
+            (!currents, NotJudged::NoCurrents),
+            (window.invalid_samples > 0, NotJudged::Invalid),
+            (window.clipped.any(), NotJudged::Clipped),
+        ];
+        let plain = reasons
+            .into_iter()
+            .find(|(holds, _)| *holds)
+            .map(|(_, reason)| reason);
+        let wrong_order = Some(SupplyFinding::NegativeOrder);
+        plain
+            .or(report.sensor.map(NotJudged::Sensor))
+            .or((report.supply == wrong_order)
+                .then_some(NotJudged::Supply(SupplyFinding::NegativeOrder)))
+            .or((!self.health.has_current(window)).then_some(NotJudged::NoLoadCurrent))
+            .or(window.omega_mech.is_none().then_some(NotJudged::NoSpeed))
+    }
+
+    fn evaluate(&self, window: &Window, report: &mut Report) {
+        let Some(omega_mech) = window.omega_mech else {
+            return;
+        };
+        let omega_el = omega_mech * self.config.mechanics.n_p;
+        let phasors = [window.u_s.positive, window.i_s.positive];
+        let Some(point) =
+            self.operating_point(self.config.frame, phasors, window.omega_sync, omega_el)
+        else {
+            return;
+        };
+        let tau_load = window
+            .tau_load
+            .filter(|_| self.config.load == LoadKind::Measured);
+        let residuals = self.model.evaluate(&point, tau_load);
+        report.point = Some(point);
+        report.residuals = Some(residuals);
+        report.normalised = Some(self.normalise(&residuals, tau_load.is_some()));
+        self.check_speed(window, &point, phasors, report);
+        if report.not_judged.is_none() && !self.is_steady(window, &point) {
+            report.not_judged = Some(NotJudged::Transient);
+        }
+    }
+
+    fn operating_point(
+        &self,
+        frame: Frame,
+        phasors: [Complex32; 2],
+        omega_sync: f32,
+        omega_el: f32,
+    ) -> Option<OperatingPoint> {
+        OperatingPoint::new(&self.config.params, frame, phasors, omega_sync, omega_el)
+            .map(|point| point.rehearse(&self.config.rehearsal))
+    }
+
+    /// Over the thresholds; what an undeclared load makes meaningless becomes NaN, which no comparator counts.
+    fn normalise(&self, residuals: &Residuals, torque_known: bool) -> [f32; RESIDUALS] {
+        let load_known = self.config.load == LoadKind::Friction || torque_known;
+        let mut normalised = residuals.r;
+        for (x, threshold) in normalised.iter_mut().zip(self.config.thresholds) {
+            *x /= threshold;
+        }
+        if !load_known {
+            normalised.iter_mut().skip(1).for_each(|x| *x = f32::NAN);
+        }
+        normalised
+    }
+
+    fn check_speed(
+        &self,
+        window: &Window,
+        point: &OperatingPoint,
+        phasors: [Complex32; 2],
+        report: &mut Report,
+    ) {
+        let in_flux_frame =
+            self.operating_point(Frame::RotorFlux, phasors, window.omega_sync, point.omega_el);
+        let Some(flux_point) = in_flux_frame else {
+            return;
+        };
+        let implied = self.model.implied_speed(&flux_point);
+        let steady = self.is_steady(window, point);
+        let finding = self
+            .health
+            .check_speed(point.omega_sync, point.omega_el, implied);
+        report.sensor = report.sensor.or(finding.filter(|_| steady));
+    }
+
+    fn is_steady(&self, window: &Window, point: &OperatingPoint) -> bool {
+        let current_rate = window.current_change / window.span;
+        let mech_rate = window.speed_change / window.span;
+        let unsteadiness = self.model.unsteadiness(point, current_rate, mech_rate);
+        let [r1, r2, ..] = self.config.thresholds;
+        let limits = [STEADY_SHARE * r1, STEADY_SHARE * r2];
+        unsteadiness.iter().zip(limits).all(|(x, limit)| *x < limit)
+    }
+}

@@ -1,0 +1,68 @@
+//! What the monitor says about one window.
+
+use crate::health::SensorFinding;
+use crate::lamps::Lamps;
+use crate::operating_point::OperatingPoint;
+use crate::residuals::{RESIDUALS, Residuals};
+use crate::signature::Candidates;
+use crate::supply::SupplyFinding;
+use crate::window::Window;
+
+/// Why a window was not judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotJudged {
+    /// No periodic supply was found between 5 and 100 Hz.
+    NotLocked,
+    /// Fewer cycles than a window needs since the oscillator (re)started.
+    Settling,
+    /// A channel touched the rail of its converter.
+    Clipped,
+    /// Samples were not finite numbers.
+    Invalid,
+    /// Voltages are not measured.
+    NoVoltages,
+    /// Currents are not measured.
+    NoCurrents,
+    /// The speed is not measured.
+    NoSpeed,
+    /// The supply is missing or turns the wrong way.
+    Supply(SupplyFinding),
+    /// A sensor is dead or contradicts the others.
+    Sensor(SensorFinding),
+    /// Current or speed are changing.
+    Transient,
+    /// The motor is supplied but draws no current.
+    NoLoadCurrent,
+}
+
+/// One window's result.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Samples seen since the start, up to and with this window's last one.
+    pub sample_index: u64,
+    /// The measurement; `None` while there is no complete window.
+    pub window: Option<Window>,
+    /// The point that the residuals were evaluated at, wherever that was possible.
+    pub point: Option<OperatingPoint>,
+    /// Residuals relative to their scales, wherever they could be evaluated (even in a transient).
+    pub residuals: Option<Residuals>,
+    /// `None` when the window was judged.
+    pub not_judged: Option<NotJudged>,
+    /// Finding about a sensor in this window, before persistence.
+    pub sensor: Option<SensorFinding>,
+    /// Finding about the supply in this window, before persistence.
+    pub supply: Option<SupplyFinding>,
+    /// Residuals over their thresholds: beyond 1 is on.
+    pub normalised: Option<[f32; RESIDUALS]>,
+    /// Lamps after this window.
+    pub lamps: Lamps,
+    /// Probability of each fault while FAULT is lit by the residuals.
+    pub candidates: Option<Candidates>,
+}
+
+impl Report {
+    /// Whether thresholds were applied to this window.
+    pub fn is_judged(&self) -> bool {
+        self.not_judged.is_none()
+    }
+}

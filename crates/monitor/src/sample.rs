@@ -1,0 +1,80 @@
+//! What arrives at the core: one instant of the six analogue channels and the speed sensor.
+
+use crate::frames::Abc;
+
+/// One sampling instant as the hardware delivers it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RawSample {
+    /// ADC codes of the phase voltages a, b, c.
+    pub voltage_codes: [u16; 3],
+    /// ADC codes of the phase currents a, b, c.
+    pub current_codes: [u16; 3],
+    /// Free-running encoder counter, four counts per pulse, wrapping.
+    pub encoder_count: u16,
+}
+
+/// What is known about the shaft at this instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum SpeedSample {
+    /// No speed sensor.
+    #[default]
+    None,
+    /// Free-running encoder counter, four counts per pulse, wrapping.
+    Count(u16),
+    /// Mechanical speed, rad/s, from a tachometer or a recording.
+    RadPerSecond(f32),
+}
+
+/// One sampling instant in SI units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Phase-to-neutral voltages, V; `None` when they are not measured.
+    pub u_s_abc: Option<Abc>,
+    /// Phase currents into the motor, A; `None` when they are not measured.
+    pub i_s_abc: Option<Abc>,
+    /// Shaft speed or position.
+    pub speed: SpeedSample,
+    /// Brake torque at the shaft, N m, where a torque channel exists.
+    pub tau_load: Option<f32>,
+    /// Which channels were at a rail of their converter.
+    pub clipped: ClippedChannels,
+}
+
+/// One flag per analogue channel: voltages a, b, c, then currents a, b, c.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClippedChannels(u8);
+
+impl ClippedChannels {
+    /// No channel clipped.
+    pub const NONE: Self = ClippedChannels(0);
+
+    /// Marks voltage channel `phase` (0..=2).
+    pub fn mark_voltage(&mut self, phase: usize) {
+        self.0 |= 1 << (phase % 3);
+    }
+
+    /// Marks current channel `phase` (0..=2).
+    pub fn mark_current(&mut self, phase: usize) {
+        self.0 |= 1 << (3 + phase % 3);
+    }
+
+    /// Whether voltage channel `phase` (0..=2) is marked.
+    pub fn voltage(self, phase: usize) -> bool {
+        self.0 >> (phase % 3) & 1 == 1
+    }
+
+    /// Whether current channel `phase` (0..=2) is marked.
+    pub fn current(self, phase: usize) -> bool {
+        self.0 >> (3 + phase % 3) & 1 == 1
+    }
+
+    /// Whether any channel is marked.
+    pub fn any(self) -> bool {
+        self.0 != 0
+    }
+
+    /// The channels marked in either.
+    pub fn union(self, other: Self) -> Self {
+        ClippedChannels(self.0 | other.0)
+    }
+}

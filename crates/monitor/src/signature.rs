@@ -1,0 +1,204 @@
+//! The fault signature matrix (Table 1) and the probability of each fault (seventh and eighth stage).
+
+use crate::residuals::RESIDUALS;
+
+/// The rows of Table 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Stator resistance.
+    StatorResistance,
+    /// Rotor resistance.
+    RotorResistance,
+    /// Stator inductance.
+    StatorInductance,
+    /// Rotor inductance.
+    RotorInductance,
+    /// Friction of the motor.
+    Friction,
+    /// Friction that stands for the load.
+    LoadFriction,
+    /// Current measurement (`I_q`).
+    CurrentSensor,
+    /// Voltage measurement (`V_q`).
+    VoltageSensor,
+    /// Speed measurement.
+    SpeedSensor,
+}
+
+/// Number of rows.
+pub const FAULTS: usize = 9;
+
+/// Table 1 of the paper: which of r1..r4 each fault lights.
+pub const TABLE_1: [(Fault, [bool; RESIDUALS]); FAULTS] = [
+    (Fault::StatorResistance, [true, false, false, true]),
+    (Fault::RotorResistance, [true, false, false, true]),
+    (Fault::StatorInductance, [true, false, true, true]),
+    (Fault::RotorInductance, [true, true, true, true]),
+    (Fault::Friction, [false, true, true, true]),
+    (Fault::LoadFriction, [false, true, true, true]),
+    (Fault::CurrentSensor, [true, true, true, false]),
+    (Fault::VoltageSensor, [true, false, true, true]),
+    (Fault::SpeedSensor, [true, true, false, true]),
+];
+
+impl Fault {
+    /// Short name as in the paper's table, used in files and tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Fault::StatorResistance => "Rs",
+            Fault::RotorResistance => "Rr",
+            Fault::StatorInductance => "Ls",
+            Fault::RotorInductance => "Lr",
+            Fault::Friction => "B",
+            Fault::LoadFriction => "Bl",
+            Fault::CurrentSensor => "Iq",
+            Fault::VoltageSensor => "Vq",
+            Fault::SpeedSensor => "wr",
+        }
+    }
+
+    /// Whether the fault lies in the instrument, not in the motor.
+    pub const fn is_sensor(self) -> bool {
+        matches!(
+            self,
+            Fault::CurrentSensor | Fault::VoltageSensor | Fault::SpeedSensor
+        )
+    }
+}
+
+/// Probability of each row of Table 1 and of "none of them"; the sum is 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidates {
+    /// In the order of [`TABLE_1`]. Rows with the same pattern always get the same probability.
+    pub faults: [f32; FAULTS],
+    /// That the pattern belongs to no row.
+    pub unknown: f32,
+}
+
+/// Likelihood of any pattern under "none of the rows": one of the sixteen patterns, each as likely.
+const UNKNOWN_LIKELIHOOD: f32 = 1.0 / 16.0;
+
+impl Candidates {
+    /// From residuals normalised so that 1 is the threshold. All rows are held equally likely beforehand.
+    ///
+    /// A row's likelihood is the product over the residuals of the chance that each is on or off as
+    /// the row wants; a residual near its threshold counts half for either.
+    pub fn from_normalised(normalised: &[f32; RESIDUALS]) -> Self {
+        let on = normalised.map(chance_on);
+        let mut candidates = Candidates {
+            faults: [0.0; FAULTS],
+            unknown: UNKNOWN_LIKELIHOOD,
+        };
+        for (likelihood, (_, pattern)) in candidates.faults.iter_mut().zip(&TABLE_1) {
+            *likelihood = likelihood_of(pattern, &on);
+        }
+        candidates.normalise()
+    }
+
+    fn normalise(mut self) -> Self {
+        let sum: f32 = self.faults.iter().sum::<f32>() + self.unknown;
+        for probability in &mut self.faults {
+            *probability /= sum;
+        }
+        self.unknown /= sum;
+        self
+    }
+
+    /// Whether the instrument is a likelier cause than the motor.
+    pub fn points_to_sensor(&self) -> bool {
+        let mut sensor = 0.0;
+        let mut motor = self.unknown;
+        for (probability, (fault, _)) in self.faults.iter().zip(&TABLE_1) {
+            if fault.is_sensor() {
+                sensor += probability;
+            } else {
+                motor += probability;
+            }
+        }
+        sensor > motor
+    }
+}
+
+fn likelihood_of(pattern: &[bool; RESIDUALS], on: &[f32; RESIDUALS]) -> f32 {
+    pattern.iter().zip(on).fold(1.0, |product, (&wanted, &on)| {
+        product * if wanted { on } else { 1.0 - on }
+    })
+}
+
+/// `x^8/(1 + x^8)`: one half at the threshold, 96 % at 1.5 and 4 % at 0.67 thresholds, no exponential.
+/// A residual that says nothing (NaN) is one half: it weighs no row against another.
+fn chance_on(normalised: f32) -> f32 {
+    if normalised.is_nan() {
+        return 0.5;
+    }
+    let x = normalised.abs().min(16.0);
+    let x2 = x * x;
+    let x8 = x2 * x2 * x2 * x2;
+    x8 / (1.0 + x8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn probability(normalised: [f32; 4], fault: Fault) -> f32 {
+        let candidates = Candidates::from_normalised(&normalised);
+        TABLE_1
+            .iter()
+            .zip(candidates.faults)
+            .find(|((row, _), _)| *row == fault)
+            .map_or(f32::NAN, |(_, probability)| probability)
+    }
+
+    #[test]
+    fn every_row_is_most_probable_for_its_own_pattern_and_ties_are_equal() {
+        for (fault, pattern) in TABLE_1 {
+            let normalised = pattern.map(|on| if on { 3.0 } else { 0.1 });
+            let candidates = Candidates::from_normalised(&normalised);
+            let own = probability(normalised, fault);
+            for ((_, other), p) in TABLE_1.iter().zip(candidates.faults) {
+                assert!(if *other == pattern {
+                    p == own
+                } else {
+                    p < 0.01 * own
+                });
+            }
+        }
+    }
+
+    #[test]
+    fn stator_and_rotor_resistance_are_an_honest_tie() {
+        let p = probability([3.0, 0.0, 0.1, 3.0], Fault::StatorResistance);
+        assert!((0.45..0.5).contains(&p), "{p}");
+    }
+
+    #[test]
+    fn a_pattern_of_no_row_is_unknown() {
+        let candidates = Candidates::from_normalised(&[0.0, 5.0, 0.0, 0.0]);
+        assert!(candidates.unknown > 0.99);
+    }
+
+    #[test]
+    fn probabilities_sum_to_one_for_any_size() {
+        for x in [0.0, 0.5, 1.0, 2.0, 1e6, f32::INFINITY] {
+            let candidates = Candidates::from_normalised(&[x, -x, x / 2.0, 0.0]);
+            let sum: f32 = candidates.faults.iter().sum::<f32>() + candidates.unknown;
+            assert!((sum - 1.0).abs() < 1e-5, "{x}: {sum}"); // ten f32 additions
+        }
+    }
+
+    #[test]
+    fn residuals_that_say_nothing_leave_all_rows_with_the_same_r1_equal() {
+        let p = |fault| probability([3.0, f32::NAN, f32::NAN, f32::NAN], fault);
+        assert_eq!(p(Fault::StatorResistance), p(Fault::SpeedSensor));
+        assert!(p(Fault::Friction) < 0.01 * p(Fault::SpeedSensor));
+    }
+
+    #[test]
+    fn sensor_rows_point_to_the_sensor() {
+        assert!(Candidates::from_normalised(&[3.0, 3.0, 3.0, 0.0]).points_to_sensor());
+        assert!(!Candidates::from_normalised(&[0.0, 3.0, 3.0, 3.0]).points_to_sensor());
+        // L_s and the voltage sensor tie: not pointed at the sensor alone.
+        assert!(!Candidates::from_normalised(&[3.0, 0.0, 3.0, 3.0]).points_to_sensor());
+    }
+}
