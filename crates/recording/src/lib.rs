@@ -15,6 +15,7 @@ mod sidecar;
 mod source;
 mod suggest;
 mod units;
+mod write;
 
 pub use channel::{Channel, Quantity, Signal};
 pub use error::{Class, Error, Problem};
@@ -26,3 +27,4 @@ pub use recording::Recording;
 pub use sidecar::{Sidecar, sidecar_path};
 pub use source::Progress;
 pub use units::{UNITS, Unit};
+pub use write::{sidecar_text, write_recording};

@@ -1,0 +1,186 @@
+//! Writing recordings: CSV or CSV.gz with the sidecar beside it, whole or not at all.
+
+use crate::channel::Channel;
+use crate::error::Error;
+use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
+use crate::recording::Recording;
+use crate::sidecar::sidecar_path;
+use flate2::{Compression, GzBuilder};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes a recording to `path`, `.csv` or `.csv.gz`, and its sidecar beside it.
+///
+/// Numbers are the shortest that read back to the same bits, and the gzip header holds neither time
+/// nor name: the same recording gives the same bytes. Each file appears whole or not at all.
+///
+/// # Errors
+/// Another file name, or a file that cannot be written.
+pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), Error> {
+    let name = path.display().to_string();
+    let packed = name.ends_with(".csv.gz");
+    if !packed && !name.ends_with(".csv") {
+        let remedy = "choose a name that ends in .csv or .csv.gz";
+        return Err(Error::bad(&name, "is not the name of a recording", remedy));
+    }
+    whole(path, |file| {
+        if !packed {
+            return table(recording, file).and_then(|mut file| file.flush());
+        }
+        let gzip = GzBuilder::new().mtime(0).write(file, Compression::new(6));
+        table(recording, BufWriter::new(gzip))?
+            .into_inner()?
+            .finish()?
+            .flush()
+    })?;
+    let text = sidecar_text(&recording.metadata);
+    whole(&sidecar_path(path), |mut file| {
+        file.write_all(text.as_bytes())
+    })
+}
+
+/// Writes beside the file, then renames: a reader never sees half a file.
+fn whole(path: &Path, write: impl FnOnce(BufWriter<&File>) -> io::Result<()>) -> Result<(), Error> {
+    let part = part_of(path);
+    let written = File::create(&part).and_then(|file| {
+        write(BufWriter::new(&file))?;
+        file.sync_all()
+    });
+    written
+        .and_then(|()| std::fs::rename(&part, path))
+        .map_err(|error| {
+            // The error is the news; a leftover that cannot be removed is not.
+            let _ = std::fs::remove_file(&part);
+            let message = format!("cannot be written: {error}");
+            Error::bad(
+                &path.display().to_string(),
+                message,
+                "check the folder and the disk",
+            )
+        })
+}
+
+fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.part", std::process::id()));
+    path.with_file_name(name)
+}
+
+fn table<W: Write>(recording: &Recording, mut out: W) -> io::Result<W> {
+    let columns: Vec<(Channel, &[f64])> = recording
+        .channels()
+        .filter(|(channel, _)| !is_implied(recording, *channel))
+        .collect();
+    let mut line = String::from("t");
+    for (channel, _) in &columns {
+        let _ = write!(line, ",{channel}");
+    }
+    writeln!(out, "{line}")?;
+    for (k, t) in recording.t().iter().enumerate() {
+        line.clear();
+        let _ = write!(line, "{t}");
+        for (_, values) in &columns {
+            let _ = write!(line, ",{}", values[k]);
+        }
+        writeln!(out, "{line}")?;
+    }
+    Ok(out)
+}
+
+/// A third current that a reader computes again from the other two.
+fn is_implied(recording: &Recording, channel: Channel) -> bool {
+    let measured =
+        |other: &Channel| recording.channel(*other).is_some() && !recording.is_derived(*other);
+    Channel::CURRENTS.contains(&channel)
+        && recording.is_derived(channel)
+        && Channel::CURRENTS
+            .iter()
+            .filter(|other| measured(other))
+            .count()
+            == 2
+}
+
+/// A sidecar that reads back to the same metadata.
+pub fn sidecar_text(metadata: &Metadata) -> String {
+    let mut text = String::new();
+    let mut word = |key: &str, value: &str| {
+        let _ = writeln!(text, "{key} = {}", toml::Value::from(value));
+    };
+    word("voltage", voltage_word(metadata.voltage));
+    word("supply", supply_word(metadata.supply));
+    if !metadata.supply_belief.trim().is_empty() {
+        word("supply_belief", &metadata.supply_belief);
+    }
+    word("load_torque", load_word(metadata.load_torque));
+    word("starts_from", starts_word(metadata.starts_from));
+    sensors_text(&mut text, &metadata.sensors);
+    text
+}
+
+fn sensors_text(text: &mut String, sensors: &Sensors) {
+    if *sensors == Sensors::default() {
+        return;
+    }
+    text.push_str("\n[sensors]\n");
+    let numbers = [
+        ("voltage_full_scale_volt", sensors.voltage_full_scale_volt),
+        ("current_full_scale_amp", sensors.current_full_scale_amp),
+        ("speed_full_scale_rad_s", sensors.speed_full_scale_rad_s),
+        ("torque_full_scale_nm", sensors.torque_full_scale_nm),
+        (
+            "noise_sigma_fraction_of_full_scale",
+            sensors.noise_sigma_fraction_of_full_scale,
+        ),
+    ];
+    for (key, value) in numbers {
+        if let Some(value) = value {
+            let _ = writeln!(text, "{key} = {}", toml::Value::from(value));
+        }
+    }
+    let counts = [
+        ("adc_bits", sensors.adc_bits),
+        (
+            "encoder_pulses_per_revolution",
+            sensors.encoder_pulses_per_revolution,
+        ),
+        ("encoder_edges_per_pulse", sensors.encoder_edges_per_pulse),
+        ("encoder_counter_bits", sensors.encoder_counter_bits),
+    ];
+    for (key, value) in counts {
+        if let Some(value) = value {
+            let _ = writeln!(text, "{key} = {value}");
+        }
+    }
+}
+
+fn voltage_word(voltage: VoltageKind) -> &'static str {
+    match voltage {
+        VoltageKind::Instantaneous => "instantaneous",
+        VoltageKind::Hold => "hold",
+    }
+}
+
+fn supply_word(supply: Supply) -> &'static str {
+    match supply {
+        Supply::Grid => "grid",
+        Supply::Inverter => "inverter",
+    }
+}
+
+fn load_word(load: LoadTorque) -> &'static str {
+    match load {
+        LoadTorque::Measured => "measured",
+        LoadTorque::Friction => "friction",
+        LoadTorque::Free => "free",
+    }
+}
+
+fn starts_word(starts: StartsFrom) -> &'static str {
+    match starts {
+        StartsFrom::Standstill => "standstill",
+        StartsFrom::Running => "running",
+        StartsFrom::Unknown => "unknown",
+    }
+}
