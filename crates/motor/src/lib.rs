@@ -10,10 +10,14 @@ pub mod document;
 pub mod dynamic;
 pub mod effects;
 #[cfg(feature = "std")]
+pub mod linear_plant;
+#[cfg(feature = "std")]
 pub mod load;
 #[cfg(feature = "file")]
 pub mod motor_file;
 mod params;
+#[cfg(feature = "std")]
+pub mod parity;
 pub mod steady_state;
 pub mod temperature;
 
