@@ -3,7 +3,7 @@
 use motor::{Mechanics, TParams};
 
 use crate::convert::Converter;
-use crate::operating_point::{Frame, Rehearsal};
+use crate::operating_point::Frame;
 use crate::residuals::{FieldCurrent, RESIDUALS};
 use crate::threshold::ComparatorConfig;
 use crate::window::MAX_WINDOW_CYCLES;
@@ -53,8 +53,6 @@ pub struct MonitorConfig {
     pub window_cycles: usize,
     /// Persistence and hysteresis of all comparators.
     pub comparator: ComparatorConfig,
-    /// Gains for rehearsing sensor faults; 1 in service.
-    pub rehearsal: Rehearsal,
 }
 
 /// A parameter outside its range.

@@ -14,9 +14,9 @@ pub struct ChannelScale {
     pub unit_per_code: f32,
     /// Code of 0 V or 0 A.
     pub zero_code: f32,
-    /// Gain correction of each channel, 1 when uncalibrated.
+    /// Gain correction of each channel, 1 when uncalibrated; applied after the offset.
     pub gain: Abc,
-    /// Offset of each channel, V or A, subtracted after scaling.
+    /// Offset of each channel, V or A before the gain: what it shows at standstill.
     pub offset: Abc,
 }
 
@@ -45,8 +45,8 @@ impl ChannelScale {
 
     fn convert(&self, codes: [u16; 3]) -> Abc {
         let raw = Abc::from_array(codes.map(|code| f32::from(code) - self.zero_code));
-        raw.zip(self.gain, |x, gain| x * self.unit_per_code * gain)
-            .zip(self.offset, |x, offset| x - offset)
+        raw.zip(self.offset, |x, offset| x * self.unit_per_code - offset)
+            .zip(self.gain, |x, gain| x * gain)
     }
 }
 
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn calibration_corrects_gain_then_offset() {
+    fn calibration_corrects_offset_then_gain() {
         let mut converter = Converter::bipolar(2048.0, 2048.0, 12);
         converter.voltage.gain.b = 1.1;
         converter.voltage.offset.b = 5.0;
@@ -135,7 +135,7 @@ mod tests {
         });
         let voltages = sample.u_s_abc.unwrap_or_default();
         assert_eq!(voltages.a, 100.0);
-        assert!((voltages.b - 105.0).abs() < 1e-4); // f32 rounding of 110
+        assert!((voltages.b - 104.5).abs() < 1e-4); // f32 rounding of 110
     }
 
     #[test]

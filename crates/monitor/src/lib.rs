@@ -8,6 +8,8 @@ mod config;
 mod convert;
 mod encoder;
 mod frames;
+#[cfg(feature = "motor-file")]
+mod from_motor_file;
 mod health;
 mod intake;
 mod lamps;

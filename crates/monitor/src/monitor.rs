@@ -1,13 +1,11 @@
 //! The monitor: one sample in, one report per supply cycle out.
 
-use num_complex::Complex32;
-
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
 use crate::encoder::{EncoderConfig, EncoderState};
 use crate::frames::AlphaBeta;
 use crate::health::{HealthConfig, SensorFinding};
 use crate::intake::{Admitted, IntakeState};
-use crate::operating_point::{Frame, OperatingPoint};
+use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::panel::{PanelConfig, PanelState};
 use crate::phasor::{CyclePhasors, PhasorState};
 use crate::report::{NotJudged, Report};
@@ -42,6 +40,14 @@ pub struct MonitorState {
     measured: [bool; 2],
     samples: u64,
     since_report: u32,
+    rehearsal: Rehearsal,
+}
+
+impl MonitorState {
+    /// Rehearses sensor faults from the next window on; [`Rehearsal::default`] ends it.
+    pub fn rehearse(&mut self, gains: Rehearsal) {
+        self.rehearsal = gains;
+    }
 }
 
 /// Supply frequencies that lock, rad/s: 5..100 Hz with a tenth to spare.
@@ -185,7 +191,7 @@ impl Monitor {
             ..Report::default()
         };
         match &window {
-            Some(window) => self.examine(state.measured, window, &mut report),
+            Some(window) => self.examine(state, window, &mut report),
             None => self.explain_silence(state, &mut report),
         }
         self.panel.show(&mut state.panel, &mut report);
@@ -206,15 +212,15 @@ impl Monitor {
     }
 
     /// Everything that one complete window can say, and whether thresholds may be applied to it.
-    fn examine(&self, measured: [bool; 2], window: &Window, report: &mut Report) {
-        let [voltages, currents] = measured;
+    fn examine(&self, state: &MonitorState, window: &Window, report: &mut Report) {
+        let measured @ [voltages, currents] = state.measured;
         report.sensor = self.check_channels(measured, window);
         if voltages && self.health.has_supply(window) {
             report.supply = self.supply.check(window);
         }
         report.not_judged = self.obstacle(measured, window, report);
         if voltages && currents {
-            self.evaluate(window, report);
+            self.evaluate(&state.rehearsal, window, report);
         }
     }
 
@@ -254,7 +260,7 @@ impl Monitor {
             .or(window.omega_mech.is_none().then_some(NotJudged::NoSpeed))
     }
 
-    fn evaluate(&self, window: &Window, report: &mut Report) {
+    fn evaluate(&self, rehearsal: &Rehearsal, window: &Window, report: &mut Report) {
         let Some(omega_mech) = window.omega_mech else {
             return;
         };
@@ -272,21 +278,13 @@ impl Monitor {
         report.point = Some(point);
         report.residuals = Some(residuals);
         report.normalised = Some(self.normalise(&residuals, tau_load.is_some()));
-        self.check_speed(window, &point, phasors, report);
-        if report.not_judged.is_none() && !self.is_steady(window, &point) {
+        let steady = self.is_steady(window, &point);
+        if let (true, Some(flux_point)) = (steady, in_frame(Frame::RotorFlux)) {
+            report.sensor = report.sensor.or(self.check_speed(&flux_point));
+        }
+        if report.not_judged.is_none() && !steady {
             report.not_judged = Some(NotJudged::Transient);
         }
-    }
-
-    fn operating_point(
-        &self,
-        frame: Frame,
-        phasors: [Complex32; 2],
-        omega_sync: f32,
-        omega_el: f32,
-    ) -> Option<OperatingPoint> {
-        OperatingPoint::new(&self.config.params, frame, phasors, omega_sync, omega_el)
-            .map(|point| point.rehearse(&self.config.rehearsal))
     }
 
     /// Over the thresholds; what an undeclared load makes meaningless becomes NaN, which no comparator counts.
@@ -302,24 +300,10 @@ impl Monitor {
         normalised
     }
 
-    fn check_speed(
-        &self,
-        window: &Window,
-        point: &OperatingPoint,
-        phasors: [Complex32; 2],
-        report: &mut Report,
-    ) {
-        let in_flux_frame =
-            self.operating_point(Frame::RotorFlux, phasors, window.omega_sync, point.omega_el);
-        let Some(flux_point) = in_flux_frame else {
-            return;
-        };
-        let implied = self.model.implied_speed(&flux_point);
-        let steady = self.is_steady(window, point);
-        let finding = self
-            .health
-            .check_speed(point.omega_sync, point.omega_el, implied);
-        report.sensor = report.sensor.or(finding.filter(|_| steady));
+    fn check_speed(&self, flux_point: &OperatingPoint) -> Option<SensorFinding> {
+        let implied = self.model.implied_speed(flux_point);
+        self.health
+            .check_speed(flux_point.omega_sync, flux_point.omega_el, implied)
     }
 
     fn is_steady(&self, window: &Window, point: &OperatingPoint) -> bool {

@@ -1,6 +1,7 @@
 //! The steady operating point in d-q coordinates, in the paper's frame or in the rotor-flux frame.
 
 use motor::TParams;
+use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 
 use crate::frames::{Dq, magnitude};
@@ -104,12 +105,6 @@ impl OperatingPoint {
             ..self
         }
     }
-}
-
-/// Rotor flux from the terminal phasors; needs no integration in steady state (theory of the frame).
-fn rotor_flux(params: &TParams<f32>, u_s: Complex32, i_s: Complex32, omega_sync: f32) -> Complex32 {
-    let psi_s = (u_s - i_s * params.r_s) / Complex32::new(0.0, omega_sync); // (1), d/dt = j w_s
-    (psi_s - i_s * params.l_a()) * (params.l_r() / params.l_m) // psi_s = sigma L_s i_s + (L_m/L_r) psi_r
 }
 
 fn unit(x: Complex32) -> Option<Complex32> {

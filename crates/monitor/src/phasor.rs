@@ -132,8 +132,8 @@ impl Gram {
         let (cc, cs) = (self.cos_cos / n, self.cos_sin / n);
         let ss = 1.0 - cc;
         let determinant = (cc * ss - cs * cs) - c * (c * ss - cs * s) + s * (c * cs - cc * s);
-        // Written so that NaN (no samples) is refused as well.
-        if n < 4.0 || !(determinant > 0.25 * LEAST_DETERMINANT) {
+        // The range also refuses NaN (no samples).
+        if n < 4.0 || !(0.25 * LEAST_DETERMINANT..=1.0).contains(&determinant) {
             return None;
         }
         let scale = 1.0 / determinant;

@@ -72,13 +72,13 @@ mod tests {
 
     #[test]
     fn a_lit_lamp_stays_between_hysteresis_and_threshold() {
-        assert_eq!(run(&[2.0, 2.0, 2.0, 0.9, 0.9, 0.9, 0.9])[6], true);
-        assert_eq!(run(&[2.0, 2.0, 2.0, 0.7, 0.7, 0.7])[5], false);
+        assert!(run(&[2.0, 2.0, 2.0, 0.9, 0.9, 0.9, 0.9])[6]);
+        assert!(!run(&[2.0, 2.0, 2.0, 0.7, 0.7, 0.7])[5]);
     }
 
     #[test]
     fn not_a_number_changes_nothing() {
         assert_eq!(run(&[2.0, 2.0, f32::NAN, 2.0]), [false; 4]);
-        assert_eq!(run(&[2.0, 2.0, 2.0, f32::NAN])[3], true);
+        assert!(run(&[2.0, 2.0, 2.0, f32::NAN])[3]);
     }
 }
