@@ -261,14 +261,7 @@ impl Monitor {
     }
 
     fn evaluate(&self, rehearsal: &Rehearsal, window: &Window, report: &mut Report) {
-        let Some(omega_mech) = window.omega_mech else {
-            return;
-        };
-        let omega_el = omega_mech * self.config.mechanics.n_p;
-        let phasors = [window.u_s.positive, window.i_s.positive];
-        let Some(point) =
-            self.operating_point(self.config.frame, phasors, window.omega_sync, omega_el)
-        else {
+        let Some(point) = self.operating_point(self.config.frame, rehearsal, window) else {
             return;
         };
         let tau_load = window
@@ -278,13 +271,24 @@ impl Monitor {
         report.point = Some(point);
         report.residuals = Some(residuals);
         report.normalised = Some(self.normalise(&residuals, tau_load.is_some()));
-        let steady = self.is_steady(window, &point);
-        if let (true, Some(flux_point)) = (steady, in_frame(Frame::RotorFlux)) {
-            report.sensor = report.sensor.or(self.check_speed(&flux_point));
-        }
-        if report.not_judged.is_none() && !steady {
+        if self.is_steady(window, &point) {
+            report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
+        } else if report.not_judged.is_none() {
             report.not_judged = Some(NotJudged::Transient);
         }
+    }
+
+    fn operating_point(
+        &self,
+        frame: Frame,
+        rehearsal: &Rehearsal,
+        window: &Window,
+    ) -> Option<OperatingPoint> {
+        let omega_el = window.omega_mech? * self.config.mechanics.n_p;
+        let phasors = [window.u_s.positive, window.i_s.positive];
+        let params = &self.config.params;
+        OperatingPoint::new(params, frame, phasors, window.omega_sync, omega_el)
+            .map(|point| point.rehearse(rehearsal))
     }
 
     /// Over the thresholds; what an undeclared load makes meaningless becomes NaN, which no comparator counts.
@@ -300,10 +304,12 @@ impl Monitor {
         normalised
     }
 
-    fn check_speed(&self, flux_point: &OperatingPoint) -> Option<SensorFinding> {
-        let implied = self.model.implied_speed(flux_point);
+    /// In the rotor-flux frame whatever frame is shown: only there do voltages and currents imply a speed.
+    fn check_speed(&self, rehearsal: &Rehearsal, window: &Window) -> Option<SensorFinding> {
+        let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
+        let implied = self.model.implied_speed(&point);
         self.health
-            .check_speed(flux_point.omega_sync, flux_point.omega_el, implied)
+            .check_speed(point.omega_sync, point.omega_el, implied)
     }
 
     fn is_steady(&self, window: &Window, point: &OperatingPoint) -> bool {
