@@ -1,1 +1,18 @@
-//! See the crate's description.
+//! Compare a motor model with recordings, find the physical effect it misses, prove it on data that was not fitted.
+
+mod accept;
+mod belief;
+mod case;
+mod confirm;
+mod fit;
+mod floor;
+mod gram;
+mod predict;
+#[doc(hidden)]
+pub mod probe;
+mod proof;
+mod screen;
+mod signal;
+mod study;
+
+pub use case::Unsupported;

@@ -1,0 +1,310 @@
+//! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
+
+use crate::signal::{Supply, denoise, estimated_sigma, smooth};
+use motor::dynamic::clarke;
+use motor::effects::{Between, Inputs, Rated, Timeline};
+use num_complex::Complex64;
+use recording::{Channel, LoadTorque, Recording, StartsFrom, Supply as SupplyKind, VoltageKind};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Output channels in the order of a residual row.
+pub(crate) const CHANNELS: [&str; 5] = ["ia", "ib", "ic", "speed", "v0"];
+/// Number of output channels.
+pub(crate) const N_CHANNELS: usize = CHANNELS.len();
+/// Trust in the model of a current sensor beside its noise: half a per cent of the reading.
+const RELATIVE_CURRENT: f64 = 0.005;
+/// Length of a block, s: short, so that a direct-on-line start reaches every fold.
+const BLOCK: f64 = 0.04;
+/// Residual rows per second that are worth their time.
+const ROW_RATE: f64 = 5500.0;
+
+/// Why a recording cannot be judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unsupported {
+    /// What is missing or wrong.
+    pub reason: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl Unsupported {
+    pub(crate) fn new(reason: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            reason: reason.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
+/// A recording made ready.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    /// Inputs as measured, voltage denoised.
+    pub inputs: Inputs,
+    /// Voltage between samples.
+    pub between: Between,
+    /// Supply frequency and measured angle.
+    pub timeline: Arc<Timeline>,
+    /// Smoothed speed for simulations in which it is given, rad/s; empty without a speed channel.
+    pub speed: Vec<f64>,
+    /// Whether the mechanical equation cannot be judged: the speed is an input.
+    pub speed_is_input: bool,
+    /// Speed at the start unless from standstill.
+    pub running_at: Option<f64>,
+    /// Integration steps per residual row.
+    pub decimation: usize,
+    /// Measured rows.
+    pub measured: Vec<[f64; N_CHANNELS]>,
+    /// One over the standard deviation; zero where not judged.
+    pub weight: Vec<[f64; N_CHANNELS]>,
+    /// Rows per block.
+    pub block: usize,
+    /// Denoised supply.
+    pub supply: Supply,
+    /// Noise of the raw voltage, V per axis, and of the torque, N m.
+    pub input_noise: (f64, f64),
+    /// Whether an inverter feeds the motor.
+    pub inverter: bool,
+}
+
+impl Case {
+    /// Prepares a recording.
+    ///
+    /// # Errors
+    /// Without voltages or currents, with a clock that is not even, or with fewer than five blocks.
+    pub fn new(rec: &Recording, rated: &Rated<f64>) -> Result<Self, Unsupported> {
+        let voltages = rec.voltages().ok_or_else(|| {
+            Unsupported::new(
+                "the recording has no three phase voltages",
+                "record va, vb and vc: the model is driven by them",
+            )
+        })?;
+        let currents = rec.currents().ok_or_else(|| {
+            Unsupported::new(
+                "the recording has no three currents",
+                "record ia, ib and ic",
+            )
+        })?;
+        check_clock(rec)?;
+        let t_sample = rec.t_sample();
+        let sigma_u = sigma(rec, Channel::VOLTAGES[0], voltages[0]);
+        let raw: Vec<_> = vectors(voltages);
+        // Clarke's transform of three independent noises: sqrt(2/3) of one phase in each axis.
+        let axis_noise = sigma_u * (2.0f64 / 3.0).sqrt();
+        let supply = denoise(&raw, t_sample, axis_noise, rated.omega_sync);
+        let between = between(rec, t_sample);
+        let load = Load::new(rec);
+        let theta_mech = measured_angle(rec);
+        let speed = smoothed_speed(rec, t_sample);
+        let running_at = running_at(rec, currents, rated);
+        let mut case = Self {
+            inputs: Inputs {
+                t_sample,
+                u_s: supply.u_s.clone(),
+                tau_load: load.torque,
+            },
+            between,
+            timeline: Arc::new(Timeline {
+                t_sample,
+                omega_sync: supply.omega_sync.clone(),
+                theta_mech,
+            }),
+            speed,
+            speed_is_input: load.unknown,
+            running_at,
+            decimation: 1,
+            measured: Vec::new(),
+            weight: Vec::new(),
+            block: 1,
+            supply,
+            input_noise: (axis_noise, load.noise),
+            inverter: rec.metadata.supply == SupplyKind::Inverter,
+        };
+        case.fill_rows(rec, voltages, currents, sigma_u);
+        if case.blocks().len() < 5 {
+            return Err(Unsupported::new(
+                "the recording is shorter than five blocks of 40 ms",
+                "record at least one second",
+            ));
+        }
+        Ok(case)
+    }
+
+    /// Time between residual rows, s.
+    pub fn t_row(&self) -> f64 {
+        self.inputs.t_sample * (self.between.stride() * self.decimation) as f64
+    }
+
+    /// Rows of each block; a short rest joins the last block.
+    pub fn blocks(&self) -> Vec<Range<usize>> {
+        let n = self.measured.len() / self.block;
+        let end = |k: usize| {
+            if k + 1 == n {
+                self.measured.len()
+            } else {
+                (k + 1) * self.block
+            }
+        };
+        (0..n).map(|k| k * self.block..end(k)).collect()
+    }
+
+    /// Number of values that are judged.
+    pub fn judged(&self) -> f64 {
+        let one = |w: &[f64; N_CHANNELS]| w.iter().filter(|&&w| w > 0.0).count();
+        self.weight.iter().map(one).sum::<usize>() as f64
+    }
+
+    fn fill_rows(
+        &mut self,
+        rec: &Recording,
+        voltages: [&[f64]; 3],
+        currents: [&[f64]; 3],
+        sigma_u: f64,
+    ) {
+        let h = self.inputs.t_sample * self.between.stride() as f64;
+        self.decimation = ((1.0 / ROW_RATE / h) as usize).max(1);
+        self.block = ((BLOCK / self.t_row()) as usize).max(1);
+        let sigma_i = [0, 1, 2].map(|k| sigma(rec, Channel::CURRENTS[k], currents[k]));
+        let speed = rec.speed().filter(|_| !self.speed_is_input);
+        let w_speed = speed.map_or(0.0, |x| 1.0 / sigma(rec, Channel::SPEED, x));
+        let w_zero = 3f64.sqrt() / sigma_u;
+        let stride = self.between.stride() * self.decimation;
+        let last = (rec.len() - 1) / self.between.stride() * self.between.stride();
+        let limits = [0, 1, 2].map(|k| clip_limit(rec, k, currents[k]));
+        for k in (0..=last).step_by(stride) {
+            let i = currents.map(|c| c[k]);
+            let w_i = |p: usize| {
+                let judged = i[p].abs() < limits[p];
+                f64::from(u8::from(judged)) / sigma_i[p].hypot(RELATIVE_CURRENT * i[p])
+            };
+            let zero = (voltages[0][k] + voltages[1][k] + voltages[2][k]) / 3.0;
+            let omega = speed.map_or(0.0, |x| x[k]);
+            self.measured.push([i[0], i[1], i[2], omega, zero]);
+            self.weight.push([w_i(0), w_i(1), w_i(2), w_speed, w_zero]);
+        }
+    }
+}
+
+/// Magnitude from which a current counts as clipped: its largest, if it stands still there.
+fn clip_limit(rec: &Recording, phase: usize, x: &[f64]) -> f64 {
+    if let Some(full) = rec.metadata.sensors.full_scale(Channel::CURRENTS[phase]) {
+        return 0.999 * full;
+    }
+    let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    let flat = x
+        .windows(3)
+        .filter(|w| w[0].abs() > 0.995 * top && w[0] == w[1] && w[1] == w[2]);
+    if flat.count() > 2 {
+        0.99 * top
+    } else {
+        f64::INFINITY
+    }
+}
+
+fn check_clock(rec: &Recording) -> Result<(), Unsupported> {
+    let t_sample = rec.t_sample();
+    let uneven = |pair: &[f64]| (pair[1] - pair[0] - t_sample).abs() > 0.01 * t_sample;
+    match rec.t().windows(2).position(uneven) {
+        None => Ok(()),
+        Some(k) => Err(Unsupported::new(
+            format!("the clock is not even at t = {} s", rec.t()[k]),
+            "cut the recording at its gaps, or resample it",
+        )),
+    }
+}
+
+/// Declared noise of a channel, or an estimate, never zero.
+fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
+    let declared = rec.metadata.sensors.sigma(channel);
+    let sigma = declared.unwrap_or_else(|| estimated_sigma(x));
+    let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    sigma.max(1e-6 * top).max(1e-9)
+}
+
+fn vectors(abc: [&[f64]; 3]) -> Vec<Complex64> {
+    (0..abc[0].len())
+        .map(|k| clarke(abc.map(|x| x[k])))
+        .collect()
+}
+
+/// Double steps while they stay below a quarter of a millisecond.
+fn between(rec: &Recording, t_sample: f64) -> Between {
+    if rec.metadata.voltage == VoltageKind::Hold || t_sample > 2.6e-4 {
+        Between::Held
+    } else {
+        Between::Smooth
+    }
+}
+
+struct Load {
+    torque: Vec<f64>,
+    noise: f64,
+    unknown: bool,
+}
+
+impl Load {
+    fn new(rec: &Recording) -> Self {
+        let none = vec![0.0; rec.len()];
+        match (rec.metadata.load_torque, rec.torque()) {
+            (LoadTorque::Friction, _) => Self::known(none, 0.0),
+            (_, Some(torque)) => Self::known(torque.to_vec(), sigma(rec, Channel::TORQUE, torque)),
+            _ => Self {
+                torque: none,
+                noise: 0.0,
+                unknown: rec.speed().is_some(),
+            },
+        }
+    }
+
+    fn known(torque: Vec<f64>, noise: f64) -> Self {
+        Self {
+            torque,
+            noise,
+            unknown: false,
+        }
+    }
+}
+
+/// Shaft angle by integrating the measured speed (trapezoids), rad.
+fn measured_angle(rec: &Recording) -> Vec<f64> {
+    let Some(speed) = rec.speed() else {
+        return Vec::new();
+    };
+    let mut theta = 0.0;
+    let mut next = |w: &[f64]| {
+        theta += 0.5 * (w[0] + w[1]) * rec.t_sample();
+        theta
+    };
+    std::iter::once(0.0)
+        .chain(speed.windows(2).map(&mut next))
+        .collect()
+}
+
+/// Speed smoothed over 10 ms, rad/s.
+fn smoothed_speed(rec: &Recording, t_sample: f64) -> Vec<f64> {
+    let Some(speed) = rec.speed() else {
+        return Vec::new();
+    };
+    let x: Vec<_> = speed.iter().map(|&w| Complex64::new(w, 0.0)).collect();
+    let smoothed = smooth(&x, (0.01 / t_sample) as usize);
+    smoothed.value.iter().map(|x| x.re).collect()
+}
+
+/// Initial speed if the motor already runs.
+fn running_at(rec: &Recording, currents: [&[f64]; 3], rated: &Rated<f64>) -> Option<f64> {
+    let n = (0.02 / rec.t_sample()) as usize;
+    let head = |x: &[f64]| x[..n.clamp(1, x.len())].iter().sum::<f64>() / n.max(1) as f64;
+    let initial = rec.speed().map_or(rated.speed(), |x| head(x));
+    match rec.metadata.starts_from {
+        StartsFrom::Standstill => None,
+        StartsFrom::Running => Some(initial),
+        StartsFrom::Unknown => {
+            let quiet = (currents[0][0].abs()).max(currents[1][0].abs()) < 0.1 * rated.current;
+            let still = rec
+                .speed()
+                .is_none_or(|_| initial.abs() < 0.05 * rated.speed());
+            (!(quiet && still)).then_some(initial)
+        }
+    }
+}

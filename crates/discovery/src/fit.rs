@@ -1,0 +1,180 @@
+//! Output-error fit of a hypothesis: Levenberg-Marquardt with priors.
+
+use crate::belief::{Belief, Hypothesis, N_NOMINAL};
+use crate::case::Case;
+use crate::gram::{self, Block, Penalty};
+use crate::predict::{Teacher, jacobian, outputs, residual};
+use nalgebra::{DMatrix, DVector};
+
+/// Limits of the inflation of the nominals' prior weight.
+const KAPPA: [f64; 2] = [30.0, 400.0];
+
+/// A fitted hypothesis with everything that proofs need.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    /// The hypothesis at its best coordinates.
+    pub hypothesis: Hypothesis,
+    /// Indices of the fitted coordinates.
+    pub free: Vec<usize>,
+    /// Residual.
+    pub residual: Vec<f64>,
+    /// Columns of the derivative.
+    pub jacobian: Vec<Vec<f64>>,
+    /// Normal equations per block.
+    pub blocks: Vec<Block>,
+    /// Penalty at the best coordinates.
+    pub penalty: Penalty,
+    /// Weighted model outputs.
+    pub outputs: Vec<f64>,
+}
+
+/// How hard to fit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// Most iterations.
+    pub iterations: usize,
+    /// Treatment of the speed.
+    pub teacher: Teacher,
+}
+
+impl Effort {
+    /// A complete fit of a freely running model.
+    pub const FULL: Effort = Effort {
+        iterations: 14,
+        teacher: Teacher::Off,
+    };
+}
+
+impl Fit {
+    /// Covariance of the fitted coordinates.
+    pub fn covariance(&self) -> DMatrix<f64> {
+        gram::covariance(&self.blocks, &self.penalty)
+    }
+
+    /// Held-out squared error of each block.
+    pub fn held_out(&self) -> Vec<f64> {
+        gram::held_out(&self.blocks, &self.penalty)
+    }
+}
+
+/// Weights of the priors and their pull at the present coordinates.
+fn penalty(belief: &Belief, h: &Hypothesis, free: &[usize], kappa: f64) -> Penalty {
+    let one = |&k: &usize| {
+        let (sd, centre) = h.prior(k, &belief.plant.rated);
+        let factor = if k < N_NOMINAL { kappa } else { 1.0 };
+        (factor / (sd * sd), centre - h.z[k])
+    };
+    let (weight, pull): (Vec<_>, Vec<_>) = free.iter().map(one).unzip();
+    Penalty {
+        weight: DVector::from_vec(weight),
+        pull: DVector::from_vec(pull),
+    }
+}
+
+fn cost(r: &[f64], penalty: &Penalty) -> f64 {
+    let prior = penalty
+        .weight
+        .iter()
+        .zip(&penalty.pull)
+        .map(|(w, p)| w * p * p);
+    let sum = gram::dot(r, r) + prior.sum::<f64>();
+    if sum.is_finite() { sum } else { f64::INFINITY }
+}
+
+/// The hypothesis moved by `step` along its free coordinates, inside its bounds.
+fn moved(belief: &Belief, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> Hypothesis {
+    let mut next = h.clone();
+    for (&k, dz) in free.iter().zip(step.iter()) {
+        let [low, high] = h.bounds(k, belief);
+        next.z[k] = (h.z[k] + dz.clamp(-1.5, 1.5)).clamp(low, high);
+    }
+    next
+}
+
+/// Fits the free coordinates of `start` to a case.
+pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effort) -> Fit {
+    let free: Vec<usize> = (0..start.z.len()).filter(|&k| start.free[k]).collect();
+    let rows = case.blocks();
+    let mut h = start.clone();
+    let mut out = outputs(case, belief, &h, effort.teacher);
+    let mut damping = 1e-4;
+    let mut linear = None;
+    let mut kappa = KAPPA[0];
+    for _ in 0..effort.iterations {
+        let r = residual(case, &out);
+        let j = jacobian(case, belief, &h, &out, effort.teacher);
+        let blocks = gram::blocks(&rows, &r, &j);
+        let nominals = free.iter().filter(|&&k| k < N_NOMINAL).count();
+        kappa = gram::score_inflation(&blocks, nominals).clamp(KAPPA[0], KAPPA[1]);
+        let here = penalty(belief, &h, &free, kappa);
+        let search = Search {
+            case,
+            belief,
+            free: &free,
+            kappa,
+            teacher: effort.teacher,
+        };
+        let better = search.step(&h, &r, &here, &gram::total(&blocks), &mut damping);
+        linear = Some((r, j, blocks));
+        let Some((next, next_out, gain)) = better else {
+            break;
+        };
+        (h, out) = (next, next_out);
+        linear = None;
+        if gain < 1e-5 {
+            break;
+        }
+    }
+    let (r, j, blocks) = linear.unwrap_or_else(|| {
+        let r = residual(case, &out);
+        let j = jacobian(case, belief, &h, &out, effort.teacher);
+        let blocks = gram::blocks(&rows, &r, &j);
+        (r, j, blocks)
+    });
+    Fit {
+        penalty: penalty(belief, &h, &free, kappa),
+        hypothesis: h,
+        free,
+        residual: r,
+        jacobian: j,
+        blocks,
+        outputs: out,
+    }
+}
+
+/// One damped step of a fit.
+struct Search<'a> {
+    case: &'a Case,
+    belief: &'a Belief,
+    free: &'a [usize],
+    kappa: f64,
+    teacher: Teacher,
+}
+
+impl Search<'_> {
+    /// A better hypothesis, its outputs and the relative gain; `None` if there is none nearby.
+    fn step(
+        &self,
+        h: &Hypothesis,
+        r: &[f64],
+        here: &Penalty,
+        normal: &Block,
+        damping: &mut f64,
+    ) -> Option<(Hypothesis, Vec<f64>, f64)> {
+        let before = cost(r, here);
+        for _ in 0..7 {
+            if let Some(step) = here.solve(normal, *damping) {
+                let next = moved(self.belief, h, self.free, &step);
+                let out = outputs(self.case, self.belief, &next, self.teacher);
+                let there = penalty(self.belief, &next, self.free, self.kappa);
+                let after = cost(&residual(self.case, &out), &there);
+                if after < before {
+                    *damping = (*damping * 0.2).max(1e-7);
+                    return Some((next, out, 1.0 - after / before));
+                }
+            }
+            *damping = (*damping * 8.0).max(1e-5);
+        }
+        None
+    }
+}

@@ -1,0 +1,88 @@
+//! Weighted residuals of a hypothesis, and their derivatives.
+
+use crate::belief::{Belief, Hypothesis};
+use crate::case::{Case, N_CHANNELS};
+use motor::effects::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
+use rayon::prelude::*;
+
+/// How the speed is treated in a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Teacher {
+    /// The model runs freely.
+    Off,
+    /// The model's speed is drawn to the measured one at this rate, 1/s.
+    On(f64),
+}
+
+/// Simulates a plant on the inputs of a case.
+pub(crate) fn run(case: &Case, plant: &Plant, inputs: &Inputs, teacher: Teacher) -> Outputs {
+    let speed = match teacher {
+        _ if case.speed_is_input => SpeedSource::Imposed(&case.speed),
+        Teacher::On(rate) if !case.speed.is_empty() => SpeedSource::Observed(&case.speed, rate),
+        _ => SpeedSource::Free,
+    };
+    let run = Run {
+        inputs,
+        between: case.between,
+        speed,
+        timeline: &case.timeline,
+        running_at: case.running_at,
+    };
+    simulate(plant, &run)
+}
+
+/// Weighted model outputs, row after row. A model that left the finite numbers counts as infinitely wrong.
+fn weighted(case: &Case, outputs: &Outputs) -> Vec<f64> {
+    let mut out = Vec::with_capacity(case.measured.len() * N_CHANNELS);
+    for (row, w) in case.weight.iter().enumerate() {
+        let k = row * case.decimation;
+        let [a, b, c] = outputs.i_s_abc[k];
+        let values = [a, b, c, outputs.omega_mech[k], outputs.u_zero[k]];
+        out.extend(values.iter().zip(w).map(|(x, w)| x * w));
+    }
+    out
+}
+
+/// Weighted outputs of a hypothesis.
+pub(crate) fn outputs(case: &Case, belief: &Belief, h: &Hypothesis, teacher: Teacher) -> Vec<f64> {
+    let plant = h.plant(belief);
+    weighted(case, &run(case, &plant, &case.inputs, teacher))
+}
+
+/// Weighted outputs with other inputs (noise propagation).
+pub(crate) fn outputs_on(case: &Case, plant: &Plant, inputs: &Inputs) -> Vec<f64> {
+    weighted(case, &run(case, plant, inputs, Teacher::Off))
+}
+
+/// Residual: weighted measurement minus weighted model.
+pub(crate) fn residual(case: &Case, model: &[f64]) -> Vec<f64> {
+    let measured = case.measured.iter().zip(&case.weight);
+    let rows = measured.flat_map(|(y, w)| (0..N_CHANNELS).map(move |k| y[k] * w[k]));
+    rows.zip(model).map(|(y, m)| y - m).collect()
+}
+
+/// Derivatives of the weighted outputs with respect to the free coordinates, in their order.
+pub(crate) fn jacobian(
+    case: &Case,
+    belief: &Belief,
+    h: &Hypothesis,
+    base: &[f64],
+    teacher: Teacher,
+) -> Vec<Vec<f64>> {
+    let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
+    let column = |&k: &usize| {
+        let mut step = h.step(k);
+        if h.z[k] + step > h.bounds(k, belief)[1] {
+            step = -step;
+        }
+        let mut moved = h.clone();
+        moved.z[k] += step;
+        let mut there = outputs(case, belief, &moved, teacher);
+        there
+            .iter_mut()
+            .zip(base)
+            .for_each(|(x, b)| *x = (*x - b) / step);
+        there
+    };
+    free.par_iter().map(column).collect()
+}

@@ -1,0 +1,227 @@
+//! Tries every effect at once: secant columns against the normal equations of the present fit.
+
+use crate::belief::{Belief, N_NOMINAL};
+use crate::case::Case;
+use crate::fit::Fit;
+use crate::gram::{self, Block, Penalty};
+use crate::predict::{Teacher, outputs};
+use motor::effects::{ALL, Applies, Effect, EffectConfig, Parameter, Role};
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// Size of the secant, in typical sizes.
+const SECANT: f64 = 0.5;
+/// Prior weight of an effect's size: one over the square of four typical sizes.
+const SIZE_WEIGHT: f64 = 1.0 / 16.0;
+/// Finest ratio between neighbouring frequencies of a resonance scan.
+const SCAN_RATIO: f64 = 1.06;
+
+/// One effect at one point of its shape grid, linearised.
+#[derive(Clone, Debug)]
+pub(crate) struct Screened {
+    /// The effect with its shapes and estimated sizes.
+    pub config: EffectConfig,
+    /// Held-out squared error of each block.
+    pub held_out: Vec<f64>,
+    /// Mean squared signature of a typical size that the nominals cannot imitate, in noise units.
+    pub visible: f64,
+    /// Simulations this took.
+    pub simulations: usize,
+}
+
+impl Screened {
+    /// Held-out squared error.
+    pub fn total(&self) -> f64 {
+        self.held_out.iter().sum()
+    }
+}
+
+/// Effects that can be asked about in this case and are not part of the model yet.
+fn askable(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<&'static dyn Effect> {
+    let present = |e: &&'static dyn Effect| {
+        let name = e.descriptor().name;
+        let mut known = fit.hypothesis.effects.iter().chain(&belief.plant.effects);
+        known.any(|c| c.effect.descriptor().name == name) || excluded.contains(&name)
+    };
+    let applies =
+        |e: &&'static dyn Effect| case.inverter || e.descriptor().applies == Applies::Always;
+    ALL.iter()
+        .copied()
+        .filter(|e| !present(e) && applies(e))
+        .collect()
+}
+
+/// The grid of a parameter, refined where it is a resonance frequency.
+fn grid(p: &Parameter) -> Vec<f64> {
+    if p.role == Role::Size {
+        return vec![0.0];
+    }
+    if !p.name.ends_with("_hz") {
+        return p.grid.to_vec();
+    }
+    let (first, last) = (p.grid[0], p.grid[p.grid.len() - 1]);
+    let steps = ((last / first).ln() / SCAN_RATIO.ln()).ceil().max(1.0);
+    let ratio = (last / first).powf(1.0 / steps);
+    (0..=steps as i32).map(|k| first * ratio.powi(k)).collect()
+}
+
+/// All points of an effect's shape grid, sizes zero.
+pub(crate) fn grid_points(effect: &'static dyn Effect, belief: &Belief) -> Vec<EffectConfig> {
+    let rated = &belief.plant.rated;
+    let mut points = vec![EffectConfig::absent(effect, rated)];
+    for (k, p) in effect.descriptor().parameters.iter().enumerate() {
+        let scale = p.scale.of(rated);
+        let spread = |c: &EffectConfig| {
+            let with = |x: f64| {
+                let mut c = c.clone();
+                c.values[k] = x * scale;
+                c
+            };
+            grid(p).into_iter().map(with).collect::<Vec<_>>()
+        };
+        points = points.iter().flat_map(spread).collect();
+    }
+    points
+}
+
+/// Effects at every point of their grids, in the order of the library.
+pub(crate) fn screen(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<Screened> {
+    let points: Vec<EffectConfig> = askable(case, belief, fit, excluded)
+        .into_iter()
+        .flat_map(|e| grid_points(e, belief))
+        .collect();
+    let rows = case.blocks();
+    let one = |config: &EffectConfig| {
+        let columns = columns(case, belief, fit, config);
+        if columns.iter().flatten().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let blocks = gram::extended(&fit.blocks, &rows, &fit.residual, &fit.jacobian, &columns);
+        Some(judge(belief, fit, config, &blocks, columns.len()))
+    };
+    points.par_iter().filter_map(one).collect()
+}
+
+/// Secant columns: one per size, or the whole difference for a resonance.
+fn columns(case: &Case, belief: &Belief, fit: &Fit, config: &EffectConfig) -> Vec<Vec<f64>> {
+    let rated = &belief.plant.rated;
+    let difference = |config: EffectConfig, over: f64| {
+        let h = fit.hypothesis.with(config, rated);
+        let mut there = outputs(case, belief, &h, Teacher::Off);
+        there
+            .iter_mut()
+            .zip(&fit.outputs)
+            .for_each(|(x, b)| *x = (*x - b) / over);
+        there
+    };
+    let descriptor = config.effect.descriptor();
+    if descriptor.is_resonance() {
+        return vec![difference(config.clone(), 1.0)];
+    }
+    let sizes = descriptor.parameters.iter().enumerate();
+    sizes
+        .filter(|(_, p)| p.role == Role::Size)
+        .map(|(k, p)| {
+            let mut there = config.clone();
+            there.values[k] = SECANT * p.typical * p.scale.of(rated);
+            difference(there, SECANT)
+        })
+        .collect()
+}
+
+fn judge(
+    belief: &Belief,
+    fit: &Fit,
+    config: &EffectConfig,
+    blocks: &[Block],
+    n: usize,
+) -> Screened {
+    let penalty = extended_penalty(&fit.penalty, n);
+    let all = gram::total(blocks);
+    let first = fit.free.len();
+    let step = penalty.solve(&all, 0.0);
+    let mut config = config.clone();
+    let possible = step.is_some_and(|s| estimate(belief, &mut config, &s.as_slice()[first..]));
+    let held_out = if possible {
+        gram::held_out(blocks, &penalty)
+    } else {
+        gram::held_out(&fit.blocks, &fit.penalty)
+    };
+    Screened {
+        config,
+        held_out,
+        visible: visible(&all, &penalty, first, n),
+        simulations: n,
+    }
+}
+
+fn extended_penalty(base: &Penalty, n: usize) -> Penalty {
+    let len = base.weight.len();
+    Penalty {
+        weight: base.weight.clone().resize_vertically(len + n, SIZE_WEIGHT),
+        pull: base.pull.clone().resize_vertically(len + n, 0.0),
+    }
+}
+
+/// Writes the estimated sizes into `config`; false if physics forbids their sign.
+fn estimate(belief: &Belief, config: &mut EffectConfig, sizes: &[f64]) -> bool {
+    let descriptor = config.effect.descriptor();
+    if descriptor.is_resonance() {
+        return sizes[0] > 0.0;
+    }
+    let indices = descriptor.parameters.iter().enumerate();
+    let mut possible = true;
+    for ((k, p), size) in indices.filter(|(_, p)| p.role == Role::Size).zip(sizes) {
+        possible &= p.range[0] < 0.0 || *size > 0.0;
+        let scale = p.scale.of(&belief.plant.rated);
+        // A linear estimate may overshoot where the effect is curved.
+        let limit = 6.0 * p.typical;
+        config.values[k] =
+            (size * p.typical).clamp(p.range[0].max(-limit), p.range[1].min(limit)) * scale;
+    }
+    possible
+}
+
+/// Largest squared signature of the columns behind the first `first`, after the nominals took their share.
+fn visible(all: &Block, penalty: &Penalty, first: usize, n: usize) -> f64 {
+    let nominal = all.gram.view((0, 0), (first, first)).into_owned();
+    let nominal =
+        nominal + nalgebra::DMatrix::from_diagonal(&penalty.weight.rows(0, first).into_owned());
+    let Some(cholesky) = nalgebra::Cholesky::new(nominal) else {
+        return 0.0;
+    };
+    let one = |k: usize| {
+        let cross: DVector<f64> = all.gram.view((0, k), (first, 1)).column(0).into_owned();
+        all.gram[(k, k)] - cross.dot(&cholesky.solve(&cross))
+    };
+    (first..first + n).map(one).fold(0.0, f64::max)
+}
+
+/// The best grid points of each effect form, best effect first; at most `keep` points each.
+pub(crate) fn ranked(screened: &[Screened], keep: usize) -> Vec<Vec<Screened>> {
+    let mut groups: Vec<Vec<Screened>> = Vec::new();
+    for s in screened {
+        let key = |c: &EffectConfig| {
+            let d = c.effect.descriptor();
+            (d.name, d.form)
+        };
+        match groups
+            .iter_mut()
+            .find(|g| key(&g[0].config) == key(&s.config))
+        {
+            Some(group) => group.push(s.clone()),
+            None => groups.push(vec![s.clone()]),
+        }
+    }
+    for group in &mut groups {
+        group.sort_by(|a, b| a.total().total_cmp(&b.total()));
+        group.truncate(keep);
+    }
+    groups.sort_by(|a, b| a[0].total().total_cmp(&b[0].total()));
+    groups
+}
+
+/// Number of nominal coordinates among the free ones of a fit.
+pub(crate) fn free_nominals(fit: &Fit) -> usize {
+    fit.free.iter().filter(|&&k| k < N_NOMINAL).count()
+}

@@ -1,0 +1,81 @@
+//! Local quadratic smoothing (Savitzky-Golay) that respects the ends of a segment.
+
+use nalgebra::{Matrix3, Vector3};
+use num_complex::Complex64;
+
+/// Weights of a least-squares quadratic over `window` points that give its value and its slope (per sample) at
+/// the position `at`, counted from the window's first point.
+fn weights(window: usize, at: f64) -> (Vec<f64>, Vec<f64>) {
+    let scale = 1.0 / window as f64;
+    let basis = |k: f64| {
+        let x = (k - at) * scale;
+        Vector3::new(1.0, x, x * x)
+    };
+    let sum = |m: Matrix3<f64>, k: usize| m + basis(k as f64) * basis(k as f64).transpose();
+    let normal = (0..window).fold(Matrix3::zeros(), sum);
+    let inverse = normal.try_inverse().unwrap_or_else(Matrix3::identity);
+    let row = |r: usize| inverse.row(r).transpose();
+    let (value, slope) = (row(0), row(1) * scale);
+    let dot = |v: &Vector3<f64>| (0..window).map(|k| v.dot(&basis(k as f64))).collect();
+    (dot(&value), dot(&slope))
+}
+
+fn apply(w: &[f64], x: &[Complex64]) -> Complex64 {
+    w.iter().zip(x).map(|(w, x)| x * *w).sum()
+}
+
+/// Value and slope (per sample) of a signal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Smoothed {
+    /// Smoothed signal.
+    pub value: Vec<Complex64>,
+    /// Its slope per sample.
+    pub slope: Vec<Complex64>,
+}
+
+/// Smooths one segment with windows of about `window` points; nearer to an end the last full window counts.
+pub(crate) fn smooth(x: &[Complex64], window: usize) -> Smoothed {
+    let window = (window | 1).min(x.len());
+    if window < 5 {
+        return Smoothed {
+            value: x.to_vec(),
+            slope: vec![Complex64::ZERO; x.len()],
+        };
+    }
+    let half = window / 2;
+    let (value, slope) = weights(window, half as f64);
+    let mut out = Smoothed::default();
+    for k in 0..x.len() {
+        let first = k.saturating_sub(half).min(x.len() - window);
+        let part = &x[first..first + window];
+        if k - first == half {
+            out.value.push(apply(&value, part));
+            out.slope.push(apply(&slope, part));
+        } else {
+            let (value, slope) = weights(window, (k - first) as f64);
+            out.value.push(apply(&value, part));
+            out.slope.push(apply(&slope, part));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quadratic_passes_unchanged_up_to_the_ends() {
+        let f = |k: usize| {
+            let t = k as f64 * 0.1;
+            Complex64::new(1.0 + 2.0 * t - 0.3 * t * t, t)
+        };
+        let x: Vec<_> = (0..60).map(f).collect();
+        let smoothed = smooth(&x, 21);
+        for (k, (y, x)) in smoothed.value.iter().zip(&x).enumerate() {
+            // Rounding of a 3 x 3 solve.
+            assert!((y - x).norm() < 1e-9, "{k}");
+            assert!((smoothed.slope[k].im - 0.1).abs() < 1e-9);
+        }
+    }
+}

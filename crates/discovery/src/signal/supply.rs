@@ -1,0 +1,230 @@
+//! Denoises measured or commanded voltages: a smooth amplitude and angle between amplitude steps, plus harmonics.
+
+use super::polynomial::smooth;
+use num_complex::Complex64;
+use std::ops::Range;
+
+/// Orders that a supply may carry beside its fundamental; 0 is a constant.
+const ORDERS: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
+/// The rest may exceed the declared noise by this factor before the raw voltage is believed instead.
+const WHITE_LIMIT: f64 = 1.25;
+
+/// A denoised supply.
+#[derive(Clone, Debug)]
+pub(crate) struct Supply {
+    /// Denoised voltage vector, V.
+    pub u_s: Vec<Complex64>,
+    /// Supply frequency, rad/s, one per sample.
+    pub omega_sync: Vec<f64>,
+    /// Unwrapped angle of the fundamental, rad.
+    pub theta: Vec<f64>,
+    /// Segments between amplitude steps.
+    pub segments: Vec<Range<usize>>,
+    /// Whether the voltage could be described by fundamental and harmonics.
+    pub denoised: bool,
+    /// Component of each order relative to the fundamental (order 0: V).
+    pub harmonics: Vec<(f64, Complex64)>,
+    window: usize,
+}
+
+/// Denoises `raw` (V) with noise `sigma` (V, per axis); `omega_rated` (rad/s) sets the windows.
+pub(crate) fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated: f64) -> Supply {
+    let period = std::f64::consts::TAU / omega_rated / t_sample;
+    let window = (period as usize).max(16);
+    let segments = segments(raw, window / 2, sigma);
+    let (theta, slope) = angle(raw, &segments, window);
+    let mut supply = Supply {
+        u_s: Vec::new(),
+        omega_sync: slope.iter().map(|x| x / t_sample).collect(),
+        theta,
+        segments,
+        denoised: true,
+        harmonics: Vec::new(),
+        window,
+    };
+    // Smoothing leaks a little of each harmonic into the fundamental, most at the ends of segments: clean and repeat.
+    let mut fundamental = supply.fundamental(raw);
+    for _ in 0..4 {
+        supply.harmonics = supply.fit_harmonics(raw, &fundamental);
+        supply.u_s = supply.with_harmonics(&fundamental);
+        let parts = supply.u_s.iter().zip(&fundamental);
+        let clean = raw.iter().zip(parts).map(|(u, (all, f))| u - (all - f));
+        fundamental = supply.fundamental(&clean.collect::<Vec<_>>());
+    }
+    supply.u_s = supply.with_harmonics(&fundamental);
+    let rest = raw.iter().zip(&supply.u_s).map(|(a, b)| (a - b).norm_sqr());
+    let rms = (0.5 * rest.sum::<f64>() / raw.len() as f64).sqrt();
+    if rms > WHITE_LIMIT * sigma {
+        supply.u_s = raw.to_vec();
+        supply.denoised = false;
+    }
+    supply
+}
+
+impl Supply {
+    /// What the denoising makes of a disturbance of the raw voltage (the operation is linear).
+    pub fn filter(&self, disturbance: &[Complex64]) -> Vec<Complex64> {
+        if self.denoised {
+            self.fundamental(disturbance)
+        } else {
+            disturbance.to_vec()
+        }
+    }
+
+    /// The fundamental: the envelope in the turning frame, smoothed within each segment.
+    fn fundamental(&self, raw: &[Complex64]) -> Vec<Complex64> {
+        let turned = |k: usize| raw[k] * Complex64::from_polar(1.0, -self.theta[k]);
+        let mut out = Vec::with_capacity(raw.len());
+        for segment in &self.segments {
+            let envelope: Vec<_> = segment.clone().map(turned).collect();
+            let smoothed = smooth(&envelope, self.window).value;
+            let back = |(k, e): (usize, Complex64)| e * Complex64::from_polar(1.0, self.theta[k]);
+            out.extend(segment.clone().zip(smoothed).map(back));
+        }
+        out
+    }
+
+    /// Ratio of each harmonic to the fundamental, constant over the recording.
+    fn fit_harmonics(&self, raw: &[Complex64], fundamental: &[Complex64]) -> Vec<(f64, Complex64)> {
+        let one = |order: f64| {
+            let (mut num, mut den) = (Complex64::ZERO, 0.0);
+            for (k, (u, f)) in raw.iter().zip(fundamental).enumerate() {
+                let weight = if order == 0.0 { 1.0 } else { f.norm() };
+                num += (u - f) * Complex64::from_polar(weight, -order * self.theta[k]);
+                den += weight * weight;
+            }
+            (order, num / den.max(f64::MIN_POSITIVE))
+        };
+        ORDERS.into_iter().map(one).collect()
+    }
+
+    fn with_harmonics(&self, fundamental: &[Complex64]) -> Vec<Complex64> {
+        let at = |(k, f): (usize, &Complex64)| {
+            let amplitude = f.norm();
+            let part = |&(order, ratio): &(f64, Complex64)| {
+                let size = if order == 0.0 { 1.0 } else { amplitude };
+                ratio * Complex64::from_polar(size, order * self.theta[k])
+            };
+            f + self.harmonics.iter().map(part).sum::<Complex64>()
+        };
+        fundamental.iter().enumerate().map(at).collect()
+    }
+}
+
+/// Unwrapped angle and its slope per sample, smoothed within each segment.
+fn angle(raw: &[Complex64], segments: &[Range<usize>], window: usize) -> (Vec<f64>, Vec<f64>) {
+    let mut theta = 0.0;
+    let mut last = Complex64::new(1.0, 0.0);
+    let mut unwrapped = |u: &Complex64| {
+        if u.norm_sqr() > 0.0 {
+            theta += (u * last.conj()).arg();
+            last = *u;
+        }
+        Complex64::new(theta, 0.0)
+    };
+    let all: Vec<_> = raw.iter().map(&mut unwrapped).collect();
+    let (mut value, mut slope) = (Vec::new(), Vec::new());
+    for segment in segments {
+        let smoothed = smooth(&all[segment.clone()], 2 * window);
+        value.extend(smoothed.value.iter().map(|x| x.re));
+        slope.extend(smoothed.slope.iter().map(|x| x.re));
+    }
+    (value, slope)
+}
+
+/// Cuts a recording where the voltage's amplitude jumps.
+fn segments(raw: &[Complex64], window: usize, sigma: f64) -> Vec<Range<usize>> {
+    let amplitude: Vec<f64> = raw.iter().map(|u| u.norm()).collect();
+    let jumps = jumps(&amplitude, window);
+    let noise = sigma * (8.0 / window as f64).sqrt();
+    let largest = amplitude.iter().fold(0.0f64, |a, &b| a.max(b));
+    let limit = (8.0 * noise).max(0.02 * largest);
+    let mut cuts = Vec::new();
+    let mut k = 0;
+    while k < jumps.len() {
+        if jumps[k].abs() < limit {
+            k += 1;
+            continue;
+        }
+        let end = (k + window).min(jumps.len());
+        cuts.push(sharpest(&amplitude, &jumps, k, end));
+        k = end + window / 2;
+    }
+    let starts = std::iter::once(0).chain(cuts.iter().copied());
+    let ends = cuts.iter().copied().chain(std::iter::once(raw.len()));
+    starts
+        .zip(ends)
+        .filter(|(a, b)| a < b)
+        .map(|(a, b)| a..b)
+        .collect()
+}
+
+/// Difference at each sample between straight lines fitted to the `window` samples after and before it.
+fn jumps(x: &[f64], window: usize) -> Vec<f64> {
+    let n = window as f64;
+    // Value at the near end of a line fitted to n points: weights (4n - 2 - 6k)/(n (n + 1)), k from the near end.
+    let weight: Vec<f64> = (0..window)
+        .map(|k| (4.0 * n - 2.0 - 6.0 * k as f64) / (n * (n + 1.0)))
+        .collect();
+    let at = |k: usize| {
+        if k < window || k + window > x.len() {
+            return 0.0;
+        }
+        let sum = |j: usize| weight[j] * (x[k + j] - x[k - 1 - j]);
+        (0..window).map(sum).sum()
+    };
+    (0..x.len()).map(at).collect()
+}
+
+/// The sample at which the step happens: the largest difference between neighbours near the largest jump.
+fn sharpest(amplitude: &[f64], jumps: &[f64], from: usize, to: usize) -> usize {
+    let by = |f: &dyn Fn(usize) -> f64, range: Range<usize>| {
+        range.max_by(|&a, &b| f(a).total_cmp(&f(b))).unwrap_or(from)
+    };
+    let centre = by(&|k| jumps[k].abs(), from..to);
+    let near = centre.saturating_sub(4).max(1)..(centre + 5).min(amplitude.len());
+    by(&|k| (amplitude[k] - amplitude[k - 1]).abs(), near)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    fn noisy(n: usize, sigma: f64, f: impl Fn(usize) -> Complex64) -> Vec<Complex64> {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(7);
+        let normal = Normal::new(0.0, sigma).unwrap();
+        let mut one = |k| f(k) + Complex64::new(normal.sample(&mut rng), normal.sample(&mut rng));
+        (0..n).map(&mut one).collect()
+    }
+
+    #[test]
+    fn steps_are_found_at_their_sample_and_noise_is_reduced() {
+        let clean = |k: usize| {
+            let amplitude = if k < 3210 { 320.0 } else { 288.0 };
+            let theta = 0.0314159 * k as f64;
+            Complex64::from_polar(amplitude, theta)
+                + Complex64::from_polar(0.02 * amplitude, -theta)
+        };
+        let raw = noisy(8000, 1.0, clean);
+        let supply = denoise(&raw, 1e-4, 1.0, 314.159);
+        assert!(supply.denoised);
+        assert_eq!(supply.segments.len(), 2);
+        assert_eq!(supply.segments[1].start, 3210);
+        assert!((supply.harmonics[0].1.norm() - 0.02).abs() < 2e-4);
+        let error = |k: usize| (supply.u_s[k] - clean(k)).norm_sqr();
+        let rms = ((0..8000).map(error).sum::<f64>() / 16000.0).sqrt();
+        // A quadratic over 200 points leaves 1.5/sqrt(200) of the noise; ends of segments three times as much.
+        assert!(rms < 0.2, "{rms}");
+    }
+
+    #[test]
+    fn a_voltage_that_is_no_sinusoid_is_left_alone() {
+        let square = |k: usize| Complex64::new(if k % 200 < 100 { 300.0 } else { -300.0 }, 0.0);
+        let raw = noisy(4000, 1.0, square);
+        let supply = denoise(&raw, 1e-4, 1.0, 314.159);
+        assert!(!supply.denoised);
+        assert_eq!(supply.u_s, raw);
+    }
+}

@@ -1,0 +1,112 @@
+//! The recordings of one question: the first is fitted, the others prove.
+
+use crate::belief::{Belief, Hypothesis};
+use crate::case::Case;
+use crate::fit::{Effort, Fit, fit};
+use crate::floor::{Floor, floor};
+use crate::gram;
+use crate::predict::{Teacher, outputs, residual};
+
+/// Seed of the propagated noise: the same input gives the same bytes.
+const SEED: u64 = 20_220_913;
+
+/// A recording with its noise floor.
+#[derive(Clone, Debug)]
+pub(crate) struct Subject {
+    /// The prepared recording.
+    pub case: Case,
+    /// Its floor.
+    pub floor: Floor,
+}
+
+/// Everything that stays the same while hypotheses come and go.
+#[derive(Clone, Debug)]
+pub(crate) struct Study {
+    /// What the user believes.
+    pub belief: Belief,
+    /// Recording that is fitted.
+    pub fitted: Subject,
+    /// Recordings that prove.
+    pub proofs: Vec<Subject>,
+}
+
+/// A hypothesis, fitted and measured on data that was not fitted.
+#[derive(Clone, Debug)]
+pub(crate) struct Trial {
+    /// The fit.
+    pub fit: Fit,
+    /// Held-out squared error of each block of the fitted recording (folds).
+    pub folds: Vec<f64>,
+    /// Squared error of each block of the proving recordings, one after the other.
+    pub proof: Vec<f64>,
+}
+
+impl Subject {
+    fn new(case: Case, belief: &Belief) -> Self {
+        let floor = floor(&case, &belief.plant, SEED);
+        Self { case, floor }
+    }
+
+    /// Squared error of each block of a hypothesis.
+    pub fn errors(&self, belief: &Belief, h: &Hypothesis) -> Vec<f64> {
+        let r = residual(&self.case, &outputs(&self.case, belief, h, Teacher::Off));
+        let blocks = gram::blocks(&self.case.blocks(), &r, &[]);
+        blocks.iter().map(|b| b.sse).collect()
+    }
+}
+
+impl Study {
+    /// Prepares the floors.
+    pub fn new(belief: Belief, fitted: Case, proofs: Vec<Case>) -> Self {
+        let subject = |case| Subject::new(case, &belief);
+        Self {
+            fitted: subject(fitted),
+            proofs: proofs.into_iter().map(subject).collect(),
+            belief,
+        }
+    }
+
+    /// Nothing added, beliefs as they are.
+    pub fn beliefs(&self) -> Hypothesis {
+        Hypothesis::beliefs(self.fitted.case.speed_is_input)
+    }
+
+    /// Fits a hypothesis and measures it.
+    pub fn trial(&self, start: &Hypothesis, effort: Effort) -> Trial {
+        self.measured(fit(&self.fitted.case, &self.belief, start, effort))
+    }
+
+    /// Measures a fit on what it has not seen.
+    pub fn measured(&self, fit: Fit) -> Trial {
+        let errors = |s: &Subject| s.errors(&self.belief, &fit.hypothesis);
+        Trial {
+            folds: fit.held_out(),
+            proof: self.proofs.iter().flat_map(errors).collect(),
+            fit,
+        }
+    }
+
+    /// Error over noise by the folds of the fitted recording.
+    pub fn fold_error(&self, sse: &[f64]) -> f64 {
+        let total: f64 = sse.iter().sum();
+        self.fitted
+            .floor
+            .error_over_noise(total, self.fitted.case.judged())
+    }
+
+    /// Error over noise on the proving recordings; by folds if there are none.
+    pub fn proof_error(&self, trial: &Trial) -> f64 {
+        if self.proofs.is_empty() {
+            return self.fold_error(&trial.folds);
+        }
+        let floor = |s: &Subject| s.floor.mean * s.case.judged();
+        let expected: f64 = self.proofs.iter().map(floor).sum();
+        (trial.proof.iter().sum::<f64>() / expected).sqrt()
+    }
+
+    /// Relative allowance of the gate for the uncertainty of the floor.
+    pub fn allowance(&self) -> f64 {
+        let all = std::iter::once(&self.fitted).chain(&self.proofs);
+        all.map(|s| s.floor.allowance()).fold(0.0, f64::max)
+    }
+}
