@@ -187,7 +187,8 @@ impl SyncConfig {
         }
         let turn = TAU / state.omega;
         let omega = state.omega - FREQUENCY_GAIN * error / turn;
-        state.omega = omega.clamp(self.omega_min, self.omega_max);
+        // Not `clamp`: it panics when the limits are the wrong way round.
+        state.omega = omega.max(self.omega_min).min(self.omega_max);
         state.mode = Mode::Tracking {
             good: good.saturating_add(1),
             missed: 0,
