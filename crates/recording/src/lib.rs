@@ -4,6 +4,7 @@
 //! assumption that this took written down beside it. Whatever is wrong with an input becomes an
 //! [`Error`] that names file, line, column and remedy.
 
+mod audit;
 mod channel;
 mod error;
 mod load_table;
@@ -17,6 +18,7 @@ mod suggest;
 mod units;
 mod write;
 
+pub use audit::{Audit, Code, Expectation, Finding, audit};
 pub use channel::{Channel, Quantity, Signal};
 pub use error::{Class, Error, Problem};
 pub use load_table::{LoadPoint, LoadTable, TableColumn};

@@ -1,0 +1,105 @@
+//! What an audit says.
+
+use crate::channel::Channel;
+use serde::Serialize;
+
+/// The kinds of finding; the names are stable in JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Code {
+    /// A channel ran into the end of its range; value: the level.
+    Clipping,
+    /// Time without samples; value: the longest, s.
+    Gap,
+    /// A channel does not follow what it measures.
+    Stuck,
+    /// Currents and voltages do not belong to the same phases.
+    SwappedPhases,
+    /// The phases follow each other as a, c, b.
+    PhaseOrder,
+    /// A channel, or all currents, are inverted.
+    Polarity,
+    /// A channel has a mean where there is none; value: the mean.
+    Offset,
+    /// Three channels do not add up to zero; value: percent of the positive sequence.
+    ZeroSequence,
+    /// Line voltages taken as phase voltages; value: ratio to the rated phase voltage.
+    LineVoltages,
+    /// Effective values instead of instantaneous ones.
+    RmsValues,
+    /// A unit other than the declared one; value: the factor.
+    Unit,
+    /// The sampling clock; value: percent jitter, or samples per period.
+    Clock,
+    /// No periodic supply was found.
+    NotLocked,
+    /// Negative sequence of the voltages; value: percent of the positive sequence.
+    SupplyUnbalance,
+    /// Harmonics of the voltages; value: total harmonic distortion, percent.
+    SupplyHarmonics,
+    /// The speed cannot be this motor's; value: slip, percent.
+    SpeedImplausible,
+    /// A channel that judging needs is absent.
+    ChannelMissing,
+}
+
+/// One finding.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// What kind it is.
+    pub code: Code,
+    /// The channel, or several separated by blanks.
+    pub channel: String,
+    /// How much; finite.
+    pub value: f64,
+    /// Unit of `value`.
+    pub unit: String,
+    /// A sentence that says what was seen, and the remedy.
+    pub detail: String,
+    /// Whether this alone makes the recording unusable.
+    pub refuses: bool,
+}
+
+/// The audit of one recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Audit {
+    /// Whether anything trustworthy can be computed from the recording.
+    pub supported: bool,
+    /// What was found, in a fixed order.
+    pub findings: Vec<Finding>,
+    /// Channels that must not be used, though the recording can be: dead, implausible.
+    pub unusable: Vec<String>,
+}
+
+impl Finding {
+    pub(super) fn new(code: Code, channel: impl ToString, value: f64, unit: &str) -> Finding {
+        Finding {
+            code,
+            channel: channel.to_string(),
+            value: if value.is_finite() { value } else { 0.0 },
+            unit: unit.to_owned(),
+            detail: String::new(),
+            refuses: false,
+        }
+    }
+
+    pub(super) fn detail(self, detail: impl Into<String>) -> Finding {
+        Finding {
+            detail: detail.into(),
+            ..self
+        }
+    }
+
+    pub(super) fn refusing(self) -> Finding {
+        Finding {
+            refuses: true,
+            ..self
+        }
+    }
+}
+
+/// Channel names separated by blanks.
+pub(super) fn names(channels: &[Channel]) -> String {
+    let names: Vec<String> = channels.iter().map(Channel::to_string).collect();
+    names.join(" ")
+}

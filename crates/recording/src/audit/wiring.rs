@@ -1,0 +1,265 @@
+//! Polarity, phase order, and channels of one phase taken for another.
+
+use super::blocks::Three;
+use super::context::Context;
+use super::finding::{Code, Finding, names};
+use super::sequence::Sequence;
+use super::statistics::median;
+use crate::channel::Channel;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
+
+/// A set is suspected when what a balanced set lacks exceeds this share of what it has...
+const UNBALANCED: f64 = 0.5;
+/// ...and a channel is inverted when inverting it brings the share below this.
+const BALANCED: f64 = 0.25;
+/// Angle of the current behind the voltage: a motor draws reactive power and, unless it is driven,
+/// active power. 10 degrees each way for sensor delays.
+const MOTOR_DEGREES: RangeInclusive<f64> = -10.0..=100.0;
+/// Share of the blocks whose angle must be a motor's.
+const MOST: f64 = 0.5;
+
+pub(super) fn check(context: &mut Context<'_>) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for three in [Channel::VOLTAGES, Channel::CURRENTS] {
+        findings.extend(inverted_channel(context, three));
+    }
+    if findings.is_empty() {
+        findings.extend(order(context));
+    }
+    findings
+}
+
+/// One of three channels inverted: inverting it back balances the set.
+fn inverted_channel(context: &mut Context<'_>, three: [Channel; 3]) -> Option<Finding> {
+    if !context.sound(three) {
+        return None;
+    }
+    let derived = three
+        .iter()
+        .position(|channel| context.recording.is_derived(*channel));
+    let alive = context.alive(three);
+    let phasors: Vec<[Complex64; 3]> = alive.iter().map(|(_, three)| three.phasors()).collect();
+    let imbalance = |flip: Option<usize>| {
+        median(
+            phasors
+                .iter()
+                .map(|phasors| Sequence::of(flipped(*phasors, flip, derived)).imbalance()),
+        )
+    };
+    let as_is = imbalance(None)?;
+    if as_is < UNBALANCED {
+        return None;
+    }
+    let mut flips = (0..3).filter(|k| Some(*k) != derived);
+    let k = flips.find(|k| imbalance(Some(*k)).is_some_and(|rest| rest < BALANCED))?;
+    let channel = three[k];
+    context.unsound.extend(three);
+    let detail = format!(
+        "{channel} is inverted against the other two: with its sign changed the three are balanced. Turn \
+         the probe around, or add --scale {channel}=-1."
+    );
+    Some(
+        Finding::new(Code::Polarity, channel, 180.0, "degrees")
+            .detail(detail)
+            .refusing(),
+    )
+}
+
+fn flipped(mut x: [Complex64; 3], flip: Option<usize>, derived: Option<usize>) -> [Complex64; 3] {
+    if let Some(k) = flip {
+        x[k] = -x[k];
+    }
+    if let Some(d) = derived {
+        x[d] = -(x[(d + 1) % 3] + x[(d + 2) % 3]);
+    }
+    x
+}
+
+fn order(context: &mut Context<'_>) -> Vec<Finding> {
+    let voltages = direction(context, Channel::VOLTAGES);
+    let currents = direction(context, Channel::CURRENTS);
+    if let (Some(v), Some(i)) = (voltages, currents) {
+        if v != i {
+            return vec![swapped(context)];
+        }
+        if let Some(finding) = angle(context) {
+            return vec![finding];
+        }
+    }
+    rotation(context, voltages.or(currents))
+        .into_iter()
+        .collect()
+}
+
+/// Whether most blocks have the order a, b, c; `None` without sound channels.
+fn direction(context: &Context<'_>, three: [Channel; 3]) -> Option<bool> {
+    let alive = context.sound(three).then(|| context.alive(three))?;
+    let positive = alive
+        .iter()
+        .filter(|(_, three)| three.sequence().is_positive())
+        .count();
+    (!alive.is_empty()).then_some(2 * positive > alive.len())
+}
+
+/// Currents exchanged against voltages: the pair follows from the angle that a motor must have.
+fn swapped(context: &mut Context<'_>) -> Finding {
+    let exchanges = [(0, 1), (1, 2), (0, 2)];
+    let exchange = |x: [Complex64; 3], (a, b): (usize, usize)| {
+        let mut y = x;
+        y.swap(a, b);
+        y
+    };
+    let fits = exchanges
+        .iter()
+        .filter(|pair| motor_share(context, |i| exchange(i, **pair)) > MOST);
+    let pairs: Vec<String> = fits
+        .map(|(a, b)| format!("{} and {}", Channel::CURRENTS[*a], Channel::CURRENTS[*b]))
+        .collect();
+    let which = if pairs.is_empty() {
+        "two of them".to_owned()
+    } else {
+        pairs.join(", or ")
+    };
+    context
+        .unsound
+        .extend(Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS));
+    Finding::new(Code::SwappedPhases, names(&Channel::CURRENTS), pairs.len() as f64, "candidates")
+        .detail(format!(
+            "Voltages and currents follow each other in opposite orders: exchange {which} (or the voltages \
+             of the same phases), for example --column ib=ic --column ic=ib."
+        ))
+        .refusing()
+}
+
+/// The share of settled blocks whose current, rearranged, lags the voltage like a motor's.
+fn motor_share(context: &Context<'_>, arrange: impl Fn([Complex64; 3]) -> [Complex64; 3]) -> f64 {
+    let angles: Vec<f64> = context
+        .settled(Channel::CURRENTS)
+        .iter()
+        .filter(|(block, _)| !is_driven(context, block))
+        .filter_map(|(block, three)| lag(block.voltages.as_ref()?, arrange(three.phasors())))
+        .collect();
+    let inside = angles
+        .iter()
+        .filter(|angle| MOTOR_DEGREES.contains(angle))
+        .count();
+    if angles.is_empty() {
+        1.0
+    } else {
+        inside as f64 / angles.len() as f64
+    }
+}
+
+/// Angle of the main sequence of currents behind that of the voltages, degrees, in their direction.
+fn lag(voltages: &Three, currents: [Complex64; 3]) -> Option<f64> {
+    let power: Complex64 = voltages
+        .phasors()
+        .iter()
+        .zip(&currents)
+        .map(|(v, i)| v * i.conj())
+        .sum();
+    (power.norm() > 0.0).then(|| power.arg().to_degrees())
+}
+
+/// Faster than its field: a load that drives the motor may turn the angle beyond 90 degrees.
+fn is_driven(context: &Context<'_>, block: &super::blocks::Block) -> bool {
+    let pole_pairs = context.expectation.pole_pairs.map_or(1.0, f64::from);
+    block
+        .speed
+        .is_some_and(|speed| speed.abs() * pole_pairs > 1.001 * block.omega)
+}
+
+/// Same order, but an angle that no motor has: inverted, or shifted by one or two phases.
+fn angle(context: &mut Context<'_>) -> Option<Finding> {
+    if motor_share(context, |i| i) > MOST {
+        return None;
+    }
+    let turned = |sign: f64, shift: usize| {
+        move |i: [Complex64; 3]| [0, 1, 2].map(|k: usize| sign * i[(k + shift) % 3])
+    };
+    let tries = [
+        (
+            -1.0,
+            0,
+            Code::Polarity,
+            "all currents (or all voltages) are inverted: turn the probes around, or add --scale ia=-1 --scale ib=-1 --scale ic=-1",
+        ),
+        (
+            1.0,
+            1,
+            Code::SwappedPhases,
+            "the currents belong to the next phases: --column ia=ib --column ib=ic --column ic=ia",
+        ),
+        (
+            1.0,
+            2,
+            Code::SwappedPhases,
+            "the currents belong to the phases before: --column ia=ic --column ib=ia --column ic=ib",
+        ),
+    ];
+    let fits: Vec<_> = tries
+        .into_iter()
+        .filter(|(sign, shift, ..)| motor_share(context, turned(*sign, *shift)) > MOST)
+        .collect();
+    let (_, _, code, _) = fits.first()?;
+    let remedies: Vec<&str> = fits.iter().map(|(.., remedy)| *remedy).collect();
+    let lags = context.settled(Channel::CURRENTS);
+    let lags = lags
+        .iter()
+        .filter_map(|(block, three)| lag(block.voltages.as_ref()?, three.phasors()));
+    let lag = median(lags).unwrap_or(0.0);
+    context
+        .unsound
+        .extend(Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS));
+    Some(
+        Finding::new(*code, names(&Channel::CURRENTS), lag, "degrees")
+            .detail(format!(
+                "The currents lag the voltages by {lag:.0} degrees, which no motor does (0 to 90): {}.",
+                remedies.join("; or ")
+            ))
+            .refusing(),
+    )
+}
+
+/// The order of the phases against the sense of rotation.
+fn rotation(context: &Context<'_>, positive: Option<bool>) -> Option<Finding> {
+    let positive = positive?;
+    let speeds = context
+        .blocks
+        .iter()
+        .filter_map(|block| Some(block.speed? / block.omega));
+    // A hundredth of the supply's angular frequency: a shaft at rest with noise has no sense.
+    let turning = median(speeds).filter(|turning| turning.abs() > 0.01);
+    match (positive, turning) {
+        (true, Some(turning)) if turning < 0.0 => Some(
+            Finding::new(Code::Polarity, Channel::SPEED, turning * TAU, "rad per period")
+                .detail(
+                    "speed is negative while the phases follow each other as a, b, c: exchange the encoder's \
+                     tracks, or add --scale speed=-1.",
+                )
+                .refusing(),
+        ),
+        (false, Some(turning)) if turning < 0.0 => None,
+        (false, turning) => Some(phase_order(context, turning.is_some())),
+        (true, _) => None,
+    }
+}
+
+fn phase_order(context: &Context<'_>, contradicts: bool) -> Finding {
+    let present = [Channel::VOLTAGES, Channel::CURRENTS]
+        .into_iter()
+        .filter(|three| context.sound(*three));
+    let channels: Vec<Channel> = present.flatten().collect();
+    let finding = Finding::new(Code::PhaseOrder, names(&channels), -1.0, "sequence");
+    if contradicts {
+        let detail = "The phases follow each other as a, c, b, but the speed is positive: exchange columns \
+                      b and c of voltages and currents, or add --scale speed=-1 if the motor runs backwards.";
+        return finding.detail(detail).refusing();
+    }
+    finding.detail(
+        "The phases follow each other as a, c, b: the motor runs backwards, or two phases are exchanged \
+         in all channels. Without a speed the two look the same.",
+    )
+}
