@@ -38,6 +38,8 @@ impl Clipped {
 const FEWEST_AT_RAIL: usize = 3;
 /// Half periods that must show the same sign: two may be chance.
 const FEWEST_HALF_PERIODS: usize = 3;
+/// Samples per period below which a peak has no shape.
+const FEWEST_PER_PERIOD: f64 = 16.0;
 /// Extremes this close to the greatest one count as common.
 const COMMON: f64 = 0.9;
 /// Noise band of a flat top, in standard deviations.
@@ -66,8 +68,11 @@ fn at_rails(recording: &Recording, channel: Channel, x: &[f64]) -> Option<Clippe
     let sensors = &recording.metadata.sensors;
     let full_scale = sensors.full_scale(channel)?;
     let step = sensors.step(channel).unwrap_or(1e-6 * full_scale);
-    let limit = full_scale - 1.5 * step;
-    let hits = x.iter().enumerate().filter(|(_, x)| x.abs() >= limit);
+    // Beyond the rail nothing is clipped: the declared full scale is not this channel's.
+    let hits = x
+        .iter()
+        .enumerate()
+        .filter(|(_, x)| (x.abs() - full_scale).abs() <= 1.5 * step);
     let places: Vec<Range<usize>> = hits.map(|(k, _)| k..k + 1).collect();
     (places.len() >= FEWEST_AT_RAIL).then_some(Clipped {
         channel,
@@ -86,6 +91,9 @@ fn at_tops(recording: &Recording, channel: Channel, x: &[f64], omega: f64) -> Op
     }
     let level = x.iter().fold(0.0, |level: f64, x| level.max(x.abs()));
     let shape = Shape::new(recording, channel, x, omega);
+    if shape.period < FEWEST_PER_PERIOD {
+        return None;
+    }
     let halves = half_periods(x, level);
     let common = halves
         .into_iter()

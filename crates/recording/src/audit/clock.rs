@@ -2,6 +2,7 @@
 
 use super::context::Context;
 use super::finding::{Code, Finding};
+use super::not_locked::other_time_unit;
 
 /// A step beyond this multiple of the usual one is a gap, not jitter.
 pub(super) const GAP: f64 = 1.5;
@@ -38,7 +39,7 @@ fn jitter(context: &Context<'_>) -> Option<Finding> {
 }
 
 fn rate(context: &Context<'_>) -> Option<Finding> {
-    let omega = context.omega().or(context.expectation.omega())?;
+    let omega = context.omega().or_else(|| rated(context))?;
     let per_period = std::f64::consts::TAU / (omega * context.recording.t_sample());
     (per_period < FEWEST_PER_PERIOD).then(|| {
         let finding = Finding::new(Code::Clock, "t", per_period, "samples per period").detail(format!(
@@ -47,4 +48,10 @@ fn rate(context: &Context<'_>) -> Option<Finding> {
         ));
         if per_period < HOPELESS_PER_PERIOD { finding.refusing() } else { finding }
     })
+}
+
+/// The rated frequency stands in for one that was not found, unless the clock's unit is to blame.
+fn rated(context: &Context<'_>) -> Option<f64> {
+    let omega = context.expectation.omega()?;
+    other_time_unit(context).is_none().then_some(omega)
 }

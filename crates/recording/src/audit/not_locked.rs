@@ -42,7 +42,7 @@ pub(super) fn check(context: &Context<'_>) -> Vec<Finding> {
 }
 
 /// The frequency of a supply that is there, but not at any frequency of a motor.
-fn other_time_unit(context: &Context<'_>) -> Option<f64> {
+pub(super) fn other_time_unit(context: &Context<'_>) -> Option<f64> {
     let three = context
         .recording
         .voltages()

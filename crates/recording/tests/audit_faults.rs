@@ -1,0 +1,464 @@
+//! Every code of the audit: one healthy recording, one thing wrong with it, exactly the finding that
+//! belongs to it and no other.
+
+mod common;
+#[path = "common/synthetic.rs"]
+mod synthetic;
+
+use recording::{Audit, Code, Recording, audit};
+use std::f64::consts::TAU;
+use synthetic::{Noise, Signals, expectation};
+
+fn audited(spoil: impl FnOnce(&mut Signals)) -> Audit {
+    let mut signals = Signals::healthy(7);
+    spoil(&mut signals);
+    audit(&signals.recording(), &expectation())
+}
+
+#[track_caller]
+fn assert_codes(audit: &Audit, expected: &[Code]) {
+    let codes: Vec<Code> = audit.findings.iter().map(|finding| finding.code).collect();
+    assert_eq!(codes, expected, "{:#?}", audit.findings);
+}
+
+/// Exactly one finding, on a channel, of a value within a tolerance, with a word of its remedy.
+#[track_caller]
+fn assert_one(audit: &Audit, code: Code, channel: &str, value: f64, tolerance: f64, remedy: &str) {
+    assert_codes(audit, &[code]);
+    let finding = &audit.findings[0];
+    assert_eq!(finding.channel, channel);
+    assert!((finding.value - value).abs() <= tolerance, "{finding:?}");
+    assert!(finding.detail.contains(remedy), "{}", finding.detail);
+    assert_eq!(audit.supported, !finding.refuses);
+}
+
+fn each(x: &mut [Vec<f64>; 3], f: impl Fn(f64) -> f64) {
+    x.iter_mut().flatten().for_each(|x| *x = f(*x));
+}
+
+#[test]
+fn a_healthy_motor_has_no_finding() {
+    for seed in 0..20 {
+        let audit = audit(&Signals::healthy(seed).recording(), &expectation());
+        assert_codes(&audit, &[]);
+        assert!(audit.supported && audit.unusable.is_empty());
+    }
+}
+
+#[test]
+fn without_a_nameplate_a_healthy_motor_has_no_finding_either() {
+    let audit = audit(
+        &Signals::healthy(1).recording(),
+        &recording::Expectation::default(),
+    );
+    assert_codes(&audit, &[]);
+}
+
+#[test]
+fn clipping_at_a_declared_full_scale() {
+    let audit = audited(|s| {
+        s.metadata.sensors.current_full_scale_amp = Some(6.0);
+        each(&mut s.i, |x| x.clamp(-6.0, 6.0));
+    });
+    assert_codes(&audit, &[Code::Clipping; 3]);
+    assert!(audit.supported);
+    assert!(audit.findings.iter().all(|finding| finding.value == 6.0));
+}
+
+#[test]
+fn clipping_below_an_unknown_full_scale() {
+    let audit = audited(|s| {
+        s.metadata.sensors = recording::Sensors::default();
+        s.i[1].iter_mut().for_each(|x| *x = x.clamp(-5.0, 5.0));
+    });
+    assert_one(&audit, Code::Clipping, "ib", 5.0, 0.01, "larger range");
+}
+
+/// Twelve bits over 60 A leave steps of 0.03 A on peaks of 4 A; eight bits steps of 0.5 A.
+#[test]
+fn coarse_steps_on_smooth_peaks_are_not_clipping() {
+    for step in [0.03, 0.1, 0.5] {
+        for declared in [true, false] {
+            let audit = audited(|s| {
+                if !declared {
+                    s.metadata.sensors = recording::Sensors::default();
+                }
+                each(&mut s.i, |x| step * (x / step).round());
+            });
+            assert_codes(&audit, &[]);
+        }
+    }
+}
+
+#[test]
+fn a_gap_in_time() {
+    let audit = audited(|s| {
+        s.t[5000..].iter_mut().for_each(|t| *t += 0.0123);
+    });
+    // The grid went on, so that the phase jumps as well: nothing else may come of it.
+    assert_one(&audit, Code::Gap, "t", 0.0124, 1e-9, "lost packets");
+}
+
+#[test]
+fn a_frozen_and_a_dead_channel() {
+    let frozen = audited(|s| s.v[0][8000..9000].fill(100.0));
+    assert_one(&frozen, Code::Stuck, "va", 0.0999, 1e-6, "froze");
+    let mut noise = Noise::new(3);
+    let dead = audited(|s| s.i[2].iter_mut().for_each(|x| *x = 0.12 * noise.draw()));
+    assert_one(&dead, Code::Stuck, "ic", 0.0, 0.5, "dead");
+    assert_eq!(dead.unusable, ["ic"]);
+    let speed = audited(|s| s.speed.fill(150.0));
+    assert_one(&speed, Code::Stuck, "speed", 150.0, 0.0, "encoder");
+}
+
+#[test]
+fn an_open_phase_is_told_from_a_dead_sensor() {
+    let audit = audited(|s| {
+        s.i[2].fill(0.0);
+        s.i[1] = s.i[0].iter().map(|x| -x).collect();
+    });
+    assert_codes(&audit, &[Code::Stuck]);
+    assert!(audit.findings[0].detail.contains("the phase is open"));
+}
+
+#[test]
+fn two_currents_exchanged() {
+    for (a, b, pair) in [
+        (0, 1, "ia and ib"),
+        (1, 2, "ib and ic"),
+        (0, 2, "ia and ic"),
+    ] {
+        let audit = audited(|s| s.i.swap(a, b));
+        assert_one(&audit, Code::SwappedPhases, "ia ib ic", 1.0, 1.0, pair);
+        assert!(!audit.supported);
+    }
+}
+
+#[test]
+fn currents_of_the_neighbouring_phases() {
+    for turns in [1, 2] {
+        let audit = audited(|s| s.i.rotate_left(turns));
+        assert_codes(&audit, &[Code::SwappedPhases]);
+        let remedy = ["--column ia=ic", "--column ia=ib"][turns - 1];
+        assert!(
+            audit.findings[0].detail.contains(remedy),
+            "{:?}",
+            audit.findings
+        );
+    }
+}
+
+#[test]
+fn inverted_channels() {
+    let one = audited(|s| s.i[1].iter_mut().for_each(|x| *x = -*x));
+    assert_one(&one, Code::Polarity, "ib", 180.0, 0.0, "--scale ib=-1");
+    let voltage = audited(|s| s.v[2].iter_mut().for_each(|x| *x = -*x));
+    assert_one(&voltage, Code::Polarity, "vc", 180.0, 0.0, "--scale vc=-1");
+    let all = audited(|s| each(&mut s.i, |x| -x));
+    assert_codes(&all, &[Code::Polarity]);
+    assert!(all.findings[0].detail.contains("--scale ia=-1"));
+    let speed = audited(|s| s.speed.iter_mut().for_each(|x| *x = -*x));
+    assert_codes(&speed, &[Code::Polarity]);
+    assert_eq!(speed.findings[0].channel, "speed");
+}
+
+#[test]
+fn the_order_of_the_phases() {
+    let exchanged = audited(|s| {
+        s.v.swap(1, 2);
+        s.i.swap(1, 2);
+    });
+    assert_codes(&exchanged, &[Code::PhaseOrder]);
+    assert!(!exchanged.supported);
+    let backwards = audited(|s| {
+        s.v.swap(1, 2);
+        s.i.swap(1, 2);
+        s.speed.iter_mut().for_each(|x| *x = -*x);
+    });
+    assert_codes(&backwards, &[]);
+}
+
+#[test]
+fn offsets() {
+    let audit = audited(|s| s.i[0].iter_mut().for_each(|x| *x += 0.1));
+    assert_one(&audit, Code::Offset, "ia", 0.1, 0.005, "--offset ia=0.");
+    let audit = audited(|s| s.v[1].iter_mut().for_each(|x| *x -= 4.0));
+    assert_one(&audit, Code::Offset, "vb", -4.0, 0.1, "--offset vb=-");
+}
+
+#[test]
+fn a_current_sensor_of_wrong_gain() {
+    let audit = audited(|s| s.i[2].iter_mut().for_each(|x| *x *= 1.05));
+    // A third of the gain error, over a positive sequence that grew by as much.
+    assert_one(
+        &audit,
+        Code::ZeroSequence,
+        "ia ib ic",
+        5.0 / 3.0 / (1.0 + 0.05 / 3.0),
+        0.05,
+        "in ic",
+    );
+}
+
+#[test]
+fn a_voltage_sensor_of_wrong_gain_is_no_unbalance() {
+    let audit = audited(|s| s.v[1].iter_mut().for_each(|x| *x *= 0.97));
+    assert_one(
+        &audit,
+        Code::ZeroSequence,
+        "va vb vc",
+        1.0 / 0.99,
+        0.03,
+        "in vb",
+    );
+}
+
+#[test]
+fn line_voltages_for_phase_voltages() {
+    let audit = audited(|s| {
+        let [a, b, c] = s.v.clone();
+        let less = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect();
+        s.v = [less(&a, &b), less(&b, &c), less(&c, &a)];
+    });
+    assert_one(
+        &audit,
+        Code::LineVoltages,
+        "va vb vc",
+        3f64.sqrt(),
+        0.01,
+        "--line-voltages",
+    );
+}
+
+#[test]
+fn effective_values() {
+    let audit = audited(|s| {
+        let mut noise = Noise::new(5);
+        s.v.iter_mut()
+            .flatten()
+            .for_each(|x| *x = 230.0 + noise.draw());
+        s.i.iter_mut()
+            .flatten()
+            .for_each(|x| *x = 4.8 + 0.05 * noise.draw());
+    });
+    assert_codes(&audit, &[Code::RmsValues; 2]);
+    assert!(!audit.supported);
+}
+
+#[test]
+fn units() {
+    let rpm = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 60.0 / TAU));
+    assert_one(
+        &rpm,
+        Code::Unit,
+        "speed",
+        60.0 / TAU,
+        1e-9,
+        "--unit speed=rpm",
+    );
+    let turns = audited(|s| s.speed.iter_mut().for_each(|x| *x /= TAU));
+    assert_one(
+        &turns,
+        Code::Unit,
+        "speed",
+        1.0 / TAU,
+        1e-9,
+        "--unit speed=rev/s",
+    );
+    let millivolt = audited(|s| {
+        s.metadata.sensors = recording::Sensors::default();
+        each(&mut s.v, |x| 1000.0 * x);
+    });
+    assert_one(
+        &millivolt,
+        Code::Unit,
+        "va vb vc",
+        1000.0,
+        10.0,
+        "--unit va=mV",
+    );
+    let kiloamp = audited(|s| each(&mut s.i, |x| 1e-3 * x));
+    assert_codes(&kiloamp, &[Code::Unit]);
+    assert!(kiloamp.findings[0].detail.contains("--unit ia=kA"));
+    let milliseconds = audited(|s| s.t.iter_mut().for_each(|t| *t *= 1000.0));
+    assert_codes(&milliseconds, &[Code::Unit]);
+    assert!(
+        milliseconds.findings[0].detail.contains("--unit t=ms"),
+        "{milliseconds:?}"
+    );
+    for audit in [rpm, turns, millivolt, kiloamp, milliseconds] {
+        assert!(!audit.supported);
+    }
+}
+
+#[test]
+fn a_jittering_clock() {
+    let mut noise = Noise::new(9);
+    let audit = audited(|s| {
+        s.t.iter_mut()
+            .for_each(|t| *t += 5e-6 * noise.draw().clamp(-3.0, 3.0))
+    });
+    // The signals are at the even instants, the clock is not: sqrt(2) times 5 % of 100 us.
+    assert_one(
+        &audit,
+        Code::Clock,
+        "t",
+        5.0 * 2f64.sqrt(),
+        0.3,
+        "--sample-rate",
+    );
+}
+
+#[test]
+fn a_clock_that_is_too_slow() {
+    let every = |x: &Vec<f64>, n| x.iter().copied().step_by(n).collect::<Vec<f64>>();
+    let thinned = |n| {
+        audited(|s| {
+            s.t = every(&s.t, n);
+            s.v = [0, 1, 2].map(|k| every(&s.v[k], n));
+            s.i = [0, 1, 2].map(|k| every(&s.i[k], n));
+            s.speed = every(&s.speed, n);
+        })
+    };
+    assert_one(
+        &thinned(25),
+        Code::Clock,
+        "t",
+        8.0,
+        0.1,
+        "record at least 10",
+    );
+    assert_codes(&thinned(10), &[]);
+}
+
+#[test]
+fn nothing_periodic() {
+    let mut noise = Noise::new(11);
+    let audit = audited(|s| {
+        s.v.iter_mut().flatten().for_each(|x| *x = noise.draw());
+        s.i.iter_mut().flatten().for_each(|x| *x = noise.draw());
+    });
+    assert_codes(&audit, &[Code::NotLocked]);
+    assert!(!audit.supported);
+}
+
+#[test]
+fn an_unbalanced_supply() {
+    for percent in [0.8, 2.0, 5.0] {
+        let audit = audited(|s| {
+            for k in 0..3 {
+                let turn = k as f64 * TAU / 3.0 + 0.5;
+                let counter = |t: f64| 3.266 * percent * (TAU * 50.0 * t + turn).cos();
+                s.v[k]
+                    .iter_mut()
+                    .zip(&s.t)
+                    .for_each(|(x, t)| *x += counter(*t));
+            }
+        });
+        assert_one(
+            &audit,
+            Code::SupplyUnbalance,
+            "va vb vc",
+            percent,
+            0.02,
+            "no fault of the motor",
+        );
+    }
+}
+
+#[test]
+fn a_distorted_supply() {
+    let audit = audited(|s| {
+        for k in 0..3 {
+            let angle = |t: f64| TAU * 50.0 * t - k as f64 * TAU / 3.0;
+            let extra = |t: f64| 0.04 * 326.6 * ((5.0 * angle(t)).cos() + (7.0 * angle(t)).cos());
+            s.v[k]
+                .iter_mut()
+                .zip(&s.t)
+                .for_each(|(x, t)| *x += extra(*t));
+        }
+    });
+    assert_one(
+        &audit,
+        Code::SupplyHarmonics,
+        "va vb vc",
+        4.0 * 2f64.sqrt(),
+        0.05,
+        "order",
+    );
+}
+
+#[test]
+fn implausible_speeds() {
+    // Believed to have three pole pairs: 1500 rpm is then 1.5 times synchronous speed.
+    let believed = recording::Expectation {
+        pole_pairs: Some(3),
+        ..expectation()
+    };
+    let wrong = audit(&Signals::healthy(2).recording(), &believed);
+    assert_codes(&wrong, &[Code::SpeedImplausible]);
+    assert!(
+        wrong.findings[0]
+            .detail
+            .contains("2 pole pairs instead of 3"),
+        "{wrong:?}"
+    );
+    assert_eq!(wrong.unusable, ["speed"]);
+    let volts = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 0.0156));
+    assert_codes(&volts, &[Code::SpeedImplausible]);
+    let fast = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 1.06));
+    assert_codes(&fast, &[Code::SpeedImplausible]);
+    assert!(fast.unusable.is_empty() && fast.supported);
+}
+
+#[test]
+fn what_is_missing_is_named_with_its_consequence() {
+    let full = Signals::healthy(4).recording();
+    let mut currents = Recording::new("i.csv", full.t().to_vec(), full.metadata.clone()).unwrap();
+    for (channel, x) in full
+        .channels()
+        .filter(|(channel, _)| channel.to_string().starts_with('i'))
+    {
+        currents = currents.with_channel(channel, x.to_vec()).unwrap();
+    }
+    let audit = audit(&currents, &expectation());
+    assert_codes(&audit, &[Code::ChannelMissing; 2]);
+    assert_eq!(audit.findings[0].channel, "va vb vc");
+    assert!(audit.findings[1].detail.contains("--column speed=NAME"));
+    assert!(audit.supported);
+}
+
+/// The JSON keys and codes that others rely on.
+#[test]
+fn the_json_is_stable() {
+    let audit = audited(|s| s.i.swap(0, 1));
+    let json = serde_json::to_value(&audit).unwrap();
+    assert_eq!(json["supported"], false);
+    let finding = json["findings"][0].as_object().unwrap();
+    assert_eq!(finding["code"], "swapped-phases");
+    for key in ["code", "channel", "value", "unit", "detail"] {
+        assert!(finding.contains_key(key), "{key}");
+    }
+    let codes = [
+        (Code::Clipping, "clipping"),
+        (Code::Gap, "gap"),
+        (Code::Stuck, "stuck"),
+        (Code::SwappedPhases, "swapped-phases"),
+        (Code::PhaseOrder, "phase-order"),
+        (Code::Polarity, "polarity"),
+        (Code::Offset, "offset"),
+        (Code::ZeroSequence, "zero-sequence"),
+        (Code::LineVoltages, "line-voltages"),
+        (Code::RmsValues, "rms-values"),
+        (Code::Unit, "unit"),
+        (Code::Clock, "clock"),
+        (Code::NotLocked, "not-locked"),
+        (Code::SupplyUnbalance, "supply-unbalance"),
+        (Code::SupplyHarmonics, "supply-harmonics"),
+        (Code::SpeedImplausible, "speed-implausible"),
+        (Code::ChannelMissing, "channel-missing"),
+    ];
+    for (code, name) in codes {
+        assert_eq!(serde_json::to_value(code).unwrap(), name);
+    }
+}
