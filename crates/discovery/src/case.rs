@@ -163,7 +163,7 @@ impl Case {
         sigma_u: f64,
     ) {
         let h = self.inputs.t_sample * self.between.stride() as f64;
-        self.decimation = ((1.0 / ROW_RATE / h) as usize).max(1);
+        self.decimation = ((1.0 / ROW_RATE / h).round() as usize).max(1);
         self.block = ((BLOCK / self.t_row()) as usize).max(1);
         let sigma_i = [0, 1, 2].map(|k| sigma(rec, Channel::CURRENTS[k], currents[k]));
         let speed = rec.speed().filter(|_| !self.speed_is_input);

@@ -1,10 +1,31 @@
 //! Refits the best candidates with free shapes.
 
-use crate::fit::Effort;
+use crate::belief::Hypothesis;
+use crate::fit::{Effort, Fit, fit};
+use crate::gram;
 use crate::predict::Teacher;
-use crate::screen::Screened;
+use crate::screen::{Screened, ranked, screen};
 use crate::study::{Study, Trial};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Candidates that are refitted.
+const CONFIRMED: usize = 6;
+/// Points of a shape grid from which a refit may start.
+const STARTS: usize = 3;
+/// A candidate that has not improved the squared error by this factor soon is given up.
+const HOPELESS: f64 = 0.97;
+/// Error above which a freely running fit may have settled in a wrong valley.
+const WRONG_VALLEY: f64 = 1.5;
+/// Rate at which the observer draws the modelled speed to the measured one, 1/s.
+const OBSERVER: f64 = 200.0;
+/// Screened gain of error below which nothing can pass the proofs.
+const LEAST_GAIN: f64 = 0.005;
+
+/// Share of the excess that the linearised candidate may leave to be likely.
+const LIKELY: f64 = 0.6;
+/// Error below which no further candidates are looked for.
+const SOLVED: f64 = 1.05;
 
 /// A candidate effect, refitted together with everything else.
 #[derive(Clone, Debug)]
@@ -17,46 +38,140 @@ pub(crate) struct Candidate {
     pub error: f64,
 }
 
-/// Points of a grid that get a short refit before the best gets a full one.
-const SHORT: Effort = Effort {
-    iterations: 3,
-    teacher: Teacher::Off,
-};
+/// Result of one round of screening and confirming.
+#[derive(Clone, Debug)]
+pub(crate) struct Round {
+    /// Every effect at its best grid point (linearised), best first.
+    pub screened: Vec<Screened>,
+    /// Refitted candidates, best first.
+    pub candidates: Vec<Candidate>,
+}
 
-/// Refits each group of screened points on top of `base`; best first.
-pub(crate) fn confirm(study: &Study, base: &Trial, groups: &[Vec<Screened>]) -> Vec<Candidate> {
-    let one = |group: &Vec<Screened>| candidate(study, base, group);
-    let mut candidates: Vec<Candidate> = groups.par_iter().map(one).collect();
+/// Where a refit starts: nominals, and the grid points of one effect.
+#[derive(Clone, Debug)]
+struct Start {
+    hypothesis: Hypothesis,
+    group: Vec<Screened>,
+    teacher: Teacher,
+}
+
+/// A short refit, to choose between starts.
+fn short(teacher: Teacher) -> Effort {
+    Effort {
+        iterations: 3,
+        teacher,
+        abandon_above: f64::INFINITY,
+    }
+}
+
+/// Screens all effects on top of `base` and refits the most promising.
+///
+/// `nominal` is the same hypothesis with the nominals at their beliefs, from which a fit that settled in a
+/// wrong valley starts again.
+pub(crate) fn round(study: &Study, base: &Trial, nominal: &Hypothesis, excluded: &[&str]) -> Round {
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    let groups = ranked(&screen(case, belief, &base.fit, excluded), STARTS);
+    let error = study.fold_error(&base.folds);
+    let (likely, rest) = promising(study, &base.fit, &groups, error);
+    let mut candidates = confirm(study, base, &likely);
+    let solved = candidates.first().is_some_and(|c| c.error < SOLVED);
+    if !solved {
+        candidates.extend(confirm(study, base, &rest));
+        if error > WRONG_VALLEY && !case.speed.is_empty() && !case.speed_is_input {
+            candidates.extend(retaught(study, base, nominal, excluded));
+        }
+    }
+    Round {
+        candidates: best_of_each(candidates),
+        screened: groups.into_iter().map(|g| g[0].clone()).collect(),
+    }
+}
+
+/// Starts again from the beliefs with the speed drawn to the measured one.
+fn retaught(
+    study: &Study,
+    base: &Trial,
+    nominal: &Hypothesis,
+    excluded: &[&str],
+) -> Vec<Candidate> {
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    let taught = fit(case, belief, nominal, short(Teacher::On(OBSERVER)));
+    let groups = ranked(&screen(case, belief, &taught, excluded), STARTS);
+    let (likely, rest) = promising(study, &taught, &groups, f64::INFINITY);
+    let mut candidates = confirm(study, base, &likely);
+    if candidates.first().is_none_or(|c| c.error > SOLVED) {
+        candidates.extend(confirm(study, base, &rest));
+    }
+    candidates
+}
+
+/// The first few groups that can still matter: the likely ones and the rest.
+fn promising(
+    study: &Study,
+    fit: &Fit,
+    groups: &[Vec<Screened>],
+    error: f64,
+) -> (Vec<Start>, Vec<Start>) {
+    let start = |group: &Vec<Screened>| Start {
+        hypothesis: fit.hypothesis.clone(),
+        group: group.clone(),
+        teacher: fit.teacher,
+    };
+    let screened = |s: &Start| study.fold_error(&s.group[0].held_out);
+    // Shapes move during a refit: a bad model may gain more than its secant promises.
+    let matters = |s: &Start| error > 1.1 || screened(s) < (1.0 - LEAST_GAIN) * error;
+    let starts = groups.iter().map(start).filter(matters).take(CONFIRMED);
+    let own = study.fold_error(&[gram::dot(&fit.residual, &fit.residual)]);
+    let limit = 1.0 + LIKELY * (own * own - 1.0).max(0.0);
+    let (mut likely, mut rest) = (Vec::new(), Vec::new());
+    for s in starts {
+        if likely.is_empty() || screened(&s).powi(2) < limit {
+            likely.push(s);
+        } else {
+            rest.push(s);
+        }
+    }
+    (likely, rest)
+}
+
+fn confirm(study: &Study, base: &Trial, starts: &[Start]) -> Vec<Candidate> {
+    let one = |start: &Start| candidate(study, base, start);
+    best_of_each(starts.par_iter().map(one).collect())
+}
+
+/// Several forms and starts of one effect are one answer: the best speaks for it.
+fn best_of_each(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
-    // Several forms of one effect are one answer: the best form speaks for it.
-    let mut seen = std::collections::BTreeSet::new();
+    let mut seen = BTreeSet::new();
     candidates.retain(|c| seen.insert(c.name));
     candidates
 }
 
-fn candidate(study: &Study, base: &Trial, group: &[Screened]) -> Candidate {
-    let start = |s: &Screened| {
-        let rated = &study.belief.plant.rated;
-        base.fit.hypothesis.with(s.config.clone(), rated)
-    };
-    let best_start = if group.len() == 1 {
-        start(&group[0])
+fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
+    let rated = &study.belief.plant.rated;
+    let at = |s: &Screened| start.hypothesis.with(s.config.clone(), rated);
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    let tried = |s: &Screened| fit(case, belief, &at(s), short(start.teacher));
+    let sse = |f: &Fit| gram::dot(&f.residual, &f.residual);
+    let resonance = start.group[0].config.effect.descriptor().is_resonance();
+    let best = if !resonance && start.teacher == Teacher::Off {
+        at(&start.group[0])
     } else {
-        let short = |s: &Screened| study.trial(&start(s), SHORT);
-        let trials = group.iter().map(short);
-        let best = trials.min_by(|a, b| sum(&a.folds).total_cmp(&sum(&b.folds)));
-        best.map_or_else(|| start(&group[0]), |t| t.fit.hypothesis)
+        let tries = if resonance { start.group.len() } else { 1 };
+        let fits = start.group[..tries].iter().map(tried);
+        let best = fits.min_by(|a, b| sse(a).total_cmp(&sse(b)));
+        best.map_or_else(|| at(&start.group[0]), |f| f.hypothesis)
     };
-    let trial = study.trial(&best_start, Effort::FULL);
+    let effort = Effort {
+        abandon_above: HOPELESS * gram::dot(&base.fit.residual, &base.fit.residual),
+        ..Effort::FULL
+    };
+    let trial = study.trial(&best, effort);
     Candidate {
-        name: group[0].config.effect.descriptor().name,
+        name: start.group[0].config.effect.descriptor().name,
         error: combined(study, &trial),
         trial,
     }
-}
-
-fn sum(x: &[f64]) -> f64 {
-    x.iter().sum()
 }
 
 /// Geometric mean of the error by folds and by proof.

@@ -9,6 +9,11 @@ use nalgebra::{DMatrix, DVector};
 /// Limits of the inflation of the nominals' prior weight.
 const KAPPA: [f64; 2] = [30.0, 400.0];
 
+/// Iterations after which a hopeless fit may be given up.
+const PATIENCE: usize = 4;
+/// Relative gain of an iteration below which a fit has arrived.
+const ARRIVED: f64 = 3e-5;
+
 /// A fitted hypothesis with everything that proofs need.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
@@ -26,6 +31,8 @@ pub(crate) struct Fit {
     pub penalty: Penalty,
     /// Weighted model outputs.
     pub outputs: Vec<f64>,
+    /// Treatment of the speed in this fit.
+    pub teacher: Teacher,
 }
 
 /// How hard to fit.
@@ -35,6 +42,8 @@ pub(crate) struct Effort {
     pub iterations: usize,
     /// Treatment of the speed.
     pub teacher: Teacher,
+    /// Give up when after [`PATIENCE`] iterations the squared error still exceeds this.
+    pub abandon_above: f64,
 }
 
 impl Effort {
@@ -42,6 +51,7 @@ impl Effort {
     pub const FULL: Effort = Effort {
         iterations: 14,
         teacher: Teacher::Off,
+        abandon_above: f64::INFINITY,
     };
 }
 
@@ -100,8 +110,9 @@ pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effo
     let mut damping = 1e-4;
     let mut linear = None;
     let mut kappa = KAPPA[0];
-    for _ in 0..effort.iterations {
+    for iteration in 0..effort.iterations {
         let r = residual(case, &out);
+        let sse = gram::dot(&r, &r);
         let j = jacobian(case, belief, &h, &out, effort.teacher);
         let blocks = gram::blocks(&rows, &r, &j);
         let nominals = free.iter().filter(|&&k| k < N_NOMINAL).count();
@@ -121,7 +132,8 @@ pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effo
         };
         (h, out) = (next, next_out);
         linear = None;
-        if gain < 1e-5 {
+        let hopeless = iteration >= PATIENCE && sse > effort.abandon_above;
+        if gain < ARRIVED || hopeless {
             break;
         }
     }
@@ -139,6 +151,7 @@ pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effo
         jacobian: j,
         blocks,
         outputs: out,
+        teacher: effort.teacher,
     }
 }
 
@@ -152,6 +165,35 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// The damped step; coordinates that it would push out of their bounds stay, the others make up for it.
+    fn inside(
+        &self,
+        h: &Hypothesis,
+        here: &Penalty,
+        normal: &Block,
+        damping: f64,
+    ) -> Option<DVector<f64>> {
+        let mut held = here.clone();
+        let mut step = held.solve(normal, damping)?;
+        for _ in 0..3 {
+            let mut again = false;
+            for (i, &k) in self.free.iter().enumerate() {
+                let [low, high] = h.bounds(k, self.belief);
+                let outward = (h.z[k] <= low && step[i] < 0.0) || (h.z[k] >= high && step[i] > 0.0);
+                if outward {
+                    held.weight[i] = 1e9 * (normal.gram[(i, i)] + here.weight[i] + 1.0);
+                    held.pull[i] = 0.0;
+                    again = true;
+                }
+            }
+            if !again {
+                break;
+            }
+            step = held.solve(normal, damping)?;
+        }
+        Some(step)
+    }
+
     /// A better hypothesis, its outputs and the relative gain; `None` if there is none nearby.
     fn step(
         &self,
@@ -163,7 +205,7 @@ impl Search<'_> {
     ) -> Option<(Hypothesis, Vec<f64>, f64)> {
         let before = cost(r, here);
         for _ in 0..7 {
-            if let Some(step) = here.solve(normal, *damping) {
+            if let Some(step) = self.inside(h, here, normal, *damping) {
                 let next = moved(self.belief, h, self.free, &step);
                 let out = outputs(self.case, self.belief, &next, self.teacher);
                 let there = penalty(self.belief, &next, self.free, self.kappa);

@@ -20,10 +20,10 @@ pub(crate) struct Block {
     pub sse: f64,
 }
 
-/// Dot product in four independent sums, so that it vectorises.
+/// Dot product in eight independent sums, so that it vectorises.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (head_a, head_b) = (a.chunks_exact(4), b.chunks_exact(4));
+    let mut sums = [0.0; 8];
+    let (head_a, head_b) = (a.chunks_exact(8), b.chunks_exact(8));
     let tail: f64 = head_a
         .remainder()
         .iter()
@@ -31,7 +31,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
         .map(|(x, y)| x * y)
         .sum();
     for (x, y) in head_a.zip(head_b) {
-        for k in 0..4 {
+        for k in 0..8 {
             sums[k] += x[k] * y[k];
         }
     }

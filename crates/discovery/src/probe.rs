@@ -39,25 +39,9 @@ pub fn probe(recs: &[Recording], file: &MotorFile) {
         study.fold_error(&study.fitted.errors(&study.belief, &study.beliefs()))
     );
     let t0 = Instant::now();
-    let s = screen::screen(&study.fitted.case, &study.belief, &base.fit, &[]);
-    let groups = screen::ranked(&s, 3);
-    println!(
-        "  screen {:.2}s {} points {} sims",
-        t0.elapsed().as_secs_f64(),
-        s.len(),
-        s.iter().map(|s| s.simulations).sum::<usize>()
-    );
-    for g in groups.iter().take(8) {
-        println!(
-            "     {:26} {:.4} {:?}",
-            g[0].config.effect.descriptor().name,
-            study.fold_error(&g[0].held_out),
-            g[0].config.values
-        );
-    }
-    let t0 = Instant::now();
-    let c = confirm::confirm(&study, &base, &groups[..6]);
-    println!("  confirm {:.2}s", t0.elapsed().as_secs_f64());
+    let r = confirm::round(&study, &base, &study.beliefs(), &[]);
+    println!("  round {:.2}s", t0.elapsed().as_secs_f64());
+    let c = r.candidates;
     for c in &c {
         println!(
             "     {:26} folds {:.4} proof {:.4} proven {} explained {:.3} beaten-by-best? {:?}",
@@ -69,4 +53,54 @@ pub fn probe(recs: &[Recording], file: &MotorFile) {
             c.trial.fit.hypothesis.configs(&study.belief.plant.rated)[0].to_file()
         );
     }
+}
+
+pub fn dead(recs: &[Recording], file: &MotorFile) {
+    let rated = rated(file);
+    let belief = Belief::new(file, vec![]);
+    let mut cases = recs.iter().map(|r| Case::new(r, &rated).unwrap());
+    let a = cases.next().unwrap();
+    let study = Study::new(belief, a, cases.collect());
+    let e = motor::effects::find("inverter-dead-time", "").unwrap();
+    for v in [6.0, 3.0] {
+        for i0 in [0.05, 0.1, 0.3] {
+            let mut c = motor::effects::EffectConfig::absent(e, &rated);
+            c.values = vec![v, i0];
+            let h = study.beliefs().with(c, &rated);
+            let e0 = study.fold_error(&study.fitted.errors(&study.belief, &h));
+            let t0 = Instant::now();
+            let t = study.trial(&h, Effort::FULL);
+            println!(
+                "v {v} i0 {i0}: start {e0:.3} folds {:.3} proof {:.3} z {:.3?} {:?} {:.2}s",
+                study.fold_error(&t.folds),
+                study.proof_error(&t),
+                t.fit.hypothesis.z,
+                t.fit.hypothesis.configs(&rated)[0].to_file(),
+                t0.elapsed().as_secs_f64()
+            );
+            let er = study.fitted.errors(&study.belief, &t.fit.hypothesis);
+            let fl = &study.fitted.floor.block;
+            println!(
+                "{:?}",
+                er.iter()
+                    .zip(fl)
+                    .map(|(e, f)| ((e / f).sqrt() * 10.0).round() / 10.0)
+                    .collect::<Vec<_>>()
+            );
+        }
+    }
+    let t0 = Instant::now();
+    for _ in 0..10 {
+        let _ = crate::predict::outputs(
+            &study.fitted.case,
+            &study.belief,
+            &study.beliefs(),
+            crate::predict::Teacher::Off,
+        );
+    }
+    println!(
+        "sim {:.4}s rows {}",
+        t0.elapsed().as_secs_f64() / 10.0,
+        study.fitted.case.measured.len()
+    );
 }

@@ -1,10 +1,10 @@
 //! Tries every effect at once: secant columns against the normal equations of the present fit.
 
-use crate::belief::{Belief, N_NOMINAL};
+use crate::belief::Belief;
 use crate::case::Case;
 use crate::fit::Fit;
 use crate::gram::{self, Block, Penalty};
-use crate::predict::{Teacher, outputs};
+use crate::predict::outputs;
 use motor::effects::{ALL, Applies, Effect, EffectConfig, Parameter, Role};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -107,7 +107,7 @@ fn columns(case: &Case, belief: &Belief, fit: &Fit, config: &EffectConfig) -> Ve
     let rated = &belief.plant.rated;
     let difference = |config: EffectConfig, over: f64| {
         let h = fit.hypothesis.with(config, rated);
-        let mut there = outputs(case, belief, &h, Teacher::Off);
+        let mut there = outputs(case, belief, &h, fit.teacher);
         there
             .iter_mut()
             .zip(&fit.outputs)
@@ -219,9 +219,4 @@ pub(crate) fn ranked(screened: &[Screened], keep: usize) -> Vec<Vec<Screened>> {
     }
     groups.sort_by(|a, b| a[0].total().total_cmp(&b[0].total()));
     groups
-}
-
-/// Number of nominal coordinates among the free ones of a fit.
-pub(crate) fn free_nominals(fit: &Fit) -> usize {
-    fit.free.iter().filter(|&&k| k < N_NOMINAL).count()
 }

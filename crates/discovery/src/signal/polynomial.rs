@@ -1,7 +1,11 @@
 //! Local quadratic smoothing (Savitzky-Golay) that respects the ends of a segment.
 
+use crate::gram::dot;
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
+
+/// Points per window at which a smoothed signal is evaluated.
+const KNOTS: usize = 24;
 
 /// Weights of a least-squares quadratic over `window` points that give its value and its slope (per sample) at
 /// the position `at`, counted from the window's first point.
@@ -20,8 +24,8 @@ fn weights(window: usize, at: f64) -> (Vec<f64>, Vec<f64>) {
     (dot(&value), dot(&slope))
 }
 
-fn apply(w: &[f64], x: &[Complex64]) -> Complex64 {
-    w.iter().zip(x).map(|(w, x)| x * *w).sum()
+fn apply(w: &[f64], re: &[f64], im: &[f64]) -> Complex64 {
+    Complex64::new(dot(w, re), dot(w, im))
 }
 
 /// Value and slope (per sample) of a signal.
@@ -42,21 +46,41 @@ pub(crate) fn smooth(x: &[Complex64], window: usize) -> Smoothed {
             slope: vec![Complex64::ZERO; x.len()],
         };
     }
+    let (re, im): (Vec<f64>, Vec<f64>) = x.iter().map(|x| (x.re, x.im)).unzip();
     let half = window / 2;
-    let (value, slope) = weights(window, half as f64);
-    let mut out = Smoothed::default();
-    for k in 0..x.len() {
+    let centre = weights(window, half as f64);
+    let at = |k: usize| {
         let first = k.saturating_sub(half).min(x.len() - window);
-        let part = &x[first..first + window];
+        let part = first..first + window;
+        let (re, im) = (&re[part.clone()], &im[part]);
+        let apply =
+            |(value, slope): &(Vec<f64>, Vec<f64>)| (apply(value, re, im), apply(slope, re, im));
         if k - first == half {
-            out.value.push(apply(&value, part));
-            out.slope.push(apply(&slope, part));
+            apply(&centre)
         } else {
-            let (value, slope) = weights(window, (k - first) as f64);
-            out.value.push(apply(&value, part));
-            out.slope.push(apply(&slope, part));
+            apply(&weights(window, (k - first) as f64))
         }
+    };
+    joined(x.len(), (window / KNOTS).max(1), at)
+}
+
+/// Evaluates `at` on every `stride`-th sample and joins by straight lines: what a window has smoothed hardly
+/// bends within a small part of it.
+fn joined(n: usize, stride: usize, at: impl Fn(usize) -> (Complex64, Complex64)) -> Smoothed {
+    let mut out = Smoothed::default();
+    let (mut k, mut here) = (0, at(0));
+    while k + 1 < n {
+        let next = (k + stride).min(n - 1);
+        let there = at(next);
+        for j in k..next {
+            let share = (j - k) as f64 / (next - k) as f64;
+            out.value.push(here.0 + (there.0 - here.0) * share);
+            out.slope.push(here.1 + (there.1 - here.1) * share);
+        }
+        (k, here) = (next, there);
     }
+    out.value.push(here.0);
+    out.slope.push(here.1);
     out
 }
 

@@ -31,27 +31,12 @@ pub(crate) struct Supply {
 pub(crate) fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated: f64) -> Supply {
     let period = std::f64::consts::TAU / omega_rated / t_sample;
     let window = (period as usize).max(16);
-    let segments = segments(raw, window / 2, sigma);
-    let (theta, slope) = angle(raw, &segments, window);
-    let mut supply = Supply {
-        u_s: Vec::new(),
-        omega_sync: slope.iter().map(|x| x / t_sample).collect(),
-        theta,
-        segments,
-        denoised: true,
-        harmonics: Vec::new(),
-        window,
-    };
-    // Smoothing leaks a little of each harmonic into the fundamental, most at the ends of segments: clean and repeat.
-    let mut fundamental = supply.fundamental(raw);
-    for _ in 0..4 {
-        supply.harmonics = supply.fit_harmonics(raw, &fundamental);
-        supply.u_s = supply.with_harmonics(&fundamental);
-        let parts = supply.u_s.iter().zip(&fundamental);
-        let clean = raw.iter().zip(parts).map(|(u, (all, f))| u - (all - f));
-        fundamental = supply.fundamental(&clean.collect::<Vec<_>>());
-    }
-    supply.u_s = supply.with_harmonics(&fundamental);
+    // An unbalance makes the amplitude ripple: steps are looked for once the harmonics are known and removed.
+    let whole = 0..raw.len();
+    let first = Supply::described(raw, raw, vec![whole], t_sample, window, 1);
+    let clean = first.cleaned(raw);
+    let segments = segments(&clean, window / 2, sigma);
+    let mut supply = Supply::described(raw, &clean, segments, t_sample, window, 4);
     let rest = raw.iter().zip(&supply.u_s).map(|(a, b)| (a - b).norm_sqr());
     let rms = (0.5 * rest.sum::<f64>() / raw.len() as f64).sqrt();
     if rms > WHITE_LIMIT * sigma {
@@ -62,6 +47,55 @@ pub(crate) fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated:
 }
 
 impl Supply {
+    /// Fundamental and harmonics of `raw` between known steps; the angle comes from `clean`.
+    fn described(
+        raw: &[Complex64],
+        clean: &[Complex64],
+        segments: Vec<Range<usize>>,
+        t_sample: f64,
+        window: usize,
+        rounds: usize,
+    ) -> Self {
+        let (theta, slope) = angle(clean, &segments, window);
+        let mut supply = Self {
+            u_s: Vec::new(),
+            omega_sync: slope.iter().map(|x| x / t_sample).collect(),
+            theta,
+            segments,
+            denoised: true,
+            harmonics: Vec::new(),
+            window,
+        };
+        // Smoothing leaks a little of each harmonic into the fundamental, most at the ends of segments:
+        // clean and repeat.
+        let mut fundamental = supply.fundamental(clean);
+        for _ in 0..rounds {
+            supply.harmonics = supply.fit_harmonics(raw, &fundamental);
+            supply.u_s = supply.with_harmonics(&fundamental);
+            fundamental = supply.fundamental(&supply.cleaned(raw));
+        }
+        supply.u_s = supply.with_harmonics(&fundamental);
+        supply
+    }
+
+    /// `raw` without its harmonics.
+    fn cleaned(&self, raw: &[Complex64]) -> Vec<Complex64> {
+        let harmonic = |(k, u): (usize, &Complex64)| {
+            let amplitude = u.norm();
+            u - self.harmonic_sum(k, amplitude)
+        };
+        raw.iter().enumerate().map(harmonic).collect()
+    }
+
+    /// Sum of the harmonics at sample `k` for a fundamental of this amplitude (V).
+    fn harmonic_sum(&self, k: usize, amplitude: f64) -> Complex64 {
+        let part = |&(order, ratio): &(f64, Complex64)| {
+            let size = if order == 0.0 { 1.0 } else { amplitude };
+            ratio * Complex64::from_polar(size, order * self.theta[k])
+        };
+        self.harmonics.iter().map(part).sum()
+    }
+
     /// What the denoising makes of a disturbance of the raw voltage (the operation is linear).
     pub fn filter(&self, disturbance: &[Complex64]) -> Vec<Complex64> {
         if self.denoised {
@@ -99,14 +133,7 @@ impl Supply {
     }
 
     fn with_harmonics(&self, fundamental: &[Complex64]) -> Vec<Complex64> {
-        let at = |(k, f): (usize, &Complex64)| {
-            let amplitude = f.norm();
-            let part = |&(order, ratio): &(f64, Complex64)| {
-                let size = if order == 0.0 { 1.0 } else { amplitude };
-                ratio * Complex64::from_polar(size, order * self.theta[k])
-            };
-            f + self.harmonics.iter().map(part).sum::<Complex64>()
-        };
+        let at = |(k, f): (usize, &Complex64)| f + self.harmonic_sum(k, f.norm());
         fundamental.iter().enumerate().map(at).collect()
     }
 }
@@ -148,7 +175,8 @@ fn segments(raw: &[Complex64], window: usize, sigma: f64) -> Vec<Range<usize>> {
         }
         let end = (k + window).min(jumps.len());
         cuts.push(sharpest(&amplitude, &jumps, k, end));
-        k = end + window / 2;
+        // The detector sees a step one window before and after it.
+        k = end + window;
     }
     let starts = std::iter::once(0).chain(cuts.iter().copied());
     let ends = cuts.iter().copied().chain(std::iter::once(raw.len()));
