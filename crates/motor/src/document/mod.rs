@@ -59,19 +59,26 @@ impl Document {
         self.problems.borrow().is_empty()
     }
 
+    /// All problems so far, for a reader that cannot go on.
+    pub fn failure(&self) -> FileError {
+        sorted(self.problems.borrow().clone())
+    }
+
     /// Ends reading: what was read, or every problem in the order of its line.
     ///
     /// # Errors
     /// All problems reported while reading; also when `value` is `None`, which a reader returns only
     /// after it has reported why.
     pub fn finish<T>(self, value: Option<T>) -> Result<T, FileError> {
-        let mut problems = self.problems.into_inner();
+        let problems = self.problems.into_inner();
         match value {
             Some(value) if problems.is_empty() => Ok(value),
-            _ => {
-                problems.sort_by_key(|problem| problem.line);
-                Err(FileError::new(problems))
-            }
+            _ => Err(sorted(problems)),
         }
     }
+}
+
+fn sorted(mut problems: Vec<Problem>) -> FileError {
+    problems.sort_by_key(|problem| problem.line);
+    FileError::new(problems)
 }

@@ -19,7 +19,7 @@ pub use monitor::{FieldCurrent, Frame, LoadKind, MonitorSettings};
 pub use nameplate::{Connection, Nameplate};
 pub use sensors::Sensors;
 
-use crate::document::{Document, FileError, read_text};
+use crate::document::{Document, FileError, Section, read_text};
 use crate::{Mechanics, TParams};
 use std::path::Path;
 
@@ -94,10 +94,30 @@ impl MotorFile {
         }
     }
 
+    /// The constant field current `i_f`, A: as written, or the magnetizing current of the unloaded motor at
+    /// rated voltage.
+    pub fn nominal_field_current(&self) -> f64 {
+        let plate = &self.nameplate;
+        let no_load = || {
+            let reactance = plate.omega_sync() * self.parameters.l_s();
+            plate.phase_voltage_amplitude() / self.parameters.r_s.hypot(reactance)
+        };
+        self.monitor
+            .nominal_field_current_amp
+            .unwrap_or_else(no_load)
+    }
+
     /// The file as TOML text; [`MotorFile::parse`] reads the same motor back.
     pub fn to_toml(&self) -> String {
         write::to_toml(self)
     }
+}
+
+/// Reads `[[effects]]` of a file's top level: motor files and scenario files share the form.
+///
+/// `None` after a problem, which has then been reported.
+pub fn read_effects(root: &Section<'_>) -> Option<Vec<EffectEntry>> {
+    effects::read(root)
 }
 
 fn read_document(document: &Document) -> Option<MotorFile> {
@@ -108,7 +128,7 @@ fn read_document(document: &Document) -> Option<MotorFile> {
     let load = monitor::read_load(&root);
     let sensors = sensors::read(&root, nameplate.as_ref());
     let monitor = monitor::read(&root);
-    let effects = effects::read(&root);
+    let effects = read_effects(&root);
     root.finish();
     let electrical = electrical?;
     Some(MotorFile {

@@ -17,7 +17,7 @@ pub struct Sensors {
     pub speed_full_scale_rad_s: f64,
     /// Full scale of a recorded shaft torque, N m.
     pub torque_full_scale_nm: f64,
-    /// Resolution of the ADC, bit, 6..=24.
+    /// Resolution of the ADC, bit, 6..=16: the core takes 16-bit codes.
     pub adc_bits: u32,
     /// Encoder pulses per revolution of one channel, 1..=1000000 (four edges each in quadrature).
     pub encoder_pulses_per_revolution: u32,
@@ -84,7 +84,7 @@ const VOLTAGE: Bounds = Bounds::above(0.0, 1e6, "V");
 const CURRENT: Bounds = Bounds::above(0.0, 1e6, "A");
 const SPEED: Bounds = Bounds::above(0.0, 1e5, "rad/s").hint("rad/s, not rpm");
 const TORQUE: Bounds = Bounds::above(0.0, 1e8, "N m");
-const BITS: Bounds = Bounds::between(6.0, 24.0, "bit");
+const BITS: Bounds = Bounds::between(6.0, 16.0, "bit");
 const PULSES: Bounds = Bounds::between(1.0, 1e6, "pulses");
 const NOISE: Bounds = Bounds::between(0.0, 0.5, "of full scale").hint("0.002 is 0.2 %");
 const VOLTAGE_OFFSET: Bounds = Bounds::between(-1e5, 1e5, "V");

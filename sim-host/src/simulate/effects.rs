@@ -1,0 +1,121 @@
+//! The effects of a motor file and of a scenario inside the simulated motor.
+
+use super::SimulationError;
+use super::full::Make;
+use super::plant::EXTRA_STATES;
+use super::waveform::Waveform;
+use crate::scenario::Scenario;
+use motor::MotorFile;
+use motor::dynamic::Dynamic;
+use motor::effects::{EffectConfig, EffectError, EffectStack, Hook, Rated, Timeline, extra_states};
+use motor::motor_file::{EffectEntry, EffectValue};
+use std::sync::Arc;
+
+/// The supply frequency is told to effects this often, s.
+const TIMELINE_S: f64 = 1e-3;
+
+/// All effects in force, those of the motor file first.
+pub(super) fn configs(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
+    let entries = scenario.motor.effects.iter().chain(&scenario.effects);
+    let effects: Vec<_> = entries
+        .map(|entry| {
+            check_entry(&scenario.motor, entry).map_err(|(key, message)| SimulationError::Effect {
+                name: entry.name.clone(),
+                key,
+                message,
+            })
+        })
+        .collect::<Result<_, _>>()?;
+    if extra_states(&effects) > EXTRA_STATES {
+        return Err(SimulationError::Effect {
+            name: effects.last().map_or(String::new(), |last| {
+                last.effect.descriptor().name.to_owned()
+            }),
+            key: "name".to_owned(),
+            message: format!(
+                "all effects together need more than {EXTRA_STATES} states: remove one"
+            ),
+        });
+    }
+    Ok(effects)
+}
+
+/// One entry as an effect that can be simulated sample by sample, or the key to blame and why.
+pub(crate) fn check_entry(
+    motor: &MotorFile,
+    entry: &EffectEntry,
+) -> Result<EffectConfig, (String, String)> {
+    let numbers: Vec<(String, f64)> = entry
+        .parameters
+        .iter()
+        .filter_map(|parameter| match parameter.value {
+            EffectValue::Number(number) => Some((parameter.key.clone(), number)),
+            EffectValue::Text(_) => None,
+        })
+        .collect();
+    let form = entry.text("form").unwrap_or("");
+    let config = EffectConfig::from_file(&entry.name, form, &numbers, &rated(motor))
+        .map_err(|error| (key_of(&error).to_owned(), error.to_string()))?;
+    let outer = [Hook::Inputs, Hook::Outputs];
+    if config
+        .effect
+        .hooks()
+        .iter()
+        .any(|hook| outer.contains(hook))
+    {
+        let message = "concerns the instruments, not the motor: use [[faults]] on va, vb, vc, ia, ib, ic or speed";
+        return Err(("name".to_owned(), message.to_owned()));
+    }
+    Ok(config)
+}
+
+fn key_of(error: &EffectError) -> &str {
+    match error {
+        EffectError::UnknownParameter { key, .. } => key,
+        EffectError::OutOfRange { key, .. } | EffectError::MissingParameter { key, .. } => key,
+        EffectError::UnknownEffect { .. } | EffectError::Formula { .. } => "name",
+    }
+}
+
+fn rated(motor: &MotorFile) -> Rated<f64> {
+    let plate = &motor.nameplate;
+    Rated {
+        voltage: plate.phase_voltage_amplitude(),
+        current: plate.current_amplitude(),
+        omega_sync: plate.omega_sync(),
+        n_p: f64::from(plate.pole_pairs),
+        torque: plate.torque_nm,
+    }
+}
+
+/// Builds the motor with its effects, again whenever a fault changes its parameters.
+pub(super) fn factory(
+    scenario: &Scenario,
+    effects: Vec<EffectConfig>,
+) -> Make<EffectStack<EXTRA_STATES>> {
+    let rated = rated(&scenario.motor);
+    let timeline = Arc::new(timeline(scenario));
+    Box::new(move |motor, mechanics| {
+        let mut motor = *motor;
+        for effect in &effects {
+            if effect.effect.hooks().contains(&Hook::Motor) {
+                effect.effect.motor(&effect.values, &rated, &mut motor);
+            }
+        }
+        let stack = EffectStack::new(&effects, &motor, &rated, timeline.clone());
+        Dynamic::with_effects(&motor, mechanics, stack)
+    })
+}
+
+fn timeline(scenario: &Scenario) -> Timeline {
+    let waveform = Waveform::new(&scenario.supply);
+    // Bounded: a scenario lasts at most a day.
+    let count = (scenario.duration_s / TIMELINE_S).ceil() as u32 + 1;
+    Timeline {
+        t_sample: TIMELINE_S,
+        omega_sync: (0..count)
+            .map(|k| waveform.omega_sync(f64::from(k) * TIMELINE_S))
+            .collect(),
+        theta_mech: Vec::new(),
+    }
+}
