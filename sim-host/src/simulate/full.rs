@@ -1,6 +1,6 @@
 //! The five-state motor on the scenario's supply and load.
 
-use super::plant::present;
+use super::plant::Presence;
 use super::waveform::Waveform;
 use super::{SimulationError, Truth};
 use crate::scenario::{Fault, Parameter, Scenario, Start};
@@ -24,8 +24,8 @@ pub(super) struct Full<H: Hooks> {
     make: Make<H>,
     model: Dynamic<H>,
     state: DynamicState<H::Extra>,
-    present: Vec<(Parameter, Fault)>,
-    load_friction: f64,
+    now: (TParams<f64>, Mechanics<f64>),
+    presence: Presence,
     load: Load,
     waveform: Waveform,
     largest_step: f64,
@@ -40,8 +40,8 @@ impl<H: Hooks> Full<H> {
         let mut plant = Full {
             model: make(&motor, &mechanics),
             state: DynamicState::rest(),
-            present: Vec::new(),
-            load_friction: mechanics.load_friction,
+            now: (motor, mechanics),
+            presence: Presence::default(),
             load: scenario.load.other.clone(),
             largest_step: largest_step(scenario, &mechanics),
             healthy: (motor, mechanics),
@@ -58,7 +58,7 @@ impl<H: Hooks> Full<H> {
 
     /// Settled on the positive sequence at t = 0.
     fn running(&self) -> Result<DynamicState<H::Extra>, SimulationError> {
-        let (motor, mechanics) = changed(&self.healthy, &self.present);
+        let (motor, mechanics) = self.now;
         let amplitude =
             Complex64::from_polar(self.waveform.amplitude(0.0), self.waveform.angle(0.0));
         let steady = SteadyState::new(
@@ -82,14 +82,11 @@ impl<H: Hooks> Full<H> {
     }
 
     pub(super) fn switch_faults(&mut self, faults: &[Fault], t: f64) {
-        let present = present(faults, t);
-        if present == self.present {
-            return;
+        if let Some(present) = self.presence.changed_at(faults, t) {
+            self.now = changed(&self.healthy, present);
+            let (motor, mechanics) = &self.now;
+            self.model = (self.make)(motor, mechanics);
         }
-        let (motor, mechanics) = changed(&self.healthy, &present);
-        self.model = (self.make)(&motor, &mechanics);
-        self.load_friction = mechanics.load_friction;
-        self.present = present;
     }
 
     pub(super) fn truth(&self, t: f64) -> Truth {
@@ -103,7 +100,7 @@ impl<H: Hooks> Full<H> {
             omega_mech,
             theta_mech: self.state.theta_mech,
             tau_em: flow.tau_em,
-            tau_load: tau_load + self.load_friction * omega_mech,
+            tau_load: tau_load + self.now.1.load_friction * omega_mech,
             theta_voltage: self.waveform.d_axis(t),
             theta_flux: self.state.psi_r.arg(),
         }
@@ -125,9 +122,9 @@ impl<H: Hooks> Full<H> {
 }
 
 /// The motor with its faults.
-fn changed(
+fn changed<'f>(
     healthy: &(TParams<f64>, Mechanics<f64>),
-    present: &[(Parameter, Fault)],
+    present: impl Iterator<Item = (Parameter, &'f Fault)>,
 ) -> (TParams<f64>, Mechanics<f64>) {
     let (mut motor, mut mechanics) = *healthy;
     for (parameter, fault) in present {

@@ -3,7 +3,7 @@
 //! Its q axis lies on the voltage, so that voltage frame and rotor-flux frame are one and the same.
 
 use super::Truth;
-use super::plant::present;
+use super::plant::Presence;
 use super::waveform::Waveform;
 use crate::scenario::{Fault, Parameter, Scenario, Start};
 use motor::dynamic::phases;
@@ -17,7 +17,7 @@ pub(super) struct Linear {
     t_sample: f64,
     state: LinearState,
     theta_mech: f64,
-    present: Vec<(Parameter, Fault)>,
+    presence: Presence,
     waveform: Waveform,
 }
 
@@ -35,7 +35,7 @@ impl Linear {
             t_sample: scenario.t_sample(),
             state: LinearState::default(),
             theta_mech: 0.0,
-            present: Vec::new(),
+            presence: Presence::default(),
             waveform: Waveform::new(&scenario.supply),
         };
         plant.switch_faults(&scenario.faults, 0.0);
@@ -46,13 +46,10 @@ impl Linear {
     }
 
     pub(super) fn switch_faults(&mut self, faults: &[Fault], t: f64) {
-        let present = present(faults, t);
-        if present == self.present {
-            return;
+        if let Some(present) = self.presence.changed_at(faults, t) {
+            self.params = changed(&self.healthy, present);
+            self.step = self.params.discretise(self.t_sample);
         }
-        self.params = changed(&self.healthy, &present);
-        self.step = self.params.discretise(self.t_sample);
-        self.present = present;
     }
 
     pub(super) fn truth(&self, t: f64) -> Truth {
@@ -81,7 +78,10 @@ impl Linear {
     }
 }
 
-fn changed(healthy: &LinearParams, present: &[(Parameter, Fault)]) -> LinearParams {
+fn changed<'f>(
+    healthy: &LinearParams,
+    present: impl Iterator<Item = (Parameter, &'f Fault)>,
+) -> LinearParams {
     let mut params = *healthy;
     for (parameter, fault) in present {
         let value = match parameter {

@@ -72,14 +72,26 @@ impl Plant {
     }
 }
 
-/// The parameter faults that are present at `t`.
-pub(super) fn present(faults: &[Fault], t: f64) -> Vec<(Parameter, Fault)> {
-    faults
-        .iter()
-        .filter(|fault| fault.is_active(t))
-        .filter_map(|fault| match fault.target {
-            Target::Parameter(parameter) => Some((parameter, fault.clone())),
+/// Which faults are present, remembered so that the motor is rebuilt only when that changes.
+#[derive(Debug, Default)]
+pub(super) struct Presence(Vec<bool>);
+
+impl Presence {
+    /// The parameter faults in force at `t`, when they are others than the last time.
+    pub(super) fn changed_at<'f>(
+        &mut self,
+        faults: &'f [Fault],
+        t: f64,
+    ) -> Option<impl Iterator<Item = (Parameter, &'f Fault)>> {
+        let now = faults.iter().map(|fault| fault.is_active(t));
+        if now.clone().eq(self.0.iter().copied()) {
+            return None;
+        }
+        self.0 = now.collect();
+        let in_force = faults.iter().filter(move |fault| fault.is_active(t));
+        Some(in_force.filter_map(|fault| match fault.target {
+            Target::Parameter(parameter) => Some((parameter, fault)),
             _ => None,
-        })
-        .collect()
+        }))
+    }
 }

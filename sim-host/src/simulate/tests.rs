@@ -203,8 +203,8 @@ fn single_sensors_fail_alone_and_in_time() {
         } else {
             1.0
         };
-        for k in 0..3 {
-            assert!((shown.i_s_abc[k] - expected[k]).abs() < 1e-12);
+        for (k, expected) in expected.into_iter().enumerate() {
+            assert!((shown.i_s_abc[k] - expected).abs() < 1e-12);
             let u = truth.u_s_abc[k] * if k == 1 { gain } else { 1.0 };
             assert!((shown.u_s_abc[k] - u).abs() < 1e-10);
         }
