@@ -1,6 +1,6 @@
 //! The monitor's configuration from a motor file (feature `motor-file`; hosts and build scripts only).
 
-use motor::motor_file::{self, MotorFile, Nameplate, Sensors};
+use motor::motor_file::{self, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
 
 use crate::config::{LoadKind, MonitorConfig};
@@ -34,11 +34,7 @@ impl MonitorConfig {
                 motor_file::Frame::Voltage => Frame::Voltage,
             },
             field: field(file),
-            load: match file.load {
-                motor_file::LoadKind::Friction => LoadKind::Friction,
-                motor_file::LoadKind::Measured => LoadKind::Measured,
-                motor_file::LoadKind::Free => LoadKind::Free,
-            },
+            load: load(file),
             thresholds: settings
                 .threshold_percent
                 .map(|percent| (percent / 100.0) as f32),
@@ -93,22 +89,22 @@ fn converter(sensors: &Sensors) -> Converter {
     }
 }
 
+/// A friction load of zero friction declares nothing about the load: it is free.
+fn load(file: &MotorFile) -> LoadKind {
+    match file.load {
+        motor_file::LoadKind::Friction if file.mechanics.total_friction() > 0.0 => {
+            LoadKind::Friction
+        }
+        motor_file::LoadKind::Friction | motor_file::LoadKind::Free => LoadKind::Free,
+        motor_file::LoadKind::Measured => LoadKind::Measured,
+    }
+}
+
 fn field(file: &MotorFile) -> FieldCurrent {
     match file.monitor.field_current {
         motor_file::FieldCurrent::Live => FieldCurrent::Live,
         motor_file::FieldCurrent::Nominal => {
-            FieldCurrent::Nominal(nominal_field_current(file) as f32)
+            FieldCurrent::Nominal(file.nominal_field_current() as f32)
         }
     }
-}
-
-/// The declared constant `i_f`, or the magnetizing current of the unloaded motor at rated voltage, A.
-fn nominal_field_current(file: &MotorFile) -> f64 {
-    let no_load = |plate: &Nameplate| {
-        let reactance = plate.omega_sync() * file.parameters.l_s();
-        plate.phase_voltage_amplitude() / file.parameters.r_s.hypot(reactance)
-    };
-    file.monitor
-        .nominal_field_current_amp
-        .unwrap_or_else(|| no_load(&file.nameplate))
 }

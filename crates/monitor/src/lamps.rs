@@ -50,8 +50,28 @@ pub struct Lamps {
 impl Lamps {
     /// Nothing but RUN shows.
     pub fn is_quiet(&self) -> bool {
-        let others = [self.sensor, self.line, self.load, self.fault];
-        others.iter().chain(&self.r).all(|&lamp| lamp != Lamp::On)
+        self.lit_names().next().is_none()
+    }
+
+    /// Names of the lamps that are on, RUN apart.
+    pub fn lit_names(&self) -> impl Iterator<Item = &'static str> + use<> {
+        let [r1, r2, r3, r4] = self.r;
+        let all = [
+            r1,
+            r2,
+            r3,
+            r4,
+            self.sensor,
+            self.line,
+            self.load,
+            self.fault,
+        ];
+        let names = ["r1", "r2", "r3", "r4", "sensor", "line", "load", "fault"];
+        let lit = names
+            .into_iter()
+            .zip(all)
+            .filter(|(_, lamp)| *lamp == Lamp::On);
+        lit.map(|(name, _)| name)
     }
 
     /// Which of r1..r4 are on.

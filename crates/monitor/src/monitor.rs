@@ -48,6 +48,16 @@ impl MonitorState {
     pub fn rehearse(&mut self, gains: Rehearsal) {
         self.rehearsal = gains;
     }
+
+    /// After missing samples: finds the supply anew; lamps and their persistence stay as they are.
+    pub fn resume_after_gap(&mut self) {
+        *self = MonitorState {
+            panel: self.panel,
+            samples: self.samples,
+            rehearsal: self.rehearsal,
+            ..MonitorState::default()
+        };
+    }
 }
 
 /// Supply frequencies that lock, rad/s: 5..100 Hz with a tenth to spare.
@@ -64,7 +74,7 @@ const VOLTAGE_RANGE: [f32; 2] = [0.75, 1.2];
 /// Negative-sequence voltage beyond which IEC 60034-26 and NEMA MG 1 14.36 derate heavily.
 const MAX_UNBALANCE: f32 = 0.03;
 /// A window counts as steady when the neglected derivative terms stay below this share of the threshold.
-const STEADY_SHARE: f32 = 0.5;
+const STEADY_SHARE: f32 = 0.25;
 
 impl Monitor {
     /// Prepares a monitor.

@@ -9,6 +9,8 @@ mod config;
 mod descriptor;
 #[cfg(feature = "std")]
 mod effect;
+#[cfg(feature = "file")]
+mod file;
 #[cfg(feature = "std")]
 mod signals;
 #[cfg(feature = "std")]
@@ -22,6 +24,8 @@ pub use config::{EffectConfig, EffectError};
 pub use descriptor::{Applies, Descriptor, Kind, Parameter, Rated, Role, Scale, Written};
 #[cfg(feature = "std")]
 pub use effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
+#[cfg(feature = "file")]
+pub use file::{from_entry, from_motor_file, rated, to_entry};
 #[cfg(feature = "std")]
 pub use signals::{Inputs, Outputs};
 #[cfg(feature = "std")]

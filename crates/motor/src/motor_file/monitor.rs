@@ -53,6 +53,11 @@ pub struct MonitorSettings {
     pub hysteresis: f64,
 }
 
+/// Defaults of r1..r4, percent of scale: between what must stay dark and what must light at +-50 % on the
+/// assumed 300 W motor, full and linear. r2 must pass over 2.9 (`R_s` on the full motor) and catch 8.8 (`B`): 5 is
+/// their geometric middle. r1: 0.02 (`B`) and 1.2 (`R_r`); r3: 1.4 (`R_s`) and 8.7 (`B`); r4: 0.02 (`I_q`) and 0.49 (`B`).
+const THRESHOLD_PERCENT: [f64; 4] = [0.6, 5.0, 4.0, 0.3];
+
 impl Default for MonitorSettings {
     fn default() -> MonitorSettings {
         MonitorSettings {
@@ -60,7 +65,7 @@ impl Default for MonitorSettings {
             field_current: FieldCurrent::default(),
             nominal_field_current_amp: None,
             // The one set that reproduces all 18 published patterns on the published linear plant.
-            threshold_percent: [0.6, 3.0, 4.0, 0.3],
+            threshold_percent: THRESHOLD_PERCENT,
             window_cycles: 5,
             persistence_windows: 3,
             hysteresis: 0.8,

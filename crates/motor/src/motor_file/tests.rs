@@ -85,7 +85,7 @@ fn the_smallest_file_gets_the_documented_defaults() {
     assert_eq!(motor.mechanics.n_p, 2.0);
     assert_eq!(motor.load, LoadKind::Friction);
     assert_eq!(motor.monitor, MonitorSettings::default());
-    assert_eq!(motor.monitor.threshold_percent, [0.6, 3.0, 4.0, 0.3]);
+    assert_eq!(motor.monitor.threshold_percent, [0.6, 5.0, 4.0, 0.3]);
     assert_eq!(motor.sensors.adc_bits, 12);
     assert_eq!(motor.sensors.encoder_pulses_per_revolution, 1024);
     // 2 * 400 V * sqrt(2/3), and 10 * 5 A * sqrt(2).

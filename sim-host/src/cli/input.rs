@@ -1,0 +1,96 @@
+//! Flags that say how a recording is to be read, shared by all commands that read one.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use motor::MotorFile;
+use recording::{Mapping, Source};
+
+use super::failure::Failure;
+use super::progress;
+
+/// How the columns of the file become channels in SI units. A sidecar `x.toml` beside `x.csv.gz` says the same things.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "How to read the recording")]
+pub struct InputArgs {
+    /// Read a channel from another column, e.g. `ic=ic2` or `speed=speed_raw`
+    #[arg(long, value_name = "CHANNEL=COLUMN")]
+    column: Vec<String>,
+    /// Unit of a channel, e.g. `speed=rpm` or `ia=mA`
+    #[arg(long, value_name = "CHANNEL=UNIT")]
+    unit: Vec<String>,
+    /// Factor on a channel, applied after the offset: `scale x (raw - offset)`
+    #[arg(long, value_name = "CHANNEL=FACTOR")]
+    scale: Vec<String>,
+    /// Raw reading of a channel at zero
+    #[arg(long, value_name = "CHANNEL=VALUE", allow_hyphen_values = true)]
+    offset: Vec<String>,
+    /// Sampling rate of a file without a time column, Hz
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    /// The columns va vb vc hold line voltages v_ab v_bc v_ca
+    #[arg(long)]
+    line_voltages: bool,
+    /// Leave out rows with empty or NaN cells instead of refusing the file
+    #[arg(long)]
+    skip_missing: bool,
+    /// What separates the columns, e.g. `;` or `tab`
+    #[arg(long, value_name = "CHARACTER")]
+    delimiter: Option<String>,
+    /// Numbers are written 3,7
+    #[arg(long)]
+    decimal_comma: bool,
+    /// The sidecar to use instead of the one beside the recording
+    #[arg(long, value_name = "FILE")]
+    sidecar: Option<PathBuf>,
+}
+
+impl InputArgs {
+    fn mapping(&self) -> Result<Mapping, Failure> {
+        let mut mapping = Mapping {
+            line_voltages: self.line_voltages.then_some(true),
+            skip_missing: self.skip_missing.then_some(true),
+            decimal_comma: self.decimal_comma.then_some(true),
+            sidecar: self.sidecar.clone(),
+            ..Mapping::default()
+        };
+        self.column
+            .iter()
+            .try_for_each(|flag| mapping.set_column(flag))?;
+        self.unit
+            .iter()
+            .try_for_each(|flag| mapping.set_unit(flag))?;
+        self.scale
+            .iter()
+            .try_for_each(|flag| mapping.set_scale(flag))?;
+        self.offset
+            .iter()
+            .try_for_each(|flag| mapping.set_offset(flag))?;
+        if let Some(rate) = self.sample_rate {
+            mapping.set_sample_rate(rate)?;
+        }
+        if let Some(delimiter) = &self.delimiter {
+            mapping.set_delimiter(delimiter)?;
+        }
+        Ok(mapping)
+    }
+
+    /// Reads a recording or load table with a progress bar.
+    ///
+    /// # Errors
+    /// Whatever is wrong with flags, file or sidecar.
+    pub fn read(&self, path: &Path) -> Result<Source, Failure> {
+        let bar = progress::bar("reading", 0);
+        let source = recording::read_any(path, &self.mapping()?, &mut progress::reading(&bar))?;
+        bar.finish_and_clear();
+        Ok(source)
+    }
+}
+
+/// Reads and validates a motor file.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn read_motor(path: &Path) -> Result<MotorFile, Failure> {
+    Ok(MotorFile::read(path)?)
+}

@@ -1,0 +1,66 @@
+//! The command line: one file per subcommand.
+
+mod demo;
+mod failure;
+mod input;
+mod monitor;
+mod output;
+mod paint;
+mod progress;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::{Failure, Finding};
+
+/// Monitor a three-phase induction motor, and find out where its model is wrong.
+#[derive(Debug, Parser)]
+#[command(name = "drivemon", version, about, long_about = LONG_ABOUT, after_help = AFTER_HELP)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const LONG_ABOUT: &str = "\
+Monitor a three-phase induction motor, and find out where its model is wrong.
+
+drivemon runs the same core that lights the lamps on the board: phase voltages, phase currents and the
+encoder become four residuals r1..r4, the residuals meet thresholds, and the pattern of lamps names what
+is likely wrong with the motor or with a sensor.";
+
+const AFTER_HELP: &str = "\
+First steps:
+  drivemon demo                                        the whole method on a simulated motor, in seconds
+  drivemon simulate SCENARIO.toml -o rec.csv.gz        make a recording with a fault in it
+  drivemon monitor rec.csv.gz --motor motor.toml       see what the lamps would have shown
+
+Exit codes: 0 fine or healthy, 1 a finding (a fault was lit), 2 bad input or usage, 3 the data do not support an answer.
+Colour is left out when NO_COLOR is set or the output is not a terminal.
+A fault monitor is no protection device: it does not replace fuses, motor protection switches or safety relays.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Demo(demo::Demo),
+    Simulate(simulate::Simulate),
+    Monitor(monitor::MonitorArgs),
+}
+
+impl Cli {
+    /// Runs the chosen subcommand and turns its outcome into the exit code.
+    pub fn run(self) -> ExitCode {
+        let outcome = match self.command {
+            Command::Demo(demo) => demo.run(),
+            Command::Simulate(simulate) => simulate.run(),
+            Command::Monitor(monitor) => monitor.run(),
+        };
+        match outcome {
+            Ok(finding) => ExitCode::from(finding.exit_code()),
+            Err(failure) => {
+                anstream::eprintln!("{}{failure}", paint::error("error: "));
+                ExitCode::from(failure.exit_code())
+            }
+        }
+    }
+}

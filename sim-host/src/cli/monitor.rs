@@ -1,0 +1,284 @@
+//! `drivemon monitor`: a recording through the board's core.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use monitor::{Monitor, MonitorConfig};
+use recording::{Audit, Expectation, audit};
+use recording::{LoadTable, Recording, Source};
+use serde::Serialize;
+
+use super::failure::{Failure, Finding};
+use super::input::{InputArgs, read_motor};
+use super::output::OutputArgs;
+use super::{paint, progress};
+use crate::operating_points::OperatingPoints;
+use crate::replay::{
+    self, LampState, NotJudgedShare, Samples, SequenceSummary, Timeline, Verdict, VerdictState,
+};
+use crate::words;
+
+/// Replay a recording through the very core that the board runs: lamps, verdict, probabilities.
+///
+/// Missing channels are no error: without voltages or speed the residuals are "not judged", and the sequence
+/// components of the currents are still reported. A load-test table is printed as its operating points.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct MonitorArgs {
+    /// Recording (.csv, .csv.gz) or load-test table
+    #[arg(value_name = "REC")]
+    recording: PathBuf,
+    /// Motor file; without it only audit and sequence components are reported
+    #[arg(long, value_name = "M")]
+    motor: Option<PathBuf>,
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  drivemon monitor rec.csv.gz --motor motors/peer-2k2.toml
+  drivemon monitor lab.csv --motor m.toml --column ic=ic2 --column speed=speed_raw --unit speed=rpm --offset speed=-2.11 --scale speed=9.687
+  drivemon monitor currents.csv                                  three currents only: negative sequence and its angle
+Lamps:  ● on   ◐ blinking: waiting or not judged   ○ off";
+
+/// Everything that `drivemon monitor` says, as JSON.
+#[derive(Debug, Serialize)]
+struct MonitorJson<'a> {
+    recording: &'a str,
+    assumptions: &'a [String],
+    audit: &'a Audit,
+    windows: u64,
+    judged: u64,
+    not_judged: &'a [NotJudgedShare],
+    residual_percent: Option<ResidualPercent>,
+    lamps: &'a [LampState],
+    verdict: Verdict,
+    first_alarm_s: Option<f64>,
+    sequence: SequenceSummary,
+}
+
+/// Residuals over the judged windows, percent of their scales.
+#[derive(Debug, Serialize)]
+struct ResidualPercent {
+    mean: [f64; 4],
+    standard_deviation: [f64; 4],
+}
+
+impl MonitorArgs {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        match self.input.read(&self.recording)? {
+            Source::Recording(recording) => self.monitor(&recording),
+            Source::LoadTable(table) => self.show_table(&table),
+        }
+    }
+
+    fn monitor(&self, recording: &Recording) -> Result<Finding, Failure> {
+        let motor = self.motor.as_deref().map(read_motor).transpose()?;
+        let expectation = motor.as_ref().map_or_else(Expectation::default, |motor| {
+            Expectation::from(&motor.nameplate)
+        });
+        let audit = audit(recording, &expectation);
+        let config = match &motor {
+            Some(motor) => replay::config_for(motor, recording),
+            None => replay::stand_in_config(recording),
+        };
+        let timeline = if audit.supported {
+            self.replay(config, recording, &audit, motor.is_some())?
+        } else {
+            Timeline::default()
+        };
+        self.tell(recording, &audit, &timeline)
+    }
+
+    fn replay(
+        &self,
+        config: MonitorConfig,
+        recording: &Recording,
+        audit: &Audit,
+        motor_known: bool,
+    ) -> Result<Timeline, Failure> {
+        let file = self.motor.as_deref().unwrap_or(Path::new("the recording"));
+        let monitor = Monitor::new(config).map_err(|error| Failure::Config {
+            file: file.display().to_string(),
+            error,
+        })?;
+        let mut samples = Samples::new(recording, audit);
+        if !motor_known {
+            samples.leave_out_speed();
+        }
+        let bar = progress::bar("monitoring", samples.len() as u64);
+        let mut timeline = replay::replay(&monitor, &samples, &mut |done| {
+            bar.set_position(done as u64)
+        });
+        bar.finish_and_clear();
+        if !motor_known {
+            timeline.blame_missing_motor_file();
+        }
+        Ok(timeline)
+    }
+
+    fn tell(
+        &self,
+        recording: &Recording,
+        audit: &Audit,
+        timeline: &Timeline,
+    ) -> Result<Finding, Failure> {
+        let verdict = timeline.verdict();
+        if !self.output.takes_stdout() {
+            print(recording, audit, timeline, &verdict);
+        }
+        let finding = match (audit.supported, verdict.state) {
+            (false, _) => Finding::Unsupported,
+            (true, VerdictState::Fault) => Finding::Something,
+            (true, VerdictState::Healthy | VerdictState::NotJudged) => Finding::Nothing,
+        };
+        self.output.write_json(&MonitorJson {
+            recording: recording.name(),
+            assumptions: &recording.assumptions,
+            audit,
+            windows: timeline.windows,
+            judged: timeline.judged,
+            not_judged: &timeline.not_judged,
+            residual_percent: residual_percent(timeline),
+            lamps: &timeline.lamps,
+            verdict,
+            first_alarm_s: timeline.first_alarm_s,
+            sequence: timeline.sequence(),
+        })?;
+        Ok(finding)
+    }
+
+    fn show_table(&self, table: &LoadTable) -> Result<Finding, Failure> {
+        let motor = self.motor.as_deref().map(read_motor).transpose()?;
+        let points = OperatingPoints::new(table, motor.as_ref());
+        if !self.output.takes_stdout() {
+            anstream::println!("{points}");
+        }
+        self.output.write_json(&points)?;
+        Ok(Finding::Nothing)
+    }
+}
+
+fn residual_percent(timeline: &Timeline) -> Option<ResidualPercent> {
+    let (mean, standard_deviation) = timeline.residual_percent()?;
+    Some(ResidualPercent {
+        mean,
+        standard_deviation,
+    })
+}
+
+/// More lamp changes than this are left to the JSON.
+const LONGEST_TIMELINE: usize = 40;
+
+fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Verdict) {
+    anstream::println!(
+        "{}  {:.3} s at {:.0} Hz",
+        paint::strong(recording.name()),
+        recording.duration(),
+        1.0 / recording.t_sample()
+    );
+    for assumption in &recording.assumptions {
+        anstream::println!("  assumed: {assumption}");
+    }
+    for finding in &audit.findings {
+        anstream::println!("  {} {}", paint::caution("audit:"), finding.detail);
+    }
+    print_lamps(timeline);
+    print_windows(timeline);
+    print_sequence(&timeline.sequence());
+    print_verdict(timeline, verdict);
+}
+
+fn print_lamps(timeline: &Timeline) {
+    if timeline.lamps.is_empty() {
+        return;
+    }
+    anstream::println!("\n    time s  RUN  r1 r2 r3 r4  SENSOR LINE LOAD FAULT");
+    for state in timeline.lamps.iter().take(LONGEST_TIMELINE) {
+        anstream::println!(
+            "{:>10.3}   {}   {}  {}  {}  {}     {}     {}    {}    {}    {}",
+            state.t,
+            symbol(state.run),
+            symbol(state.r1),
+            symbol(state.r2),
+            symbol(state.r3),
+            symbol(state.r4),
+            symbol(state.sensor),
+            symbol(state.line),
+            symbol(state.load),
+            symbol(state.fault),
+            paint::faint(state.not_judged.as_deref().unwrap_or("")),
+        );
+    }
+    let more = timeline.lamps.len().saturating_sub(LONGEST_TIMELINE);
+    if more > 0 {
+        anstream::println!("  ... and {more} more changes (--json FILE has them all)");
+    }
+}
+
+fn symbol(lamp: &str) -> &'static str {
+    match lamp {
+        "on" => "●",
+        "blink" => "◐",
+        _ => "○",
+    }
+}
+
+fn print_windows(timeline: &Timeline) {
+    anstream::println!(
+        "\n{} of {} windows judged",
+        timeline.judged,
+        timeline.windows
+    );
+    for share in &timeline.not_judged {
+        anstream::println!("  {} not judged: {}", share.windows, share.reason);
+    }
+    if let Some((mean, deviation)) = timeline.residual_percent() {
+        for (k, (mean, deviation)) in mean.iter().zip(deviation).enumerate() {
+            anstream::println!(
+                "  r{}  {mean:+8.3} % of scale, scatter {deviation:.3} %",
+                k + 1
+            );
+        }
+    }
+}
+
+fn print_sequence(sequence: &SequenceSummary) {
+    let percent =
+        |x: Option<f64>| x.map_or("not measured".to_owned(), |x| format!("{:.2} %", 100.0 * x));
+    let angle = sequence
+        .i2_over_i1_angle_deg
+        .map_or(String::new(), |angle| format!(" at {angle:.0} deg"));
+    anstream::println!(
+        "negative over positive sequence: current {}{angle}, voltage {}; zero sequence of the current {}",
+        percent(sequence.i2_over_i1),
+        percent(sequence.v2_over_v1),
+        percent(sequence.i0_over_i1),
+    );
+}
+
+fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
+    match verdict.state {
+        VerdictState::Healthy => anstream::println!("{}", paint::good("healthy: no fault was lit")),
+        VerdictState::NotJudged => anstream::println!("{}", paint::caution("not judged")),
+        VerdictState::Fault => {
+            let t = timeline.first_alarm_s.unwrap_or_default();
+            anstream::println!(
+                "{}",
+                paint::error(format!("FAULT, first lit at {t:.3} s; possible causes:"))
+            );
+            for candidate in &verdict.candidates {
+                let phase = candidate
+                    .phase
+                    .map_or(String::new(), |phase| format!(", phase {phase}"));
+                let cause = words::fault(candidate.fault);
+                let percent = 100.0 * candidate.probability;
+                anstream::println!("  {percent:5.1} %  {:<3} {cause}{phase}", candidate.fault);
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Results as files.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::failure::Failure;
+
+/// Where results go besides the terminal.
+#[derive(Debug, Args)]
+pub struct OutputArgs {
+    /// Write the whole result as JSON to FILE (`-` for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+impl OutputArgs {
+    /// Writes `value` where the user asked for it.
+    ///
+    /// # Errors
+    /// A path that cannot be written.
+    pub fn write_json(&self, value: &impl Serialize) -> Result<(), Failure> {
+        let Some(path) = &self.json else {
+            return Ok(());
+        };
+        let mut text = serde_json::to_string_pretty(value).map_err(|error| {
+            Failure::Usage(format!("the result cannot be written as JSON: {error}"))
+        })?;
+        text.push('\n');
+        if path.as_os_str() == "-" {
+            return write_all(&mut std::io::stdout(), path, &text);
+        }
+        let mut file = std::fs::File::create(path).map_err(|error| cannot_write(path, error))?;
+        write_all(&mut file, path, &text)
+    }
+
+    /// Whether the JSON takes standard output, so that nothing else may be printed there.
+    pub fn takes_stdout(&self) -> bool {
+        self.json
+            .as_ref()
+            .is_some_and(|path| path.as_os_str() == "-")
+    }
+}
+
+fn write_all(sink: &mut impl Write, path: &Path, text: &str) -> Result<(), Failure> {
+    sink.write_all(text.as_bytes())
+        .map_err(|error| cannot_write(path, error))
+}
+
+fn cannot_write(path: &Path, error: std::io::Error) -> Failure {
+    Failure::Write {
+        path: path.display().to_string(),
+        error,
+    }
+}

@@ -1,0 +1,9 @@
+//! What `drivemon` is made of: scenarios and their simulation, replay through the board's core, and the command line.
+
+pub mod cli;
+pub mod demo;
+pub mod operating_points;
+pub mod replay;
+pub mod scenario;
+pub mod simulate;
+pub mod words;

@@ -1,0 +1,344 @@
+//! What a whole recording came to: lamp changes, verdict, sequence components.
+
+use std::collections::BTreeMap;
+
+use monitor::{Candidates, FAULTS, Fault, Lamps, NotJudged, Report, SensorFinding, TABLE_1};
+use num_complex::Complex64;
+use serde::Serialize;
+
+use crate::words;
+
+/// The lamps from one moment on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LampState {
+    /// Time of the recording, s.
+    pub t: f64,
+    /// RUN.
+    pub run: &'static str,
+    /// Residual r1.
+    pub r1: &'static str,
+    /// Residual r2.
+    pub r2: &'static str,
+    /// Residual r3.
+    pub r3: &'static str,
+    /// Residual r4.
+    pub r4: &'static str,
+    /// SENSOR.
+    pub sensor: &'static str,
+    /// LINE.
+    pub line: &'static str,
+    /// LOAD.
+    pub load: &'static str,
+    /// FAULT.
+    pub fault: &'static str,
+    /// Why the window at this moment was not judged.
+    pub not_judged: Option<String>,
+}
+
+/// The outcome in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VerdictState {
+    /// Judged, and FAULT never lit.
+    Healthy,
+    /// FAULT lit.
+    Fault,
+    /// No window could be judged.
+    NotJudged,
+}
+
+/// One possible cause.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Row of Table 1 (`Rs` .. `wr`), or `unknown`.
+    pub fault: &'static str,
+    /// The phase, where it is known.
+    pub phase: Option<&'static str>,
+    /// Probability, 0..=1; for a sensor finding the share of windows since the alarm that show it.
+    pub probability: f64,
+}
+
+/// Verdict over the whole recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// The outcome.
+    pub state: VerdictState,
+    /// Possible causes, likeliest first; equal probabilities are ties that this recording cannot break.
+    pub candidates: Vec<Candidate>,
+}
+
+/// Mean sequence components over all complete windows. Angles refer to phase a.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SequenceSummary {
+    /// Negative over positive sequence of the currents.
+    pub i2_over_i1: Option<f64>,
+    /// Angle of that ratio, degrees.
+    pub i2_over_i1_angle_deg: Option<f64>,
+    /// Negative over positive sequence of the voltages.
+    pub v2_over_v1: Option<f64>,
+    /// Zero over positive sequence of the currents.
+    pub i0_over_i1: Option<f64>,
+}
+
+/// How many windows one reason kept from being judged.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NotJudgedShare {
+    /// The reason in words.
+    pub reason: String,
+    /// Windows.
+    pub windows: u64,
+}
+
+/// Residuals over the judged windows, percent of their scales.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    sum: [f64; 4],
+    square: [f64; 4],
+}
+
+/// The collected result of a replay.
+#[derive(Clone, Debug, Default)]
+pub struct Timeline {
+    /// Windows reported.
+    pub windows: u64,
+    /// Windows judged.
+    pub judged: u64,
+    /// Lamps at every change.
+    pub lamps: Vec<LampState>,
+    /// Time of the first FAULT, s.
+    pub first_alarm_s: Option<f64>,
+    /// Why windows were not judged, most frequent first.
+    pub not_judged: Vec<NotJudgedShare>,
+    reasons: BTreeMap<String, u64>,
+    shown: Option<(Lamps, Option<NotJudged>)>,
+    moments: Moments,
+    candidate_sum: [f64; FAULTS],
+    unknown_sum: f64,
+    candidate_windows: u64,
+    sensor_findings: Vec<(SensorFinding, u64)>,
+    windows_since_alarm: u64,
+    sequences: Sequences,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sequences {
+    i2: Complex64,
+    i0: Complex64,
+    current_windows: u64,
+    v2: Complex64,
+    voltage_windows: u64,
+}
+
+impl Timeline {
+    /// Adds one report; `t` is the time of the window's end, s.
+    pub fn add(&mut self, t: f64, report: &Report) {
+        self.windows += 1;
+        self.note_judgement(report);
+        self.note_lamps(t, report);
+        self.note_causes(t, report);
+        self.sequences.add(report);
+    }
+
+    /// Sorts what has been collected.
+    pub fn finish(&mut self) {
+        let mut reasons: Vec<_> = std::mem::take(&mut self.reasons).into_iter().collect();
+        reasons.sort_by_key(|(_, windows)| std::cmp::Reverse(*windows));
+        self.not_judged = reasons
+            .into_iter()
+            .map(|(reason, windows)| NotJudgedShare { reason, windows })
+            .collect();
+    }
+
+    /// Says that the residuals lack the motor's parameters rather than its speed.
+    pub fn blame_missing_motor_file(&mut self) {
+        let no_speed = words::not_judged(NotJudged::NoSpeed);
+        let in_shares = self.not_judged.iter_mut().map(|share| &mut share.reason);
+        let in_lamps = self
+            .lamps
+            .iter_mut()
+            .filter_map(|lamps| lamps.not_judged.as_mut());
+        for reason in in_shares
+            .chain(in_lamps)
+            .filter(|reason| **reason == no_speed)
+        {
+            "no motor file was given (--motor M)".clone_into(reason);
+        }
+    }
+
+    fn note_judgement(&mut self, report: &Report) {
+        if let Some(reason) = report.not_judged {
+            *self.reasons.entry(words::not_judged(reason)).or_default() += 1;
+            return;
+        }
+        self.judged += 1;
+        let Some(residuals) = report.residuals else {
+            return;
+        };
+        for (k, r) in residuals.r.iter().enumerate() {
+            let percent = 100.0 * f64::from(*r);
+            self.moments.sum[k] += percent;
+            self.moments.square[k] += percent * percent;
+        }
+    }
+
+    fn note_lamps(&mut self, t: f64, report: &Report) {
+        let now = (report.lamps, report.not_judged);
+        if self.shown != Some(now) {
+            self.shown = Some(now);
+            self.lamps.push(lamp_state(t, report));
+        }
+    }
+
+    fn note_causes(&mut self, t: f64, report: &Report) {
+        let alarm = report.lamps.fault == monitor::Lamp::On;
+        if alarm && self.first_alarm_s.is_none() {
+            self.first_alarm_s = Some(t);
+        }
+        if self.first_alarm_s.is_none() {
+            return;
+        }
+        self.windows_since_alarm += 1;
+        if let Some(candidates) = &report.candidates {
+            self.add_candidates(candidates);
+        }
+        if let Some(finding) = report.sensor {
+            self.add_sensor_finding(finding);
+        }
+    }
+
+    fn add_candidates(&mut self, candidates: &Candidates) {
+        self.candidate_windows += 1;
+        self.unknown_sum += f64::from(candidates.unknown);
+        for (sum, p) in self.candidate_sum.iter_mut().zip(candidates.faults) {
+            *sum += f64::from(p);
+        }
+    }
+
+    fn add_sensor_finding(&mut self, finding: SensorFinding) {
+        match self
+            .sensor_findings
+            .iter_mut()
+            .find(|(known, _)| *known == finding)
+        {
+            Some((_, windows)) => *windows += 1,
+            None => self.sensor_findings.push((finding, 1)),
+        }
+    }
+
+    /// The verdict over everything added so far.
+    pub fn verdict(&self) -> Verdict {
+        let state = match (self.first_alarm_s, self.judged) {
+            (Some(_), _) => VerdictState::Fault,
+            (None, 0) => VerdictState::NotJudged,
+            (None, _) => VerdictState::Healthy,
+        };
+        let mut candidates = self.sensor_candidates();
+        candidates.extend(self.table_candidates());
+        candidates.sort_by(|x, y| y.probability.total_cmp(&x.probability));
+        Verdict { state, candidates }
+    }
+
+    fn sensor_candidates(&self) -> Vec<Candidate> {
+        let share = |windows: u64| windows as f64 / self.windows_since_alarm.max(1) as f64;
+        self.sensor_findings
+            .iter()
+            .map(|(finding, windows)| Candidate {
+                fault: words::sensor_row(*finding).name(),
+                phase: words::sensor_phase(*finding),
+                probability: share(*windows),
+            })
+            .collect()
+    }
+
+    fn table_candidates(&self) -> Vec<Candidate> {
+        let n = self.candidate_windows.max(1) as f64;
+        let found = |fault: Fault| {
+            self.sensor_findings
+                .iter()
+                .any(|(f, _)| words::sensor_row(*f) == fault)
+        };
+        let rows = TABLE_1
+            .iter()
+            .zip(self.candidate_sum)
+            .filter(|((fault, _), _)| !found(*fault));
+        let named = rows.map(|((fault, _), sum)| (fault.name(), sum));
+        named
+            .chain([("unknown", self.unknown_sum)])
+            .map(|(fault, sum)| Candidate {
+                fault,
+                phase: None,
+                probability: sum / n,
+            })
+            .filter(|candidate| candidate.probability >= LEAST_PROBABILITY)
+            .collect()
+    }
+
+    /// Mean sequence components.
+    pub fn sequence(&self) -> SequenceSummary {
+        self.sequences.summary()
+    }
+
+    /// Mean and standard deviation of r1..r4 over the judged windows, percent of scale.
+    pub fn residual_percent(&self) -> Option<([f64; 4], [f64; 4])> {
+        if self.judged == 0 {
+            return None;
+        }
+        let n = self.judged as f64;
+        let mean = self.moments.sum.map(|sum| sum / n);
+        let mut deviation = self.moments.square.map(|square| square / n);
+        for (square, mean) in deviation.iter_mut().zip(mean) {
+            *square = (*square - mean * mean).max(0.0).sqrt();
+        }
+        Some((mean, deviation))
+    }
+}
+
+/// Causes less likely than this are not listed.
+const LEAST_PROBABILITY: f64 = 0.01;
+
+fn lamp_state(t: f64, report: &Report) -> LampState {
+    let lamps = &report.lamps;
+    let [r1, r2, r3, r4] = lamps.r.map(|lamp| lamp.name());
+    LampState {
+        t,
+        run: lamps.run.name(),
+        r1,
+        r2,
+        r3,
+        r4,
+        sensor: lamps.sensor.name(),
+        line: lamps.line.name(),
+        load: lamps.load.name(),
+        fault: lamps.fault.name(),
+        not_judged: report.not_judged.map(words::not_judged),
+    }
+}
+
+impl Sequences {
+    fn add(&mut self, report: &Report) {
+        let Some(window) = &report.window else {
+            return;
+        };
+        let wide = |x: num_complex::Complex32| Complex64::new(f64::from(x.re), f64::from(x.im));
+        if window.i_s.positive.norm_sqr() > 0.0 {
+            self.i2 += wide(window.i_s.unbalance());
+            self.i0 += wide(window.i_s.zero_ratio());
+            self.current_windows += 1;
+        }
+        if window.u_s.positive.norm_sqr() > 0.0 {
+            self.v2 += wide(window.u_s.unbalance());
+            self.voltage_windows += 1;
+        }
+    }
+
+    fn summary(&self) -> SequenceSummary {
+        let mean = |sum: Complex64, n: u64| (n > 0).then(|| sum / n as f64);
+        let i2 = mean(self.i2, self.current_windows);
+        SequenceSummary {
+            i2_over_i1: i2.map(Complex64::norm),
+            i2_over_i1_angle_deg: i2.map(|x| x.arg().to_degrees()),
+            v2_over_v1: mean(self.v2, self.voltage_windows).map(Complex64::norm),
+            i0_over_i1: mean(self.i0, self.current_windows).map(Complex64::norm),
+        }
+    }
+}

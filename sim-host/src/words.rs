@@ -1,0 +1,76 @@
+//! What the core's findings are called in front of people.
+
+use monitor::{Fault, NotJudged, Phase, SensorFinding, SupplyFinding};
+
+/// Why a window was not judged, with what to do about it.
+pub fn not_judged(reason: NotJudged) -> String {
+    match reason {
+        NotJudged::NotLocked => "no periodic supply between 5 and 100 Hz".to_owned(),
+        NotJudged::Settling => "the first cycles after the supply was found".to_owned(),
+        NotJudged::Clipped => "a channel clips: choose a larger full scale".to_owned(),
+        NotJudged::Invalid => "samples that are not numbers".to_owned(),
+        NotJudged::NoVoltages => "voltages are not recorded".to_owned(),
+        NotJudged::NoCurrents => "currents are not recorded".to_owned(),
+        NotJudged::NoSpeed => "speed is not recorded".to_owned(),
+        NotJudged::Supply(finding) => supply(finding).to_owned(),
+        NotJudged::Sensor(finding) => sensor(finding),
+        NotJudged::Transient => "transient: current or speed are changing".to_owned(),
+        NotJudged::NoLoadCurrent => "the motor draws no current".to_owned(),
+    }
+}
+
+/// A finding about the supply.
+pub fn supply(finding: SupplyFinding) -> &'static str {
+    match finding {
+        SupplyFinding::Lost => "no supply",
+        SupplyFinding::NegativeOrder => "phases turn backwards: swap two phases",
+        SupplyFinding::Voltage => "supply voltage outside 75..120 % of rated",
+        SupplyFinding::Unbalance => "supply unbalance above 3 %",
+    }
+}
+
+/// A finding about a sensor.
+pub fn sensor(finding: SensorFinding) -> String {
+    match finding {
+        SensorFinding::DeadVoltage(phase) => format!("voltage sensor {} is dead", phase.letter()),
+        SensorFinding::DeadCurrent(phase) => format!("current sensor {} is dead", phase.letter()),
+        SensorFinding::VoltagesMissing => "all voltage sensors are dead".to_owned(),
+        SensorFinding::CurrentSum => "the phase currents do not add up to zero".to_owned(),
+        SensorFinding::SpeedImplausible => "the speed contradicts voltages and currents".to_owned(),
+    }
+}
+
+/// The row of Table 1 that a sensor finding belongs to.
+pub fn sensor_row(finding: SensorFinding) -> Fault {
+    match finding {
+        SensorFinding::DeadVoltage(_) | SensorFinding::VoltagesMissing => Fault::VoltageSensor,
+        SensorFinding::DeadCurrent(_) | SensorFinding::CurrentSum => Fault::CurrentSensor,
+        SensorFinding::SpeedImplausible => Fault::SpeedSensor,
+    }
+}
+
+/// The phase that a sensor finding names.
+pub fn sensor_phase(finding: SensorFinding) -> Option<&'static str> {
+    match finding {
+        SensorFinding::DeadVoltage(phase) | SensorFinding::DeadCurrent(phase) => {
+            Some(Phase::letter(phase))
+        }
+        _ => None,
+    }
+}
+
+/// A row of Table 1 in plain words.
+pub fn fault(name: &str) -> &'static str {
+    match name {
+        "Rs" => "stator resistance",
+        "Rr" => "rotor resistance",
+        "Ls" => "stator inductance",
+        "Lr" => "rotor inductance",
+        "B" => "friction of the motor",
+        "Bl" => "friction of the load",
+        "Iq" => "current sensor",
+        "Vq" => "voltage sensor",
+        "wr" => "speed sensor",
+        _ => "none of the faults in the table",
+    }
+}
