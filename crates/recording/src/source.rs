@@ -95,11 +95,7 @@ fn plain<R: BufRead + 'static>(mut reader: R, name: &str) -> Result<Box<dyn Read
     if head.starts_with(b"\xEF\xBB\xBF") {
         reader.consume(3);
     }
-    Ok(Box::new(LineGuard {
-        reader,
-        line: 1,
-        length: 0,
-    }))
+    Ok(Box::new(Lines::new(reader)))
 }
 
 fn empty(name: &str) -> Error {
@@ -166,39 +162,87 @@ impl Read for Counted {
     }
 }
 
-/// Refuses a line that would fill the memory, and binary content behind a textual beginning.
-struct LineGuard<R> {
+/// Lines as this crate wants them: ended by one line feed each, none so long that it fills the memory,
+/// no binary content behind a textual beginning.
+///
+/// The even line ends make the reader's line count exact, which the CSV parser's own is not.
+struct Lines<R> {
     reader: R,
     line: u64,
     length: usize,
+    after_return: bool,
+    ended: bool,
 }
 
-impl<R: Read> Read for LineGuard<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let n = self.reader.read(buffer)?;
-        for &byte in &buffer[..n] {
-            match byte {
-                b'\n' | b'\r' => {
-                    self.length = 0;
-                    self.line += u64::from(byte == b'\n');
-                }
-                0 => return Err(self.refuse("holds a zero byte: the file is binary or damaged")),
-                _ => self.length += 1,
-            }
-            if self.length > LONGEST_LINE {
-                return Err(self.refuse("is longer than 65536 bytes: this is not a table"));
-            }
+impl<R: Read> Lines<R> {
+    fn new(reader: R) -> Lines<R> {
+        Lines {
+            reader,
+            line: 1,
+            length: 0,
+            after_return: false,
+            ended: false,
         }
-        Ok(n)
     }
-}
 
-impl<R> LineGuard<R> {
+    /// What becomes of one byte; `None` for the line feed behind a carriage return.
+    fn pass(&mut self, byte: u8) -> io::Result<Option<u8>> {
+        let follows = std::mem::replace(&mut self.after_return, byte == b'\r');
+        match byte {
+            b'\n' if follows => return Ok(None),
+            b'\n' | b'\r' => {
+                self.length = 0;
+                self.line += 1;
+                return Ok(Some(b'\n'));
+            }
+            0 => return Err(self.refuse("holds a zero byte: the file is binary or damaged")),
+            _ => self.length += 1,
+        }
+        if self.length > LONGEST_LINE {
+            return Err(self.refuse("is longer than 65536 bytes: this is not a table"));
+        }
+        Ok(Some(byte))
+    }
+
+    /// The line feed that the last line may lack.
+    fn end(&mut self, buffer: &mut [u8]) -> usize {
+        let lacks = !self.ended && self.length > 0;
+        self.ended = true;
+        match buffer.first_mut() {
+            Some(first) if lacks => {
+                *first = b'\n';
+                1
+            }
+            _ => 0,
+        }
+    }
+
     fn refuse(&self, message: &'static str) -> io::Error {
         io::Error::other(BadLine {
             line: self.line,
             message,
         })
+    }
+}
+
+impl<R: Read> Read for Lines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let n = self.reader.read(buffer)?;
+            if n == 0 {
+                return Ok(self.end(buffer));
+            }
+            let mut kept = 0;
+            for k in 0..n {
+                if let Some(byte) = self.pass(buffer[k])? {
+                    buffer[kept] = byte;
+                    kept += 1;
+                }
+            }
+            if kept > 0 {
+                return Ok(kept);
+            }
+        }
     }
 }
 

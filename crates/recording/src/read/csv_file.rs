@@ -52,7 +52,7 @@ impl CsvFile {
             let remedy = "the first line names the columns, for example t,va,vb,vc,ia,ib,ic,speed";
             return Err(Error::bad(&name, "holds no header", remedy));
         }
-        let header_line = line_of(&first);
+        let header_line = line_before(&reader);
         let header = header(&name, header_line, &first)?;
         check_header(&name, header_line, &header, delimiter)?;
         Ok(CsvFile {
@@ -79,7 +79,7 @@ impl CsvFile {
             if !more.map_err(|error| csv_error(&self.name, line + 1, &error))? {
                 break;
             }
-            line = line_of(&record);
+            line = line_before(&self.reader);
             self.check_row(k, line, &record)?;
             row(&Cells {
                 file: &self.name,
@@ -271,8 +271,9 @@ pub(crate) fn shown(name: &str) -> String {
     name.chars().take(40).filter(|c| !c.is_control()).collect()
 }
 
-fn line_of(record: &ByteRecord) -> u64 {
-    record.position().map_or(1, csv::Position::line)
+/// The line of the record that was just read: the source ends every line by a line feed.
+fn line_before<R: std::io::Read>(reader: &csv::Reader<R>) -> u64 {
+    reader.position().line().saturating_sub(1)
 }
 
 fn csv_error(file: &str, line: u64, error: &csv::Error) -> Error {
