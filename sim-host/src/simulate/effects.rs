@@ -7,8 +7,10 @@ use super::waveform::Waveform;
 use crate::scenario::Scenario;
 use motor::MotorFile;
 use motor::dynamic::Dynamic;
-use motor::effects::{EffectConfig, EffectError, EffectStack, Hook, Rated, Timeline, extra_states};
-use motor::motor_file::{EffectEntry, EffectValue};
+use motor::effects::{
+    EffectConfig, EffectError, EffectStack, Hook, Timeline, extra_states, from_entry, rated,
+};
+use motor::motor_file::EffectEntry;
 use std::sync::Arc;
 
 /// The supply frequency is told to effects this often, s.
@@ -45,16 +47,7 @@ pub(crate) fn check_entry(
     motor: &MotorFile,
     entry: &EffectEntry,
 ) -> Result<EffectConfig, (String, String)> {
-    let numbers: Vec<(String, f64)> = entry
-        .parameters
-        .iter()
-        .filter_map(|parameter| match parameter.value {
-            EffectValue::Number(number) => Some((parameter.key.clone(), number)),
-            EffectValue::Text(_) => None,
-        })
-        .collect();
-    let form = entry.text("form").unwrap_or("");
-    let config = EffectConfig::from_file(&entry.name, form, &numbers, &rated(motor))
+    let config = from_entry(entry, &rated(motor))
         .map_err(|error| (key_of(&error).to_owned(), error.to_string()))?;
     let outer = [Hook::Inputs, Hook::Outputs];
     if config
@@ -74,17 +67,6 @@ fn key_of(error: &EffectError) -> &str {
         EffectError::UnknownParameter { key, .. } => key,
         EffectError::OutOfRange { key, .. } | EffectError::MissingParameter { key, .. } => key,
         EffectError::UnknownEffect { .. } | EffectError::Formula { .. } => "name",
-    }
-}
-
-fn rated(motor: &MotorFile) -> Rated<f64> {
-    let plate = &motor.nameplate;
-    Rated {
-        voltage: plate.phase_voltage_amplitude(),
-        current: plate.current_amplitude(),
-        omega_sync: plate.omega_sync(),
-        n_p: f64::from(plate.pole_pairs),
-        torque: plate.torque_nm,
     }
 }
 

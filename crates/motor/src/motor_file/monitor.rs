@@ -64,7 +64,6 @@ impl Default for MonitorSettings {
             frame: Frame::default(),
             field_current: FieldCurrent::default(),
             nominal_field_current_amp: None,
-            // The one set that reproduces all 18 published patterns on the published linear plant.
             threshold_percent: THRESHOLD_PERCENT,
             window_cycles: 5,
             persistence_windows: 3,

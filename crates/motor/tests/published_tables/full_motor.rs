@@ -125,7 +125,10 @@ fn seven_faults_keep_their_published_pattern_on_the_full_motor() {
         for factor in [1.5, 0.5] {
             let injected = if fault == "Vq" { "Vq on d-q" } else { fault };
             let r = full().fault(injected, factor);
-            assert_eq!(lamps(r), expected, "{fault} x {factor}: {r:.2?}");
+            for thresholds in threshold_sets() {
+                let lit = lamps(r, thresholds);
+                assert_eq!(lit, expected, "{fault} x {factor}: {r:.2?}, {thresholds:?}");
+            }
         }
     }
 }

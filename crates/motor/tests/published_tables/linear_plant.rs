@@ -79,7 +79,10 @@ fn one_threshold_set_gives_all_18_published_patterns_on_the_linear_plant() {
     for (fault, expected) in TABLE_1 {
         for factor in [1.5, 0.5] {
             let r = linear(&linear_plant(), fault, factor);
-            assert_eq!(lamps(r), expected, "{fault} x {factor}: {r:.2?}");
+            for thresholds in threshold_sets() {
+                let lit = lamps(r, thresholds);
+                assert_eq!(lit, expected, "{fault} x {factor}: {r:.2?}, {thresholds:?}");
+            }
         }
     }
 }

@@ -18,7 +18,10 @@ const TWO_DIGITS: f64 = 0.005_2;
 /// Half a unit of the first printed digit.
 const ONE_DIGIT: f64 = 0.051;
 
-const THRESHOLDS: [f64; 4] = [0.6, 3.0, 4.0, 0.3];
+/// The set of the theory, and the motor file's default: each must give the published patterns.
+fn threshold_sets() -> [[f64; 4]; 2] {
+    [[0.6, 3.0, 4.0, 0.3], motor().monitor.threshold_percent]
+}
 
 fn motor() -> MotorFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motors/assumed-300w.toml");
@@ -51,9 +54,9 @@ fn residuals(p: &TParams<f64>, n_p: f64, b_t: f64, i_f: f64, m: Measured) -> [f6
     std::array::from_fn(|k| 100.0 * r[k] / scale[k])
 }
 
-fn lamps(r: [f64; 4]) -> String {
+fn lamps(r: [f64; 4], thresholds: [f64; 4]) -> String {
     r.iter()
-        .zip(THRESHOLDS)
+        .zip(thresholds)
         .map(|(r, limit)| if r.abs() > limit { '1' } else { '0' })
         .collect()
 }
