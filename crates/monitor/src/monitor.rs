@@ -179,7 +179,11 @@ impl Monitor {
             .window
             .measure(self.config.window_cycles, self.config.t_sample)
             .filter(|_| state.sync.is_locked());
-        self.report(state, window)
+        let mut report = self.report(state, window);
+        if window.is_none() && cycle.clipped.any() {
+            report.not_judged = Some(NotJudged::Clipped);
+        }
+        report
     }
 
     fn idle_report(&self, state: &mut MonitorState) -> Option<Report> {

@@ -21,9 +21,10 @@ pub struct SyncConfig {
     pub min_amplitude: f32,
 }
 
-/// Phase error, rad, beyond which a crossing does not belong to the tracked oscillation. A quarter
-/// of a radian is far outside what 8 % harmonics or 2 % unbalance can move between two crossings.
-const CAPTURE_RANGE: f32 = 0.25;
+/// Phase error, rad, beyond which a crossing does not belong to the tracked oscillation. It must admit
+/// what a fault itself moves: a lost phase turns the reference by 0.33 rad, shorted turns in a motor whose
+/// currents carry 20 % harmonics move a crossing of the current by as much again.
+const CAPTURE_RANGE: f32 = 0.8;
 /// Share of a phase error that the next cycle takes back.
 const PHASE_GAIN: f32 = 0.4;
 /// Share of a phase error that is put down to the frequency: critically damped with `PHASE_GAIN`.

@@ -67,7 +67,10 @@ pub struct Verdict {
     pub candidates: Vec<Candidate>,
 }
 
-/// Mean sequence components over all complete windows. Angles refer to phase a.
+/// Sequence components over the recording. Angles refer to phase a.
+///
+/// The windows are averaged as complex ratios under a Hann weight over the recording, so that what was
+/// cut off at its beginning and end counts little; `largest` looks at single windows instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SequenceSummary {
     /// Negative over positive sequence of the currents.
@@ -78,6 +81,8 @@ pub struct SequenceSummary {
     pub v2_over_v1: Option<f64>,
     /// Zero over positive sequence of the currents.
     pub i0_over_i1: Option<f64>,
+    /// Largest negative over positive sequence of the currents in a single window.
+    pub largest_i2_over_i1: Option<f64>,
 }
 
 /// How many windows one reason kept from being judged.
@@ -120,13 +125,18 @@ pub struct Timeline {
     sequences: Sequences,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
+/// Ratios of the sequence components of each complete window.
+#[derive(Clone, Debug, Default)]
 struct Sequences {
-    i2: Complex64,
-    i0: Complex64,
-    current_windows: u64,
-    v2: Complex64,
-    voltage_windows: u64,
+    current: Vec<CurrentRatios>,
+    voltage: Vec<(f64, Complex64)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct CurrentRatios {
+    t: f64,
+    negative: Complex64,
+    zero: Complex64,
 }
 
 impl Timeline {
@@ -136,7 +146,7 @@ impl Timeline {
         self.note_judgement(report);
         self.note_lamps(t, report);
         self.note_causes(t, report);
-        self.sequences.add(report);
+        self.sequences.add(t, report);
     }
 
     /// Sorts what has been collected.
@@ -315,30 +325,51 @@ fn lamp_state(t: f64, report: &Report) -> LampState {
 }
 
 impl Sequences {
-    fn add(&mut self, report: &Report) {
+    /// `t` is the time of the window's end; what it measured belongs to its middle.
+    fn add(&mut self, t: f64, report: &Report) {
         let Some(window) = &report.window else {
             return;
         };
+        let half_cycle = std::f64::consts::PI / f64::from(window.omega_sync);
+        let t = t - 0.5 * f64::from(window.span) - half_cycle;
         let wide = |x: num_complex::Complex32| Complex64::new(f64::from(x.re), f64::from(x.im));
         if window.i_s.positive.norm_sqr() > 0.0 {
-            self.i2 += wide(window.i_s.unbalance());
-            self.i0 += wide(window.i_s.zero_ratio());
-            self.current_windows += 1;
+            self.current.push(CurrentRatios {
+                t,
+                negative: wide(window.i_s.unbalance()),
+                zero: wide(window.i_s.zero_ratio()),
+            });
         }
         if window.u_s.positive.norm_sqr() > 0.0 {
-            self.v2 += wide(window.u_s.unbalance());
-            self.voltage_windows += 1;
+            self.voltage.push((t, wide(window.u_s.unbalance())));
         }
     }
 
     fn summary(&self) -> SequenceSummary {
-        let mean = |sum: Complex64, n: u64| (n > 0).then(|| sum / n as f64);
-        let i2 = mean(self.i2, self.current_windows);
+        let of_current = |part: fn(&CurrentRatios) -> Complex64| {
+            hann_mean(self.current.iter().map(|ratios| (ratios.t, part(ratios))))
+        };
+        let i2 = of_current(|ratios| ratios.negative);
+        let sizes = self.current.iter().map(|ratios| ratios.negative.norm());
         SequenceSummary {
             i2_over_i1: i2.map(Complex64::norm),
             i2_over_i1_angle_deg: i2.map(|x| x.arg().to_degrees()),
-            v2_over_v1: mean(self.v2, self.voltage_windows).map(Complex64::norm),
-            i0_over_i1: mean(self.i0, self.current_windows).map(Complex64::norm),
+            v2_over_v1: hann_mean(self.voltage.iter().copied()).map(Complex64::norm),
+            i0_over_i1: of_current(|ratios| ratios.zero).map(Complex64::norm),
+            largest_i2_over_i1: sizes.max_by(f64::total_cmp),
         }
     }
+}
+
+/// Mean of values over time under a Hann weight that spans them; `None` without values.
+fn hann_mean(values: impl Iterator<Item = (f64, Complex64)> + Clone) -> Option<Complex64> {
+    let (first, _) = values.clone().next()?;
+    let (last, _) = values.clone().last()?;
+    // Half a step beyond either end, so that a single value has a weight.
+    let span = (last - first).max(f64::MIN_POSITIVE) * 1.001;
+    let weight = |t: f64| 1.0 - (std::f64::consts::TAU * ((t - first) / span + 0.0005)).cos();
+    let (sum, weights) = values.fold((Complex64::ZERO, 0.0), |(sum, weights), (t, x)| {
+        (sum + x * weight(t), weights + weight(t))
+    });
+    Some(sum / weights)
 }
