@@ -167,6 +167,9 @@ fn the_inrush_clips_three_probes_but_not_the_fourth() {
         "{clipped:?}"
     );
     assert!(clipped[2].detail.contains("--column ic=ic2"));
+    // The start is at 0.037 s; the current has fallen below 55 A at 0.11 s.
+    let inside = |finding: &&Finding| finding.from_s > Some(0.037) && finding.to_s < Some(0.11);
+    assert!(clipped.iter().all(inside), "{clipped:?}");
     assert!(audit.supported);
 }
 

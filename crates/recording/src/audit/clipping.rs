@@ -235,7 +235,9 @@ fn finding(context: &Context<'_>, clipped: &Clipped) -> Finding {
         clipped.level,
         remedy(context, channel)
     );
-    Finding::new(Code::Clipping, channel, clipped.level, unit).detail(detail)
+    Finding::new(Code::Clipping, channel, clipped.level, unit)
+        .detail(detail)
+        .within(from, to)
 }
 
 fn remedy(context: &Context<'_>, channel: Channel) -> String {

@@ -58,6 +58,12 @@ pub struct Finding {
     pub detail: String,
     /// Whether this alone makes the recording unusable.
     pub refuses: bool,
+    /// Begin of the stretch that is concerned, s, where it is not the whole recording.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_s: Option<f64>,
+    /// End of that stretch, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_s: Option<f64>,
 }
 
 /// The audit of one recording.
@@ -80,12 +86,22 @@ impl Finding {
             unit: unit.to_owned(),
             detail: String::new(),
             refuses: false,
+            from_s: None,
+            to_s: None,
         }
     }
 
     pub(super) fn detail(self, detail: impl Into<String>) -> Finding {
         Finding {
             detail: detail.into(),
+            ..self
+        }
+    }
+
+    pub(super) fn within(self, from_s: f64, to_s: f64) -> Finding {
+        Finding {
+            from_s: Some(from_s),
+            to_s: Some(to_s),
             ..self
         }
     }

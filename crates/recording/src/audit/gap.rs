@@ -21,5 +21,9 @@ pub(super) fn check(context: &Context<'_>) -> Vec<Finding> {
         longest.1,
         longest.0
     );
-    vec![Finding::new(Code::Gap, "t", longest.1, "s").detail(detail)]
+    vec![
+        Finding::new(Code::Gap, "t", longest.1, "s")
+            .detail(detail)
+            .within(longest.0, longest.0 + longest.1),
+    ]
 }

@@ -93,7 +93,7 @@ fn frozen(context: &Context<'_>, three: [Channel; 3], k: usize) -> Option<Findin
     (others == 2).then(|| {
         let (t, unit) = (context.recording.t(), channel.quantity().si());
         let seconds = t[from + length - 1] - t[from];
-        Finding::new(Code::Stuck, channel, seconds, "s").detail(format!(
+        Finding::new(Code::Stuck, channel, seconds, "s").within(t[from], t[from] + seconds).detail(format!(
             "{channel} stays at {} {unit} for {seconds:.3} s from {:.3} s on while the others go on: the \
              sensor or its converter froze. Cut that stretch, or measure again.",
             x[from], t[from]

@@ -7,7 +7,6 @@ use super::sequence::Sequence;
 use super::statistics::median;
 use crate::channel::Channel;
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 /// A set is suspected when what a balanced set lacks exceeds this share of what it has...
@@ -78,29 +77,29 @@ fn flipped(mut x: [Complex64; 3], flip: Option<usize>, derived: Option<usize>) -
 }
 
 fn order(context: &mut Context<'_>) -> Vec<Finding> {
-    let voltages = direction(context, Channel::VOLTAGES);
-    let currents = direction(context, Channel::CURRENTS);
-    if let (Some(v), Some(i)) = (voltages, currents) {
-        if v != i {
+    if context.sound(Channel::VOLTAGES) && context.sound(Channel::CURRENTS) {
+        if opposed(context) {
             return vec![swapped(context)];
         }
         if let Some(finding) = angle(context) {
             return vec![finding];
         }
     }
-    rotation(context, voltages.or(currents))
-        .into_iter()
-        .collect()
+    rotation(context).into_iter().collect()
 }
 
-/// Whether most blocks have the order a, b, c; `None` without sound channels.
-fn direction(context: &Context<'_>, three: [Channel; 3]) -> Option<bool> {
-    let alive = context.sound(three).then(|| context.alive(three))?;
-    let positive = alive
-        .iter()
-        .filter(|(_, three)| three.sequence().is_positive())
-        .count();
-    (!alive.is_empty()).then_some(2 * positive > alive.len())
+/// Whether voltages and currents follow each other in opposite orders in most blocks.
+fn opposed(context: &Context<'_>) -> bool {
+    let alive = context.alive(Channel::CURRENTS);
+    let differ = alive.iter().filter_map(|(block, currents)| {
+        let voltages = block.voltages.as_ref()?.sequence();
+        Some(voltages.is_positive() != currents.sequence().is_positive())
+    });
+    most(&differ.collect::<Vec<bool>>())
+}
+
+fn most(votes: &[bool]) -> bool {
+    2 * votes.iter().filter(|vote| **vote).count() > votes.len()
 }
 
 /// Currents exchanged against voltages: the pair follows from the angle that a motor must have.
@@ -223,28 +222,43 @@ fn angle(context: &mut Context<'_>) -> Option<Finding> {
     )
 }
 
-/// The order of the phases against the sense of rotation.
-fn rotation(context: &Context<'_>, positive: Option<bool>) -> Option<Finding> {
-    let positive = positive?;
-    let speeds = context
-        .blocks
+/// Speed over the supply's angular frequency, beyond which a shaft turns for certain.
+const TURNING: f64 = 0.01;
+
+/// The order of the phases against the sense of rotation, block by block: an inverter may reverse.
+fn rotation(context: &Context<'_>) -> Option<Finding> {
+    let sets = [Channel::VOLTAGES, Channel::CURRENTS];
+    let three = sets.into_iter().find(|three| context.sound(*three))?;
+    let settled = context.settled(three);
+    let positive: Vec<bool> = settled
         .iter()
-        .filter_map(|block| Some(block.speed? / block.omega));
-    // A hundredth of the supply's angular frequency: a shaft at rest with noise has no sense.
-    let turning = median(speeds).filter(|turning| turning.abs() > 0.01);
-    match (positive, turning) {
-        (true, Some(turning)) if turning < 0.0 => Some(
-            Finding::new(Code::Polarity, Channel::SPEED, turning * TAU, "rad per period")
-                .detail(
-                    "speed is negative while the phases follow each other as a, b, c: exchange the encoder's \
-                     tracks, or add --scale speed=-1.",
-                )
-                .refusing(),
-        ),
-        (false, Some(turning)) if turning < 0.0 => None,
-        (false, turning) => Some(phase_order(context, turning.is_some())),
-        (true, _) => None,
+        .map(|(_, three)| three.sequence().is_positive())
+        .collect();
+    let forward = settled.iter().map(|(block, _)| {
+        let turning = block.speed? / block.omega;
+        (turning.abs() > TURNING).then_some(turning > 0.0)
+    });
+    let against: Vec<bool> = forward
+        .zip(&positive)
+        .filter_map(|(forward, positive)| Some(forward? != *positive))
+        .collect();
+    match (against.is_empty(), most(&positive)) {
+        (false, true) => most(&against).then(inverted_speed),
+        (false, false) => most(&against).then(|| phase_order(context, true)),
+        // Without a speed, and only if it is so throughout.
+        (true, _) => {
+            (!positive.is_empty() && !positive.contains(&true)).then(|| phase_order(context, false))
+        }
     }
+}
+
+fn inverted_speed() -> Finding {
+    Finding::new(Code::Polarity, Channel::SPEED, 180.0, "degrees")
+        .detail(
+            "speed is negative while the phases follow each other as a, b, c: exchange the encoder's \
+             tracks, or add --scale speed=-1.",
+        )
+        .refusing()
 }
 
 fn phase_order(context: &Context<'_>, contradicts: bool) -> Finding {
