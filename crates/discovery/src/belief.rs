@@ -1,6 +1,6 @@
 //! What the user believes, and hypotheses about how it is wrong.
 
-use motor::effects::{EffectConfig, Parameter, Plant, Rated, Role};
+use motor::effects::{EffectConfig, Parameter, Plant, Rated, Role, rated};
 use motor::{Mechanics, MotorFile, TParams};
 
 /// Nominal parameters in the order of a hypothesis.
@@ -81,18 +81,6 @@ impl Belief {
         } else {
             error * self.nominal_value(k, z)
         }
-    }
-}
-
-/// Rated quantities of a motor file.
-pub(crate) fn rated(file: &MotorFile) -> Rated<f64> {
-    let plate = &file.nameplate;
-    Rated {
-        voltage: plate.phase_voltage_amplitude(),
-        current: plate.current_amplitude(),
-        omega_sync: plate.omega_sync(),
-        n_p: f64::from(plate.pole_pairs),
-        torque: plate.torque_nm,
     }
 }
 

@@ -47,6 +47,16 @@ pub(crate) struct Round {
     pub candidates: Vec<Candidate>,
 }
 
+impl Round {
+    /// Nothing was asked.
+    pub fn empty() -> Self {
+        Self {
+            screened: Vec::new(),
+            candidates: Vec::new(),
+        }
+    }
+}
+
 /// Where a refit starts: nominals, and the grid points of one effect.
 #[derive(Clone, Debug)]
 struct Start {
@@ -76,9 +86,11 @@ pub(crate) fn round(study: &Study, base: &Trial, nominal: &Hypothesis, excluded:
     let mut candidates = confirm(study, base, &likely);
     let solved = candidates.first().is_some_and(|c| c.error < SOLVED);
     if !solved {
-        candidates.extend(confirm(study, base, &rest));
         if error > WRONG_VALLEY && !case.speed.is_empty() && !case.speed_is_input {
             candidates.extend(retaught(study, base, nominal, excluded));
+        }
+        if candidates.iter().all(|c| c.error > SOLVED) {
+            candidates.extend(confirm(study, base, &rest));
         }
     }
     Round {

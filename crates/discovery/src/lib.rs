@@ -4,13 +4,16 @@ mod accept;
 mod belief;
 mod case;
 mod confirm;
+mod explain;
 mod fit;
 mod floor;
 mod gram;
 mod predict;
+mod present;
 #[doc(hidden)]
 pub mod probe;
 mod proof;
+mod report;
 mod screen;
 mod signal;
 mod study;

@@ -1,7 +1,8 @@
 //! probe
 #![allow(missing_docs)]
-use crate::{accept, belief::*, case::Case, confirm, fit::Effort, screen, study::Study};
+use crate::{accept, belief::*, case::Case, confirm, fit::Effort, study::Study};
 use motor::MotorFile;
+use motor::effects::rated;
 use recording::Recording;
 use std::time::Instant;
 
@@ -55,52 +56,54 @@ pub fn probe(recs: &[Recording], file: &MotorFile) {
     }
 }
 
-pub fn dead(recs: &[Recording], file: &MotorFile) {
+pub fn explain(recs: &[Recording], file: &MotorFile) {
+    let t0 = Instant::now();
     let rated = rated(file);
     let belief = Belief::new(file, vec![]);
     let mut cases = recs.iter().map(|r| Case::new(r, &rated).unwrap());
     let a = cases.next().unwrap();
     let study = Study::new(belief, a, cases.collect());
-    let e = motor::effects::find("inverter-dead-time", "").unwrap();
-    for v in [6.0, 3.0] {
-        for i0 in [0.05, 0.1, 0.3] {
-            let mut c = motor::effects::EffectConfig::absent(e, &rated);
-            c.values = vec![v, i0];
-            let h = study.beliefs().with(c, &rated);
-            let e0 = study.fold_error(&study.fitted.errors(&study.belief, &h));
-            let t0 = Instant::now();
-            let t = study.trial(&h, Effort::FULL);
+    let e = crate::explain::explain(&study, &[], &mut |_, _| {});
+    println!(
+        "  base {:.3}/{:.3} final {:.3}/{:.3} nameable {} time {:.1}",
+        study.fold_error(&e.baseline.folds),
+        study.proof_error(&e.baseline),
+        study.fold_error(&e.last().folds),
+        study.proof_error(e.last()),
+        e.nameable,
+        t0.elapsed().as_secs_f64()
+    );
+    for (k, s) in e.steps.iter().enumerate() {
+        println!(
+            "   STEP {} tied {:?} {:?}",
+            s.trial.fit.hypothesis.effects[k].effect.descriptor().name,
+            s.tied,
+            crate::present::effect_parameters(&study, e.last(), k)
+                .iter()
+                .map(|p| format!("{}={:.5}+-{:.5}", p.name, p.value, p.std_error))
+                .collect::<Vec<_>>()
+        );
+    }
+    for (k, c) in &e.contests {
+        println!(
+            "   OFF {} {:+.4}",
+            NOMINALS[*k].name,
+            e.last().fit.hypothesis.z[*k].exp_m1()
+        );
+        for c in c {
             println!(
-                "v {v} i0 {i0}: start {e0:.3} folds {:.3} proof {:.3} z {:.3?} {:?} {:.2}s",
-                study.fold_error(&t.folds),
-                study.proof_error(&t),
-                t.fit.hypothesis.z,
-                t.fit.hypothesis.configs(&rated)[0].to_file(),
-                t0.elapsed().as_secs_f64()
-            );
-            let er = study.fitted.errors(&study.belief, &t.fit.hypothesis);
-            let fl = &study.fitted.floor.block;
-            println!(
-                "{:?}",
-                er.iter()
-                    .zip(fl)
-                    .map(|(e, f)| ((e / f).sqrt() * 10.0).round() / 10.0)
-                    .collect::<Vec<_>>()
+                "      tie {} {:.4}/{:.4}  {:?}",
+                c.name,
+                study.fold_error(&c.trial.folds),
+                study.proof_error(&c.trial),
+                c.trial
+                    .fit
+                    .hypothesis
+                    .configs(&rated)
+                    .last()
+                    .unwrap()
+                    .to_file()
             );
         }
     }
-    let t0 = Instant::now();
-    for _ in 0..10 {
-        let _ = crate::predict::outputs(
-            &study.fitted.case,
-            &study.belief,
-            &study.beliefs(),
-            crate::predict::Teacher::Off,
-        );
-    }
-    println!(
-        "sim {:.4}s rows {}",
-        t0.elapsed().as_secs_f64() / 10.0,
-        study.fitted.case.measured.len()
-    );
 }

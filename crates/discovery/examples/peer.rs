@@ -1,4 +1,4 @@
-//! probe
+//! One table over recordings with a known hidden effect: fit a prove b, and fit b prove a.
 use std::path::Path;
 fn main() {
     let root = std::env::args().nth(1).unwrap();
@@ -8,9 +8,9 @@ fn main() {
         let read = |n: &str| {
             recording::read_recording(&dir.join(n), &Default::default(), &mut |_| {}).unwrap()
         };
-        discovery::probe::dead(
-            &[read("recording.csv.gz"), read("recording_b.csv.gz")],
-            &file,
-        );
+        let (a, b) = (read("recording.csv.gz"), read("recording_b.csv.gz"));
+        println!("{set}");
+        discovery::probe::explain(&[a.clone(), b.clone()], &file);
+        discovery::probe::explain(&[b, a], &file);
     }
 }

@@ -1,0 +1,156 @@
+//! Which physical effect is missing: step by step, each proven on data that was not fitted.
+
+use crate::accept::{beats, explained, proven};
+use crate::belief::{FRICTION, N_NOMINAL, NOMINALS};
+use crate::confirm::{Candidate, Round, round};
+use crate::fit::Effort;
+use crate::present::off_nominals;
+use crate::study::{Study, Trial};
+use motor::effects::Kind;
+
+/// Most effects that are added.
+const MOST_EFFECTS: usize = 3;
+/// Error over noise below which a model is adequate.
+const ADEQUATE: f64 = 1.02;
+/// Share of the excess that accepted effects must explain to be named without adequacy.
+const NAMED_SHARE: f64 = 0.85;
+
+/// One accepted effect.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    /// The model with it.
+    pub trial: Trial,
+    /// The model before it.
+    pub before: Trial,
+    /// What explains the recording as well.
+    pub tied: Vec<String>,
+}
+
+/// Everything that was learnt.
+#[derive(Clone, Debug)]
+pub(crate) struct Explanation {
+    /// Nothing added.
+    pub baseline: Trial,
+    /// First round: all effects on top of the baseline.
+    pub first: Round,
+    /// Accepted effects.
+    pub steps: Vec<Step>,
+    /// Parameters that are off, each with the effects that explain the recording as well.
+    pub contests: Vec<(usize, Vec<Candidate>)>,
+    /// Whether what was found may be named.
+    pub nameable: bool,
+}
+
+impl Explanation {
+    /// The model with everything that was found.
+    pub fn last(&self) -> &Trial {
+        self.steps.last().map_or(&self.baseline, |s| &s.trial)
+    }
+}
+
+/// Whether nothing provable is left.
+pub(crate) fn adequate(study: &Study, trial: &Trial) -> bool {
+    let gate = ADEQUATE * (1.0 + 2.0 * study.allowance());
+    study.proof_error(trial) < gate && study.fold_error(&trial.folds) < gate
+}
+
+/// Explains a study. `excluded` effects are not asked about; `progress` hears what is being done.
+pub(crate) fn explain(
+    study: &Study,
+    excluded: &[&str],
+    progress: &mut dyn FnMut(&str, f64),
+) -> Explanation {
+    progress("refitting the parameters", 0.1);
+    let baseline = study.trial(&study.beliefs(), Effort::FULL);
+    let mut steps: Vec<Step> = Vec::new();
+    let mut first = None;
+    let mut base = baseline.clone();
+    for number in 0..MOST_EFFECTS {
+        progress("trying all effects", 0.15 + 0.2 * number as f64);
+        let found = round(study, &base, &at_beliefs(&base), excluded);
+        let best = found
+            .candidates
+            .iter()
+            .find(|c| proven(study, &base, &c.trial));
+        let step = best.map(|best| Step {
+            trial: best.trial.clone(),
+            before: base.clone(),
+            tied: tied(study, &base, best, &found.candidates),
+        });
+        first.get_or_insert(found);
+        let Some(step) = step else { break };
+        base = step.trial.clone();
+        steps.push(step);
+        if adequate(study, &base) {
+            break;
+        }
+    }
+    let nameable = adequate(study, &base) || explained(study, &baseline, &base) > NAMED_SHARE;
+    let mut explanation = Explanation {
+        first: first.unwrap_or_else(Round::empty),
+        contests: Vec::new(),
+        baseline,
+        steps,
+        nameable,
+    };
+    if nameable {
+        progress("contesting the parameters that moved", 0.8);
+        explanation.contests = contests(study, &explanation, excluded);
+    }
+    explanation
+}
+
+/// The effects of a trial with the nominals at their beliefs.
+fn at_beliefs(trial: &Trial) -> crate::belief::Hypothesis {
+    let mut h = trial.fit.hypothesis.clone();
+    for k in (0..N_NOMINAL).filter(|&k| h.free[k]) {
+        h.z[k] = 0.0;
+    }
+    h
+}
+
+/// Candidates over which the best has no proven advantage.
+fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<String> {
+    let equal = |c: &&Candidate| {
+        c.name != best.name && proven(study, base, &c.trial) && !beats(&best.trial, &c.trial)
+    };
+    all.iter()
+        .filter(equal)
+        .map(|c| c.name.to_owned())
+        .collect()
+}
+
+/// Effects that explain the recording as well as a parameter that moved.
+fn contests(
+    study: &Study,
+    explanation: &Explanation,
+    excluded: &[&str],
+) -> Vec<(usize, Vec<Candidate>)> {
+    let last = explanation.last();
+    let contest = |k: usize| (k, contest(study, last, k, excluded));
+    off_nominals(last).into_iter().map(contest).collect()
+}
+
+fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Candidate> {
+    let mut frozen = last.fit.hypothesis.clone();
+    frozen.z[k] = 0.0;
+    frozen.free[k] = false;
+    let base = study.trial(&frozen, Effort::FULL);
+    let found = round(study, &base, &at_beliefs(&base), excluded);
+    let equal = |c: &Candidate| proven(study, &base, &c.trial) && !beats(last, &c.trial);
+    found.candidates.into_iter().filter(equal).collect()
+}
+
+/// Whether a contested parameter is better told as an effect: friction stands for every loss torque.
+pub(crate) fn is_loss(k: usize, candidate: &Candidate) -> bool {
+    let effects = &candidate.trial.fit.hypothesis.effects;
+    let physics = effects
+        .last()
+        .is_some_and(|e| e.effect.descriptor().kind == Kind::Physics);
+    k == FRICTION && physics
+}
+
+/// Name of a nominal.
+pub(crate) fn nominal_name(k: usize) -> &'static str {
+    NOMINALS[k].name
+}

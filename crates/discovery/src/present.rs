@@ -1,0 +1,116 @@
+//! From fits to the numbers of a report.
+
+use crate::belief::{FRICTION, N_NOMINAL, NOMINALS};
+use crate::report::{FitReport, NominalReport, ParameterReport};
+use crate::study::{Study, Trial};
+use motor::effects::{Kind, Role};
+
+/// A parameter is off when it moved by more than so many standard errors ...
+const SIGNIFICANT: f64 = 3.0;
+/// ... and by more than this share ...
+const RELEVANT: f64 = 0.05;
+/// ... or, for friction, by more than this per cent of rated torque.
+const RELEVANT_FRICTION: f64 = 2.0;
+/// A move beyond so many prior standard deviations is implausible.
+const IMPLAUSIBLE: f64 = 3.0;
+
+/// Standard error of coordinate `k`, zero if it was not fitted.
+fn coordinate_error(trial: &Trial, covariance: &nalgebra::DMatrix<f64>, k: usize) -> f64 {
+    let position = trial.fit.free.iter().position(|&free| free == k);
+    position.map_or(0.0, |p| covariance[(p, p)].max(0.0).sqrt())
+}
+
+/// Whether nominal `k` moved relevantly, and significantly.
+fn is_off(k: usize, z: f64, error: f64) -> bool {
+    let relevant = if k == FRICTION {
+        z.abs() > RELEVANT_FRICTION
+    } else {
+        z.exp_m1().abs() > RELEVANT
+    };
+    relevant && z.abs() > SIGNIFICANT * error
+}
+
+/// Indices of the nominals that are off.
+pub(crate) fn off_nominals(trial: &Trial) -> Vec<usize> {
+    let covariance = trial.fit.covariance();
+    let z = &trial.fit.hypothesis.z;
+    let off = |&k: &usize| is_off(k, z[k], coordinate_error(trial, &covariance, k));
+    (0..N_NOMINAL).filter(off).collect()
+}
+
+/// Names of the nominals that no such motor has.
+pub(crate) fn implausible(trial: &Trial) -> Vec<&'static str> {
+    let z = &trial.fit.hypothesis.z;
+    let far = |&k: &usize| k != FRICTION && z[k].abs() > IMPLAUSIBLE * NOMINALS[k].prior;
+    (0..N_NOMINAL)
+        .filter(far)
+        .map(|k| NOMINALS[k].name)
+        .collect()
+}
+
+/// Errors and nominal parameters of a trial.
+pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
+    let covariance = trial.fit.covariance();
+    let nominal = |k: usize| {
+        let z = trial.fit.hypothesis.z[k];
+        let error = coordinate_error(trial, &covariance, k);
+        let change = if k == FRICTION { z } else { 100.0 * z.exp_m1() };
+        NominalReport {
+            name: NOMINALS[k].name.to_owned(),
+            believed: study.belief.nominal_value(k, 0.0),
+            value: study.belief.nominal_value(k, z),
+            std_error: study.belief.nominal_error(k, z, error),
+            unit: NOMINALS[k].unit.to_owned(),
+            off: is_off(k, z, error),
+            change_percent: change,
+        }
+    };
+    FitReport {
+        held_out_error_over_noise: study.proof_error(trial),
+        fold_error_over_noise: study.fold_error(&trial.folds),
+        parameters: (0..N_NOMINAL).map(nominal).collect(),
+    }
+}
+
+/// Parameters of effect `index` of a trial.
+pub(crate) fn effect_parameters(
+    study: &Study,
+    trial: &Trial,
+    index: usize,
+) -> Vec<ParameterReport> {
+    let h = &trial.fit.hypothesis;
+    let covariance = trial.fit.covariance();
+    let rated = &study.belief.plant.rated;
+    let config = &h.configs(rated)[index];
+    let descriptor = config.effect.descriptor();
+    let error_of = |parameter: usize| {
+        let mine = |&k: &usize| h.effect_of(k) == index && h.parameter_of(k) == parameter;
+        let Some(k) = (N_NOMINAL..h.z.len()).find(mine) else {
+            return 0.0;
+        };
+        let p = &descriptor.parameters[parameter];
+        let error = coordinate_error(trial, &covariance, k);
+        match p.role {
+            Role::Size => error * p.typical * p.scale.of(rated),
+            _ => error * config.values[parameter],
+        }
+    };
+    let parameters = descriptor.parameters.iter().enumerate();
+    parameters
+        .map(|(n, p)| ParameterReport {
+            name: p.name.to_owned(),
+            value: p.to_file(config.values[n]),
+            std_error: p.error_to_file(config.values[n], error_of(n)),
+            unit: p.unit.to_owned(),
+        })
+        .collect()
+}
+
+/// The kind of answer in words.
+pub(crate) fn kind_word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Physics => "physics",
+        Kind::Sensor => "sensor",
+        Kind::Supply => "supply",
+    }
+}

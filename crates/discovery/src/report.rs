@@ -1,0 +1,142 @@
+//! What the user gets, with the stable keys of the JSON interface.
+
+use recording::Audit;
+use serde::Serialize;
+
+/// The answer of an explanation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The model explains the recording; parameters may have moved.
+    Adequate,
+    /// An effect is missing and was found.
+    Effect,
+    /// An effect is missing; several explain the recording equally well.
+    Ambiguous,
+    /// Something is missing that the library does not hold.
+    Unknown,
+    /// The recording cannot be judged.
+    Unsupported,
+    /// The recording is explained only by parameters that no such motor has.
+    Implausible,
+}
+
+/// A nominal parameter, believed and fitted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NominalReport {
+    /// Key in the motor file.
+    pub name: String,
+    /// Value in the motor file.
+    pub believed: f64,
+    /// Fitted value.
+    pub value: f64,
+    /// Standard error of the fitted value.
+    pub std_error: f64,
+    /// Unit.
+    pub unit: String,
+    /// Whether it moved by more than three standard errors and 5 % (friction: 2 % of rated torque).
+    pub off: bool,
+    /// Change against the belief, percent; friction: percent of rated torque at rated speed.
+    pub change_percent: f64,
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParameterReport {
+    /// Key in the motor file.
+    pub name: String,
+    /// Fitted value.
+    pub value: f64,
+    /// Standard error.
+    pub std_error: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// One effect that was added.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepReport {
+    /// Name of the effect.
+    pub effect: String,
+    /// Form of the effect, empty for the only one.
+    pub form: String,
+    /// Kind of answer: physics, sensor or supply.
+    pub kind: String,
+    /// Effects or parameters that explain the recording as well.
+    pub tied_with: Vec<String>,
+    /// The test that would separate them.
+    pub separating_test: String,
+    /// What a person sees when the effect is missing.
+    pub symptom: String,
+    /// Held-out error over noise with the effect.
+    pub held_out_error_over_noise: f64,
+    /// Error over noise by block folds of the fitted recording.
+    pub fold_error_over_noise: f64,
+    /// Share of the excess error that the effect explains, percent.
+    pub explained_percent: f64,
+    /// Its parameters.
+    pub parameters: Vec<ParameterReport>,
+}
+
+/// A model's error and parameters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FitReport {
+    /// Held-out error over noise.
+    pub held_out_error_over_noise: f64,
+    /// Error over noise by block folds of the fitted recording.
+    pub fold_error_over_noise: f64,
+    /// Nominal parameters.
+    pub parameters: Vec<NominalReport>,
+}
+
+/// An effect in the ranking of the first screen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RankReport {
+    /// Name of the effect.
+    pub effect: String,
+    /// Held-out error over noise, linearised unless refitted.
+    pub held_out_error_over_noise: f64,
+    /// Gain against the refitted model without it, percent.
+    pub gain_percent: f64,
+    /// Whether the effect was refitted.
+    pub refitted: bool,
+    /// Share of the noise floor that a typical size would show in this recording, percent.
+    pub visibility_percent: f64,
+}
+
+/// What is left when nothing in the library explains the recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unexplained {
+    /// A colleague's description.
+    pub description: String,
+    /// Quantities with which the remaining error grows, the strongest first.
+    pub correlates_with: Vec<String>,
+    /// The best lead, if any.
+    pub best_lead: Option<String>,
+    /// Share of the excess that the best lead explains, percent.
+    pub best_lead_explains_percent: f64,
+}
+
+/// The report of `explain`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExplainReport {
+    /// Audit of the fitted recording.
+    pub audit: Audit,
+    /// The answer.
+    pub verdict: Verdict,
+    /// One sentence that says it.
+    pub summary: String,
+    /// The model with refitted parameters and nothing added.
+    pub baseline: Option<FitReport>,
+    /// Effects added, in order.
+    pub steps: Vec<StepReport>,
+    /// The model with everything that was found.
+    #[serde(rename = "final")]
+    pub final_: Option<FitReport>,
+    /// All effects, best first.
+    pub ranking: Vec<RankReport>,
+    /// Effects that a typical size would not show in this recording.
+    pub not_testable: Vec<String>,
+    /// What is left, if the library does not explain it.
+    pub unexplained: Option<Unexplained>,
+}
