@@ -107,6 +107,14 @@ fn a_frozen_and_a_dead_channel() {
     let dead = audited(|s| s.i[2].iter_mut().for_each(|x| *x = 0.12 * noise.draw()));
     assert_one(&dead, Code::Stuck, "ic", 0.0, 0.5, "dead");
     assert_eq!(dead.unusable, ["ic"]);
+    assert!(frozen.unusable.is_empty());
+    let dying = audited(|s| {
+        s.i[0][13_000..]
+            .iter_mut()
+            .for_each(|x| *x = 0.12 * noise.draw())
+    });
+    assert_one(&dying, Code::Stuck, "ia", 0.0, 0.5, "dead");
+    assert!(dying.unusable.is_empty() && (1.2..1.4).contains(&dying.findings[0].from_s.unwrap()));
     let speed = audited(|s| s.speed.fill(150.0));
     assert_one(&speed, Code::Stuck, "speed", 150.0, 0.0, "encoder");
 }

@@ -258,3 +258,65 @@ fn a_locked_rotor_is_no_finding() {
         audit.findings
     );
 }
+
+/// Faults put into a foreign recording, start and load steps included.
+#[test]
+fn spoilt_foreign_recordings_are_named() {
+    let Some(path) = shared("peer/none/recording.csv.gz") else {
+        return;
+    };
+    let healthy = read_recording(&path, &Mapping::default(), &mut quiet()).unwrap();
+    let spoilt = |channels: &[&str], f: fn(usize, f64) -> f64| {
+        let mut recording = healthy.clone();
+        for name in channels {
+            let channel = recording::Channel::parse(name).unwrap();
+            let values = recording.channel(channel).unwrap().iter().enumerate();
+            let values = values.map(|(k, x)| f(k, *x)).collect();
+            recording = recording.with_channel(channel, values).unwrap();
+        }
+        let audit = audit(&recording, &MOTOR_A);
+        audit
+            .findings
+            .iter()
+            .map(|finding| (finding.code, finding.channel.clone()))
+            .collect::<Vec<_>>()
+    };
+    let one = |code, channel: &str| vec![(code, channel.to_owned())];
+    // The inrush of 48 A cut at half of it: an amplifier in saturation, far below the declared 60 A.
+    assert_eq!(
+        spoilt(&["ib"], |_, x| x.clamp(-24.0, 24.0)),
+        one(Code::Clipping, "ib")
+    );
+    assert_eq!(spoilt(&["ic"], |_, x| -x), one(Code::Polarity, "ic"));
+    assert_eq!(
+        spoilt(&["ia", "ib", "ic"], |_, x| -x),
+        one(Code::Polarity, "ia ib ic")
+    );
+    assert_eq!(spoilt(&["va"], |_, x| x + 3.0), one(Code::Offset, "va"));
+    assert_eq!(spoilt(&["ia"], |_, x| x + 0.05), one(Code::Offset, "ia"));
+    assert_eq!(
+        spoilt(&["ib"], |_, x| 1.03 * x),
+        one(Code::ZeroSequence, "ia ib ic")
+    );
+    assert_eq!(
+        spoilt(&["vb"], |k, x| if k > 45_000 { 0.0 } else { x }),
+        one(Code::Stuck, "vb")
+    );
+    assert_eq!(
+        spoilt(&["speed"], |_, x| 9.549_297 * x),
+        one(Code::Unit, "speed")
+    );
+    assert_eq!(spoilt(&["speed"], |_, x| -x), one(Code::Polarity, "speed"));
+    assert_eq!(
+        spoilt(&["speed"], |_, x| 0.5 * x),
+        one(Code::SpeedImplausible, "speed")
+    );
+    assert_eq!(
+        spoilt(&["va", "vb", "vc"], |_, x| 1.732 * x),
+        one(Code::LineVoltages, "va vb vc")
+    );
+    assert_eq!(
+        spoilt(&["torque"], |_, x| 1000.0 * x),
+        one(Code::Unit, "torque")
+    );
+}

@@ -69,10 +69,11 @@ fn at_rails(recording: &Recording, channel: Channel, x: &[f64]) -> Option<Clippe
     let full_scale = sensors.full_scale(channel)?;
     let step = sensors.step(channel).unwrap_or(1e-6 * full_scale);
     // Beyond the rail nothing is clipped: the declared full scale is not this channel's.
-    let hits = x
-        .iter()
-        .enumerate()
-        .filter(|(_, x)| (x.abs() - full_scale).abs() <= 1.5 * step);
+    if extreme(x) > full_scale + 1.5 * step {
+        return None;
+    }
+    let limit = full_scale - 1.5 * step;
+    let hits = x.iter().enumerate().filter(|(_, x)| x.abs() >= limit);
     let places: Vec<Range<usize>> = hits.map(|(k, _)| k..k + 1).collect();
     (places.len() >= FEWEST_AT_RAIL).then_some(Clipped {
         channel,

@@ -7,6 +7,7 @@ mod blocks;
 mod clipping;
 mod clock;
 mod context;
+mod dead;
 mod expectation;
 mod finding;
 mod fit;

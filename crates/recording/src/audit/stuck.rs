@@ -1,75 +1,38 @@
 //! Channels that do not follow what they measure.
 
 use super::context::Context;
+use super::dead::dead;
 use super::finding::{Code, Finding};
 use super::statistics::median;
-use crate::channel::{Channel, Quantity};
+use crate::channel::Channel;
 use std::f64::consts::TAU;
 
 /// A frozen stretch of at least this many periods is not a peak.
 const FROZEN_PERIODS: f64 = 0.75;
-/// Fundamental of a dead channel over that of its neighbours.
-const DEAD: f64 = 0.02;
-/// Sum of two currents over one of them, below which the third phase carries no current either.
-const OPEN: f64 = 0.1;
+/// Share of its usual magnitude by which a channel that goes on must move.
+const MOVING: f64 = 0.5;
 /// Change of the current amplitude that a live speed channel must notice.
 const LOAD_CHANGE: f64 = 0.2;
 
 pub(super) fn check(context: &mut Context<'_>) -> Vec<Finding> {
-    let mut findings = Vec::new();
+    let mut found = Vec::new();
     for three in [Channel::VOLTAGES, Channel::CURRENTS] {
         for k in 0..3 {
-            findings.extend(dead(context, three, k).or_else(|| frozen(context, three, k)));
+            found.extend(dead(context, three, k).or_else(|| frozen(context, three, k)));
         }
     }
-    findings.extend(speed(context));
-    for channel in findings
-        .iter()
-        .filter_map(|finding| Channel::parse(&finding.channel))
-    {
-        context.unsound.insert(channel);
-    }
-    findings
+    found.extend(speed(context).map(|finding| (finding, true)));
+    let lost = found.iter().filter(|(_, mostly)| *mostly);
+    let lost: Vec<Channel> = lost
+        .filter_map(|(finding, _)| Channel::parse(&finding.channel))
+        .collect();
+    context.unsound.extend(lost);
+    found.into_iter().map(|(finding, _)| finding).collect()
 }
 
-/// A channel without a fundamental where the other two have one.
-fn dead(context: &Context<'_>, three: [Channel; 3], k: usize) -> Option<Finding> {
-    let channel = three[k];
-    if context.recording.is_derived(channel) {
-        return None;
-    }
-    let alive = context.alive(three);
-    let [a, b] = [(k + 1) % 3, (k + 2) % 3];
-    let share =
-        |at: &[num_complex::Complex64; 3]| 2.0 * at[k].norm() / (at[a].norm() + at[b].norm());
-    let phasors: Vec<_> = alive.iter().map(|(_, three)| three.phasors()).collect();
-    let shown = median(phasors.iter().map(share))?;
-    if shown > DEAD {
-        return None;
-    }
-    let sum = median(
-        phasors
-            .iter()
-            .map(|at| (at[a] + at[b]).norm() / at[a].norm()),
-    )?;
-    let open = channel.quantity() == Quantity::Current && sum < OPEN;
-    let detail = if open {
-        format!(
-            "{channel} carries no current and the other two cancel: the phase is open, or two columns \
-             hold the same wire. Check fuse, contactor and cable."
-        )
-    } else {
-        format!(
-            "{channel} shows {:.1} % of what the other two show: the sensor is dead, not connected, or \
-             the column is another one. Check its cable and the column mapping.",
-            100.0 * shown
-        )
-    };
-    Some(Finding::new(Code::Stuck, channel, 100.0 * shown, "%").detail(detail))
-}
-
-/// A channel that repeats one value while the others of its kind go on.
-fn frozen(context: &Context<'_>, three: [Channel; 3], k: usize) -> Option<Finding> {
+/// A channel that repeats one value while the others of its kind go on, and whether it does so for most
+/// of the recording.
+fn frozen(context: &Context<'_>, three: [Channel; 3], k: usize) -> Option<(Finding, bool)> {
     let channel = three[k];
     let x = context.recording.channel(channel)?;
     let longest = TAU / context.omega()? / context.recording.t_sample() * FROZEN_PERIODS;
@@ -81,10 +44,10 @@ fn frozen(context: &Context<'_>, three: [Channel; 3], k: usize) -> Option<Findin
         let Some(y) = context.recording.channel(*other) else {
             return false;
         };
-        let all = y.iter().fold(0.0, |all: f64, y| all.max(y.abs()));
+        let usual = median(y.iter().map(|y| y.abs())).unwrap_or(0.0);
         let stretch = &y[from..from + length];
         let mean = super::blocks::mean(stretch);
-        stretch.iter().any(|y| (y - mean).abs() > 0.05 * all)
+        stretch.iter().any(|y| (y - mean).abs() > MOVING * usual)
     };
     let others = three
         .iter()
@@ -92,12 +55,14 @@ fn frozen(context: &Context<'_>, three: [Channel; 3], k: usize) -> Option<Findin
         .count();
     (others == 2).then(|| {
         let (t, unit) = (context.recording.t(), channel.quantity().si());
-        let seconds = t[from + length - 1] - t[from];
-        Finding::new(Code::Stuck, channel, seconds, "s").within(t[from], t[from] + seconds).detail(format!(
-            "{channel} stays at {} {unit} for {seconds:.3} s from {:.3} s on while the others go on: the \
-             sensor or its converter froze. Cut that stretch, or measure again.",
-            x[from], t[from]
-        ))
+        let (begin, end) = (t[from], t[from + length - 1]);
+        let detail = format!(
+            "{channel} stays at {} {unit} from {begin:.3} s to {end:.3} s while the others go on: the sensor \
+             or its converter froze. Cut that stretch, or measure again.",
+            x[from]
+        );
+        let finding = Finding::new(Code::Stuck, channel, end - begin, "s");
+        (finding.within(begin, end).detail(detail), 2 * length > x.len())
     })
 }
 
