@@ -1,40 +1,12 @@
 //! Every code of the audit: one healthy recording, one thing wrong with it, exactly the finding that
 //! belongs to it and no other.
 
-mod common;
 #[path = "common/synthetic.rs"]
 mod synthetic;
 
-use recording::{Audit, Code, Recording, audit};
+use recording::{Code, Recording, audit};
 use std::f64::consts::TAU;
-use synthetic::{Noise, Signals, expectation};
-
-fn audited(spoil: impl FnOnce(&mut Signals)) -> Audit {
-    let mut signals = Signals::healthy(7);
-    spoil(&mut signals);
-    audit(&signals.recording(), &expectation())
-}
-
-#[track_caller]
-fn assert_codes(audit: &Audit, expected: &[Code]) {
-    let codes: Vec<Code> = audit.findings.iter().map(|finding| finding.code).collect();
-    assert_eq!(codes, expected, "{:#?}", audit.findings);
-}
-
-/// Exactly one finding, on a channel, of a value within a tolerance, with a word of its remedy.
-#[track_caller]
-fn assert_one(audit: &Audit, code: Code, channel: &str, value: f64, tolerance: f64, remedy: &str) {
-    assert_codes(audit, &[code]);
-    let finding = &audit.findings[0];
-    assert_eq!(finding.channel, channel);
-    assert!((finding.value - value).abs() <= tolerance, "{finding:?}");
-    assert!(finding.detail.contains(remedy), "{}", finding.detail);
-    assert_eq!(audit.supported, !finding.refuses);
-}
-
-fn each(x: &mut [Vec<f64>; 3], f: impl Fn(f64) -> f64) {
-    x.iter_mut().flatten().for_each(|x| *x = f(*x));
-}
+use synthetic::{Noise, Signals, assert_codes, assert_one, audited, each, expectation};
 
 #[test]
 fn a_healthy_motor_has_no_finding() {
@@ -130,63 +102,6 @@ fn an_open_phase_is_told_from_a_dead_sensor() {
 }
 
 #[test]
-fn two_currents_exchanged() {
-    for (a, b, pair) in [
-        (0, 1, "ia and ib"),
-        (1, 2, "ib and ic"),
-        (0, 2, "ia and ic"),
-    ] {
-        let audit = audited(|s| s.i.swap(a, b));
-        assert_one(&audit, Code::SwappedPhases, "ia ib ic", 1.0, 1.0, pair);
-        assert!(!audit.supported);
-    }
-}
-
-#[test]
-fn currents_of_the_neighbouring_phases() {
-    for turns in [1, 2] {
-        let audit = audited(|s| s.i.rotate_left(turns));
-        assert_codes(&audit, &[Code::SwappedPhases]);
-        let remedy = ["--column ia=ic", "--column ia=ib"][turns - 1];
-        assert!(
-            audit.findings[0].detail.contains(remedy),
-            "{:?}",
-            audit.findings
-        );
-    }
-}
-
-#[test]
-fn inverted_channels() {
-    let one = audited(|s| s.i[1].iter_mut().for_each(|x| *x = -*x));
-    assert_one(&one, Code::Polarity, "ib", 180.0, 0.0, "--scale ib=-1");
-    let voltage = audited(|s| s.v[2].iter_mut().for_each(|x| *x = -*x));
-    assert_one(&voltage, Code::Polarity, "vc", 180.0, 0.0, "--scale vc=-1");
-    let all = audited(|s| each(&mut s.i, |x| -x));
-    assert_codes(&all, &[Code::Polarity]);
-    assert!(all.findings[0].detail.contains("--scale ia=-1"));
-    let speed = audited(|s| s.speed.iter_mut().for_each(|x| *x = -*x));
-    assert_codes(&speed, &[Code::Polarity]);
-    assert_eq!(speed.findings[0].channel, "speed");
-}
-
-#[test]
-fn the_order_of_the_phases() {
-    let exchanged = audited(|s| {
-        s.v.swap(1, 2);
-        s.i.swap(1, 2);
-    });
-    assert_codes(&exchanged, &[Code::PhaseOrder]);
-    assert!(!exchanged.supported);
-    let backwards = audited(|s| {
-        s.v.swap(1, 2);
-        s.i.swap(1, 2);
-        s.speed.iter_mut().for_each(|x| *x = -*x);
-    });
-    assert_codes(&backwards, &[]);
-}
-
-#[test]
 fn offsets() {
     let audit = audited(|s| s.i[0].iter_mut().for_each(|x| *x += 0.1));
     assert_one(&audit, Code::Offset, "ia", 0.1, 0.005, "--offset ia=0.");
@@ -219,84 +134,6 @@ fn a_voltage_sensor_of_wrong_gain_is_no_unbalance() {
         0.03,
         "in vb",
     );
-}
-
-#[test]
-fn line_voltages_for_phase_voltages() {
-    let audit = audited(|s| {
-        let [a, b, c] = s.v.clone();
-        let less = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x - y).collect();
-        s.v = [less(&a, &b), less(&b, &c), less(&c, &a)];
-    });
-    assert_one(
-        &audit,
-        Code::LineVoltages,
-        "va vb vc",
-        3f64.sqrt(),
-        0.01,
-        "--line-voltages",
-    );
-}
-
-#[test]
-fn effective_values() {
-    let audit = audited(|s| {
-        let mut noise = Noise::new(5);
-        s.v.iter_mut()
-            .flatten()
-            .for_each(|x| *x = 230.0 + noise.draw());
-        s.i.iter_mut()
-            .flatten()
-            .for_each(|x| *x = 4.8 + 0.05 * noise.draw());
-    });
-    assert_codes(&audit, &[Code::RmsValues; 2]);
-    assert!(!audit.supported);
-}
-
-#[test]
-fn units() {
-    let rpm = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 60.0 / TAU));
-    assert_one(
-        &rpm,
-        Code::Unit,
-        "speed",
-        60.0 / TAU,
-        1e-9,
-        "--unit speed=rpm",
-    );
-    let turns = audited(|s| s.speed.iter_mut().for_each(|x| *x /= TAU));
-    assert_one(
-        &turns,
-        Code::Unit,
-        "speed",
-        1.0 / TAU,
-        1e-9,
-        "--unit speed=rev/s",
-    );
-    let millivolt = audited(|s| {
-        s.metadata.sensors = recording::Sensors::default();
-        each(&mut s.v, |x| 1000.0 * x);
-    });
-    assert_one(
-        &millivolt,
-        Code::Unit,
-        "va vb vc",
-        1000.0,
-        10.0,
-        "--unit va=mV",
-    );
-    let kiloamp = audited(|s| each(&mut s.i, |x| 1e-3 * x));
-    assert_codes(&kiloamp, &[Code::Unit]);
-    assert!(kiloamp.findings[0].detail.contains("--unit ia=kA"));
-    let milliseconds = audited(|s| s.t.iter_mut().for_each(|t| *t *= 1000.0));
-    assert_codes(&milliseconds, &[Code::Unit]);
-    assert!(
-        milliseconds.findings[0].detail.contains("--unit t=ms"),
-        "{milliseconds:?}"
-    );
-    for audit in [rpm, turns, millivolt, kiloamp, milliseconds] {
-        assert!(!audit.supported);
-    }
 }
 
 #[test]
@@ -394,29 +231,6 @@ fn a_distorted_supply() {
         0.05,
         "order",
     );
-}
-
-#[test]
-fn implausible_speeds() {
-    // Believed to have three pole pairs: 1500 rpm is then 1.5 times synchronous speed.
-    let believed = recording::Expectation {
-        pole_pairs: Some(3),
-        ..expectation()
-    };
-    let wrong = audit(&Signals::healthy(2).recording(), &believed);
-    assert_codes(&wrong, &[Code::SpeedImplausible]);
-    assert!(
-        wrong.findings[0]
-            .detail
-            .contains("2 pole pairs instead of 3"),
-        "{wrong:?}"
-    );
-    assert_eq!(wrong.unusable, ["speed"]);
-    let volts = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 0.0156));
-    assert_codes(&volts, &[Code::SpeedImplausible]);
-    let fast = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 1.06));
-    assert_codes(&fast, &[Code::SpeedImplausible]);
-    assert!(fast.unusable.is_empty() && fast.supported);
 }
 
 #[test]

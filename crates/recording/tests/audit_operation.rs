@@ -1,7 +1,6 @@
 //! What motors do in normal operation, simulated: no finding, whatever the manoeuvre.
 
 #[path = "common/synthetic.rs"]
-#[allow(dead_code)]
 mod synthetic;
 
 use motor::dynamic::{Dynamic, DynamicState, phases};

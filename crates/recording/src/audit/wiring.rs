@@ -170,56 +170,71 @@ fn is_driven(context: &Context<'_>, block: &super::blocks::Block) -> bool {
         .is_some_and(|speed| speed.abs() * pole_pairs > 1.001 * block.omega)
 }
 
+/// A way in which currents may have been taken for those of other phases.
+struct Mistake {
+    sign: f64,
+    shift: usize,
+    code: Code,
+    remedy: &'static str,
+}
+
+const MISTAKES: [Mistake; 3] = [
+    Mistake {
+        sign: -1.0,
+        shift: 0,
+        code: Code::Polarity,
+        remedy: "all currents (or all voltages) are inverted: turn the probes around, or add \
+                 --scale ia=-1 --scale ib=-1 --scale ic=-1",
+    },
+    Mistake {
+        sign: 1.0,
+        shift: 1,
+        code: Code::SwappedPhases,
+        remedy: "the currents belong to the next phases: --column ia=ib --column ib=ic --column ic=ia",
+    },
+    Mistake {
+        sign: 1.0,
+        shift: 2,
+        code: Code::SwappedPhases,
+        remedy: "the currents belong to the phases before: --column ia=ic --column ib=ia --column ic=ib",
+    },
+];
+
+impl Mistake {
+    fn undone(&self, i: [Complex64; 3]) -> [Complex64; 3] {
+        [0, 1, 2].map(|k| self.sign * i[(k + self.shift) % 3])
+    }
+}
+
 /// Same order, but an angle that no motor has: inverted, or shifted by one or two phases.
 fn angle(context: &mut Context<'_>) -> Option<Finding> {
     if motor_share(context, |i| i) > MOST {
         return None;
     }
-    let turned = |sign: f64, shift: usize| {
-        move |i: [Complex64; 3]| [0, 1, 2].map(|k: usize| sign * i[(k + shift) % 3])
-    };
-    let tries = [
-        (
-            -1.0,
-            0,
-            Code::Polarity,
-            "all currents (or all voltages) are inverted: turn the probes around, or add --scale ia=-1 --scale ib=-1 --scale ic=-1",
-        ),
-        (
-            1.0,
-            1,
-            Code::SwappedPhases,
-            "the currents belong to the next phases: --column ia=ib --column ib=ic --column ic=ia",
-        ),
-        (
-            1.0,
-            2,
-            Code::SwappedPhases,
-            "the currents belong to the phases before: --column ia=ic --column ib=ia --column ic=ib",
-        ),
-    ];
-    let fits: Vec<_> = tries
-        .into_iter()
-        .filter(|(sign, shift, ..)| motor_share(context, turned(*sign, *shift)) > MOST)
-        .collect();
-    let (_, _, code, _) = fits.first()?;
-    let remedies: Vec<&str> = fits.iter().map(|(.., remedy)| *remedy).collect();
-    let lags = context.settled(Channel::CURRENTS);
-    let lags = lags
-        .iter()
-        .filter_map(|(block, three)| lag(block.voltages.as_ref()?, three.phasors()));
-    let lag = median(lags).unwrap_or(0.0);
+    let fits = |mistake: &&Mistake| motor_share(context, |i| mistake.undone(i)) > MOST;
+    let fits: Vec<&Mistake> = MISTAKES.iter().filter(fits).collect();
+    let code = fits.first()?.code;
+    let remedies: Vec<&str> = fits.iter().map(|mistake| mistake.remedy).collect();
+    let lag = usual_lag(context);
     context
         .unsound
         .extend(Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS));
     Some(
-        Finding::new(*code, names(&Channel::CURRENTS), lag, "degrees")
+        Finding::new(code, names(&Channel::CURRENTS), lag, "degrees")
             .detail(format!(
                 "The currents lag the voltages by {lag:.0} degrees, which no motor does (0 to 90): {}.",
                 remedies.join("; or ")
             ))
             .refusing(),
     )
+}
+
+fn usual_lag(context: &Context<'_>) -> f64 {
+    let settled = context.settled(Channel::CURRENTS);
+    let lags = settled
+        .iter()
+        .filter_map(|(block, three)| lag(block.voltages.as_ref()?, three.phasors()));
+    median(lags).unwrap_or(0.0)
 }
 
 /// Speed over the supply's angular frequency, beyond which a shaft turns for certain.

@@ -14,7 +14,7 @@ use crate::metadata::Metadata;
 use crate::recording::Recording;
 use crate::sidecar::Sidecar;
 use crate::source::Progress;
-use csv_file::CsvFile;
+use csv_file::{Cells, CsvFile};
 use plan::Plan;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -125,6 +125,7 @@ fn plan_is_sufficient(csv: &CsvFile, plan: &Plan, mapping: &Mapping) -> Result<(
 }
 
 /// The samples of a file as they stand there, with their lines.
+#[derive(Default)]
 pub(crate) struct Raw {
     pub columns: BTreeMap<Target, Vec<f64>>,
     pub lines: Vec<u64>,
@@ -139,42 +140,67 @@ fn read_columns(
     mapping: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Raw, Error> {
-    let used: Vec<(Target, usize)> = plan.columns.iter().map(|(t, c)| (*t, *c)).collect();
-    let names: Vec<String> = used
-        .iter()
-        .map(|(_, column)| csv.header[*column].clone())
-        .collect();
-    let skip = mapping.skip_missing.unwrap_or(false);
-    let mut values: Vec<Vec<f64>> = vec![Vec::new(); used.len()];
-    let (mut lines, mut numbers, mut skipped) = (Vec::new(), Vec::new(), 0);
-    let mut row = vec![0.0; used.len()];
-    csv.for_each_row(progress, |cells| {
-        for (k, (_, column)) in used.iter().enumerate() {
-            match cells.number(*column, &names[k])? {
-                Some(x) => row[k] = x,
-                None if skip => {
-                    skipped += 1;
+    let mut collector = Collector::new(csv, plan, mapping.skip_missing.unwrap_or(false));
+    csv.for_each_row(progress, |cells| collector.take(cells))?;
+    let Collector {
+        used, values, raw, ..
+    } = collector;
+    let targets = used.into_iter().map(|column| column.target);
+    Ok(Raw {
+        columns: targets.zip(values).collect(),
+        ..raw
+    })
+}
+
+struct UsedColumn {
+    target: Target,
+    index: usize,
+    name: String,
+}
+
+/// Gathers the used columns row by row.
+struct Collector {
+    used: Vec<UsedColumn>,
+    values: Vec<Vec<f64>>,
+    row: Vec<f64>,
+    raw: Raw,
+    skip_missing: bool,
+}
+
+impl Collector {
+    fn new(csv: &CsvFile, plan: &Plan, skip_missing: bool) -> Collector {
+        let used = plan.columns.iter().map(|(target, index)| UsedColumn {
+            target: *target,
+            index: *index,
+            name: csv.header[*index].clone(),
+        });
+        let used: Vec<UsedColumn> = used.collect();
+        Collector {
+            values: vec![Vec::new(); used.len()],
+            row: vec![0.0; used.len()],
+            used,
+            raw: Raw::default(),
+            skip_missing,
+        }
+    }
+
+    fn take(&mut self, cells: &Cells<'_>) -> Result<(), Error> {
+        for (slot, column) in self.row.iter_mut().zip(&self.used) {
+            match cells.number(column.index, &column.name)? {
+                Some(x) => *slot = x,
+                None if self.skip_missing => {
+                    self.raw.skipped += 1;
                     return Ok(());
                 }
-                None => return Err(cells.missing(&names[k])),
+                None => return Err(cells.missing(&column.name)),
             }
         }
-        for (column, x) in values.iter_mut().zip(&row) {
+        for (column, x) in self.values.iter_mut().zip(&self.row) {
             column.push(*x);
         }
-        numbers.push(skipped + lines.len() as u64);
-        lines.push(cells.line);
+        let number = self.raw.skipped + self.raw.lines.len() as u64;
+        self.raw.numbers.push(number);
+        self.raw.lines.push(cells.line);
         Ok(())
-    })?;
-    let columns = used
-        .into_iter()
-        .map(|(target, _)| target)
-        .zip(values)
-        .collect();
-    Ok(Raw {
-        columns,
-        lines,
-        numbers,
-        skipped,
-    })
+    }
 }

@@ -1,7 +1,9 @@
 //! Where the tests find their files.
 #![allow(dead_code)]
 
+use flate2::{Compression, write::GzEncoder};
 use recording::Progress;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Variable that names the folder of recordings which are not part of this repository.
@@ -69,4 +71,11 @@ impl Drop for Folder {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.0);
     }
+}
+
+/// Bytes as a gzip file.
+pub fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).expect("memory");
+    encoder.finish().expect("memory")
 }

@@ -1,6 +1,7 @@
 //! A loaded, then unloaded motor on a grid, as closed forms with noise: healthy, to be spoilt by tests.
+#![allow(dead_code)]
 
-use recording::{Channel, Expectation, Metadata, Recording, Sensors, Supply};
+use recording::{Audit, Channel, Code, Expectation, Metadata, Recording, Sensors, Supply, audit};
 use std::f64::consts::TAU;
 
 /// Samples per second.
@@ -115,4 +116,41 @@ fn metadata() -> Metadata {
         },
         ..Metadata::default()
     }
+}
+
+/// The audit of the healthy signals after something was done to them.
+pub fn audited(spoil: impl FnOnce(&mut Signals)) -> Audit {
+    let mut signals = Signals::healthy(7);
+    spoil(&mut signals);
+    audit(&signals.recording(), &expectation())
+}
+
+/// Exactly these findings, in this order.
+#[track_caller]
+pub fn assert_codes(audit: &Audit, expected: &[Code]) {
+    let codes: Vec<Code> = audit.findings.iter().map(|finding| finding.code).collect();
+    assert_eq!(codes, expected, "{:#?}", audit.findings);
+}
+
+/// Exactly one finding, on a channel, of a value within a tolerance, with a word of its remedy.
+#[track_caller]
+pub fn assert_one(
+    audit: &Audit,
+    code: Code,
+    channel: &str,
+    value: f64,
+    tolerance: f64,
+    remedy: &str,
+) {
+    assert_codes(audit, &[code]);
+    let finding = &audit.findings[0];
+    assert_eq!(finding.channel, channel);
+    assert!((finding.value - value).abs() <= tolerance, "{finding:?}");
+    assert!(finding.detail.contains(remedy), "{}", finding.detail);
+    assert_eq!(audit.supported, !finding.refuses);
+}
+
+/// Changes every sample of three channels.
+pub fn each(x: &mut [Vec<f64>; 3], f: impl Fn(f64) -> f64) {
+    x.iter_mut().flatten().for_each(|x| *x = f(*x));
 }
