@@ -1,0 +1,215 @@
+//! Malformed recordings: the file as a whole, its header, its rows.
+
+use crate::common::gzip;
+use crate::{Case, case, named, unsupported};
+
+fn long_table() -> String {
+    let rows: Vec<String> = (0..5000)
+        .map(|k| format!("{k},{},2,3", k * 7919 % 1013))
+        .collect();
+    format!("t,ia,ib,ic\n{}\n", rows.join("\n"))
+}
+
+fn damaged_gzip() -> Vec<u8> {
+    let mut packed = gzip(long_table().as_bytes());
+    // RFC 1952: the checksum of the content is in the last eight bytes.
+    let checksum = packed.len() - 8;
+    packed[checksum] ^= 0xFF;
+    packed
+}
+
+fn utf16(text: &str, big_endian: bool) -> Vec<u8> {
+    let order = |unit: u16| {
+        if big_endian {
+            unit.to_be_bytes()
+        } else {
+            unit.to_le_bytes()
+        }
+    };
+    std::iter::once(0xFEFF)
+        .chain(text.encode_utf16())
+        .flat_map(order)
+        .collect()
+}
+
+/// Files that are no text, damaged, or of another format.
+pub fn files() -> Vec<Case> {
+    let half = gzip(long_table().as_bytes());
+    let half = half[..half.len() / 2].to_vec();
+    vec![
+        case("", &["x.csv: is empty", "first line names the columns"]),
+        named("x.csv.gz", "", &["x.csv.gz: is empty"]),
+        named("x.csv.gz", gzip(b""), &["x.csv.gz: is empty"]),
+        case("# only a comment\n", &["holds no header"]),
+        case("t,ia,ib,ic\n", &["a header, but no samples", "record"]),
+        case("t,ia,ib,ic\n0,1,2,3\n", &["a single sample", "at least 2"]),
+        named(
+            "x.csv.gz",
+            half,
+            &["x.csv.gz:", "truncated or damaged", "copy or record"],
+        ),
+        named(
+            "x.csv.gz",
+            damaged_gzip(),
+            &["x.csv.gz:", "truncated or damaged"],
+        ),
+        named(
+            "x.csv.gz",
+            "t,ia\n0,1\n1,2\n",
+            &["is not gzip-compressed", "rename it without .gz"],
+        ),
+        case(
+            gzip(b"t,ia\n0,1\n1,2\n"),
+            &["name does not end in .gz", "rename it to", "x.csv.gz"],
+        ),
+        named(
+            "x.csv.gz",
+            gzip(&gzip(b"t,ia\n0,1\n")),
+            &["compressed twice"],
+        ),
+        case(
+            utf16("t,ia\n0,1\n1,2\n", false),
+            &["UTF-16", "save it as UTF-8"],
+        ),
+        case(
+            utf16("t,ia\n0,1\n1,2\n", true),
+            &["UTF-16", "save it as UTF-8"],
+        ),
+        case(
+            b"t\0,\0i\0a\0".to_vec(),
+            &["zero byte at offset 1", "UTF-8"],
+        ),
+        case(
+            b"t,ia\n0,1\n1,\xC3\x28\n".to_vec(),
+            &["x.csv:3: ia", "not UTF-8"],
+        ),
+        case(
+            b"t,i\xFFa\n0,1\n1,2\n".to_vec(),
+            &["x.csv:1", "header is not UTF-8"],
+        ),
+        case(
+            format!("t,ia\n0,1\n1,{}\n", "9".repeat(100_000)),
+            &["x.csv:3", "longer than 65536"],
+        ),
+        case("x".repeat(300_000), &["x.csv:1", "longer than 65536"]),
+        unsupported(
+            b"PAR1\x15\x04\x15".to_vec(),
+            &["Parquet", "export it as .csv"],
+        ),
+        unsupported(
+            b"\x89HDF\r\n\x1A\n".to_vec(),
+            &["HDF5", "export it as .csv"],
+        ),
+        unsupported(
+            b"MATLAB 5.0 MAT-file, Platform".to_vec(),
+            &["MAT-file", "export it"],
+        ),
+        unsupported(b"PK\x03\x04".to_vec(), &["zip archive", "export it"]),
+    ]
+}
+
+/// Headers that do not say what the columns are.
+pub fn headers() -> Vec<Case> {
+    vec![
+        case(
+            "0,1,2\n1,2,3\n",
+            &["x.csv:1", "numbers, not column names", "put a line such as"],
+        ),
+        case(
+            "t;ia;ib\n0;1;2\n",
+            &["x.csv:1", "separated by ';'", "--delimiter ';'"],
+        ),
+        case(
+            "t\tia\tib\n0\t1\t2\n",
+            &["x.csv:1", "separated by '\\t'", "--delimiter 'tab'"],
+        ),
+        case(
+            "t,ia,ia\n0,1,2\n",
+            &["x.csv:1", "`ia` stands there twice", "rename or remove"],
+        ),
+        case("t,ia,\n0,1,2\n", &["x.csv:1", "column 3 has no name"]),
+        case(
+            "t,ia,spead\n0,1,2\n",
+            &[
+                "x.csv:1: spead",
+                "did you mean `speed`",
+                "--column speed=spead",
+            ],
+        ),
+        case("T,Ia\n0,1\n1,2\n", &["x.csv:1: T", "did you mean `t`"]),
+        case(
+            "ia,ib,ic\n1,2,3\n",
+            &["x.csv:1: t", "no clock", "--sample-rate"],
+        ),
+        case(
+            "t,speed\n0,1\n1,2\n",
+            &[
+                "x.csv:1",
+                "neither currents nor voltages",
+                "--column ia=NAME",
+            ],
+        ),
+        case("t,vab\n0,1\n1,2\n", &["neither currents nor voltages"]),
+        case(
+            "t,ia,power_watt\n0,1,2\n",
+            &["belongs to a load table", "two files"],
+        ),
+    ]
+}
+
+/// Rows that hold no numbers, or a clock that does not rise.
+pub fn rows() -> Vec<Case> {
+    vec![
+        case(
+            "t,ia\n0,1\n1,NaN\n",
+            &["x.csv:3: ia", "no number (empty or NaN)", "--skip-missing"],
+        ),
+        case(
+            "t,ia\n0,1\n1,\n",
+            &["x.csv:3: ia", "no number", "--skip-missing"],
+        ),
+        case(
+            "t,ia\n0,1\n1,inf\n",
+            &["x.csv:3: ia", "`inf` is inf", "overflow"],
+        ),
+        case("t,ia\n0,1\n1,1e999\n", &["x.csv:3: ia", "`1e999` is inf"]),
+        case(
+            "t,ia\n0,1\n1,off\n",
+            &[
+                "x.csv:3: ia",
+                "`off` is not a number",
+                "one number per cell",
+            ],
+        ),
+        case(
+            "t,ia\n0,1\n1,3.7 A\n",
+            &[
+                "x.csv:3: ia",
+                "`3.7 A` is not a number",
+                "unit only in the header",
+            ],
+        ),
+        case(
+            "t,ia\n0,1\n1\n",
+            &[
+                "x.csv:3",
+                "has 1 columns, the header has 2",
+                "complete the row",
+            ],
+        ),
+        case(
+            "t,ia\n0,0,1,5\n",
+            &["x.csv:2", "has 4 columns", "with a point"],
+        ),
+        case("t,ia\r\n0,1\r\n1,x\r\n", &["x.csv:3: ia"]),
+        case("# one\nt,ia\r\r# two\r0,1\r1,x", &["x.csv:6: ia"]),
+        case(
+            "t,ia\n0,1\n\n0,2\n",
+            &["x.csv:4: t", "0 s stands there twice", "--sample-rate"],
+        ),
+        case(
+            "t,ia\n0,1\n2,2\n1,3\n",
+            &["x.csv:4: t", "falls from 2 s to 1 s", "sort"],
+        ),
+    ]
+}
