@@ -1,0 +1,301 @@
+//! The motor constants as they lie in flash: words with a schema version and a checksum, so that a
+//! corrupted constant is noticed at power-up instead of being computed with.
+
+use monitor::{
+    Abc, ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, MonitorConfig,
+};
+use motor::{Mechanics, TParams};
+
+use crate::checksum::crc32_words;
+
+/// Words of an image, version and checksum included.
+pub const IMAGE_WORDS: usize = 42;
+
+/// Layout of the words; a different one gets a different number.
+const SCHEMA: u32 = 0x444D_0001;
+
+/// The monitor's configuration as words for flash.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MotorImage(pub [u32; IMAGE_WORDS]);
+
+/// Why an image cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageError {
+    /// The checksum does not hold.
+    Checksum,
+    /// Written for another layout.
+    Schema,
+    /// A choice that this version does not know.
+    Choice,
+}
+
+impl core::fmt::Display for ImageError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            ImageError::Checksum => "the checksum of the motor constants does not hold",
+            ImageError::Schema => "the motor constants have another layout than this program",
+            ImageError::Choice => "the motor constants hold an unknown frame, field or load",
+        })
+    }
+}
+
+impl core::error::Error for ImageError {}
+
+impl MotorImage {
+    /// Packs a configuration.
+    pub fn new(config: &MonitorConfig) -> Self {
+        let mut writer = Writer::default();
+        writer.word(SCHEMA);
+        write_measurement(&mut writer, config);
+        write_motor(&mut writer, config);
+        write_judgement(&mut writer, config);
+        let mut words = writer.words;
+        words[IMAGE_WORDS - 1] = crc32_words(&words[..IMAGE_WORDS - 1]);
+        MotorImage(words)
+    }
+
+    /// Checks and unpacks an image. Ranges are checked by [`monitor::Monitor::new`].
+    ///
+    /// # Errors
+    /// A wrong checksum, another layout, or an unknown choice.
+    pub fn config(&self) -> Result<MonitorConfig, ImageError> {
+        let (content, checksum) = self.0.split_at(IMAGE_WORDS - 1);
+        if [crc32_words(content)] != *checksum {
+            return Err(ImageError::Checksum);
+        }
+        let mut reader = Reader { words: content };
+        if reader.word() != SCHEMA {
+            return Err(ImageError::Schema);
+        }
+        read(&mut reader)
+    }
+}
+
+fn write_measurement(w: &mut Writer, config: &MonitorConfig) {
+    w.number(config.t_sample);
+    w.scale(&config.converter.voltage);
+    w.scale(&config.converter.current);
+    w.word(u32::from(config.converter.max_code));
+    w.number(config.encoder_counts_per_revolution);
+}
+
+fn write_motor(w: &mut Writer, config: &MonitorConfig) {
+    let (p, m) = (&config.params, &config.mechanics);
+    w.numbers(&[p.r_s, p.r_r, p.l_ls, p.l_lr, p.l_m]);
+    w.numbers(&[m.n_p, m.inertia, m.friction, m.load_friction]);
+    w.numbers(&[config.rated_voltage, config.rated_current]);
+    w.numbers(&[config.rated_omega, config.rated_torque]);
+}
+
+fn write_judgement(w: &mut Writer, config: &MonitorConfig) {
+    let frame = match config.frame {
+        Frame::RotorFlux => 0,
+        Frame::Voltage => 1,
+    };
+    let load = match config.load {
+        LoadKind::Friction => 0,
+        LoadKind::Measured => 1,
+        LoadKind::Free => 2,
+    };
+    w.word(frame | load << 8 | (config.window_cycles as u32) << 16);
+    // A field current is positive, so 0 stands for the live one.
+    w.number(match config.field {
+        FieldCurrent::Live => 0.0,
+        FieldCurrent::Nominal(amp) => amp,
+    });
+    w.numbers(&config.thresholds);
+    w.word(u32::from(config.comparator.persistence));
+    w.number(config.comparator.hysteresis);
+}
+
+fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
+    let t_sample = r.number();
+    let converter = Converter {
+        voltage: r.scale(),
+        current: r.scale(),
+        max_code: r.word() as u16,
+    };
+    let encoder_counts_per_revolution = r.number();
+    let [r_s, r_r, l_ls, l_lr, l_m] = r.numbers();
+    let [n_p, inertia, friction, load_friction] = r.numbers();
+    let [rated_voltage, rated_current, rated_omega, rated_torque] = r.numbers();
+    let (frame, load, window_cycles) = choices(r.word())?;
+    Ok(MonitorConfig {
+        t_sample,
+        converter,
+        encoder_counts_per_revolution,
+        params: TParams {
+            r_s,
+            r_r,
+            l_ls,
+            l_lr,
+            l_m,
+        },
+        mechanics: Mechanics {
+            n_p,
+            inertia,
+            friction,
+            load_friction,
+        },
+        rated_voltage,
+        rated_current,
+        rated_omega,
+        rated_torque,
+        frame,
+        load,
+        window_cycles,
+        field: field(r.number()),
+        thresholds: r.numbers(),
+        comparator: ComparatorConfig {
+            persistence: r.word() as u8,
+            hysteresis: r.number(),
+        },
+    })
+}
+
+fn field(amp: f32) -> FieldCurrent {
+    if amp > 0.0 {
+        FieldCurrent::Nominal(amp)
+    } else {
+        FieldCurrent::Live
+    }
+}
+
+fn choices(word: u32) -> Result<(Frame, LoadKind, usize), ImageError> {
+    let frame = match word & 0xFF {
+        0 => Frame::RotorFlux,
+        1 => Frame::Voltage,
+        _ => return Err(ImageError::Choice),
+    };
+    let load = match word >> 8 & 0xFF {
+        0 => LoadKind::Friction,
+        1 => LoadKind::Measured,
+        2 => LoadKind::Free,
+        _ => return Err(ImageError::Choice),
+    };
+    Ok((frame, load, (word >> 16) as usize))
+}
+
+/// Fills an image from the front; a word too many is dropped and shows in the round trip test.
+struct Writer {
+    words: [u32; IMAGE_WORDS],
+    used: usize,
+}
+
+impl Default for Writer {
+    fn default() -> Self {
+        Writer {
+            words: [0; IMAGE_WORDS],
+            used: 0,
+        }
+    }
+}
+
+impl Writer {
+    fn word(&mut self, word: u32) {
+        if let Some(place) = self.words.get_mut(self.used) {
+            *place = word;
+        }
+        self.used += 1;
+    }
+
+    fn number(&mut self, x: f32) {
+        self.word(x.to_bits());
+    }
+
+    fn numbers(&mut self, numbers: &[f32]) {
+        numbers.iter().for_each(|x| self.number(*x));
+    }
+
+    fn scale(&mut self, scale: &ChannelScale) {
+        self.numbers(&[scale.unit_per_code, scale.zero_code]);
+        self.numbers(&[scale.gain.a, scale.gain.b, scale.gain.c]);
+        self.numbers(&[scale.offset.a, scale.offset.b, scale.offset.c]);
+    }
+}
+
+struct Reader<'a> {
+    words: &'a [u32],
+}
+
+impl Reader<'_> {
+    fn word(&mut self) -> u32 {
+        match self.words {
+            [word, rest @ ..] => {
+                self.words = rest;
+                *word
+            }
+            [] => 0,
+        }
+    }
+
+    fn number(&mut self) -> f32 {
+        f32::from_bits(self.word())
+    }
+
+    fn numbers<const N: usize>(&mut self) -> [f32; N] {
+        [(); N].map(|()| self.number())
+    }
+
+    fn scale(&mut self) -> ChannelScale {
+        let [unit_per_code, zero_code] = self.numbers();
+        ChannelScale {
+            unit_per_code,
+            zero_code,
+            gain: Abc::from_array(self.numbers()),
+            offset: Abc::from_array(self.numbers()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use motor::motor_file::MotorFile;
+    use proptest::prelude::*;
+
+    fn shipped(name: &str) -> MonitorConfig {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../motors/");
+        let file = MotorFile::read(format!("{folder}{name}")).expect("a shipped motor file");
+        MonitorConfig::from_motor_file(&file, 1e-4)
+    }
+
+    #[test]
+    fn every_shipped_motor_survives_the_round_trip_bit_for_bit() {
+        for name in ["assumed-300w.toml", "peer-2k2.toml", "imc-18k5.toml"] {
+            let config = shipped(name);
+            assert_eq!(MotorImage::new(&config).config(), Ok(config), "{name}");
+        }
+    }
+
+    #[test]
+    fn choices_that_no_shipped_motor_makes_survive_too() {
+        let config = MonitorConfig {
+            frame: Frame::Voltage,
+            load: LoadKind::Measured,
+            field: FieldCurrent::Nominal(1.25),
+            ..shipped("assumed-300w.toml")
+        };
+        assert_eq!(MotorImage::new(&config).config(), Ok(config));
+    }
+
+    #[test]
+    fn the_last_word_before_the_checksum_is_used() {
+        let image = MotorImage::new(&shipped("assumed-300w.toml"));
+        let hysteresis = f32::from_bits(image.0[IMAGE_WORDS - 2]);
+        assert_eq!(
+            hysteresis,
+            shipped("assumed-300w.toml").comparator.hysteresis
+        );
+    }
+
+    proptest! {
+        /// CRC-32 finds every single-bit error, in the content as in the checksum.
+        #[test]
+        fn any_flipped_bit_is_found(word in 0..IMAGE_WORDS, bit in 0..32_u32) {
+            let mut image = MotorImage::new(&shipped("assumed-300w.toml"));
+            image.0[word] ^= 1 << bit;
+            prop_assert_eq!(image.config(), Err(ImageError::Checksum));
+        }
+    }
+}

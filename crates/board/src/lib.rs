@@ -1,0 +1,10 @@
+#![cfg_attr(not(test), no_std)]
+//! What the board stores, shows and says: formats shared by the firmware and the host. No hardware.
+
+mod checksum;
+mod display;
+mod image;
+
+pub use checksum::crc32_words;
+pub use display::{Display, LAMP_NAMES, LAMPS, levels};
+pub use image::{IMAGE_WORDS, ImageError, MotorImage};
