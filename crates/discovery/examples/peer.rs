@@ -1,16 +1,58 @@
-//! One table over recordings with a known hidden effect: fit a prove b, and fit b prove a.
+//! One table over folders of recordings with a known hidden effect: fit a and prove b, fit b and prove a.
+//!
+//! `cargo run --release -p discovery --example peer -- FOLDER...`; each folder holds `motor.toml`,
+//! `recording.csv.gz` and `recording_b.csv.gz`.
+
+use discovery::{ExplainReport, explain};
+use motor::MotorFile;
+use recording::{Source, read_recording};
 use std::path::Path;
-fn main() {
-    let root = std::env::args().nth(1).unwrap();
-    for set in std::env::args().skip(2) {
-        let dir = Path::new(&root).join(&set);
-        let file = motor::MotorFile::read(dir.join("motor.toml")).unwrap();
-        let read = |n: &str| {
-            recording::read_recording(&dir.join(n), &Default::default(), &mut |_| {}).unwrap()
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    for folder in std::env::args().skip(1) {
+        let dir = Path::new(&folder);
+        let motor = MotorFile::read(dir.join("motor.toml"))?;
+        let read = |name: &str| {
+            read_recording(&dir.join(name), &Default::default(), &mut |_| {}).map(Source::Recording)
         };
-        let (a, b) = (read("recording.csv.gz"), read("recording_b.csv.gz"));
-        println!("{set}");
-        discovery::probe::explain(&[a.clone(), b.clone()], &file);
-        discovery::probe::explain(&[b, a], &file);
+        let mut sources = vec![read("recording.csv.gz")?, read("recording_b.csv.gz")?];
+        for direction in ["fit a, prove b", "fit b, prove a"] {
+            let start = Instant::now();
+            let report = explain(&sources, &motor, &mut |_, _| {})?;
+            println!(
+                "{folder} ({direction}), {:.1} s",
+                start.elapsed().as_secs_f64()
+            );
+            print(&report);
+            sources.reverse();
+        }
+    }
+    Ok(())
+}
+
+fn print(report: &ExplainReport) {
+    let error = |f: &Option<discovery::FitReport>| {
+        f.as_ref().map_or(f64::NAN, |f| f.held_out_error_over_noise)
+    };
+    let (before, after) = (error(&report.baseline), error(&report.final_));
+    println!(
+        "  {:?}: {before:.3} -> {after:.3}. {}",
+        report.verdict, report.summary
+    );
+    for step in &report.steps {
+        for p in &step.parameters {
+            println!(
+                "    {} = {:.6} +- {:.6} {}",
+                p.name, p.value, p.std_error, p.unit
+            );
+        }
+    }
+    println!("    not testable here: {}", report.not_testable.join(", "));
+    for f in report.audit.findings.iter() {
+        println!(
+            "    audit: {:?} {} {:.3} {}",
+            f.code, f.channel, f.value, f.unit
+        );
     }
 }

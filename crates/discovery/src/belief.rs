@@ -115,6 +115,14 @@ impl Hypothesis {
         }
     }
 
+    /// Beliefs for a load table: inertia and friction cannot move. At one speed friction is one number with
+    /// every other constant loss; as a loss it is looked for among the effects.
+    pub fn beliefs_of_table() -> Self {
+        let mut h = Self::beliefs(true);
+        h.free[FRICTION] = false;
+        h
+    }
+
     /// The same with one more effect, its coordinates at its start values.
     pub fn with(&self, effect: EffectConfig, rated: &Rated<f64>) -> Self {
         let mut more = self.clone();

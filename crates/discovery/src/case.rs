@@ -1,10 +1,13 @@
 //! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
 
 use crate::signal::{Supply, denoise, estimated_sigma, smooth};
+use crate::table::{self, Point};
 use motor::dynamic::clarke;
 use motor::effects::{Between, Inputs, Rated, Timeline};
 use num_complex::Complex64;
-use recording::{Channel, LoadTorque, Recording, StartsFrom, Supply as SupplyKind, VoltageKind};
+use recording::{
+    Channel, LoadTable, LoadTorque, Recording, StartsFrom, Supply as SupplyKind, VoltageKind,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -66,6 +69,8 @@ pub(crate) struct Case {
     pub input_noise: (f64, f64),
     /// Whether an inverter feeds the motor.
     pub inverter: bool,
+    /// Operating points instead of samples.
+    pub table: Option<Vec<Point>>,
 }
 
 impl Case {
@@ -120,6 +125,7 @@ impl Case {
             supply,
             input_noise: (axis_noise, load.noise),
             inverter: rec.metadata.supply == SupplyKind::Inverter,
+            table: None,
         };
         case.fill_rows(rec, voltages, currents, sigma_u);
         if case.blocks().len() < 5 {
@@ -129,6 +135,30 @@ impl Case {
             ));
         }
         Ok(case)
+    }
+
+    /// Prepares a load-test table.
+    ///
+    /// # Errors
+    /// With fewer than five points.
+    pub fn of_table(table: &LoadTable, rated: &Rated<f64>) -> Result<Self, Unsupported> {
+        let (points, measured, weight) = table::rows(table, rated)?;
+        Ok(Self {
+            inputs: Inputs::default(),
+            between: Between::Held,
+            timeline: Arc::new(Timeline::constant(rated.omega_sync)),
+            speed: Vec::new(),
+            speed_is_input: false,
+            running_at: None,
+            decimation: 1,
+            measured,
+            weight,
+            block: 1,
+            supply: Supply::default(),
+            input_noise: (0.0, 0.0),
+            inverter: false,
+            table: Some(points),
+        })
     }
 
     /// Time between residual rows, s.

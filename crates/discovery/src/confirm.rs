@@ -6,6 +6,7 @@ use crate::gram;
 use crate::predict::Teacher;
 use crate::screen::{Screened, ranked, screen};
 use crate::study::{Study, Trial};
+use motor::effects::names;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -99,6 +100,19 @@ pub(crate) fn round(study: &Study, base: &Trial, nominal: &Hypothesis, excluded:
     }
 }
 
+/// Screens all effects and refits only those that may explain most of the excess.
+pub(crate) fn likely(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
+    let groups = ranked(
+        &screen(&study.fitted.case, &study.belief, &base.fit, excluded),
+        STARTS,
+    );
+    let (likely, _) = promising(study, &base.fit, &groups, study.fold_error(&base.folds));
+    Round {
+        candidates: confirm(study, base, &likely),
+        screened: groups.into_iter().map(|g| g[0].clone()).collect(),
+    }
+}
+
 /// Starts again from the beliefs with the speed drawn to the measured one.
 fn retaught(
     study: &Study,
@@ -184,6 +198,37 @@ fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
         error: combined(study, &trial),
         trial,
     }
+}
+
+/// Refits one effect, every form of it, from the present nominals and from the beliefs.
+pub(crate) fn only(study: &Study, base: &Trial, effect: &str) -> Vec<Candidate> {
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    let others: Vec<&str> = names().into_iter().filter(|n| *n != effect).collect();
+    let start = |fit: &Fit| {
+        let groups = ranked(&screen(case, belief, fit, &others), STARTS);
+        let one = |group: Vec<Screened>| Start {
+            hypothesis: fit.hypothesis.clone(),
+            group,
+            teacher: fit.teacher,
+        };
+        groups.into_iter().map(one).collect::<Vec<_>>()
+    };
+    let mut starts = start(&base.fit);
+    let wrong = study.fold_error(&base.folds) > WRONG_VALLEY;
+    if wrong && !case.speed.is_empty() && !case.speed_is_input {
+        starts.extend(start(&fit(
+            case,
+            belief,
+            &study.beliefs(),
+            short(Teacher::On(OBSERVER)),
+        )));
+    }
+    confirm(study, base, &starts)
+}
+
+/// The trial of the best candidate.
+pub(crate) fn best_of(candidates: Vec<Candidate>) -> Option<Trial> {
+    candidates.into_iter().next().map(|c| c.trial)
 }
 
 /// Geometric mean of the error by folds and by proof.

@@ -2,7 +2,7 @@
 
 use crate::accept::{beats, explained, proven};
 use crate::belief::{FRICTION, N_NOMINAL, NOMINALS};
-use crate::confirm::{Candidate, Round, round};
+use crate::confirm::{Candidate, Round, likely, round};
 use crate::fit::Effort;
 use crate::present::off_nominals;
 use crate::study::{Study, Trial};
@@ -81,7 +81,9 @@ pub(crate) fn explain(
         let Some(step) = step else { break };
         base = step.trial.clone();
         steps.push(step);
-        if adequate(study, &base) {
+        // The accuracy of a table is assumed: what little is left over is no evidence.
+        let assumed = study.fitted.case.table.is_some();
+        if adequate(study, &base) || assumed && explained(study, &baseline, &base) > NAMED_SHARE {
             break;
         }
     }
@@ -136,7 +138,7 @@ fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Cand
     frozen.z[k] = 0.0;
     frozen.free[k] = false;
     let base = study.trial(&frozen, Effort::FULL);
-    let found = round(study, &base, &at_beliefs(&base), excluded);
+    let found = likely(study, &base, excluded);
     let equal = |c: &Candidate| proven(study, &base, &c.trial) && !beats(last, &c.trial);
     found.candidates.into_iter().filter(equal).collect()
 }

@@ -8,6 +8,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Limits of the inflation of the nominals' prior weight.
 const KAPPA: [f64; 2] = [30.0, 400.0];
+/// The same for a load table, whose few points cannot be correlated over thousands of samples.
+const KAPPA_TABLE: [f64; 2] = [1.0, 30.0];
 
 /// Iterations after which a hopeless fit may be given up.
 const PATIENCE: usize = 4;
@@ -109,14 +111,19 @@ pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effo
     let mut out = outputs(case, belief, &h, effort.teacher);
     let mut damping = 1e-4;
     let mut linear = None;
-    let mut kappa = KAPPA[0];
+    let limits = if case.table.is_some() {
+        KAPPA_TABLE
+    } else {
+        KAPPA
+    };
+    let mut kappa = limits[0];
     for iteration in 0..effort.iterations {
         let r = residual(case, &out);
         let sse = gram::dot(&r, &r);
         let j = jacobian(case, belief, &h, &out, effort.teacher);
         let blocks = gram::blocks(&rows, &r, &j);
         let nominals = free.iter().filter(|&&k| k < N_NOMINAL).count();
-        kappa = gram::score_inflation(&blocks, nominals).clamp(KAPPA[0], KAPPA[1]);
+        kappa = gram::score_inflation(&blocks, nominals).clamp(limits[0], limits[1]);
         let here = penalty(belief, &h, &free, kappa);
         let search = Search {
             case,

@@ -2,6 +2,7 @@
 
 use crate::belief::{Belief, Hypothesis};
 use crate::case::{Case, N_CHANNELS};
+use crate::table::{self, Point};
 use motor::effects::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
 use rayon::prelude::*;
 
@@ -43,10 +44,23 @@ fn weighted(case: &Case, outputs: &Outputs) -> Vec<f64> {
     out
 }
 
+/// Weighted outputs of a load table.
+fn steady(case: &Case, plant: &Plant, points: &[Point]) -> Vec<f64> {
+    let row = |(point, w): (&Point, &[f64; N_CHANNELS])| {
+        let values = table::predict(plant, point);
+        let weight = *w;
+        (0..N_CHANNELS).map(move |k| values[k] * weight[k])
+    };
+    points.iter().zip(&case.weight).flat_map(row).collect()
+}
+
 /// Weighted outputs of a hypothesis.
 pub(crate) fn outputs(case: &Case, belief: &Belief, h: &Hypothesis, teacher: Teacher) -> Vec<f64> {
     let plant = h.plant(belief);
-    weighted(case, &run(case, &plant, &case.inputs, teacher))
+    match &case.table {
+        Some(points) => steady(case, &plant, points),
+        None => weighted(case, &run(case, &plant, &case.inputs, teacher)),
+    }
 }
 
 /// Weighted outputs with other inputs (noise propagation).

@@ -74,6 +74,8 @@ pub struct StepReport {
     pub fold_error_over_noise: f64,
     /// Share of the excess error that the effect explains, percent.
     pub explained_percent: f64,
+    /// Power that it takes at rated voltage and synchronous speed, W, if it is a loss.
+    pub loss_watt: Option<f64>,
     /// Its parameters.
     pub parameters: Vec<ParameterReport>,
 }
@@ -139,4 +141,110 @@ pub struct ExplainReport {
     pub not_testable: Vec<String>,
     /// What is left, if the library does not explain it.
     pub unexplained: Option<Unexplained>,
+}
+
+/// One signal: model against measurement.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SignalReport {
+    /// Channel.
+    pub name: String,
+    /// Unit of the next three.
+    pub unit: String,
+    /// Rms of the measurement.
+    pub rms: f64,
+    /// Rms of the difference.
+    pub error_rms: f64,
+    /// Rms of the difference if nothing were missing.
+    pub noise_floor: f64,
+    /// Ratio of the last two.
+    pub error_over_noise: f64,
+}
+
+/// A part of the recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegionReport {
+    /// What the machine did.
+    pub name: String,
+    /// Begin, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+    /// Rms error over noise.
+    pub error_over_noise: f64,
+}
+
+/// A class of operating points, spread over the recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BandReport {
+    /// What is divided: load, voltage, slip, frequency.
+    pub quantity: String,
+    /// Lower end, in percent of rated.
+    pub from_percent: f64,
+    /// Upper end, in percent of rated.
+    pub to_percent: f64,
+    /// Rms error over noise.
+    pub error_over_noise: f64,
+}
+
+/// A rotating component of the current error.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OrderReport {
+    /// Order of the supply frequency; negative turns backwards, 0 is a constant.
+    pub order: f64,
+    /// Amplitude, A.
+    pub amplitude_amp: f64,
+}
+
+/// Rms error over noise of everything.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Overall {
+    /// Rms error over noise.
+    pub error_over_noise: f64,
+}
+
+/// The report of `compare`: the motor file as it is, nothing refitted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CompareReport {
+    /// Audit of the recording.
+    pub audit: Audit,
+    /// Per channel.
+    pub signals: Vec<SignalReport>,
+    /// Per part of the recording, in time.
+    pub regions: Vec<RegionReport>,
+    /// Per band of operating points.
+    pub bands: Vec<BandReport>,
+    /// Per order of the supply frequency.
+    pub orders: Vec<OrderReport>,
+    /// Everything.
+    pub overall: Option<Overall>,
+}
+
+/// Errors before or after an adoption.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ErrorReport {
+    /// Rms error over noise on the fitted data.
+    pub error_over_noise: f64,
+    /// Rms error over noise on data that was not fitted.
+    pub held_out_error_over_noise: f64,
+}
+
+/// The report of `adopt`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AdoptReport {
+    /// Audit of the fitted recording.
+    pub audit: Audit,
+    /// The effect.
+    pub effect: String,
+    /// The refitted model without it.
+    pub before: ErrorReport,
+    /// The refitted model with it.
+    pub after: ErrorReport,
+    /// Whether the gain is proven on data that was not fitted.
+    pub proven: bool,
+    /// Its parameters.
+    pub parameters: Vec<ParameterReport>,
+    /// Nominal parameters of the new motor file.
+    pub nominals: Vec<NominalReport>,
+    /// Where the new motor file was written; empty until it is.
+    pub motor_file: String,
 }

@@ -25,8 +25,6 @@ pub(crate) struct Screened {
     pub held_out: Vec<f64>,
     /// Mean squared signature of a typical size that the nominals cannot imitate, in noise units.
     pub visible: f64,
-    /// Simulations this took.
-    pub simulations: usize,
 }
 
 impl Screened {
@@ -43,8 +41,11 @@ fn askable(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<&'
         let mut known = fit.hypothesis.effects.iter().chain(&belief.plant.effects);
         known.any(|c| c.effect.descriptor().name == name) || excluded.contains(&name)
     };
-    let applies =
-        |e: &&'static dyn Effect| case.inverter || e.descriptor().applies == Applies::Always;
+    let applies = |e: &&'static dyn Effect| match e.descriptor().applies {
+        Applies::Always => true,
+        Applies::Inverter => case.inverter,
+        Applies::Samples => case.table.is_none(),
+    };
     ALL.iter()
         .copied()
         .filter(|e| !present(e) && applies(e))
@@ -151,7 +152,6 @@ fn judge(
         config,
         held_out,
         visible: visible(&all, &penalty, first, n),
-        simulations: n,
     }
 }
 

@@ -68,7 +68,10 @@ impl Study {
 
     /// Nothing added, beliefs as they are.
     pub fn beliefs(&self) -> Hypothesis {
-        Hypothesis::beliefs(self.fitted.case.speed_is_input)
+        match self.fitted.case.table {
+            Some(_) => Hypothesis::beliefs_of_table(),
+            None => Hypothesis::beliefs(self.fitted.case.speed_is_input),
+        }
     }
 
     /// Fits a hypothesis and measures it.

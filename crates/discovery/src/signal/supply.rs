@@ -10,7 +10,7 @@ const ORDERS: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
 const WHITE_LIMIT: f64 = 1.25;
 
 /// A denoised supply.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Supply {
     /// Denoised voltage vector, V.
     pub u_s: Vec<Complex64>,

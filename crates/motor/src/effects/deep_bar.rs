@@ -9,7 +9,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "deep-bar",
     form: "slip",
     kind: Kind::Physics,
-    applies: Applies::Always,
+    applies: Applies::Samples,
     parameters: &[
         Parameter::size("resistance_rise", "-", Scale::Own, 0.5),
         Parameter::size("leakage_drop", "-", Scale::Own, 0.2),

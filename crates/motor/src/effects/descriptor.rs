@@ -205,6 +205,8 @@ pub enum Applies {
     Always,
     /// Only behind an inverter.
     Inverter,
+    /// Everywhere, but only samples over time can show it, not a table of running points.
+    Samples,
 }
 
 /// What kind of answer an effect is: the four kinds are kept apart.

@@ -10,7 +10,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "deep-bar",
     form: "double-cage",
     kind: Kind::Physics,
-    applies: Applies::Always,
+    applies: Applies::Samples,
     parameters: &[
         Parameter {
             range: [0.0, 0.8],

@@ -9,7 +9,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "frame-rotation",
     form: "",
     kind: Kind::Sensor,
-    applies: Applies::Always,
+    applies: Applies::Samples,
     parameters: &[Parameter::size("rotation_rad", "rad", Scale::Own, 0.03)],
     symptom: "positive-sequence current error in quadrature",
     look_alikes: &["sample-delay", "sensor-filter"],

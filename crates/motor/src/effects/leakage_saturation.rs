@@ -8,7 +8,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "leakage-saturation",
     form: "",
     kind: Kind::Physics,
-    applies: Applies::Always,
+    applies: Applies::Samples,
     parameters: &[
         Parameter::size("leakage_drop", "-", Scale::Own, 0.2),
         Parameter::shape(

@@ -8,7 +8,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "rotor-heating",
     form: "",
     kind: Kind::Physics,
-    applies: Applies::Always,
+    applies: Applies::Samples,
     parameters: &[
         Parameter::size("resistance_rise", "-", Scale::Own, 0.2),
         Parameter::shape(

@@ -9,7 +9,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "sample-delay",
     form: "",
     kind: Kind::Sensor,
-    applies: Applies::Always,
+    applies: Applies::Samples,
     parameters: &[Parameter::size("delay_s", "s", Scale::Own, 1e-4)],
     symptom: "positive-sequence current error in quadrature",
     look_alikes: &["sensor-filter", "frame-rotation"],

@@ -9,7 +9,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "sensor-filter",
     form: "",
     kind: Kind::Sensor,
-    applies: Applies::Always,
+    applies: Applies::Samples,
     parameters: &[Parameter::size(
         "filter_time_constant_s",
         "s",

@@ -1,0 +1,301 @@
+//! The three questions a user asks.
+
+use crate::accept::{explained, proven};
+use crate::confirm::{best_of, only};
+use crate::explain::{self, Explanation, is_loss, nominal_name};
+use crate::fit::Effort;
+use crate::gram::dot;
+use crate::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
+use crate::question::{Error, Question};
+use crate::report::{
+    AdoptReport, ErrorReport, ExplainReport, RankReport, StepReport, Unexplained, Verdict,
+};
+use crate::study::{Study, Trial};
+use crate::unexplained;
+use motor::MotorFile;
+use motor::effects::{Descriptor, find, names, to_entry};
+use recording::Source;
+
+/// Hears what is being done, and how far it is (0 to 1).
+pub type Progress<'a> = dyn FnMut(&str, f64) + 'a;
+
+/// Share of the floor below which a typical effect cannot be seen in a recording.
+const VISIBLE: f64 = 0.02;
+/// Name under which [`adopt`] takes over refitted parameters without any effect.
+const PARAMETERS: &str = "parameters";
+
+/// Which effect is missing. The first source is fitted, the others prove; with one source block folds prove.
+///
+/// # Errors
+/// Wrong effects in the motor file or no usable set of sources. A recording that cannot be judged is a report
+/// with the verdict `unsupported`, not an error.
+pub fn explain(
+    sources: &[Source],
+    motor: &MotorFile,
+    progress: &mut Progress<'_>,
+) -> Result<ExplainReport, Error> {
+    explain_without(sources, motor, &[], progress)
+}
+
+/// As [`explain`], without asking about the effects in `excluded`: a way to see what a library that lacks the
+/// truth would say.
+///
+/// # Errors
+/// As [`explain`].
+pub fn explain_without(
+    sources: &[Source],
+    motor: &MotorFile,
+    excluded: &[&str],
+    progress: &mut Progress<'_>,
+) -> Result<ExplainReport, Error> {
+    match Question::new(sources, motor, progress) {
+        Ok(question) => {
+            let found = explain::explain(&question.study, excluded, progress);
+            progress("done", 1.0);
+            Ok(report(&question, &found))
+        }
+        Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
+            audit: *audit,
+            verdict: Verdict::Unsupported,
+            summary: format!("{}; {}", why.reason, why.remedy),
+            baseline: None,
+            steps: Vec::new(),
+            final_: None,
+            ranking: Vec::new(),
+            not_testable: Vec::new(),
+            unexplained: None,
+        }),
+        Err(error) => Err(error),
+    }
+}
+
+fn report(question: &Question, found: &Explanation) -> ExplainReport {
+    let study = &question.study;
+    let steps = if found.nameable {
+        steps(study, found)
+    } else {
+        Vec::new()
+    };
+    let mut last = fit_report(study, found.last());
+    let mut baseline = fit_report(study, &found.baseline);
+    if !found.nameable {
+        // An inadequate model has no parameter findings.
+        let all = baseline.parameters.iter_mut().chain(&mut last.parameters);
+        all.for_each(|p| p.off = false);
+    }
+    let verdict = verdict(found, &steps);
+    let unexplained = (!found.nameable).then(|| unexplained(study, found));
+    let mut report = ExplainReport {
+        audit: question.audit.clone(),
+        verdict,
+        summary: String::new(),
+        baseline: Some(baseline),
+        steps,
+        final_: Some(last),
+        ranking: ranking(study, found),
+        not_testable: not_testable(study, found),
+        unexplained,
+    };
+    report.summary = crate::words::summary(&report);
+    report
+}
+
+fn verdict(found: &Explanation, steps: &[StepReport]) -> Verdict {
+    if !found.nameable {
+        return Verdict::Unknown;
+    }
+    if !implausible(found.last()).is_empty() {
+        return Verdict::Implausible;
+    }
+    if steps.iter().any(|s| !s.tied_with.is_empty()) {
+        return Verdict::Ambiguous;
+    }
+    if steps.is_empty() {
+        Verdict::Adequate
+    } else {
+        Verdict::Effect
+    }
+}
+
+/// Accepted effects, and the effects that explain a moved parameter as well.
+fn steps(study: &Study, found: &Explanation) -> Vec<StepReport> {
+    let accepted = found.steps.iter().enumerate().map(|(k, step)| {
+        let mut report = step_report(study, &step.before, found.last(), &step.trial, k);
+        report.tied_with.clone_from(&step.tied);
+        report
+    });
+    let contested = found.contests.iter().filter_map(|(k, candidates)| {
+        let best = candidates.iter().find(|c| is_loss(*k, c))?;
+        let index = best.trial.fit.hypothesis.effects.len() - 1;
+        let before = found.last();
+        let mut report = step_report(study, before, &best.trial, &best.trial, index);
+        report.tied_with = vec![nominal_name(*k).to_owned()];
+        let others = candidates.iter().filter(|c| c.name != best.name);
+        report.tied_with.extend(others.map(|c| c.name.to_owned()));
+        Some(report)
+    });
+    accepted.chain(contested).collect()
+}
+
+fn step_report(
+    study: &Study,
+    before: &Trial,
+    fitted: &Trial,
+    trial: &Trial,
+    index: usize,
+) -> StepReport {
+    let descriptor = descriptor(trial, index);
+    StepReport {
+        effect: descriptor.name.to_owned(),
+        form: descriptor.form.to_owned(),
+        kind: kind_word(descriptor.kind).to_owned(),
+        tied_with: Vec::new(),
+        separating_test: descriptor.separating_test.to_owned(),
+        symptom: descriptor.symptom.to_owned(),
+        held_out_error_over_noise: study.proof_error(trial),
+        fold_error_over_noise: study.fold_error(&trial.folds),
+        explained_percent: 100.0 * explained(study, before, trial),
+        loss_watt: loss_watt(study, fitted, index),
+        parameters: effect_parameters(study, fitted, index),
+    }
+}
+
+fn descriptor(trial: &Trial, index: usize) -> &'static Descriptor {
+    trial.fit.hypothesis.effects[index].effect.descriptor()
+}
+
+fn visibility(study: &Study, visible: f64) -> f64 {
+    let expected = study.fitted.floor.mean * study.fitted.case.judged();
+    (visible / expected).max(0.0).sqrt()
+}
+
+/// All effects of the first round, refitted ones with their refit; each name once.
+fn ranking(study: &Study, found: &Explanation) -> Vec<RankReport> {
+    let base = study.proof_error(&found.baseline);
+    let base_folds = study.fold_error(&found.baseline.folds);
+    let mut rows: Vec<RankReport> = Vec::new();
+    for s in &found.first.screened {
+        let name = s.config.effect.descriptor().name;
+        if rows.iter().any(|r| r.effect == name) {
+            continue;
+        }
+        let refit = found.first.candidates.iter().find(|c| c.name == name);
+        let linear = study.fold_error(&s.held_out) / base_folds * base;
+        let error = refit.map_or(linear, |c| study.proof_error(&c.trial));
+        rows.push(RankReport {
+            effect: name.to_owned(),
+            held_out_error_over_noise: error,
+            gain_percent: 100.0 * (1.0 - error / base),
+            refitted: refit.is_some(),
+            visibility_percent: 100.0 * visibility(study, s.visible),
+        });
+    }
+    rows.sort_by(|a, b| {
+        a.held_out_error_over_noise
+            .total_cmp(&b.held_out_error_over_noise)
+    });
+    rows
+}
+
+/// Effects whose typical size this recording would not show.
+fn not_testable(study: &Study, found: &Explanation) -> Vec<String> {
+    let mut names = std::collections::BTreeMap::<&str, f64>::new();
+    for s in &found.first.screened {
+        let best = names.entry(s.config.effect.descriptor().name).or_default();
+        *best = best.max(visibility(study, s.visible));
+    }
+    let hidden = names.into_iter().filter(|(_, v)| *v < VISIBLE);
+    hidden.map(|(name, _)| name.to_owned()).collect()
+}
+
+fn unexplained(study: &Study, found: &Explanation) -> Unexplained {
+    let share = |t: &Trial| explained(study, &found.baseline, t);
+    let lead = found.first.candidates.first();
+    let best_lead = lead.filter(|c| share(&c.trial) > 0.0);
+    unexplained::describe(
+        study,
+        found.last(),
+        best_lead.map(|c| c.name.to_owned()),
+        best_lead.map_or(0.0, |c| 100.0 * share(&c.trial)),
+    )
+}
+
+/// Adds an effect, refits, and shows the error before and after; the new motor file comes with the report.
+/// The name `parameters` takes over the refitted parameters and adds nothing.
+///
+/// # Errors
+/// An unknown or already present effect, wrong effects in the motor file, or sources that cannot be judged.
+pub fn adopt(
+    effect: &str,
+    sources: &[Source],
+    motor: &MotorFile,
+    progress: &mut Progress<'_>,
+) -> Result<(AdoptReport, MotorFile), Error> {
+    check_name(effect, motor)?;
+    let question = Question::new(sources, motor, progress)?;
+    let study = &question.study;
+    progress("refitting the parameters", 0.2);
+    let before = study.trial(&study.beliefs(), Effort::FULL);
+    progress("fitting the effect", 0.5);
+    let after = if effect == PARAMETERS {
+        before.clone()
+    } else {
+        fitted(study, &before, effect)?
+    };
+    progress("done", 1.0);
+    let nominals = fit_report(study, &after).parameters;
+    let is_new = effect != PARAMETERS;
+    let report = AdoptReport {
+        audit: question.audit.clone(),
+        effect: effect.to_owned(),
+        before: errors(study, &before),
+        after: errors(study, &after),
+        proven: is_new && proven(study, &before, &after),
+        parameters: if is_new {
+            effect_parameters(study, &after, 0)
+        } else {
+            Vec::new()
+        },
+        nominals,
+        motor_file: String::new(),
+    };
+    Ok((report, updated(study, &after, motor)))
+}
+
+fn check_name(effect: &str, motor: &MotorFile) -> Result<(), Error> {
+    if effect != PARAMETERS && find(effect, "").is_none() {
+        let known = names().join(", ");
+        let message = format!("no effect is called `{effect}`; use one of: {known}, {PARAMETERS}");
+        return Err(Error::UnknownEffect(message));
+    }
+    if motor.effects.iter().any(|e| e.name == effect) {
+        let message =
+            format!("the motor file already holds `{effect}`; remove it there to fit it anew");
+        return Err(Error::UnknownEffect(message));
+    }
+    Ok(())
+}
+
+fn fitted(study: &Study, before: &Trial, effect: &str) -> Result<Trial, Error> {
+    let round = only(study, before, effect);
+    best_of(round)
+        .ok_or_else(|| Error::UnknownEffect(format!("`{effect}` does not apply to this recording")))
+}
+
+fn errors(study: &Study, trial: &Trial) -> ErrorReport {
+    let r = &trial.fit.residual;
+    ErrorReport {
+        error_over_noise: study.fold_error(&[dot(r, r)]),
+        held_out_error_over_noise: study.proof_error(trial),
+    }
+}
+
+/// The motor file with the parameters and effects of a trial.
+fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
+    let plant = trial.fit.hypothesis.plant(&study.belief);
+    let mut file = motor.clone();
+    file.parameters = plant.motor;
+    file.mechanics = plant.mechanics;
+    file.effects = plant.effects.iter().map(to_entry).collect();
+    file
+}

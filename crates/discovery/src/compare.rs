@@ -1,0 +1,256 @@
+//! Where the model fails, as the motor file says it, nothing refitted.
+
+use crate::api::Progress;
+use crate::case::{Case, N_CHANNELS};
+use crate::predict::{Teacher, outputs, residual};
+use crate::question::{Error, Question};
+use crate::report::{BandReport, CompareReport, OrderReport, Overall, RegionReport, SignalReport};
+use crate::study::Study;
+use motor::MotorFile;
+use motor::dynamic::clarke;
+use num_complex::Complex64;
+use recording::Source;
+use std::ops::Range;
+
+/// Orders of the supply frequency that are looked for in the current error.
+const ORDERS: [f64; 7] = [0.0, 1.0, -1.0, -5.0, 7.0, -11.0, 13.0];
+/// Bands of load, voltage and slip, in percent of rated.
+const BANDS: [f64; 8] = [0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 105.0, 1000.0];
+
+/// Compares the first source with the model of the motor file.
+///
+/// # Errors
+/// Wrong effects in the motor file or no source. A recording that cannot be judged gives a report with an
+/// audit and nothing else.
+pub fn compare(
+    sources: &[Source],
+    motor: &MotorFile,
+    progress: &mut Progress<'_>,
+) -> Result<CompareReport, Error> {
+    let empty = |audit| CompareReport {
+        audit,
+        signals: Vec::new(),
+        regions: Vec::new(),
+        bands: Vec::new(),
+        orders: Vec::new(),
+        overall: None,
+    };
+    let question = match Question::new(&sources[..sources.len().min(1)], motor, progress) {
+        Ok(question) => question,
+        Err(Error::Unsupported(audit, _)) => return Ok(empty(*audit)),
+        Err(error) => return Err(error),
+    };
+    progress("simulating", 0.5);
+    let study = &question.study;
+    let case = &study.fitted.case;
+    let model = outputs(case, &study.belief, &study.beliefs(), Teacher::Off);
+    let r = residual(case, &model);
+    progress("done", 1.0);
+    Ok(CompareReport {
+        signals: signals(case, &r),
+        regions: regions(study, &r),
+        bands: bands(study, &r),
+        orders: orders(case, &r),
+        overall: Some(Overall {
+            error_over_noise: study.fold_error(&[crate::gram::dot(&r, &r)]),
+        }),
+        ..empty(question.audit)
+    })
+}
+
+/// Names and units of the channels of a case.
+fn channels(case: &Case) -> [(&'static str, &'static str); N_CHANNELS] {
+    if case.table.is_some() {
+        return [
+            ("current", "A rms"),
+            ("speed", "rad/s"),
+            ("power_factor", "-"),
+            ("efficiency", "-"),
+            ("", ""),
+        ];
+    }
+    [
+        ("ia", "A"),
+        ("ib", "A"),
+        ("ic", "A"),
+        ("speed", "rad/s"),
+        ("v0", "V"),
+    ]
+}
+
+fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
+    let judged = |k: usize| case.weight.iter().filter(|w| w[k] > 0.0).count() as f64;
+    let mean = |k: usize, f: &dyn Fn(usize, f64) -> f64| {
+        let rows = (0..case.weight.len()).filter(|&row| case.weight[row][k] > 0.0);
+        let sum: f64 = rows.map(|row| f(row, 1.0 / case.weight[row][k])).sum();
+        (sum / judged(k)).sqrt()
+    };
+    let one = |(k, (name, unit)): (usize, (&str, &str))| {
+        let error = mean(k, &|row, sigma| (r[row * N_CHANNELS + k] * sigma).powi(2));
+        let ratio = mean(k, &|row, _| r[row * N_CHANNELS + k].powi(2));
+        SignalReport {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            rms: mean(k, &|row, _| case.measured[row][k].powi(2)),
+            error_rms: error,
+            noise_floor: mean(k, &|_, sigma| sigma * sigma),
+            error_over_noise: ratio,
+        }
+    };
+    let known = channels(case).into_iter().enumerate();
+    known.filter(|(k, _)| judged(*k) > 0.0).map(one).collect()
+}
+
+/// Error over noise of a set of blocks.
+fn error_of(study: &Study, r: &[f64], blocks: &[(usize, Range<usize>)]) -> f64 {
+    let sse = |rows: &Range<usize>| {
+        let part = &r[rows.start * N_CHANNELS..rows.end * N_CHANNELS];
+        crate::gram::dot(part, part)
+    };
+    let error: f64 = blocks.iter().map(|(_, rows)| sse(rows)).sum();
+    let floor: f64 = blocks
+        .iter()
+        .map(|(k, _)| study.fitted.floor.block[*k])
+        .sum();
+    (error / floor.max(f64::MIN_POSITIVE)).sqrt()
+}
+
+/// State of the machine in one block: what it does, its load and voltage in percent.
+fn state(study: &Study, rows: &Range<usize>) -> String {
+    let case = &study.fitted.case;
+    let rated = &study.belief.plant.rated;
+    let [load, voltage, slip, _] = percents(study, rows);
+    let stride = case.between.stride() * case.decimation;
+    let part = rows.start * stride..(rows.end * stride).min(case.inputs.u_s.len());
+    if voltage < 2.0 {
+        return "off".to_owned();
+    }
+    if slip > 20.0 {
+        return "start-up".to_owned();
+    }
+    let torque = &case.inputs.tau_load[part.clone()];
+    let half = torque.len() / 2;
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
+    let step = (mean(&torque[..half]) - mean(&torque[half..])).abs();
+    let stepped = case
+        .supply
+        .segments
+        .iter()
+        .any(|s| part.contains(&s.start) && s.start > 0);
+    if step > 0.1 * rated.torque || stepped {
+        return "step".to_owned();
+    }
+    let round = |x: f64| (x / 5.0).round() * 5.0;
+    format!("load {:.0} %, voltage {:.0} %", round(load), round(voltage))
+}
+
+/// Load, voltage, slip and frequency of a block, percent of rated (slip: percent).
+fn percents(study: &Study, rows: &Range<usize>) -> [f64; 4] {
+    let case = &study.fitted.case;
+    let rated = &study.belief.plant.rated;
+    let stride = case.between.stride() * case.decimation;
+    let mean =
+        |f: &dyn Fn(usize) -> f64| rows.clone().map(|row| f(row)).sum::<f64>() / rows.len() as f64;
+    let sync = &case.timeline.omega_sync;
+    let omega = mean(&|row| sync[(row * stride).min(sync.len() - 1)]);
+    let speed = mean(&|row| {
+        case.speed
+            .get(row * stride)
+            .copied()
+            .unwrap_or(case.measured[row][3])
+    });
+    let voltage = mean(&|row| case.inputs.u_s[row * stride].norm());
+    [
+        100.0 * mean(&|row| case.inputs.tau_load[row * stride]) / rated.torque,
+        100.0 * voltage / rated.voltage,
+        100.0 * (1.0 - rated.n_p * speed / omega),
+        100.0 * omega / rated.omega_sync,
+    ]
+}
+
+/// Stretches of time in which the machine does the same.
+fn regions(study: &Study, r: &[f64]) -> Vec<RegionReport> {
+    let case = &study.fitted.case;
+    if case.table.is_some() {
+        return Vec::new();
+    }
+    let mut groups: Vec<(String, Vec<(usize, Range<usize>)>)> = Vec::new();
+    for (k, rows) in case.blocks().into_iter().enumerate() {
+        let name = state(study, &rows);
+        match groups.last_mut() {
+            Some((last, blocks)) if *last == name => blocks.push((k, rows)),
+            _ => groups.push((name, vec![(k, rows)])),
+        }
+    }
+    let t_row = case.t_row();
+    let report = |(name, blocks): &(String, Vec<(usize, Range<usize>)>)| RegionReport {
+        name: name.clone(),
+        from_s: blocks[0].1.start as f64 * t_row,
+        to_s: blocks[blocks.len() - 1].1.end as f64 * t_row,
+        error_over_noise: error_of(study, r, blocks),
+    };
+    groups.iter().map(report).collect()
+}
+
+fn bands(study: &Study, r: &[f64]) -> Vec<BandReport> {
+    let case = &study.fitted.case;
+    if case.table.is_some() {
+        return Vec::new();
+    }
+    let blocks: Vec<_> = case.blocks().into_iter().enumerate().collect();
+    let values: Vec<[f64; 4]> = blocks
+        .iter()
+        .map(|(_, rows)| percents(study, rows))
+        .collect();
+    let mut out = Vec::new();
+    for (k, quantity) in ["load", "voltage", "slip", "frequency"]
+        .into_iter()
+        .enumerate()
+    {
+        for pair in BANDS.windows(2) {
+            let inside =
+                |(b, _): &(usize, Range<usize>)| (pair[0]..pair[1]).contains(&values[*b][k]);
+            let part: Vec<_> = blocks.iter().filter(|b| inside(b)).cloned().collect();
+            if !part.is_empty() {
+                out.push(BandReport {
+                    quantity: quantity.to_owned(),
+                    from_percent: pair[0],
+                    to_percent: pair[1],
+                    error_over_noise: error_of(study, r, &part),
+                });
+            }
+        }
+    }
+    out
+}
+
+/// Rotating components of the current error.
+fn orders(case: &Case, r: &[f64]) -> Vec<OrderReport> {
+    if case.table.is_some() {
+        return Vec::new();
+    }
+    let stride = case.between.stride() * case.decimation;
+    let error = |row: usize| {
+        let at = |k: usize| {
+            let w = case.weight[row][k];
+            if w > 0.0 {
+                r[row * N_CHANNELS + k] / w
+            } else {
+                0.0
+            }
+        };
+        clarke([at(0), at(1), at(2)])
+    };
+    let one = |order: f64| {
+        let turned = |row: usize| {
+            let theta = case.supply.theta[(row * stride).min(case.supply.theta.len() - 1)];
+            error(row) * Complex64::from_polar(1.0, -order * theta)
+        };
+        let sum: Complex64 = (0..case.weight.len()).map(turned).sum();
+        OrderReport {
+            order,
+            amplitude_amp: sum.norm() / case.weight.len() as f64,
+        }
+    };
+    ORDERS.into_iter().map(one).collect()
+}
