@@ -22,7 +22,7 @@ pub use audit::{Audit, Code, Expectation, Finding, audit};
 pub use channel::{Channel, Quantity, Signal};
 pub use error::{Class, Error, Problem};
 pub use load_table::{LoadPoint, LoadTable, TableColumn};
-pub use mapping::{ColumnMap, Mapping, Target};
+pub use mapping::{ColumnMap, Mapping, Origin, Target};
 pub use metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use read::{Source, read_any, read_load_table, read_recording};
 pub use recording::Recording;

@@ -60,6 +60,18 @@ pub struct ColumnMap {
     pub scale: Option<f64>,
     /// Raw reading at zero, in the column's own unit; 0 when absent.
     pub offset: Option<f64>,
+    /// Who said so.
+    pub origin: Origin,
+}
+
+/// Who said how a column is to be read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Origin {
+    /// The user, for this run: an assumption that every result depends on.
+    #[default]
+    User,
+    /// The sidecar, a part of the recording.
+    Sidecar,
 }
 
 impl ColumnMap {
@@ -71,9 +83,13 @@ impl ColumnMap {
 
     /// The conversion in words: `speed = 1.0144 x (speed_raw + 2.11) rad/s`.
     pub(crate) fn sentence(&self, target: Target, column: &str) -> Option<String> {
-        if *self == ColumnMap::default() {
+        if (&self.name, self.unit, self.scale, self.offset) == (&None, None, None, None) {
             return None;
         }
+        let who = match self.origin {
+            Origin::User => "user's assumption",
+            Origin::Sidecar => "as the sidecar declares",
+        };
         let unit = self.unit.unwrap_or_else(|| Unit::si(target.quantity()));
         let shifted = match self.offset {
             Some(offset) if offset < 0.0 => format!("({column} + {})", -offset),
@@ -84,10 +100,7 @@ impl ColumnMap {
             Some(scale) => format!("{scale} x {shifted}"),
             None => shifted,
         };
-        Some(format!(
-            "{target} = {scaled} in {}, user's assumption",
-            unit.name
-        ))
+        Some(format!("{target} = {scaled} in {}, {who}", unit.name))
     }
 
     fn over(self, below: ColumnMap) -> ColumnMap {
@@ -96,6 +109,7 @@ impl ColumnMap {
             unit: self.unit.or(below.unit),
             scale: self.scale.or(below.scale),
             offset: self.offset.or(below.offset),
+            origin: self.origin,
         }
     }
 }

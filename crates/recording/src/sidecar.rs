@@ -1,7 +1,7 @@
 //! The sidecar of a recording: `x.toml` beside `x.csv.gz`.
 
 use crate::error::{Error, Problem};
-use crate::mapping::{ColumnMap, DELIMITERS, Mapping, Target, delimiter};
+use crate::mapping::{ColumnMap, DELIMITERS, Mapping, Origin, Target, delimiter};
 use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 use crate::units::Unit;
 use motor::document::{Bounds, Document, FileError, Section, Value, read_text};
@@ -253,6 +253,7 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
         let name = section.optional_text(key)?;
         return Some(name.map(|name| ColumnMap {
             name: Some(name),
+            origin: Origin::Sidecar,
             ..ColumnMap::default()
         }));
     }
@@ -269,6 +270,7 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
     }
     table.finish();
     Some(Some(ColumnMap {
+        origin: Origin::Sidecar,
         name: name?,
         unit: unit?,
         scale: scale?,

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{committed, quiet, shared};
+use common::{committed, peer, quiet, shared};
 use recording::{Audit, Code, Expectation, Finding, Mapping, audit, read_recording};
 use std::path::Path;
 
@@ -51,9 +51,7 @@ fn healthy_and_motor_side_sets_have_no_finding() {
     ];
     for (set, expectation) in sets {
         for file in ["recording", "recording_b"] {
-            let Some(path) = shared(&format!("peer/{set}/{file}.csv.gz")) else {
-                return;
-            };
+            let path = peer(set, file);
             let audit = audited(&path, &expectation, &Mapping::default());
             assert_eq!(codes(&audit), [], "{set} {file}: {:#?}", audit.findings);
             assert!(audit.supported && audit.unusable.is_empty());
@@ -65,9 +63,7 @@ fn healthy_and_motor_side_sets_have_no_finding() {
 #[test]
 fn the_unbalanced_supply_is_measured() {
     for file in ["recording", "recording_b"] {
-        let Some(path) = shared(&format!("peer/supply-unbalance/{file}.csv.gz")) else {
-            return;
-        };
+        let path = peer("supply-unbalance", file);
         let audit = audited(&path, &MOTOR_A, &Mapping::default());
         assert_eq!(codes(&audit), [(Code::SupplyUnbalance, "va vb vc")]);
         // The set asks for 0.1; noise of 0.2 % of full scale leaves less than 0.01.
@@ -83,9 +79,7 @@ fn the_unbalanced_supply_is_measured() {
 #[test]
 fn the_gain_of_phase_c_is_a_sensor_not_an_unbalance() {
     for file in ["recording", "recording_b"] {
-        let Some(path) = shared(&format!("peer/voltage-gain-phase-c/{file}.csv.gz")) else {
-            return;
-        };
+        let path = peer("voltage-gain-phase-c", file);
         let audit = audited(&path, &MOTOR_A, &Mapping::default());
         assert_eq!(codes(&audit), [(Code::ZeroSequence, "va vb vc")]);
         assert!(
@@ -262,9 +256,7 @@ fn a_locked_rotor_is_no_finding() {
 /// Faults put into a foreign recording, start and load steps included.
 #[test]
 fn spoilt_foreign_recordings_are_named() {
-    let Some(path) = shared("peer/none/recording.csv.gz") else {
-        return;
-    };
+    let path = peer("none", "recording");
     let healthy = read_recording(&path, &Mapping::default(), &mut quiet()).unwrap();
     let spoilt = |channels: &[&str], f: fn(usize, f64) -> f64| {
         let mut recording = healthy.clone();

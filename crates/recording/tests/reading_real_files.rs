@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{committed, quiet, shared};
+use common::{committed, peer, quiet, shared};
 use recording::{
     Channel, LoadTorque, Mapping, Source, StartsFrom, Supply, TableColumn, VoltageKind, read_any,
     read_load_table, read_recording,
@@ -133,4 +133,34 @@ fn progress_ends_at_the_size_of_the_file() {
         seen.windows(2)
             .all(|pair| pair[0].bytes_read <= pair[1].bytes_read)
     );
+}
+
+/// The committed copies hold converter codes; the originals, where present, are the same to half of
+/// their last printed digit (three decimals of a volt, four of an ampere).
+#[test]
+fn the_committed_peer_recordings_are_the_originals() {
+    let path = peer("none", "recording");
+    let recording = read_recording(&path, &Mapping::default(), &mut quiet()).unwrap();
+    assert_eq!(recording.len(), 60_000);
+    assert!(
+        recording
+            .assumptions
+            .iter()
+            .all(|note| note.ends_with("as the sidecar declares"))
+    );
+    let Some(original) = shared("peer/none/recording.csv.gz") else {
+        return;
+    };
+    let original = read_recording(&original, &Mapping::default(), &mut quiet()).unwrap();
+    assert_eq!(recording.metadata, original.metadata);
+    for (channel, values) in recording.channels() {
+        let digit = if Channel::VOLTAGES.contains(&channel) {
+            5e-4
+        } else {
+            5e-5
+        };
+        let pairs = values.iter().zip(original.channel(channel).unwrap());
+        let worst = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        assert!(worst < 1.01 * digit, "{channel}: {worst}");
+    }
 }

@@ -79,3 +79,8 @@ pub fn gzip(bytes: &[u8]) -> Vec<u8> {
     encoder.write_all(bytes).expect("memory");
     encoder.finish().expect("memory")
 }
+
+/// A recording of the peer sets, as this repository carries it.
+pub fn peer(set: &str, file: &str) -> PathBuf {
+    committed(&format!("peer/{set}/{file}.csv.gz"))
+}
