@@ -1,0 +1,77 @@
+//! What `drivemon monitor` costs: samples per second of reading, audit and replay of one recording.
+
+use criterion::{BatchSize, Criterion, Throughput};
+use monitor::Monitor;
+use motor::MotorFile;
+use recording::{Audit, Expectation, Mapping, Recording, audit, read_recording, write_recording};
+use sim_host::replay::{Samples, config_for, replay};
+use sim_host::scenario::Scenario;
+use sim_host::simulate;
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+fn root() -> PathBuf {
+    Path::new(benches::FOLDER).join("..")
+}
+
+/// The shipped start with load steps: 4 s at 10 kHz, eight channels.
+fn recorded() -> Recording {
+    let path = root().join("sim-host/scenarios/direct-on-line-start.toml");
+    let scenario = Scenario::read(&path).expect("shipped");
+    simulate::record(&scenario, |_| ()).expect("a valid scenario")
+}
+
+fn read(path: &Path) -> Recording {
+    read_recording(path, &Mapping::default(), &mut |_| ()).expect("just written")
+}
+
+fn run(monitor: &Monitor, recording: &Recording, audit: &Audit) {
+    let timeline = replay(monitor, &Samples::new(recording, audit), &mut |_| ());
+    assert!(timeline.judged > 0, "nothing was judged");
+    black_box(timeline);
+}
+
+fn bench(criterion: &mut Criterion) {
+    let motor = MotorFile::read(root().join("motors/peer-2k2.toml")).expect("shipped");
+    let path = std::env::temp_dir().join(format!("replay-{}.csv.gz", std::process::id()));
+    write_recording(&path, &recorded()).expect("a folder for temporary files");
+    let recording = read(&path);
+    let expectation = Expectation::from(&motor.nameplate);
+    let findings = audit(&recording, &expectation);
+    assert!(findings.supported);
+    let monitor = Monitor::new(config_for(&motor, &recording)).expect("shipped");
+
+    let mut group = criterion.benchmark_group("replay_of_4_s");
+    group.throughput(Throughput::Elements(recording.len() as u64));
+    group
+        .sample_size(10)
+        .measurement_time(Duration::from_secs(5));
+    group.bench_function("read_csv_gz", |b| b.iter(|| read(&path)));
+    group.bench_function("audit", |b| b.iter(|| audit(&recording, &expectation)));
+    group.bench_function("replay", |b| {
+        b.iter(|| run(&monitor, &recording, &findings))
+    });
+    group.bench_function("whole", |b| {
+        b.iter_batched(
+            || (),
+            |()| {
+                let recording = read(&path);
+                let findings = audit(&recording, &expectation);
+                run(&monitor, &recording, &findings);
+            },
+            BatchSize::PerIteration,
+        )
+    });
+    group.finish();
+    for leftover in [path.clone(), path.with_extension("").with_extension("toml")] {
+        // A temporary file that cannot be removed disturbs nobody.
+        let _ = std::fs::remove_file(leftover);
+    }
+}
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    bench(&mut criterion);
+    criterion.final_summary();
+}

@@ -1,0 +1,55 @@
+//! Two loops timed alternately, so that whatever else the machine does meets both alike.
+
+use std::time::Duration;
+
+/// Times of both loops, one pair after another.
+#[derive(Clone, Debug, Default)]
+pub struct Pairs {
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+impl Pairs {
+    /// Times `count` pairs; which loop goes first alternates.
+    pub fn measure(
+        count: usize,
+        mut first: impl FnMut() -> Duration,
+        mut second: impl FnMut() -> Duration,
+    ) -> Pairs {
+        let mut pairs = Pairs::default();
+        for k in 0..count {
+            let (a, b) = if k % 2 == 0 {
+                let a = first();
+                (a, second())
+            } else {
+                let b = second();
+                (first(), b)
+            };
+            pairs.first.push(a.as_secs_f64());
+            pairs.second.push(b.as_secs_f64());
+        }
+        pairs
+    }
+
+    /// Shortest times of the two loops, s: what disturbance can only lengthen.
+    pub fn shortest(&self) -> [f64; 2] {
+        [&self.first, &self.second].map(|times| times.iter().copied().fold(f64::INFINITY, f64::min))
+    }
+
+    /// Median times of the two loops, s.
+    pub fn medians(&self) -> [f64; 2] {
+        [&self.first, &self.second].map(|times| median(times.clone()))
+    }
+
+    /// How many times as fast the first loop is as the second: by the shortest times, and the median over pairs.
+    pub fn speed_ratios(&self) -> [f64; 2] {
+        let [first, second] = self.shortest();
+        let paired = self.first.iter().zip(&self.second).map(|(a, b)| b / a);
+        [second / first, median(paired.collect())]
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
