@@ -11,8 +11,10 @@ const SIGNIFICANT: f64 = 3.0;
 const RELEVANT: f64 = 0.05;
 /// ... or, for friction, by more than this per cent of rated torque.
 const RELEVANT_FRICTION: f64 = 2.0;
-/// A move beyond so many prior standard deviations is implausible.
+/// A move beyond so many prior standard deviations is implausible, ...
 const IMPLAUSIBLE: f64 = 3.0;
+/// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.
+const HOT_COPPER: f64 = 0.41;
 
 /// Standard error of coordinate `k`, zero if it was not fitted.
 fn coordinate_error(trial: &Trial, covariance: &nalgebra::DMatrix<f64>, k: usize) -> f64 {
@@ -41,7 +43,15 @@ pub(crate) fn off_nominals(trial: &Trial) -> Vec<usize> {
 /// Names of the nominals that no such motor has.
 pub(crate) fn implausible(trial: &Trial) -> Vec<&'static str> {
     let z = &trial.fit.hypothesis.z;
-    let far = |&k: &usize| k != FRICTION && z[k].abs() > IMPLAUSIBLE * NOMINALS[k].prior;
+    let far = |&k: &usize| {
+        let limit = IMPLAUSIBLE * NOMINALS[k].prior;
+        let warm = if NOMINALS[k].unit == "ohm" {
+            HOT_COPPER
+        } else {
+            0.0
+        };
+        k != FRICTION && !(-limit..limit + warm).contains(&z[k])
+    };
     (0..N_NOMINAL)
         .filter(far)
         .map(|k| NOMINALS[k].name)
