@@ -71,6 +71,10 @@ fn check(monitor: &Monitor, signals: &Signals) {
     );
 }
 
+fn keep(report: Report) {
+    black_box(report);
+}
+
 fn timed(run: impl FnOnce()) -> Duration {
     let from = Instant::now();
     run();
@@ -89,20 +93,8 @@ fn show(name: &str, pairs: &Pairs) {
 }
 
 fn show_beside_peers(monitor: &Monitor, signals: &Signals) {
-    let update = || {
-        timed(|| {
-            core(monitor, &signals.samples, Monitor::update, |r| {
-                drop(black_box(r))
-            })
-        })
-    };
-    let raw = || {
-        timed(|| {
-            core(monitor, &signals.raw, Monitor::update_raw, |r| {
-                drop(black_box(r))
-            })
-        })
-    };
+    let update = || timed(|| core(monitor, &signals.samples, Monitor::update, |r| keep(r)));
+    let raw = || timed(|| core(monitor, &signals.raw, Monitor::update_raw, |r| keep(r)));
     let dft = || timed(|| drop(black_box(sliding(&signals.samples))));
     let normal = || timed(|| drop(black_box(least_squares(&signals.samples))));
     println!("monitor: ns per sample, fastest (median) of {PAIRS} interleaved pairs");
@@ -122,18 +114,10 @@ fn bench(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("per_10000_samples");
     group.throughput(Throughput::Elements(SAMPLES as u64));
     group.bench_function("monitor_update", |b| {
-        b.iter(|| {
-            core(&monitor, &signals.samples, Monitor::update, |r| {
-                drop(black_box(r))
-            })
-        })
+        b.iter(|| core(&monitor, &signals.samples, Monitor::update, |r| keep(r)))
     });
     group.bench_function("monitor_update_raw", |b| {
-        b.iter(|| {
-            core(&monitor, &signals.raw, Monitor::update_raw, |r| {
-                drop(black_box(r))
-            })
-        })
+        b.iter(|| core(&monitor, &signals.raw, Monitor::update_raw, |r| keep(r)))
     });
     group.bench_function("peer_sliding_dft", |b| b.iter(|| sliding(&signals.samples)));
     group.bench_function("peer_least_squares_nalgebra", |b| {
