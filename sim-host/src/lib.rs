@@ -4,6 +4,7 @@ pub mod cli;
 pub mod demo;
 pub mod operating_points;
 pub mod replay;
+pub mod report;
 pub mod scenario;
 pub mod simulate;
 pub mod words;

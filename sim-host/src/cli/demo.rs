@@ -10,6 +10,7 @@ use super::input::read_motor;
 use super::output::OutputArgs;
 use super::progress;
 use crate::demo;
+use crate::report::Subject;
 
 /// Show the published method at work: healthy motor and every fault of Table 1, through the board's core.
 ///
@@ -46,7 +47,7 @@ impl Demo {
         if !self.output.takes_stdout() {
             anstream::println!("{demo}");
         }
-        self.output.write_json(&demo)?;
+        self.output.write(Subject::Demo, &demo)?;
         Ok(Finding::Nothing)
     }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use monitor::{Monitor, MonitorConfig};
+use motor::MotorFile;
 use recording::{Audit, Expectation, audit};
 use recording::{LoadTable, Recording, Source};
 use serde::Serialize;
@@ -15,7 +16,9 @@ use super::{paint, progress};
 use crate::operating_points::OperatingPoints;
 use crate::replay::{
     self, LampState, NotJudgedShare, Samples, SequenceSummary, Timeline, Verdict, VerdictState,
+    WindowOperation, WindowResiduals,
 };
+use crate::report::Subject;
 use crate::words;
 
 /// Replay a recording through the very core that the board runs: lamps, verdict, probabilities.
@@ -58,6 +61,9 @@ struct MonitorJson<'a> {
     verdict: Verdict,
     first_alarm_s: Option<f64>,
     sequence: SequenceSummary,
+    threshold_percent: Option<[f64; 4]>,
+    residuals: &'a [WindowResiduals],
+    operation: &'a [WindowOperation],
 }
 
 /// Residuals over the judged windows, percent of their scales.
@@ -91,7 +97,7 @@ impl MonitorArgs {
         } else {
             Timeline::default()
         };
-        self.tell(recording, &audit, &timeline)
+        self.tell(recording, motor.as_ref(), &audit, &timeline)
     }
 
     fn replay(
@@ -124,6 +130,7 @@ impl MonitorArgs {
     fn tell(
         &self,
         recording: &Recording,
+        motor: Option<&MotorFile>,
         audit: &Audit,
         timeline: &Timeline,
     ) -> Result<Finding, Failure> {
@@ -136,7 +143,7 @@ impl MonitorArgs {
             (true, VerdictState::Fault) => Finding::Something,
             (true, VerdictState::Healthy | VerdictState::NotJudged) => Finding::Nothing,
         };
-        self.output.write_json(&MonitorJson {
+        let result = MonitorJson {
             recording: recording.name(),
             assumptions: &recording.assumptions,
             audit,
@@ -148,7 +155,11 @@ impl MonitorArgs {
             verdict,
             first_alarm_s: timeline.first_alarm_s,
             sequence: timeline.sequence(),
-        })?;
+            threshold_percent: motor.map(|motor| motor.monitor.threshold_percent),
+            residuals: &timeline.trace.residuals,
+            operation: &timeline.trace.operation,
+        };
+        self.output.write(Subject::Monitor, &result)?;
         Ok(finding)
     }
 
@@ -158,7 +169,7 @@ impl MonitorArgs {
         if !self.output.takes_stdout() {
             anstream::println!("{points}");
         }
-        self.output.write_json(&points)?;
+        self.output.write(Subject::LoadTable, &points)?;
         Ok(Finding::Nothing)
     }
 }

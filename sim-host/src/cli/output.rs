@@ -7,6 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
+use crate::report::{self, Subject};
 
 /// Where results go besides the terminal.
 #[derive(Debug, Args)]
@@ -14,6 +15,9 @@ pub struct OutputArgs {
     /// Write the whole result as JSON to FILE (`-` for standard output)
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write the result as one self-contained page with figures to FILE.html
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
 }
 
 impl OutputArgs {
@@ -21,7 +25,7 @@ impl OutputArgs {
     ///
     /// # Errors
     /// A path that cannot be written.
-    pub fn write_json(&self, value: &impl Serialize) -> Result<(), Failure> {
+    fn write_json(&self, value: &impl Serialize) -> Result<(), Failure> {
         let Some(path) = &self.json else {
             return Ok(());
         };
@@ -34,6 +38,21 @@ impl OutputArgs {
         }
         let mut file = std::fs::File::create(path).map_err(|error| cannot_write(path, error))?;
         write_all(&mut file, path, &text)
+    }
+
+    /// Writes `value` as JSON and as a page, each where the user asked for it.
+    ///
+    /// # Errors
+    /// A path that cannot be written.
+    pub fn write(&self, subject: Subject, value: &impl Serialize) -> Result<(), Failure> {
+        self.write_json(value)?;
+        let Some(path) = &self.report else {
+            return Ok(());
+        };
+        let page = report::page(subject, value).map_err(|error| {
+            Failure::Usage(format!("the result cannot be shown as a page: {error}"))
+        })?;
+        std::fs::write(path, page).map_err(|error| cannot_write(path, error))
     }
 
     /// Whether the JSON takes standard output, so that nothing else may be printed there.

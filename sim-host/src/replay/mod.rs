@@ -2,11 +2,13 @@
 
 mod samples;
 mod timeline;
+mod trace;
 
 pub use samples::{Samples, Timed};
 pub use timeline::{
     Candidate, LampState, NotJudgedShare, SequenceSummary, Timeline, Verdict, VerdictState,
 };
+pub use trace::{Trace, WindowOperation, WindowResiduals};
 
 use monitor::{
     ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor, MonitorConfig,

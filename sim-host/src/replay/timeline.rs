@@ -6,6 +6,7 @@ use monitor::{Candidates, FAULTS, Fault, Lamps, NotJudged, Report, SensorFinding
 use num_complex::Complex64;
 use serde::Serialize;
 
+use super::trace::Trace;
 use crate::words;
 
 /// The lamps from one moment on.
@@ -114,6 +115,8 @@ pub struct Timeline {
     pub first_alarm_s: Option<f64>,
     /// Why windows were not judged, most frequent first.
     pub not_judged: Vec<NotJudgedShare>,
+    /// Every window in the order of time.
+    pub trace: Trace,
     reasons: BTreeMap<String, u64>,
     shown: Option<(Lamps, Option<NotJudged>)>,
     moments: Moments,
@@ -147,6 +150,7 @@ impl Timeline {
         self.note_lamps(t, report);
         self.note_causes(t, report);
         self.sequences.add(t, report);
+        self.trace.add(t, report);
     }
 
     /// Sorts what has been collected.

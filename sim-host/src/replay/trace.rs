@@ -1,0 +1,79 @@
+//! What each window measured, kept for figures over time.
+
+use monitor::{Report, Window};
+use serde::Serialize;
+
+/// The residuals of one window.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WindowResiduals {
+    /// End of the window, s.
+    pub t: f64,
+    /// r1..r4, percent of their scales.
+    pub r_percent: [f64; 4],
+    /// Whether thresholds were applied to them.
+    pub judged: bool,
+}
+
+/// What the machine did in one window.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WindowOperation {
+    /// End of the window, s.
+    pub t: f64,
+    /// Positive sequence of the phase voltages, V rms; absent without voltages.
+    pub voltage_rms_volt: Option<f64>,
+    /// Positive sequence of the phase currents, A rms; absent without currents.
+    pub current_rms_amp: Option<f64>,
+    /// Supply frequency, Hz.
+    pub frequency_hz: f64,
+    /// Mechanical speed, rad/s; absent without a speed.
+    pub speed_rad_s: Option<f64>,
+    /// Brake torque, N m; absent without a torque channel.
+    pub torque_nm: Option<f64>,
+    /// Negative over positive sequence of the currents.
+    pub i2_over_i1: Option<f64>,
+    /// Negative over positive sequence of the voltages.
+    pub v2_over_v1: Option<f64>,
+}
+
+/// Every window in the order of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trace {
+    /// Wherever residuals could be evaluated.
+    pub residuals: Vec<WindowResiduals>,
+    /// Wherever a window was complete.
+    pub operation: Vec<WindowOperation>,
+}
+
+impl Trace {
+    /// Adds one report; `t` is the time of the window's end, s.
+    pub fn add(&mut self, t: f64, report: &Report) {
+        if let Some(residuals) = report.residuals {
+            self.residuals.push(WindowResiduals {
+                t,
+                r_percent: residuals.r.map(|r| 100.0 * f64::from(r)),
+                judged: report.is_judged(),
+            });
+        }
+        if let Some(window) = &report.window {
+            self.operation.push(WindowOperation::new(t, window));
+        }
+    }
+}
+
+impl WindowOperation {
+    fn new(t: f64, window: &Window) -> Self {
+        let present = |amplitude: f32| (amplitude > 0.0).then_some(f64::from(amplitude));
+        let voltage = present(window.u_s.positive.norm());
+        let current = present(window.i_s.positive.norm());
+        WindowOperation {
+            t,
+            voltage_rms_volt: voltage.map(|peak| peak * std::f64::consts::FRAC_1_SQRT_2),
+            current_rms_amp: current.map(|peak| peak * std::f64::consts::FRAC_1_SQRT_2),
+            frequency_hz: f64::from(window.omega_sync) / std::f64::consts::TAU,
+            speed_rad_s: window.omega_mech.map(f64::from),
+            torque_nm: window.tau_load.map(f64::from),
+            i2_over_i1: current.map(|_| f64::from(window.i_s.unbalance().norm())),
+            v2_over_v1: voltage.map(|_| f64::from(window.u_s.unbalance().norm())),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The result of a command as one self-contained HTML page: no network, the same JSON embedded.
+//!
+//! Every number on a page is taken from the JSON through a [`Place`], which remembers where it stands there;
+//! figures are drawn in the browser by an embedded chart library from the embedded JSON. So a page can show
+//! nothing that the JSON does not hold.
+
+mod audit;
+mod chart;
+mod demo;
+mod load_table;
+mod monitor;
+mod number;
+mod place;
+mod shell;
+
+pub use place::Place;
+
+use serde::Serialize;
+
+/// Which command's result a page shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// `drivemon demo`.
+    Demo,
+    /// `drivemon monitor` on a recording.
+    Monitor,
+    /// `drivemon monitor` on a load-test table.
+    LoadTable,
+}
+
+/// The page for a result, complete.
+///
+/// # Errors
+/// A result that is no JSON.
+pub fn page(subject: Subject, result: &impl Serialize) -> Result<String, serde_json::Error> {
+    let value = serde_json::to_value(result)?;
+    let place = Place::root(&value);
+    let (title, content) = match subject {
+        Subject::Demo => ("Table 1 on a simulated motor", demo::content(&place)),
+        Subject::Monitor => ("What the lamps would have shown", monitor::content(&place)),
+        Subject::LoadTable => (
+            "Operating points of a load test",
+            load_table::content(&place),
+        ),
+    };
+    Ok(shell::page(
+        title,
+        &content,
+        &serde_json::to_string(&value)?,
+    ))
+}
