@@ -1,0 +1,66 @@
+//! Firmware only: the memory map for the linker, and the motor file as constants.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use board::MotorImage;
+use monitor::{Monitor, MonitorConfig};
+use motor::motor_file::MotorFile;
+
+/// The motor file that is compiled in unless the environment names another.
+const DEFAULT_MOTOR: &str = "motors/assumed-300w.toml";
+const MOTOR_VARIABLE: &str = "DRIVE_MONITOR_MOTOR";
+/// s; the board's sampling clock runs at 10 kHz.
+const T_SAMPLE: f64 = 1e-4;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-env-changed={MOTOR_VARIABLE}");
+    if std::env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
+        return;
+    }
+    if let Err(error) = prepare() {
+        for line in error.to_string().lines() {
+            println!("cargo::error={line}");
+        }
+    }
+}
+
+fn prepare() -> Result<(), Box<dyn Error>> {
+    let here = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR")?);
+    let out = PathBuf::from(std::env::var("OUT_DIR")?);
+    link(&here);
+    let motor = motor_path(&here);
+    println!("cargo::rerun-if-changed={}", motor.display());
+    std::fs::write(out.join("motor.rs"), constants(&motor)?)?;
+    Ok(())
+}
+
+fn link(here: &Path) {
+    println!("cargo::rerun-if-changed=memory.x");
+    println!("cargo::rustc-link-search={}", here.display());
+    for script in ["link.x", "defmt.x"] {
+        println!("cargo::rustc-link-arg-bins=-T{script}");
+    }
+    println!("cargo::rustc-link-arg-bins=--nmagic");
+}
+
+/// A relative path means the same whatever folder cargo was called in.
+fn motor_path(here: &Path) -> PathBuf {
+    let chosen = std::env::var(MOTOR_VARIABLE)
+        .ok()
+        .filter(|path| !path.is_empty());
+    here.join(chosen.as_deref().unwrap_or(DEFAULT_MOTOR))
+}
+
+fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
+    let file = MotorFile::read(path)?;
+    let config = MonitorConfig::from_motor_file(&file, T_SAMPLE);
+    Monitor::new(config).map_err(|error| format!("{}: {error}", path.display()))?;
+    let words = MotorImage::new(&config).0;
+    let name: String = file.name.chars().flat_map(char::escape_default).collect();
+    Ok(format!(
+        "/// Name of the motor in the motor file.\npub const NAME: &str = \"{name}\";\n\
+         /// Its constants, checked at power-up.\npub static IMAGE: board::MotorImage = board::MotorImage({words:?});\n"
+    ))
+}

@@ -1,0 +1,204 @@
+//! The program: self-test, then samples to lamps for ever.
+
+use core::hint::black_box;
+use core::panic::PanicInfo;
+
+use board::{Display, LAMPS, MotorImage};
+use embassy_executor::Spawner;
+use embassy_stm32::gpio::Input;
+use embassy_stm32::peripherals::IWDG;
+use embassy_stm32::wdg::IndependentWatchdog;
+use embassy_time::{Duration, Timer};
+use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};
+
+use crate::hardware::board::{Board, clocks};
+use crate::hardware::housekeeping::{Housekeeping, ResetCause, is_vdda_credible};
+use crate::hardware::lamps::Lamps as LampWires;
+use crate::hardware::sampling::{Acquisition, Block, Buffers, Gap};
+use crate::hardware::telemetry;
+
+include!(concat!(env!("OUT_DIR"), "/motor.rs"));
+
+/// us; ten blocks and three recoveries fit, a person does not notice it.
+const WATCHDOG: u32 = 250_000;
+/// How long each lamp is lit at power-up.
+const LAMP_TEST: Duration = Duration::from_millis(150);
+/// Blocks that are thrown away at first: the filters and sensors settle (0.1 s).
+const INHIBITED_BLOCKS: u32 = 31;
+/// Blocks between two looks at the converters' supply: about a second.
+const HOUSEKEEPING_BLOCKS: u32 = 312;
+/// Half of a 1 Hz blink, in blocks of 3.2 ms.
+const BLINK_BLOCKS: u32 = 156;
+
+/// Starts up; nothing comes back from here.
+#[embassy_executor::main]
+async fn main(_spawner: Spawner) -> ! {
+    let cause = ResetCause::take();
+    let board = Board::new(embassy_stm32::init(clocks()));
+    telemetry::start();
+    defmt::info!("drive-monitor: {=str}, reset: {}", NAME, cause);
+    let mut watchdog = IndependentWatchdog::new(board.watchdog, WATCHDOG);
+    watchdog.unleash();
+    let mut lamps = board.lamps;
+    test_lamps(&mut lamps, &mut watchdog).await;
+    let mut panel = Panel {
+        wires: lamps,
+        watchdog,
+        button: board.button,
+        housekeeping: Housekeeping::new(board.housekeeping),
+        display: Display::default(),
+        instrument_faulty: false,
+        blocks: 0,
+    };
+    panel.look_after_supply();
+    // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
+    match configured_monitor(black_box(&IMAGE)) {
+        Some(monitor) => run(&monitor, panel, board.sources).await,
+        None => panel.refuse().await,
+    }
+}
+
+fn configured_monitor(image: &MotorImage) -> Option<Monitor> {
+    let config = image.config().ok()?;
+    Monitor::new(config).ok()
+}
+
+/// Each lamp alone, in order, so that a person sees that every one works.
+async fn test_lamps(wires: &mut LampWires, watchdog: &mut IndependentWatchdog<'static, IWDG>) {
+    for lamp in 0..LAMPS {
+        wires.set(core::array::from_fn(|other| other == lamp));
+        watchdog.pet();
+        Timer::after(LAMP_TEST).await;
+    }
+    wires.set([false; LAMPS]);
+    watchdog.pet();
+}
+
+/// Samples to lamps. Every gap in the samples ends in a fresh acquisition.
+async fn run(
+    monitor: &Monitor,
+    mut panel: Panel,
+    mut sources: crate::hardware::sampling::Sources,
+) -> ! {
+    let mut buffers = Buffers::new();
+    let mut state = MonitorState::default();
+    let mut lamps = Lamps {
+        run: Lamp::Blink,
+        ..Lamps::default()
+    };
+    loop {
+        let mut acquisition = Acquisition::start(&mut sources, &mut buffers);
+        let gap = watch(
+            monitor,
+            &mut state,
+            &mut acquisition,
+            &mut panel,
+            &mut lamps,
+        )
+        .await;
+        drop(acquisition);
+        defmt::warn!("samples are missing: {}", gap);
+        state.resume_after_gap();
+    }
+}
+
+/// Judges block after block until samples are missing.
+async fn watch(
+    monitor: &Monitor,
+    state: &mut MonitorState,
+    acquisition: &mut Acquisition<'_>,
+    panel: &mut Panel,
+    lamps: &mut Lamps,
+) -> Gap {
+    let mut block = Block::new();
+    loop {
+        if let Err(gap) = acquisition.read(&mut block).await {
+            return gap;
+        }
+        if panel.blocks >= INHIBITED_BLOCKS
+            && let Some(report) = process_block(monitor, state, &block)
+        {
+            *lamps = report.lamps;
+            panel.display.observe(lamps);
+        }
+        panel.after_block(lamps);
+    }
+}
+
+/// One block through the core; at most one report ends in it, because a block is shorter than a cycle.
+/// A symbol of its own, so that what it reaches can be inspected (tools/check-firmware).
+#[inline(never)]
+fn process_block(monitor: &Monitor, state: &mut MonitorState, block: &Block) -> Option<Report> {
+    let mut latest = None;
+    for raw in block.samples() {
+        latest = monitor.update_raw(state, &raw).or(latest);
+    }
+    latest
+}
+
+/// What a person sees and touches, and what looks after the board itself.
+struct Panel {
+    wires: LampWires,
+    watchdog: IndependentWatchdog<'static, IWDG>,
+    button: Input<'static>,
+    housekeeping: Housekeeping,
+    display: Display,
+    instrument_faulty: bool,
+    blocks: u32,
+}
+
+impl Panel {
+    /// The only place that pets the watchdog while sampling: after a good block.
+    fn after_block(&mut self, lamps: &Lamps) {
+        self.watchdog.pet();
+        self.blocks = self.blocks.wrapping_add(1);
+        if self.blocks.is_multiple_of(HOUSEKEEPING_BLOCKS) {
+            self.look_after_supply();
+        }
+        if self.button.is_high() {
+            self.display.acknowledge();
+        }
+        let bright = (self.blocks / BLINK_BLOCKS).is_multiple_of(2);
+        let lamps = self.with_instrument(lamps);
+        self.wires.set(self.display.levels(&lamps, bright));
+    }
+
+    /// A board that cannot measure says so, whatever its numbers say about the motor.
+    fn with_instrument(&self, lamps: &Lamps) -> Lamps {
+        if !self.instrument_faulty {
+            return *lamps;
+        }
+        Lamps {
+            sensor: Lamp::On,
+            fault: Lamp::On,
+            ..*lamps
+        }
+    }
+
+    fn look_after_supply(&mut self) {
+        let millivolt = self.housekeeping.vdda_millivolt();
+        let faulty = !is_vdda_credible(millivolt);
+        if faulty != self.instrument_faulty {
+            defmt::warn!("VDDA {=u32} mV", millivolt);
+        }
+        self.instrument_faulty = faulty;
+    }
+
+    /// Nothing is measured with constants that do not hold: SENSOR and FAULT light, RUN stays dark.
+    async fn refuse(mut self) -> ! {
+        defmt::error!("the motor constants in flash are corrupted: flash the board again");
+        loop {
+            self.instrument_faulty = true;
+            let lamps = self.with_instrument(&Lamps::default());
+            self.wires.set(self.display.levels(&lamps, false));
+            self.watchdog.pet();
+            Timer::after(LAMP_TEST).await;
+        }
+    }
+}
+
+/// There is nobody to read a message: start again, and the reset cause tells.
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    cortex_m::peripheral::SCB::sys_reset()
+}

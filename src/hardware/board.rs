@@ -1,0 +1,103 @@
+//! Which pin does what, and the clocks. The same table with the wiring is in docs/wiring.md.
+//!
+//! | pin  | function | notes |
+//! |------|----------|-------|
+//! | PA0  | phase voltage a | ADC1 channel 1, first in the sequence |
+//! | PA1  | phase current a | ADC1 channel 2 |
+//! | PC0  | phase voltage b | ADC1 channel 6 |
+//! | PC1  | phase current b | ADC1 channel 7 |
+//! | PC2  | phase voltage c | ADC1 channel 8 |
+//! | PC3  | phase current c | ADC1 channel 9 |
+//! | PC6  | encoder A | TIM3 channel 1, pull-up, 5 V tolerant |
+//! | PC7  | encoder B | TIM3 channel 2, pull-up, 5 V tolerant |
+//! | PC8  | lamp RUN (green) | high is on |
+//! | PB11..PB14 | lamps r1..r4 (yellow) | high is on |
+//! | PB15 | lamp SENSOR (blue) | high is on |
+//! | PC9  | lamp LINE (white) | high is on |
+//! | PC4  | lamp LOAD (yellow) | high is on |
+//! | PC5  | lamp FAULT (red) | high is on |
+//! | PC13 | button B1 of the NUCLEO | high is pressed |
+
+use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
+use embassy_stm32::peripherals::{ADC5, IWDG};
+use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk, mux};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::{Config, Peri, Peripherals};
+
+use super::encoder::Encoder;
+use super::lamps::Lamps;
+use super::sampling::Sources;
+
+/// The crystal X3 of the NUCLEO. The internal oscillator is 1 % off, and so would be every measured
+/// speed and frequency; residual thresholds lie at 0.3 %.
+const CRYSTAL: Hertz = Hertz(24_000_000);
+
+/// The peripherals, by what they are for.
+pub struct Board {
+    /// ADC, its pins, trigger timer and DMA.
+    pub sources: Sources,
+    /// The lamps.
+    pub lamps: Lamps,
+    /// Acknowledge, lamp mode.
+    pub button: Input<'static>,
+    /// Converter of the chip's own reference.
+    pub housekeeping: Peri<'static, ADC5>,
+    /// Watchdog.
+    pub watchdog: Peri<'static, IWDG>,
+}
+
+/// 24 MHz / 6 x 85 / 2 = 170 MHz for the core and the converters' clock divider.
+pub fn clocks() -> Config {
+    let mut config = Config::default();
+    config.rcc.hse = Some(Hse {
+        freq: CRYSTAL,
+        mode: HseMode::Oscillator,
+    });
+    config.rcc.pll = Some(Pll {
+        source: PllSource::HSE,
+        prediv: PllPreDiv::DIV6,
+        mul: PllMul::MUL85,
+        divp: None,
+        divq: None,
+        divr: Some(PllRDiv::DIV2),
+    });
+    config.rcc.sys = Sysclk::PLL1_R;
+    config.rcc.boost = true;
+    config.rcc.mux.adc12sel = mux::Adcsel::SYS;
+    config.rcc.mux.adc345sel = mux::Adcsel::SYS;
+    config
+}
+
+impl Board {
+    /// Deals out the peripherals; all lamps are dark.
+    pub fn new(p: Peripherals) -> Self {
+        Board {
+            sources: Sources {
+                adc: p.ADC1,
+                adc_dma: p.DMA1_CH1,
+                pins: (p.PA0, p.PA1, p.PC0, p.PC1, p.PC2, p.PC3),
+                trigger: p.TIM4,
+                encoder_dma: p.DMA1_CH2,
+                _encoder: Encoder::new(p.TIM3, p.PC6, p.PC7),
+            },
+            lamps: Lamps::new([
+                lamp(p.PC8),
+                lamp(p.PB11),
+                lamp(p.PB12),
+                lamp(p.PB13),
+                lamp(p.PB14),
+                lamp(p.PB15),
+                lamp(p.PC9),
+                lamp(p.PC4),
+                lamp(p.PC5),
+            ]),
+            button: Input::new(p.PC13, Pull::None),
+            housekeeping: p.ADC5,
+            watchdog: p.IWDG,
+        }
+    }
+}
+
+fn lamp(pin: Peri<'static, impl embassy_stm32::gpio::Pin>) -> Output<'static> {
+    Output::new(pin, Level::Low, Speed::Low)
+}

@@ -1,0 +1,8 @@
+//! Everything that knows the chip.
+
+pub mod board;
+pub mod encoder;
+pub mod housekeeping;
+pub mod lamps;
+pub mod sampling;
+pub mod telemetry;
