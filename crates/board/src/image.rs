@@ -131,6 +131,8 @@ fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
             l_lr,
             l_m,
         },
+        effects: monitor::ActiveEffects::default(),
+        channel_gain: [1.0; monitor::CHANNELS],
         mechanics: Mechanics {
             n_p,
             inertia,

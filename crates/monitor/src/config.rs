@@ -3,7 +3,9 @@
 use motor::{Mechanics, TParams};
 
 use crate::convert::Converter;
+use crate::effects::ActiveEffects;
 use crate::operating_point::Frame;
+use crate::phasor::CHANNELS;
 use crate::residuals::{FieldCurrent, RESIDUALS};
 use crate::threshold::ComparatorConfig;
 use crate::window::MAX_WINDOW_CYCLES;
@@ -31,6 +33,10 @@ pub struct MonitorConfig {
     pub encoder_counts_per_revolution: f32,
     /// Electrical parameters per star phase.
     pub params: TParams<f32>,
+    /// Physical effects beyond the T model.
+    pub effects: ActiveEffects,
+    /// Corrections of the channels that the effects bring along: voltages a, b, c, then currents a, b, c; 1 for none.
+    pub channel_gain: [f32; CHANNELS],
     /// Pole pairs, inertia, friction.
     pub mechanics: Mechanics<f32>,
     /// Rated phase voltage, amplitude, V, > 0.
@@ -128,6 +134,10 @@ impl MonitorConfig {
         checks
             .into_iter()
             .chain(thresholds)
+            .chain(
+                self.channel_gain
+                    .map(|gain| ("channel_gain", gain, [0.1, 10.0])),
+            )
             .try_for_each(check_range)
     }
 }

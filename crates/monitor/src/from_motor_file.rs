@@ -1,12 +1,15 @@
 //! The monitor's configuration from a motor file (feature `motor-file`; hosts and build scripts only).
 
+use motor::effects::{self, EffectConfig, SteadyEffect};
 use motor::motor_file::{self, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
 
 use crate::config::{LoadKind, MonitorConfig};
 use crate::convert::{ChannelScale, Converter};
+use crate::effects::{ActiveEffect, ActiveEffects, MAX_EFFECT_PARAMETERS, MAX_EFFECTS};
 use crate::frames::Abc;
 use crate::operating_point::Frame;
+use crate::phasor::CHANNELS;
 use crate::residuals::FieldCurrent;
 use crate::threshold::ComparatorConfig;
 
@@ -24,6 +27,8 @@ impl MonitorConfig {
             encoder_counts_per_revolution: COUNTS_PER_PULSE
                 * file.sensors.encoder_pulses_per_revolution as f32,
             params: single(&file.parameters),
+            effects: active_effects(file),
+            channel_gain: channel_gain(file),
             mechanics: single_mechanics(&file.mechanics),
             rated_voltage: plate.phase_voltage_amplitude() as f32,
             rated_current: plate.current_amplitude() as f32,
@@ -66,6 +71,43 @@ pub fn single_mechanics(m: &Mechanics<f64>) -> Mechanics<f32> {
         friction: m.friction as f32,
         load_friction: m.load_friction as f32,
     }
+}
+
+/// The motor file's effects; whoever reads the file checks them with [`effects::from_motor_file`] and their number.
+fn effects_of(file: &MotorFile) -> impl Iterator<Item = EffectConfig> {
+    let configs = effects::from_motor_file(file, &file.name);
+    configs.unwrap_or_default().into_iter()
+}
+
+fn active_effects(file: &MotorFile) -> ActiveEffects {
+    let mut active = [None; MAX_EFFECTS];
+    for (slot, config) in active.iter_mut().zip(effects_of(file)) {
+        let mut parameters = [0.0; MAX_EFFECT_PARAMETERS];
+        for (parameter, value) in parameters.iter_mut().zip(&config.values) {
+            *parameter = *value as f32;
+        }
+        let effect: &'static dyn SteadyEffect = config.effect;
+        *slot = Some(ActiveEffect { effect, parameters });
+    }
+    active
+}
+
+/// Effects that name single channels leave the positive sequence to the channel itself.
+const CHANNEL_EFFECTS: [(&str, usize); 2] = [("phase-voltage-gain", 0), ("phase-current-gain", 3)];
+
+/// What brings each channel back to the truth: one over the gain that a channel effect found.
+fn channel_gain(file: &MotorFile) -> [f32; CHANNELS] {
+    let mut gains = [1.0; CHANNELS];
+    for config in effects_of(file) {
+        let name = config.effect.descriptor().name;
+        let first = CHANNEL_EFFECTS.iter().find(|(known, _)| *known == name);
+        if let Some((_, first)) = first {
+            for (gain, value) in gains.iter_mut().skip(*first).zip(&config.values) {
+                *gain = (1.0 / (1.0 + value)) as f32;
+            }
+        }
+    }
+    gains
 }
 
 fn converter(sensors: &Sensors) -> Converter {

@@ -6,6 +6,7 @@
 
 mod config;
 mod convert;
+mod effects;
 mod encoder;
 mod frames;
 #[cfg(feature = "motor-file")]
@@ -28,6 +29,9 @@ mod window;
 
 pub use config::{ConfigError, LoadKind, MonitorConfig};
 pub use convert::{ChannelScale, Converter};
+pub use effects::{
+    ActiveEffect, ActiveEffects, Corrected, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, correct,
+};
 pub use encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
 pub use health::{HealthConfig, Phase, SensorFinding};

@@ -1,6 +1,9 @@
 //! The monitor: one sample in, one report per supply cycle out.
 
+use motor::effects::Rated;
+
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
+use crate::effects::correct;
 use crate::encoder::{EncoderConfig, EncoderState};
 use crate::frames::AlphaBeta;
 use crate::health::{HealthConfig, SensorFinding};
@@ -25,6 +28,7 @@ pub struct Monitor {
     health: HealthConfig,
     supply: SupplyConfig,
     panel: PanelConfig,
+    rated: Rated<f32>,
     idle_samples: u32,
 }
 
@@ -97,7 +101,6 @@ impl Monitor {
                 omega_mech_max: OVERSPEED * omega_max / config.mechanics.n_p,
             },
             model: ResidualModel {
-                params: config.params,
                 mechanics: config.mechanics,
                 field: config.field,
                 rated_torque: config.rated_torque,
@@ -113,6 +116,13 @@ impl Monitor {
                 max_unbalance: MAX_UNBALANCE,
             },
             panel: PanelConfig::new(&config),
+            rated: Rated {
+                voltage: config.rated_voltage,
+                current: config.rated_current,
+                omega_sync: config.rated_omega,
+                n_p: config.mechanics.n_p,
+                torque: config.rated_torque,
+            },
             idle_samples: (IDLE_REPORT_S / config.t_sample) as u32,
             config,
         })
@@ -174,7 +184,8 @@ impl Monitor {
             clipped: tally.clipped,
             invalid_samples: tally.invalid,
         };
-        state.window.push(cycle, self.config.window_cycles);
+        let corrected = cycle.corrected(&self.config.channel_gain);
+        state.window.push(corrected, self.config.window_cycles);
         let window = state
             .window
             .measure(self.config.window_cycles, self.config.t_sample)
@@ -298,10 +309,16 @@ impl Monitor {
         rehearsal: &Rehearsal,
         window: &Window,
     ) -> Option<OperatingPoint> {
-        let omega_el = window.omega_mech? * self.config.mechanics.n_p;
-        let phasors = [window.u_s.positive, window.i_s.positive];
-        let params = &self.config.params;
-        OperatingPoint::new(params, frame, phasors, window.omega_sync, omega_el)
+        let config = &self.config;
+        let corrected = correct(
+            &config.effects,
+            self.rated,
+            &config.params,
+            [window.u_s.positive, window.i_s.positive],
+            [window.omega_sync, window.omega_mech?],
+        );
+        let omega_el = corrected.omega_mech * config.mechanics.n_p;
+        OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)
             .map(|point| point.rehearse(rehearsal))
     }
 

@@ -4,6 +4,7 @@ use motor::TParams;
 use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 
+use crate::effects::Corrected;
 use crate::frames::{Dq, magnitude};
 
 /// Where the d axis lies.
@@ -41,7 +42,7 @@ impl Default for Rehearsal {
 }
 
 /// A steady operating point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OperatingPoint {
     /// Stator voltage, V.
     pub u_s_dq: Dq,
@@ -51,6 +52,10 @@ pub struct OperatingPoint {
     pub u_amplitude: f32,
     /// Length of the rotor flux, V s.
     pub psi_r: f32,
+    /// Parameters that hold at this point.
+    pub params: TParams<f32>,
+    /// Torque that physical effects take from the shaft beside viscous friction, N m.
+    pub tau_extra: f32,
     /// Supply frequency, rad/s.
     pub omega_sync: f32,
     /// Electrical rotor speed, rad/s.
@@ -58,16 +63,12 @@ pub struct OperatingPoint {
 }
 
 impl OperatingPoint {
-    /// From positive-sequence phasors of one window (V and A, common reference) and speeds, rad/s electrical.
+    /// From what one window measured, corrected for physical effects, and speeds, rad/s electrical.
     ///
     /// `None` when there is no voltage, no flux or no frequency: then there is no frame either.
-    pub fn new(
-        params: &TParams<f32>,
-        frame: Frame,
-        [u_s, i_s]: [Complex32; 2],
-        omega_sync: f32,
-        omega_el: f32,
-    ) -> Option<Self> {
+    pub fn new(measured: &Corrected, frame: Frame, omega_sync: f32, omega_el: f32) -> Option<Self> {
+        let Corrected { u_s, i_s, .. } = *measured;
+        let params = &measured.params;
         let psi_r = rotor_flux(params, u_s, i_s, omega_sync);
         let axis = match frame {
             Frame::RotorFlux => unit(psi_r)?,
@@ -79,6 +80,8 @@ impl OperatingPoint {
             i_s_dq: Dq { d: i.re, q: i.im },
             u_amplitude: magnitude(u_s),
             psi_r: magnitude(psi_r),
+            params: *params,
+            tau_extra: measured.tau_extra,
             omega_sync,
             omega_el,
         })

@@ -1,6 +1,6 @@
 //! The four steady-state parity residuals (37) and two further ones from the rotor equations.
 
-use motor::{Mechanics, TParams};
+use motor::Mechanics;
 
 use crate::operating_point::OperatingPoint;
 
@@ -19,8 +19,6 @@ pub enum FieldCurrent {
 /// The motor as the residuals see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResidualModel {
-    /// Electrical parameters.
-    pub params: TParams<f32>,
     /// Pole pairs and friction.
     pub mechanics: Mechanics<f32>,
     /// Source of the field current.
@@ -79,7 +77,7 @@ impl ResidualModel {
     }
 
     fn dc_motor(&self, point: &OperatingPoint, tau_load: Option<f32>) -> DcMotor {
-        let p = &self.params;
+        let p = &point.params;
         let i_f = match self.field {
             FieldCurrent::Live => point.i_s_dq.d,
             FieldCurrent::Nominal(amp) => amp,
@@ -96,14 +94,14 @@ impl ResidualModel {
         }
     }
 
-    /// `B_t` of (37), with a measured brake torque in the place of `B_l w`.
+    /// `B_t` of (37), with a measured brake torque in the place of `B_l w`, and what the effects add.
     fn friction(&self, point: &OperatingPoint, tau_load: Option<f32>) -> f32 {
-        match tau_load {
-            Some(tau) => {
-                self.mechanics.friction + relative(tau * self.mechanics.n_p, point.omega_el)
-            }
+        let as_friction = |tau: f32| relative(tau * self.mechanics.n_p, point.omega_el);
+        let declared = match tau_load {
+            Some(tau) => self.mechanics.friction + as_friction(tau),
             None => self.mechanics.total_friction(),
-        }
+        };
+        declared + as_friction(point.tau_extra)
     }
 
     fn friction_scale(&self, point: &OperatingPoint, b_t: f32) -> f32 {
@@ -118,21 +116,21 @@ impl ResidualModel {
 
     /// `e_d = |psi_r| - L_m I_d` in volts over the voltage: d axis of the rotor equation.
     fn e_d(&self, point: &OperatingPoint) -> f32 {
-        let p = &self.params;
+        let p = &point.params;
         let e_d = point.psi_r - p.l_m * point.i_s_dq.d;
         relative(e_d * point.omega_sync * p.l_m, p.l_r() * point.u_amplitude)
     }
 
     /// `e_q = w_sl |psi_r| - R_r (L_m/L_r) I_q` over the voltage: q axis of the rotor equation (16).
     fn e_q(&self, point: &OperatingPoint) -> f32 {
-        let p = &self.params;
+        let p = &point.params;
         let drop = p.r_r * p.l_m / p.l_r() * point.i_s_dq.q;
         relative(point.omega_slip() * point.psi_r - drop, point.u_amplitude)
     }
 
     /// Electrical rotor speed, rad/s, that voltages and currents alone imply (needs the rotor-flux frame).
     pub fn implied_speed(&self, point: &OperatingPoint) -> f32 {
-        let p = &self.params;
+        let p = &point.params;
         let slip = relative(p.r_r * p.l_m / p.l_r() * point.i_s_dq.q, point.psi_r);
         point.omega_sync - slip
     }
@@ -144,7 +142,7 @@ impl ResidualModel {
         current_rate: f32,
         mech_rate: f32,
     ) -> [f32; 2] {
-        let volt = relative(self.params.l_s() * current_rate, point.u_amplitude); // (36) row 1
+        let volt = relative(point.params.l_s() * current_rate, point.u_amplitude); // (36) row 1
         let scale = self.friction_scale(point, 0.0) * point.omega_sync / self.mechanics.n_p;
         let torque = relative(self.mechanics.inertia * mech_rate, scale); // (36) row 2
         [volt.abs(), torque.abs()]

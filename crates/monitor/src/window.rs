@@ -27,6 +27,19 @@ pub struct Cycle {
     pub invalid_samples: u16,
 }
 
+impl Cycle {
+    /// The cycle with a gain on each channel: voltages a, b, c, then currents a, b, c.
+    #[must_use]
+    pub fn corrected(mut self, gains: &[f32; CHANNELS]) -> Self {
+        for (channel, &gain) in self.phasors.channels.iter_mut().zip(gains) {
+            channel.phasor *= gain;
+            channel.offset *= gain;
+            channel.mean_square *= gain * gain;
+        }
+        self
+    }
+}
+
 /// Ring of the latest cycles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowState {

@@ -61,6 +61,8 @@ impl Machine {
                 l_lr: single(self.params.l_lr),
                 l_m: single(self.params.l_m),
             },
+            effects: Default::default(),
+            channel_gain: [1.0; 6],
             mechanics: Mechanics {
                 n_p: single(self.mechanics.n_p),
                 inertia: single(self.mechanics.inertia),

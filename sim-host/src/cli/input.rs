@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use monitor::MAX_EFFECTS;
 use motor::MotorFile;
 use recording::{Mapping, Source};
 
@@ -87,10 +88,19 @@ impl InputArgs {
     }
 }
 
-/// Reads and validates a motor file.
+/// Reads and validates a motor file, its effects included.
 ///
 /// # Errors
 /// Everything that is wrong with it.
 pub fn read_motor(path: &Path) -> Result<MotorFile, Failure> {
-    Ok(MotorFile::read(path)?)
+    let motor = MotorFile::read(path)?;
+    motor::effects::from_motor_file(&motor, &path.display().to_string())?;
+    if motor.effects.len() > MAX_EFFECTS {
+        let (file, count) = (path.display(), motor.effects.len());
+        let message = format!(
+            "{file}: effects: {count} of them, but the core takes at most {MAX_EFFECTS}; remove the smallest"
+        );
+        return Err(Failure::Usage(message));
+    }
+    Ok(motor)
 }

@@ -11,8 +11,8 @@ pub use timeline::{
 pub use trace::{Trace, WindowOperation, WindowResiduals};
 
 use monitor::{
-    ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor, MonitorConfig,
-    MonitorState,
+    ActiveEffects, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor,
+    MonitorConfig, MonitorState,
 };
 use motor::{Mechanics, MotorFile, TParams};
 use recording::{LoadTorque, Recording};
@@ -52,6 +52,8 @@ pub fn stand_in_config(recording: &Recording) -> MonitorConfig {
             l_lr: 0.1 * ohm / STAND_IN_OMEGA,
             l_m: 2.0 * ohm / STAND_IN_OMEGA,
         },
+        effects: ActiveEffects::default(),
+        channel_gain: [1.0; monitor::CHANNELS],
         mechanics: Mechanics {
             n_p: 2.0,
             inertia: 0.01,

@@ -30,6 +30,8 @@ const CONFIG: MonitorConfig = MonitorConfig {
         l_lr: 0.028,
         l_m: 0.42,
     },
+    effects: [None; monitor::MAX_EFFECTS],
+    channel_gain: [1.0; monitor::CHANNELS],
     mechanics: Mechanics {
         n_p: 2.0,
         inertia: 0.002,

@@ -1,0 +1,161 @@
+//! The `drivemon` binary as a person uses it: exit codes, messages, JSON.
+
+mod common;
+
+use std::path::Path;
+
+use common::{PROJECT, drivemon, scratch, stderr, stdout, text};
+
+#[test]
+fn help_teaches_the_first_steps_and_the_exit_codes() {
+    let help = stdout(&drivemon(&["--help"]));
+    for word in [
+        "drivemon demo",
+        "drivemon monitor rec.csv.gz",
+        "Exit codes",
+        "NO_COLOR",
+        "no protection device",
+    ] {
+        assert!(help.contains(word), "{word} is missing in:\n{help}");
+    }
+    assert_eq!(
+        drivemon(&["monitor"]).status.code(),
+        Some(2),
+        "a missing argument is wrong usage"
+    );
+    assert_eq!(drivemon(&["unknown"]).status.code(), Some(2));
+}
+
+#[test]
+fn demo_writes_the_documented_json() {
+    let file = scratch("demo").join("demo.json");
+    let output = drivemon(&["demo", "--seed", "3", "--json", text(&file)]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let written = std::fs::read_to_string(&file).expect("the JSON was written");
+    let json: serde_json::Value = serde_json::from_str(&written).expect("it is JSON");
+    let linear = &json["matrices"][0];
+    assert_eq!(
+        (&linear["plant"], &linear["frame"]),
+        (&"linear".into(), &"voltage".into())
+    );
+    assert_eq!(
+        (linear["agree"].as_u64(), linear["of"].as_u64()),
+        (Some(18), Some(18))
+    );
+    let row = &linear["table"][0];
+    for key in [
+        "fault",
+        "change_percent",
+        "expected",
+        "measured",
+        "r_percent",
+    ] {
+        assert!(!row[key].is_null(), "{key} is missing in {row}");
+    }
+    assert_eq!(json["healthy"].as_array().map(Vec::len), Some(8));
+    assert!(
+        !stdout(&output).contains('\u{1b}'),
+        "no colour codes in a pipe"
+    );
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_bytes_and_the_fault_is_found_in_them() {
+    let folder = scratch("simulate");
+    let scenario = folder.join("scenario.toml");
+    let motor = std::fs::canonicalize(Path::new(PROJECT).join("motors/assumed-300w.toml"))
+        .expect("it ships");
+    std::fs::write(&scenario, two_second_scenario(&motor)).expect("written");
+    let record = |name: &str| {
+        let file = folder.join(name);
+        let output = drivemon(&["simulate", text(&scenario), "-o", text(&file)]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        file
+    };
+    let (first, second) = (record("first.csv.gz"), record("second.csv.gz"));
+    let bytes = |file: &Path| std::fs::read(file).expect("recorded");
+    assert_eq!(bytes(&first), bytes(&second));
+    let output = drivemon(&[
+        "monitor",
+        text(&first),
+        "--motor",
+        text(&motor),
+        "--json",
+        "-",
+    ]);
+    assert_eq!(
+        output.status.code(),
+        Some(1),
+        "a lit fault is a finding: {}",
+        stdout(&output)
+    );
+    let json: serde_json::Value =
+        serde_json::from_slice(&output.stdout).expect("only JSON on stdout");
+    assert_eq!(json["verdict"]["state"], "fault");
+    let first_alarm = json["first_alarm_s"].as_f64().expect("an alarm");
+    assert!(
+        (1.0..1.4).contains(&first_alarm),
+        "the fault came at 1.0 s, the lamp at {first_alarm}"
+    );
+    let causes = json["verdict"]["candidates"]
+        .as_array()
+        .expect("candidates");
+    let likeliest: Vec<_> = causes
+        .iter()
+        .take(2)
+        .map(|cause| cause["fault"].as_str().unwrap_or(""))
+        .collect();
+    assert!(
+        likeliest.contains(&"B") && likeliest.contains(&"Bl"),
+        "a tie by physics: {causes:?}"
+    );
+}
+
+fn two_second_scenario(motor: &Path) -> String {
+    format!(
+        "name = \"more load\"\nmotor = {motor:?}\nduration_s = 2.0\nstart = \"running\"\nseed = 5\n\
+         [[faults]]\nfault = \"Bl\"\nchange_percent = 50.0\nfrom_s = 1.0\nto_s = 2.0\n\
+         [sensors]\nnoise_sigma_fraction_of_full_scale = 0.002\n"
+    )
+}
+
+#[test]
+fn peer_recording_without_a_fault_is_healthy() {
+    let set = "tests/data/peer/none";
+    let recording = format!("{set}/recording_b.csv.gz");
+    let output = drivemon(&[
+        "monitor",
+        &recording,
+        "--motor",
+        &format!("{set}/motor.toml"),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
+    assert!(stdout(&output).contains("healthy"));
+}
+
+#[test]
+fn three_currents_need_no_motor_file() {
+    let output = drivemon(&["monitor", "tests/data/itsc_075hp/sc_a2_b0_c0_002.csv.gz"]);
+    assert_eq!(output.status.code(), Some(0));
+    let said = stdout(&output);
+    assert!(
+        said.contains("voltages are not recorded") && said.contains("negative over positive"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_load_table_prints_its_operating_points() {
+    let table = "tests/data/imc_18k5_load_test/load_test.csv";
+    let output = drivemon(&["monitor", table, "--motor", "motors/imc-18k5.toml"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stdout(&output).contains("14 operating points"));
+}
+
+#[test]
+fn a_folder_that_does_not_exist_is_named_and_the_result_is_still_shown() {
+    let output = drivemon(&["demo", "--json", "no/such/folder/demo.json"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("no/such/folder/demo.json"));
+    assert!(stdout(&output).contains("18 of 18"));
+}

@@ -1,0 +1,302 @@
+//! The documentation says what is so: its commands print what it shows, its links and test names exist.
+//!
+//! A fenced block ```` ```console ```` whose commands all begin with `$ drivemon` is run, in a copy of the files that
+//! it may read. A line `...` stands for any number of lines; a number may differ by one unit of its last
+//! digit, because libraries of other platforms round differently. A block marked ```` ```console not-run ```` is left alone.
+//! `UPDATE_DOCS=1 cargo test -p sim-host --test docs` writes what the commands print into the documents.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const PROMPT: &str = "$ drivemon";
+const ANY_LINES: &str = "...";
+/// What the commands of the documentation may read.
+const INPUTS: [&str; 3] = ["motors", "sim-host/scenarios", "tests/data"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The README and the book, with their texts.
+fn documents() -> Vec<(PathBuf, String)> {
+    let entries = fs::read_dir(root().join("docs")).expect("part of the source tree");
+    let pages = entries.map(|entry| entry.expect("readable").path());
+    let mut paths: Vec<_> = pages
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+        .chain([root().join("README.md")])
+        .filter(|path| path.is_file())
+        .collect();
+    paths.sort();
+    let read = |path: PathBuf| {
+        let text = fs::read_to_string(&path).expect("UTF-8");
+        (path, text)
+    };
+    paths.into_iter().map(read).collect()
+}
+
+/// A text in pieces: what is left as it is, and blocks of commands with the output that they show.
+enum Piece {
+    Text(String),
+    Commands(Vec<Shown>),
+}
+
+struct Shown {
+    command: String,
+    output: Vec<String>,
+}
+
+fn pieces(text: &str) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        pieces.push(Piece::Text(line.to_owned()));
+        if line != "```console" {
+            continue;
+        }
+        let block: Vec<&str> = lines.by_ref().take_while(|line| *line != "```").collect();
+        if !block.is_empty() {
+            pieces.push(commands(&block));
+        }
+        pieces.push(Piece::Text("```".to_owned()));
+    }
+    pieces
+}
+
+/// Blocks with other commands are not this test's.
+fn commands(block: &[&str]) -> Piece {
+    let foreign = |line: &&str| line.starts_with("$ ") && !line.starts_with(PROMPT);
+    if block.iter().any(foreign) || !block.first().is_some_and(|line| line.starts_with(PROMPT)) {
+        return Piece::Text(block.join("\n"));
+    }
+    let mut shown: Vec<Shown> = Vec::new();
+    for line in block {
+        match shown.last_mut() {
+            Some(last) if !line.starts_with(PROMPT) => last.output.push((*line).to_owned()),
+            _ => shown.push(Shown {
+                command: (*line).to_owned(),
+                output: Vec::new(),
+            }),
+        }
+    }
+    Piece::Commands(shown)
+}
+
+/// A folder for one run, with copies of the inputs, removed at the end.
+struct Workplace(PathBuf);
+
+impl Workplace {
+    fn new() -> Workplace {
+        let folder = std::env::temp_dir().join(format!("drivemon-docs-{}", std::process::id()));
+        for input in INPUTS {
+            copy(&root().join(input), &folder.join(input));
+        }
+        Workplace(folder)
+    }
+
+    /// What a command prints; comments after two blanks and `#` are for the reader.
+    fn run(&self, command: &str) -> Vec<String> {
+        let arguments = command.trim_start_matches(PROMPT).split("  #").next();
+        let output = Command::new(env!("CARGO_BIN_EXE_drivemon"))
+            .args(arguments.unwrap_or_default().split_whitespace())
+            .current_dir(&self.0)
+            .env("NO_COLOR", "1")
+            .output()
+            .expect("the program starts");
+        let code = output.status.code();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(matches!(code, Some(0..=3)), "{command}: {code:?}\n{errors}");
+        let text = String::from_utf8_lossy(&output.stdout).into_owned() + &errors;
+        text.trim_end()
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect()
+    }
+}
+
+impl Drop for Workplace {
+    fn drop(&mut self) {
+        // A leftover in the folder for temporary files disturbs no later run.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder for temporary files");
+    for entry in fs::read_dir(from).expect("part of the source tree") {
+        let path = entry.expect("readable").path();
+        let target = to.join(path.file_name().expect("named"));
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).expect("room for a copy");
+        }
+    }
+}
+
+fn agree(shown: &[String], printed: &[String]) -> bool {
+    match (shown, printed) {
+        ([], []) => true,
+        ([any, rest @ ..], _) if any == ANY_LINES => {
+            (0..=printed.len()).any(|skipped| agree(rest, &printed[skipped..]))
+        }
+        ([line, rest @ ..], [other, others @ ..]) => same_line(line, other) && agree(rest, others),
+        _ => false,
+    }
+}
+
+fn same_line(shown: &str, printed: &str) -> bool {
+    let (mut ours, mut theirs) = (shown.split_whitespace(), printed.split_whitespace());
+    loop {
+        match (ours.next(), theirs.next()) {
+            (None, None) => return true,
+            (Some(a), Some(b)) if a == b || same_number(a, b) => {}
+            _ => return false,
+        }
+    }
+}
+
+fn same_number(shown: &str, printed: &str) -> bool {
+    let trimmed = |text: &str| text.trim_end_matches([',', ';', ':', '%']).to_owned();
+    let (a, b) = (trimmed(shown), trimmed(printed));
+    let decimals = |text: &str| text.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let (Ok(x), Ok(y)) = (a.parse::<f64>(), b.parse::<f64>()) else {
+        return false;
+    };
+    let unit = 0.1_f64.powi(i32::try_from(decimals(&a)).unwrap_or(i32::MAX));
+    decimals(&a) == decimals(&b) && (x - y).abs() < 1.01 * unit
+}
+
+/// The document as it should be; wildcards stay where they still fit.
+fn updated(pieces: &[Piece], workplace: &Workplace) -> String {
+    let mut text = String::new();
+    for piece in pieces {
+        match piece {
+            Piece::Text(line) => text += &format!("{line}\n"),
+            Piece::Commands(all) => {
+                for Shown { command, output } in all {
+                    let printed = workplace.run(command);
+                    let kept = if agree(output, &printed) {
+                        output
+                    } else {
+                        &printed
+                    };
+                    text += &format!("{command}\n");
+                    kept.iter().for_each(|line| text += &format!("{line}\n"));
+                }
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn commands_print_what_the_documentation_shows() {
+    let update = std::env::var_os("UPDATE_DOCS").is_some();
+    let workplace = Workplace::new();
+    let (mut commands, mut stale) = (0, Vec::new());
+    for (path, text) in documents() {
+        let pieces = pieces(&text);
+        let count = |piece: &Piece| match piece {
+            Piece::Commands(all) => all.len(),
+            Piece::Text(_) => 0,
+        };
+        commands += pieces.iter().map(count).sum::<usize>();
+        let fresh = updated(&pieces, &workplace);
+        if fresh == text {
+            continue;
+        }
+        if update {
+            fs::write(&path, &fresh).expect("writable");
+        } else {
+            stale.push(format!("{}:\n{fresh}", path.display()));
+        }
+    }
+    assert!(commands >= 8, "only {commands} commands were found");
+    assert!(
+        stale.is_empty(),
+        "these pages show something else than the program prints; look at it, then run with UPDATE_DOCS=1\n{}",
+        stale.join("\n")
+    );
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut links = 0;
+    for (path, text) in documents() {
+        let folder = path.parent().expect("in a folder");
+        for target in text
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
+            let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+            if file.contains("://") {
+                continue;
+            }
+            links += 1;
+            let target = if file.is_empty() {
+                path.clone()
+            } else {
+                folder.join(file)
+            };
+            assert!(target.exists(), "{}: {file}", path.display());
+            assert!(
+                has_heading(&target, anchor),
+                "{}: {file}#{anchor}",
+                path.display()
+            );
+        }
+    }
+    assert!(links > 10, "only {links} links were found");
+}
+
+/// Whether a page has a heading with this anchor, as GitHub derives it.
+fn has_heading(page: &Path, anchor: &str) -> bool {
+    let slug = |line: &str| -> String {
+        let title = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = title
+            .chars()
+            .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    };
+    anchor.is_empty()
+        || fs::read_to_string(page)
+            .unwrap_or_default()
+            .lines()
+            .any(|line| line.starts_with('#') && slug(line) == anchor)
+}
+
+/// A name in backticks with three underscores or more is that of a test.
+#[test]
+fn every_test_that_the_theory_names_exists() {
+    let theory =
+        fs::read_to_string(root().join("docs/theory.md")).expect("part of the source tree");
+    let mut sources = String::new();
+    for folder in ["crates/motor", "crates/monitor", "sim-host/tests", "tests"] {
+        collect(&root().join(folder), &mut sources);
+    }
+    let is_name = |text: &&str| {
+        let plain = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        plain && text.matches('_').count() >= 3
+    };
+    let names: Vec<&str> = theory.split('`').filter(is_name).collect();
+    assert!(names.len() >= 8, "{names:?}");
+    for name in names {
+        assert!(
+            sources.contains(&format!("fn {name}(")),
+            "{name} is no test"
+        );
+    }
+}
+
+fn collect(folder: &Path, into: &mut String) {
+    for entry in fs::read_dir(folder).expect("part of the source tree") {
+        let path = entry.expect("readable").path();
+        if path.is_dir() {
+            collect(&path, into);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            *into += &fs::read_to_string(&path).expect("UTF-8");
+        }
+    }
+}
