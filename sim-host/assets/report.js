@@ -39,7 +39,16 @@
         y = y.filter((_, row) => chosen[row]);
       }
     }
-    return [x, y];
+    if (chart.y.scale === "log") y = y.map((value) => (value > 0 ? value : null));
+    return chart.x.labels ? [x, y] : ascending(x, y);
+  }
+
+  /** Rows in the order of x; rows without an x are left out. */
+  function ascending(x, y) {
+    const rows = [...x.keys()].filter((row) => x[row] != null);
+    if (rows.length === x.length && rows.every((row) => row === 0 || x[row] >= x[row - 1])) return [x, y];
+    rows.sort((a, b) => x[a] - x[b]);
+    return [rows.map((row) => x[row]), rows.map((row) => y[row])];
   }
 
   const same = (a, b) => a.length === b.length && a.every((value, row) => value === b[row]);

@@ -2,7 +2,9 @@
 
 pub mod cli;
 pub mod demo;
+pub mod motor_text;
 pub mod operating_points;
+pub mod overlay;
 pub mod replay;
 pub mod report;
 pub mod scenario;

@@ -49,6 +49,9 @@ pub enum Failure {
         /// What the system said.
         error: std::io::Error,
     },
+    /// The data do not support an answer.
+    #[error("{0}")]
+    Unsupported(String),
     /// Anything else that is wrong with what the user asked.
     #[error("{0}")]
     Usage(String),
@@ -59,6 +62,7 @@ impl Failure {
     pub fn exit_code(&self) -> u8 {
         match self {
             Failure::Recording(error) => error.exit_code(),
+            Failure::Unsupported(_) => 3,
             _ => 2,
         }
     }

@@ -1,6 +1,9 @@
 //! The command line: one file per subcommand.
 
+mod adopt;
+mod compare;
 mod demo;
+mod explain;
 mod failure;
 mod input;
 mod monitor;
@@ -8,6 +11,7 @@ mod output;
 mod paint;
 mod progress;
 mod simulate;
+mod study;
 
 use std::process::ExitCode;
 
@@ -35,6 +39,9 @@ First steps:
   drivemon demo                                        the whole method on a simulated motor, in seconds
   drivemon simulate SCENARIO.toml -o rec.csv.gz        make a recording with a fault in it
   drivemon monitor rec.csv.gz --motor motor.toml       see what the lamps would have shown
+  drivemon compare rec.csv.gz --motor motor.toml       where the model fails
+  drivemon explain rec.csv.gz --motor motor.toml       which physical effect it misses
+  drivemon adopt EFFECT rec.csv.gz --motor motor.toml -o better.toml
 
 Exit codes: 0 fine or healthy, 1 a finding (a fault was lit), 2 bad input or usage, 3 the data do not support an answer.
 Colour is left out when NO_COLOR is set or the output is not a terminal.
@@ -45,6 +52,9 @@ enum Command {
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
     Monitor(monitor::MonitorArgs),
+    Compare(compare::Compare),
+    Explain(explain::Explain),
+    Adopt(adopt::Adopt),
 }
 
 impl Cli {
@@ -54,6 +64,9 @@ impl Cli {
             Command::Demo(demo) => demo.run(),
             Command::Simulate(simulate) => simulate.run(),
             Command::Monitor(monitor) => monitor.run(),
+            Command::Compare(compare) => compare.run(),
+            Command::Explain(explain) => explain.run(),
+            Command::Adopt(adopt) => adopt.run(),
         };
         match outcome {
             Ok(finding) => ExitCode::from(finding.exit_code()),

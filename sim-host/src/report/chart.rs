@@ -175,6 +175,12 @@ impl Chart {
         self
     }
 
+    /// Divides the vertical axis logarithmically.
+    pub fn log(mut self) -> Self {
+        self.y.scale = Scale::Log;
+        self
+    }
+
     /// Starts the vertical axis at zero.
     pub fn from_zero(mut self) -> Self {
         self.y.from_zero = true;
@@ -238,6 +244,15 @@ impl Series {
     /// Drawn differently.
     pub fn kind(self, kind: Kind) -> Self {
         Series { kind, ..self }
+    }
+
+    /// Dashed, so that lines over each other can be told apart without colour; each model its own way.
+    pub fn dashed(self, model: usize) -> Self {
+        let dash = [[8, 4], [3, 3], [12, 3]][model % 3];
+        Series {
+            dash: Some(dash),
+            ..self
+        }
     }
 
     /// Only rows where the value at `from` is `is`.

@@ -4,15 +4,21 @@
 //! figures are drawn in the browser by an embedded chart library from the embedded JSON. So a page can show
 //! nothing that the JSON does not hold.
 
+mod adopt;
 mod audit;
 mod chart;
+mod compare;
 mod demo;
+mod explain;
 mod load_table;
 mod monitor;
 mod number;
+mod overlay;
+mod parameters;
 mod place;
 mod shell;
 
+pub use compare::AGREES;
 pub use place::Place;
 
 use serde::Serialize;
@@ -26,6 +32,12 @@ pub enum Subject {
     Monitor,
     /// `drivemon monitor` on a load-test table.
     LoadTable,
+    /// `drivemon compare`.
+    Compare,
+    /// `drivemon explain`.
+    Explain,
+    /// `drivemon adopt`.
+    Adopt,
 }
 
 /// The page for a result, complete.
@@ -42,6 +54,9 @@ pub fn page(subject: Subject, result: &impl Serialize) -> Result<String, serde_j
             "Operating points of a load test",
             load_table::content(&place),
         ),
+        Subject::Compare => ("Where the model fails", compare::content(&place)),
+        Subject::Explain => ("Which physics the model misses", explain::content(&place)),
+        Subject::Adopt => ("A model made better", adopt::content(&place)),
     };
     Ok(shell::page(
         title,

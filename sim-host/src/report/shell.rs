@@ -85,3 +85,14 @@ pub fn cards(cards: &[(Markup, Markup)]) -> Markup {
         }
     }
 }
+
+/// What to do next, with the command to type where there is one.
+pub fn next(why: &str, command: &str) -> Markup {
+    html! {
+        section aria-labelledby="next" {
+            h2 id="next" { "What next" }
+            p { (why) }
+            @if !command.is_empty() { code.command { (command) } }
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! `drivemon adopt`: an effect added to a motor file.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use discovery::AdoptReport;
+use serde::Serialize;
+
+use super::failure::{Failure, Finding};
+use super::paint;
+use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
+use crate::motor_text;
+use crate::overlay::{Model, Overlay};
+use crate::report::Subject;
+
+/// Add a physical effect to a motor file, refit everything, and show the error before and after.
+///
+/// The error is shown on data that was not fitted too. The new motor file keeps the comments of the old one. The name
+/// `parameters` takes over the refitted parameters and adds nothing.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Adopt {
+    /// Name of the effect, as `drivemon explain` gives it, or `parameters`
+    #[arg(value_name = "EFFECT")]
+    effect: String,
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Motor file to write
+    #[arg(short, long = "out", value_name = "M2")]
+    out: PathBuf,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  drivemon adopt magnetizing-saturation a.csv.gz b.csv.gz --motor m.toml -o m2.toml
+Exit codes: 0 the gain is proven on data that was not fitted, 1 it is not (the file is written all the same),
+2 bad input, 3 the data do not support an answer.";
+
+/// Longest bar, characters.
+const WIDTH: usize = 36;
+/// The name that adds nothing.
+const PARAMETERS: &str = "parameters";
+
+/// Everything that `drivemon adopt` says.
+#[derive(Debug, Serialize)]
+struct AdoptJson {
+    recordings: Vec<String>,
+    motor: String,
+    next_command: String,
+    #[serde(flatten)]
+    report: AdoptReport,
+    overlay: Option<Overlay>,
+}
+
+impl Adopt {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        let motor = self.study.motor()?;
+        let sources = self.study.sources()?;
+        let (mut report, adopted) =
+            with_progress(|progress| discovery::adopt(&self.effect, &sources, &motor, progress))?;
+        self.write_motor(&adopted)?;
+        report.motor_file = self.out.display().to_string();
+        let models = [
+            Model::believed(&motor),
+            Model::new(format!("with {}", self.effect), &adopted),
+        ];
+        let result = AdoptJson {
+            recordings: self.study.names(),
+            motor: motor.name.clone(),
+            next_command: self.next(),
+            overlay: sources
+                .last()
+                .and_then(|source| Overlay::new(source, &models)),
+            report,
+        };
+        if !self.study.output.takes_stdout() {
+            print(&result);
+        }
+        self.study.output.write(Subject::Adopt, &result)?;
+        let good = result.report.proven || self.effect == PARAMETERS;
+        Ok(if good {
+            Finding::Nothing
+        } else {
+            Finding::Something
+        })
+    }
+
+    fn write_motor(&self, adopted: &motor::MotorFile) -> Result<(), Failure> {
+        let path: &Path = self.study.motor_path();
+        let old = std::fs::read_to_string(path).unwrap_or_default();
+        let text = motor_text::updated(&old, adopted);
+        std::fs::write(&self.out, text).map_err(|error| Failure::Write {
+            path: self.out.display().to_string(),
+            error,
+        })
+    }
+
+    fn next(&self) -> String {
+        let recordings = self.study.names().join(" ");
+        format!(
+            "drivemon explain {recordings} --motor {}",
+            self.out.display()
+        )
+    }
+}
+
+fn print(result: &AdoptJson) {
+    let report = &result.report;
+    anstream::println!(
+        "{} with {} on {}",
+        paint::strong(&result.motor),
+        paint::strong(&report.effect),
+        result.recordings.join(" and ")
+    );
+    print_audit(&report.audit);
+    let full = report
+        .before
+        .held_out_error_over_noise
+        .max(report.before.error_over_noise);
+    let line = |name: &str, error: f64| {
+        anstream::println!(
+            "  {name:<34} {error:8.3} x noise  {}",
+            bar(error, full, WIDTH)
+        );
+    };
+    anstream::println!("\nError on data that was not fitted:");
+    line(
+        "before, all parameters refitted",
+        report.before.held_out_error_over_noise,
+    );
+    line("after", report.after.held_out_error_over_noise);
+    anstream::println!("Error on the fitted data:");
+    line(
+        "before, all parameters refitted",
+        report.before.error_over_noise,
+    );
+    line("after", report.after.error_over_noise);
+    print_verdict(report);
+    print_values(report);
+    print_next(
+        &format!(
+            "{} is written. Is anything still missing?",
+            report.motor_file
+        ),
+        &result.next_command,
+    );
+}
+
+fn print_verdict(report: &AdoptReport) {
+    if report.proven {
+        anstream::println!(
+            "{}",
+            paint::good("The gain is proven on data that was not fitted.")
+        );
+    } else if report.effect != PARAMETERS {
+        anstream::println!(
+            "{}",
+            paint::caution(
+                "The gain is not proven on data that was not fitted: do not trust this effect yet."
+            )
+        );
+    }
+}
+
+fn print_values(report: &AdoptReport) {
+    anstream::println!("\nIn the new motor file:");
+    for p in &report.parameters {
+        anstream::println!(
+            "  {:<34} {:12.6} +- {:.6} {}",
+            p.name,
+            p.value,
+            p.std_error,
+            p.unit
+        );
+    }
+    for p in &report.nominals {
+        anstream::println!(
+            "  {:<34} {:12.6} +- {:.6} {:<8} believed {:.6} ({:+.1} %)",
+            p.name,
+            p.value,
+            p.std_error,
+            p.unit,
+            p.believed,
+            p.change_percent
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! `drivemon compare`: where the model of a motor file fails.
+
+use clap::Args;
+use discovery::{CompareReport, RegionReport, SignalReport};
+use serde::Serialize;
+
+use super::failure::{Failure, Finding};
+use super::paint;
+use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
+use crate::overlay::{Model, Overlay};
+use crate::report::{AGREES, Subject};
+
+/// Compare the model of a motor file with a recording: how far off, in which signal, and where.
+///
+/// Nothing is refitted. Errors are given in units of the noise that the sensors themselves have, so that 1 means
+/// that nothing is missing. The first recording is compared.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Compare {
+    #[command(flatten)]
+    study: StudyArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  drivemon compare rec.csv.gz --motor motor.toml
+  drivemon compare rec.csv.gz --motor motor.toml --report compare.html     with figures
+Exit codes: 0 the model agrees within 10 % of the noise, 1 it does not, 2 bad input, 3 the audit refused.";
+
+/// Places that are named.
+const PLACES: usize = 3;
+
+/// Everything that `drivemon compare` says.
+#[derive(Debug, Serialize)]
+struct CompareJson {
+    recording: String,
+    motor: String,
+    next_command: String,
+    #[serde(flatten)]
+    report: CompareReport,
+    overlay: Option<Overlay>,
+}
+
+impl Compare {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        let motor = self.study.motor()?;
+        let sources = self.study.sources()?;
+        let report = with_progress(|progress| discovery::compare(&sources, &motor, progress))?;
+        let result = CompareJson {
+            recording: self.study.names().remove(0),
+            motor: motor.name.clone(),
+            next_command: format!("drivemon explain {}", self.study.typed()),
+            overlay: report
+                .overall
+                .and_then(|_| Overlay::new(&sources[0], &[Model::believed(&motor)])),
+            report,
+        };
+        if !self.study.output.takes_stdout() {
+            print(&result);
+        }
+        self.study.output.write(Subject::Compare, &result)?;
+        Ok(finding(&result.report))
+    }
+}
+
+fn finding(report: &CompareReport) -> Finding {
+    match report.overall {
+        None => Finding::Unsupported,
+        Some(overall) if overall.error_over_noise > AGREES => Finding::Something,
+        Some(_) => Finding::Nothing,
+    }
+}
+
+fn print(result: &CompareJson) {
+    let report = &result.report;
+    anstream::println!(
+        "{} against {}, nothing refitted",
+        paint::strong(&result.motor),
+        result.recording
+    );
+    print_audit(&report.audit);
+    let Some(overall) = report.overall else {
+        anstream::println!("{}", paint::caution("not compared: the audit refused"));
+        return;
+    };
+    let error = overall.error_over_noise;
+    if error > AGREES {
+        let answer = format!("The model misses the measurement by {error:.2} times the noise.");
+        anstream::println!("\n{}", paint::error(answer));
+    } else {
+        let answer = format!("The model agrees with the measurement ({error:.2} times the noise).");
+        anstream::println!("\n{}", paint::good(answer));
+    }
+    print_places(&report.regions);
+    print_signals(&report.signals);
+    if error > AGREES {
+        print_next("Which physics is missing?", &result.next_command);
+    }
+}
+
+/// The worst places, each kind once.
+pub fn worst(regions: &[RegionReport]) -> Vec<&RegionReport> {
+    let mut sorted: Vec<&RegionReport> = regions.iter().collect();
+    sorted.sort_by(|a, b| b.error_over_noise.total_cmp(&a.error_over_noise));
+    let mut found: Vec<&RegionReport> = Vec::new();
+    for region in sorted {
+        if found.iter().all(|known| known.name != region.name) {
+            found.push(region);
+        }
+    }
+    found.truncate(PLACES);
+    found
+}
+
+fn print_places(regions: &[RegionReport]) {
+    let worst = worst(regions);
+    let Some(first) = worst.first() else { return };
+    anstream::println!("It is furthest off:");
+    for region in &worst {
+        anstream::println!(
+            "  {:<30} {:6.3} .. {:6.3} s {:7.2} x noise  {}",
+            region.name,
+            region.from_s,
+            region.to_s,
+            region.error_over_noise,
+            bar(region.error_over_noise, first.error_over_noise, 24)
+        );
+    }
+}
+
+fn print_signals(signals: &[SignalReport]) {
+    let worst = signals.iter().map(|signal| signal.error_over_noise);
+    let worst = worst.fold(0.0, f64::max);
+    anstream::println!("By signal:");
+    for signal in signals {
+        anstream::println!(
+            "  {:<13} error {:9.4} of {:9.3} {:<6} noise {:8.4} {:7.2} x noise  {}",
+            signal.name,
+            signal.error_rms,
+            signal.rms,
+            signal.unit,
+            signal.noise_floor,
+            signal.error_over_noise,
+            bar(signal.error_over_noise, worst, 24)
+        );
+    }
+}

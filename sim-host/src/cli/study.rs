@@ -1,0 +1,144 @@
+//! What compare, explain and adopt share: their inputs, their progress, and how they speak.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use discovery::{Error, Progress};
+use motor::MotorFile;
+use recording::{Audit, Source};
+
+use super::failure::Failure;
+use super::input::{InputArgs, read_motor};
+use super::output::OutputArgs;
+use super::{paint, progress};
+
+/// Recordings, the motor file, and where results go.
+#[derive(Debug, Args)]
+pub struct StudyArgs {
+    /// Recordings (.csv, .csv.gz) or load-test tables
+    #[arg(value_name = "REC", required = true)]
+    recordings: Vec<PathBuf>,
+    /// Motor file
+    #[arg(long, value_name = "M")]
+    motor: PathBuf,
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
+
+/// Steps of the progress bar.
+const STEPS: f64 = 1000.0;
+
+impl StudyArgs {
+    /// All recordings in the order given.
+    ///
+    /// # Errors
+    /// Whatever is wrong with flags, file or sidecar.
+    pub fn sources(&self) -> Result<Vec<Source>, Failure> {
+        let paths = self.recordings.iter();
+        paths.map(|path| self.input.read(path)).collect()
+    }
+
+    /// The motor file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn motor(&self) -> Result<MotorFile, Failure> {
+        read_motor(&self.motor)
+    }
+
+    /// The motor file's path.
+    pub fn motor_path(&self) -> &PathBuf {
+        &self.motor
+    }
+
+    /// The recordings' names.
+    pub fn names(&self) -> Vec<String> {
+        let names = self.recordings.iter();
+        names.map(|path| path.display().to_string()).collect()
+    }
+
+    /// The recordings and the motor file as they are typed behind a subcommand.
+    pub fn typed(&self) -> String {
+        let names: Vec<String> = self.names().iter().map(|name| quoted(name)).collect();
+        let motor = quoted(&self.motor.display().to_string());
+        format!("{} --motor {motor}", names.join(" "))
+    }
+
+    /// A name for the motor file that holds `addition` too, beside the old one.
+    pub fn new_motor_file(&self, addition: &str) -> String {
+        let stem = self.motor.file_stem().unwrap_or_default();
+        let name = format!("{}-{addition}.toml", stem.to_string_lossy());
+        quoted(&self.motor.with_file_name(name).display().to_string())
+    }
+}
+
+fn quoted(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@\\".contains(c);
+    if name.chars().all(plain) {
+        name.to_owned()
+    } else {
+        format!("\"{name}\"")
+    }
+}
+
+/// Does some work behind a progress bar.
+///
+/// # Errors
+/// What the work ran into, as the command line says it.
+pub fn with_progress<T>(
+    work: impl FnOnce(&mut Progress<'_>) -> Result<T, Error>,
+) -> Result<T, Failure> {
+    let bar = progress::bar("starting", STEPS as u64);
+    let mut tell = |what: &str, share: f64| {
+        bar.set_message(what.to_owned());
+        bar.set_position((share * STEPS) as u64);
+    };
+    let done = work(&mut tell);
+    bar.finish_and_clear();
+    done.map_err(|error| match error {
+        Error::MotorFile(error) => Failure::File(error),
+        Error::Unsupported(..) => Failure::Unsupported(error.to_string()),
+        Error::Recordings(_) | Error::UnknownEffect(_) => Failure::Usage(error.to_string()),
+    })
+}
+
+/// Prints what the audit found.
+pub fn print_audit(audit: &Audit) {
+    for finding in &audit.findings {
+        anstream::println!("  {} {}", paint::caution("audit:"), finding.detail);
+    }
+}
+
+/// Prints the next command to type.
+pub fn print_next(why: &str, command: &str) {
+    anstream::println!("\n{why}\n  {}", paint::strong(command));
+}
+
+/// A bar of `value` out of `full`, at most `width` characters long.
+pub fn bar(value: f64, full: f64, width: usize) -> String {
+    let share = if full > 0.0 { value / full } else { 0.0 };
+    let length = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
+    "█".repeat(length.max(usize::from(value > 0.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_grow_with_their_value_and_never_vanish() {
+        assert_eq!(bar(1.0, 2.0, 10).chars().count(), 5);
+        assert_eq!(bar(5.0, 2.0, 10).chars().count(), 10);
+        assert_eq!(bar(1e-6, 2.0, 10).chars().count(), 1);
+        assert_eq!(bar(0.0, 2.0, 10), "");
+        assert_eq!(bar(1.0, 0.0, 10).chars().count(), 1);
+    }
+
+    #[test]
+    fn names_with_blanks_are_quoted() {
+        assert_eq!(quoted("a/b-1.csv.gz"), "a/b-1.csv.gz");
+        assert_eq!(quoted("my file.csv"), "\"my file.csv\"");
+    }
+}

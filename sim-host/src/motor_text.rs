@@ -1,0 +1,149 @@
+//! Writing a changed motor file so that the comments of its author survive.
+
+use motor::MotorFile;
+use motor::motor_file::{EffectEntry, EffectValue};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value, value};
+
+/// The text of `motor`: `old` with its parameters and effects changed where they differ. Comments, order and everything
+/// else of `old` stay. A text that cannot be changed in this way is replaced by a fresh one.
+pub fn updated(old: &str, motor: &MotorFile) -> String {
+    let fresh = motor.to_toml();
+    let edited = edited(old, motor).filter(|text| means(text, motor));
+    edited.unwrap_or(fresh)
+}
+
+/// Whether `text` says what `motor` says.
+fn means(text: &str, motor: &MotorFile) -> bool {
+    MotorFile::parse(text, "").is_ok_and(|read| read.to_toml() == motor.to_toml())
+}
+
+fn edited(old: &str, motor: &MotorFile) -> Option<String> {
+    let mut document: DocumentMut = old.parse().ok()?;
+    let parameters = document.get_mut("parameters")?.as_table_like_mut()?;
+    for (key, number) in numbers(motor) {
+        set(parameters.entry(key).or_insert(value(number)), number);
+    }
+    if !motor.effects.is_empty() {
+        let effects = document
+            .entry("effects")
+            .or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()))
+            .as_array_of_tables_mut()?;
+        write_effects(effects, &motor.effects);
+    }
+    Some(document.to_string())
+}
+
+fn numbers(motor: &MotorFile) -> [(&'static str, f64); 8] {
+    let (electrical, mechanical) = (&motor.parameters, &motor.mechanics);
+    [
+        ("stator_resistance_ohm", electrical.r_s),
+        ("rotor_resistance_ohm", electrical.r_r),
+        ("stator_leakage_henry", electrical.l_ls),
+        ("rotor_leakage_henry", electrical.l_lr),
+        ("magnetizing_inductance_henry", electrical.l_m),
+        ("inertia_kg_m2", mechanical.inertia),
+        ("friction_nm_s", mechanical.friction),
+        ("load_friction_nm_s", mechanical.load_friction),
+    ]
+}
+
+/// A number in place of another, with what stood around it.
+fn set(item: &mut Item, number: f64) {
+    let Some(old) = item.as_value_mut() else {
+        return;
+    };
+    if old.as_float() == Some(number) {
+        return;
+    }
+    let around = old.decor().clone();
+    let mut new = Value::from(number);
+    *new.decor_mut() = around;
+    *old = new;
+}
+
+fn write_effects(tables: &mut ArrayOfTables, effects: &[EffectEntry]) {
+    let named = |table: &Table| {
+        let name = table.get("name").and_then(Item::as_str);
+        name.unwrap_or_default().to_owned()
+    };
+    tables.retain(|table| effects.iter().any(|effect| effect.name == named(table)));
+    for effect in effects {
+        if !tables.iter().any(|table| named(table) == effect.name) {
+            tables.push(empty(&effect.name));
+        }
+        let mut found = tables.iter_mut();
+        if let Some(table) = found.find(|table| named(table) == effect.name) {
+            write_effect(table, effect);
+        }
+    }
+}
+
+fn empty(name: &str) -> Table {
+    let mut table = Table::new();
+    table.decor_mut().set_prefix("\n");
+    table.insert("name", value(name));
+    table
+}
+
+fn write_effect(table: &mut Table, effect: &EffectEntry) {
+    for parameter in &effect.parameters {
+        let key = parameter.key.as_str();
+        match &parameter.value {
+            EffectValue::Number(number) => {
+                set(table.entry(key).or_insert(value(*number)), *number);
+            }
+            EffectValue::Text(text) => {
+                table.insert(key, value(text.as_str()));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OLD: &str = include_str!("../../motors/peer-2k2.toml");
+
+    fn adopted() -> MotorFile {
+        let mut motor = MotorFile::parse(OLD, "old").unwrap();
+        motor.parameters.r_s = 3.912_345;
+        let numbers = [("core_loss_resistance_ohm", 980.0)];
+        motor
+            .effects
+            .push(EffectEntry::with_numbers("core-loss", numbers));
+        motor
+    }
+
+    #[test]
+    fn comments_survive_and_the_new_text_says_what_was_adopted() {
+        let old = OLD.replacen("[parameters]", "# measured on a Monday\n[parameters]", 1);
+        let text = updated(&old, &adopted());
+        assert!(text.contains("# measured on a Monday"));
+        for comment in OLD.lines().filter(|line| line.starts_with('#')) {
+            assert!(text.contains(comment), "{comment}");
+        }
+        let read = MotorFile::parse(&text, "new").unwrap();
+        assert_eq!(read.parameters, adopted().parameters);
+        assert_eq!(
+            read.effects[0].number("core_loss_resistance_ohm"),
+            Some(980.0)
+        );
+    }
+
+    #[test]
+    fn a_second_adoption_changes_the_first_effect_in_place() {
+        let first = updated(OLD, &adopted());
+        let mut again = adopted();
+        again.effects[0].parameters[0].value = EffectValue::Number(1020.5);
+        let text = updated(&first, &again);
+        assert_eq!(text.matches("[[effects]]").count(), 1);
+        assert!(text.contains("core_loss_resistance_ohm = 1020.5"));
+    }
+
+    #[test]
+    fn a_text_that_cannot_be_edited_is_written_afresh() {
+        let text = updated("not a motor file", &adopted());
+        assert_eq!(text, adopted().to_toml());
+    }
+}

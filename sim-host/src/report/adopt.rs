@@ -1,0 +1,106 @@
+//! The page of `drivemon adopt`: before and after.
+
+use maud::{Markup, html};
+
+use super::audit;
+use super::number::{decimals, shown};
+use super::overlay;
+use super::parameters::{Bar, bars, nominals, of_effect};
+use super::place::Place;
+use super::shell::{Mood, cards, next, verdict};
+
+/// Everything between heading and footer.
+pub fn content(result: &Place<'_>) -> Markup {
+    html! {
+        (answer(result))
+        (cards(&summary(result)))
+        (next("Is anything still missing?", result.text("next_command")))
+        (errors(result))
+        (overlay::section(result))
+        (values(result))
+        (audit::section(result))
+    }
+}
+
+fn answer(result: &Place<'_>) -> Markup {
+    let effect = result.text("effect");
+    let after = html! {
+        (shown(result, "before/held_out_error_over_noise", decimals(2))) " to "
+        (shown(result, "after/held_out_error_over_noise", decimals(2))) " times the noise"
+    };
+    let (mood, text) = match (effect, result.is_true("proven")) {
+        ("parameters", _) => (
+            Mood::Good,
+            html! { "The refitted parameters are taken over" },
+        ),
+        (_, true) => (
+            Mood::Good,
+            html! { (effect) " takes the error from " (after) },
+        ),
+        (_, false) => (
+            Mood::Caution,
+            html! { "The gain of " (effect) " is not proven: " (after) },
+        ),
+    };
+    let more = html! {
+        p.subtle { (result.text("motor")) ". Errors on data that was not fitted. Written: " code { (result.text("motor_file")) } }
+    };
+    verdict(mood, &text, &more)
+}
+
+/// Errors: where they stand and what they are.
+const ERRORS: [(&str, &str, &str); 4] = [
+    (
+        "before",
+        "held_out_error_over_noise",
+        "before, data that was not fitted",
+    ),
+    (
+        "after",
+        "held_out_error_over_noise",
+        "after, data that was not fitted",
+    ),
+    ("before", "error_over_noise", "before, fitted data"),
+    ("after", "error_over_noise", "after, fitted data"),
+];
+
+fn summary(result: &Place<'_>) -> Vec<(Markup, Markup)> {
+    let card = |(when, key, what): (&str, &str, &str)| {
+        let path = format!("{when}/{key}");
+        (
+            html! { (shown(result, &path, decimals(3))) " × noise" },
+            html! { (what) },
+        )
+    };
+    ERRORS.into_iter().map(card).collect()
+}
+
+fn errors(result: &Place<'_>) -> Markup {
+    let row = |(when, key, what): (&str, &'static str, &str)| {
+        Some(Bar {
+            label: what.to_owned(),
+            place: result.get(when)?,
+            key,
+            class: if when == "after" { "chosen" } else { "" },
+        })
+    };
+    let rows: Vec<Bar<'_>> = ERRORS.into_iter().filter_map(row).collect();
+    html! {
+        section aria-labelledby="fall" {
+            h2 id="fall" { "Error before and after" }
+            (bars(&rows))
+            p.subtle { "1 is what the sensors' own noise leaves. Before and after, all parameters are refitted." }
+        }
+    }
+}
+
+fn values(result: &Place<'_>) -> Markup {
+    let effect = result.items("parameters");
+    html! {
+        section aria-labelledby="parameters" {
+            h2 id="parameters" { "What the new motor file holds" }
+            @if !effect.is_empty() { (of_effect(&effect)) }
+            (nominals(&result.items("nominals")))
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! The page of `drivemon explain`: what is missing, how sure that is, what to do next.
+
+use maud::{Markup, html};
+
+use super::audit;
+use super::number::{decimals, shown};
+use super::overlay;
+use super::parameters::{Bar, bar, bars, nominals, of_effect};
+use super::place::Place;
+use super::shell::{Mood, cards, next, verdict};
+
+/// Key of the error on data that was not fitted.
+const HELD_OUT: &str = "held_out_error_over_noise";
+
+/// Everything between heading and footer.
+pub fn content(result: &Place<'_>) -> Markup {
+    let steps = result.items("steps");
+    html! {
+        (answer(result, &steps))
+        (cards(&summary(result, &steps)))
+        (next(result.text("next/why"), result.text("next/command")))
+        (errors(result, &steps))
+        @for (k, step) in steps.iter().enumerate() { (effect(step, k)) }
+        (unexplained(result))
+        (overlay::section(result))
+        (ranking(result, &steps))
+        (fitted(result))
+        (not_testable(result))
+        (audit::section(result))
+    }
+}
+
+fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
+    let names: Vec<&str> = steps.iter().map(|step| step.text("effect")).collect();
+    let (mood, text) = match result.text("verdict") {
+        "adequate" if any_off(result) => (
+            Mood::Caution,
+            "The model is adequate, but parameters are off".to_owned(),
+        ),
+        "adequate" => (Mood::Good, "The model is adequate".to_owned()),
+        "effect" => (Mood::Bad, format!("Missing: {}", names.join(" and "))),
+        "ambiguous" => (
+            Mood::Caution,
+            format!(
+                "Missing: {}",
+                steps.iter().map(with_ties).collect::<Vec<_>>().join("; ")
+            ),
+        ),
+        "unknown" => (
+            Mood::Caution,
+            "Something is missing that the library does not hold".to_owned(),
+        ),
+        "implausible" => (
+            Mood::Bad,
+            "Only parameters that no such motor has explain the recording".to_owned(),
+        ),
+        _ => (
+            Mood::Caution,
+            "The data do not support an answer".to_owned(),
+        ),
+    };
+    let recordings: Vec<&str> = result
+        .items("recordings")
+        .iter()
+        .map(Place::as_text)
+        .collect();
+    let proof = match recordings.split_first() {
+        Some((first, rest)) if !rest.is_empty() => {
+            format!("fitted on {first}, proven on {}", rest.join(" and "))
+        }
+        _ => format!(
+            "fitted on {}, proven by interleaved blocks that were left out",
+            recordings.join("")
+        ),
+    };
+    let more = html! {
+        p { (result.text("summary")) }
+        p.subtle { (result.text("motor")) ", " (proof) "." }
+    };
+    verdict(mood, &html! { (text) }, &more)
+}
+
+fn any_off(result: &Place<'_>) -> bool {
+    let last = result.items("final/parameters");
+    last.iter().any(|parameter| parameter.is_true("off"))
+}
+
+fn with_ties(step: &Place<'_>) -> String {
+    let ties: Vec<&str> = step.items("tied_with").iter().map(Place::as_text).collect();
+    match ties.is_empty() {
+        true => step.text("effect").to_owned(),
+        false => format!("{} or {}", step.text("effect"), ties.join(" or ")),
+    }
+}
+
+fn summary(result: &Place<'_>, steps: &[Place<'_>]) -> Vec<(Markup, Markup)> {
+    let error = |path: &str, what: &str| {
+        let path = format!("{path}/{HELD_OUT}");
+        result.get(&path)?;
+        Some((
+            html! { (shown(result, &path, decimals(3))) " × noise" },
+            html! { (what) },
+        ))
+    };
+    let mut found: Vec<(Markup, Markup)> = error(
+        "baseline",
+        "error on data that was not fitted, all parameters refitted",
+    )
+    .into_iter()
+    .collect();
+    if !steps.is_empty() {
+        found.extend(error("final", "the same with what was found"));
+    }
+    found.extend(steps.iter().map(|step| {
+        (
+            html! { (shown(step, "explained_percent", decimals(0))) " %" },
+            html! { "of the excess error explained by " (step.text("effect")) },
+        )
+    }));
+    found
+}
+
+fn errors(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
+    let Some(baseline) = result.get("baseline") else {
+        return html! {};
+    };
+    let mut rows = vec![row(
+        "all parameters refitted, nothing added".to_owned(),
+        &baseline,
+        "",
+    )];
+    rows.extend(
+        steps
+            .iter()
+            .map(|step| row(format!("with {}", step.text("effect")), step, "chosen")),
+    );
+    html! {
+        section aria-labelledby="fall" {
+            h2 id="fall" { "How the error falls on data that was not fitted" }
+            (bars(&rows))
+            p.subtle { "1 is what the sensors' own noise leaves." }
+        }
+    }
+}
+
+fn row<'a>(label: String, place: &Place<'a>, class: &'static str) -> Bar<'a> {
+    Bar {
+        label,
+        place: place.clone(),
+        key: HELD_OUT,
+        class,
+    }
+}
+
+fn effect(step: &Place<'_>, k: usize) -> Markup {
+    let id = format!("effect-{k}");
+    let ties = step.items("tied_with");
+    html! {
+        section aria-labelledby=(id) {
+            h2 id=(id) { (step.text("effect")) @if !step.text("form").is_empty() { " (" (step.text("form")) ")" } }
+            p { "Seen when it is missing: " (step.text("symptom")) "." }
+            (of_effect(&step.items("parameters")))
+            @if !ties.is_empty() {
+                p { strong { "As likely: " } @for (n, tie) in ties.iter().enumerate() { @if n > 0 { ", " } (tie.as_text()) } "." }
+                p { strong { "What separates them: " } (step.text("separating_test")) "." }
+            }
+        }
+    }
+}
+
+fn unexplained(result: &Place<'_>) -> Markup {
+    let Some(rest) = result.get("unexplained") else {
+        return html! {};
+    };
+    html! {
+        section aria-labelledby="rest" {
+            h2 id="rest" { "What is left" }
+            p { (rest.text("description")) }
+            @if rest.get("best_lead").is_some() {
+                p { "Best lead, not proven: " strong { (rest.text("best_lead")) } ", explains " (shown(&rest, "best_lead_explains_percent", decimals(0))) " % of the excess." }
+            }
+            @let grows = rest.items("correlates_with");
+            @if !grows.is_empty() {
+                p { "It grows with: " @for (n, word) in grows.iter().enumerate() { @if n > 0 { ", " } (word.as_text()) } "." }
+            }
+        }
+    }
+}
+
+fn ranking(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
+    let rows = result.items("ranking");
+    let full = result
+        .number(&format!("baseline/{HELD_OUT}"))
+        .unwrap_or_default();
+    let class = |name: &str| {
+        let tied = |step: &Place<'_>| {
+            step.items("tied_with")
+                .iter()
+                .any(|tie| tie.as_text() == name)
+        };
+        if steps.iter().any(|step| step.text("effect") == name) {
+            "chosen"
+        } else if steps.iter().any(tied) {
+            "tied"
+        } else {
+            ""
+        }
+    };
+    html! {
+        @if !rows.is_empty() {
+            section aria-labelledby="ranking" {
+                h2 id="ranking" { "Every effect, added alone" }
+                p.subtle { "Error on data that was not fitted, with all parameters refitted beside the effect; ~ is linearised. Visibility is what an effect of typical size would show in this recording, percent of the noise: below 2 the recording can neither find nor exclude it." }
+                p.key { span { span.swatch { i style="background:var(--blue)" {} } "found" } span { span.swatch { i style="background:var(--sky)" {} } "tied with it" } span { span.swatch { i style="background:var(--grey)" {} } "others" } }
+                div.wide tabindex="0" { table.bars {
+                    thead { tr { th scope="col" { "effect" } th scope="col" { "error, × noise" } th scope="col" { "gain, %" } th scope="col" { "visibility, %" } th.word scope="col" { "" } } }
+                    tbody { @for row in &rows { tr class=(class(row.text("effect"))) {
+                        th scope="row" { (row.text("effect")) }
+                        td { @if !row.is_true("refitted") { "~ " } (shown(row, HELD_OUT, decimals(3))) }
+                        td { (shown(row, "gain_percent", decimals(1).signed())) }
+                        td { (shown(row, "visibility_percent", decimals(1))) }
+                        td.bar { (bar(row.number(HELD_OUT).unwrap_or_default(), full)) }
+                    } } }
+                } }
+            }
+        }
+    }
+}
+
+fn fitted(result: &Place<'_>) -> Markup {
+    let last = result.items("final/parameters");
+    html! {
+        @if !last.is_empty() {
+            section aria-labelledby="parameters" {
+                h2 id="parameters" { "Parameters with their uncertainty" }
+                (nominals(&last))
+                details { summary { "Without the effects that were found" } (nominals(&result.items("baseline/parameters"))) }
+            }
+        }
+    }
+}
+
+fn not_testable(result: &Place<'_>) -> Markup {
+    let names = result.items("not_testable");
+    html! {
+        @if !names.is_empty() {
+            section aria-labelledby="hidden" {
+                h2 id="hidden" { "What this recording cannot show" }
+                p { "Present or not, an effect of typical size would stay below 2 % of the noise here:" }
+                p { @for (n, name) in names.iter().enumerate() { @if n > 0 { ", " } (name.as_text()) } "." }
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Measured and modelled signals over each other, and the error against time and operating point.
+
+use maud::{Markup, html};
+
+use super::chart::{Chart, Kind, Series};
+use super::place::Place;
+
+/// Colours of the models: what was believed stands out, what was found agrees.
+const TWO: [&str; 2] = ["vermillion", "green"];
+const THREE: [&str; 3] = ["vermillion", "purple", "green"];
+
+/// Quantities that the error is shown against: key, axis, unit, what a trend would mean.
+const AGAINST: [(&str, &str, &str, &str); 4] = [
+    (
+        "slip_percent",
+        "slip",
+        "%",
+        "A rise with slip points at the rotor circuit or the start.",
+    ),
+    (
+        "load_percent",
+        "load",
+        "% of rated",
+        "A rise with load points at resistances, leakage or gains.",
+    ),
+    (
+        "voltage_percent",
+        "voltage",
+        "% of rated",
+        "A rise with voltage points at iron: saturation or core loss.",
+    ),
+    (
+        "frequency_hz",
+        "frequency",
+        "Hz",
+        "A rise with frequency points at inductance, delay or friction.",
+    ),
+];
+
+/// The figures, or a sentence when there is nothing to lay over each other.
+pub fn section(result: &Place<'_>) -> Markup {
+    let Some(overlay) = result.get("overlay") else {
+        return html! {};
+    };
+    let models = models(&overlay);
+    html! {
+        section aria-labelledby="overlay" {
+            h2 id="overlay" { "Measured and modelled" }
+            p.subtle { "The recorded voltages of " (overlay.text("recording")) " drive the model. First the place where the current is furthest off, every sample; then the whole recording, thinned." }
+            div.charts {
+                (signal(&overlay, "close", "ia", &models))
+                (signal(&overlay, "close", "speed", &models))
+                (signal(&overlay, "whole", "ia", &models))
+                (signal(&overlay, "whole", "speed", &models))
+            }
+        }
+        section aria-labelledby="error" {
+            h2 id="error" { "The error against time, slip, load, voltage and frequency" }
+            p.subtle { "Rms over blocks of 40 ms, logarithmic. Where the points of one figure lie on a rising line, the missing physics depends on that quantity." }
+            div.charts {
+                (error(&overlay, &models, "current_error_amp", "current error", "A rms"))
+                (error(&overlay, &models, "speed_error_rad_s", "speed error", "rad/s rms"))
+                @for against in AGAINST { (trend(&overlay, &models, &against)) }
+            }
+        }
+    }
+}
+
+fn models(overlay: &Place<'_>) -> Vec<(String, &'static str)> {
+    let names: Vec<String> = overlay
+        .items("models")
+        .iter()
+        .map(|name| name.as_text().to_owned())
+        .collect();
+    let colours: &[&str] = if names.len() > 2 { &THREE } else { &TWO };
+    names.into_iter().zip(colours.iter().copied()).collect()
+}
+
+fn signal(
+    overlay: &Place<'_>,
+    part: &str,
+    name: &str,
+    models: &[(String, &'static str)],
+) -> Markup {
+    let signals = overlay.items(&format!("{part}/signals"));
+    let Some(signal) = signals.iter().find(|signal| signal.text("name") == name) else {
+        return html! {};
+    };
+    let unit = if name == "speed" { "rad/s" } else { "A" };
+    let mut chart = Chart::over("time", "s", overlay.pointer_to(&format!("{part}/t/*")))
+        .y(name, unit)
+        .with(Series::line(
+            "measured",
+            signal.pointer_to("measured/*"),
+            "blue",
+        ))
+        .group(if part == "close" { "close" } else { "time" });
+    for (k, (label, colour)) in models.iter().enumerate() {
+        let from = signal.pointer_to(&format!("modelled/{k}/*"));
+        chart = chart.with(Series::line(label, from, colour).dashed(k));
+    }
+    let heading = match part {
+        "close" => format!("{name}, where the current is furthest off"),
+        _ => format!("{name}, whole recording"),
+    };
+    chart.figure(&heading, "")
+}
+
+fn error(
+    overlay: &Place<'_>,
+    models: &[(String, &'static str)],
+    key: &str,
+    label: &str,
+    unit: &'static str,
+) -> Markup {
+    if overlay.get(&format!("blocks/0/{key}/0")).is_none() {
+        return html! {};
+    }
+    let mut chart = Chart::over("time", "s", overlay.pointer_to("blocks/*/t"))
+        .y(label, unit)
+        .log()
+        .group("time");
+    for (k, (model, colour)) in models.iter().enumerate() {
+        let from = overlay.pointer_to(&format!("blocks/*/{key}/{k}"));
+        chart = chart.with(Series::line(model, from, colour));
+    }
+    chart.figure(&format!("{label} against time"), "")
+}
+
+fn trend(
+    overlay: &Place<'_>,
+    models: &[(String, &'static str)],
+    (key, axis, unit, meaning): &(&str, &str, &'static str, &str),
+) -> Markup {
+    let blocks = overlay.items("blocks");
+    if blocks.iter().all(|block| block.get(key).is_none()) {
+        return html! {};
+    }
+    let mut chart = Chart::over(axis, unit, overlay.pointer_to(&format!("blocks/*/{key}")))
+        .y("current error", "A rms")
+        .log();
+    for (k, (model, colour)) in models.iter().enumerate() {
+        let from = overlay.pointer_to(&format!("blocks/*/current_error_amp/{k}"));
+        chart = chart.with(Series::line(model, from, colour).kind(Kind::Points));
+    }
+    chart.figure(&format!("current error against {axis}"), meaning)
+}
