@@ -4,8 +4,10 @@ use crate::proof::wilcoxon;
 use crate::study::{Study, Trial};
 use motor::effects::Role;
 
-/// Least relative gain of held-out error.
+/// Least relative gain of held-out error, on one of the two kinds of evidence ...
 const GAIN: f64 = 0.02;
+/// ... and on the other, where friction may already have swallowed most of a loss.
+const LESSER_GAIN: f64 = 0.004;
 /// Largest probability of the pairs if there were no advantage.
 const P_LIMIT: f64 = 0.005;
 /// Least share of the excess over the floor that must be explained.
@@ -13,18 +15,25 @@ const SHARE: f64 = 0.2;
 /// Least size, in typical sizes.
 const LEAST_SIZE: f64 = 0.05;
 
-/// An advantage of one trial over another on one kind of evidence.
-fn advantage(before: &[f64], after: &[f64], gain: f64) -> bool {
+/// Relative gain of one kind of evidence if the pairs prove it, otherwise zero.
+fn gain(before: &[f64], after: &[f64]) -> f64 {
     let (sum_before, sum_after): (f64, f64) = (before.iter().sum(), after.iter().sum());
-    let relative = 1.0 - (sum_after / sum_before).sqrt();
-    relative > gain && wilcoxon(before, after) < P_LIMIT
+    let proven = wilcoxon(before, after) < P_LIMIT;
+    if proven {
+        1.0 - (sum_after / sum_before).sqrt()
+    } else {
+        0.0
+    }
 }
 
 /// Whether `better` beats `worse` by folds and on the proving recordings.
 pub(crate) fn beats(better: &Trial, worse: &Trial) -> bool {
-    let by_folds = advantage(&worse.folds, &better.folds, GAIN);
-    let by_proof = better.proof.is_empty() || advantage(&worse.proof, &better.proof, GAIN);
-    by_folds && by_proof
+    let folds = gain(&worse.folds, &better.folds);
+    if better.proof.is_empty() {
+        return folds > GAIN;
+    }
+    let proof = gain(&worse.proof, &better.proof);
+    folds.min(proof) > LESSER_GAIN && folds.max(proof) > GAIN
 }
 
 /// Share of the excess over the floor that `after` explains, the lesser of folds and proof.

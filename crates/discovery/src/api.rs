@@ -13,7 +13,8 @@ use crate::report::{
 use crate::study::{Study, Trial};
 use crate::unexplained;
 use motor::MotorFile;
-use motor::effects::{Descriptor, find, names, to_entry};
+use motor::effects::{Descriptor, expression, find, names, to_entry};
+use motor::motor_file::EffectEntry;
 use recording::Source;
 
 /// Hears what is being done, and how far it is (0 to 1).
@@ -263,17 +264,22 @@ pub fn adopt(
 }
 
 fn check_name(effect: &str, motor: &MotorFile) -> Result<(), Error> {
-    if effect != PARAMETERS && find(effect, "").is_none() {
+    let present = motor.effects.iter().any(|e| e.name == effect);
+    let formula = effect == expression::NAME;
+    let message = if formula && !present {
+        "write the formula into the motor file first, its parameters zero".to_owned()
+    } else if !formula && effect != PARAMETERS && find(effect, "").is_none() {
         let known = names().join(", ");
-        let message = format!("no effect is called `{effect}`; use one of: {known}, {PARAMETERS}");
-        return Err(Error::UnknownEffect(message));
-    }
-    if motor.effects.iter().any(|e| e.name == effect) {
-        let message =
-            format!("the motor file already holds `{effect}`; remove it there to fit it anew");
-        return Err(Error::UnknownEffect(message));
-    }
-    Ok(())
+        format!(
+            "no effect is called `{effect}`; use one of: {known}, {formula_name}, {PARAMETERS}",
+            formula_name = expression::NAME
+        )
+    } else if !formula && present {
+        format!("the motor file already holds `{effect}`; remove it there to fit it anew")
+    } else {
+        return Ok(());
+    };
+    Err(Error::UnknownEffect(message))
 }
 
 fn fitted(study: &Study, before: &Trial, effect: &str) -> Result<Trial, Error> {
@@ -290,12 +296,32 @@ fn errors(study: &Study, trial: &Trial) -> ErrorReport {
     }
 }
 
+/// Whether a formula still waits for its parameters.
+fn is_open(entry: &EffectEntry) -> bool {
+    let parameters = entry
+        .parameters
+        .iter()
+        .filter(|p| !p.key.ends_with("_typical"));
+    parameters
+        .filter_map(|p| entry.number(&p.key))
+        .all(|x| x == 0.0)
+}
+
 /// The motor file with the parameters and effects of a trial.
 fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     let plant = trial.fit.hypothesis.plant(&study.belief);
     let mut file = motor.clone();
     file.parameters = plant.motor;
     file.mechanics = plant.mechanics;
-    file.effects = plant.effects.iter().map(to_entry).collect();
+    let added = trial.fit.hypothesis.configs(&study.belief.plant.rated);
+    if added
+        .iter()
+        .any(|c| c.effect.descriptor().name == expression::NAME)
+    {
+        // The formula with its fitted parameters replaces the open one.
+        let open = |e: &EffectEntry| e.name == expression::NAME && is_open(e);
+        file.effects.retain(|e| !open(e));
+    }
+    file.effects.extend(added.iter().map(to_entry));
     file
 }

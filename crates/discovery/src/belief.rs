@@ -1,6 +1,6 @@
 //! What the user believes, and hypotheses about how it is wrong.
 
-use motor::effects::{EffectConfig, Parameter, Plant, Rated, Role, rated};
+use motor::effects::{Effect, EffectConfig, Parameter, Plant, Rated, Role, expression, rated};
 use motor::{Mechanics, MotorFile, TParams};
 
 /// Nominal parameters in the order of a hypothesis.
@@ -43,6 +43,8 @@ impl Nominal {
 pub(crate) struct Belief {
     /// Plant with the effects of the motor file.
     pub plant: Plant,
+    /// Formulas of the motor file whose parameters are all zero: candidates, not beliefs.
+    pub formulas: Vec<&'static dyn Effect>,
     /// Friction that takes 1 % of rated torque at synchronous speed, N m s.
     pub friction_unit: f64,
 }
@@ -51,6 +53,10 @@ impl Belief {
     /// From a motor file and its effects (already validated).
     pub fn new(file: &MotorFile, effects: Vec<EffectConfig>) -> Self {
         let rated = rated(file);
+        let open = |e: &EffectConfig| {
+            e.effect.descriptor().name == expression::NAME && e.values.iter().all(|&x| x == 0.0)
+        };
+        let (formulas, effects): (Vec<_>, Vec<_>) = effects.into_iter().partition(open);
         let plant = Plant {
             motor: file.parameters,
             mechanics: file.mechanics,
@@ -59,6 +65,7 @@ impl Belief {
         };
         Self {
             friction_unit: 0.01 * rated.torque / rated.speed(),
+            formulas: formulas.iter().map(|e| e.effect).collect(),
             plant,
         }
     }

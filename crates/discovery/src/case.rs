@@ -19,6 +19,8 @@ pub(crate) const N_CHANNELS: usize = CHANNELS.len();
 const RELATIVE_CURRENT: f64 = 0.005;
 /// Length of a block, s: short, so that a direct-on-line start reaches every fold.
 const BLOCK: f64 = 0.04;
+/// Time after an interruption of the current during which it is not judged, s.
+const AFTER_SWITCH: f64 = 0.03;
 /// Residual rows per second that are worth their time.
 const ROW_RATE: f64 = 5500.0;
 
@@ -202,10 +204,15 @@ impl Case {
         let stride = self.between.stride() * self.decimation;
         let last = (rec.len() - 1) / self.between.stride() * self.between.stride();
         let limits = [0, 1, 2].map(|k| clip_limit(rec, k, currents[k]));
+        let switched = switched_off(currents, sigma_i, self.inputs.t_sample);
+        let settles = (AFTER_SWITCH / self.inputs.t_sample) as usize;
         for k in (0..=last).step_by(stride) {
             let i = currents.map(|c| c[k]);
             let w_i = |p: usize| {
-                let judged = i[p].abs() < limits[p];
+                let settled = switched
+                    .iter()
+                    .all(|&off| k + 10 < off || k > off + settles);
+                let judged = settled && i[p].abs() < limits[p];
                 f64::from(u8::from(judged)) / sigma_i[p].hypot(RELATIVE_CURRENT * i[p])
             };
             let zero = (voltages[0][k] + voltages[1][k] + voltages[2][k]) / 3.0;
@@ -214,6 +221,28 @@ impl Case {
             self.weight.push([w_i(0), w_i(1), w_i(2), w_speed, w_zero]);
         }
     }
+}
+
+/// Samples at which a switch interrupts the current: all phases carry some, then none for 10 ms.
+///
+/// The voltage impulse that forces the current to zero falls between two samples: no model driven by the sampled
+/// voltage can follow for a few leakage time constants.
+fn switched_off(currents: [&[f64]; 3], sigma: [f64; 3], t_sample: f64) -> Vec<usize> {
+    let window = ((0.01 / t_sample) as usize).max(4);
+    let power = |k: usize| {
+        (0..3)
+            .map(|p| (currents[p][k] / sigma[p]).powi(2))
+            .sum::<f64>()
+    };
+    let mut running: Vec<f64> = vec![0.0];
+    for k in 0..currents[0].len() {
+        running.push(running[k] + power(k));
+    }
+    let mean = |a: usize, b: usize| (running[b] - running[a]) / (3 * (b - a)) as f64;
+    // An offset or a core loss still shows behind an open switch; a load step leaves far more.
+    let dead = |k: &usize| mean(k - 4, *k) > 20.0 && mean(*k, k + window) < 0.05 * mean(k - 4, *k);
+    let last = currents[0].len().saturating_sub(window);
+    (window..last).filter(dead).collect()
 }
 
 /// Magnitude from which a current counts as clipped: its largest, if it stands still there.
@@ -325,7 +354,7 @@ fn smoothed_speed(rec: &Recording, t_sample: f64) -> Vec<f64> {
 fn running_at(rec: &Recording, currents: [&[f64]; 3], rated: &Rated<f64>) -> Option<f64> {
     let n = (0.02 / rec.t_sample()) as usize;
     let head = |x: &[f64]| x[..n.clamp(1, x.len())].iter().sum::<f64>() / n.max(1) as f64;
-    let initial = rec.speed().map_or(rated.speed(), |x| head(x));
+    let initial = rec.speed().map_or(rated.speed(), head);
     match rec.metadata.starts_from {
         StartsFrom::Standstill => None,
         StartsFrom::Running => Some(initial),

@@ -12,6 +12,9 @@ use num_complex::Complex64;
 use recording::Source;
 use std::ops::Range;
 
+/// A block with its number.
+type Numbered = (usize, Range<usize>);
+
 /// Orders of the supply frequency that are looked for in the current error.
 const ORDERS: [f64; 7] = [0.0, 1.0, -1.0, -5.0, 7.0, -11.0, 13.0];
 /// Bands of load, voltage and slip, in percent of rated.
@@ -102,7 +105,7 @@ fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
 }
 
 /// Error over noise of a set of blocks.
-fn error_of(study: &Study, r: &[f64], blocks: &[(usize, Range<usize>)]) -> f64 {
+fn error_of(study: &Study, r: &[f64], blocks: &[Numbered]) -> f64 {
     let sse = |rows: &Range<usize>| {
         let part = &r[rows.start * N_CHANNELS..rows.end * N_CHANNELS];
         crate::gram::dot(part, part)
@@ -149,8 +152,7 @@ fn percents(study: &Study, rows: &Range<usize>) -> [f64; 4] {
     let case = &study.fitted.case;
     let rated = &study.belief.plant.rated;
     let stride = case.between.stride() * case.decimation;
-    let mean =
-        |f: &dyn Fn(usize) -> f64| rows.clone().map(|row| f(row)).sum::<f64>() / rows.len() as f64;
+    let mean = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>() / rows.len() as f64;
     let sync = &case.timeline.omega_sync;
     let omega = mean(&|row| sync[(row * stride).min(sync.len() - 1)]);
     let speed = mean(&|row| {
@@ -174,7 +176,7 @@ fn regions(study: &Study, r: &[f64]) -> Vec<RegionReport> {
     if case.table.is_some() {
         return Vec::new();
     }
-    let mut groups: Vec<(String, Vec<(usize, Range<usize>)>)> = Vec::new();
+    let mut groups: Vec<(String, Vec<Numbered>)> = Vec::new();
     for (k, rows) in case.blocks().into_iter().enumerate() {
         let name = state(study, &rows);
         match groups.last_mut() {
@@ -183,7 +185,7 @@ fn regions(study: &Study, r: &[f64]) -> Vec<RegionReport> {
         }
     }
     let t_row = case.t_row();
-    let report = |(name, blocks): &(String, Vec<(usize, Range<usize>)>)| RegionReport {
+    let report = |(name, blocks): &(String, Vec<Numbered>)| RegionReport {
         name: name.clone(),
         from_s: blocks[0].1.start as f64 * t_row,
         to_s: blocks[blocks.len() - 1].1.end as f64 * t_row,
@@ -208,8 +210,7 @@ fn bands(study: &Study, r: &[f64]) -> Vec<BandReport> {
         .enumerate()
     {
         for pair in BANDS.windows(2) {
-            let inside =
-                |(b, _): &(usize, Range<usize>)| (pair[0]..pair[1]).contains(&values[*b][k]);
+            let inside = |(b, _): &Numbered| (pair[0]..pair[1]).contains(&values[*b][k]);
             let part: Vec<_> = blocks.iter().filter(|b| inside(b)).cloned().collect();
             if !part.is_empty() {
                 out.push(BandReport {

@@ -6,7 +6,7 @@ use crate::gram;
 use crate::predict::Teacher;
 use crate::screen::{Screened, ranked, screen};
 use crate::study::{Study, Trial};
-use motor::effects::names;
+use motor::effects::{expression, names};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -203,7 +203,8 @@ fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
 /// Refits one effect, every form of it, from the present nominals and from the beliefs.
 pub(crate) fn only(study: &Study, base: &Trial, effect: &str) -> Vec<Candidate> {
     let (case, belief) = (&study.fitted.case, &study.belief);
-    let others: Vec<&str> = names().into_iter().filter(|n| *n != effect).collect();
+    let all = names().into_iter().chain([expression::NAME]);
+    let others: Vec<&str> = all.filter(|n| *n != effect).collect();
     let start = |fit: &Fit| {
         let groups = ranked(&screen(case, belief, fit, &others), STARTS);
         let one = |group: Vec<Screened>| Start {

@@ -46,10 +46,8 @@ fn askable(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<&'
         Applies::Inverter => case.inverter,
         Applies::Samples => case.table.is_none(),
     };
-    ALL.iter()
-        .copied()
-        .filter(|e| !present(e) && applies(e))
-        .collect()
+    let all = ALL.iter().chain(&belief.formulas);
+    all.copied().filter(|e| !present(e) && applies(e)).collect()
 }
 
 /// The grid of a parameter, refined where it is a resonance frequency.

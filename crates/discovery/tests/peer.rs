@@ -202,3 +202,18 @@ fn the_same_input_gives_the_same_bytes() {
     };
     assert_eq!(json(), json());
 }
+
+#[test]
+fn a_formula_in_the_motor_file_is_found_like_any_other_effect() {
+    let set = "windage";
+    let text = motor(set).to_toml()
+        + "\n[[effects]]\nname = \"expression\"\nformula = \"k*omega*abs(omega)\"\nadds_to = \"torque\"\nk = 0.0\nk_typical = 1e-4\n";
+    let open = MotorFile::parse(&text, "formula.toml").unwrap();
+    let (report, file) = adopt("expression", &sources(set, "b"), &open, &mut |_, _| {}).unwrap();
+    // Friction had swallowed it: the error was small before and stays small, the size is the hidden one.
+    assert!(report.after.held_out_error_over_noise < 1.02);
+    assert_eq!(report.parameters[0].name, "k");
+    assert!((report.parameters[0].value / 7.5e-5 - 1.0).abs() < 0.15);
+    let again = MotorFile::parse(&file.to_toml(), "adopted.toml").unwrap();
+    assert_eq!(again.effects.len(), 1);
+}

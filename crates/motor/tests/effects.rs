@@ -335,3 +335,70 @@ fn slip_is_one_at_standstill() {
     };
     assert_eq!(at.slip(), 1.0);
 }
+
+/// Formulas live in motor files only.
+#[cfg(feature = "file")]
+mod formulas {
+    use super::{difference, inputs, outputs, plant};
+    use motor::effects::expression::expression;
+    use motor::effects::{Between, EffectConfig, Plant};
+
+    fn numbers(list: &[(&str, f64)]) -> Vec<(String, f64)> {
+        list.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect()
+    }
+
+    #[test]
+    fn a_formula_for_windage_equals_the_library() {
+        let formula = expression(
+            Some("k*omega*abs(omega)"),
+            Some("torque"),
+            &numbers(&[("k", 7.5e-5)]),
+        );
+        let rated = plant().rated;
+        let entry = numbers(&[("windage_nm_s2", 7.5e-5)]);
+        let library = EffectConfig::from_file("windage", "", &entry, &rated).unwrap();
+        let inputs = inputs(0.6);
+        let with = |config| {
+            let effects = vec![config];
+            outputs(&Plant { effects, ..plant() }, &inputs, Between::Smooth)
+        };
+        let (a, b) = (with(formula.unwrap()), with(library));
+        // The same product in another order: rounding only.
+        assert!(difference(&a, &b) < 1e-9);
+    }
+
+    #[test]
+    fn a_voltage_formula_can_be_a_resistance() {
+        let numbers = numbers(&[("r", 1.0)]);
+        let d = expression(Some("0-r*i_d"), Some("voltage_d"), &numbers).unwrap();
+        let q = expression(Some("0-r*i_q"), Some("voltage_q"), &numbers).unwrap();
+        let inputs = inputs(0.6);
+        let formula = Plant {
+            effects: vec![d, q],
+            ..plant()
+        };
+        let mut library = plant();
+        library.motor.r_s += 1.0;
+        let (a, b) = (
+            outputs(&formula, &inputs, Between::Smooth),
+            outputs(&library, &inputs, Between::Smooth),
+        );
+        assert!(difference(&a, &b) < 1e-9);
+    }
+
+    #[test]
+    fn a_formula_that_cannot_be_used_says_why() {
+        let refused = |formula, target, list: &[(&str, f64)], word: &str| {
+            let error = expression(formula, target, &numbers(list))
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains(word), "{error}");
+        };
+        refused(None, Some("torque"), &[], "formula");
+        refused(Some("k*omega"), Some("heat"), &[("k", 1.0)], "adds_to");
+        refused(Some("k*(omega"), Some("torque"), &[("k", 1.0)], "k*(omega");
+        refused(Some("k*speed"), Some("torque"), &[("k", 1.0)], "speed");
+        refused(Some("omega"), Some("torque"), &[("k", 1.0)], "does not use");
+        refused(Some("k*omega"), Some("torque"), &[("k", 0.0)], "k_typical");
+    }
+}

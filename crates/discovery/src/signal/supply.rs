@@ -6,6 +6,8 @@ use std::ops::Range;
 
 /// Orders that a supply may carry beside its fundamental; 0 is a constant.
 const ORDERS: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
+/// Share of the largest voltage below which the supply counts as off.
+const OFF: f64 = 0.03;
 /// The rest may exceed the declared noise by this factor before the raw voltage is believed instead.
 const WHITE_LIMIT: f64 = 1.25;
 
@@ -75,7 +77,21 @@ impl Supply {
             fundamental = supply.fundamental(&supply.cleaned(raw));
         }
         supply.u_s = supply.with_harmonics(&fundamental);
+        supply.hold_frequency(&fundamental);
         supply
+    }
+
+    /// Where the supply is off its angle is noise: the last frequency stays.
+    fn hold_frequency(&mut self, fundamental: &[Complex64]) {
+        let largest = fundamental.iter().fold(0.0f64, |a, u| a.max(u.norm()));
+        let mut last = None;
+        for (omega, u) in self.omega_sync.iter_mut().zip(fundamental) {
+            if u.norm() > OFF * largest {
+                last = Some(*omega);
+            } else if let Some(last) = last {
+                *omega = last;
+            }
+        }
     }
 
     /// `raw` without its harmonics.

@@ -99,6 +99,14 @@ pub trait Effect: SteadyEffect {
         0
     }
 
+    /// Texts that a motor file needs beside the numbers: which form, which formula.
+    fn texts(&self) -> Vec<(&'static str, &'static str)> {
+        match self.descriptor().form {
+            "" => Vec::new(),
+            form => vec![("form", form)],
+        }
+    }
+
     /// Turns measured inputs into the true ones.
     fn inputs(&self, _p: &[f64], _rated: &Rated<f64>, _inputs: &mut Inputs) {}
 

@@ -1,5 +1,6 @@
 //! Effects in the motor file: from its entries and back.
 
+use super::expression;
 use super::{EffectConfig, EffectError, Rated};
 use crate::MotorFile;
 use crate::document::FileError;
@@ -44,21 +45,23 @@ pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfi
         .iter()
         .filter_map(|p| entry.number(&p.key).map(|x| (p.key.clone(), x)))
         .collect();
+    if entry.name == expression::NAME {
+        return expression::expression(entry.text("formula"), entry.text("adds_to"), &numbers);
+    }
     EffectConfig::from_file(&entry.name, entry.text(FORM).unwrap_or(""), &numbers, rated)
 }
 
 /// An effect as a motor file writes it.
 pub fn to_entry(config: &EffectConfig) -> EffectEntry {
-    let descriptor = config.effect.descriptor();
-    let mut entry = EffectEntry::with_numbers(descriptor.name, config.to_file());
-    if !descriptor.form.is_empty() {
-        let form = EffectParameter {
-            key: FORM.to_owned(),
-            line: 0,
-            value: EffectValue::Text(descriptor.form.to_owned()),
-        };
-        entry.parameters.insert(0, form);
-    }
+    let mut entry = EffectEntry::with_numbers(config.effect.descriptor().name, config.to_file());
+    let text = |(key, text): (&str, &str)| EffectParameter {
+        key: key.to_owned(),
+        line: 0,
+        value: EffectValue::Text(text.to_owned()),
+    };
+    entry
+        .parameters
+        .splice(0..0, config.effect.texts().into_iter().map(text));
     entry
 }
 

@@ -10,6 +10,8 @@ mod descriptor;
 #[cfg(feature = "std")]
 mod effect;
 #[cfg(feature = "file")]
+pub mod expression;
+#[cfg(feature = "file")]
 mod file;
 #[cfg(feature = "std")]
 mod signals;
