@@ -13,7 +13,10 @@ const PAIRS: usize = 201;
 /// 12-bit codes scatter the phasor of one cycle by less than a tenth of this.
 const PHASOR_AGREEMENT: f32 = 1e-3;
 
+// The loops are compiled once each: inlined into their callers they would be other code in every figure.
+
 /// Runs the core over the whole second from a fresh state; every report reaches `see`.
+#[inline(never)]
 fn core<T>(
     monitor: &Monitor,
     samples: &[T],
@@ -29,6 +32,7 @@ fn core<T>(
     black_box(state);
 }
 
+#[inline(never)]
 fn sliding(samples: &[Sample]) -> SlidingDft {
     let mut peer = SlidingDft::default();
     samples
@@ -37,6 +41,7 @@ fn sliding(samples: &[Sample]) -> SlidingDft {
     peer
 }
 
+#[inline(never)]
 fn least_squares(samples: &[Sample]) -> NalgebraLeastSquares {
     let mut peer = NalgebraLeastSquares::default();
     samples
