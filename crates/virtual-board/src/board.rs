@@ -1,0 +1,185 @@
+//! The whole board: power, time, lamps, button, and faults of the board itself.
+
+use monitor::RawSample;
+use unicorn_engine::uc_error;
+
+use crate::CORE_HZ;
+use crate::cpu::{Cpu, FLASH, RAM};
+use crate::elf::Firmware;
+use crate::gpio::Pin;
+use crate::machine::{Cause, Inputs, Machine, Tally};
+
+/// Why the board cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum BoardError {
+    /// The file is not what the board can run.
+    #[error("the firmware file cannot be used: {0}")]
+    Elf(String),
+    /// The emulator refused.
+    #[error("the emulator refuses: {0:?}")]
+    Emulator(uc_error),
+    /// The program did something that this board cannot do.
+    #[error("stopped at pc {pc:#x}, lr {lr:#x}: {what}")]
+    Stopped {
+        /// What it did.
+        what: String,
+        /// Program counter.
+        pc: u32,
+        /// Link register.
+        lr: u32,
+    },
+}
+
+impl From<uc_error> for BoardError {
+    fn from(error: uc_error) -> Self {
+        BoardError::Emulator(error)
+    }
+}
+
+/// Lamps in the order run, r1..r4, sensor, line, load, fault; the table of docs/wiring.md.
+pub const LAMPS: [(&str, Pin); 9] = [
+    ("run", Pin(2, 8)),
+    ("r1", Pin(1, 11)),
+    ("r2", Pin(1, 12)),
+    ("r3", Pin(1, 13)),
+    ("r4", Pin(1, 14)),
+    ("sensor", Pin(1, 15)),
+    ("line", Pin(2, 9)),
+    ("load", Pin(2, 4)),
+    ("fault", Pin(2, 5)),
+];
+const BUTTON: Pin = Pin(2, 13);
+
+/// A board with power on.
+pub struct VirtualBoard {
+    cpu: Cpu,
+    firmware: Firmware,
+}
+
+impl VirtualBoard {
+    /// Flashes `elf` and applies power.
+    ///
+    /// # Errors
+    /// A file that is no firmware for this chip.
+    pub fn new(elf: &[u8], inputs: Box<dyn Inputs>) -> Result<Self, BoardError> {
+        let firmware = Firmware::parse(elf)?;
+        let mut cpu = Cpu::new(Machine::new(inputs))?;
+        for (address, bytes) in &firmware.segments {
+            cpu.core.mem_write(u64::from(*address), bytes)?;
+        }
+        cpu.reset()?;
+        Ok(VirtualBoard { cpu, firmware })
+    }
+
+    /// Runs for `seconds` of emulated time.
+    ///
+    /// # Errors
+    /// The program touched something that is not modelled, or crashed.
+    pub fn run(&mut self, seconds: f64) -> Result<(), BoardError> {
+        let end = self.cpu.machine().now + (seconds * CORE_HZ as f64) as u64;
+        while self.cpu.machine().now < end {
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    fn step(&mut self) -> Result<(), BoardError> {
+        self.cpu.happen()?;
+        let machine = self.cpu.machine();
+        machine.tally.cycles = machine.now;
+        if machine.iwdg.deadline().is_some_and(|at| at <= machine.now) {
+            return self.reset(Cause::Watchdog);
+        }
+        if machine.nvic.reset_requested {
+            return self.reset(Cause::Software);
+        }
+        machine.next_event = machine.horizon();
+        self.cpu.enter_exception()?;
+        self.cpu.run()
+    }
+
+    /// Resets the chip; memory keeps its content, the flash too.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn reset(&mut self, cause: Cause) -> Result<(), BoardError> {
+        self.cpu.machine().reset(cause);
+        self.cpu.reset()
+    }
+
+    /// Whether the lamp's wire is driven high now. Unknown names are dark.
+    pub fn lamp(&mut self, name: &str) -> bool {
+        let wire = LAMPS.iter().find(|(lamp, _)| *lamp == name);
+        wire.is_some_and(|(_, pin)| self.level(*pin))
+    }
+
+    /// All lamps in the order of the table.
+    pub fn lamps(&mut self) -> [bool; 9] {
+        LAMPS.map(|(_, pin)| self.level(pin))
+    }
+
+    fn level(&mut self, Pin(port, number): Pin) -> bool {
+        self.cpu.machine().ports[port].driven(number) == Some(true)
+    }
+
+    /// Presses or releases the button.
+    pub fn press(&mut self, pressed: bool) {
+        let Pin(port, number) = BUTTON;
+        self.cpu.machine().ports[port].apply(number, pressed);
+    }
+
+    /// Stops or restarts the clock of the sampling converter.
+    pub fn stop_converter_clock(&mut self, stopped: bool) {
+        self.cpu.machine().adc1.clock_stopped = stopped;
+    }
+
+    /// Sets the converters' supply, mV (3300 is nominal, > 0).
+    pub fn set_vdda(&mut self, millivolt: u32) {
+        self.cpu.machine().vdda_millivolt = millivolt.max(1);
+    }
+
+    /// Flips bits of the flash word at `address`, as ageing does.
+    ///
+    /// # Errors
+    /// An address outside flash.
+    pub fn corrupt_flash(&mut self, address: u32, bits: u32) -> Result<(), BoardError> {
+        let word = self.cpu.word(address)? ^ bits;
+        self.cpu
+            .core
+            .mem_write(u64::from(address), &word.to_le_bytes())?;
+        Ok(())
+    }
+
+    /// Address of the symbol whose name contains `part`.
+    pub fn symbol(&self, part: &str) -> Option<u32> {
+        self.firmware.symbol(part)
+    }
+
+    /// Counters.
+    pub fn tally(&mut self) -> Tally {
+        self.cpu.machine().tally
+    }
+
+    /// Every instant that the firmware's converter took, in order.
+    pub fn taken(&mut self) -> &[RawSample] {
+        &self.cpu.machine().taken
+    }
+
+    /// Takes what the firmware wrote to a debugger channel (0 is the log).
+    pub fn drain_rtt(&mut self, channel: u32) -> Option<Vec<u8>> {
+        crate::rtt::drain(&mut self.cpu, channel)
+    }
+
+    /// Bytes of stack used at most, seen at interrupts, of a stack that begins at the vector table's first word.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn stack_used(&mut self) -> Result<u32, BoardError> {
+        Ok(self.cpu.word(FLASH)? - self.cpu.lowest_stack.max(RAM))
+    }
+
+    /// Leaves out the stacking of floating-point registers: a negative control, for tests.
+    pub fn forget_float_stacking(&mut self) {
+        self.cpu.stacks_floats = false;
+    }
+}

@@ -1,0 +1,391 @@
+//! The processor: Unicorn's Cortex-M4F with exception entry and return, WFE and SEV added around it.
+//!
+//! Unicorn executes instructions; everything that the architecture does between instructions is here,
+//! after the ARMv7-M Architecture Reference Manual, B1.5.
+
+use unicorn_engine::{Arch, Mode, Prot, RegisterARM as R, Unicorn, uc_error};
+
+use crate::board::BoardError;
+use crate::bus::{FACTORY_VALUE, VREFINT_CAL_ADDRESS};
+use crate::machine::Machine;
+
+pub(crate) type Core = Unicorn<'static, Machine>;
+
+pub(crate) const FLASH: u32 = 0x0800_0000;
+pub(crate) const FLASH_SIZE: u32 = 512 * 1024;
+pub(crate) const RAM: u32 = 0x2000_0000;
+pub(crate) const RAM_SIZE: u32 = 128 * 1024;
+/// Where a return from an exception "jumps" to; a page of NOPs, so that the jump itself succeeds.
+const RETURNS: u64 = 0xFFFF_F000;
+const WFE: u16 = 0xBF20;
+const SEV: u16 = 0xBF40;
+const NOP: u16 = 0xBF00;
+/// xPSR: stack pointer was padded to 8 bytes.
+const PADDED: u32 = 1 << 9;
+const THUMB: u32 = 1 << 24;
+/// CONTROL: the interrupted code has used the floating-point unit.
+const FPCA: u64 = 4;
+const BASIC: [R; 7] = [R::R0, R::R1, R::R2, R::R3, R::R12, R::LR, R::PC];
+const FLOATS: [R; 16] = [
+    R::S0,
+    R::S1,
+    R::S2,
+    R::S3,
+    R::S4,
+    R::S5,
+    R::S6,
+    R::S7,
+    R::S8,
+    R::S9,
+    R::S10,
+    R::S11,
+    R::S12,
+    R::S13,
+    R::S14,
+    R::S15,
+];
+/// What a handler finds in the floating-point registers that it has to treat as lost.
+const POISON: u64 = 0x7FC0_DEAD;
+
+/// The processor and how its exceptions behave.
+pub(crate) struct Cpu {
+    pub core: Core,
+    /// Off only to show that its absence is noticed.
+    pub stacks_floats: bool,
+    /// Lowest stack pointer seen at exception entries and block starts.
+    pub lowest_stack: u32,
+}
+
+impl Cpu {
+    pub fn new(machine: Machine) -> Result<Self, BoardError> {
+        let mut core = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, machine)?;
+        core.ctl_set_cpu_model(unicorn_engine::ArmCpuModel::CORTEX_M4 as i32)?;
+        map_memory(&mut core)?;
+        map_peripherals(&mut core)?;
+        hook_blocks(&mut core)?;
+        hook_flash(&mut core)?;
+        Ok(Cpu {
+            core,
+            stacks_floats: true,
+            lowest_stack: RAM + RAM_SIZE,
+        })
+    }
+
+    /// Loads stack pointer and program counter from the vector table.
+    pub fn reset(&mut self) -> Result<(), BoardError> {
+        for register in BASIC.into_iter().chain(FLOATS) {
+            self.core.reg_write(register, 0)?;
+        }
+        self.core.reg_write(R::PRIMASK, 0)?;
+        self.core.reg_write(R::CONTROL, 0)?;
+        self.core.reg_write(R::XPSR, u64::from(THUMB))?;
+        let (stack, entry) = (self.word(FLASH)?, self.word(FLASH + 4)?);
+        self.core.reg_write(R::SP, u64::from(stack))?;
+        self.core.reg_write(R::PC, u64::from(entry))?;
+        self.core.reg_write(R::FPEXC, 0x4000_0000)?;
+        Ok(())
+    }
+
+    pub fn machine(&mut self) -> &mut Machine {
+        self.core.get_data_mut()
+    }
+
+    /// Executes until something happens that is not an instruction.
+    pub fn run(&mut self) -> Result<(), BoardError> {
+        let begin = self.core.reg_read(R::PC)? | 1;
+        let ended = self.core.emu_start(begin, u64::MAX, 0, 0);
+        if let Some(failure) = self.machine().failure.take() {
+            return Err(self.stopped(failure));
+        }
+        let pc = self.core.reg_read(R::PC)? as u32;
+        if u64::from(pc) >= RETURNS {
+            return self.leave_exception(pc | 1);
+        }
+        match ended {
+            Ok(()) => Ok(()),
+            // The emulator gives up behind the instruction.
+            Err(_) if self.halfword(pc - 2)? == WFE => self.wait_for_event(pc - 2),
+            Err(error) => Err(self.stopped(format!("{error:?}"))),
+        }
+    }
+
+    fn stopped(&mut self, what: String) -> BoardError {
+        let [pc, lr] = [R::PC, R::LR].map(|r| self.core.reg_read(r).unwrap_or(0) as u32);
+        BoardError::Stopped { what, pc, lr }
+    }
+
+    /// Sleeps until the next thing happens; the instruction stays the next one unless it is through.
+    fn wait_for_event(&mut self, pc: u32) -> Result<(), BoardError> {
+        let machine = self.machine();
+        let wakes = machine.event_register || machine.nvic.is_waiting();
+        if wakes {
+            machine.event_register = false;
+        } else {
+            machine.now = machine.horizon();
+            if machine.now == u64::MAX {
+                return Err(self.stopped("sleeps for ever".into()));
+            }
+        }
+        let next = if wakes { pc + 2 } else { pc };
+        self.core.reg_write(R::PC, u64::from(next) | 1)?;
+        Ok(())
+    }
+
+    /// Lets the peripherals catch up.
+    pub fn happen(&mut self) -> Result<(), BoardError> {
+        let writes = match self.machine().advance() {
+            Ok(writes) => writes,
+            Err(unmodelled) => return Err(self.stopped(unmodelled.to_string())),
+        };
+        for (address, value) in writes {
+            self.core
+                .mem_write(u64::from(address), &value.to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Takes a waiting interrupt unless PRIMASK forbids it.
+    pub fn enter_exception(&mut self) -> Result<(), BoardError> {
+        if self.core.reg_read(R::PRIMASK)? & 1 == 1 {
+            return Ok(());
+        }
+        let Some(irq) = self.machine().nvic.take() else {
+            return Ok(());
+        };
+        self.machine().tally.exceptions += 1;
+        let with_floats = self.core.reg_read(R::CONTROL)? & FPCA != 0;
+        self.push_frame(with_floats)?;
+        let vector = self.machine().nvic.vector_table() + 4 * (16 + irq as u32);
+        let vector = if vector < FLASH {
+            vector + FLASH
+        } else {
+            vector
+        };
+        let handler = self.word(vector)?;
+        let exc_return: u32 = if with_floats {
+            0xFFFF_FFE9
+        } else {
+            0xFFFF_FFF9
+        };
+        self.core.reg_write(R::LR, u64::from(exc_return))?;
+        self.core.reg_write(R::PC, u64::from(handler))?;
+        Ok(())
+    }
+
+    fn push_frame(&mut self, with_floats: bool) -> Result<(), BoardError> {
+        let xpsr = self.core.reg_read(R::XPSR)? as u32;
+        let sp = self.core.reg_read(R::SP)? as u32;
+        let size = if with_floats { 0x68 } else { 0x20 };
+        let padded = sp & 4 != 0;
+        let base = (sp - size) & !7;
+        let mut frame = Vec::with_capacity(26);
+        for register in BASIC {
+            frame.push(self.core.reg_read(register)? as u32);
+        }
+        frame.push(xpsr & !PADDED | if padded { PADDED } else { 0 });
+        if with_floats {
+            for register in FLOATS {
+                frame.push(self.core.reg_read(register)? as u32);
+                self.core.reg_write(register, POISON)?;
+            }
+            frame.extend([self.core.reg_read(R::FPSCR)? as u32, 0]);
+            let control = self.core.reg_read(R::CONTROL)?;
+            self.core.reg_write(R::CONTROL, control & !FPCA)?;
+        }
+        let bytes: Vec<u8> = frame.iter().flat_map(|word| word.to_le_bytes()).collect();
+        self.core.mem_write(u64::from(base), &bytes)?;
+        self.core.reg_write(R::SP, u64::from(base))?;
+        // The handler starts outside any IT block.
+        self.core
+            .reg_write(R::XPSR, u64::from(xpsr & 0xF80F_0000 | THUMB))?;
+        self.lowest_stack = self.lowest_stack.min(base);
+        Ok(())
+    }
+
+    fn leave_exception(&mut self, exc_return: u32) -> Result<(), BoardError> {
+        let with_floats = match exc_return {
+            0xFFFF_FFE9 => true,
+            0xFFFF_FFF9 => false,
+            _ => return Err(self.stopped(format!("return from exception with {exc_return:#x}"))),
+        };
+        if self.machine().nvic.leave().is_none() {
+            return Err(self.stopped("return from an exception that was not taken".into()));
+        }
+        let base = self.core.reg_read(R::SP)? as u32;
+        let words = if with_floats { 26 } else { 8 };
+        let bytes = self.core.mem_read_as_vec(u64::from(base), 4 * words)?;
+        let (chunks, _) = bytes.as_chunks::<4>();
+        let frame: Vec<u32> = chunks
+            .iter()
+            .map(|word| u32::from_le_bytes(*word))
+            .collect();
+        let (basic, floats) = frame.split_at(8);
+        let xpsr = basic[7];
+        self.core.reg_write(R::XPSR, u64::from(xpsr & !PADDED))?;
+        for (register, value) in BASIC.into_iter().zip(basic) {
+            self.core.reg_write(register, u64::from(*value))?;
+        }
+        self.core.reg_write(R::PC, u64::from(basic[6]) | 1)?;
+        let control = self.core.reg_read(R::CONTROL)? & !FPCA;
+        self.core
+            .reg_write(R::CONTROL, control | if with_floats { FPCA } else { 0 })?;
+        if with_floats && self.stacks_floats {
+            for (register, value) in FLOATS.into_iter().zip(floats) {
+                self.core.reg_write(register, u64::from(*value))?;
+            }
+            self.core.reg_write(R::FPSCR, u64::from(floats[16]))?;
+        }
+        let padding = if xpsr & PADDED != 0 { 4 } else { 0 };
+        let sp = base + 4 * words as u32 + padding;
+        self.core.reg_write(R::SP, u64::from(sp))?;
+        let machine = self.machine();
+        machine.event_register = true;
+        machine.update_lines();
+        Ok(())
+    }
+
+    pub fn word(&self, address: u32) -> Result<u32, BoardError> {
+        let mut bytes = [0; 4];
+        self.core.mem_read(u64::from(address), &mut bytes)?;
+        Ok(u32::from_le_bytes(bytes))
+    }
+
+    fn halfword(&self, address: u32) -> Result<u16, BoardError> {
+        let mut bytes = [0; 2];
+        self.core.mem_read(u64::from(address), &mut bytes)?;
+        Ok(u16::from_le_bytes(bytes))
+    }
+}
+
+fn map_memory(core: &mut Core) -> Result<(), uc_error> {
+    core.mem_map(
+        u64::from(FLASH),
+        u64::from(FLASH_SIZE),
+        Prot::READ | Prot::EXEC,
+    )?;
+    core.mem_map(u64::from(RAM), u64::from(RAM_SIZE), Prot::ALL)?;
+    let erased = vec![0xFF; FLASH_SIZE as usize];
+    core.mem_write(u64::from(FLASH), &erased)?;
+    let factory = u64::from(VREFINT_CAL_ADDRESS) & !0xFFF;
+    core.mem_map(factory, 0x1000, Prot::READ)?;
+    core.mem_write(u64::from(VREFINT_CAL_ADDRESS), &FACTORY_VALUE.to_le_bytes())?;
+    core.mem_map(RETURNS, 0x1000, Prot::READ | Prot::EXEC)?;
+    let nops: Vec<u8> = NOP.to_le_bytes().repeat(0x800);
+    core.mem_write(RETURNS, &nops)
+}
+
+fn map_peripherals(core: &mut Core) -> Result<(), uc_error> {
+    let regions = [
+        (0x4000_0000, 0x3_0000),
+        (0x4800_0000, 0x2000),
+        (0x5000_0000, 0x1000),
+        (0xE000_0000, 0x10_0000),
+    ];
+    for (first, size) in regions {
+        let read = move |core: &mut Unicorn<'_, Machine>, offset: u64, size: usize| {
+            read_bus(core, (first + offset) as u32, size)
+        };
+        let write = move |core: &mut Unicorn<'_, Machine>, offset: u64, size: usize, value: u64| {
+            write_bus(core, (first + offset) as u32, size, value as u32);
+        };
+        core.mmio_map(first, size, Some(read), Some(write))?;
+    }
+    Ok(())
+}
+
+fn read_bus(core: &mut Unicorn<'_, Machine>, address: u32, size: usize) -> u64 {
+    let machine = core.get_data_mut();
+    match machine.read(address) {
+        Ok(value) if size < 4 => u64::from(value & ((1 << (8 * size)) - 1)),
+        Ok(value) => u64::from(value),
+        Err(unmodelled) => {
+            machine.failure.get_or_insert(unmodelled.to_string());
+            let _ = core.emu_stop();
+            0
+        }
+    }
+}
+
+fn write_bus(core: &mut Unicorn<'_, Machine>, address: u32, _size: usize, value: u32) {
+    let machine = core.get_data_mut();
+    match machine.write(address, value) {
+        Ok(None) => machine.next_event = machine.horizon(),
+        Ok(Some(page)) => erase(core, page),
+        Err(unmodelled) => {
+            machine.failure.get_or_insert(unmodelled.to_string());
+            let _ = core.emu_stop();
+            return;
+        }
+    }
+    if core.get_data().nvic.reset_requested {
+        let _ = core.emu_stop();
+    }
+}
+
+fn erase(core: &mut Unicorn<'_, Machine>, page: u32) {
+    let blank = [0xFF; crate::flash::PAGE as usize];
+    if let Err(error) = core.mem_write(u64::from(FLASH + page), &blank) {
+        let machine = core.get_data_mut();
+        machine.failure = Some(format!("erasing at {page:#x}: {error:?}"));
+    }
+}
+
+/// Instructions in a block of Thumb code, and whether SEV is among them.
+fn inspect(bytes: &[u8]) -> (u32, bool) {
+    let (halves, _) = bytes.as_chunks::<2>();
+    let mut halves = halves.iter().map(|half| u16::from_le_bytes(*half));
+    let (mut instructions, mut sends) = (0, false);
+    while let Some(half) = halves.next() {
+        instructions += 1;
+        sends |= half == SEV;
+        if half >= 0xE800 {
+            halves.next();
+        }
+    }
+    (instructions, sends)
+}
+
+/// Counts time, and leaves the emulation when something is due, before the block runs.
+fn hook_blocks(core: &mut Core) -> Result<(), uc_error> {
+    let mut known = std::collections::HashMap::new();
+    let hook = move |core: &mut Unicorn<'_, Machine>, address: u64, size: u32| {
+        let waiting = core.get_data().nvic.is_waiting();
+        let masked = waiting && core.reg_read(R::PRIMASK).unwrap_or(0) & 1 == 1;
+        let machine = core.get_data_mut();
+        let due = machine.now >= machine.next_event || machine.stop;
+        if due || (waiting && !masked) || address >= RETURNS {
+            let _ = core.emu_stop();
+            return;
+        }
+        let (instructions, sends) = *known.entry((address, size)).or_insert_with(|| {
+            let bytes = core.mem_read_as_vec(address, size as usize);
+            inspect(&bytes.unwrap_or_default())
+        });
+        let machine = core.get_data_mut();
+        machine.now += u64::from(instructions);
+        machine.tally.instructions += u64::from(instructions);
+        machine.event_register |= sends;
+    };
+    core.add_block_hook(1, 0, hook).map(|_| ())
+}
+
+/// The array is written by the program only while the interface is open, and only from 1 to 0.
+fn hook_flash(core: &mut Core) -> Result<(), uc_error> {
+    use unicorn_engine::{HookType, MemType};
+    let hook =
+        |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, size: usize, value: i64| {
+            let in_flash = (u64::from(FLASH)..u64::from(FLASH + FLASH_SIZE)).contains(&address);
+            if !in_flash || !core.get_data().flash.is_programming() {
+                core.get_data_mut().failure = Some(format!("write to {address:#x}"));
+                return false;
+            }
+            let mut old = vec![0; size];
+            let read = core.mem_read(address, &mut old);
+            let new = value.to_le_bytes();
+            let anded: Vec<u8> = old.iter().zip(new).map(|(old, new)| old & new).collect();
+            core.get_data_mut().flash.programmed();
+            read.and_then(|()| core.mem_write(address, &anded)).is_ok()
+        };
+    core.add_mem_hook(HookType::MEM_WRITE_PROT, 1, 0, hook)
+        .map(|_| ())
+}

@@ -1,0 +1,47 @@
+//! The firmware file: what goes where in flash.
+
+use object::{Object, ObjectSegment, ObjectSymbol};
+
+use crate::board::BoardError;
+
+/// Loadable bytes by physical address, and symbols.
+pub struct Firmware {
+    /// Physical address and content.
+    pub segments: Vec<(u32, Vec<u8>)>,
+    symbols: Vec<(String, u32)>,
+}
+
+impl Firmware {
+    /// Reads an ELF file.
+    pub fn parse(bytes: &[u8]) -> Result<Self, BoardError> {
+        let file = object::read::elf::ElfFile32::<object::Endianness>::parse(bytes)
+            .map_err(|error| BoardError::Elf(error.to_string()))?;
+        let endian = file.endian();
+        let mut segments = Vec::new();
+        for segment in file.segments() {
+            let header = segment.elf_program_header();
+            let data = segment
+                .data()
+                .map_err(|error| BoardError::Elf(error.to_string()))?;
+            if !data.is_empty() {
+                segments.push((header.p_paddr.get(endian), data.to_vec()));
+            }
+        }
+        let named = |symbol: object::read::elf::ElfSymbol<'_, '_, _>| {
+            Some((
+                symbol.name().ok()?.to_owned(),
+                u32::try_from(symbol.address()).ok()?,
+            ))
+        };
+        Ok(Firmware {
+            segments,
+            symbols: file.symbols().filter_map(named).collect(),
+        })
+    }
+
+    /// Address of the first symbol whose name contains `part`.
+    pub fn symbol(&self, part: &str) -> Option<u32> {
+        let found = self.symbols.iter().find(|(name, _)| name.contains(part));
+        found.map(|(_, address)| *address)
+    }
+}

@@ -1,0 +1,28 @@
+//! The board without a board: the release ELF of the firmware, unmodified, on an emulated Cortex-M4F with
+//! models of the peripherals it uses, fed with the samples of a simulated motor.
+//!
+//! It proves that firmware and reference manual agree as we read the manual; it does not prove silicon.
+//! Access to a register that is not modelled ends the run with an error. One instruction counts as one cycle.
+
+mod adc;
+mod board;
+mod bus;
+mod cpu;
+mod dma;
+mod elf;
+mod flash;
+mod gpio;
+mod iwdg;
+mod machine;
+mod nvic;
+mod rcc;
+mod registers;
+mod rtt;
+mod timer;
+
+pub use board::{BoardError, LAMPS, VirtualBoard};
+pub use gpio::Pin;
+pub use machine::{Cause, Inputs, Tally};
+
+/// Core cycles per second.
+pub const CORE_HZ: u64 = 170_000_000;

@@ -1,0 +1,284 @@
+//! All peripherals together, and what happens when.
+
+use monitor::RawSample;
+
+use crate::adc::Adc;
+use crate::dma::{Dma, Transfer};
+use crate::flash::Flash;
+use crate::gpio::Port;
+use crate::iwdg::Iwdg;
+use crate::nvic::Nvic;
+use crate::rcc::Rcc;
+use crate::registers::{Registers, Unmodelled};
+use crate::timer::Timer;
+
+/// What the sensors deliver, sampling instant by sampling instant.
+pub trait Inputs {
+    /// Instant `index` after the first one; called with growing indices, some of which may be left out.
+    fn at(&mut self, index: u64) -> RawSample;
+}
+
+/// Why the chip was reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// Power came: the supply was absent or too low.
+    Power,
+    /// The watchdog.
+    Watchdog,
+    /// The program.
+    Software,
+}
+
+impl Cause {
+    /// Flags in RCC_CSR; the pin is pulled by every internal reset.
+    pub(crate) fn flags(self) -> u32 {
+        1 << 26
+            | match self {
+                Cause::Power => 1 << 27,
+                Cause::Watchdog => 1 << 29,
+                Cause::Software => 1 << 28,
+            }
+    }
+}
+
+/// What was counted since power-up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Instructions executed; code whose condition failed inside an IT block counts too.
+    pub instructions: u64,
+    /// Core cycles, sleep included.
+    pub cycles: u64,
+    /// Triggers that started a sequence.
+    pub conversions: u64,
+    /// Triggers that came while the converter was not ready.
+    pub missed_triggers: u64,
+    /// Resets other than the first power-up.
+    pub resets: u64,
+    /// Exceptions taken.
+    pub exceptions: u64,
+}
+
+pub(crate) const IRQ_DMA1_CH1: usize = 11;
+pub(crate) const IRQ_TIM15: usize = 24;
+/// Request lines of the multiplexer (RM0440, table of DMAMUX inputs).
+const LINE_ADC1: u32 = 5;
+const LINE_TIM4_UP: u32 = 71;
+/// Cycles between sampling instants of the simulated sensors.
+const INSTANT: u64 = crate::CORE_HZ / 10_000;
+/// ADC5's channel of the reference.
+const VREFINT_CHANNEL: u32 = 18;
+/// Factory value of the reference: its code at 3.0 V.
+pub(crate) const VREFINT_CAL: u16 = 1655;
+
+pub(crate) struct Machine {
+    pub now: u64,
+    pub rcc: Rcc,
+    pub ports: [Port; 7],
+    pub tim3: Timer,
+    pub tim4: Timer,
+    pub tim15: Timer,
+    pub adc1: Adc,
+    pub adc5: Adc,
+    pub common: [Registers; 2],
+    pub dma: Dma,
+    pub nvic: Nvic,
+    pub iwdg: Iwdg,
+    pub flash: Flash,
+    pub pwr: Registers,
+    pub syscfg: Registers,
+    pub exti: Registers,
+    pub dbgmcu: Registers,
+    pub inputs: Box<dyn Inputs>,
+    pub sample: RawSample,
+    pub first_instant: Option<u64>,
+    /// Every instant whose conversion began, in order.
+    pub taken: Vec<RawSample>,
+    /// Converter supply, mV.
+    pub vdda_millivolt: u32,
+    pub tally: Tally,
+    pub event_register: bool,
+    pub failure: Option<String>,
+    pub stop: bool,
+    pub next_event: u64,
+}
+
+const PWR: &[(u32, u32)] = &[
+    (0x00, 0x0208),
+    (0x04, 0),
+    (0x08, 0x8000),
+    (0x0C, 0),
+    (0x10, 0),
+    (0x14, 0),
+    (0x18, 0),
+    (0x80, 0x100),
+];
+const SYSCFG: &[(u32, u32)] = &[
+    (0x00, 0),
+    (0x04, 0),
+    (0x08, 0),
+    (0x0C, 0),
+    (0x10, 0),
+    (0x14, 0),
+];
+const EXTI: &[(u32, u32)] = &[(0x00, 0), (0x04, 0), (0x08, 0), (0x0C, 0), (0x14, 0)];
+const DBGMCU: &[(u32, u32)] = &[(0x04, 0)];
+const ADC_COMMON: &[(u32, u32)] = &[(0x00, 0), (0x08, 0)];
+
+impl Machine {
+    pub fn new(inputs: Box<dyn Inputs>) -> Self {
+        Machine {
+            now: 0,
+            rcc: Rcc::new(Cause::Power, 0),
+            ports: std::array::from_fn(|_| Port::new()),
+            tim3: Timer::new(),
+            tim4: Timer::new(),
+            tim15: Timer::new(),
+            adc1: Adc::new(),
+            adc5: Adc::new(),
+            common: [0, 1].map(|_| Registers::new("ADC common", ADC_COMMON)),
+            dma: Dma::new(),
+            nvic: Nvic::new(),
+            iwdg: Iwdg::new(),
+            flash: Flash::new(),
+            pwr: Registers::new("PWR", PWR),
+            syscfg: Registers::new("SYSCFG", SYSCFG),
+            exti: Registers::new("EXTI", EXTI),
+            dbgmcu: Registers::new("DBGMCU", DBGMCU),
+            inputs,
+            sample: RawSample::default(),
+            first_instant: None,
+            taken: Vec::new(),
+            vdda_millivolt: 3_300,
+            tally: Tally::default(),
+            event_register: false,
+            failure: None,
+            stop: false,
+            next_event: 0,
+        }
+    }
+
+    /// What a reset does to the chip: everything but the outside world, the clock on the wall and the flash.
+    pub fn reset(&mut self, cause: Cause) {
+        let flags = if cause == Cause::Power {
+            0
+        } else {
+            self.rcc.flags()
+        };
+        self.rcc = Rcc::new(cause, flags);
+        self.ports.iter_mut().for_each(Port::reset);
+        for timer in [&mut self.tim3, &mut self.tim4, &mut self.tim15] {
+            *timer = Timer::new();
+        }
+        self.adc1.reset();
+        self.adc5.reset();
+        self.dma = Dma::new();
+        self.nvic = Nvic::new();
+        self.iwdg = Iwdg::new();
+        self.flash = Flash::new();
+        for block in [&mut self.pwr, &mut self.syscfg, &mut self.exti] {
+            block.reset();
+        }
+        self.common.iter_mut().for_each(Registers::reset);
+        self.event_register = false;
+        self.stop = false;
+        self.tally.resets += 1;
+    }
+
+    /// Cycle of the next thing that happens without the program.
+    pub fn horizon(&self) -> u64 {
+        let events = [
+            self.tim4.next_event(),
+            self.tim15.next_event(),
+            self.adc1.next_event(),
+            self.adc5.next_event(),
+            self.iwdg.deadline(),
+        ];
+        events.into_iter().flatten().min().unwrap_or(u64::MAX)
+    }
+
+    /// Lets everything happen up to `now`. Returns what DMA carries to memory.
+    pub fn advance(&mut self) -> Result<Vec<(u32, u16)>, Unmodelled> {
+        let mut writes = Vec::new();
+        let ticked = self.tim4.advance(self.now);
+        if ticked.trigger || ticked.update_dma {
+            self.sense();
+        }
+        if ticked.update_dma {
+            self.serve(LINE_TIM4_UP, &mut writes)?;
+        }
+        if ticked.trigger {
+            if self.adc1.trigger(self.now) {
+                self.tally.conversions += 1;
+                self.taken.push(self.sample);
+            } else {
+                self.tally.missed_triggers += 1;
+            }
+        }
+        self.tim15.advance(self.now);
+        let sample = self.sample;
+        if self
+            .adc1
+            .advance(self.now, |channel| code_of(&sample, channel))
+        {
+            self.serve(LINE_ADC1, &mut writes)?;
+        }
+        let reference = self.reference_code();
+        self.adc5.advance(self.now, |channel| {
+            if channel == VREFINT_CHANNEL {
+                reference
+            } else {
+                0
+            }
+        });
+        self.update_lines();
+        Ok(writes)
+    }
+
+    /// Looks at the simulated sensors.
+    fn sense(&mut self) {
+        let first = *self.first_instant.get_or_insert(self.now);
+        self.sample = self.inputs.at((self.now - first) / INSTANT);
+        self.tim3.apply_encoder(self.sample.encoder_count);
+    }
+
+    fn reference_code(&self) -> u16 {
+        // The reference does not move; the scale does: code = cal * 3.0 V / VDDA.
+        (u32::from(VREFINT_CAL) * 3_000 / self.vdda_millivolt) as u16
+    }
+
+    fn serve(&mut self, line: u32, writes: &mut Vec<(u32, u16)>) -> Result<(), Unmodelled> {
+        if let Some(Transfer { peripheral, memory }) = self.dma.request(line)? {
+            let value = self.read(peripheral)? as u16;
+            writes.push((memory, value));
+        }
+        Ok(())
+    }
+
+    /// Asserted lines pend their interrupts.
+    pub fn update_lines(&mut self) {
+        for channel in 0..8 {
+            if self.dma.interrupt(channel) {
+                // Channels 1..=7 are neighbours; channel 8 lies elsewhere and is not used.
+                self.nvic.pend(IRQ_DMA1_CH1 + channel);
+            }
+        }
+        if self.tim15.interrupt() {
+            self.nvic.pend(IRQ_TIM15);
+        }
+    }
+}
+
+/// Code of a channel of ADC1, as wired in docs/wiring.md.
+fn code_of(sample: &RawSample, channel: u32) -> u16 {
+    let [v_a, v_b, v_c] = sample.voltage_codes;
+    let [i_a, i_b, i_c] = sample.current_codes;
+    match channel {
+        1 => v_a,
+        2 => i_a,
+        6 => v_b,
+        7 => i_b,
+        8 => v_c,
+        9 => i_c,
+        _ => 0,
+    }
+}

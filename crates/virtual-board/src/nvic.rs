@@ -1,0 +1,124 @@
+//! Interrupt controller and system control: enabling, pending, priorities, vector table, reset request.
+
+use crate::registers::{Registers, Unmodelled};
+
+const IRQS: usize = 102;
+const VTOR: u32 = 0xD08;
+const AIRCR: u32 = 0xD0C;
+const CPACR: u32 = 0xD88;
+const RESET: &[(u32, u32)] = &[
+    (VTOR, 0),
+    (0xD10, 0),     // SCR
+    (0xD14, 0x200), // CCR
+    (0xD18, 0),     // SHPR1
+    (0xD1C, 0),     // SHPR2
+    (0xD20, 0),     // SHPR3
+    (0xD24, 0),     // SHCSR
+    (CPACR, 0),
+    (0xDFC, 0),           // DEMCR
+    (0xF34, 0xC000_0000), // FPCCR
+];
+
+/// State of the controller.
+#[derive(Clone, Debug)]
+pub struct Nvic {
+    enabled: [bool; IRQS],
+    pending: [bool; IRQS],
+    priority: [u8; IRQS],
+    /// Priorities of the running handlers, innermost last.
+    active: Vec<(usize, u8)>,
+    registers: Registers,
+    /// The program asked for a reset.
+    pub reset_requested: bool,
+}
+
+impl Nvic {
+    /// After reset.
+    pub fn new() -> Self {
+        Nvic {
+            enabled: [false; IRQS],
+            pending: [false; IRQS],
+            priority: [0; IRQS],
+            active: Vec::new(),
+            registers: Registers::new("NVIC/SCB", RESET),
+            reset_requested: false,
+        }
+    }
+
+    /// Base of the vector table.
+    pub fn vector_table(&self) -> u32 {
+        self.registers.get(VTOR)
+    }
+
+    /// A peripheral's line is asserted.
+    pub fn pend(&mut self, irq: usize) {
+        self.pending[irq] = true;
+    }
+
+    /// Whether some enabled interrupt waits with a higher priority than what runs.
+    pub fn is_waiting(&self) -> bool {
+        self.candidate().is_some()
+    }
+
+    fn candidate(&self) -> Option<usize> {
+        let running = self.active.last().map_or(u16::MAX, |(_, p)| u16::from(*p));
+        let ready = (0..IRQS).filter(|&irq| self.enabled[irq] && self.pending[irq]);
+        ready
+            .min_by_key(|&irq| (self.priority[irq], irq))
+            .filter(|&irq| u16::from(self.priority[irq]) < running)
+    }
+
+    /// Takes the next interrupt to be served.
+    pub fn take(&mut self) -> Option<usize> {
+        let irq = self.candidate()?;
+        self.pending[irq] = false;
+        self.active.push((irq, self.priority[irq]));
+        Some(irq)
+    }
+
+    /// Ends the innermost handler and names it.
+    pub fn leave(&mut self) -> Option<usize> {
+        self.active.pop().map(|(irq, _)| irq)
+    }
+
+    /// A bus read; offsets count from 0xE000_E000.
+    pub fn read(&self, offset: u32) -> Result<u32, Unmodelled> {
+        let bits = |flags: &[bool; IRQS], word: u32| {
+            let first = word as usize * 32;
+            (0..32).fold(0, |bits, k| {
+                bits | u32::from(flags.get(first + k).copied().unwrap_or(false)) << k
+            })
+        };
+        match offset {
+            0x100..0x110 => Ok(bits(&self.enabled, (offset - 0x100) / 4)),
+            0x180..0x190 => Ok(bits(&self.enabled, (offset - 0x180) / 4)),
+            0x200..0x210 => Ok(bits(&self.pending, (offset - 0x200) / 4)),
+            0x280..0x290 => Ok(bits(&self.pending, (offset - 0x280) / 4)),
+            0x400..0x466 => Ok(u32::from(self.priority[(offset - 0x400) as usize])),
+            AIRCR => Ok(0xFA05_0000),
+            _ => self.registers.read(offset),
+        }
+    }
+
+    /// A bus write; priorities are written byte by byte.
+    pub fn write(&mut self, offset: u32, value: u32) -> Result<(), Unmodelled> {
+        let mut assign = |flags: fn(&mut Nvic) -> &mut [bool; IRQS], base: u32, level: bool| {
+            let first = (offset - base) as usize / 4 * 32;
+            for k in (0..32).filter(|k| value >> k & 1 == 1) {
+                if let Some(flag) = flags(self).get_mut(first + k) {
+                    *flag = level;
+                }
+            }
+        };
+        match offset {
+            0x100..0x110 => assign(|nvic| &mut nvic.enabled, 0x100, true),
+            0x180..0x190 => assign(|nvic| &mut nvic.enabled, 0x180, false),
+            0x200..0x210 => assign(|nvic| &mut nvic.pending, 0x200, true),
+            0x280..0x290 => assign(|nvic| &mut nvic.pending, 0x280, false),
+            0x400..0x466 => self.priority[(offset - 0x400) as usize] = value as u8,
+            AIRCR => self.reset_requested = value == 0x05FA_0004,
+            _ => return self.registers.write(offset, value),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,192 @@
+//! General-purpose timers: counting, update and compare flags; TIM3 counts the encoder instead.
+
+use crate::registers::{Registers, Unmodelled};
+
+const CR1: u32 = 0x00;
+const CR2: u32 = 0x04;
+const SMCR: u32 = 0x08;
+const DIER: u32 = 0x0C;
+const SR: u32 = 0x10;
+const EGR: u32 = 0x14;
+const CNT: u32 = 0x24;
+const PSC: u32 = 0x28;
+const ARR: u32 = 0x2C;
+const CCR: [u32; 2] = [0x34, 0x38];
+const UPDATE: u32 = 1;
+const UPDATE_DMA: u32 = 1 << 8;
+const RESET: &[(u32, u32)] = &[
+    (CR1, 0),
+    (CR2, 0),
+    (SMCR, 0),
+    (DIER, 0),
+    (0x18, 0), // CCMR1
+    (0x1C, 0), // CCMR2
+    (0x20, 0), // CCER
+    (PSC, 0),
+    (ARR, 0xFFFF),
+    (CCR[0], 0),
+    (CCR[1], 0),
+    (0x3C, 0),
+    (0x40, 0),
+    (0x44, 0), // BDTR
+];
+
+/// One timer.
+#[derive(Clone, Debug)]
+pub struct Timer {
+    registers: Registers,
+    status: u32,
+    /// Prescaler in force; the register takes effect at an update.
+    prescaler: u64,
+    /// Count at `since`, and the cycle from which it counts.
+    count: u64,
+    since: u64,
+    /// Ticks since `since` whose flags were evaluated.
+    evaluated: u64,
+    /// Encoder count in encoder mode, as last seen and when the program set it.
+    encoder: u16,
+}
+
+/// What one advance of a timer brought.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ticked {
+    /// The counter wrapped and asks for DMA.
+    pub update_dma: bool,
+    /// The counter wrapped and its trigger output follows updates.
+    pub trigger: bool,
+}
+
+impl Timer {
+    /// After reset.
+    pub fn new() -> Self {
+        Timer {
+            registers: Registers::new("TIM", RESET),
+            status: 0,
+            prescaler: 1,
+            count: 0,
+            since: 0,
+            evaluated: 0,
+            encoder: 0,
+        }
+    }
+
+    fn is_counting(&self) -> bool {
+        self.registers.get(CR1) & 1 == 1 && !self.is_encoder()
+    }
+
+    fn is_encoder(&self) -> bool {
+        self.registers.get(SMCR) & 7 == 3
+    }
+
+    fn period(&self) -> u64 {
+        u64::from(self.registers.get(ARR)) + 1
+    }
+
+    fn ticks(&self, now: u64) -> u64 {
+        if self.is_counting() {
+            (now - self.since) / self.prescaler
+        } else {
+            0
+        }
+    }
+
+    fn count_now(&self, now: u64) -> u64 {
+        (self.count + self.ticks(now)) % self.period()
+    }
+
+    /// Starts counting anew from the present count, so that changed settings apply from here on.
+    fn rebase(&mut self, now: u64) {
+        self.count = self.count_now(now);
+        self.since = now;
+        self.evaluated = 0;
+    }
+
+    /// The encoder's count, where the timer is switched to count it.
+    pub fn apply_encoder(&mut self, count: u16) {
+        if self.registers.get(CR1) & 1 == 1 && self.is_encoder() {
+            self.encoder = count;
+        }
+    }
+
+    /// First tick after the evaluated one at which the count is `value`.
+    fn next_tick(&self, value: u64) -> u64 {
+        let period = self.period();
+        let seen = (self.count + self.evaluated) % period;
+        self.evaluated + (value + period - seen - 1) % period + 1
+    }
+
+    /// Values at which something happens, with their flag.
+    fn marks(&self) -> [(u64, u32); 3] {
+        let compare = |k: usize| u64::from(self.registers.get(CCR[k]));
+        [(0, UPDATE), (compare(0), 2), (compare(1), 4)]
+    }
+
+    /// Cycle of the next flag that anybody waits for.
+    pub fn next_event(&self) -> Option<u64> {
+        if !self.is_counting() {
+            return None;
+        }
+        let wanted = self.registers.get(DIER) | self.registers.get(DIER) >> 8 | self.triggers();
+        let marks = self
+            .marks()
+            .into_iter()
+            .filter(|(_, flag)| wanted & flag != 0);
+        let tick = marks.map(|(value, _)| self.next_tick(value)).min()?;
+        Some(self.since + tick * self.prescaler)
+    }
+
+    fn triggers(&self) -> u32 {
+        u32::from(self.registers.get(CR2) >> 4 & 7 == 2)
+    }
+
+    /// Sets the flags of everything that happened up to `now`.
+    pub fn advance(&mut self, now: u64) -> Ticked {
+        let ticks = self.ticks(now);
+        let mut reached = 0;
+        for (value, flag) in self.marks() {
+            if self.is_counting() && self.next_tick(value) <= ticks {
+                reached |= flag;
+            }
+        }
+        self.evaluated = self.evaluated.max(ticks);
+        self.status |= reached;
+        let wrapped = reached & UPDATE != 0;
+        Ticked {
+            update_dma: wrapped && self.registers.get(DIER) & UPDATE_DMA != 0,
+            trigger: wrapped && self.triggers() != 0,
+        }
+    }
+
+    /// Whether the interrupt line is asserted.
+    pub fn interrupt(&self) -> bool {
+        self.status & self.registers.get(DIER) & 0x7 != 0
+    }
+
+    /// A bus read at cycle `now`.
+    pub fn read(&self, offset: u32, now: u64) -> Result<u32, Unmodelled> {
+        match offset {
+            SR => Ok(self.status),
+            CNT if self.is_encoder() => Ok(u32::from(self.encoder)),
+            CNT => Ok(self.count_now(now) as u32),
+            _ => self.registers.read(offset),
+        }
+    }
+
+    /// A bus write at cycle `now`.
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Result<(), Unmodelled> {
+        self.rebase(now);
+        match offset {
+            SR => self.status &= value,
+            EGR => {
+                self.prescaler = u64::from(self.registers.get(PSC)) + 1;
+                self.count = 0;
+                let only_overflow = self.registers.get(CR1) & 4 != 0;
+                self.status |= u32::from(!only_overflow);
+            }
+            CNT if self.is_encoder() => self.encoder = value as u16,
+            CNT => self.count = u64::from(value & 0xFFFF),
+            _ => return self.registers.write(offset, value),
+        }
+        Ok(())
+    }
+}
