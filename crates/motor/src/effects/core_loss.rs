@@ -25,8 +25,9 @@ pub struct CoreLoss;
 steady_effect!(CoreLoss, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
-    let g = p[0];
-    point.i_s = point.i_s * (F::one() + g * point.motor.r_s) - point.u_s * g;
+    let (g, r_s) = (p[0], point.motor.r_s);
+    let i_loss = (point.u_s - point.i_s * r_s) * g;
+    point.take_behind_stator_resistance(i_loss);
 }
 
 #[cfg(feature = "std")]

@@ -26,8 +26,11 @@ pub struct CoreLossAirGap;
 steady_effect!(CoreLossAirGap, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
-    let e = point.air_gap_flux() * Complex::new(F::zero(), point.omega_sync);
-    point.i_s = point.i_s - e * p[0];
+    let j_omega = Complex::new(F::zero(), point.omega_sync);
+    // The leakage carries the winding's current alone: e (1 - j w L_ls g) = e as if it carried all of it.
+    let share = Complex::new(F::one(), F::zero()) - j_omega * (point.motor.l_ls * p[0]);
+    let e = point.air_gap_flux() * j_omega / share;
+    point.take_behind_stator_resistance(e * p[0]);
 }
 
 #[cfg(feature = "std")]

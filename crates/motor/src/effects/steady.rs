@@ -32,6 +32,13 @@ impl<F: Float> SteadyPoint<F> {
         (self.omega_sync - self.rated.n_p * self.omega_mech) / self.omega_sync
     }
 
+    /// Takes a current (A) away that leaves behind the stator resistance: its drop there is no part of the
+    /// winding's either.
+    pub(crate) fn take_behind_stator_resistance(&mut self, i: Complex<F>) {
+        self.i_s = self.i_s - i;
+        self.u_s = self.u_s - i * self.motor.r_s;
+    }
+
     /// Air-gap flux linkage seen from the terminals, V s peak.
     pub fn air_gap_flux(&self) -> Complex<F> {
         let e = self.u_s - self.i_s * self.motor.r_s;
