@@ -57,7 +57,8 @@ fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
     let file = MotorFile::read(path)?;
     let config = MonitorConfig::from_motor_file(&file, T_SAMPLE);
     Monitor::new(config).map_err(|error| format!("{}: {error}", path.display()))?;
-    let words = MotorImage::new(&config).0;
+    let image = MotorImage::new(&config).map_err(|error| format!("{}: {error}", path.display()))?;
+    let words = image.0;
     let name: String = file.name.chars().flat_map(char::escape_default).collect();
     Ok(format!(
         "/// Name of the motor in the motor file.\npub const NAME: &str = \"{name}\";\n\

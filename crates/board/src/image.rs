@@ -2,7 +2,8 @@
 //! corrupted constant is noticed at power-up instead of being computed with.
 
 use monitor::{
-    Abc, ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, MonitorConfig,
+    Abc, ActiveEffects, CHANNELS, ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame,
+    LoadKind, MonitorConfig,
 };
 use motor::{Mechanics, TParams};
 
@@ -27,6 +28,8 @@ pub enum ImageError {
     Schema,
     /// A choice that this version does not know.
     Choice,
+    /// The motor file switches on effects, which this layout has no place for.
+    Effects,
 }
 
 impl core::fmt::Display for ImageError {
@@ -35,6 +38,9 @@ impl core::fmt::Display for ImageError {
             ImageError::Checksum => "the checksum of the motor constants does not hold",
             ImageError::Schema => "the motor constants have another layout than this program",
             ImageError::Choice => "the motor constants hold an unknown frame, field or load",
+            ImageError::Effects => {
+                "[[effects]] cannot be flashed yet: remove them, or monitor this motor on a host"
+            }
         })
     }
 }
@@ -43,7 +49,14 @@ impl core::error::Error for ImageError {}
 
 impl MotorImage {
     /// Packs a configuration.
-    pub fn new(config: &MonitorConfig) -> Self {
+    ///
+    /// # Errors
+    /// Effects or channel gains: leaving them out would light lamps that the host leaves dark.
+    pub fn new(config: &MonitorConfig) -> Result<Self, ImageError> {
+        let corrected = config.channel_gain != [1.0; CHANNELS];
+        if corrected || config.effects.iter().any(Option::is_some) {
+            return Err(ImageError::Effects);
+        }
         let mut writer = Writer::default();
         writer.word(SCHEMA);
         write_measurement(&mut writer, config);
@@ -51,7 +64,7 @@ impl MotorImage {
         write_judgement(&mut writer, config);
         let mut words = writer.words;
         words[IMAGE_WORDS - 1] = crc32_words(&words[..IMAGE_WORDS - 1]);
-        MotorImage(words)
+        Ok(MotorImage(words))
     }
 
     /// Checks and unpacks an image. Ranges are checked by [`monitor::Monitor::new`].
@@ -131,8 +144,8 @@ fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
             l_lr,
             l_m,
         },
-        effects: monitor::ActiveEffects::default(),
-        channel_gain: [1.0; monitor::CHANNELS],
+        effects: ActiveEffects::default(),
+        channel_gain: [1.0; CHANNELS],
         mechanics: Mechanics {
             n_p,
             inertia,
@@ -262,11 +275,22 @@ mod tests {
         MonitorConfig::from_motor_file(&file, 1e-4)
     }
 
+    fn image(config: &MonitorConfig) -> MotorImage {
+        MotorImage::new(config).expect("no effects")
+    }
+
+    #[test]
+    fn a_channel_gain_is_refused_rather_than_dropped() {
+        let mut config = shipped("assumed-300w.toml");
+        config.channel_gain[4] = 0.98;
+        assert_eq!(MotorImage::new(&config), Err(ImageError::Effects));
+    }
+
     #[test]
     fn every_shipped_motor_survives_the_round_trip_bit_for_bit() {
         for name in ["assumed-300w.toml", "peer-2k2.toml", "imc-18k5.toml"] {
             let config = shipped(name);
-            assert_eq!(MotorImage::new(&config).config(), Ok(config), "{name}");
+            assert_eq!(image(&config).config(), Ok(config), "{name}");
         }
     }
 
@@ -278,12 +302,12 @@ mod tests {
             field: FieldCurrent::Nominal(1.25),
             ..shipped("assumed-300w.toml")
         };
-        assert_eq!(MotorImage::new(&config).config(), Ok(config));
+        assert_eq!(image(&config).config(), Ok(config));
     }
 
     #[test]
     fn the_last_word_before_the_checksum_is_used() {
-        let image = MotorImage::new(&shipped("assumed-300w.toml"));
+        let image = image(&shipped("assumed-300w.toml"));
         let hysteresis = f32::from_bits(image.0[IMAGE_WORDS - 2]);
         assert_eq!(
             hysteresis,
@@ -295,7 +319,7 @@ mod tests {
         /// CRC-32 finds every single-bit error, in the content as in the checksum.
         #[test]
         fn any_flipped_bit_is_found(word in 0..IMAGE_WORDS, bit in 0..32_u32) {
-            let mut image = MotorImage::new(&shipped("assumed-300w.toml"));
+            let mut image = image(&shipped("assumed-300w.toml"));
             image.0[word] ^= 1 << bit;
             prop_assert_eq!(image.config(), Err(ImageError::Checksum));
         }

@@ -178,6 +178,29 @@ impl VirtualBoard {
         Ok(self.cpu.word(FLASH)? - self.cpu.lowest_stack.max(RAM))
     }
 
+    /// Lets DMA answer no request, as when the bus is taken: the converter overruns.
+    pub fn block_dma(&mut self, blocked: bool) {
+        self.cpu.machine().dma_blocked = blocked;
+    }
+
+    /// Counts instructions by function from here on.
+    pub fn start_profile(&mut self) {
+        self.cpu.machine().profile = Some(std::collections::HashMap::new());
+    }
+
+    /// Instructions by function since [`VirtualBoard::start_profile`], most first; function names are mangled.
+    pub fn profile(&mut self) -> Vec<(String, u64)> {
+        let blocks = self.cpu.machine().profile.take().unwrap_or_default();
+        let mut functions = std::collections::HashMap::<String, u64>::new();
+        for (address, instructions) in blocks {
+            let name = self.firmware.function(address as u32).to_owned();
+            *functions.entry(name).or_default() += instructions;
+        }
+        let mut sorted: Vec<_> = functions.into_iter().collect();
+        sorted.sort_by_key(|(_, instructions)| std::cmp::Reverse(*instructions));
+        sorted
+    }
+
     /// Leaves out the stacking of floating-point registers: a negative control, for tests.
     pub fn forget_float_stacking(&mut self) {
         self.cpu.stacks_floats = false;

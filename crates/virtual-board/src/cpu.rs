@@ -365,6 +365,9 @@ fn hook_blocks(core: &mut Core) -> Result<(), uc_error> {
         machine.now += u64::from(instructions);
         machine.tally.instructions += u64::from(instructions);
         machine.event_register |= sends;
+        if let Some(profile) = &mut machine.profile {
+            *profile.entry(address).or_default() += u64::from(instructions);
+        }
     };
     core.add_block_hook(1, 0, hook).map(|_| ())
 }

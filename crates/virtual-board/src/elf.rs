@@ -39,6 +39,16 @@ impl Firmware {
         })
     }
 
+    /// Name of the function that an address lies in.
+    pub fn function(&self, address: u32) -> &str {
+        let before = self.symbols.iter().filter(|(name, at)| {
+            !name.is_empty() && !name.starts_with('$') && (*at & !1) <= address
+        });
+        before
+            .max_by_key(|(_, at)| *at & !1)
+            .map_or("?", |(name, _)| name)
+    }
+
     /// Address of the first symbol whose name contains `part`.
     pub fn symbol(&self, part: &str) -> Option<u32> {
         let found = self.symbols.iter().find(|(name, _)| name.contains(part));

@@ -100,6 +100,10 @@ pub(crate) struct Machine {
     pub failure: Option<String>,
     pub stop: bool,
     pub next_event: u64,
+    /// DMA answers no request.
+    pub dma_blocked: bool,
+    /// Instructions by address of their block, while somebody asks for them.
+    pub profile: Option<std::collections::HashMap<u64, u64>>,
 }
 
 const PWR: &[(u32, u32)] = &[
@@ -154,6 +158,8 @@ impl Machine {
             failure: None,
             stop: false,
             next_event: 0,
+            dma_blocked: false,
+            profile: None,
         }
     }
 
@@ -247,6 +253,9 @@ impl Machine {
     }
 
     fn serve(&mut self, line: u32, writes: &mut Vec<(u32, u16)>) -> Result<(), Unmodelled> {
+        if self.dma_blocked {
+            return Ok(());
+        }
         if let Some(Transfer { peripheral, memory }) = self.dma.request(line)? {
             let value = self.read(peripheral)? as u16;
             writes.push((memory, value));

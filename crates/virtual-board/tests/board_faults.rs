@@ -1,0 +1,188 @@
+//! Faults of the board itself: each is handled, and each test fails when the handling is removed.
+
+mod common;
+
+use common::{LAMP_TEST_S, Sensors, board, firmware, host_lamps, scenario, watch};
+use monitor::RawSample;
+use motor::load::Load;
+use sim_host::scenario::Start;
+use virtual_board::{Cause, Inputs, VirtualBoard};
+
+const RUN: usize = 0;
+const SENSOR: usize = 5;
+const FAULT: usize = 8;
+const HEALTHY: [bool; 9] = [true, false, false, false, false, false, false, false, false];
+
+/// A board that has judged a healthy motor for a while.
+fn running() -> VirtualBoard {
+    let mut board = board(&scenario(60.0));
+    board.run(LAMP_TEST_S + 0.8).expect("a run");
+    assert_eq!(board.lamps(), HEALTHY, "before the fault");
+    board
+}
+
+/// Sensors of which one signal is falsified.
+struct Falsified<F>(Sensors, F);
+
+impl<F: FnMut(u64, &mut RawSample)> Inputs for Falsified<F> {
+    fn at(&mut self, index: u64) -> RawSample {
+        let mut raw = self.0.at(index);
+        (self.1)(index, &mut raw);
+        raw
+    }
+}
+
+fn falsified(change: impl FnMut(u64, &mut RawSample) + 'static) -> VirtualBoard {
+    let inputs = Falsified(Sensors::new(&scenario(60.0)), change);
+    VirtualBoard::new(&firmware(), Box::new(inputs)).expect("a firmware that loads")
+}
+
+#[test]
+fn an_overrun_of_the_converter_is_recovered_from_without_a_reset() {
+    let mut board = running();
+    board.block_dma(true);
+    board.run(0.001).expect("a run");
+    board.block_dma(false);
+    let before = board.taken().len();
+    board.run(0.5).expect("a run");
+    let tally = board.tally();
+    assert_eq!(tally.resets, 0, "{tally:?}");
+    // A stall is noticed after 9.6 ms; nothing more may be lost than that, the block, and the restart.
+    assert!(
+        board.taken().len() - before > 4_700,
+        "{}",
+        board.taken().len() - before
+    );
+    assert_eq!(board.lamps(), HEALTHY);
+}
+
+#[test]
+fn a_stopped_converter_clock_resets_the_board_and_its_return_brings_it_back() {
+    let mut board = running();
+    board.stop_converter_clock(true);
+    board.run(1.0).expect("a run");
+    assert!(board.tally().resets >= 1, "{:?}", board.tally());
+    board.stop_converter_clock(false);
+    board.run(LAMP_TEST_S + 1.5).expect("a run");
+    assert_eq!(board.lamps(), HEALTHY);
+}
+
+#[test]
+fn a_converter_supply_5_percent_off_lights_sensor_and_clears_again() {
+    for millivolt in [3_465, 3_135] {
+        let mut board = running();
+        board.set_vdda(millivolt);
+        board.run(1.1).expect("a run");
+        let lamps = board.lamps();
+        assert!(lamps[SENSOR] && lamps[FAULT], "{millivolt} mV: {lamps:?}");
+        board.set_vdda(3_300);
+        board.run(1.1).expect("a run");
+        assert_eq!(board.lamps(), HEALTHY, "{millivolt} mV and back");
+    }
+}
+
+#[test]
+fn corrupted_motor_constants_are_never_computed_with() {
+    let mut board = running();
+    let image = board
+        .symbol("firmware5IMAGE")
+        .expect("a symbol for the constants");
+    board
+        .corrupt_flash(image + 40, 1 << 9)
+        .expect("an address in flash");
+    board.reset(Cause::Power).expect("a reset");
+    let taken = board.taken().len();
+    board.run(LAMP_TEST_S + 2.0).expect("a run");
+    let lamps = board.lamps();
+    assert!(lamps[SENSOR] && lamps[FAULT] && !lamps[RUN], "{lamps:?}");
+    assert_eq!(board.taken().len(), taken, "nothing may be sampled");
+    assert_eq!(
+        board.tally().resets,
+        1,
+        "it waits instead of resetting for ever"
+    );
+}
+
+#[test]
+fn a_brown_out_starts_the_board_again() {
+    let mut board = running();
+    board.reset(Cause::Power).expect("a reset");
+    board.run(LAMP_TEST_S + 0.8).expect("a run");
+    assert_eq!(board.lamps(), HEALTHY);
+    assert_eq!(board.tally().resets, 1);
+}
+
+#[test]
+fn a_stuck_channel_lights_sensor() {
+    let mut board = falsified(|index, raw| {
+        if index > 8_000 {
+            raw.current_codes[1] = 2_048;
+        }
+    });
+    board.run(LAMP_TEST_S + 1.5).expect("a run");
+    assert!(board.lamps()[SENSOR], "{:?}", board.lamps());
+}
+
+#[test]
+fn an_unplugged_encoder_lights_sensor() {
+    let mut board = falsified(|index, raw| {
+        if index > 8_000 {
+            raw.encoder_count = 1_234;
+        }
+    });
+    board.run(LAMP_TEST_S + 1.5).expect("a run");
+    assert!(board.lamps()[SENSOR], "{:?}", board.lamps());
+}
+
+#[test]
+fn a_locked_shaft_is_no_sensor_fault() {
+    let mut scenario = scenario(2.0);
+    scenario.start = Start::Standstill;
+    let torque = 50.0;
+    scenario.load.other = Load::Constant {
+        torque,
+        active: false,
+    };
+    let seen = watch(&scenario);
+    seen.assert_as_on_the_host("shaft locked");
+    assert!(!seen.lit().contains(&"sensor"), "{:?}", seen.lit());
+}
+
+#[test]
+fn a_storm_of_encoder_edges_costs_neither_samples_nor_time() {
+    let quiet = running().tally();
+    let mut counter = 0_u16;
+    let mut board = falsified(move |index, raw| {
+        // Some 60 million edges a second, up and down.
+        counter = counter.wrapping_add((index.wrapping_mul(2_654_435_761) >> 7) as u16 & 0x3FFF);
+        raw.encoder_count = counter;
+    });
+    board.run(LAMP_TEST_S + 0.8).expect("a run");
+    let tally = board.tally();
+    assert_eq!((tally.resets, tally.missed_triggers), (0, 0));
+    assert_eq!(tally.conversions, quiet.conversions);
+    assert!(
+        tally.exceptions <= quiet.exceptions + 2,
+        "{tally:?} against {quiet:?}"
+    );
+}
+
+#[test]
+fn the_model_of_exceptions_can_fail() {
+    // Without stacking of the floating-point registers an interrupt in the middle of the arithmetic destroys it.
+    let mut board = board(&scenario(10.0));
+    board.forget_float_stacking();
+    board.run(LAMP_TEST_S).expect("a lamp test");
+    let mut differs = false;
+    for _ in 0..50 {
+        board.run(0.1).expect("a run");
+        let levels = board.lamps();
+        let host = host_lamps(board.taken());
+        let settled = host.len() > 5_000;
+        differs |= settled && !common::shows(levels, host.last().expect("samples"));
+    }
+    assert!(
+        differs,
+        "nobody noticed that floating-point registers were lost"
+    );
+}

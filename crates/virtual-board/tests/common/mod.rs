@@ -1,0 +1,180 @@
+//! The firmware, a simulated motor, and the host's core on the very samples that the firmware took.
+#![allow(dead_code)] // every test binary uses its own part of this
+
+use std::path::{Path, PathBuf};
+
+use monitor::{Lamp, Lamps, Monitor, MonitorConfig, MonitorState, RawSample};
+use motor::MotorFile;
+use sim_host::scenario::Scenario;
+use sim_host::simulate::Simulation;
+use virtual_board::{Inputs, VirtualBoard};
+
+/// Blocks of 32 instants that the firmware throws away after power-up.
+pub const INHIBITED: usize = 31 * 32;
+/// The lamp test lasts nine times 0.15 s; sampling begins at its end.
+pub const LAMP_TEST_S: f64 = 1.36;
+/// Two windows of a 60 Hz supply and a block, in instants: the lag that the lamps may have.
+const LAG: usize = 2 * 167 + 32;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The release ELF: `DRIVE_MONITOR_ELF`, or where `tools/thumb build --release -p drive-monitor` puts it.
+pub fn firmware() -> Vec<u8> {
+    let default = root().join("target/thumbv7em-none-eabihf/release/drive-monitor");
+    let path = std::env::var_os("DRIVE_MONITOR_ELF").map_or(default, PathBuf::from);
+    std::fs::read(&path).unwrap_or_else(|error| {
+        panic!(
+            "{}: {error}; build it first: tools/thumb build --release -p drive-monitor",
+            path.display()
+        )
+    })
+}
+
+/// The motor that is compiled into the firmware by default.
+pub fn motor() -> MotorFile {
+    MotorFile::read(root().join("motors/assumed-300w.toml")).expect("a shipped motor file")
+}
+
+/// A running motor with the noise of its file, for `seconds` after the first sample.
+pub fn scenario(seconds: f64) -> Scenario {
+    let mut scenario = Scenario::of(motor(), seconds);
+    scenario.seed = 11;
+    scenario
+}
+
+/// A simulation as the sensors of the board; it holds its last sample after its end.
+pub struct Sensors {
+    simulation: Simulation,
+    next: u64,
+    latest: RawSample,
+}
+
+impl Sensors {
+    pub fn new(scenario: &Scenario) -> Self {
+        Sensors {
+            simulation: Simulation::new(scenario).expect("a scenario that runs"),
+            next: 0,
+            latest: RawSample::default(),
+        }
+    }
+}
+
+impl Inputs for Sensors {
+    fn at(&mut self, index: u64) -> RawSample {
+        while self.next <= index {
+            self.next += 1;
+            if let Some(sample) = self.simulation.next() {
+                let measured = sample.measured;
+                self.latest = RawSample {
+                    voltage_codes: measured.voltage_codes,
+                    current_codes: measured.current_codes,
+                    encoder_count: measured.encoder_count,
+                };
+            }
+        }
+        self.latest
+    }
+}
+
+/// A board that has power and runs through its lamp test.
+pub fn board(scenario: &Scenario) -> VirtualBoard {
+    VirtualBoard::new(&firmware(), Box::new(Sensors::new(scenario))).expect("a firmware that loads")
+}
+
+/// The host's lamps after every sample of `taken`, as the firmware's core sees them without a gap.
+pub fn host_lamps(taken: &[RawSample]) -> Vec<Lamps> {
+    let config = MonitorConfig::from_motor_file(&motor(), 1e-4);
+    let monitor = Monitor::new(config).expect("a valid configuration");
+    let mut state = MonitorState::default();
+    let mut lamps = Lamps {
+        run: Lamp::Blink,
+        ..Lamps::default()
+    };
+    let judged = taken.iter().enumerate().map(|(k, raw)| {
+        if k >= INHIBITED
+            && let Some(report) = monitor.update_raw(&mut state, raw)
+        {
+            lamps = report.lamps;
+        }
+        lamps
+    });
+    judged.collect()
+}
+
+/// Whether wires show these lamps; a blinking lamp may be in either half.
+pub fn shows(levels: [bool; 9], lamps: &Lamps) -> bool {
+    let dark = board_levels(lamps, false);
+    let bright = board_levels(lamps, true);
+    (0..9).all(|k| levels[k] == dark[k] || levels[k] == bright[k])
+}
+
+fn board_levels(lamps: &Lamps, phase: bool) -> [bool; 9] {
+    let [r1, r2, r3, r4] = lamps.r;
+    let order = [
+        lamps.run,
+        r1,
+        r2,
+        r3,
+        r4,
+        lamps.sensor,
+        lamps.line,
+        lamps.load,
+        lamps.fault,
+    ];
+    order.map(|lamp| match lamp {
+        Lamp::Off => false,
+        Lamp::On => true,
+        Lamp::Blink => phase,
+    })
+}
+
+/// What was seen during a run.
+pub struct Seen {
+    /// Wires, and how many instants the converter had taken by then.
+    pub observed: Vec<([bool; 9], usize)>,
+    /// The host's lamps after each instant.
+    pub host: Vec<Lamps>,
+    /// The board at the end.
+    pub board: VirtualBoard,
+}
+
+/// Runs a scenario on the board, looking at the lamps every 20 ms from the end of the lamp test on.
+pub fn watch(scenario: &Scenario) -> Seen {
+    let mut board = board(scenario);
+    board.run(LAMP_TEST_S).expect("a lamp test");
+    let mut observed = Vec::new();
+    for _ in 0..(scenario.duration_s / 0.02) as usize {
+        board.run(0.02).expect("a run without an unknown access");
+        observed.push((board.lamps(), board.taken().len()));
+    }
+    let host = host_lamps(board.taken());
+    Seen {
+        observed,
+        host,
+        board,
+    }
+}
+
+impl Seen {
+    /// Every observation matches lamps that the host showed at most two windows ago.
+    pub fn assert_as_on_the_host(&self, what: &str) {
+        for (levels, taken) in &self.observed {
+            let recent = &self.host[taken.saturating_sub(LAG)..*taken];
+            assert!(
+                recent.is_empty() || recent.iter().any(|lamps| shows(*levels, lamps)),
+                "{what}, after {taken} instants: the board shows {levels:?}, the host {:?}",
+                recent.last()
+            );
+        }
+    }
+
+    /// Names of the lamps that the host has on at the end, RUN apart.
+    pub fn lit(&self) -> Vec<&'static str> {
+        self.host
+            .last()
+            .map(|lamps| lamps.lit_names().collect())
+            .unwrap_or_default()
+    }
+}
