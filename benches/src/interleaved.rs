@@ -1,6 +1,7 @@
-//! Two loops timed alternately, so that whatever else the machine does meets both alike.
+//! Times that a busy machine spoils least: two loops timed alternately, and shortest times.
 
-use std::time::Duration;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
 
 /// Times of both loops, one pair after another.
 #[derive(Clone, Debug, Default)]
@@ -47,6 +48,16 @@ impl Pairs {
         let paired = self.first.iter().zip(&self.second).map(|(a, b)| b / a);
         [second / first, median(paired.collect())]
     }
+}
+
+/// Shortest of `count` runs, s.
+pub fn shortest<T>(count: usize, mut run: impl FnMut() -> T) -> f64 {
+    let timed = |_| {
+        let from = Instant::now();
+        black_box(run());
+        from.elapsed().as_secs_f64()
+    };
+    (0..count).map(timed).fold(f64::INFINITY, f64::min)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
