@@ -132,12 +132,15 @@
     const y = { linear: {}, asinh: { distr: 4, asinh: chart.y.linear_below || 1 }, log: { distr: 3 } }[chart.y.scale];
     if (chart.y.scale === "linear" && chart.y.from_zero) y.range = (u, from, to) => [0, Math.max(to, 0) * 1.08 || 1];
     if (chart.y.scale === "asinh") y.range = (u, from, to) => [Math.min(from, -1) * 1.3, Math.max(to, 1) * 1.3];
+    if (chart.y.scale === "log") y.range = (u, from, to) => (from == null ? [0.1, 1] : [from / 1.25, to * 1.25]);
     const x = { time: false };
+    const scattered = chart.series.every((series) => series.kind === "points");
+    if (scattered) x.range = (u, from, to) => [from - 0.03 * (to - from || 1), to + 0.03 * (to - from || 1)];
     if (chart.x.labels) x.range = (u, from, to) => (from === to || from == null ? [-0.6, chart.x.labels.length - 0.4] : [Math.max(from, 0) - 0.6, Math.min(to, chart.x.labels.length - 1) + 0.6]);
     return { x, y };
   }
 
-  function options(figure, chart, data, box) {
+  function options(chart, data, box) {
     const font = `${0.8 * parseFloat(getComputedStyle(document.documentElement).fontSize)}px system-ui, sans-serif`;
     const limits = limited(chart, 1 + chart.series.length);
     return {
@@ -155,7 +158,7 @@
 
   function build(entry) {
     if (entry.plot) entry.plot.destroy();
-    entry.plot = new uPlot(options(entry.figure, entry.chart, entry.data, entry.box), entry.data, entry.box);
+    entry.plot = new uPlot(options(entry.chart, entry.data, entry.box), entry.data, entry.box);
   }
 
   function zoomOut({ plot, data }) {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, Finding};
 use super::paint;
-use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
+use super::study::{StudyArgs, bar, print_audit, print_next, quantity, with_progress};
 use crate::motor_text;
 use crate::overlay::{Model, Overlay};
 use crate::report::Subject;
@@ -143,7 +143,7 @@ fn print(result: &AdoptJson) {
             "{} is written. Is anything still missing?",
             report.motor_file
         ),
-        &result.next_command,
+        Some(&result.next_command),
     );
 }
 
@@ -167,21 +167,21 @@ fn print_values(report: &AdoptReport) {
     anstream::println!("\nIn the new motor file:");
     for p in &report.parameters {
         anstream::println!(
-            "  {:<34} {:12.6} +- {:.6} {}",
+            "  {:<34} {:>12} +- {} {}",
             p.name,
-            p.value,
-            p.std_error,
+            quantity(p.value),
+            quantity(p.std_error),
             p.unit
         );
     }
     for p in &report.nominals {
         anstream::println!(
-            "  {:<34} {:12.6} +- {:.6} {:<8} believed {:.6} ({:+.1} %)",
+            "  {:<34} {:>12} +- {:<9} {:<7} believed {} ({:+.1} %)",
             p.name,
-            p.value,
-            p.std_error,
+            quantity(p.value),
+            quantity(p.std_error),
             p.unit,
-            p.believed,
+            quantity(p.believed),
             p.change_percent
         );
     }

@@ -95,7 +95,7 @@ fn print(result: &CompareJson) {
     print_places(&report.regions);
     print_signals(&report.signals);
     if error > AGREES {
-        print_next("Which physics is missing?", &result.next_command);
+        print_next("Which physics is missing?", Some(&result.next_command));
     }
 }
 

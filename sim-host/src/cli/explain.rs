@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, Finding};
 use super::paint;
-use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
+use super::study::{StudyArgs, bar, print_audit, print_next, quantity, with_progress};
 use crate::overlay::{Model, Overlay};
 use crate::report::Subject;
 
@@ -151,10 +151,7 @@ fn print(result: &ExplainJson) {
             report.not_testable.join(", ")
         );
     }
-    print_next(
-        &result.next.why,
-        result.next.command.as_deref().unwrap_or_default(),
-    );
+    print_next(&result.next.why, result.next.command.as_deref());
 }
 
 fn print_answer(report: &ExplainReport) {
@@ -219,10 +216,10 @@ fn print_step(step: &StepReport) {
     );
     for p in &step.parameters {
         anstream::println!(
-            "  {:<34} {:12.6} +- {:.6} {}",
+            "  {:<34} {:>12} +- {} {}",
             p.name,
-            p.value,
-            p.std_error,
+            quantity(p.value),
+            quantity(p.std_error),
             p.unit
         );
     }
@@ -241,11 +238,11 @@ fn print_parameters(fit: &FitReport) {
     for p in &fit.parameters {
         let mark = if p.off { "  <- off" } else { "" };
         anstream::println!(
-            "  {:<30} {:10.5} -> {:10.5} +- {:.5} {:<6} {:+6.1} %{}",
+            "  {:<30} {:>10} -> {:>10} +- {:<9} {:<7} {:+6.1} %{}",
             p.name,
-            p.believed,
-            p.value,
-            p.std_error,
+            quantity(p.believed),
+            quantity(p.value),
+            quantity(p.std_error),
             p.unit,
             p.change_percent,
             paint::error(mark)

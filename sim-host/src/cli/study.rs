@@ -111,9 +111,21 @@ pub fn print_audit(audit: &Audit) {
     }
 }
 
-/// Prints the next command to type.
-pub fn print_next(why: &str, command: &str) {
-    anstream::println!("\n{why}\n  {}", paint::strong(command));
+/// Prints what to do next, with the command to type where there is one.
+pub fn print_next(why: &str, command: Option<&str>) {
+    anstream::println!("\n{why}");
+    if let Some(command) = command {
+        anstream::println!("  {}", paint::strong(command));
+    }
+}
+
+/// A quantity of unknown size: small ones with an exponent.
+pub fn quantity(x: f64) -> String {
+    if x != 0.0 && x.abs() < 1e-3 {
+        format!("{x:.3e}")
+    } else {
+        format!("{x:.5}")
+    }
 }
 
 /// A bar of `value` out of `full`, at most `width` characters long.
@@ -134,6 +146,13 @@ mod tests {
         assert_eq!(bar(1e-6, 2.0, 10).chars().count(), 1);
         assert_eq!(bar(0.0, 2.0, 10), "");
         assert_eq!(bar(1.0, 0.0, 10).chars().count(), 1);
+    }
+
+    #[test]
+    fn small_quantities_keep_their_digits() {
+        assert_eq!(quantity(7.485e-5), "7.485e-5");
+        assert_eq!(quantity(0.0), "0.00000");
+        assert_eq!(quantity(264.159_157), "264.15916");
     }
 
     #[test]

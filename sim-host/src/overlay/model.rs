@@ -42,6 +42,13 @@ impl Model {
         }
         if let (Some(last), false) = (&report.final_, report.steps.is_empty()) {
             let mut complete = with_parameters(motor, last);
+            for name in report.steps.iter().flat_map(|step| &step.tied_with) {
+                // Either the effect or the parameter: with the effect, the parameter stays as believed.
+                let believed = last.parameters.iter().find(|p| p.name == *name);
+                believed
+                    .into_iter()
+                    .for_each(|p| set(&mut complete, name, p.believed));
+            }
             complete.effects.extend(report.steps.iter().map(entry));
             let names: Vec<&str> = report
                 .steps
@@ -60,19 +67,23 @@ impl Model {
 fn with_parameters(motor: &MotorFile, fit: &FitReport) -> MotorFile {
     let mut motor = motor.clone();
     for parameter in &fit.parameters {
-        let x = parameter.value;
-        match parameter.name.as_str() {
-            "stator_resistance_ohm" => motor.parameters.r_s = x,
-            "rotor_resistance_ohm" => motor.parameters.r_r = x,
-            "stator_leakage_henry" => motor.parameters.l_ls = x,
-            "rotor_leakage_henry" => motor.parameters.l_lr = x,
-            "magnetizing_inductance_henry" => motor.parameters.l_m = x,
-            "inertia_kg_m2" => motor.mechanics.inertia = x,
-            "friction_nm_s" => motor.mechanics.friction = x,
-            _ => {}
-        }
+        set(&mut motor, &parameter.name, parameter.value);
     }
     motor
+}
+
+/// Sets a parameter by its key in the motor file; other names mean effects and change nothing.
+fn set(motor: &mut MotorFile, name: &str, x: f64) {
+    match name {
+        "stator_resistance_ohm" => motor.parameters.r_s = x,
+        "rotor_resistance_ohm" => motor.parameters.r_r = x,
+        // Fitted as one: terminals cannot tell the two apart.
+        "stator_leakage_henry" => (motor.parameters.l_ls, motor.parameters.l_lr) = (x, x),
+        "magnetizing_inductance_henry" => motor.parameters.l_m = x,
+        "inertia_kg_m2" => motor.mechanics.inertia = x,
+        "friction_nm_s" => motor.mechanics.friction = x,
+        _ => {}
+    }
 }
 
 fn entry(step: &StepReport) -> EffectEntry {

@@ -27,9 +27,9 @@ pub fn content(result: &Place<'_>) -> Markup {
         @if result.get(OVERALL).is_some() {
             (cards(&worst(result)))
             (heat(result))
-            (regions(result))
             (overlay::section(result))
             (orders(result))
+            (regions(result))
             (signals(result))
         }
         (audit::section(result))

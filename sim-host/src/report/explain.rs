@@ -74,7 +74,7 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
         ),
     };
     let more = html! {
-        p { (result.text("summary")) }
+        @if result.text("summary").trim_end_matches('.') != text { p { (result.text("summary")) } }
         p.subtle { (result.text("motor")) ", " (proof) "." }
     };
     verdict(mood, &html! { (text) }, &more)

@@ -97,7 +97,14 @@ fn signal(
         .group(if part == "close" { "close" } else { "time" });
     for (k, (label, colour)) in models.iter().enumerate() {
         let from = signal.pointer_to(&format!("modelled/{k}/*"));
-        chart = chart.with(Series::line(label, from, colour).dashed(k));
+        let line = Series::line(label, from, colour);
+        // Over the whole recording the lines are too dense for dashes.
+        let line = if part == "close" {
+            line.dashed(k)
+        } else {
+            line
+        };
+        chart = chart.with(line);
     }
     let heading = match part {
         "close" => format!("{name}, where the current is furthest off"),
@@ -127,14 +134,37 @@ fn error(
     chart.figure(&format!("{label} against time"), "")
 }
 
+/// Spread of a quantity below which nothing can be told from it, in its own unit (percent, or Hz of 50 or 60).
+const LEAST_SPREAD: f64 = 0.5;
+
+/// Largest minus smallest value of a quantity over the blocks.
+fn spread(overlay: &Place<'_>, key: &str) -> Option<f64> {
+    let blocks = overlay.items("blocks");
+    let values = blocks.iter().filter_map(|block| block.number(key));
+    let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
+        (least.min(x), most.max(x))
+    });
+    (most >= least).then_some(most - least)
+}
+
+fn hardly_varies(axis: &str) -> Markup {
+    html! {
+        div.subtle {
+            h3 { "current error against " (axis) }
+            p { "The " (axis) " hardly varies in this recording, so nothing can be told from it. A recording at two values would show more." }
+        }
+    }
+}
+
 fn trend(
     overlay: &Place<'_>,
     models: &[(String, &'static str)],
     (key, axis, unit, meaning): &(&str, &str, &'static str, &str),
 ) -> Markup {
-    let blocks = overlay.items("blocks");
-    if blocks.iter().all(|block| block.get(key).is_none()) {
-        return html! {};
+    match spread(overlay, key) {
+        None => return html! {},
+        Some(spread) if spread < LEAST_SPREAD => return hardly_varies(axis),
+        Some(_) => {}
     }
     let mut chart = Chart::over(axis, unit, overlay.pointer_to(&format!("blocks/*/{key}")))
         .y("current error", "A rms")

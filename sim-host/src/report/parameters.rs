@@ -17,13 +17,21 @@ pub fn nominals(rows: &[Place<'_>]) -> Markup {
                 th scope="row" { (row.text("name")) }
                 td { (shown(row, "believed", significant(5))) }
                 td { (shown(row, "value", significant(5))) }
-                td { (shown(row, "std_error", significant(2))) }
+                td { (error(row)) }
                 td { (row.text("unit")) }
                 td { (shown(row, "change_percent", decimals(1).signed())) }
                 td.word { @if row.is_true("off") { span.off { "off: more than three standard errors and 5 %" } } }
             } } }
         } }
         p.subtle { "The change of the friction is given in percent of rated torque at rated speed." }
+    }
+}
+
+/// A standard error; a value that was not fitted has none.
+fn error(row: &Place<'_>) -> Markup {
+    match row.number("std_error") {
+        Some(error) if error > 0.0 => shown(row, "std_error", significant(2)),
+        _ => html! { "not fitted" },
     }
 }
 
@@ -35,7 +43,7 @@ pub fn of_effect(rows: &[Place<'_>]) -> Markup {
             tbody { @for row in rows { tr {
                 th scope="row" { (row.text("name")) }
                 td { (shown(row, "value", significant(5))) }
-                td { (shown(row, "std_error", significant(2))) }
+                td { (error(row)) }
                 td { (row.text("unit")) }
             } } }
         } }

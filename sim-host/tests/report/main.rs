@@ -53,3 +53,98 @@ fn a_page_that_cannot_be_written_is_an_error_that_names_it() {
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
     assert!(said.contains("no/such/folder/x.html"), "{said}");
 }
+
+fn peer(folder: &str, file: &str) -> String {
+    page::project(&format!("tests/data/peer/{folder}/{file}"))
+}
+
+const TABLE: &str = "tests/data/imc_18k5_load_test/load_test.csv";
+const TABLE_MOTOR: &str = "motors/imc-18k5.toml";
+
+#[test]
+fn the_page_of_a_comparison_shows_model_over_measurement() {
+    let recording = peer("magnetizing-saturation", "recording.csv.gz");
+    let motor = peer("magnetizing-saturation", "motor.toml");
+    let page = Page::of("compare", &["compare", &recording, "--motor", &motor]);
+    page.check();
+    assert!(page.html.contains("What next"));
+    // Two signals close and whole, two errors over time, four trends (or why not), the order spectrum.
+    assert!(page.charts().len() >= 8);
+    browser::check(&page);
+}
+
+#[test]
+fn the_page_of_an_explanation_names_effect_ties_and_next_command() {
+    let (table, motor) = (page::project(TABLE), page::project(TABLE_MOTOR));
+    let page = Page::of("explain", &["explain", &table, "--motor", &motor]);
+    page.check();
+    for words in [
+        "core-loss",
+        "As likely",
+        "What separates them",
+        "drivemon adopt",
+    ] {
+        assert!(page.html.contains(words), "{words}");
+    }
+    browser::check(&page);
+}
+
+#[test]
+fn the_page_of_an_adoption_shows_before_and_after_and_the_motor_file_is_valid() {
+    let (table, motor) = (page::project(TABLE), page::project(TABLE_MOTOR));
+    let better = page::scratch("better.toml");
+    let adopt = [
+        "adopt",
+        "core-loss",
+        &table,
+        "--motor",
+        &motor,
+        "-o",
+        &better,
+    ];
+    let page = Page::of("adopt", &adopt);
+    page.check();
+    assert!(page.html.contains("before, data that was not fitted"));
+    browser::check(&page);
+    let again = page::drivemon(&["compare", &table, "--motor", &better]);
+    assert!(matches!(again.status.code(), Some(0 | 1)), "{again:?}");
+    assert_comments_survive(&motor, &better);
+}
+
+fn assert_comments_survive(old: &str, new: &str) {
+    let read = |path: &str| std::fs::read_to_string(path).expect(path);
+    let (old, new) = (read(old), read(new));
+    let comments: Vec<&str> = old.lines().filter(|line| line.starts_with('#')).collect();
+    assert!(!comments.is_empty());
+    for comment in comments {
+        assert!(new.contains(comment), "{comment}");
+    }
+}
+
+#[test]
+fn models_before_and_after_lie_over_the_measurement() {
+    let recording = peer("stator-resistance-plus-25-percent", "recording.csv.gz");
+    let motor = peer("stator-resistance-plus-25-percent", "motor.toml");
+    let better = page::scratch("warmer.toml");
+    let adopt = [
+        "adopt",
+        "parameters",
+        &recording,
+        "--motor",
+        &motor,
+        "-o",
+        &better,
+    ];
+    let page = Page::of("overlay", &adopt);
+    page.check();
+    let errors = page.column("/overlay/blocks/*/current_error_amp");
+    let rms = |model: &str| {
+        let squares = errors
+            .iter()
+            .map(|block| block.pointer(model)?.as_f64().map(|x| x * x));
+        squares.map(|x| x.expect("a number")).sum::<f64>().sqrt()
+    };
+    // A stator resistance that is a quarter too small leaves several times the noise; refitted, only noise is left.
+    assert!(rms("/1") < 0.8 * rms("/0"), "{} {}", rms("/1"), rms("/0"));
+    browser::check(&page);
+}

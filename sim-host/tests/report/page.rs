@@ -135,6 +135,14 @@ impl Page {
             .collect()
     }
 
+    /// The values at an address of the JSON, one for each row of the array before the star.
+    pub fn column(&self, address: &str) -> Vec<&Value> {
+        let (head, tail) = address.split_once("/*").expect("a star");
+        let rows = self.json.pointer(head).and_then(Value::as_array);
+        let rows = rows.expect(address).iter();
+        rows.map(|row| row.pointer(tail).expect(address)).collect()
+    }
+
     /// All numbers on the page outside figures.
     pub fn numbers(&self) -> Vec<Number> {
         self.html.split("<data ").skip(1).map(number).collect()
