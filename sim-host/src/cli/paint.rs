@@ -1,7 +1,6 @@
 //! Colours; `anstream` drops them for files, pipes and NO_COLOR.
 
 use anstyle::{AnsiColor, Style};
-use monitor::Lamp;
 
 /// A piece of text in a style.
 pub struct Painted<T>(Style, T);
@@ -39,14 +38,4 @@ pub fn strong<T>(text: T) -> Painted<T> {
 /// Dim.
 pub fn faint<T>(text: T) -> Painted<T> {
     Painted(Style::new().dimmed(), text)
-}
-
-/// A lamp as a shape, so that it reads without colour: filled on, half blinking, open off.
-pub fn lamp(state: Lamp, fault: bool) -> Painted<&'static str> {
-    match state {
-        Lamp::Off => faint("○"),
-        Lamp::Blink => caution("◐"),
-        Lamp::On if fault => error("●"),
-        Lamp::On => good("●"),
-    }
 }

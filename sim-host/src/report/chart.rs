@@ -46,7 +46,7 @@ pub struct AxisY {
     /// Division.
     pub scale: Scale,
     /// Whether the axis starts at zero.
-    pub from_zero: bool,
+    pub starting_at_zero: bool,
     /// For [`Scale::Asinh`]: where the logarithmic part begins.
     pub linear_below: f64,
 }
@@ -151,7 +151,7 @@ impl Chart {
                 label: String::new(),
                 unit: "",
                 scale: Scale::Linear,
-                from_zero: false,
+                starting_at_zero: false,
                 linear_below: 1.0,
             },
             series: Vec::new(),
@@ -182,8 +182,8 @@ impl Chart {
     }
 
     /// Starts the vertical axis at zero.
-    pub fn from_zero(mut self) -> Self {
-        self.y.from_zero = true;
+    pub fn starting_at_zero(mut self) -> Self {
+        self.y.starting_at_zero = true;
         self
     }
 

@@ -196,8 +196,8 @@ fn orders(result: &Place<'_>) -> Markup {
         "order of the supply frequency",
         rows.iter().map(label).collect(),
     )
-    .y("amplitude of the current error", "A")
-    .from_zero()
+    .y("amplitude", "A")
+    .starting_at_zero()
     .with(
         Series::line(
             "current error",

@@ -75,7 +75,7 @@ fn rounded(x: f64, digits: usize) -> String {
     } else {
         x.abs().log10().floor() as i32
     };
-    if exponent < -4 || exponent > 6 {
+    if !(-4..=6).contains(&exponent) {
         return format!("{x:.*e}", digits - 1);
     }
     let after = (digits as i32 - 1 - exponent).max(0);
