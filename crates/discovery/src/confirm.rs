@@ -16,6 +16,8 @@ const CONFIRMED: usize = 6;
 const STARTS: usize = 3;
 /// A candidate that has not improved the squared error by this factor soon is given up.
 const HOPELESS: f64 = 0.97;
+/// Error above which a model is poor: hopeless refits are given up, unlikely ones are tried.
+const POOR: f64 = 1.1;
 /// Error above which a freely running fit may have settled in a wrong valley.
 const WRONG_VALLEY: f64 = 1.5;
 /// Rate at which the observer draws the modelled speed to the measured one, 1/s.
@@ -145,7 +147,7 @@ fn promising(
     };
     let screened = |s: &Start| study.fold_error(&s.group[0].held_out);
     // Shapes move during a refit: a bad model may gain more than its secant promises.
-    let matters = |s: &Start| error > 1.1 || screened(s) < (1.0 - LEAST_GAIN) * error;
+    let matters = |s: &Start| error > POOR || screened(s) < (1.0 - LEAST_GAIN) * error;
     let starts = groups.iter().map(start).filter(matters).take(CONFIRMED);
     let own = study.fold_error(&[gram::dot(&fit.residual, &fit.residual)]);
     let limit = 1.0 + LIKELY * (own * own - 1.0).max(0.0);
@@ -188,8 +190,11 @@ fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
         let best = fits.min_by(|a, b| sse(a).total_cmp(&sse(b)));
         best.map_or_else(|| at(&start.group[0]), |f| f.hypothesis)
     };
+    // On top of a model that already fits nothing improves the error by much: every refit is finished.
+    let poor = study.fold_error(&base.folds) > POOR;
+    let limit = HOPELESS * gram::dot(&base.fit.residual, &base.fit.residual);
     let effort = Effort {
-        abandon_above: HOPELESS * gram::dot(&base.fit.residual, &base.fit.residual),
+        abandon_above: if poor { limit } else { f64::INFINITY },
         ..Effort::FULL
     };
     let trial = study.trial(&best, effort);

@@ -1,6 +1,6 @@
 //! From fits to the numbers of a report.
 
-use crate::belief::{FRICTION, N_NOMINAL, NOMINALS};
+use crate::belief::{FRICTION, MAGNETIZING, N_NOMINAL, NOMINALS};
 use crate::report::{FitReport, NominalReport, ParameterReport};
 use crate::study::{Study, Trial};
 use motor::effects::{Kind, Role};
@@ -22,8 +22,15 @@ fn coordinate_error(trial: &Trial, covariance: &nalgebra::DMatrix<f64>, k: usize
     position.map_or(0.0, |p| covariance[(p, p)].max(0.0).sqrt())
 }
 
-/// Whether nominal `k` moved relevantly, and significantly.
-fn is_off(k: usize, z: f64, error: f64) -> bool {
+/// Whether nominal `k` of a trial moved relevantly, and significantly.
+fn is_off(trial: &Trial, k: usize, error: f64) -> bool {
+    let z = trial.fit.hypothesis.z[k];
+    // With saturation the magnetizing inductance is that of rated flux, another number than the believed one.
+    let mut effects = trial.fit.hypothesis.effects.iter();
+    let saturated = effects.any(|e| e.effect.descriptor().name == "magnetizing-saturation");
+    if k == MAGNETIZING && saturated {
+        return false;
+    }
     let relevant = if k == FRICTION {
         z.abs() > RELEVANT_FRICTION
     } else {
@@ -35,8 +42,7 @@ fn is_off(k: usize, z: f64, error: f64) -> bool {
 /// Indices of the nominals that are off.
 pub(crate) fn off_nominals(trial: &Trial) -> Vec<usize> {
     let covariance = trial.fit.covariance();
-    let z = &trial.fit.hypothesis.z;
-    let off = |&k: &usize| is_off(k, z[k], coordinate_error(trial, &covariance, k));
+    let off = |&k: &usize| is_off(trial, k, coordinate_error(trial, &covariance, k));
     (0..N_NOMINAL).filter(off).collect()
 }
 
@@ -71,7 +77,7 @@ pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
             value: study.belief.nominal_value(k, z),
             std_error: study.belief.nominal_error(k, z, error),
             unit: NOMINALS[k].unit.to_owned(),
-            off: is_off(k, z, error),
+            off: is_off(trial, k, error),
             change_percent: change,
         }
     };
