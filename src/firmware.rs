@@ -15,7 +15,7 @@ use crate::hardware::board::{Board, clocks};
 use crate::hardware::housekeeping::{Housekeeping, ResetCause, is_vdda_credible};
 use crate::hardware::lamps::Lamps as LampWires;
 use crate::hardware::sampling::{Acquisition, Block, Buffers, Gap};
-use crate::hardware::telemetry;
+use crate::hardware::telemetry::Telemetry;
 
 include!(concat!(env!("OUT_DIR"), "/motor.rs"));
 
@@ -35,7 +35,7 @@ const BLINK_BLOCKS: u32 = 156;
 async fn main(_spawner: Spawner) -> ! {
     let cause = ResetCause::take();
     let board = Board::new(embassy_stm32::init(clocks()));
-    telemetry::start();
+    let telemetry = Telemetry::start();
     defmt::info!("drive-monitor: {=str}, reset: {}", NAME, cause);
     let mut watchdog = IndependentWatchdog::new(board.watchdog, WATCHDOG);
     watchdog.unleash();
@@ -46,8 +46,10 @@ async fn main(_spawner: Spawner) -> ! {
         watchdog,
         button: board.button,
         housekeeping: Housekeeping::new(board.housekeeping),
+        telemetry,
         display: Display::default(),
         instrument_faulty: false,
+        vdda_millivolt: 0,
         blocks: 0,
     };
     panel.look_after_supply();
@@ -120,6 +122,7 @@ async fn watch(
         {
             *lamps = report.lamps;
             panel.display.observe(lamps);
+            panel.telemetry.send(&report, panel.vdda_millivolt as u16);
         }
         panel.after_block(lamps);
     }
@@ -142,8 +145,10 @@ struct Panel {
     watchdog: IndependentWatchdog<'static, IWDG>,
     button: Input<'static>,
     housekeeping: Housekeeping,
+    telemetry: Telemetry,
     display: Display,
     instrument_faulty: bool,
+    vdda_millivolt: u32,
     blocks: u32,
 }
 
@@ -182,6 +187,7 @@ impl Panel {
             defmt::warn!("VDDA {=u32} mV", millivolt);
         }
         self.instrument_faulty = faulty;
+        self.vdda_millivolt = millivolt;
     }
 
     /// Nothing is measured with constants that do not hold: SENSOR and FAULT light, RUN stays dark.

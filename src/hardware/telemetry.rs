@@ -1,14 +1,36 @@
-//! The log for people, over the debugger's memory channel.
+//! What the board says: a log for people and a frame per window for programs, over the debugger's memory channels.
 
+use board::{Frame, MAX_FRAME_BYTES};
+use monitor::Report;
 use rtt_target::ChannelMode::NoBlockSkip;
-use rtt_target::{rtt_init, set_defmt_channel};
+use rtt_target::{UpChannel, rtt_init, set_defmt_channel};
 
-/// Opens the log. It never blocks: what nobody reads is dropped.
-pub fn start() {
-    let channels = rtt_init! {
-        up: {
-            0: { size: 512, mode: NoBlockSkip, name: "defmt" }
+/// The channel of the frames. Neither it nor the log ever blocks: what nobody reads is dropped.
+pub struct Telemetry {
+    frames: UpChannel,
+    sequence: u32,
+}
+
+impl Telemetry {
+    /// Opens both channels.
+    pub fn start() -> Self {
+        let channels = rtt_init! {
+            up: {
+                0: { size: 512, mode: NoBlockSkip, name: "defmt" }
+                1: { size: 2048, mode: NoBlockSkip, name: "frames" }
+            }
+        };
+        set_defmt_channel(channels.up.0);
+        Telemetry {
+            frames: channels.up.1,
+            sequence: 0,
         }
-    };
-    set_defmt_channel(channels.up.0);
+    }
+
+    /// Sends one window's result.
+    pub fn send(&mut self, report: &Report, vdda_millivolt: u16) {
+        let frame = Frame::new(report, self.sequence, vdda_millivolt);
+        self.sequence = self.sequence.wrapping_add(1);
+        self.frames.write(frame.encode(&mut [0; MAX_FRAME_BYTES]));
+    }
 }

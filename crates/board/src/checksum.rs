@@ -14,6 +14,11 @@ pub fn crc32_words(words: &[u32]) -> u32 {
     digest.finalize()
 }
 
+/// CRC-32 (ISO-HDLC) of bytes.
+pub fn crc32(bytes: &[u8]) -> u32 {
+    CRC.checksum(bytes)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

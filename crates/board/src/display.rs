@@ -22,7 +22,7 @@ pub fn levels(lamps: &Lamps, blink_phase: bool) -> [bool; LAMPS] {
     })
 }
 
-fn in_order(lamps: &Lamps) -> [Lamp; LAMPS] {
+pub(crate) fn in_order(lamps: &Lamps) -> [Lamp; LAMPS] {
     let [r1, r2, r3, r4] = lamps.r;
     [
         lamps.run,

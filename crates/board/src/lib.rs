@@ -3,8 +3,10 @@
 
 mod checksum;
 mod display;
+mod frame;
 mod image;
 
-pub use checksum::crc32_words;
+pub use checksum::{crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, levels};
+pub use frame::{Frame, FrameError, MAX_FRAME_BYTES};
 pub use image::{IMAGE_WORDS, ImageError, MotorImage};

@@ -1,0 +1,252 @@
+//! One window's result on its way to a computer: postcard, CRC-32, COBS, a zero byte behind.
+//!
+//! COBS keeps zeros out of a frame, so that a reader that comes in the middle waits for the next zero.
+
+use monitor::{Lamp, NotJudged, RESIDUALS, Report};
+use serde::{Deserialize, Serialize};
+
+use crate::checksum::crc32;
+use crate::display::LAMPS;
+
+/// What the fields mean; a reader refuses every other number.
+const SCHEMA: u8 = 1;
+/// Bytes of the longest frame, zero byte included: 62 of content at most, 4 of checksum, 2 of COBS and end.
+pub const MAX_FRAME_BYTES: usize = 96;
+const CHECKSUM_BYTES: usize = 4;
+
+/// What the board says about one window.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    schema: u8,
+    /// Counts frames, wrapping; a gap shows what was lost on the way.
+    pub sequence: u32,
+    /// Samples that the core has seen up to the end of the window.
+    pub sample_index: u64,
+    /// Lamps in the order of [`crate::LAMP_NAMES`], two bits each from the lowest: 0 off, 1 on, 2 blinking.
+    pub lamps: u32,
+    /// Residuals r1..r4 relative to their scales; `None` where they could not be evaluated.
+    pub residuals: Option<[f32; RESIDUALS]>,
+    /// Positive-sequence phase voltage, amplitude, V.
+    pub u_s_volt: f32,
+    /// Positive-sequence phase current, amplitude, A.
+    pub i_s_amp: f32,
+    /// Supply frequency, rad/s.
+    pub omega_sync_rad_s: f32,
+    /// Mechanical speed, rad/s; `None` without a sensor.
+    pub omega_mech_rad_s: Option<f32>,
+    /// Why the window was not judged; 0 when it was. Order of [`NotJudged`], from 1.
+    pub not_judged: u8,
+    /// Supply of the converters, mV.
+    pub vdda_millivolt: u16,
+}
+
+/// Why bytes are no frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameError {
+    /// Not COBS, or too short or too long.
+    Framing,
+    /// Damaged on the way.
+    Checksum,
+    /// From another version of the firmware.
+    Schema(u8),
+    /// The checksum holds and the content does not.
+    Content,
+}
+
+impl core::fmt::Display for FrameError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            FrameError::Framing => f.write_str("not a frame: wrong framing or length"),
+            FrameError::Checksum => f.write_str("damaged frame: wrong checksum"),
+            FrameError::Schema(other) => write!(
+                f,
+                "frame of schema {other}, this reader knows {SCHEMA}: use the drivemon of the same version as the firmware"
+            ),
+            FrameError::Content => f.write_str("frame with unreadable content"),
+        }
+    }
+}
+
+impl core::error::Error for FrameError {}
+
+impl Frame {
+    /// What a report says.
+    pub fn new(report: &Report, sequence: u32, vdda_millivolt: u16) -> Self {
+        let window = report.window.unwrap_or_default();
+        Frame {
+            schema: SCHEMA,
+            sequence,
+            sample_index: report.sample_index,
+            lamps: packed(report),
+            residuals: report.residuals.map(|residuals| residuals.r),
+            u_s_volt: monitor::magnitude(window.u_s.positive),
+            i_s_amp: monitor::magnitude(window.i_s.positive),
+            omega_sync_rad_s: window.omega_sync,
+            omega_mech_rad_s: window.omega_mech,
+            not_judged: report.not_judged.map_or(0, reason),
+            vdda_millivolt,
+        }
+    }
+
+    /// Lamp `index` in the order of [`crate::LAMP_NAMES`]; dark beyond.
+    pub fn lamp(&self, index: usize) -> Lamp {
+        match self.lamps.checked_shr(2 * index as u32).unwrap_or(0) & 3 {
+            1 => Lamp::On,
+            2 => Lamp::Blink,
+            _ => Lamp::Off,
+        }
+    }
+
+    /// The bytes to send, zero byte included; empty if they did not fit, which a test rules out.
+    pub fn encode<'a>(&self, buffer: &'a mut [u8; MAX_FRAME_BYTES]) -> &'a [u8] {
+        let mut plain = [0; MAX_FRAME_BYTES - 2];
+        let Some(length) = self.write_plain(&mut plain) else {
+            return &[];
+        };
+        let content = plain.get(..length).unwrap_or(&[]);
+        match cobs::try_encode(content, &mut buffer[..MAX_FRAME_BYTES - 1]) {
+            Ok(encoded) => {
+                let end = encoded.min(MAX_FRAME_BYTES - 1);
+                buffer[end] = 0;
+                buffer.get(..=end).unwrap_or(&[])
+            }
+            Err(_) => &[],
+        }
+    }
+
+    fn write_plain(&self, plain: &mut [u8]) -> Option<usize> {
+        let used = postcard::to_slice(self, plain).ok()?.len();
+        let checksum = crc32(plain.get(..used)?).to_le_bytes();
+        let end = used + CHECKSUM_BYTES;
+        plain.get_mut(used..end)?.copy_from_slice(&checksum);
+        Some(end)
+    }
+
+    /// Reads one frame; the zero byte behind it may be there or not.
+    ///
+    /// # Errors
+    /// Anything but a whole, undamaged frame of this schema.
+    pub fn decode(bytes: &[u8]) -> Result<Self, FrameError> {
+        let bytes = bytes.strip_suffix(&[0]).unwrap_or(bytes);
+        let mut plain = [0; MAX_FRAME_BYTES];
+        let length = cobs::decode(bytes, &mut plain).map_err(|_| FrameError::Framing)?;
+        let plain = plain.get(..length).ok_or(FrameError::Framing)?;
+        let (content, checksum) = plain
+            .split_last_chunk::<CHECKSUM_BYTES>()
+            .ok_or(FrameError::Framing)?;
+        if crc32(content) != u32::from_le_bytes(*checksum) {
+            return Err(FrameError::Checksum);
+        }
+        match content.first() {
+            Some(&SCHEMA) => postcard::from_bytes(content).map_err(|_| FrameError::Content),
+            Some(&other) => Err(FrameError::Schema(other)),
+            None => Err(FrameError::Framing),
+        }
+    }
+}
+
+fn packed(report: &Report) -> u32 {
+    let lamps = crate::display::in_order(&report.lamps);
+    let codes = lamps.map(|lamp| match lamp {
+        Lamp::Off => 0,
+        Lamp::On => 1,
+        Lamp::Blink => 2,
+    });
+    (0..LAMPS).fold(0, |bits, k| bits | codes[k] << (2 * k))
+}
+
+fn reason(not_judged: NotJudged) -> u8 {
+    match not_judged {
+        NotJudged::NotLocked => 1,
+        NotJudged::Settling => 2,
+        NotJudged::Clipped => 3,
+        NotJudged::Invalid => 4,
+        NotJudged::NoVoltages => 5,
+        NotJudged::NoCurrents => 6,
+        NotJudged::NoSpeed => 7,
+        NotJudged::Supply(_) => 8,
+        NotJudged::Sensor(_) => 9,
+        NotJudged::Transient => 10,
+        NotJudged::NoLoadCurrent => 11,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Every number at its longest.
+    fn longest() -> Frame {
+        Frame {
+            schema: SCHEMA,
+            sequence: u32::MAX,
+            sample_index: u64::MAX,
+            lamps: u32::MAX,
+            residuals: Some([f32::MIN; 4]),
+            u_s_volt: f32::MIN,
+            i_s_amp: f32::MIN,
+            omega_sync_rad_s: f32::MIN,
+            omega_mech_rad_s: Some(f32::MIN),
+            not_judged: u8::MAX,
+            vdda_millivolt: u16::MAX,
+        }
+    }
+
+    #[test]
+    fn the_longest_frame_fits_and_comes_back() {
+        let mut buffer = [0; MAX_FRAME_BYTES];
+        let bytes = longest().encode(&mut buffer);
+        assert!(!bytes.is_empty());
+        assert_eq!(
+            bytes.iter().filter(|byte| **byte == 0).count(),
+            1,
+            "only the end is zero"
+        );
+        assert_eq!(Frame::decode(bytes), Ok(longest()));
+    }
+
+    #[test]
+    fn lamps_are_told_apart() {
+        let report = Report {
+            lamps: monitor::Lamps {
+                run: Lamp::Blink,
+                fault: Lamp::On,
+                ..monitor::Lamps::default()
+            },
+            ..Report::default()
+        };
+        let frame = Frame::new(&report, 0, 3300);
+        let seen: Vec<Lamp> = (0..LAMPS).map(|k| frame.lamp(k)).collect();
+        assert_eq!(seen[0], Lamp::Blink);
+        assert_eq!(seen[LAMPS - 1], Lamp::On);
+        assert!(seen[1..LAMPS - 1].iter().all(|lamp| *lamp == Lamp::Off));
+    }
+
+    #[test]
+    fn another_schema_is_named() {
+        let mut other = longest();
+        other.schema = 2;
+        let mut buffer = [0; MAX_FRAME_BYTES];
+        assert_eq!(
+            Frame::decode(other.encode(&mut buffer)),
+            Err(FrameError::Schema(2))
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn a_damaged_frame_is_never_taken_for_a_frame(place in 0..80_usize, flip in 1..=255_u8) {
+            let mut buffer = [0; MAX_FRAME_BYTES];
+            let mut bytes = longest().encode(&mut buffer).to_vec();
+            prop_assume!(place < bytes.len() - 1);
+            bytes[place] ^= flip;
+            prop_assert!(Frame::decode(&bytes).is_err());
+        }
+
+        #[test]
+        fn any_bytes_are_read_without_a_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+            let _ = Frame::decode(&bytes);
+        }
+    }
+}
