@@ -111,7 +111,8 @@ fn hold_last(held: &mut Abc, value: Option<Abc>) -> Quality {
             *held = Abc::default();
             Quality::Missing
         }
-        Some(x) if x.is_finite() && x.to_array().iter().all(|x| x.abs() < LARGEST) => {
+        // NaN and infinity fail the comparison too.
+        Some(x) if x.a.abs() < LARGEST && x.b.abs() < LARGEST && x.c.abs() < LARGEST => {
             *held = x;
             Quality::Good
         }
