@@ -76,8 +76,8 @@ fn check(monitor: &Monitor, signals: &Signals) {
     );
 }
 
-fn keep(report: Report) {
-    black_box(report);
+fn keep<T>(result: T) {
+    black_box(result);
 }
 
 fn timed(run: impl FnOnce()) -> Duration {
@@ -98,10 +98,10 @@ fn show(name: &str, pairs: &Pairs) {
 }
 
 fn show_beside_peers(monitor: &Monitor, signals: &Signals) {
-    let update = || timed(|| core(monitor, &signals.samples, Monitor::update, |r| keep(r)));
-    let raw = || timed(|| core(monitor, &signals.raw, Monitor::update_raw, |r| keep(r)));
-    let dft = || timed(|| drop(black_box(sliding(&signals.samples))));
-    let normal = || timed(|| drop(black_box(least_squares(&signals.samples))));
+    let update = || timed(|| core(monitor, &signals.samples, Monitor::update, keep));
+    let raw = || timed(|| core(monitor, &signals.raw, Monitor::update_raw, keep));
+    let dft = || timed(|| keep(sliding(&signals.samples)));
+    let normal = || timed(|| keep(least_squares(&signals.samples)));
     println!("monitor: ns per sample, fastest (median) of {PAIRS} interleaved pairs");
     show("update / sliding DFT", &Pairs::measure(PAIRS, update, dft));
     show(
@@ -119,10 +119,10 @@ fn bench(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("per_10000_samples");
     group.throughput(Throughput::Elements(SAMPLES as u64));
     group.bench_function("monitor_update", |b| {
-        b.iter(|| core(&monitor, &signals.samples, Monitor::update, |r| keep(r)))
+        b.iter(|| core(&monitor, &signals.samples, Monitor::update, keep))
     });
     group.bench_function("monitor_update_raw", |b| {
-        b.iter(|| core(&monitor, &signals.raw, Monitor::update_raw, |r| keep(r)))
+        b.iter(|| core(&monitor, &signals.raw, Monitor::update_raw, keep))
     });
     group.bench_function("peer_sliding_dft", |b| b.iter(|| sliding(&signals.samples)));
     group.bench_function("peer_least_squares_nalgebra", |b| {

@@ -46,7 +46,7 @@ pub struct AxisY {
     /// Division.
     pub scale: Scale,
     /// Whether the axis starts at zero.
-    pub starting_at_zero: bool,
+    pub from_zero: bool,
     /// For [`Scale::Asinh`]: where the logarithmic part begins.
     pub linear_below: f64,
 }
@@ -151,7 +151,7 @@ impl Chart {
                 label: String::new(),
                 unit: "",
                 scale: Scale::Linear,
-                starting_at_zero: false,
+                from_zero: false,
                 linear_below: 1.0,
             },
             series: Vec::new(),
@@ -183,7 +183,7 @@ impl Chart {
 
     /// Starts the vertical axis at zero.
     pub fn starting_at_zero(mut self) -> Self {
-        self.y.starting_at_zero = true;
+        self.y.from_zero = true;
         self
     }
 
