@@ -128,11 +128,19 @@
     return [x, y];
   }
 
+  /** The next 1, 2 or 5 times a power of ten, down or up. */
+  function snapped(x, up) {
+    const power = 10 ** Math.floor(Math.log10(x));
+    const steps = [1, 2, 5, 10];
+    const fits = up ? steps.find((step) => step * power >= x) : steps.findLast((step) => step * power <= x);
+    return (fits ?? 1) * power;
+  }
+
   function scales(chart) {
     const y = { linear: {}, asinh: { distr: 4, asinh: chart.y.linear_below || 1 }, log: { distr: 3 } }[chart.y.scale];
     if (chart.y.scale === "linear" && chart.y.from_zero) y.range = (u, from, to) => [0, Math.max(to, 0) * 1.08 || 1];
     if (chart.y.scale === "asinh") y.range = (u, from, to) => [Math.min(from, -1) * 1.3, Math.max(to, 1) * 1.3];
-    if (chart.y.scale === "log") y.range = (u, from, to) => (from == null ? [0.1, 1] : [from / 1.25, to * 1.25]);
+    if (chart.y.scale === "log") y.range = (u, from, to) => (from == null ? [0.1, 1] : [snapped(from, false), snapped(to, true)]);
     const x = { time: false };
     const scattered = chart.series.every((series) => series.kind === "points");
     if (scattered) x.range = (u, from, to) => [from - 0.03 * (to - from || 1), to + 0.03 * (to - from || 1)];

@@ -223,6 +223,9 @@ fn print_step(step: &StepReport) {
             p.unit
         );
     }
+    if let Some(loss) = step.loss_watt {
+        anstream::println!("  it takes {loss:.0} W at rated voltage and synchronous speed");
+    }
     if !step.tied_with.is_empty() {
         let others = step.tied_with.join(", ");
         anstream::println!(

@@ -160,6 +160,7 @@ fn effect(step: &Place<'_>, k: usize) -> Markup {
             h2 id=(id) { (step.text("effect")) @if !step.text("form").is_empty() { " (" (step.text("form")) ")" } }
             p { "Seen when it is missing: " (step.text("symptom")) "." }
             (of_effect(&step.items("parameters")))
+            @if step.get("loss_watt").is_some() { p { "It takes " (shown(step, "loss_watt", decimals(0))) " W at rated voltage and synchronous speed." } }
             @if !ties.is_empty() {
                 p { strong { "As likely: " } @for (n, tie) in ties.iter().enumerate() { @if n > 0 { ", " } (tie.as_text()) } "." }
                 p { strong { "What separates them: " } (step.text("separating_test")) "." }
