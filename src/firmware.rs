@@ -3,7 +3,7 @@
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
-use board::{Display, LAMPS, MotorImage};
+use board::{Button, Display, LAMPS, MotorImage, Press};
 use embassy_executor::Spawner;
 use embassy_stm32::gpio::Input;
 use embassy_stm32::peripherals::IWDG;
@@ -45,6 +45,7 @@ async fn main(_spawner: Spawner) -> ! {
         wires: lamps,
         watchdog,
         button: board.button,
+        press: Button::default(),
         housekeeping: Housekeeping::new(board.housekeeping),
         telemetry,
         display: Display::default(),
@@ -144,6 +145,7 @@ struct Panel {
     wires: LampWires,
     watchdog: IndependentWatchdog<'static, IWDG>,
     button: Input<'static>,
+    press: Button,
     housekeeping: Housekeeping,
     telemetry: Telemetry,
     display: Display,
@@ -160,8 +162,10 @@ impl Panel {
         if self.blocks.is_multiple_of(HOUSEKEEPING_BLOCKS) {
             self.look_after_supply();
         }
-        if self.button.is_high() {
-            self.display.acknowledge();
+        match self.press.look(self.button.is_high()) {
+            Some(Press::Short) => self.display.acknowledge(),
+            Some(Press::Long) => self.display.set_latched(!self.display.is_latched()),
+            None => {}
         }
         let bright = (self.blocks / BLINK_BLOCKS).is_multiple_of(2);
         let lamps = self.with_instrument(lamps);

@@ -1,11 +1,13 @@
 #![cfg_attr(not(test), no_std)]
 //! What the board stores, shows and says: formats shared by the firmware and the host. No hardware.
 
+mod button;
 mod checksum;
 mod display;
 mod frame;
 mod image;
 
+pub use button::{Button, Press};
 pub use checksum::{crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, levels};
 pub use frame::{Frame, FrameError, MAX_FRAME_BYTES};

@@ -160,9 +160,14 @@ impl VirtualBoard {
         self.cpu.machine().tally
     }
 
-    /// Every instant that the firmware's converter took, in order.
+    /// Every instant that the firmware's converter took, in order; none after [`VirtualBoard::forget_taken`].
     pub fn taken(&mut self) -> &[RawSample] {
-        &self.cpu.machine().taken
+        self.cpu.machine().taken.as_deref().unwrap_or_default()
+    }
+
+    /// Keeps no samples from here on: an hour of them is half a gigabyte.
+    pub fn forget_taken(&mut self) {
+        self.cpu.machine().taken = None;
     }
 
     /// Takes what the firmware wrote to a debugger channel (0 is the log).

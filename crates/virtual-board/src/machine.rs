@@ -91,8 +91,8 @@ pub(crate) struct Machine {
     pub inputs: Box<dyn Inputs>,
     pub sample: RawSample,
     pub first_instant: Option<u64>,
-    /// Every instant whose conversion began, in order.
-    pub taken: Vec<RawSample>,
+    /// Every instant whose conversion began, in order; `None` when nobody wants them.
+    pub taken: Option<Vec<RawSample>>,
     /// Converter supply, mV.
     pub vdda_millivolt: u32,
     pub tally: Tally,
@@ -151,7 +151,7 @@ impl Machine {
             inputs,
             sample: RawSample::default(),
             first_instant: None,
-            taken: Vec::new(),
+            taken: Some(Vec::new()),
             vdda_millivolt: 3_300,
             tally: Tally::default(),
             event_register: false,
@@ -215,7 +215,9 @@ impl Machine {
         if ticked.trigger {
             if self.adc1.trigger(self.now) {
                 self.tally.conversions += 1;
-                self.taken.push(self.sample);
+                if let Some(taken) = &mut self.taken {
+                    taken.push(self.sample);
+                }
             } else {
                 self.tally.missed_triggers += 1;
             }

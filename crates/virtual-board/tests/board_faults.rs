@@ -5,7 +5,8 @@ mod common;
 use common::{LAMP_TEST_S, Sensors, board, firmware, host_lamps, scenario, watch};
 use monitor::RawSample;
 use motor::load::Load;
-use sim_host::scenario::Start;
+use motor::motor_file::Frame as MotorFrame;
+use sim_host::scenario::{Fault, Start};
 use virtual_board::{Cause, Inputs, VirtualBoard};
 
 const RUN: usize = 0;
@@ -185,4 +186,32 @@ fn the_model_of_exceptions_can_fail() {
         differs,
         "nobody noticed that floating-point registers were lost"
     );
+}
+
+#[test]
+fn latched_lamps_stay_until_the_button_is_pressed() {
+    let mut scenario = scenario(60.0);
+    let fault = Fault::percent("Rs", 50.0, MotorFrame::RotorFlux).expect("a known fault");
+    let (from_s, to_s) = (3.5, 4.5);
+    scenario.faults = vec![Fault {
+        from_s,
+        to_s,
+        ..fault
+    }];
+    let mut board = board(&scenario);
+    board.run(LAMP_TEST_S + 0.8).expect("a run");
+    board.press(true);
+    board.run(2.1).expect("a run");
+    board.press(false);
+    board.run(2.6).expect("a run");
+    let latched = board.lamps();
+    assert!(
+        latched[RUN] && latched[FAULT],
+        "a second after the fault: {latched:?}"
+    );
+    board.press(true);
+    board.run(0.1).expect("a run");
+    board.press(false);
+    board.run(0.1).expect("a run");
+    assert_eq!(board.lamps(), HEALTHY, "after the button");
 }

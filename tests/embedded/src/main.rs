@@ -8,9 +8,9 @@
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
+use core_on_target::CONFIG;
 use cortex_m_rt::entry;
 use monitor::{Monitor, MonitorState, RawSample};
-use core_on_target::CONFIG;
 
 #[entry]
 fn main() -> ! {

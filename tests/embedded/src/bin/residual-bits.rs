@@ -2,17 +2,21 @@
 //! host to standard output. The two must be the same text.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use monitor::Report;
-
 /// One line per report.
 macro_rules! print_report {
     ($print:path, $report:expr) => {{
-        let report: &Report = $report;
+        let report: &monitor::Report = $report;
         let r = report.residuals.map_or([0; 6], |x| {
             [x.r[0], x.r[1], x.r[2], x.r[3], x.e_d, x.e_q].map(f32::to_bits)
         });
         let speed = report.window.map_or(0, |w| w.omega_sync.to_bits());
-        $print!("{} {:08x?} {:08x} {:?}", report.sample_index, r, speed, report.lamps);
+        $print!(
+            "{} {:08x?} {:08x} {:?}",
+            report.sample_index,
+            r,
+            speed,
+            report.lamps
+        );
     }};
 }
 
@@ -20,7 +24,6 @@ macro_rules! print_report {
 mod target {
     use cortex_m_rt::entry;
     use cortex_m_semihosting::{debug, hprintln};
-    use monitor::Report;
 
     #[entry]
     fn main() -> ! {

@@ -1,0 +1,64 @@
+//! One button with two meanings, by how long it is held.
+
+/// Looks per 3.2 ms block that a contact may bounce (16 ms).
+const DEBOUNCE: u16 = 5;
+/// Looks after which a press is long (2 s).
+const LONG: u16 = 625;
+
+/// What a person did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Press {
+    /// Pressed and released: acknowledge.
+    Short,
+    /// Held for two seconds: the other lamp mode. Comes while the button is still held.
+    Long,
+}
+
+/// The button's memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Button {
+    held: u16,
+}
+
+impl Button {
+    /// Takes one look, every 3.2 ms.
+    pub fn look(&mut self, pressed: bool) -> Option<Press> {
+        let before = self.held;
+        if pressed {
+            self.held = before.saturating_add(1);
+            return (self.held == LONG).then_some(Press::Long);
+        }
+        self.held = 0;
+        (DEBOUNCE..LONG).contains(&before).then_some(Press::Short)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn presses(looks: impl IntoIterator<Item = (bool, u32)>) -> Vec<Press> {
+        let mut button = Button::default();
+        let each = looks
+            .into_iter()
+            .flat_map(|(pressed, times)| (0..times).map(move |_| pressed));
+        each.filter_map(|pressed| button.look(pressed)).collect()
+    }
+
+    #[test]
+    fn a_bounce_is_nothing() {
+        assert_eq!(presses([(true, 4), (false, 1), (true, 4), (false, 9)]), []);
+    }
+
+    #[test]
+    fn a_press_counts_when_it_ends() {
+        assert_eq!(presses([(true, 30)]), []);
+        assert_eq!(presses([(true, 30), (false, 9)]), [Press::Short]);
+    }
+
+    #[test]
+    fn a_long_press_counts_once_and_is_no_short_one() {
+        assert_eq!(presses([(true, 5_000), (false, 9)]), [Press::Long]);
+        assert_eq!(presses([(true, 80_000), (false, 9)]), [Press::Long]);
+    }
+}
