@@ -71,7 +71,7 @@ pub struct Window {
     pub omega_mech: Option<f32>,
     /// Mean brake torque, N m.
     pub tau_load: Option<f32>,
-    /// Change of the current, seen from the voltage, from the first to the last cycle, A.
+    /// Largest change of the current, seen from the voltage, from the first cycle to any later one, A.
     pub current_change: f32,
     /// Change of the mechanical speed from the first to the last cycle, rad/s.
     pub speed_change: f32,
@@ -116,7 +116,11 @@ impl WindowState {
         window.span = span * t_sample;
         window.omega_sync =
             (TAU * (length - 1) as f32 + phase_advance(oldest, newest)) / window.span;
-        window.current_change = magnitude(seen_from_voltage(newest) - seen_from_voltage(oldest));
+        let start = seen_from_voltage(oldest);
+        // The largest of all cycles, not the last alone: a step inside the window may come and go.
+        window.current_change = cycles.iter().fold(0.0, |largest: f32, cycle| {
+            largest.max(magnitude(seen_from_voltage(cycle) - start))
+        });
         if let (Some(first), Some(last)) = (oldest.speed.omega_mech, newest.speed.omega_mech) {
             window.speed_change = last - first;
         }

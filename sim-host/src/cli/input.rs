@@ -41,6 +41,9 @@ pub struct InputArgs {
     /// Numbers are written 3,7
     #[arg(long)]
     decimal_comma: bool,
+    /// Pulses of the encoder in one turn, where the speed column holds its counts
+    #[arg(long, value_name = "N")]
+    pulses_per_revolution: Option<u32>,
     /// The sidecar to use instead of the one beside the recording
     #[arg(long, value_name = "FILE")]
     sidecar: Option<PathBuf>,
@@ -52,6 +55,7 @@ impl InputArgs {
             line_voltages: self.line_voltages.then_some(true),
             skip_missing: self.skip_missing.then_some(true),
             decimal_comma: self.decimal_comma.then_some(true),
+            encoder_pulses_per_revolution: self.pulses_per_revolution,
             sidecar: self.sidecar.clone(),
             ..Mapping::default()
         };

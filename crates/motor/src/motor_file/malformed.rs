@@ -78,7 +78,7 @@ const CASES: [Case; 48] = [
     case("unknown frame", (LAST, "load_friction_nm_s = 0\n[monitor]\nframe = \"rotor\""), 20, "monitor.frame", "\"rotor-flux\", \"voltage\""),
     case("three thresholds", (LAST, "load_friction_nm_s = 0\n[monitor]\nthreshold_percent = [1, 2, 3]"), 20, "monitor.threshold_percent", "has 3 values: write 4"),
     case("threshold zero", (LAST, "load_friction_nm_s = 0\n[monitor]\nthreshold_percent = [1, 2, 3, 0]"), 20, "monitor.threshold_percent", "above 0"),
-    case("hysteresis above one", (LAST, "load_friction_nm_s = 0\n[monitor]\nhysteresis = 1.5"), 20, "monitor.hysteresis", "at most 1"),
+    case("hysteresis above one", (LAST, "load_friction_nm_s = 0\n[monitor]\nhysteresis = 1.5"), 20, "monitor.hysteresis", "0.1"),
     case("current range below the rated amplitude", (LAST, "load_friction_nm_s = 0\n[sensors]\ncurrent_full_scale_amp = 5.0"), 20, "sensors.current_full_scale_amp", "an amplitude and not an rms value"),
     case("effect without a name", (LAST, "load_friction_nm_s = 0\n[[effects]]\nk = 1.0"), 19, "effects[1].name", "add the name of the effect"),
     case("effect parameter not finite", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"core-loss\"\nk = nan"), 21, "effects[1].k", "not a finite number"),

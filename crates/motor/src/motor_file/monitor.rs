@@ -45,11 +45,11 @@ pub struct MonitorSettings {
     pub nominal_field_current_amp: Option<f64>,
     /// Thresholds of r1..r4, percent of their scales.
     pub threshold_percent: [f64; 4],
-    /// Supply cycles in one window, 1..=200.
+    /// Supply cycles in one window, 2..=10.
     pub window_cycles: u32,
-    /// Windows in a row before a lamp lights or goes out, 1..=1000.
+    /// Windows in a row before a lamp lights or goes out, 1..=255.
     pub persistence_windows: u32,
-    /// Fraction of its threshold below which a lit lamp goes out, above 0 and at most 1.
+    /// Fraction of its threshold below which a lit lamp goes out, 0.1..=1.
     pub hysteresis: f64,
 }
 
@@ -87,9 +87,9 @@ pub(super) const FIELD_CURRENTS: [(&str, FieldCurrent); 2] = [
 ];
 const FIELD_CURRENT: Bounds = Bounds::above(0.0, 1e6, "A");
 const THRESHOLD: Bounds = Bounds::above(0.0, 1000.0, "percent").hint("of the residual's scale");
-const CYCLES: Bounds = Bounds::between(1.0, 200.0, "cycles");
-const WINDOWS: Bounds = Bounds::between(1.0, 1000.0, "windows");
-const HYSTERESIS: Bounds = Bounds::above(0.0, 1.0, "").hint("a fraction of the threshold");
+const CYCLES: Bounds = Bounds::between(2.0, 10.0, "cycles");
+const WINDOWS: Bounds = Bounds::between(1.0, 255.0, "windows");
+const HYSTERESIS: Bounds = Bounds::between(0.1, 1.0, "").hint("a fraction of the threshold");
 
 pub(super) fn read_load(root: &Section<'_>) -> Option<LoadKind> {
     let Some(section) = root.optional_section("load")? else {
