@@ -120,9 +120,15 @@ fn verdict(found: &Explanation, steps: &[StepReport]) -> Verdict {
 
 /// Accepted effects, and the effects that explain a moved parameter as well.
 fn steps(study: &Study, found: &Explanation) -> Vec<StepReport> {
+    let number = found.steps.len();
+    let names: Vec<&str> = (0..number)
+        .map(|k| descriptor(found.last(), k).name)
+        .collect();
     let accepted = found.steps.iter().enumerate().map(|(k, step)| {
         let mut report = step_report(study, &step.before, found.last(), &step.trial, k);
         report.tied_with.clone_from(&step.tied);
+        // What was accepted beside it was no look-alike: both are there.
+        report.tied_with.retain(|t| !names.contains(&t.as_str()));
         report
     });
     let contested = found.contests.iter().filter_map(|(k, candidates)| {
