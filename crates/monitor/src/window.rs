@@ -71,7 +71,8 @@ pub struct Window {
     pub omega_mech: Option<f32>,
     /// Mean brake torque, N m.
     pub tau_load: Option<f32>,
-    /// Largest change of the current, seen from the voltage, from the first cycle to any later one, A.
+    /// Change of the current, seen from the voltage, from the first to the last cycle, A; an excursion in between
+    /// counts with its share of the window.
     pub current_change: f32,
     /// Change of the mechanical speed from the first to the last cycle, rad/s.
     pub speed_change: f32,
@@ -116,16 +117,20 @@ impl WindowState {
         window.span = span * t_sample;
         window.omega_sync =
             (TAU * (length - 1) as f32 + phase_advance(oldest, newest)) / window.span;
-        let start = seen_from_voltage(oldest);
-        // The largest of all cycles, not the last alone: a step inside the window may come and go.
-        window.current_change = cycles.iter().fold(0.0, |largest: f32, cycle| {
-            largest.max(magnitude(seen_from_voltage(cycle) - start))
-        });
+        window.current_change = current_change(cycles, oldest, newest);
         if let (Some(first), Some(last)) = (oldest.speed.omega_mech, newest.speed.omega_mech) {
             window.speed_change = last - first;
         }
         Some(window)
     }
+}
+
+/// From the first cycle to the last, or what an excursion in between adds to the window's mean, whichever is larger.
+fn current_change(cycles: &[Cycle], oldest: &Cycle, newest: &Cycle) -> f32 {
+    let start = seen_from_voltage(oldest);
+    let change = |cycle: &Cycle| magnitude(seen_from_voltage(cycle) - start);
+    let largest = cycles.iter().map(change).fold(0.0, f32::max);
+    change(newest).max(largest / cycles.len() as f32)
 }
 
 fn mean(cycles: &[Cycle]) -> Window {
