@@ -25,8 +25,11 @@ enum Block {
     System,
 }
 
-/// Block, first address, size, and the clock enable bit that it needs.
-const MAP: &[(Block, u32, u32, Option<(u32, u32)>)] = &[
+/// Register and bit in RCC that let a block answer.
+type Enable = (u32, u32);
+
+/// Block, first address, size, and the clock enable that it needs.
+const MAP: &[(Block, u32, u32, Option<Enable>)] = &[
     (Block::Tim3, 0x4000_0400, 0x400, Some((APB1ENR1, 1))),
     (Block::Tim4, 0x4000_0800, 0x400, Some((APB1ENR1, 2))),
     (Block::Iwdg, 0x4000_3000, 0x400, None),
