@@ -32,6 +32,10 @@ pub trait Hooks {
     /// States that the effects add.
     type Extra: Extra;
 
+    /// Whether [`Hooks::held_voltage`] is in use. Adding a zero is not free: it may not be optimised away,
+    /// because `-0.0 + 0.0` is `0.0`.
+    const HOLDS: bool = false;
+
     /// Voltage added for a whole step, decided once at its beginning (dead time: the inverter
     /// samples the sign of the current once per period), V.
     #[inline(always)]

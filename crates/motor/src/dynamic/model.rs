@@ -121,13 +121,14 @@ impl<H: Hooks> Dynamic<H> {
         load: impl Fn(f64, f64) -> f64,
     ) {
         let held = self.hooks.held_voltage(&self.linear, t, state);
+        let driven = |u: Complex64| if H::HOLDS { u + held } else { u };
         let (t_mid, t_end) = (t + 0.5 * h, t + h);
-        let u_mid = supply(t_mid) + held;
+        let u_mid = driven(supply(t_mid));
         let at = |t: f64, x: &DynamicState<H::Extra>, u| self.rate(t, x, u, load(t, x.omega_mech));
-        let k1 = at(t, state, supply(t) + held);
+        let k1 = at(t, state, driven(supply(t)));
         let k2 = at(t_mid, &state.advanced(0.5 * h, &k1), u_mid);
         let k3 = at(t_mid, &state.advanced(0.5 * h, &k2), u_mid);
-        let k4 = at(t_end, &state.advanced(h, &k3), supply(t_end) + held);
+        let k4 = at(t_end, &state.advanced(h, &k3), driven(supply(t_end)));
         let inner = k1.advanced(2.0, &k2).advanced(2.0, &k3).advanced(1.0, &k4);
         *state = state.advanced(h / 6.0, &inner);
     }

@@ -205,6 +205,8 @@ fn place(effects: &[EffectConfig]) -> Vec<Active> {
 impl<const N: usize> Hooks for EffectStack<N> {
     type Extra = [f64; N];
 
+    const HOLDS: bool = true;
+
     #[inline]
     fn held_voltage(&self, linear: &Linear, t: f64, state: &DynamicState<[f64; N]>) -> Complex64 {
         let mut u = Complex64::ZERO;
