@@ -1,4 +1,4 @@
-//! Physical effects: one file each, one line in [`effects!`] below to register it.
+//! Physical effects: one file each, one line in the macro `effects!` below to register it.
 //!
 //! An effect is stateless; its parameters are a slice in the order of its [`Descriptor`]. Its steady-state term
 //! ([`SteadyEffect`]) needs neither `std` nor allocation and works in `f32` or `f64`; its dynamic term
