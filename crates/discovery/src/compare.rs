@@ -143,7 +143,7 @@ fn state(study: &Study, rows: &Range<usize>) -> String {
     if step > 0.1 * rated.torque || stepped {
         return "step".to_owned();
     }
-    let round = |x: f64| (x / 5.0).round() * 5.0;
+    let round = |x: f64| (x / 5.0).round() * 5.0 + 0.0; // -0 becomes 0: one region, not two
     format!("load {:.0} %, voltage {:.0} %", round(load), round(voltage))
 }
 
