@@ -1,0 +1,76 @@
+//! Where the commands of a page run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::pieces::File;
+use crate::{PROMPT, root};
+
+/// What the commands of the documentation may read.
+const INPUTS: [&str; 3] = ["motors", "sim-host/scenarios", "tests/data"];
+
+/// A folder for one run, with copies of the inputs, removed at the end.
+pub struct Workplace(PathBuf);
+
+impl Workplace {
+    /// A folder of this name with the inputs.
+    pub fn new(name: &str) -> Workplace {
+        let folder =
+            std::env::temp_dir().join(format!("drivemon-docs-{name}-{}", std::process::id()));
+        for input in INPUTS {
+            copy(&root().join(input), &folder.join(input));
+        }
+        Workplace(folder)
+    }
+
+    /// What a command prints; comments after two blanks and `#` are for the reader.
+    pub fn run(&self, command: &str) -> Vec<String> {
+        let arguments = command.trim_start_matches(PROMPT).split("  #").next();
+        let output = Command::new(env!("CARGO_BIN_EXE_drivemon"))
+            .args(arguments.unwrap_or_default().split_whitespace())
+            .current_dir(&self.0)
+            .env("NO_COLOR", "1")
+            .output()
+            .expect("the program starts");
+        let code = output.status.code();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(matches!(code, Some(0..=3)), "{command}: {code:?}\n{errors}");
+        let text = String::from_utf8_lossy(&output.stdout).into_owned() + &errors;
+        text.trim_end()
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect()
+    }
+
+    /// Writes a file that a page shows.
+    pub fn write(&self, file: &File) {
+        let before = file.after.as_ref().map(|base| self.0.join(base));
+        let before = before.map(|path| fs::read_to_string(path).expect("a text beside the page"));
+        let text = before.unwrap_or_default() + &file.text;
+        let path = self.0.join(&file.path);
+        fs::create_dir_all(path.parent().expect("in a folder")).expect("room for a folder");
+        fs::write(path, text).expect("writable");
+    }
+}
+
+impl Drop for Workplace {
+    fn drop(&mut self) {
+        // A leftover in the folder for temporary files disturbs no later run.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Copies a folder.
+pub fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder for temporary files");
+    for entry in fs::read_dir(from).expect("part of the source tree") {
+        let path = entry.expect("readable").path();
+        let target = to.join(path.file_name().expect("named"));
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).expect("room for a copy");
+        }
+    }
+}
