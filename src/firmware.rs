@@ -3,7 +3,7 @@
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
-use board::{Button, Display, LAMPS, MotorImage, Press};
+use board::{Button, Calibration, Display, LAMPS, Press};
 use embassy_executor::Spawner;
 use embassy_stm32::gpio::Input;
 use embassy_stm32::peripherals::IWDG;
@@ -11,7 +11,9 @@ use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_time::{Duration, Timer};
 use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};
 
+use crate::commissioning::Commissioning;
 use crate::hardware::board::{Board, clocks};
+use crate::hardware::flash_store;
 use crate::hardware::housekeeping::{Housekeeping, ResetCause, is_vdda_credible};
 use crate::hardware::lamps::Lamps as LampWires;
 use crate::hardware::sampling::{Acquisition, Block, Buffers, Gap};
@@ -48,22 +50,18 @@ async fn main(_spawner: Spawner) -> ! {
         press: Button::default(),
         housekeeping: Housekeeping::new(board.housekeeping),
         telemetry,
+        // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
+        commissioning: Commissioning::new(black_box(&IMAGE), flash_store::open(board.flash)),
         display: Display::default(),
         instrument_faulty: false,
         vdda_millivolt: 0,
         blocks: 0,
     };
     panel.look_after_supply();
-    // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
-    match configured_monitor(black_box(&IMAGE)) {
-        Some(monitor) => run(&monitor, panel, board.sources).await,
+    match panel.commissioning.monitor() {
+        Some(monitor) => run(monitor, panel, board.sources).await,
         None => panel.refuse().await,
     }
-}
-
-fn configured_monitor(image: &MotorImage) -> Option<Monitor> {
-    let config = image.config().ok()?;
-    Monitor::new(config).ok()
 }
 
 /// Each lamp alone, in order, so that a person sees that every one works.
@@ -77,9 +75,9 @@ async fn test_lamps(wires: &mut LampWires, watchdog: &mut IndependentWatchdog<'s
     watchdog.pet();
 }
 
-/// Samples to lamps. Every gap in the samples ends in a fresh acquisition.
+/// Samples to lamps. Every gap in the samples ends in a fresh acquisition, and every calibration in a fresh monitor.
 async fn run(
-    monitor: &Monitor,
+    mut monitor: Monitor,
     mut panel: Panel,
     mut sources: crate::hardware::sampling::Sources,
 ) -> ! {
@@ -91,8 +89,8 @@ async fn run(
     };
     loop {
         let mut acquisition = Acquisition::start(&mut sources, &mut buffers);
-        let gap = watch(
-            monitor,
+        let pause = watch(
+            &monitor,
             &mut state,
             &mut acquisition,
             &mut panel,
@@ -100,23 +98,35 @@ async fn run(
         )
         .await;
         drop(acquisition);
-        defmt::warn!("samples are missing: {}", gap);
+        match pause {
+            Pause::Gap(gap) => defmt::warn!("samples are missing: {}", gap),
+            Pause::Learnt(calibration) => {
+                panel.commissioning.store(&calibration);
+                monitor = panel.commissioning.monitor().unwrap_or(monitor);
+            }
+        }
         state.resume_after_gap();
     }
 }
 
-/// Judges block after block until samples are missing.
+/// Why judging stops for a moment.
+enum Pause {
+    Gap(Gap),
+    Learnt(Calibration),
+}
+
+/// Judges block after block until samples are missing or something was learnt.
 async fn watch(
     monitor: &Monitor,
     state: &mut MonitorState,
     acquisition: &mut Acquisition<'_>,
     panel: &mut Panel,
     lamps: &mut Lamps,
-) -> Gap {
+) -> Pause {
     let mut block = Block::new();
     loop {
         if let Err(gap) = acquisition.read(&mut block).await {
-            return gap;
+            return Pause::Gap(gap);
         }
         if panel.blocks >= INHIBITED_BLOCKS
             && let Some(report) = process_block(monitor, state, &block)
@@ -124,6 +134,9 @@ async fn watch(
             *lamps = report.lamps;
             panel.display.observe(lamps);
             panel.telemetry.send(&report, panel.vdda_millivolt as u16);
+            if let Some(calibration) = panel.commissioning.observe(&report, monitor) {
+                return Pause::Learnt(calibration);
+            }
         }
         panel.after_block(lamps);
     }
@@ -148,6 +161,7 @@ struct Panel {
     press: Button,
     housekeeping: Housekeeping,
     telemetry: Telemetry,
+    commissioning: Commissioning,
     display: Display,
     instrument_faulty: bool,
     vdda_millivolt: u32,
@@ -162,14 +176,26 @@ impl Panel {
         if self.blocks.is_multiple_of(HOUSEKEEPING_BLOCKS) {
             self.look_after_supply();
         }
+        self.obey_button();
+        let bright = (self.blocks / BLINK_BLOCKS).is_multiple_of(2);
+        let lamps = self.with_instrument(&self.commissioning.overlay(lamps));
+        self.wires.set(self.display.levels(&lamps, bright));
+    }
+
+    fn obey_button(&mut self) {
         match self.press.look(self.button.is_high()) {
-            Some(Press::Short) => self.display.acknowledge(),
+            Some(Press::Short) => {
+                self.display.acknowledge();
+                self.commissioning.acknowledge();
+            }
             Some(Press::Long) => self.display.set_latched(!self.display.is_latched()),
+            Some(Press::VeryLong) => {
+                // On the way here the press was a long one; the lamp mode stays what it was.
+                self.display.set_latched(!self.display.is_latched());
+                self.commissioning.begin();
+            }
             None => {}
         }
-        let bright = (self.blocks / BLINK_BLOCKS).is_multiple_of(2);
-        let lamps = self.with_instrument(lamps);
-        self.wires.set(self.display.levels(&lamps, bright));
     }
 
     /// A board that cannot measure says so, whatever its numbers say about the motor.

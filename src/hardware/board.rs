@@ -19,7 +19,7 @@
 //! | PC13 | button B1 of the NUCLEO | high is pressed |
 
 use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
-use embassy_stm32::peripherals::{ADC5, IWDG};
+use embassy_stm32::peripherals::{ADC5, FLASH, IWDG};
 use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk, mux};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::{Config, Peri, Peripherals};
@@ -42,6 +42,8 @@ pub struct Board {
     pub button: Input<'static>,
     /// Converter of the chip's own reference.
     pub housekeeping: Peri<'static, ADC5>,
+    /// Flash with the calibration.
+    pub flash: Peri<'static, FLASH>,
     /// Watchdog.
     pub watchdog: Peri<'static, IWDG>,
 }
@@ -93,6 +95,7 @@ impl Board {
             ]),
             button: Input::new(p.PC13, Pull::None),
             housekeeping: p.ADC5,
+            flash: p.FLASH,
             watchdog: p.IWDG,
         }
     }

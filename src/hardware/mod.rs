@@ -2,6 +2,7 @@
 
 pub mod board;
 pub mod encoder;
+pub mod flash_store;
 pub mod housekeeping;
 pub mod lamps;
 pub mod sampling;

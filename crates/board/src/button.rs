@@ -1,9 +1,11 @@
-//! One button with two meanings, by how long it is held.
+//! One button with three meanings, by how long it is held.
 
 /// Looks per 3.2 ms block that a contact may bounce (16 ms).
 const DEBOUNCE: u16 = 5;
 /// Looks after which a press is long (2 s).
 const LONG: u16 = 625;
+/// Looks after which a press is very long (8 s).
+const VERY_LONG: u16 = 2_500;
 
 /// What a person did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +14,8 @@ pub enum Press {
     Short,
     /// Held for two seconds: the other lamp mode. Comes while the button is still held.
     Long,
+    /// Held for eight seconds: learn. Comes after [`Press::Long`], while the button is still held.
+    VeryLong,
 }
 
 /// The button's memory.
@@ -26,7 +30,11 @@ impl Button {
         let before = self.held;
         if pressed {
             self.held = before.saturating_add(1);
-            return (self.held == LONG).then_some(Press::Long);
+            return match self.held {
+                LONG if before < LONG => Some(Press::Long),
+                VERY_LONG if before < VERY_LONG => Some(Press::VeryLong),
+                _ => None,
+            };
         }
         self.held = 0;
         (DEBOUNCE..LONG).contains(&before).then_some(Press::Short)
@@ -58,7 +66,13 @@ mod tests {
 
     #[test]
     fn a_long_press_counts_once_and_is_no_short_one() {
-        assert_eq!(presses([(true, 5_000), (false, 9)]), [Press::Long]);
-        assert_eq!(presses([(true, 80_000), (false, 9)]), [Press::Long]);
+        assert_eq!(presses([(true, 2_499), (false, 9)]), [Press::Long]);
+    }
+
+    #[test]
+    fn a_very_long_press_is_a_long_one_first_and_counts_once() {
+        let both = [Press::Long, Press::VeryLong];
+        assert_eq!(presses([(true, 2_500), (false, 9)]), both);
+        assert_eq!(presses([(true, 80_000), (false, 9)]), both);
     }
 }

@@ -67,6 +67,11 @@ impl MotorImage {
         Ok(MotorImage(words))
     }
 
+    /// What tells these constants from any others: their checksum.
+    pub fn identification(&self) -> u32 {
+        self.0[IMAGE_WORDS - 1]
+    }
+
     /// Checks and unpacks an image. Ranges are checked by [`monitor::Monitor::new`].
     ///
     /// # Errors

@@ -2,13 +2,20 @@
 //! What the board stores, shows and says: formats shared by the firmware and the host. No hardware.
 
 mod button;
+mod calibration;
 mod checksum;
 mod display;
 mod frame;
 mod image;
+mod learn;
 
 pub use button::{Button, Press};
+pub use calibration::{
+    COVARIANCES, Calibration, CalibrationSource, ChannelTrim, Healthy, Loaded, PAGE_BYTES, PAGES,
+    RECORD_BYTES, Store, StoreError,
+};
 pub use checksum::{crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, levels};
 pub use frame::{Frame, FrameError, MAX_FRAME_BYTES};
 pub use image::{IMAGE_WORDS, ImageError, MotorImage};
+pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal, calibrated};

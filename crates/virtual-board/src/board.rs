@@ -4,7 +4,7 @@ use monitor::RawSample;
 use unicorn_engine::uc_error;
 
 use crate::CORE_HZ;
-use crate::cpu::{Cpu, FLASH, RAM};
+use crate::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE};
 use crate::elf::Firmware;
 use crate::gpio::Pin;
 use crate::machine::{Cause, Inputs, Machine, Tally};
@@ -50,6 +50,14 @@ pub const LAMPS: [(&str, Pin); 9] = [
 ];
 const BUTTON: Pin = Pin(2, 13);
 
+/// The state of a board at one moment.
+pub struct Snapshot {
+    machine: Machine,
+    registers: unicorn_engine::Context,
+    ram: Vec<u8>,
+    flash: Vec<u8>,
+}
+
 /// A board with power on.
 pub struct VirtualBoard {
     cpu: Cpu,
@@ -93,6 +101,10 @@ impl VirtualBoard {
         if machine.nvic.reset_requested {
             return self.reset(Cause::Software);
         }
+        if machine.flash.has_failed {
+            let cause = machine.flash_failure;
+            return self.reset(cause);
+        }
         machine.next_event = machine.horizon();
         self.cpu.enter_exception()?;
         self.cpu.run()
@@ -104,7 +116,15 @@ impl VirtualBoard {
     /// The emulator refuses.
     pub fn reset(&mut self, cause: Cause) -> Result<(), BoardError> {
         self.cpu.machine().reset(cause);
+        self.cpu.guard_flash()?;
         self.cpu.reset()
+    }
+
+    /// Resets the chip for `cause` within a step of flash (a word programmed, a page erased), after `steps` whole ones.
+    pub fn reset_within_flash_step(&mut self, steps: u32, cause: Cause) {
+        let machine = self.cpu.machine();
+        machine.flash_failure = cause;
+        machine.flash.fail_after(steps);
     }
 
     /// Whether the lamp's wire is driven high now. Unknown names are dark.
@@ -136,6 +156,50 @@ impl VirtualBoard {
     /// Sets the converters' supply, mV (3300 is nominal, > 0).
     pub fn set_vdda(&mut self, millivolt: u32) {
         self.cpu.machine().vdda_millivolt = millivolt.max(1);
+    }
+
+    /// Keeps the state of the whole board. Inputs are shared: asked for an earlier instant again, they must answer alike.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn snapshot(&mut self) -> Result<Snapshot, BoardError> {
+        Ok(Snapshot {
+            machine: self.cpu.machine().clone(),
+            registers: self.cpu.core.context_init()?,
+            ram: self
+                .cpu
+                .core
+                .mem_read_as_vec(u64::from(RAM), RAM_SIZE as usize)?,
+            flash: self.read_flash(FLASH, FLASH_SIZE as usize)?,
+        })
+    }
+
+    /// Goes back to a snapshot of this board.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), BoardError> {
+        *self.cpu.machine() = snapshot.machine.clone();
+        self.cpu.core.context_restore(&snapshot.registers)?;
+        self.cpu.core.mem_write(u64::from(RAM), &snapshot.ram)?;
+        self.cpu.core.mem_write(u64::from(FLASH), &snapshot.flash)?;
+        self.cpu.guard_flash()
+    }
+
+    /// Writes to flash as a programmer does, before power-up or a reset.
+    ///
+    /// # Errors
+    /// Addresses outside flash.
+    pub fn flash(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
+        Ok(self.cpu.core.mem_write(u64::from(address), bytes)?)
+    }
+
+    /// Content of flash from `address` on.
+    ///
+    /// # Errors
+    /// Addresses outside flash.
+    pub fn read_flash(&mut self, address: u32, length: usize) -> Result<Vec<u8>, BoardError> {
+        Ok(self.cpu.core.mem_read_as_vec(u64::from(address), length)?)
     }
 
     /// Flips bits of the flash word at `address`, as ageing does.

@@ -7,12 +7,16 @@ use unicorn_engine::{Arch, Mode, Prot, RegisterARM as R, Unicorn, uc_error};
 
 use crate::board::BoardError;
 use crate::bus::{FACTORY_VALUE, VREFINT_CAL_ADDRESS};
+use crate::flash::Step;
 use crate::machine::Machine;
 
 pub(crate) type Core = Unicorn<'static, Machine>;
 
 pub(crate) const FLASH: u32 = 0x0800_0000;
 pub(crate) const FLASH_SIZE: u32 = 512 * 1024;
+/// The last two pages, which the program erases and programs.
+const CALIBRATION: u32 = FLASH + FLASH_SIZE - 2 * crate::flash::PAGE;
+const CALIBRATION_SIZE: u64 = 2 * crate::flash::PAGE as u64;
 pub(crate) const RAM: u32 = 0x2000_0000;
 pub(crate) const RAM_SIZE: u32 = 128 * 1024;
 /// Where a return from an exception "jumps" to; a page of NOPs, so that the jump itself succeeds.
@@ -144,18 +148,26 @@ impl Cpu {
         Ok(())
     }
 
-    /// Takes a waiting interrupt unless PRIMASK forbids it.
+    /// Takes the non-maskable interrupt of the flash, or a waiting interrupt unless PRIMASK forbids it.
     pub fn enter_exception(&mut self) -> Result<(), BoardError> {
+        let machine = self.machine();
+        if machine.flash.interrupt() && machine.nvic.take_non_maskable() {
+            return self.enter(2);
+        }
         if self.core.reg_read(R::PRIMASK)? & 1 == 1 {
             return Ok(());
         }
         let Some(irq) = self.machine().nvic.take() else {
             return Ok(());
         };
+        self.enter(16 + irq as u32)
+    }
+
+    fn enter(&mut self, exception: u32) -> Result<(), BoardError> {
         self.machine().tally.exceptions += 1;
         let with_floats = self.core.reg_read(R::CONTROL)? & FPCA != 0;
         self.push_frame(with_floats)?;
-        let vector = self.machine().nvic.vector_table() + 4 * (16 + irq as u32);
+        let vector = self.machine().nvic.vector_table() + 4 * exception;
         let vector = if vector < FLASH {
             vector + FLASH
         } else {
@@ -244,6 +256,19 @@ impl Cpu {
         Ok(())
     }
 
+    /// Makes reads of the calibration's pages visible while a double word in flash is broken: a hook on every read would
+    /// slow all of them down.
+    pub fn guard_flash(&mut self) -> Result<(), BoardError> {
+        let readable = if self.machine().flash.has_broken() {
+            Prot::NONE
+        } else {
+            Prot::READ
+        };
+        self.core
+            .mem_protect(u64::from(CALIBRATION), CALIBRATION_SIZE, readable)?;
+        Ok(())
+    }
+
     pub fn word(&self, address: u32) -> Result<u32, BoardError> {
         let mut bytes = [0; 4];
         self.core.mem_read(u64::from(address), &mut bytes)?;
@@ -323,10 +348,26 @@ fn write_bus(core: &mut Unicorn<'_, Machine>, address: u32, _size: usize, value:
 }
 
 fn erase(core: &mut Unicorn<'_, Machine>, page: u32) {
-    let blank = [0xFF; crate::flash::PAGE as usize];
-    if let Err(error) = core.mem_write(u64::from(FLASH + page), &blank) {
-        let machine = core.get_data_mut();
-        machine.failure = Some(format!("erasing at {page:#x}: {error:?}"));
+    let kept = match core.get_data_mut().flash.step() {
+        Step::Whole => 0,
+        Step::Torn(kept) => kept,
+        Step::Nothing => return,
+    };
+    let address = FLASH + page;
+    let size = crate::flash::PAGE as usize;
+    let erased = core
+        .mem_read_as_vec(u64::from(address), size)
+        .and_then(|mut bytes| {
+            for (k, byte) in bytes.iter_mut().enumerate() {
+                *byte |= !kept.rotate_left(k as u32) as u8;
+            }
+            core.mem_write(u64::from(address), &bytes)
+        });
+    let machine = core.get_data_mut();
+    match (erased, kept) {
+        (Err(error), _) => machine.failure = Some(format!("erasing at {page:#x}: {error:?}")),
+        (Ok(()), 0) => machine.flash.mend_page(address),
+        (Ok(()), _) => {}
     }
 }
 
@@ -375,20 +416,43 @@ fn hook_blocks(core: &mut Core) -> Result<(), uc_error> {
 /// The array is written by the program only while the interface is open, and only from 1 to 0.
 fn hook_flash(core: &mut Core) -> Result<(), uc_error> {
     use unicorn_engine::{HookType, MemType};
-    let hook =
+    let write =
         |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, size: usize, value: i64| {
             let in_flash = (u64::from(FLASH)..u64::from(FLASH + FLASH_SIZE)).contains(&address);
             if !in_flash || !core.get_data().flash.is_programming() {
                 core.get_data_mut().failure = Some(format!("write to {address:#x}"));
                 return false;
             }
-            let mut old = vec![0; size];
-            let read = core.mem_read(address, &mut old);
-            let new = value.to_le_bytes();
-            let anded: Vec<u8> = old.iter().zip(new).map(|(old, new)| old & new).collect();
-            core.get_data_mut().flash.programmed();
-            read.and_then(|()| core.mem_write(address, &anded)).is_ok()
+            program(core, address, &value.to_le_bytes()[..size.min(8)]).is_ok()
         };
-    core.add_mem_hook(HookType::MEM_WRITE_PROT, 1, 0, hook)
+    core.add_mem_hook(HookType::MEM_WRITE_PROT, 1, 0, write)?;
+    let read = |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, _: usize, _: i64| {
+        let machine = core.get_data_mut();
+        if machine.flash.check(address as u32) {
+            machine.next_event = machine.now;
+        }
+        true
+    };
+    core.add_mem_hook(HookType::MEM_READ_PROT, 1, 0, read)
         .map(|_| ())
+}
+
+fn program(core: &mut Unicorn<'_, Machine>, address: u64, new: &[u8]) -> Result<(), uc_error> {
+    let old = core.mem_read_as_vec(address, new.len())?;
+    let kept = match core.get_data_mut().flash.step() {
+        Step::Whole => 0,
+        Step::Torn(kept) => kept,
+        Step::Nothing => u32::MAX,
+    };
+    let bits = old.iter().zip(new).enumerate();
+    let result: Vec<u8> = bits
+        .map(|(k, (old, new))| old & (new | kept.rotate_left(8 * k as u32) as u8))
+        .collect();
+    let machine = core.get_data_mut();
+    machine.flash.programmed();
+    if machine.flash.has_failed {
+        machine.flash.break_word(address as u32);
+        machine.next_event = machine.now;
+    }
+    core.mem_write(address, &result)
 }

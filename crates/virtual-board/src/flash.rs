@@ -1,10 +1,14 @@
-//! The flash interface: access control, unlocking, erasing pages and programming double words.
+//! The flash interface: access control, unlocking, erasing pages and programming double words; and power that fails
+//! while it does.
 
 use crate::registers::{Registers, Unmodelled};
 
 const KEYR: u32 = 0x08;
 const SR: u32 = 0x10;
 const CR: u32 = 0x14;
+const ECCR: u32 = 0x18;
+/// ECCR: two wrong bits in a double word were read; written as 1 to clear.
+const ECC_DETECTED: u32 = 1 << 31;
 const LOCK: u32 = 1 << 31;
 const PROGRAM: u32 = 1;
 const PAGE_ERASE: u32 = 1 << 1;
@@ -26,6 +30,24 @@ pub struct Flash {
     registers: Registers,
     status: u32,
     key: u32,
+    /// Steps (words programmed, pages erased) until power fails within one.
+    steps_left: Option<u32>,
+    /// Power has failed within a step.
+    pub has_failed: bool,
+    /// Double words whose programming was cut off: their error correction does not hold.
+    broken: Vec<u32>,
+    ecc_detected: bool,
+    noise: u64,
+}
+
+/// How a step ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    Whole,
+    /// Some of the bits, the set ones here, did not change.
+    Torn(u32),
+    /// There is no power.
+    Nothing,
 }
 
 impl Flash {
@@ -35,7 +57,77 @@ impl Flash {
             registers: Registers::new("FLASH", RESET),
             status: 0,
             key: 0,
+            steps_left: None,
+            has_failed: false,
+            broken: Vec::new(),
+            ecc_detected: false,
+            noise: 1,
         }
+    }
+
+    /// A reset: the interface is as new, the array is not.
+    pub fn reset(&mut self) {
+        *self = Flash {
+            broken: std::mem::take(&mut self.broken),
+            noise: self.noise,
+            ..Flash::new()
+        };
+    }
+
+    /// Lets power fail within the step after `steps` whole ones.
+    pub fn fail_after(&mut self, steps: u32) {
+        self.steps_left = Some(steps);
+    }
+
+    /// Begins to program a word or to erase a page.
+    pub fn step(&mut self) -> Step {
+        if self.has_failed {
+            return Step::Nothing;
+        }
+        match &mut self.steps_left {
+            None => Step::Whole,
+            Some(0) => {
+                self.has_failed = true;
+                // Knuth's 64-bit linear congruential generator.
+                self.noise = self
+                    .noise
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1);
+                Step::Torn((self.noise >> 32) as u32)
+            }
+            Some(left) => {
+                *left -= 1;
+                Step::Whole
+            }
+        }
+    }
+
+    /// The double word at `address` is neither the old one nor the new one.
+    pub fn break_word(&mut self, address: u32) {
+        self.broken.push(address & !7);
+    }
+
+    /// The page from `address` on was erased.
+    pub fn mend_page(&mut self, address: u32) {
+        self.broken
+            .retain(|broken| !(address..address + PAGE).contains(broken));
+    }
+
+    /// Whether any double word is broken.
+    pub fn has_broken(&self) -> bool {
+        !self.broken.is_empty()
+    }
+
+    /// A read of the array; whether it raises the non-maskable interrupt.
+    pub fn check(&mut self, address: u32) -> bool {
+        let found = self.broken.contains(&(address & !7));
+        self.ecc_detected |= found;
+        found
+    }
+
+    /// Whether the interrupt of the error correction is asserted.
+    pub fn interrupt(&self) -> bool {
+        self.ecc_detected
     }
 
     /// Whether the program may write to the array now.
@@ -53,6 +145,7 @@ impl Flash {
     pub fn read(&self, offset: u32) -> Result<u32, Unmodelled> {
         match offset {
             SR => Ok(self.status),
+            ECCR => Ok(if self.ecc_detected { ECC_DETECTED } else { 0 }),
             _ => self.registers.read(offset),
         }
     }
@@ -67,6 +160,7 @@ impl Flash {
                 self.key = value;
             }
             SR => self.status &= !value,
+            ECCR => self.ecc_detected &= value & ECC_DETECTED == 0,
             CR if self.registers.get(CR) & LOCK != 0 => {
                 let access = format!("write of {value:#x} while locked");
                 return Err(self.registers.unmodelled(access, offset));

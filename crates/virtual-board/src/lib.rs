@@ -20,7 +20,7 @@ mod registers;
 mod rtt;
 mod timer;
 
-pub use board::{BoardError, LAMPS, VirtualBoard};
+pub use board::{BoardError, LAMPS, Snapshot, VirtualBoard};
 pub use gpio::Pin;
 pub use machine::{Cause, Inputs, Tally};
 

@@ -1,5 +1,8 @@
 //! All peripherals together, and what happens when.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use monitor::RawSample;
 
 use crate::adc::Adc;
@@ -70,6 +73,7 @@ const VREFINT_CHANNEL: u32 = 18;
 /// Factory value of the reference: its code at 3.0 V.
 pub(crate) const VREFINT_CAL: u16 = 1655;
 
+#[derive(Clone)]
 pub(crate) struct Machine {
     pub now: u64,
     pub rcc: Rcc,
@@ -84,11 +88,14 @@ pub(crate) struct Machine {
     pub nvic: Nvic,
     pub iwdg: Iwdg,
     pub flash: Flash,
+    /// What resets the chip when power fails within a step of flash.
+    pub flash_failure: Cause,
     pub pwr: Registers,
     pub syscfg: Registers,
     pub exti: Registers,
     pub dbgmcu: Registers,
-    pub inputs: Box<dyn Inputs>,
+    /// Shared by all snapshots: the outside world does not go back in time.
+    pub inputs: Rc<RefCell<Box<dyn Inputs>>>,
     pub sample: RawSample,
     pub first_instant: Option<u64>,
     /// Every instant whose conversion began, in order; `None` when nobody wants them.
@@ -144,11 +151,12 @@ impl Machine {
             nvic: Nvic::new(),
             iwdg: Iwdg::new(),
             flash: Flash::new(),
+            flash_failure: Cause::Power,
             pwr: Registers::new("PWR", PWR),
             syscfg: Registers::new("SYSCFG", SYSCFG),
             exti: Registers::new("EXTI", EXTI),
             dbgmcu: Registers::new("DBGMCU", DBGMCU),
-            inputs,
+            inputs: Rc::new(RefCell::new(inputs)),
             sample: RawSample::default(),
             first_instant: None,
             taken: Some(Vec::new()),
@@ -180,7 +188,7 @@ impl Machine {
         self.dma = Dma::new();
         self.nvic = Nvic::new();
         self.iwdg = Iwdg::new();
-        self.flash = Flash::new();
+        self.flash.reset();
         for block in [&mut self.pwr, &mut self.syscfg, &mut self.exti] {
             block.reset();
         }
@@ -245,7 +253,7 @@ impl Machine {
     /// Looks at the simulated sensors.
     fn sense(&mut self) {
         let first = *self.first_instant.get_or_insert(self.now);
-        self.sample = self.inputs.at((self.now - first) / INSTANT);
+        self.sample = self.inputs.borrow_mut().at((self.now - first) / INSTANT);
         self.tim3.apply_encoder(self.sample.encoder_count);
     }
 

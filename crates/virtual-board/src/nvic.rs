@@ -3,6 +3,8 @@
 use crate::registers::{Registers, Unmodelled};
 
 const IRQS: usize = 102;
+/// Stands for the non-maskable interrupt, which is none of the lines.
+const NON_MASKABLE: usize = usize::MAX;
 const VTOR: u32 = 0xD08;
 const AIRCR: u32 = 0xD0C;
 const CPACR: u32 = 0xD88;
@@ -62,10 +64,29 @@ impl Nvic {
 
     fn candidate(&self) -> Option<usize> {
         let running = self.active.last().map_or(u16::MAX, |(_, p)| u16::from(*p));
+        if self
+            .active
+            .last()
+            .is_some_and(|(irq, _)| *irq == NON_MASKABLE)
+        {
+            return None;
+        }
         let ready = (0..IRQS).filter(|&irq| self.enabled[irq] && self.pending[irq]);
         ready
             .min_by_key(|&irq| (self.priority[irq], irq))
             .filter(|&irq| u16::from(self.priority[irq]) < running)
+    }
+
+    /// Takes the non-maskable interrupt, unless its handler runs already.
+    pub fn take_non_maskable(&mut self) -> bool {
+        let free = self
+            .active
+            .last()
+            .is_none_or(|(irq, _)| *irq != NON_MASKABLE);
+        if free {
+            self.active.push((NON_MASKABLE, 0));
+        }
+        free
     }
 
     /// Takes the next interrupt to be served.

@@ -1,6 +1,8 @@
 //! The firmware, a simulated motor, and the host's core on the very samples that the firmware took.
 #![allow(dead_code)] // every test binary uses its own part of this
 
+pub mod flash_image;
+
 use std::path::{Path, PathBuf};
 
 use monitor::{Lamp, Lamps, Monitor, MonitorConfig, MonitorState, RawSample};
