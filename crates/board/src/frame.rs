@@ -145,7 +145,7 @@ impl Frame {
     }
 }
 
-fn packed(report: &Report) -> u32 {
+pub(crate) fn packed(report: &Report) -> u32 {
     let lamps = crate::display::in_order(&report.lamps);
     let codes = lamps.map(|lamp| match lamp {
         Lamp::Off => 0,
@@ -155,7 +155,7 @@ fn packed(report: &Report) -> u32 {
     (0..LAMPS).fold(0, |bits, k| bits | codes[k] << (2 * k))
 }
 
-fn reason(not_judged: NotJudged) -> u8 {
+pub(crate) fn reason(not_judged: NotJudged) -> u8 {
     match not_judged {
         NotJudged::NotLocked => 1,
         NotJudged::Settling => 2,

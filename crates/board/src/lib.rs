@@ -8,6 +8,7 @@ mod display;
 mod frame;
 mod image;
 mod learn;
+pub mod modbus;
 
 pub use button::{Button, Press};
 pub use calibration::{

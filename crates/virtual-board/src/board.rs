@@ -270,6 +270,12 @@ impl VirtualBoard {
         sorted
     }
 
+    /// Interrupts the program every `cycles` for nothing, with the DMA channel of the converter.
+    pub fn interrupt_for_nothing(&mut self, cycles: u64) {
+        let machine = self.cpu.machine();
+        machine.spurious = Some((cycles, machine.now + cycles));
+    }
+
     /// Leaves out the stacking of floating-point registers: a negative control, for tests.
     pub fn forget_float_stacking(&mut self) {
         self.cpu.stacks_floats = false;

@@ -109,6 +109,8 @@ pub(crate) struct Machine {
     pub next_event: u64,
     /// DMA answers no request.
     pub dma_blocked: bool,
+    /// Cycles between spurious interrupts of a DMA channel, and the cycle of the next one.
+    pub spurious: Option<(u64, u64)>,
     /// Instructions by address of their block, while somebody asks for them.
     pub profile: Option<std::collections::HashMap<u64, u64>>,
 }
@@ -167,6 +169,7 @@ impl Machine {
             stop: false,
             next_event: 0,
             dma_blocked: false,
+            spurious: None,
             profile: None,
         }
     }
@@ -206,6 +209,7 @@ impl Machine {
             self.adc1.next_event(),
             self.adc5.next_event(),
             self.iwdg.deadline(),
+            self.spurious.map(|(_, next)| next),
         ];
         events.into_iter().flatten().min().unwrap_or(u64::MAX)
     }
@@ -231,6 +235,12 @@ impl Machine {
             }
         }
         self.tim15.advance(self.now);
+        if let Some((period, next)) = &mut self.spurious
+            && *next <= self.now
+        {
+            *next = self.now + *period;
+            self.nvic.pend(IRQ_DMA1_CH1);
+        }
         let sample = self.sample;
         if self
             .adc1

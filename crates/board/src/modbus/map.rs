@@ -1,0 +1,282 @@
+//! The register map: one table, from which addresses follow and against which docs/modbus.md is tested.
+
+/// How a value lies in registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One register.
+    Word,
+    /// Two registers, high word first.
+    Long,
+    /// IEEE 754 single precision in two registers, high word first; NaN where there is no value.
+    Float,
+}
+
+impl Kind {
+    /// Registers that a value takes.
+    pub const fn words(self) -> u16 {
+        match self {
+            Kind::Word => 1,
+            Kind::Long | Kind::Float => 2,
+        }
+    }
+}
+
+/// One value of the map.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// What it is of.
+    pub field: Field,
+    /// How it is stored.
+    pub kind: Kind,
+    /// Unit, empty where there is none.
+    pub unit: &'static str,
+    /// What it says.
+    pub meaning: &'static str,
+}
+
+const fn entry(field: Field, kind: Kind, unit: &'static str, meaning: &'static str) -> Entry {
+    Entry {
+        field,
+        kind,
+        unit,
+        meaning,
+    }
+}
+
+/// Names of the values, in the order of [`MAP`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // MAP says it once, for the documentation too.
+pub enum Field {
+    MapVersion,
+    MotorIdentification,
+    ResetCause,
+    Lamps,
+    NotJudged,
+    Verdict,
+    LikelyFault,
+    FaultProbability,
+    Windows,
+    WindowsJudged,
+    Residual1,
+    Residual2,
+    Residual3,
+    Residual4,
+    Threshold1,
+    Threshold2,
+    Threshold3,
+    Threshold4,
+    Voltage,
+    VoltageA,
+    VoltageB,
+    VoltageC,
+    Current,
+    CurrentA,
+    CurrentB,
+    CurrentC,
+    SupplyFrequency,
+    Speed,
+    Temperature,
+    ConverterSupply,
+    Calibration,
+    Learning,
+    LearnedWindows,
+    Capture,
+}
+
+const FIELDS: usize = Field::Capture as usize + 1;
+
+/// Every input register, in order of address.
+pub const MAP: [Entry; FIELDS] = {
+    use Field::*;
+    use Kind::*;
+    [
+        entry(
+            MapVersion,
+            Word,
+            "",
+            "1; grows when an address changes its meaning",
+        ),
+        entry(
+            MotorIdentification,
+            Long,
+            "",
+            "checksum of the motor constants in flash",
+        ),
+        entry(
+            ResetCause,
+            Word,
+            "",
+            "1 power or brown-out, 2 watchdog, 3 program, 4 reset pin, 5 other",
+        ),
+        entry(
+            Lamps,
+            Long,
+            "",
+            "two bits per lamp from the lowest, in the order RUN r1 r2 r3 r4 SENSOR LINE LOAD FAULT: 0 off, 1 on, 2 blinking",
+        ),
+        entry(
+            NotJudged,
+            Word,
+            "",
+            "0 judged, 1 no supply found, 2 settling, 3 clipped, 4 invalid, 5 no voltages, 6 no currents, 7 no speed, 8 supply, 9 sensor, 10 transient, 11 no load current",
+        ),
+        entry(Verdict, Word, "", "0 not judged yet, 1 healthy, 2 fault"),
+        entry(
+            LikelyFault,
+            Word,
+            "",
+            "likeliest row of Table 1 while FAULT is lit by the residuals: 1 Rs, 2 Rr, 3 Ls, 4 Lr, 5 B, 6 Bl, 7 Iq, 8 Vq, 9 wr; 0 none; rows of the same pattern are tied, the first is named",
+        ),
+        entry(FaultProbability, Word, "per mille", "its probability"),
+        entry(Windows, Long, "", "windows since the start"),
+        entry(WindowsJudged, Long, "", "of these judged"),
+        entry(Residual1, Float, "", "r1, share of its scale"),
+        entry(Residual2, Float, "", "r2"),
+        entry(Residual3, Float, "", "r3"),
+        entry(Residual4, Float, "", "r4"),
+        entry(Threshold1, Float, "", "threshold of r1, share of its scale"),
+        entry(Threshold2, Float, "", "of r2"),
+        entry(Threshold3, Float, "", "of r3"),
+        entry(Threshold4, Float, "", "of r4"),
+        entry(Voltage, Float, "V", "phase voltage, positive sequence, RMS"),
+        entry(VoltageA, Float, "V", "phase a, fundamental, RMS"),
+        entry(VoltageB, Float, "V", "phase b"),
+        entry(VoltageC, Float, "V", "phase c"),
+        entry(Current, Float, "A", "phase current, positive sequence, RMS"),
+        entry(CurrentA, Float, "A", "phase a, fundamental, RMS"),
+        entry(CurrentB, Float, "A", "phase b"),
+        entry(CurrentC, Float, "A", "phase c"),
+        entry(SupplyFrequency, Float, "Hz", "of the supply"),
+        entry(Speed, Float, "1/min", "of the shaft"),
+        entry(
+            Temperature,
+            Float,
+            "degC",
+            "of the chip, some 5 K uncertain; not of the motor",
+        ),
+        entry(
+            ConverterSupply,
+            Word,
+            "mV",
+            "supply of the converters, 3300 is nominal",
+        ),
+        entry(
+            Calibration,
+            Word,
+            "",
+            "0 motor file's values, 1 learnt ones, 2 learnt ones lost, 3 learnt ones are another motor's",
+        ),
+        entry(
+            Learning,
+            Word,
+            "",
+            "0 idle, 1 learning, 2 stored; refused: 17 sensor, 18 line, 19 unsteady, 20 too few windows, 21 offset, 22 residuals too large, 23 flash",
+        ),
+        entry(
+            LearnedWindows,
+            Word,
+            "",
+            "windows judged while learning, 600 are needed",
+        ),
+        entry(
+            Capture,
+            Word,
+            "",
+            "0 waiting for an alarm, 1 taking the samples around it, 2 complete",
+        ),
+    ]
+};
+
+const ADDRESSES: [u16; FIELDS] = addresses();
+/// Registers of the map.
+pub const WORDS: usize = {
+    let last = FIELDS - 1;
+    (ADDRESSES[last] + MAP[last].kind.words()) as usize
+};
+
+const fn addresses() -> [u16; FIELDS] {
+    let mut addresses = [0; FIELDS];
+    let mut k = 1;
+    while k < FIELDS {
+        addresses[k] = addresses[k - 1] + MAP[k - 1].kind.words();
+        k += 1;
+    }
+    addresses
+}
+
+/// Address of a value's first register, counted from 0 as on the wire.
+pub const fn address(field: Field) -> u16 {
+    ADDRESSES[field as usize]
+}
+
+/// The input registers with their values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Image([u16; WORDS]);
+
+impl Default for Image {
+    fn default() -> Self {
+        Image([0; WORDS])
+    }
+}
+
+impl Image {
+    /// The registers from `first` on; `None` beyond the map.
+    pub fn range(&self, first: u16, count: u16) -> Option<&[u16]> {
+        let first = usize::from(first);
+        self.0.get(first..first + usize::from(count))
+    }
+
+    /// Sets a value of kind [`Kind::Word`].
+    pub fn set_word(&mut self, field: Field, value: u16) {
+        if let Some(word) = self.0.get_mut(usize::from(address(field))) {
+            *word = value;
+        }
+    }
+
+    /// Sets a value of kind [`Kind::Long`].
+    pub fn set_long(&mut self, field: Field, value: u32) {
+        let first = usize::from(address(field));
+        if let Some([high, low]) = self.0.get_mut(first..first + 2) {
+            *high = (value >> 16) as u16;
+            *low = value as u16;
+        }
+    }
+
+    /// Sets a value of kind [`Kind::Float`].
+    pub fn set_float(&mut self, field: Field, value: f32) {
+        self.set_long(field, value.to_bits());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_and_table_have_the_same_order_and_no_gap() {
+        let mut next = 0;
+        for (k, entry) in MAP.iter().enumerate() {
+            assert_eq!(entry.field as usize, k, "{:?}", entry.field);
+            assert_eq!(address(entry.field), next, "{:?}", entry.field);
+            next += entry.kind.words();
+        }
+        assert_eq!(WORDS, usize::from(next));
+    }
+
+    #[test]
+    fn one_request_reads_the_whole_map() {
+        // The protocol's limit for registers in one answer.
+        const { assert!(WORDS <= 125) };
+        assert!(Image::default().range(0, WORDS as u16).is_some());
+        assert!(Image::default().range(1, WORDS as u16).is_none());
+        assert!(Image::default().range(u16::MAX, u16::MAX).is_none());
+    }
+
+    #[test]
+    fn the_high_word_comes_first() {
+        let mut image = Image::default();
+        image.set_long(Field::Windows, 0x1234_5678);
+        let first = address(Field::Windows);
+        assert_eq!(image.range(first, 2), Some(&[0x1234, 0x5678][..]));
+    }
+}

@@ -1,0 +1,303 @@
+//! The protocol: requests in, answers out, and two commands behind an unlock.
+
+use crc::{CRC_16_MODBUS, Crc, NoTable};
+
+use super::map::{Image, WORDS};
+
+const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_MODBUS);
+/// Longest frame of the protocol.
+pub const MAX_REQUEST_BYTES: usize = 256;
+/// Address, function, count, the whole map, checksum.
+pub const MAX_RESPONSE_BYTES: usize = 5 + 2 * WORDS;
+/// What must be written to holding register 0 before a command.
+pub const UNLOCK_KEY: u16 = 0x4D4D;
+/// How long a command may follow the key, ms.
+const UNLOCK_MS: u32 = 10_000;
+const KEY_REGISTER: u16 = 0;
+const COMMAND_REGISTER: u16 = 1;
+const HOLDING_REGISTERS: u16 = 2;
+
+const READ_HOLDING: u8 = 3;
+const READ_INPUT: u8 = 4;
+const WRITE_ONE: u8 = 6;
+const WRITE_MANY: u8 = 16;
+
+/// Why a request is refused, as the protocol numbers it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Exception {
+    /// A function that does not exist here, or a command while the slave is locked.
+    Function = 1,
+    Address = 2,
+    Value = 3,
+}
+
+/// What a master may ask for beside reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Command {
+    /// Forget latched lamps, as a short press of the button.
+    Acknowledge = 1,
+    /// Learn from the running motor, as a very long press.
+    Learn = 2,
+}
+
+/// The slave's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slave {
+    unit: u8,
+    unlocked_at_ms: Option<u32>,
+}
+
+/// The answer being written.
+struct Answer<'a> {
+    bytes: &'a mut [u8; MAX_RESPONSE_BYTES],
+    length: usize,
+}
+
+impl Answer<'_> {
+    /// A byte too many is dropped; the longest answer is tested to fit.
+    fn push(&mut self, byte: u8) {
+        if let Some(place) = self.bytes.get_mut(self.length) {
+            *place = byte;
+            self.length += 1;
+        }
+    }
+
+    fn push_word(&mut self, word: u16) {
+        let [high, low] = word.to_be_bytes();
+        self.push(high);
+        self.push(low);
+    }
+
+    fn written(&self) -> &[u8] {
+        self.bytes.get(..self.length).unwrap_or_default()
+    }
+}
+
+impl Slave {
+    /// A locked slave with the address `unit`, 1..=247.
+    pub fn new(unit: u8) -> Self {
+        Slave {
+            unit,
+            unlocked_at_ms: None,
+        }
+    }
+
+    /// Takes what came between two silences at time `now_ms` (wrapping) and writes the answer. Its length is 0 where the
+    /// protocol demands silence: damaged frames, other addresses, broadcasts.
+    #[inline(never)]
+    pub fn respond(
+        &mut self,
+        now_ms: u32,
+        request: &[u8],
+        image: &Image,
+        response: &mut [u8; MAX_RESPONSE_BYTES],
+    ) -> (usize, Option<Command>) {
+        let Some((function, data)) = self.unwrap(request) else {
+            return (0, None);
+        };
+        let mut answer = Answer {
+            bytes: response,
+            length: 0,
+        };
+        answer.push(self.unit);
+        answer.push(function);
+        let mut command = None;
+        if let Err(exception) =
+            self.execute(now_ms, function, data, image, &mut answer, &mut command)
+        {
+            answer.length = 0;
+            answer.push(self.unit);
+            answer.push(function | 0x80);
+            answer.push(exception as u8);
+        }
+        let checksum = CRC.checksum(answer.written());
+        answer.push_word(checksum.swap_bytes());
+        (answer.length, command)
+    }
+
+    /// Function and data of a sound frame for this slave.
+    fn unwrap<'a>(&self, request: &'a [u8]) -> Option<(u8, &'a [u8])> {
+        let (frame, checksum) = request.split_last_chunk::<2>()?;
+        let sound = CRC.checksum(frame).to_le_bytes() == *checksum;
+        match frame {
+            [unit, function, data @ ..] if sound && *unit == self.unit => Some((*function, data)),
+            _ => None,
+        }
+    }
+
+    fn execute(
+        &mut self,
+        now_ms: u32,
+        function: u8,
+        data: &[u8],
+        image: &Image,
+        answer: &mut Answer<'_>,
+        command: &mut Option<Command>,
+    ) -> Result<(), Exception> {
+        if !matches!(function, READ_HOLDING | READ_INPUT | WRITE_ONE | WRITE_MANY) {
+            return Err(Exception::Function);
+        }
+        let (first, second, rest) = words(data)?;
+        match function {
+            READ_INPUT | READ_HOLDING if !rest.is_empty() => Err(Exception::Value),
+            READ_INPUT => {
+                let range = image.range(first, counted(second)?);
+                read(answer, range.ok_or(Exception::Address)?)
+            }
+            READ_HOLDING => {
+                let holding = [u16::from(self.is_unlocked(now_ms)), 0];
+                let (from, count) = (usize::from(first), usize::from(counted(second)?));
+                let range = holding.get(from..from + count);
+                read(answer, range.ok_or(Exception::Address)?)
+            }
+            WRITE_ONE if rest.is_empty() => {
+                *command = self.write(now_ms, first, second)?;
+                answer.push_word(first);
+                answer.push_word(second);
+                Ok(())
+            }
+            WRITE_MANY => {
+                *command = self.write_many(now_ms, first, second, rest)?;
+                answer.push_word(first);
+                answer.push_word(second);
+                Ok(())
+            }
+            WRITE_ONE => Err(Exception::Value),
+            _ => Err(Exception::Function),
+        }
+    }
+
+    fn is_unlocked(&self, now_ms: u32) -> bool {
+        self.unlocked_at_ms
+            .is_some_and(|since| now_ms.wrapping_sub(since) <= UNLOCK_MS)
+    }
+
+    fn write(
+        &mut self,
+        now_ms: u32,
+        register: u16,
+        value: u16,
+    ) -> Result<Option<Command>, Exception> {
+        match register {
+            KEY_REGISTER => {
+                let right = value == UNLOCK_KEY;
+                self.unlocked_at_ms = right.then_some(now_ms);
+                right.then_some(None).ok_or(Exception::Value)
+            }
+            COMMAND_REGISTER if !self.is_unlocked(now_ms) => Err(Exception::Function),
+            COMMAND_REGISTER => {
+                let command = match value {
+                    1 => Command::Acknowledge,
+                    2 => Command::Learn,
+                    _ => return Err(Exception::Value),
+                };
+                self.unlocked_at_ms = None;
+                Ok(Some(command))
+            }
+            _ => Err(Exception::Address),
+        }
+    }
+
+    /// Key and command in one request, or either alone.
+    fn write_many(
+        &mut self,
+        now_ms: u32,
+        first: u16,
+        count: u16,
+        rest: &[u8],
+    ) -> Result<Option<Command>, Exception> {
+        let [bytes, values @ ..] = rest else {
+            return Err(Exception::Value);
+        };
+        let whole = usize::from(*bytes) == values.len() && values.len() == 2 * usize::from(count);
+        if !whole || count == 0 {
+            return Err(Exception::Value);
+        }
+        if u32::from(first) + u32::from(count) > u32::from(HOLDING_REGISTERS) {
+            return Err(Exception::Address);
+        }
+        let (values, _) = values.as_chunks::<2>();
+        let mut command = None;
+        for (register, value) in (first..).zip(values) {
+            command = self.write(now_ms, register, u16::from_be_bytes(*value))?;
+        }
+        Ok(command)
+    }
+}
+
+/// Every function here begins with two words.
+fn words(data: &[u8]) -> Result<(u16, u16, &[u8]), Exception> {
+    match data {
+        [a, b, c, d, rest @ ..] => Ok((
+            u16::from_be_bytes([*a, *b]),
+            u16::from_be_bytes([*c, *d]),
+            rest,
+        )),
+        _ => Err(Exception::Value),
+    }
+}
+
+/// A count of registers within the protocol's limit.
+fn counted(count: u16) -> Result<u16, Exception> {
+    (1..=125)
+        .contains(&count)
+        .then_some(count)
+        .ok_or(Exception::Value)
+}
+
+fn read(answer: &mut Answer<'_>, registers: &[u16]) -> Result<(), Exception> {
+    answer.push(2 * registers.len() as u8);
+    registers.iter().for_each(|word| answer.push_word(*word));
+    Ok(())
+}
+
+/// Bytes between two silences. What is longer than a frame is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Collector {
+    bytes: [u8; MAX_REQUEST_BYTES],
+    length: usize,
+    too_long: bool,
+}
+
+impl Default for Collector {
+    fn default() -> Self {
+        Collector {
+            bytes: [0; MAX_REQUEST_BYTES],
+            length: 0,
+            too_long: false,
+        }
+    }
+}
+
+impl Collector {
+    /// Takes bytes from the wire.
+    pub fn push(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            match self.bytes.get_mut(self.length) {
+                Some(place) => {
+                    *place = *byte;
+                    self.length += 1;
+                }
+                None => self.too_long = true,
+            }
+        }
+    }
+
+    /// The frame that a silence ends; empty when there is none.
+    pub fn frame(&self) -> &[u8] {
+        if self.too_long {
+            return &[];
+        }
+        self.bytes.get(..self.length).unwrap_or_default()
+    }
+
+    /// Begins anew.
+    pub fn clear(&mut self) {
+        (self.length, self.too_long) = (0, false);
+    }
+}
+
+#[cfg(test)]
+mod tests;

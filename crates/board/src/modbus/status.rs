@@ -1,0 +1,246 @@
+//! From reports to registers.
+
+use core::f32::consts::{SQRT_2, TAU};
+
+use monitor::{CHANNELS, Candidates, Report, Window, magnitude};
+
+use super::map::{Field, Image};
+use crate::calibration::CalibrationSource;
+use crate::frame::{packed, reason};
+use crate::learn::LearnState;
+
+/// Rad/s of one turn per minute.
+const RAD_S_PER_RPM: f32 = TAU / 60.0;
+const RESIDUALS: [Field; 4] = [
+    Field::Residual1,
+    Field::Residual2,
+    Field::Residual3,
+    Field::Residual4,
+];
+const THRESHOLDS: [Field; 4] = [
+    Field::Threshold1,
+    Field::Threshold2,
+    Field::Threshold3,
+    Field::Threshold4,
+];
+const CHANNEL_FIELDS: [Field; CHANNELS] = [
+    Field::VoltageA,
+    Field::VoltageB,
+    Field::VoltageC,
+    Field::CurrentA,
+    Field::CurrentB,
+    Field::CurrentC,
+];
+
+/// What the board knows about itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BoardStatus {
+    /// [`crate::MotorImage::identification`].
+    pub motor: u32,
+    /// Number of the reset cause, as in the map.
+    pub reset_cause: u16,
+    /// Supply of the converters, mV.
+    pub vdda_millivolt: u16,
+    /// Temperature of the chip, degrees Celsius.
+    pub temperature_degc: f32,
+    /// Which values are computed with.
+    pub calibration: CalibrationSource,
+    /// How learning stands.
+    pub learning: LearnState,
+    /// Windows judged while learning.
+    pub learned_windows: u16,
+    /// Number of the capture's state, as in the map.
+    pub capture: u16,
+    /// Thresholds that hold.
+    pub thresholds: [f32; 4],
+}
+
+/// The registers, and what has to be counted for them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Status {
+    windows: u32,
+    judged: u32,
+}
+
+impl Status {
+    /// Counts a report and puts it with the board's state into registers.
+    #[inline(never)]
+    pub fn take(&mut self, report: &Report, board: &BoardStatus) -> Image {
+        self.windows = self.windows.wrapping_add(1);
+        self.judged = self.judged.wrapping_add(u32::from(report.is_judged()));
+        let mut image = Image::default();
+        image.set_long(Field::Windows, self.windows);
+        image.set_long(Field::WindowsJudged, self.judged);
+        image.set_word(Field::Verdict, self.verdict(report));
+        put_board(&mut image, board);
+        put_report(&mut image, report);
+        put_window(&mut image, report.window.as_ref());
+        image
+    }
+
+    fn verdict(&self, report: &Report) -> u16 {
+        match report.lamps.fault {
+            monitor::Lamp::On => 2,
+            _ if self.judged > 0 => 1,
+            _ => 0,
+        }
+    }
+}
+
+fn put_board(image: &mut Image, board: &BoardStatus) {
+    image.set_word(Field::MapVersion, 1);
+    image.set_long(Field::MotorIdentification, board.motor);
+    image.set_word(Field::ResetCause, board.reset_cause);
+    image.set_word(Field::ConverterSupply, board.vdda_millivolt);
+    image.set_float(Field::Temperature, board.temperature_degc);
+    image.set_word(Field::Calibration, board.calibration as u16);
+    image.set_word(Field::Learning, board.learning.code());
+    image.set_word(Field::LearnedWindows, board.learned_windows);
+    image.set_word(Field::Capture, board.capture);
+    for (field, threshold) in THRESHOLDS.into_iter().zip(board.thresholds) {
+        image.set_float(field, threshold);
+    }
+}
+
+fn put_report(image: &mut Image, report: &Report) {
+    image.set_long(Field::Lamps, packed(report));
+    image.set_word(
+        Field::NotJudged,
+        report.not_judged.map_or(0, |why| u16::from(reason(why))),
+    );
+    let (fault, probability) = report.candidates.map_or((0, 0.0), likeliest);
+    image.set_word(Field::LikelyFault, fault);
+    image.set_word(Field::FaultProbability, (1000.0 * probability) as u16);
+    let residuals = report
+        .residuals
+        .map_or([f32::NAN; 4], |residuals| residuals.r);
+    for (field, residual) in RESIDUALS.into_iter().zip(residuals) {
+        image.set_float(field, residual);
+    }
+}
+
+/// Number from 1 of the likeliest row of Table 1, the first of equals; 0 when none of them is likelier.
+fn likeliest(candidates: Candidates) -> (u16, f32) {
+    let mut best = (0, candidates.unknown);
+    for (number, &probability) in (1..).zip(&candidates.faults) {
+        if probability > best.1 {
+            best = (number, probability);
+        }
+    }
+    best
+}
+
+fn put_window(image: &mut Image, window: Option<&Window>) {
+    let speed = window.and_then(|window| window.omega_mech);
+    let value = |of: fn(&Window) -> f32| window.map_or(f32::NAN, of);
+    image.set_float(Field::Speed, speed.map_or(f32::NAN, |x| x / RAD_S_PER_RPM));
+    image.set_float(
+        Field::SupplyFrequency,
+        value(|window| window.omega_sync / TAU),
+    );
+    image.set_float(
+        Field::Voltage,
+        value(|window| magnitude(window.u_s.positive) / SQRT_2),
+    );
+    image.set_float(
+        Field::Current,
+        value(|window| magnitude(window.i_s.positive) / SQRT_2),
+    );
+    for (k, field) in CHANNEL_FIELDS.into_iter().enumerate() {
+        let channel = window.and_then(|window| window.channels.get(k));
+        let rms = channel.map_or(f32::NAN, |channel| magnitude(channel.phasor) / SQRT_2);
+        image.set_float(field, rms);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use monitor::{Lamp, Residuals};
+
+    fn float(image: &Image, field: Field) -> f32 {
+        let words = image
+            .range(super::super::address(field), 2)
+            .expect("in the map");
+        f32::from_bits(u32::from(words[0]) << 16 | u32::from(words[1]))
+    }
+
+    fn word(image: &Image, field: Field) -> u16 {
+        image
+            .range(super::super::address(field), 1)
+            .expect("in the map")[0]
+    }
+
+    fn report() -> Report {
+        let mut window = Window {
+            omega_sync: 60.0 * TAU,
+            omega_mech: Some(1_500.0 * RAD_S_PER_RPM),
+            ..Window::default()
+        };
+        window.channels[4].phasor.im = 3.0 * SQRT_2;
+        Report {
+            window: Some(window),
+            residuals: Some(Residuals {
+                r: [0.1, -0.2, 0.3, -0.4],
+                e_d: 0.0,
+                e_q: 0.0,
+            }),
+            ..Report::default()
+        }
+    }
+
+    #[test]
+    fn measurements_arrive_in_the_units_of_the_map() {
+        let image = Status::default().take(&report(), &BoardStatus::default());
+        assert_eq!(float(&image, Field::Residual2), -0.2);
+        for (field, expected) in [
+            (Field::Speed, 1_500.0),
+            (Field::SupplyFrequency, 60.0),
+            (Field::CurrentB, 3.0),
+        ] {
+            // Two roundings of single precision.
+            assert!(
+                (float(&image, field) - expected).abs() < 2e-7 * expected,
+                "{field:?}"
+            );
+        }
+        assert_eq!(word(&image, Field::Verdict), 1);
+    }
+
+    #[test]
+    fn without_a_window_there_are_no_measurements() {
+        let nothing = Report {
+            not_judged: Some(monitor::NotJudged::NotLocked),
+            ..Report::default()
+        };
+        let image = Status::default().take(&nothing, &BoardStatus::default());
+        for field in RESIDUALS
+            .into_iter()
+            .chain(CHANNEL_FIELDS)
+            .chain([Field::Speed])
+        {
+            assert!(float(&image, field).is_nan(), "{field:?}");
+        }
+        assert_eq!(
+            (word(&image, Field::Verdict), word(&image, Field::NotJudged)),
+            (0, 1)
+        );
+    }
+
+    #[test]
+    fn a_lit_fault_names_its_likeliest_row() {
+        let mut faulty = report();
+        faulty.lamps.fault = Lamp::On;
+        // Speed sensor: r1, r2, r4 and not r3.
+        faulty.candidates = Some(Candidates::from_normalised(&[9.0, 9.0, 0.0, 9.0]));
+        let image = Status::default().take(&faulty, &BoardStatus::default());
+        assert_eq!(
+            (
+                word(&image, Field::Verdict),
+                word(&image, Field::LikelyFault)
+            ),
+            (2, 9)
+        );
+        assert!((500..=1000).contains(&word(&image, Field::FaultProbability)));
+    }
+}
