@@ -61,21 +61,29 @@ fn set(item: &mut Item, number: f64) {
     *old = new;
 }
 
+/// The entries in the order of `effects`: old ones with what stood around them, new ones behind.
 fn write_effects(tables: &mut ArrayOfTables, effects: &[EffectEntry]) {
-    let named = |table: &Table| {
-        let name = table.get("name").and_then(Item::as_str);
-        name.unwrap_or_default().to_owned()
-    };
-    tables.retain(|table| effects.iter().any(|effect| effect.name == named(table)));
+    let mut old: Vec<Table> = tables.iter().cloned().collect();
+    tables.clear();
     for effect in effects {
-        if !tables.iter().any(|table| named(table) == effect.name) {
-            tables.push(empty(&effect.name));
-        }
-        let mut found = tables.iter_mut();
-        if let Some(table) = found.find(|table| named(table) == effect.name) {
-            write_effect(table, effect);
-        }
+        let found = old.iter().position(|table| is_same(table, effect));
+        let mut table = found.map_or_else(|| empty(&effect.name), |k| old.remove(k));
+        // Where it stands follows from its place in the list, no longer from the old text.
+        table.set_position(None);
+        write_effect(&mut table, effect);
+        tables.push(table);
     }
+}
+
+/// Whether an entry is this effect, in this form or with this formula.
+fn is_same(table: &Table, effect: &EffectEntry) -> bool {
+    let texts = table
+        .iter()
+        .filter_map(|(key, item)| Some((key, item.as_str()?)));
+    texts.into_iter().all(|(key, text)| match key {
+        "name" => effect.name == text,
+        _ => effect.text(key) == Some(text),
+    })
 }
 
 fn empty(name: &str) -> Table {
@@ -86,6 +94,7 @@ fn empty(name: &str) -> Table {
 }
 
 fn write_effect(table: &mut Table, effect: &EffectEntry) {
+    table.retain(|key, _| key == "name" || effect.parameter(key).is_some());
     for parameter in &effect.parameters {
         let key = parameter.key.as_str();
         match &parameter.value {
@@ -93,7 +102,7 @@ fn write_effect(table: &mut Table, effect: &EffectEntry) {
                 set(table.entry(key).or_insert(value(*number)), *number);
             }
             EffectValue::Text(text) => {
-                table.insert(key, value(text.as_str()));
+                table.entry(key).or_insert(value(text.as_str()));
             }
         }
     }
@@ -139,6 +148,48 @@ mod tests {
         let text = updated(&first, &again);
         assert_eq!(text.matches("[[effects]]").count(), 1);
         assert!(text.contains("core_loss_resistance_ohm = 1020.5"));
+    }
+
+    const TWO_FORMULAS: &str = "
+# twice a turn
+[[effects]]
+name = \"expression\"
+formula = \"a * cos(2 * theta)\"  # two pistons
+adds_to = \"torque\"
+a = 0.0  # open
+a_typical = 1.0
+
+# a fan
+[[effects]]
+name = \"expression\"
+formula = \"b * omega^3\"
+adds_to = \"torque\"
+b = 1e-6  # from its data sheet
+";
+
+    /// As `discovery::adopt` leaves it: the open formula fitted, behind the other.
+    #[test]
+    fn comments_survive_beside_each_of_several_formulas() {
+        let old = OLD.to_owned() + TWO_FORMULAS;
+        let mut motor = MotorFile::parse(&old, "old").unwrap();
+        let mut fitted = motor.effects.remove(0);
+        fitted.parameters.retain(|p| p.key != "a_typical");
+        let a = fitted.parameters.iter_mut().find(|p| p.key == "a").unwrap();
+        a.value = EffectValue::Number(5.5);
+        motor.effects.push(fitted);
+        let text = updated(&old, &motor);
+        for kept in [
+            "# twice a turn",
+            "# two pistons",
+            "# a fan",
+            "# from its data sheet",
+            "a = 5.5  # open",
+        ] {
+            assert!(text.contains(kept), "{kept} is lost:\n{text}");
+        }
+        let read = MotorFile::parse(&text, "new").unwrap();
+        assert_eq!(read.to_toml(), motor.to_toml());
+        assert!(text.find("# a fan") < text.find("# twice a turn"), "{text}");
     }
 
     #[test]

@@ -29,9 +29,11 @@ pub enum LoadTorque {
     Measured,
     /// Friction is the only load.
     Friction,
-    /// Nothing is known.
-    #[default]
+    /// Declared to be unknown.
     Free,
+    /// Not declared: what the motor file says holds.
+    #[default]
+    Undeclared,
 }
 
 /// The state in which the recording begins.

@@ -113,7 +113,9 @@ pub fn sidecar_text(metadata: &Metadata) -> String {
     if !metadata.supply_belief.trim().is_empty() {
         word("supply_belief", &metadata.supply_belief);
     }
-    word("load_torque", load_word(metadata.load_torque));
+    if let Some(load) = load_word(metadata.load_torque) {
+        word("load_torque", load);
+    }
     word("starts_from", starts_word(metadata.starts_from));
     sensors_text(&mut text, &metadata.sensors);
     text
@@ -169,11 +171,12 @@ fn supply_word(supply: Supply) -> &'static str {
     }
 }
 
-fn load_word(load: LoadTorque) -> &'static str {
+fn load_word(load: LoadTorque) -> Option<&'static str> {
     match load {
-        LoadTorque::Measured => "measured",
-        LoadTorque::Friction => "friction",
-        LoadTorque::Free => "free",
+        LoadTorque::Measured => Some("measured"),
+        LoadTorque::Friction => Some("friction"),
+        LoadTorque::Free => Some("free"),
+        LoadTorque::Undeclared => None,
     }
 }
 

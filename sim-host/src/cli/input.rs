@@ -98,7 +98,6 @@ impl InputArgs {
 /// Everything that is wrong with it.
 pub fn read_motor(path: &Path) -> Result<MotorFile, Failure> {
     let motor = MotorFile::read(path)?;
-    motor::effects::from_motor_file(&motor, &path.display().to_string())?;
     if motor.effects.len() > MAX_EFFECTS {
         let (file, count) = (path.display(), motor.effects.len());
         let message = format!(

@@ -37,6 +37,7 @@ const STEPS: u64 = 1000;
 impl Simulate {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
+        self.check_sidecar()?;
         let mut scenario = Scenario::read(&self.scenario)?;
         scenario.seed = self.seed.unwrap_or(scenario.seed);
         let bar = progress::bar("simulating", STEPS);
@@ -52,6 +53,20 @@ impl Simulate {
             scenario.name
         );
         Ok(Finding::Nothing)
+    }
+
+    /// `x.toml` must not be lost to the sidecar of `x.csv.gz`.
+    fn check_sidecar(&self) -> Result<(), Failure> {
+        let sidecar = recording::sidecar_path(&self.output);
+        let same = |path: &PathBuf| std::fs::canonicalize(path).ok();
+        match same(&sidecar).is_some_and(|path| Some(path) == same(&self.scenario)) {
+            false => Ok(()),
+            true => Err(Failure::Usage(format!(
+                "{}: its sidecar would overwrite the scenario {}; give the recording another name",
+                self.output.display(),
+                self.scenario.display()
+            ))),
+        }
     }
 
     fn failure(&self, error: simulate::RecordError) -> Failure {

@@ -22,8 +22,8 @@ pub fn config_for(motor: &MotorFile, recording: &Recording) -> MonitorConfig {
     let mut config = MonitorConfig::from_motor_file(motor, recording.t_sample());
     config.load = match recording.metadata.load_torque {
         LoadTorque::Measured if recording.torque().is_some() => LoadKind::Measured,
-        LoadTorque::Measured => LoadKind::Free,
-        LoadTorque::Friction | LoadTorque::Free => config.load,
+        LoadTorque::Measured | LoadTorque::Free => LoadKind::Free,
+        LoadTorque::Friction | LoadTorque::Undeclared => config.load,
     };
     config
 }

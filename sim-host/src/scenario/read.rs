@@ -98,8 +98,7 @@ fn read_values(document: &Document, root: &Section<'_>, motor: MotorFile) -> Opt
 fn check_effects(document: &Document, motor: &MotorFile, effects: &[EffectEntry]) {
     for entry in effects {
         if let Err((key, message)) = check_entry(motor, entry) {
-            let line = entry.parameter(&key).map_or(entry.line, |p| p.line);
-            document.report(line, &format!("effects.{}.{key}", entry.name), message);
+            document.report(entry.line_of(&key), &entry.path_of(&key), message);
         }
     }
 }

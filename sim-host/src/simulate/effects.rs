@@ -7,9 +7,7 @@ use super::waveform::Waveform;
 use crate::scenario::Scenario;
 use motor::MotorFile;
 use motor::dynamic::Dynamic;
-use motor::effects::{
-    EffectConfig, EffectError, EffectStack, Hook, Timeline, extra_states, from_entry, rated,
-};
+use motor::effects::{EffectConfig, EffectStack, Hook, Timeline, extra_states, from_entry, rated};
 use motor::motor_file::EffectEntry;
 use std::sync::Arc;
 
@@ -48,7 +46,7 @@ pub(crate) fn check_entry(
     entry: &EffectEntry,
 ) -> Result<EffectConfig, (String, String)> {
     let config = from_entry(entry, &rated(motor))
-        .map_err(|error| (key_of(&error).to_owned(), error.to_string()))?;
+        .map_err(|error| (error.key().to_owned(), error.to_string()))?;
     let outer = [Hook::Inputs, Hook::Outputs];
     if config
         .effect
@@ -60,14 +58,6 @@ pub(crate) fn check_entry(
         return Err(("name".to_owned(), message.to_owned()));
     }
     Ok(config)
-}
-
-fn key_of(error: &EffectError) -> &str {
-    match error {
-        EffectError::UnknownParameter { key, .. } => key,
-        EffectError::OutOfRange { key, .. } | EffectError::MissingParameter { key, .. } => key,
-        EffectError::UnknownEffect { .. } | EffectError::Formula { .. } => "name",
-    }
 }
 
 /// Builds the motor with its effects, again whenever a fault changes its parameters.

@@ -46,6 +46,20 @@ pub enum EffectError {
         /// Its unit.
         unit: &'static str,
     },
+    /// Text stands where a number belongs.
+    NotANumber {
+        /// The effect.
+        effect: &'static str,
+        /// The key.
+        key: String,
+    },
+    /// A number stands where text belongs.
+    NotAText {
+        /// The effect.
+        effect: &'static str,
+        /// The key.
+        key: &'static str,
+    },
     /// A value lies outside its range for this machine.
     OutOfRange {
         /// The effect.
@@ -86,6 +100,18 @@ impl fmt::Display for EffectError {
             Self::MissingParameter { effect, key, unit } => {
                 write!(f, "effect `{effect}` needs `{key}` ({unit})")
             }
+            Self::NotANumber { effect, key } => {
+                write!(
+                    f,
+                    "`{key}` of effect `{effect}` must be a number: write it without quotes"
+                )
+            }
+            Self::NotAText { effect, key } => {
+                write!(
+                    f,
+                    "`{key}` of effect `{effect}` must be text: write it in double quotes"
+                )
+            }
             Self::OutOfRange {
                 effect,
                 key,
@@ -106,6 +132,20 @@ impl fmt::Display for EffectError {
 }
 
 impl core::error::Error for EffectError {}
+
+impl EffectError {
+    /// The key of the entry to blame.
+    pub fn key(&self) -> &str {
+        match self {
+            Self::UnknownEffect { .. } => "name",
+            Self::Formula { .. } => "formula",
+            Self::UnknownParameter { key, .. } | Self::NotANumber { key, .. } => key,
+            Self::MissingParameter { key, .. }
+            | Self::NotAText { key, .. }
+            | Self::OutOfRange { key, .. } => key,
+        }
+    }
+}
 
 impl EffectConfig {
     /// Every size zero, every shape at its start value.
@@ -135,11 +175,7 @@ impl EffectConfig {
         entries: &[(String, f64)],
         rated: &Rated<f64>,
     ) -> Result<Self, EffectError> {
-        let effect = find(name, form).ok_or_else(|| EffectError::UnknownEffect {
-            name: joined(name, form),
-            known: names(),
-        })?;
-        Self::with_entries(effect, entries, rated)
+        Self::with_entries(known_effect(name, form)?, entries, rated)
     }
 
     /// From a known effect and the keys and values of a motor file.
@@ -176,6 +212,14 @@ impl EffectConfig {
             .map(|(p, &v)| (p.name, p.to_file(v)))
             .collect()
     }
+}
+
+/// The effect of this name and form.
+pub(super) fn known_effect(name: &str, form: &str) -> Result<&'static dyn Effect, EffectError> {
+    find(name, form).ok_or_else(|| EffectError::UnknownEffect {
+        name: joined(name, form),
+        known: names(),
+    })
 }
 
 fn joined(name: &str, form: &str) -> String {

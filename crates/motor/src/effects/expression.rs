@@ -26,6 +26,8 @@ use std::sync::Mutex;
 pub const NAME: &str = "expression";
 const FORMULA: &str = "formula";
 const ADDS_TO: &str = "adds_to";
+/// Keys whose values are text.
+pub const TEXTS: [&str; 2] = [FORMULA, ADDS_TO];
 const TYPICAL: &str = "_typical";
 const VARIABLES: [&str; 9] = [
     "i_d", "i_q", "u_d", "u_q", "psi", "omega", "slip", "theta", "t",
@@ -93,6 +95,7 @@ pub fn expression(
         .map(|(k, v)| (k.as_str(), *v))
         .collect();
     parameters.sort_by(|a, b| a.0.cmp(b.0));
+    check_names(&parameters, numbers).map_err(wrong)?;
     let slots = slots(&flat, &parameters).map_err(wrong)?;
     let typical = typical(&parameters, numbers).map_err(wrong)?;
     let effect = interned(text, target, flat, slots, &parameters, &typical);
@@ -100,6 +103,24 @@ pub fn expression(
         effect,
         values: parameters.iter().map(|p| p.1).collect(),
     })
+}
+
+/// Parameters must not hide variables, and a typical size must belong to a parameter.
+fn check_names(parameters: &[(&str, f64)], numbers: &[(String, f64)]) -> Result<(), String> {
+    if let Some((name, _)) = parameters.iter().find(|p| VARIABLES.contains(&p.0)) {
+        return Err(format!(
+            "`{name}` is a variable: give the parameter another name"
+        ));
+    }
+    let mut sizes = numbers
+        .iter()
+        .filter_map(|(key, _)| key.strip_suffix(TYPICAL));
+    match sizes.find(|name| !parameters.iter().any(|p| p.0 == *name)) {
+        Some(name) => Err(format!(
+            "`{name}{TYPICAL}` belongs to no parameter: add `{name} = 0.0`"
+        )),
+        None => Ok(()),
+    }
 }
 
 /// Meaning of each name in the formula.

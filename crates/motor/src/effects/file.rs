@@ -1,17 +1,21 @@
 //! Effects in the motor file: from its entries and back.
 
+use super::config::known_effect;
 use super::expression;
-use super::{EffectConfig, EffectError, Rated};
+use super::{Descriptor, EffectConfig, EffectError, Rated};
 use crate::MotorFile;
-use crate::document::FileError;
-use crate::motor_file::{EffectEntry, EffectParameter, EffectValue};
+use crate::document::{Document, FileError};
+use crate::motor_file::{EffectEntry, EffectParameter, EffectValue, Nameplate};
 
 /// Key that chooses between several forms of one effect.
 const FORM: &str = "form";
 
 /// Rated quantities of a motor file.
 pub fn rated(file: &MotorFile) -> Rated<f64> {
-    let plate = &file.nameplate;
+    rated_by(&file.nameplate)
+}
+
+fn rated_by(plate: &Nameplate) -> Rated<f64> {
     Rated {
         voltage: plate.phase_voltage_amplitude(),
         current: plate.current_amplitude(),
@@ -21,24 +25,42 @@ pub fn rated(file: &MotorFile) -> Rated<f64> {
     }
 }
 
-/// The effects of a motor file, checked against the library.
+/// The effects of a motor file.
 ///
 /// # Errors
-/// Every entry that names no effect, or has a wrong key or a value out of range: with file, line and remedy.
+/// Every entry that the library refuses, with file, line and remedy: in a motor made by a program only, since a file is
+/// checked when it is read.
 pub fn from_motor_file(file: &MotorFile, label: &str) -> Result<Vec<EffectConfig>, FileError> {
     let rated = rated(file);
-    file.check_effects(label, |entry| match from_entry(entry, &rated) {
-        Ok(_) => Ok(()),
-        Err(error) => Err((blamed(&error), error.to_string())),
-    })?;
-    let configs = file.effects.iter().map(|e| from_entry(e, &rated));
-    Ok(configs.filter_map(Result::ok).collect())
+    let (mut configs, mut problems) = (Vec::new(), Vec::new());
+    for entry in &file.effects {
+        match from_entry(entry, &rated) {
+            Ok(config) => configs.push(config),
+            Err(error) => problems.push(entry.problem(label, error.key(), error.to_string())),
+        }
+    }
+    if problems.is_empty() {
+        Ok(configs)
+    } else {
+        Err(FileError::new(problems))
+    }
+}
+
+/// Reports every entry that the library refuses, with its line and key.
+pub(crate) fn check(document: &Document, plate: &Nameplate, entries: &[EffectEntry]) {
+    let rated = rated_by(plate);
+    for entry in entries {
+        if let Err(error) = from_entry(entry, &rated) {
+            let (line, key) = (entry.line_of(error.key()), entry.path_of(error.key()));
+            document.report(line, &key, error.to_string());
+        }
+    }
 }
 
 /// One entry of a motor file as an effect.
 ///
 /// # Errors
-/// As [`EffectConfig::from_file`].
+/// As [`EffectConfig::from_file`], and a key that the effect does not have, or of the wrong type.
 pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfig, EffectError> {
     let numbers: Vec<(String, f64)> = entry
         .parameters
@@ -46,9 +68,52 @@ pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfi
         .filter_map(|p| entry.number(&p.key).map(|x| (p.key.clone(), x)))
         .collect();
     if entry.name == expression::NAME {
+        check_formula_texts(entry)?;
         return expression::expression(entry.text("formula"), entry.text("adds_to"), &numbers);
     }
-    EffectConfig::from_file(&entry.name, entry.text(FORM).unwrap_or(""), &numbers, rated)
+    let effect = known_effect(&entry.name, entry.text(FORM).unwrap_or(""))?;
+    check_types(entry, effect.descriptor())?;
+    EffectConfig::with_entries(effect, &numbers, rated)
+}
+
+fn texts(entry: &EffectEntry) -> impl Iterator<Item = &str> {
+    let keys = entry.parameters.iter().map(|p| p.key.as_str());
+    keys.filter(|key| entry.text(key).is_some())
+}
+
+/// Nothing but the form is text, and the form is nothing else.
+fn check_types(entry: &EffectEntry, descriptor: &'static Descriptor) -> Result<(), EffectError> {
+    let effect = descriptor.name;
+    let has_form = !descriptor.form.is_empty();
+    if has_form && entry.number(FORM).is_some() {
+        return Err(EffectError::NotAText { effect, key: FORM });
+    }
+    let Some(key) = texts(entry).find(|key| !(has_form && *key == FORM)) else {
+        return Ok(());
+    };
+    let numbers = descriptor.parameters.iter().map(|p| p.name);
+    let key = key.to_owned();
+    if numbers.clone().any(|name| name == key) {
+        return Err(EffectError::NotANumber { effect, key });
+    }
+    let known = numbers.chain(has_form.then_some(FORM)).collect();
+    Err(EffectError::UnknownParameter { effect, key, known })
+}
+
+/// Of a formula's entry, only the formula and its target are text.
+fn check_formula_texts(entry: &EffectEntry) -> Result<(), EffectError> {
+    let unknown = texts(entry).find(|key| !expression::TEXTS.contains(key));
+    unknown.map_or(Ok(()), |key| {
+        Err(EffectError::UnknownParameter {
+            effect: expression::NAME,
+            key: key.to_owned(),
+            known: [
+                &expression::TEXTS[..],
+                &["a number for each parameter of the formula"],
+            ]
+            .concat(),
+        })
+    })
 }
 
 /// An effect as a motor file writes it.
@@ -63,16 +128,4 @@ pub fn to_entry(config: &EffectConfig) -> EffectEntry {
         .parameters
         .splice(0..0, config.effect.texts().into_iter().map(text));
     entry
-}
-
-/// The key of a motor file that an error is about.
-fn blamed(error: &EffectError) -> String {
-    match error {
-        EffectError::UnknownParameter { key, .. } => key.clone(),
-        EffectError::OutOfRange { key, .. } => (*key).to_owned(),
-        EffectError::Formula { .. } => "formula".to_owned(),
-        EffectError::UnknownEffect { .. } | EffectError::MissingParameter { .. } => {
-            "name".to_owned()
-        }
-    }
 }

@@ -27,6 +27,8 @@ pub use descriptor::{Applies, Descriptor, Kind, Parameter, Rated, Role, Scale, W
 #[cfg(feature = "std")]
 pub use effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
 #[cfg(feature = "file")]
+pub(crate) use file::check;
+#[cfg(feature = "file")]
 pub use file::{from_entry, from_motor_file, rated, to_entry};
 #[cfg(feature = "std")]
 pub use signals::{Inputs, Outputs};

@@ -1,7 +1,7 @@
 //! `[[effects]]`: physical effects by name, with their parameters as written.
 //!
-//! This module knows no effect. The library of effects checks names, parameters and ranges through
-//! [`super::MotorFile::check_effects`]; lines are kept so that its errors can name them.
+//! This module knows no effect. The library of effects checks names, parameters and ranges; lines are kept so that its
+//! errors can name them.
 
 use crate::document::{Bounds, Entry, Problem, Section, Value};
 
@@ -80,15 +80,23 @@ impl EffectEntry {
             .find(|parameter| parameter.key == key)
     }
 
+    /// The line of one key of this entry, or of its name where the key is absent.
+    pub fn line_of(&self, key: &str) -> usize {
+        self.parameter(key)
+            .map_or(self.line, |parameter| parameter.line)
+    }
+
+    /// One key of this entry, as errors print it.
+    pub fn path_of(&self, key: &str) -> String {
+        format!("effects.{}.{key}", self.name)
+    }
+
     /// A problem with one key of this entry, at that key's line.
     pub fn problem(&self, file: &str, key: &str, message: impl Into<String>) -> Problem {
-        let line = self
-            .parameter(key)
-            .map_or(self.line, |parameter| parameter.line);
         Problem {
             file: file.to_owned(),
-            line,
-            key: format!("effects.{}.{key}", self.name),
+            line: self.line_of(key),
+            key: self.path_of(key),
             message: message.into(),
         }
     }

@@ -33,7 +33,7 @@ const L_LS: &str = "stator_leakage_henry = 0.010735";
 const LAST: &str = "load_friction_nm_s = 0.0\n";
 
 #[rustfmt::skip]
-const CASES: [Case; 48] = [
+const CASES: [Case; 58] = [
     case("negative resistance", (R_S, "stator_resistance_ohm = -3.7"), 11, "parameters.stator_resistance_ohm", "above 0 and at most 100000 ohm"),
     case("zero resistance", (R_S, "stator_resistance_ohm = 0"), 11, "parameters.stator_resistance_ohm", "0 is out of range: write above 0"),
     case("not a number", (R_S, "stator_resistance_ohm = nan"), 11, "parameters.stator_resistance_ohm", "not a finite number: write above 0"),
@@ -82,6 +82,16 @@ const CASES: [Case; 48] = [
     case("current range below the rated amplitude", (LAST, "load_friction_nm_s = 0\n[sensors]\ncurrent_full_scale_amp = 5.0"), 20, "sensors.current_full_scale_amp", "an amplitude and not an rms value"),
     case("effect without a name", (LAST, "load_friction_nm_s = 0\n[[effects]]\nk = 1.0"), 19, "effects[1].name", "add the name of the effect"),
     case("effect parameter not finite", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"core-loss\"\nk = nan"), 21, "effects[1].k", "not a finite number"),
+    case("unknown effect", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"core-los\""), 20, "effects.core-los.name", "core-loss, stator-heating"),
+    case("unknown number of an effect", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"windage\"\nwindage_nm_s2 = 1e-5\nk = 1.0"), 22, "effects.windage.k", "it has: windage_nm_s2"),
+    case("unknown text of an effect", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"windage\"\nwindage_nm_s2 = 1e-5\nnote = \"x\""), 22, "effects.windage.note", "it has: windage_nm_s2"),
+    case("effect size in quotes", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"windage\"\nwindage_nm_s2 = \"1e-5\""), 21, "effects.windage.windage_nm_s2", "without quotes"),
+    case("effect size missing", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"windage\""), 20, "effects.windage.windage_nm_s2", "needs `windage_nm_s2` (N m s2)"),
+    case("effect size out of range", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"windage\"\nwindage_nm_s2 = 9.0"), 21, "effects.windage.windage_nm_s2", "must lie in"),
+    case("form of an effect as a number", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"deep-bar\"\nform = 2\nresistance_rise = 0.5\nleakage_drop = 0.2"), 21, "effects.deep-bar.form", "in double quotes"),
+    case("unknown text of a formula", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k * omega\"\nadds_to = \"torque\"\nk = 1.0\nunit = \"N m\""), 24, "effects.expression.unit", "formula, adds_to"),
+    case("formula that hides a variable", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"omega\"\nadds_to = \"torque\"\nomega = 1.0"), 21, "effects.expression.formula", "is a variable"),
+    case("size of no parameter", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k * omega\"\nadds_to = \"torque\"\nk = 1.0\nj_typical = 1.0"), 21, "effects.expression.formula", "add `j = 0.0`"),
 ];
 
 #[test]

@@ -1,6 +1,6 @@
 //! The motor file: one TOML file per machine, the only configuration there is.
 //!
-//! Every number is validated once, here; what a [`MotorFile`] holds is physically possible.
+//! Everything is validated once, here, the effects by their library; what a [`MotorFile`] holds is physically possible.
 
 mod effects;
 mod monitor;
@@ -67,33 +67,6 @@ impl MotorFile {
         document.finish(motor)
     }
 
-    /// Checks every `[[effects]]` entry with the library of effects.
-    ///
-    /// `check` gives, for an entry it cannot accept, the key to blame (`name` or a parameter) and the
-    /// message with the remedy; the error adds file and line.
-    ///
-    /// # Errors
-    /// One problem for each entry that `check` refuses.
-    pub fn check_effects(
-        &self,
-        file_label: &str,
-        check: impl Fn(&EffectEntry) -> Result<(), (String, String)>,
-    ) -> Result<(), FileError> {
-        let problems: Vec<_> = self
-            .effects
-            .iter()
-            .filter_map(|effect| {
-                let (key, message) = check(effect).err()?;
-                Some(effect.problem(file_label, &key, message))
-            })
-            .collect();
-        if problems.is_empty() {
-            Ok(())
-        } else {
-            Err(FileError::new(problems))
-        }
-    }
-
     /// The constant field current `i_f`, A: as written, or the magnetizing current of the unloaded motor at
     /// rated voltage.
     pub fn nominal_field_current(&self) -> f64 {
@@ -129,6 +102,9 @@ fn read_document(document: &Document) -> Option<MotorFile> {
     let sensors = sensors::read(&root, nameplate.as_ref());
     let monitor = monitor::read(&root);
     let effects = read_effects(&root);
+    if let (Some(plate), Some(effects)) = (&nameplate, &effects) {
+        crate::effects::check(document, plate, effects);
+    }
     root.finish();
     let electrical = electrical?;
     Some(MotorFile {
