@@ -111,6 +111,31 @@ fn the_same_scenario_gives_the_same_bytes_and_the_fault_is_found_in_them() {
     );
 }
 
+#[test]
+fn a_recording_whose_sidecar_would_overwrite_the_scenario_is_refused() {
+    let folder = scratch("overwrite");
+    let scenario = folder.join("mine.toml");
+    let motor = Path::new(PROJECT).join("motors/assumed-300w.toml");
+    let content = two_second_scenario(&std::fs::canonicalize(motor).expect("it ships"));
+    std::fs::write(&scenario, &content).expect("written");
+    let output = drivemon(&[
+        "simulate",
+        text(&scenario),
+        "-o",
+        text(&folder.join("mine.csv.gz")),
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("another name"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(
+        std::fs::read_to_string(&scenario).expect("still there"),
+        content
+    );
+}
+
 fn two_second_scenario(motor: &Path) -> String {
     format!(
         "name = \"more load\"\nmotor = {motor:?}\nduration_s = 2.0\nstart = \"running\"\nseed = 5\n\

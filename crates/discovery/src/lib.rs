@@ -35,3 +35,4 @@ pub use report::{
     OrderReport, Overall, ParameterReport, RankReport, RegionReport, SignalReport, StepReport,
     Unexplained, Verdict,
 };
+pub use table::table_values;

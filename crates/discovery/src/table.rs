@@ -49,18 +49,34 @@ pub(crate) fn rows(table: &LoadTable, rated: &Rated<f64>) -> Result<Rows, Unsupp
     }
     let mut out: Rows = Default::default();
     for p in &points {
-        let Some(drive) = drive(p) else { continue };
-        out.0.push(Point {
-            voltage: p
-                .voltage_line_rms_volt
-                .map_or(rated.voltage, |u| u * (2.0f64 / 3.0).sqrt()),
-            drive,
-        });
-        let (measured, weight) = row(p, drive);
+        let Some(point) = point(p, rated) else {
+            continue;
+        };
+        out.0.push(point);
+        let (measured, weight) = row(p, point.drive);
         out.1.push(measured);
         out.2.push(weight);
     }
     Ok(out)
+}
+
+/// What a plant would show at each point of a table: line current (A rms), speed (rad/s), power factor, efficiency.
+/// `None` for a point without power, torque and speed.
+pub fn table_values(table: &LoadTable, plant: &Plant) -> Vec<Option<[f64; 4]>> {
+    let values = |p: &LoadPoint| {
+        let [current, speed, power_factor, efficiency, _] =
+            predict(plant, &point(p, &plant.rated)?);
+        Some([current, speed, power_factor, efficiency])
+    };
+    table.points().iter().map(values).collect()
+}
+
+fn point(p: &LoadPoint, rated: &Rated<f64>) -> Option<Point> {
+    let voltage = p.voltage_line_rms_volt;
+    Some(Point {
+        voltage: voltage.map_or(rated.voltage, |u| u * (2.0f64 / 3.0).sqrt()),
+        drive: drive(p)?,
+    })
 }
 
 fn drive(p: &LoadPoint) -> Option<Drive> {

@@ -8,9 +8,11 @@ use serde::Serialize;
 
 use super::failure::{Failure, Finding};
 use super::paint;
-use super::study::{StudyArgs, bar, print_audit, print_next, quantity, with_progress};
+use super::study::{
+    StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain, with_progress,
+};
 use crate::motor_text;
-use crate::overlay::{Model, Overlay};
+use crate::overlay::{Model, Overlay, TableOverlay};
 use crate::report::Subject;
 
 /// Add a physical effect to a motor file, refit everything, and show the error before and after.
@@ -50,6 +52,7 @@ struct AdoptJson {
     #[serde(flatten)]
     report: AdoptReport,
     overlay: Option<Overlay>,
+    table_overlay: Option<TableOverlay>,
 }
 
 impl Adopt {
@@ -72,6 +75,9 @@ impl Adopt {
             overlay: sources
                 .last()
                 .and_then(|source| Overlay::new(source, &models)),
+            table_overlay: sources
+                .last()
+                .and_then(|source| TableOverlay::new(source, &motor, &models)),
             report,
         };
         if !self.study.output.takes_stdout() {
@@ -166,23 +172,17 @@ fn print_verdict(report: &AdoptReport) {
 fn print_values(report: &AdoptReport) {
     anstream::println!("\nIn the new motor file:");
     for p in &report.parameters {
-        anstream::println!(
-            "  {:<34} {:>12} +- {} {}",
-            p.name,
-            quantity(p.value),
-            quantity(p.std_error),
-            p.unit
-        );
+        let value = uncertain(p.value, p.std_error);
+        anstream::println!("  {:<34} {value} {}", p.name, p.unit);
     }
     for p in &report.nominals {
         anstream::println!(
-            "  {:<34} {:>12} +- {:<9} {:<7} believed {} ({:+.1} %)",
+            "  {:<34} {} {:<7} believed {} ({} %)",
             p.name,
-            quantity(p.value),
-            quantity(p.std_error),
+            uncertain(p.value, p.std_error),
             p.unit,
             quantity(p.believed),
-            p.change_percent
+            percent(p.change_percent)
         );
     }
 }

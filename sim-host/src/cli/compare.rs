@@ -1,13 +1,13 @@
 //! `drivemon compare`: where the model of a motor file fails.
 
 use clap::Args;
-use discovery::{CompareReport, RegionReport, SignalReport};
+use discovery::{CompareReport, SignalReport};
 use serde::Serialize;
 
 use super::failure::{Failure, Finding};
-use super::paint;
 use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
-use crate::overlay::{Model, Overlay};
+use super::{paint, places};
+use crate::overlay::{Model, Overlay, TableOverlay};
 use crate::report::{AGREES, Subject};
 
 /// Compare the model of a motor file with a recording: how far off, in which signal, and where.
@@ -27,9 +27,6 @@ Examples:
   drivemon compare rec.csv.gz --motor motor.toml --report compare.html     with figures
 Exit codes: 0 the model agrees within 10 % of the noise, 1 it does not, 2 bad input, 3 the audit refused.";
 
-/// Places that are named.
-const PLACES: usize = 3;
-
 /// Everything that `drivemon compare` says.
 #[derive(Debug, Serialize)]
 struct CompareJson {
@@ -39,6 +36,7 @@ struct CompareJson {
     #[serde(flatten)]
     report: CompareReport,
     overlay: Option<Overlay>,
+    table_overlay: Option<TableOverlay>,
 }
 
 impl Compare {
@@ -47,13 +45,15 @@ impl Compare {
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
         let report = with_progress(|progress| discovery::compare(&sources, &motor, progress))?;
+        let models = [Model::believed(&motor)];
         let result = CompareJson {
             recording: self.study.names().remove(0),
             motor: motor.name.clone(),
             next_command: format!("drivemon explain {}", self.study.typed()),
             overlay: report
                 .overall
-                .and_then(|_| Overlay::new(&sources[0], &[Model::believed(&motor)])),
+                .and_then(|_| Overlay::new(&sources[0], &models)),
+            table_overlay: TableOverlay::new(&sources[0], &motor, &models),
             report,
         };
         if !self.study.output.takes_stdout() {
@@ -92,40 +92,13 @@ fn print(result: &CompareJson) {
         let answer = format!("The model agrees with the measurement ({error:.2} times the noise).");
         anstream::println!("\n{}", paint::good(answer));
     }
-    print_places(&report.regions);
+    if !report.regions.is_empty() {
+        anstream::println!("It is furthest off:");
+        places::print(&places::worst(report));
+    }
     print_signals(&report.signals);
     if error > AGREES {
         print_next("Which physics is missing?", Some(&result.next_command));
-    }
-}
-
-/// The worst places, each kind once.
-pub fn worst(regions: &[RegionReport]) -> Vec<&RegionReport> {
-    let mut sorted: Vec<&RegionReport> = regions.iter().collect();
-    sorted.sort_by(|a, b| b.error_over_noise.total_cmp(&a.error_over_noise));
-    let mut found: Vec<&RegionReport> = Vec::new();
-    for region in sorted {
-        if found.iter().all(|known| known.name != region.name) {
-            found.push(region);
-        }
-    }
-    found.truncate(PLACES);
-    found
-}
-
-fn print_places(regions: &[RegionReport]) {
-    let worst = worst(regions);
-    let Some(first) = worst.first() else { return };
-    anstream::println!("It is furthest off:");
-    for region in &worst {
-        anstream::println!(
-            "  {:<30} {:6.3} .. {:6.3} s {:7.2} x noise  {}",
-            region.name,
-            region.from_s,
-            region.to_s,
-            region.error_over_noise,
-            bar(region.error_over_noise, first.error_over_noise, 24)
-        );
     }
 }
 

@@ -1,13 +1,19 @@
 //! `drivemon explain`: which physical effect a model misses.
 
 use clap::Args;
-use discovery::{ExplainReport, FitReport, StepReport, Verdict};
+use discovery::{ExplainReport, FitReport, RankReport, StepReport, Verdict};
+use motor::MotorFile;
+use recording::Source;
 use serde::Serialize;
 
 use super::failure::{Failure, Finding};
-use super::paint;
-use super::study::{StudyArgs, bar, print_audit, print_next, quantity, with_progress};
-use crate::overlay::{Model, Overlay};
+use super::places::Place;
+use super::study::{
+    StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain, with_progress,
+    wrapped,
+};
+use super::{paint, places};
+use crate::overlay::{Model, Overlay, TableOverlay};
 use crate::report::Subject;
 
 /// Find out which physical effect the model misses, and prove it on data that was not fitted.
@@ -30,6 +36,8 @@ Exit codes: 0 the model is adequate, 1 something is missing or off, 2 bad input,
 
 /// Ranks that are printed.
 const RANKS: usize = 8;
+/// Gain from which on an effect is worth a line, percent.
+const LEAST_GAIN_PERCENT: f64 = 0.5;
 /// Longest bar, characters.
 const WIDTH: usize = 36;
 
@@ -39,9 +47,12 @@ struct ExplainJson {
     recordings: Vec<String>,
     motor: String,
     next: Next,
+    /// The worst places of the first recording, with the model as the motor file says.
+    where_it_fails: Vec<Place>,
     #[serde(flatten)]
     report: ExplainReport,
     overlay: Option<Overlay>,
+    table_overlay: Option<TableOverlay>,
 }
 
 /// What to do next.
@@ -62,10 +73,15 @@ impl Explain {
             recordings: self.study.names(),
             motor: motor.name.clone(),
             next: self.next(&report),
+            where_it_fails: where_it_fails(&sources, &motor, &report)?,
             overlay: sources
                 .last()
                 .filter(|_| report.baseline.is_some())
                 .and_then(|source| Overlay::new(source, &models)),
+            table_overlay: sources
+                .last()
+                .filter(|_| report.baseline.is_some())
+                .and_then(|source| TableOverlay::new(source, &motor, &models)),
             report,
         };
         if !self.study.output.takes_stdout() {
@@ -89,10 +105,7 @@ impl Explain {
                 adopt(&step.effect),
             ),
             (Verdict::Ambiguous, Some(step)) => (
-                format!(
-                    "Measure first what separates them: {}. Or take the first of the tie:",
-                    step.separating_test
-                ),
+                "Measure first what separates them, or take the first of the tie:".to_owned(),
                 adopt(&step.effect),
             ),
             (Verdict::Adequate, _) if anything_off(report) => (
@@ -107,13 +120,26 @@ impl Explain {
                 None,
             ),
             _ => (
-                "Record more of what the description names, with a second load and a second voltage."
+                "Record more of what the description names, with a second load and a second voltage. \
+                 If you suspect what it is, write it as a formula into the motor file: docs/adding-an-effect.md."
                     .to_owned(),
                 None,
             ),
         };
         Next { why, command }
     }
+}
+
+fn where_it_fails(
+    sources: &[Source],
+    motor: &MotorFile,
+    report: &ExplainReport,
+) -> Result<Vec<Place>, Failure> {
+    if report.baseline.is_none() {
+        return Ok(Vec::new());
+    }
+    let compared = with_progress(|progress| discovery::compare(sources, motor, progress))?;
+    Ok(places::worst(&compared))
 }
 
 fn anything_off(report: &ExplainReport) -> bool {
@@ -138,6 +164,10 @@ fn print(result: &ExplainJson) {
     );
     print_audit(&report.audit);
     print_answer(report);
+    if !result.where_it_fails.is_empty() {
+        anstream::println!("\nThe model of the motor file is furthest off:");
+        places::print(&result.where_it_fails);
+    }
     print_errors(report);
     print_ranking(report);
     report.steps.iter().for_each(print_step);
@@ -146,16 +176,15 @@ fn print(result: &ExplainJson) {
     }
     print_unexplained(report);
     if !report.not_testable.is_empty() {
-        anstream::println!(
-            "\nThis recording cannot show (present or not): {}",
-            report.not_testable.join(", ")
-        );
+        let names = report.not_testable.join(", ");
+        let text = format!("This recording cannot show, present or not: {names}.");
+        anstream::println!("\n{}", wrapped(&text));
     }
     print_next(&result.next.why, result.next.command.as_deref());
 }
 
 fn print_answer(report: &ExplainReport) {
-    let summary = &report.summary;
+    let summary = wrapped(&report.summary);
     match report.verdict {
         Verdict::Adequate => anstream::println!("\n{}", paint::good(summary)),
         Verdict::Effect => anstream::println!("\n{}", paint::error(summary)),
@@ -188,18 +217,23 @@ fn print_ranking(report: &ExplainReport) {
     let Some(baseline) = &report.baseline else {
         return;
     };
-    let full = baseline.held_out_error_over_noise;
+    let before = baseline.held_out_error_over_noise;
     anstream::println!("\nEach effect alone, all parameters refitted with it (~ linearised):");
-    for row in report.ranking.iter().take(RANKS) {
+    let gains = |row: &&RankReport| row.gain_percent >= LEAST_GAIN_PERCENT;
+    let shown: Vec<&RankReport> = report.ranking.iter().filter(gains).take(RANKS).collect();
+    for row in &shown {
         let mark = if row.refitted { ' ' } else { '~' };
-        let error = row.held_out_error_over_noise;
+        let after = row.held_out_error_over_noise;
         anstream::println!(
-            "  {:<24} {full:7.3} -> {mark}{error:7.3}  {:+6.1} %  {}",
+            "  {:<24} {before:7.3} -> {mark}{after:7.3} {:>7} %  {}",
             row.effect,
-            -row.gain_percent,
-            bar(error, full, WIDTH)
+            percent(-row.gain_percent),
+            fall(before, after, WIDTH)
         );
     }
+    let all = report.ranking.iter();
+    let others = all.filter(|row| !gains(row)).count();
+    anstream::println!("  {others} effects lower it by less than {LEAST_GAIN_PERCENT} %");
 }
 
 fn print_step(step: &StepReport) {
@@ -208,30 +242,28 @@ fn print_step(step: &StepReport) {
     } else {
         format!(" ({})", step.form)
     };
+    let share = step.explained_percent.min(100.0);
     anstream::println!(
-        "\n{}{form} explains {:.0} % of the excess error. Seen when it is missing: {}.",
-        paint::strong(&step.effect),
-        step.explained_percent,
-        step.symptom
+        "\n{}{form} explains {share:.0} % of the excess error.",
+        paint::strong(&step.effect)
+    );
+    anstream::println!(
+        "{}",
+        wrapped(&format!("Seen when it is missing: {}.", step.symptom))
     );
     for p in &step.parameters {
-        anstream::println!(
-            "  {:<34} {:>12} +- {} {}",
-            p.name,
-            quantity(p.value),
-            quantity(p.std_error),
-            p.unit
-        );
+        let value = uncertain(p.value, p.std_error);
+        anstream::println!("  {:<34} {value} {}", p.name, p.unit);
     }
     if let Some(loss) = step.loss_watt {
         anstream::println!("  it takes {loss:.0} W at rated voltage and synchronous speed");
     }
     if !step.tied_with.is_empty() {
         let others = step.tied_with.join(", ");
+        anstream::println!("{} {others}", paint::caution("As likely:"));
         anstream::println!(
-            "  {} {others}; what separates them: {}",
-            paint::caution("as likely:"),
-            step.separating_test
+            "{}",
+            wrapped(&format!("What separates them: {}.", step.separating_test))
         );
     }
 }
@@ -241,13 +273,12 @@ fn print_parameters(fit: &FitReport) {
     for p in &fit.parameters {
         let mark = if p.off { "  <- off" } else { "" };
         anstream::println!(
-            "  {:<30} {:>10} -> {:>10} +- {:<9} {:<7} {:+6.1} %{}",
+            "  {:<30} {:>10} -> {} {:<7} {:>6} %{}",
             p.name,
             quantity(p.believed),
-            quantity(p.value),
-            quantity(p.std_error),
+            uncertain(p.value, p.std_error),
             p.unit,
-            p.change_percent,
+            percent(p.change_percent),
             paint::error(mark)
         );
     }
@@ -257,14 +288,26 @@ fn print_unexplained(report: &ExplainReport) {
     let Some(rest) = &report.unexplained else {
         return;
     };
-    anstream::println!("\nWhat is left: {}", rest.description);
-    if let Some(lead) = &rest.best_lead {
+    // The summary may have said it already.
+    if !report
+        .summary
+        .contains(rest.description.trim_end_matches('.'))
+    {
         anstream::println!(
-            "  best lead, not proven: {lead}, explains {:.0} %",
-            rest.best_lead_explains_percent
+            "\n{}",
+            wrapped(&format!("What is left: {}", rest.description))
+        );
+    }
+    let share = rest.best_lead_explains_percent;
+    if let Some(lead) = rest.best_lead.as_ref().filter(|_| share >= 1.0) {
+        anstream::println!(
+            "\nBest lead, not proven: {lead}, explains {share:.0} % of the excess error."
         );
     }
     if !rest.correlates_with.is_empty() {
-        anstream::println!("  it grows with: {}", rest.correlates_with.join(", "));
+        anstream::println!(
+            "What is left grows with: {}.",
+            rest.correlates_with.join(", ")
+        );
     }
 }

@@ -9,6 +9,7 @@ mod input;
 mod monitor;
 mod output;
 mod paint;
+mod places;
 mod progress;
 mod simulate;
 mod study;

@@ -11,6 +11,7 @@ use super::failure::Failure;
 use super::input::{InputArgs, read_motor};
 use super::output::OutputArgs;
 use super::{paint, progress};
+use crate::report::{Style, decimals, significant};
 
 /// Recordings, the motor file, and where results go.
 #[derive(Debug, Args)]
@@ -113,19 +114,62 @@ pub fn print_audit(audit: &Audit) {
 
 /// Prints what to do next, with the command to type where there is one.
 pub fn print_next(why: &str, command: Option<&str>) {
-    anstream::println!("\n{why}");
+    anstream::println!("\n{}", wrapped(why));
     if let Some(command) = command {
         anstream::println!("  {}", paint::strong(command));
     }
 }
 
-/// A quantity of unknown size: small ones with an exponent.
-pub fn quantity(x: f64) -> String {
-    if x != 0.0 && x.abs() < 1e-3 {
-        format!("{x:.3e}")
-    } else {
-        format!("{x:.5}")
+/// Columns of a line of prose.
+const COLUMNS: usize = 110;
+
+/// Prose in lines that a terminal shows without breaking words; commands are never wrapped.
+pub fn wrapped(text: &str) -> String {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = &mut lines[0];
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > COLUMNS {
+            lines.insert(0, String::new());
+        }
+        let line = &mut lines[0];
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
     }
+    lines.reverse();
+    lines.join("\n")
+}
+
+/// A number as the pages write it, with the minus that can be typed.
+pub fn plain(style: Style, x: f64) -> String {
+    style.text(x).replace('\u{2212}', "-")
+}
+
+/// A quantity of unknown size.
+pub fn quantity(x: f64) -> String {
+    plain(significant(5), x)
+}
+
+/// A value that was fitted, with its standard error, in columns.
+pub fn uncertain(value: f64, std_error: f64) -> String {
+    let error = match std_error > 0.0 {
+        true => format!("+- {}", plain(significant(2), std_error)),
+        false => "not fitted".to_owned(),
+    };
+    format!("{:>10} {error:<12}", quantity(value))
+}
+
+/// A change, percent.
+pub fn percent(x: f64) -> String {
+    plain(decimals(1).signed(), x)
+}
+
+/// A bar of `after`, and behind it what is gone of `before`, `width` characters long.
+pub fn fall(before: f64, after: f64, width: usize) -> String {
+    let rest = bar(after, before, width);
+    let gone = width - rest.chars().count();
+    rest + &"░".repeat(gone)
 }
 
 /// A bar of `value` out of `full`, at most `width` characters long.
@@ -149,10 +193,26 @@ mod tests {
     }
 
     #[test]
-    fn small_quantities_keep_their_digits() {
-        assert_eq!(quantity(7.485e-5), "7.485e-5");
-        assert_eq!(quantity(0.0), "0.00000");
-        assert_eq!(quantity(264.159_157), "264.15916");
+    fn a_fall_shows_what_is_left_and_what_is_gone() {
+        assert_eq!(fall(4.0, 1.0, 4), "█░░░");
+        assert_eq!(fall(1.0, 1.1, 4), "████");
+    }
+
+    #[test]
+    fn quantities_have_five_digits_and_their_errors_two() {
+        assert_eq!(quantity(7.485e-5), "7.4850e-5");
+        assert_eq!(quantity(0.001_551_4), "0.0015514");
+        assert_eq!(quantity(264.159_157), "264.16");
+        assert_eq!(uncertain(-1.5, 0.012_34).trim(), "-1.5000 +- 0.012");
+        assert_eq!(uncertain(0.12, 0.0).trim(), "0.12000 not fitted");
+        assert_eq!(percent(-0.02), "0.0");
+    }
+
+    #[test]
+    fn prose_is_broken_between_words() {
+        let text = wrapped(&"word ".repeat(40));
+        assert!(text.lines().all(|line| line.chars().count() <= COLUMNS));
+        assert_eq!(text.split_whitespace().count(), 40);
     }
 
     #[test]

@@ -5,8 +5,10 @@
 
 mod drive;
 mod model;
+mod table;
 
 pub use model::Model;
+pub use table::{Quantities, TableOverlay, TablePoint};
 
 use motor::effects::Outputs;
 use recording::{Recording, Source};

@@ -108,7 +108,9 @@ fn add<'p>(
     numbers: impl Iterator<Item = (&'p str, f64)>,
 ) {
     let mut entry = EffectEntry::with_numbers(effect, numbers);
-    let known = motor.effects.iter().position(|e| e.name == effect);
+    let is_it =
+        |e: &EffectEntry| e.name == effect && e.text("formula").is_none_or(|text| text == form);
+    let known = motor.effects.iter().position(is_it);
     let texts = match known {
         Some(k) => motor.effects.remove(k).parameters,
         None if form.is_empty() => Vec::new(),

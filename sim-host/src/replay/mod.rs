@@ -99,3 +99,28 @@ pub fn replay(
     timeline.finish();
     timeline
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use recording::Metadata;
+
+    fn load(declared: LoadTorque) -> LoadKind {
+        let text = include_str!("../../../motors/assumed-300w.toml");
+        let motor = MotorFile::parse(text, "motor").expect("it ships");
+        let metadata = Metadata {
+            load_torque: declared,
+            ..Metadata::default()
+        };
+        let recording = Recording::new("x", vec![0.0, 1e-4], metadata).expect("a clock");
+        config_for(&motor, &recording).load
+    }
+
+    #[test]
+    fn a_recording_that_declares_its_load_unknown_overrules_the_motor_file() {
+        assert_eq!(load(LoadTorque::default()), LoadKind::Friction);
+        assert_eq!(load(LoadTorque::Free), LoadKind::Free);
+        // Nothing was recorded of what is called measured.
+        assert_eq!(load(LoadTorque::Measured), LoadKind::Free);
+    }
+}

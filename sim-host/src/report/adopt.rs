@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::audit;
 use super::number::{decimals, shown};
 use super::overlay;
-use super::parameters::{Bar, bars, nominals, of_effect};
+use super::parameters::{Bar, NOISE, bars, nominals, of_effect};
 use super::place::Place;
 use super::shell::{Mood, cards, next, verdict};
 
@@ -89,7 +89,7 @@ fn errors(result: &Place<'_>) -> Markup {
         section aria-labelledby="fall" {
             h2 id="fall" { "Error before and after" }
             (bars(&rows))
-            p.subtle { "1 is what the sensors' own noise leaves. Before and after, all parameters are refitted." }
+            p.subtle { (NOISE) " Before and after, all parameters are refitted." }
         }
     }
 }

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::audit;
 use super::number::{decimals, shown};
 use super::overlay;
-use super::parameters::{Bar, bar, bars, nominals, of_effect};
+use super::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
 use super::place::Place;
 use super::shell::{Mood, cards, next, verdict};
 
@@ -20,6 +20,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (cards(&summary(result, &steps)))
         (next(result.text("next/why"), result.text("next/command")))
         (errors(result, &steps))
+        (where_it_fails(result))
         @for (k, step) in steps.iter().enumerate() { (effect(step, k)) }
         (unexplained(result))
         (overlay::section(result))
@@ -69,8 +70,12 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
             format!("fitted on {first}, proven on {}", rest.join(" and "))
         }
         _ => format!(
-            "fitted on {}, proven by interleaved blocks that were left out",
-            recordings.join("")
+            "fitted on {}, proven by {} that were left out",
+            recordings.join(""),
+            match result.get("table_overlay") {
+                Some(_) => "points",
+                None => "interleaved blocks",
+            }
         ),
     };
     let more = html! {
@@ -138,7 +143,31 @@ fn errors(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
         section aria-labelledby="fall" {
             h2 id="fall" { "How the error falls on data that was not fitted" }
             (bars(&rows))
-            p.subtle { "1 is what the sensors' own noise leaves." }
+            p.subtle { (NOISE) }
+        }
+    }
+}
+
+/// The worst places of the model as the motor file says.
+fn where_it_fails(result: &Place<'_>) -> Markup {
+    let places = result.items("where_it_fails");
+    let error = |place: &Place<'_>| place.number("error_over_noise").unwrap_or_default();
+    let full = places.iter().map(error).fold(0.0, f64::max);
+    let timed = places.iter().any(|place| place.get("from_s").is_some());
+    html! {
+        @if !places.is_empty() {
+            section aria-labelledby="fails" {
+                h2 id="fails" { "Where the model of the motor file is furthest off" }
+                div.wide tabindex="0" { table.bars.plain {
+                    thead { tr { th scope="col" { "place" } @if timed { th scope="col" { "from, s" } th scope="col" { "to, s" } } th scope="col" { "error, × noise" } th.word scope="col" { "" } } }
+                    tbody { @for place in &places { tr {
+                        th scope="row" { (place.text("name")) }
+                        @if timed { td { (shown(place, "from_s", decimals(2))) } td { (shown(place, "to_s", decimals(2))) } }
+                        td { (shown(place, "error_over_noise", decimals(2))) }
+                        td.bar { (bar(error(place), full)) }
+                    } } }
+                } }
+            }
         }
     }
 }
@@ -188,43 +217,58 @@ fn unexplained(result: &Place<'_>) -> Markup {
     }
 }
 
+/// Gain below which an effect is folded away, percent.
+const LEAST_GAIN_PERCENT: f64 = 0.5;
+
 fn ranking(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
     let rows = result.items("ranking");
+    if rows.is_empty() {
+        return html! {};
+    }
+    let gains = |row: &&Place<'_>| row.number("gain_percent") >= Some(LEAST_GAIN_PERCENT);
+    let (top, rest): (Vec<_>, Vec<_>) = rows.iter().partition(gains);
+    html! {
+        section aria-labelledby="ranking" {
+            h2 id="ranking" { "Every effect, added alone" }
+            p.subtle { "Error on data that was not fitted, with all parameters refitted beside the effect; ~ is linearised. Visibility is what an effect of typical size would show in this recording, percent of the noise: below 2 the recording can neither find nor exclude it." }
+            @if top.is_empty() { p { "None lowers the error noticeably." } } @else {
+                p.key { span { span.swatch { i style="background:var(--blue)" {} } "found" } span { span.swatch { i style="background:var(--sky)" {} } "tied with it" } span { span.swatch { i style="background:var(--grey)" {} } "others" } }
+                (ranks(result, steps, &top))
+            }
+            details { summary { "Effects that lower it by less than half a percent" } (ranks(result, steps, &rest)) }
+        }
+    }
+}
+
+fn ranks(result: &Place<'_>, steps: &[Place<'_>], rows: &[&Place<'_>]) -> Markup {
     let full = result
         .number(&format!("baseline/{HELD_OUT}"))
         .unwrap_or_default();
-    let class = |name: &str| {
-        let tied = |step: &Place<'_>| {
-            step.items("tied_with")
-                .iter()
-                .any(|tie| tie.as_text() == name)
-        };
-        if steps.iter().any(|step| step.text("effect") == name) {
-            "chosen"
-        } else if steps.iter().any(tied) {
-            "tied"
-        } else {
-            ""
-        }
-    };
     html! {
-        @if !rows.is_empty() {
-            section aria-labelledby="ranking" {
-                h2 id="ranking" { "Every effect, added alone" }
-                p.subtle { "Error on data that was not fitted, with all parameters refitted beside the effect; ~ is linearised. Visibility is what an effect of typical size would show in this recording, percent of the noise: below 2 the recording can neither find nor exclude it." }
-                p.key { span { span.swatch { i style="background:var(--blue)" {} } "found" } span { span.swatch { i style="background:var(--sky)" {} } "tied with it" } span { span.swatch { i style="background:var(--grey)" {} } "others" } }
-                div.wide tabindex="0" { table.bars {
-                    thead { tr { th scope="col" { "effect" } th scope="col" { "error, × noise" } th scope="col" { "gain, %" } th scope="col" { "visibility, %" } th.word scope="col" { "" } } }
-                    tbody { @for row in &rows { tr class=(class(row.text("effect"))) {
-                        th scope="row" { (row.text("effect")) }
-                        td { @if !row.is_true("refitted") { "~ " } (shown(row, HELD_OUT, decimals(3))) }
-                        td { (shown(row, "gain_percent", decimals(1).signed())) }
-                        td { (shown(row, "visibility_percent", decimals(1))) }
-                        td.bar { (bar(row.number(HELD_OUT).unwrap_or_default(), full)) }
-                    } } }
-                } }
-            }
-        }
+        div.wide tabindex="0" { table.bars {
+            thead { tr { th scope="col" { "effect" } th scope="col" { "error, × noise" } th scope="col" { "gain, %" } th scope="col" { "visibility, %" } th.word scope="col" { "" } } }
+            tbody { @for row in rows { tr class=(rank_class(row.text("effect"), steps)) {
+                th scope="row" { (row.text("effect")) }
+                td { @if !row.is_true("refitted") { "~ " } (shown(row, HELD_OUT, decimals(3))) }
+                td { (shown(row, "gain_percent", decimals(1).signed())) }
+                td { (shown(row, "visibility_percent", decimals(1))) }
+                td.bar { (bar(row.number(HELD_OUT).unwrap_or_default(), full)) }
+            } } }
+        } }
+    }
+}
+
+fn rank_class(name: &str, steps: &[Place<'_>]) -> &'static str {
+    let tied = |step: &Place<'_>| {
+        let ties = step.items("tied_with");
+        ties.iter().any(|tie| tie.as_text() == name)
+    };
+    if steps.iter().any(|step| step.text("effect") == name) {
+        "chosen"
+    } else if steps.iter().any(tied) {
+        "tied"
+    } else {
+        ""
     }
 }
 

@@ -17,8 +17,10 @@ mod overlay;
 mod parameters;
 mod place;
 mod shell;
+mod table_overlay;
 
 pub use compare::AGREES;
+pub(crate) use number::{Style, decimals, significant};
 pub use place::Place;
 
 use serde::Serialize;

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::chart::{Chart, Kind, Series};
 use super::place::Place;
+use super::table_overlay;
 
 /// Colours of the models: what was believed stands out, what was found agrees.
 const TWO: [&str; 2] = ["vermillion", "green"];
@@ -40,7 +41,7 @@ const AGAINST: [(&str, &str, &str, &str); 4] = [
 /// The figures, or a sentence when there is nothing to lay over each other.
 pub fn section(result: &Place<'_>) -> Markup {
     let Some(overlay) = result.get("overlay") else {
-        return html! {};
+        return table_overlay::section(result);
     };
     let models = models(&overlay);
     html! {
@@ -66,7 +67,8 @@ pub fn section(result: &Place<'_>) -> Markup {
     }
 }
 
-fn models(overlay: &Place<'_>) -> Vec<(String, &'static str)> {
+/// Names and colours of the models.
+pub fn models(overlay: &Place<'_>) -> Vec<(String, &'static str)> {
     let names: Vec<String> = overlay
         .items("models")
         .iter()

@@ -5,6 +5,10 @@ use maud::{Markup, html};
 use super::number::{decimals, shown, significant};
 use super::place::Place;
 
+/// What an error over noise of 1 means.
+pub const NOISE: &str =
+    "1 is what the sensors' own noise leaves, or the accuracy that a table is taken to have.";
+
 /// Nominal parameters: believed, fitted, how sure.
 pub fn nominals(rows: &[Place<'_>]) -> Markup {
     html! {
@@ -18,12 +22,12 @@ pub fn nominals(rows: &[Place<'_>]) -> Markup {
                 td { (shown(row, "believed", significant(5))) }
                 td { (shown(row, "value", significant(5))) }
                 td { (error(row)) }
-                td { (row.text("unit")) }
+                td.unit { (row.text("unit")) }
                 td { (shown(row, "change_percent", decimals(1).signed())) }
-                td.word { @if row.is_true("off") { span.off { "off: more than three standard errors and 5 %" } } }
+                td.word { @if row.is_true("off") { span.off { "off" } } }
             } } }
         } }
-        p.subtle { "The change of the friction is given in percent of rated torque at rated speed." }
+        p.subtle { "Off: by more than three standard errors and 5 %. The change of the friction is given in percent of rated torque at rated speed." }
     }
 }
 
@@ -44,7 +48,7 @@ pub fn of_effect(rows: &[Place<'_>]) -> Markup {
                 th scope="row" { (row.text("name")) }
                 td { (shown(row, "value", significant(5))) }
                 td { (error(row)) }
-                td { (row.text("unit")) }
+                td.unit { (row.text("unit")) }
             } } }
         } }
     }

@@ -14,8 +14,27 @@ use std::sync::Arc;
 /// The supply frequency is told to effects this often, s.
 const TIMELINE_S: f64 = 1e-3;
 
+/// Effects inside the motor or between it and the supply.
+pub(super) fn inside(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
+    let mut effects = configs(scenario)?;
+    effects.retain(|effect| !is_of_instruments(effect));
+    Ok(effects)
+}
+
+/// Effects on the instruments.
+pub(super) fn of_instruments(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
+    let mut effects = configs(scenario)?;
+    effects.retain(is_of_instruments);
+    Ok(effects)
+}
+
+fn is_of_instruments(config: &EffectConfig) -> bool {
+    let mut hooks = config.effect.hooks().iter();
+    hooks.any(|hook| matches!(hook, Hook::Inputs | Hook::Outputs))
+}
+
 /// All effects in force, those of the motor file first.
-pub(super) fn configs(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
+fn configs(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
     let entries = scenario.motor.effects.iter().chain(&scenario.effects);
     let effects: Vec<_> = entries
         .map(|entry| {
@@ -40,24 +59,12 @@ pub(super) fn configs(scenario: &Scenario) -> Result<Vec<EffectConfig>, Simulati
     Ok(effects)
 }
 
-/// One entry as an effect that can be simulated sample by sample, or the key to blame and why.
+/// One entry as an effect, or the key to blame and why.
 pub(crate) fn check_entry(
     motor: &MotorFile,
     entry: &EffectEntry,
 ) -> Result<EffectConfig, (String, String)> {
-    let config = from_entry(entry, &rated(motor))
-        .map_err(|error| (error.key().to_owned(), error.to_string()))?;
-    let outer = [Hook::Inputs, Hook::Outputs];
-    if config
-        .effect
-        .hooks()
-        .iter()
-        .any(|hook| outer.contains(hook))
-    {
-        let message = "concerns the instruments, not the motor: use [[faults]] on va, vb, vc, ia, ib, ic or speed";
-        return Err(("name".to_owned(), message.to_owned()));
-    }
-    Ok(config)
+    from_entry(entry, &rated(motor)).map_err(|error| (error.key().to_owned(), error.to_string()))
 }
 
 /// Builds the motor with its effects, again whenever a fault changes its parameters.

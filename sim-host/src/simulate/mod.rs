@@ -6,9 +6,12 @@ mod linear;
 mod plant;
 mod record;
 mod sensing;
+mod shown;
 mod side_by_side;
 mod waveform;
 
+#[cfg(test)]
+mod instrument_tests;
 #[cfg(test)]
 mod tests;
 
@@ -137,8 +140,23 @@ impl Simulation {
     /// Prepares a scenario.
     ///
     /// # Errors
-    /// A motor that is to be running on a load that it cannot carry, or an effect that cannot be simulated.
+    /// A motor that is to be running on a load that it cannot carry, or an effect that cannot be simulated sample by sample:
+    /// those on the instruments need whole signals, which only [`record`] has.
     pub fn new(scenario: &Scenario) -> Result<Simulation, SimulationError> {
+        match effects::of_instruments(scenario)?.first() {
+            None => Simulation::inside(scenario),
+            Some(effect) => Err(SimulationError::Effect {
+                name: effect.effect.descriptor().name.to_owned(),
+                key: "name".to_owned(),
+                message: "concerns the instruments, which `drivemon simulate` can show and a running \
+                          simulation cannot: leave it out, or use [[faults]] on va, vb, vc, ia, ib, ic or speed"
+                    .to_owned(),
+            }),
+        }
+    }
+
+    /// Without the effects on the instruments.
+    fn inside(scenario: &Scenario) -> Result<Simulation, SimulationError> {
         Ok(Simulation {
             plant: Plant::new(scenario)?,
             instruments: Instruments::new(scenario),

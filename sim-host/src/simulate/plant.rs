@@ -34,7 +34,7 @@ impl Plant {
         if scenario.plant == PlantKind::Linear {
             return Ok(Plant::Linear(Linear::new(scenario)));
         }
-        let effects = effects::configs(scenario)?;
+        let effects = effects::inside(scenario)?;
         if effects.is_empty() {
             let make =
                 |motor: &TParams<f64>, mechanics: &Mechanics<f64>| Dynamic::new(motor, mechanics);

@@ -1,6 +1,6 @@
 //! A whole experiment as a recording.
 
-use super::{SimSample, Simulation, SimulationError};
+use super::{SimSample, Simulation, SimulationError, effects, shown};
 use crate::scenario::{Scenario, SpeedSensor, Start};
 use motor::motor_file::LoadKind;
 use recording::{
@@ -26,12 +26,21 @@ pub fn record(
     scenario: &Scenario,
     mut progress: impl FnMut(f64),
 ) -> Result<Recording, RecordError> {
+    let effects = effects::of_instruments(scenario)?;
+    let samples = Simulation::inside(scenario)?
+        .enumerate()
+        .map(|(k, sample)| {
+            if k % 10_000 == 0 {
+                progress(sample.t / scenario.duration_s);
+            }
+            sample
+        });
     let mut columns = Columns::default();
-    for sample in Simulation::new(scenario)? {
-        if columns.t.len() % 10_000 == 0 {
-            progress(sample.t / scenario.duration_s);
-        }
-        columns.push(&sample);
+    if effects.is_empty() {
+        samples.for_each(|sample| columns.push(&sample));
+    } else {
+        let shown = shown::shown(scenario, &effects, samples.collect())?;
+        shown.iter().for_each(|sample| columns.push(sample));
     }
     progress(1.0);
     columns.into_recording(scenario)

@@ -61,6 +61,7 @@ impl Page {
         self.check_self_contained();
         self.check_embedded();
         self.check_numbers();
+        self.check_tables();
         self.check_figures();
         assert_eq!(self.html.matches("<h1").count(), 1);
     }
@@ -106,6 +107,18 @@ impl Page {
         }
     }
 
+    /// No cell of a table holds a figure that does not come from the JSON; units are no figures.
+    fn check_tables(&self) {
+        for cell in self.html.split("<td").skip(1) {
+            let (opening, content) = cell.split_once('>').expect("an opening tag");
+            let content = content.split("</td>").next().unwrap_or_default();
+            let is_unit = opening.contains("unit");
+            let rest = text(&without_data(content));
+            let has_digit = rest.chars().any(|c| c.is_ascii_digit());
+            assert!(is_unit || !has_digit, "{rest} in {}", self.path);
+        }
+    }
+
     /// Every address that a figure draws from leads to something.
     fn check_figures(&self) {
         for chart in self.charts() {
@@ -147,6 +160,23 @@ impl Page {
     pub fn numbers(&self) -> Vec<Number> {
         self.html.split("<data ").skip(1).map(number).collect()
     }
+}
+
+/// Markup without the numbers that carry their address.
+fn without_data(markup: &str) -> String {
+    let mut parts = markup.split("<data ");
+    let first = parts.next().unwrap_or_default().to_owned();
+    let after = parts.map(|part| part.split_once("</data>").expect("an end").1);
+    after.fold(first, |all, part| all + part)
+}
+
+/// Markup without tags.
+fn text(markup: &str) -> String {
+    let mut parts = markup.split('<');
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts
+        .filter_map(|part| part.split_once('>'))
+        .fold(first, |all, (_, part)| all + part)
 }
 
 fn number(tag: &str) -> Number {
