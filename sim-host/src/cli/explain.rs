@@ -231,9 +231,14 @@ fn print_ranking(report: &ExplainReport) {
             fall(before, after, WIDTH)
         );
     }
-    let all = report.ranking.iter();
-    let others = all.filter(|row| !gains(row)).count();
-    anstream::println!("  {others} effects lower it by less than {LEAST_GAIN_PERCENT} %");
+    let count = report.ranking.len() - report.ranking.iter().filter(gains).count();
+    anstream::println!(
+        "  {} lower it by less than {LEAST_GAIN_PERCENT} %",
+        match shown.is_empty() {
+            true => format!("all {count}"),
+            false => format!("{count} others"),
+        }
+    );
 }
 
 fn print_step(step: &StepReport) {
