@@ -16,7 +16,7 @@ use crate::hardware::board::{Board, clocks};
 use crate::hardware::flash_store;
 use crate::hardware::housekeeping::{Housekeeping, ResetCause, is_vdda_credible};
 use crate::hardware::lamps::Lamps as LampWires;
-use crate::hardware::sampling::{Acquisition, Block, Buffers, Gap};
+use crate::hardware::sampling::{Acquisition, Block, Gap};
 use crate::hardware::telemetry::Telemetry;
 
 include!(concat!(env!("OUT_DIR"), "/motor.rs"));
@@ -81,14 +81,13 @@ async fn run(
     mut panel: Panel,
     mut sources: crate::hardware::sampling::Sources,
 ) -> ! {
-    let mut buffers = Buffers::new();
     let mut state = MonitorState::default();
     let mut lamps = Lamps {
         run: Lamp::Blink,
         ..Lamps::default()
     };
     loop {
-        let mut acquisition = Acquisition::start(&mut sources, &mut buffers);
+        let mut acquisition = Acquisition::start(&mut sources);
         let pause = watch(
             &monitor,
             &mut state,
@@ -146,9 +145,10 @@ async fn watch(
 /// A symbol of its own, so that what it reaches can be inspected (tools/check-firmware).
 #[inline(never)]
 fn process_block(monitor: &Monitor, state: &mut MonitorState, block: &Block) -> Option<Report> {
+    let mut raw = block.raw();
     let mut latest = None;
-    for raw in block.samples() {
-        latest = monitor.update_raw(state, &raw).or(latest);
+    while !raw.is_empty() {
+        latest = monitor.update_block(state, &mut raw).or(latest);
     }
     latest
 }

@@ -5,5 +5,6 @@ pub mod encoder;
 pub mod flash_store;
 pub mod housekeeping;
 pub mod lamps;
+mod ring;
 pub mod sampling;
 pub mod telemetry;

@@ -8,11 +8,12 @@ use embassy_stm32::dma::ReadableRingBuffer;
 use embassy_stm32::peripherals::{ADC1, DMA1_CH1, DMA1_CH2, PA0, PA1, PC0, PC1, PC2, PC3, TIM4};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer};
-use embassy_stm32::{Peri, bind_interrupts, dma, triggers};
+use embassy_stm32::{Peri, bind_interrupts, dma, pac, triggers};
 use embassy_time::{Duration, with_timeout};
-use monitor::RawSample;
+use monitor::RawBlock;
 
 use super::encoder::{self, Encoder};
+use super::ring::{self, HalfFilled, Ring};
 
 /// Sampling instants per second; the motor constants are compiled for it.
 const SAMPLE_RATE: Hertz = Hertz(10_000);
@@ -32,7 +33,7 @@ const SKEW: usize = 2;
 bind_interrupts!(
     /// Interrupts of the two DMA rings.
     pub struct Irqs {
-        DMA1_CHANNEL1 => dma::InterruptHandler<DMA1_CH1>;
+        DMA1_CHANNEL1 => HalfFilled, dma::InterruptHandler<DMA1_CH1>;
         DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
     }
 );
@@ -62,21 +63,8 @@ type Pins = (
     Peri<'static, PC3>,
 );
 
-/// The rings' memory.
-pub struct Buffers {
-    codes: [u16; RING * CHANNELS],
-    counts: [u16; RING],
-}
-
-impl Buffers {
-    /// Empty rings.
-    pub const fn new() -> Self {
-        Buffers {
-            codes: [0; RING * CHANNELS],
-            counts: [0; RING],
-        }
-    }
-}
+static CODES: Ring<{ RING * CHANNELS / 2 }> = Ring::new();
+static COUNTS: Ring<{ RING / 2 }> = Ring::new();
 
 /// The latest instants, in the order in which they were taken.
 pub struct Block {
@@ -94,15 +82,9 @@ impl Block {
     }
 
     /// The instants.
-    pub fn samples(&self) -> impl Iterator<Item = RawSample> {
-        let (instants, _) = self.codes.as_chunks::<CHANNELS>();
-        instants.iter().zip(&self.counts).map(
-            |(&[v_a, i_a, v_b, i_b, v_c, i_c], &encoder_count)| RawSample {
-                voltage_codes: [v_a, v_b, v_c],
-                current_codes: [i_a, i_b, i_c],
-                encoder_count,
-            },
-        )
+    pub fn raw(&self) -> RawBlock<'_> {
+        let (instants, _) = self.codes.as_chunks();
+        RawBlock::new(instants, &self.counts)
     }
 }
 
@@ -111,7 +93,7 @@ impl Block {
 pub enum Gap {
     /// No half ring was filled in time.
     Stalled,
-    /// A ring was overwritten before it was read.
+    /// A half was overwritten before it was read.
     Overrun,
     /// The rings do not hold the same instants any more.
     Misaligned,
@@ -119,8 +101,10 @@ pub enum Gap {
 
 /// Running acquisition.
 pub struct Acquisition<'a> {
-    adc: RingBufferedAdc<'a, ADC1>,
-    counts: ReadableRingBuffer<'a, u16>,
+    /// Halves that were read.
+    taken: u32,
+    _adc: RingBufferedAdc<'a, ADC1>,
+    _counts: ReadableRingBuffer<'a, u16>,
     // Last, so that it stops after the rings; stops when dropped.
     _trigger: Timer<'a, TIM4>,
 }
@@ -128,27 +112,29 @@ pub struct Acquisition<'a> {
 impl<'a> Acquisition<'a> {
     /// Calibrates the converter and starts both rings before the timer, so that both begin with the
     /// same instant.
-    pub fn start(sources: &'a mut Sources, buffers: &'a mut Buffers) -> Self {
+    pub fn start(sources: &'a mut Sources) -> Self {
         let trigger = Timer::new(sources.trigger.reborrow());
         trigger.set_frequency(SAMPLE_RATE, RoundTo::Slower);
         trigger.set_master_mode(MasterMode::UPDATE);
-        let mut counts = encoder::snapshots(sources.encoder_dma.reborrow(), &mut buffers.counts);
+        let mut counts = encoder::snapshots(sources.encoder_dma.reborrow(), COUNTS.for_dma());
         let converter = Adc::new(sources.adc.reborrow(), AdcConfig::default());
         let mut adc = converter.into_ring_buffered(
             sources.adc_dma.reborrow(),
-            &mut buffers.codes,
+            CODES.for_dma(),
             Irqs,
             sequence(&mut sources.pins).into_iter(),
             triggers::TIM4_TRGO,
             Exten::RISING_EDGE,
         );
+        ring::restart();
         counts.start();
         adc.start();
         trigger.enable_update_dma(true);
         trigger.start();
         Acquisition {
-            adc,
-            counts,
+            taken: 0,
+            _adc: adc,
+            _counts: counts,
             _trigger: trigger,
         }
     }
@@ -158,21 +144,26 @@ impl<'a> Acquisition<'a> {
     /// # Errors
     /// Samples are missing; the acquisition must be started anew.
     pub async fn read(&mut self, block: &mut Block) -> Result<(), Gap> {
-        with_timeout(STALL, self.read_both(block))
-            .await
-            .unwrap_or(Err(Gap::Stalled))
-    }
-
-    async fn read_both(&mut self, block: &mut Block) -> Result<(), Gap> {
-        let codes = self.adc.read(&mut block.codes).await;
-        let instants = codes.map_err(|_| Gap::Overrun)? / CHANNELS;
-        let counts = self.counts.read_exact(&mut block.counts).await;
-        let counts = counts.map_err(|_| Gap::Overrun)?;
-        if counts.abs_diff(instants) > SKEW {
-            return Err(Gap::Misaligned);
+        let filled = with_timeout(STALL, ring::more_than(self.taken)).await;
+        if filled.map_err(|_| Gap::Stalled)?.wrapping_sub(self.taken) > 1 {
+            return Err(Gap::Overrun);
         }
-        Ok(())
+        CODES.copy_half(self.taken, &mut block.codes);
+        COUNTS.copy_half(self.taken, &mut block.counts);
+        self.taken = self.taken.wrapping_add(1);
+        match ring::filled() {
+            filled if filled != self.taken => Err(Gap::Overrun),
+            _ if skew() > SKEW => Err(Gap::Misaligned),
+            _ => Ok(()),
+        }
     }
+}
+
+/// Instants by which the encoder's ring is ahead of the converter's.
+fn skew() -> usize {
+    let left = |channel| usize::from(pac::DMA1.ch(channel).ndtr().read().ndt());
+    let [codes, counts] = [left(0).div_ceil(CHANNELS), left(1)];
+    (RING + codes - counts) % RING
 }
 
 /// 12.5 cycles at 42.5 MHz: the input filters of docs/wiring.md hold the charge (100 nF at the pin).

@@ -1,6 +1,7 @@
 //! From ADC codes to SI units: the one place where codes become volts and amperes.
 
 use crate::frames::Abc;
+use crate::phasor::{CHANNELS, CodeRange, Unit};
 use crate::sample::{ClippedChannels, RawSample, Sample, SpeedSample};
 
 /// Codes within this distance of a rail count as clipped: a converter's last code is reached
@@ -43,6 +44,17 @@ impl ChannelScale {
         }
     }
 
+    fn units(&self) -> [Unit; 3] {
+        let [gains, offsets] = [self.gain, self.offset].map(Abc::to_array);
+        core::array::from_fn(|phase| {
+            let (gain, offset) = (gains[phase], offsets[phase]);
+            Unit {
+                scale: self.unit_per_code * gain,
+                offset: offset * gain,
+            }
+        })
+    }
+
     fn convert(&self, codes: [u16; 3]) -> Abc {
         let raw = Abc::from_array(codes.map(|code| f32::from(code) - self.zero_code));
         raw.zip(self.offset, |x, offset| x * self.unit_per_code - offset)
@@ -67,20 +79,38 @@ impl Converter {
             i_s_abc: Some(self.current.convert(raw.current_codes)),
             speed: SpeedSample::Count(raw.encoder_count),
             tau_load: None,
-            clipped: self.clipped(raw),
+            clipped: self.clipped(&[raw.interleaved()]),
         }
     }
 
-    fn clipped(&self, raw: &RawSample) -> ClippedChannels {
-        let mut clipped = ClippedChannels::NONE;
-        for (phase, &code) in raw.voltage_codes.iter().enumerate() {
-            if self.at_rail(code) {
-                clipped.mark_voltage(phase);
-            }
+    /// Units of sums over codes above the code of zero: voltages a, b, c, then currents a, b, c.
+    pub(crate) fn units(&self) -> [Unit; CHANNELS] {
+        let [v_a, v_b, v_c] = self.voltage.units();
+        let [i_a, i_b, i_c] = self.current.units();
+        [v_a, v_b, v_c, i_a, i_b, i_c]
+    }
+
+    /// What the codes are summed up with.
+    pub(crate) fn code_range(&self) -> CodeRange {
+        CodeRange {
+            zero: [self.voltage.zero_code, self.current.zero_code],
+            lowest: i32::from(RAIL_MARGIN_CODES) + 1,
+            highest: i32::from(self.max_code) - i32::from(RAIL_MARGIN_CODES) - 1,
         }
-        for (phase, &code) in raw.current_codes.iter().enumerate() {
-            if self.at_rail(code) {
-                clipped.mark_current(phase);
+    }
+
+    /// Channels at a rail in any of the instants, whose codes are in the order of [`crate::RawBlock`].
+    pub(crate) fn clipped(&self, codes: &[[u16; CHANNELS]]) -> ClippedChannels {
+        let mut clipped = ClippedChannels::NONE;
+        for instant in codes {
+            let (phases, _) = instant.as_chunks::<2>();
+            for (phase, [voltage, current]) in phases.iter().enumerate() {
+                if self.at_rail(*voltage) {
+                    clipped.mark_voltage(phase);
+                }
+                if self.at_rail(*current) {
+                    clipped.mark_current(phase);
+                }
             }
         }
         clipped

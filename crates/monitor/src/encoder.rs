@@ -15,21 +15,19 @@ pub struct EncoderConfig {
     pub t_sample: f32,
     /// Counts per revolution: four per pulse of a quadrature encoder.
     pub counts_per_revolution: f32,
-    /// Highest mechanical speed that is believed, rad/s; a faster count is a glitch.
-    pub omega_mech_max: f32,
+    /// Most counts from one sample to the next that are believed; more is a glitch.
+    pub max_counts_per_sample: u32,
 }
 
 /// Counting since the last window end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EncoderState {
     last_count: Option<u16>,
-    /// Counts since the reference edge.
-    counts: i32,
     /// Samples since the reference edge.
     samples: u32,
     /// Samples from the reference edge to the latest edge, and the counts up to it.
     latest_edge: u32,
-    counts_at_edge: i32,
+    counts: i32,
     glitches: u16,
     /// Mean of a measured speed in this window.
     sum: f32,
@@ -49,6 +47,17 @@ pub struct SpeedReading {
 }
 
 impl EncoderConfig {
+    /// An encoder on a shaft that turns at `omega_mech_max`, rad/s, at most; `t_sample` is in seconds.
+    pub fn new(t_sample: f32, counts_per_revolution: f32, omega_mech_max: f32) -> Self {
+        // One count more than the fastest shaft delivers: the phase of the edges is arbitrary.
+        let most = omega_mech_max * counts_per_revolution / TAU * t_sample + 1.0;
+        EncoderConfig {
+            t_sample,
+            counts_per_revolution,
+            max_counts_per_sample: most as u32,
+        }
+    }
+
     /// Takes the sensor's value at one sample.
     pub fn update(&self, state: &mut EncoderState, speed: SpeedSample) {
         match speed {
@@ -62,27 +71,22 @@ impl EncoderConfig {
         }
     }
 
-    fn count(&self, state: &mut EncoderState, count: u16) {
+    /// Takes the free-running counter at one sample.
+    #[inline(always)]
+    pub(crate) fn count(&self, state: &mut EncoderState, count: u16) {
         let Some(last) = state.last_count.replace(count) else {
             return;
         };
-        state.samples = state.samples.saturating_add(1);
+        // Windows end many times a second, so that neither sum ever wraps.
+        state.samples = state.samples.wrapping_add(1);
         // Two's complement: right across the wrap and in both directions.
         let delta = i32::from(count.wrapping_sub(last) as i16);
-        if delta.unsigned_abs() as f32 > self.counts_per_sample_max() {
+        if delta.unsigned_abs() > self.max_counts_per_sample {
             state.glitches = state.glitches.saturating_add(1);
-            return;
-        }
-        if delta != 0 {
-            state.counts = state.counts.saturating_add(delta);
-            state.counts_at_edge = state.counts;
+        } else if delta != 0 {
+            state.counts = state.counts.wrapping_add(delta);
             state.latest_edge = state.samples;
         }
-    }
-
-    /// One count more than the fastest shaft delivers: the phase of the edges is arbitrary.
-    fn counts_per_sample_max(&self) -> f32 {
-        self.omega_mech_max * self.counts_per_revolution / TAU * self.t_sample + 1.0
     }
 
     /// Ends a window: its mean speed; the latest edge becomes the reference of the next window.
@@ -92,9 +96,8 @@ impl EncoderConfig {
             glitches: state.glitches,
             silent: state.latest_edge == 0 && state.measured == 0,
         };
-        state.counts -= state.counts_at_edge;
-        state.samples -= state.latest_edge;
-        (state.counts_at_edge, state.latest_edge, state.glitches) = (0, 0, 0);
+        state.samples = state.samples.wrapping_sub(state.latest_edge);
+        (state.counts, state.latest_edge, state.glitches) = (0, 0, 0);
         (state.sum, state.measured, state.missing) = (0.0, 0, 0);
         reading
     }
@@ -110,7 +113,7 @@ impl EncoderConfig {
         if state.latest_edge == 0 {
             return Some(0.0);
         }
-        let revolutions = state.counts_at_edge as f32 / self.counts_per_revolution;
+        let revolutions = state.counts as f32 / self.counts_per_revolution;
         Some(TAU * revolutions / (state.latest_edge as f32 * self.t_sample))
     }
 }
@@ -120,11 +123,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const CONFIG: EncoderConfig = EncoderConfig {
-        t_sample: 1e-4,
-        counts_per_revolution: 4096.0,
-        omega_mech_max: 700.0,
-    };
+    fn config() -> EncoderConfig {
+        EncoderConfig::new(1e-4, 4096.0, 700.0)
+    }
 
     /// Counter value of an ideal encoder at sample `k` of a shaft at constant speed.
     fn count_at(k: u32, omega: f64) -> u16 {
@@ -136,9 +137,9 @@ mod tests {
         let mut state = EncoderState::default();
         let mut reading = SpeedReading::default();
         for k in 0..windows * samples {
-            CONFIG.update(&mut state, SpeedSample::Count(count_at(k, omega)));
+            config().update(&mut state, SpeedSample::Count(count_at(k, omega)));
             if k % samples == samples - 1 {
-                reading = CONFIG.close_window(&mut state);
+                reading = config().close_window(&mut state);
             }
         }
         reading.omega_mech.unwrap_or(f32::NAN)
@@ -167,9 +168,9 @@ mod tests {
     fn a_standing_shaft_is_zero_and_silent() {
         let mut state = EncoderState::default();
         for _ in 0..200 {
-            CONFIG.update(&mut state, SpeedSample::Count(17));
+            config().update(&mut state, SpeedSample::Count(17));
         }
-        let reading = CONFIG.close_window(&mut state);
+        let reading = config().close_window(&mut state);
         assert_eq!(reading.omega_mech, Some(0.0));
         assert!(reading.silent);
     }
@@ -179,12 +180,12 @@ mod tests {
         let mut state = EncoderState::default();
         for k in 0..400 {
             let glitch = if k == 250 { 9000 } else { 0 };
-            CONFIG.update(
+            config().update(
                 &mut state,
                 SpeedSample::Count(count_at(k, 150.0).wrapping_add(glitch)),
             );
         }
-        let reading = CONFIG.close_window(&mut state);
+        let reading = config().close_window(&mut state);
         assert_eq!(reading.glitches, 2, "the jump there and the jump back");
         // Two of 400 intervals are lost with their counts.
         assert!((reading.omega_mech.unwrap_or(0.0) / 150.0 - 1.0).abs() < 2.5 / 400.0 + 1e-3);
@@ -198,11 +199,11 @@ mod tests {
     #[test]
     fn no_sensor_is_no_speed_and_a_measured_speed_is_averaged() {
         let mut state = EncoderState::default();
-        CONFIG.update(&mut state, SpeedSample::None);
-        assert_eq!(CONFIG.close_window(&mut state).omega_mech, None);
+        config().update(&mut state, SpeedSample::None);
+        assert_eq!(config().close_window(&mut state).omega_mech, None);
         for omega in [100.0, 102.0] {
-            CONFIG.update(&mut state, SpeedSample::RadPerSecond(omega));
+            config().update(&mut state, SpeedSample::RadPerSecond(omega));
         }
-        assert_eq!(CONFIG.close_window(&mut state).omega_mech, Some(101.0));
+        assert_eq!(config().close_window(&mut state).omega_mech, Some(101.0));
     }
 }

@@ -1,17 +1,20 @@
 //! The door of the core: bad numbers are kept out, missing and clipped channels are noted.
 
-use crate::frames::{Abc, AlphaBeta};
+use crate::config::MonitorConfig;
+use crate::frames::Abc;
 use crate::sample::{ClippedChannels, Sample};
 
 /// Share of a peak that is forgotten per second.
-const PEAK_DECAY_PER_SECOND: f32 = 5.0;
+pub(crate) const PEAK_DECAY_PER_SECOND: f32 = 5.0;
+/// Share of rated voltage (current, where voltages are missing) that counts as a supply.
+pub(crate) const LEAST_REFERENCE: f32 = 0.05;
 
 /// What has come in since the last cycle ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IntakeState {
     held_voltages: Abc,
     held_currents: Abc,
-    /// Peaks of the alpha components, which decay slowly.
+    /// Peaks of voltage and current as shares of their rated values, which decay slowly.
     peaks: [f32; 2],
     tally: Tally,
 }
@@ -56,7 +59,7 @@ impl Tally {
 
 impl IntakeState {
     /// Takes one sample; whatever is not finite is replaced by its predecessor and counted.
-    pub fn admit(&mut self, sample: &Sample, t_sample: f32) -> Admitted {
+    pub fn admit(&mut self, sample: &Sample) -> Admitted {
         let tally = &mut self.tally;
         tally.samples = tally.samples.saturating_add(1);
         tally.clipped = tally.clipped.union(sample.clipped);
@@ -72,30 +75,62 @@ impl IntakeState {
             tally.torque_sum += tau;
             tally.torque_samples = tally.torque_samples.saturating_add(1);
         }
-        self.follow_peaks(t_sample);
         Admitted {
             u_s_abc: self.held_voltages,
             i_s_abc: self.held_currents,
         }
     }
 
-    fn follow_peaks(&mut self, t_sample: f32) {
-        let keep = 1.0 - PEAK_DECAY_PER_SECOND * t_sample;
-        let now = [self.held_voltages, self.held_currents].map(|x| AlphaBeta::from(x).alpha);
-        for (peak, now) in self.peaks.iter_mut().zip(now) {
-            *peak = (*peak * keep).max(now.abs());
+    /// Notes `instants` whose voltages and currents come from a converter and are numbers by construction.
+    pub fn admit_codes(&mut self, instants: usize, clipped: ClippedChannels) {
+        let instants = u16::try_from(instants).unwrap_or(u16::MAX);
+        let tally = &mut self.tally;
+        tally.samples = tally.samples.saturating_add(instants);
+        for count in &mut tally.present {
+            *count = count.saturating_add(instants);
+        }
+        tally.clipped = tally.clipped.union(clipped);
+    }
+
+    /// Picks what the supply is found by: the voltage or, where there is none, the current; both as shares of rated.
+    /// `keep` is what a peak keeps of itself from one sample to the next.
+    #[inline(always)]
+    pub fn reference(&mut self, [u, i]: [f32; 2], keep: f32) -> f32 {
+        let [u_peak, i_peak] = &mut self.peaks;
+        *u_peak = higher(*u_peak * keep, u.abs());
+        *i_peak = higher(*i_peak * keep, i.abs());
+        if *u_peak < LEAST_REFERENCE && *i_peak > LEAST_REFERENCE {
+            i
+        } else {
+            u
         }
     }
 
-    /// Recent peaks of the alpha components of voltage, V, and current, A.
-    pub fn peaks(&self) -> [f32; 2] {
-        self.peaks
+    /// Whether neither voltage nor current is worth the name.
+    pub fn is_dark(&self) -> bool {
+        self.peaks.iter().all(|peak| *peak < LEAST_REFERENCE)
     }
 
     /// Ends a cycle: hands out the counts and starts new ones.
     pub fn close_cycle(&mut self) -> Tally {
         core::mem::take(&mut self.tally)
     }
+}
+
+/// Clarke's alpha of phase quantities or codes, times three; a zero sequence and a code of zero drop out.
+pub(crate) fn reference_of(x: Abc) -> f32 {
+    2.0 * x.a - x.b - x.c
+}
+
+/// Turns [`reference_of`] voltages in V and of currents in A into shares of rated.
+pub(crate) fn reference_scales(config: &MonitorConfig) -> [f32; 2] {
+    [config.rated_voltage, config.rated_current].map(|rated| 1.0 / (3.0 * rated))
+}
+
+/// Not `max`, which has to care for NaN: neither can be one here.
+#[inline(always)]
+pub(crate) fn higher(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -138,9 +173,9 @@ mod tests {
     #[test]
     fn a_bad_number_is_replaced_by_its_predecessor_and_counted() {
         let mut state = IntakeState::default();
-        state.admit(&sample(10.0, 1.0), 1e-4);
+        state.admit(&sample(10.0, 1.0));
         for bad in [f32::NAN, f32::INFINITY, 1e30] {
-            let admitted = state.admit(&sample(bad, 2.0), 1e-4);
+            let admitted = state.admit(&sample(bad, 2.0));
             assert_eq!(admitted.u_s_abc, Abc::splat(10.0));
             assert_eq!(admitted.i_s_abc, Abc::splat(2.0));
         }
@@ -156,7 +191,7 @@ mod tests {
             u_s_abc: None,
             ..sample(0.0, 3.0)
         };
-        state.admit(&only_currents, 1e-4);
+        state.admit(&only_currents);
         assert_eq!(state.close_cycle().measured(), [false, true]);
     }
 
@@ -168,10 +203,10 @@ mod tests {
                 tau_load: Some(tau),
                 ..sample(1.0, 1.0)
             };
-            state.admit(&with_torque, 1e-4);
+            state.admit(&with_torque);
         }
         assert_eq!(state.close_cycle().tau_load(), Some(2.0));
-        state.admit(&sample(1.0, 1.0), 1e-4);
+        state.admit(&sample(1.0, 1.0));
         assert_eq!(state.close_cycle().tau_load(), None);
     }
 }

@@ -4,6 +4,7 @@
 //! One sample's way: [`Converter`] (codes to SI) -> [`SyncConfig`] (angle of the supply) ->
 //! phasors of whole cycles -> once per cycle: residuals -> thresholds -> signature -> lamps.
 
+mod block;
 mod config;
 mod convert;
 mod effects;
@@ -20,6 +21,7 @@ mod panel;
 mod phasor;
 mod report;
 mod residuals;
+mod rotation;
 mod sample;
 mod signature;
 mod supply;
@@ -41,7 +43,7 @@ pub use operating_point::{Frame, OperatingPoint, Rehearsal};
 pub use phasor::{CHANNELS, ChannelCycle, CyclePhasors};
 pub use report::{NotJudged, Report};
 pub use residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
-pub use sample::{ClippedChannels, RawSample, Sample, SpeedSample};
+pub use sample::{ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
 pub use signature::{Candidates, FAULTS, Fault, TABLE_1};
 pub use supply::{SupplyConfig, SupplyFinding};
 pub use sync::{SyncConfig, SyncState, SyncTick};

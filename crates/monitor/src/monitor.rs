@@ -2,28 +2,35 @@
 
 use motor::effects::Rated;
 
+use crate::block::{Axes, Codes};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
 use crate::effects::correct;
 use crate::encoder::{EncoderConfig, EncoderState};
-use crate::frames::AlphaBeta;
 use crate::health::{HealthConfig, SensorFinding};
-use crate::intake::{Admitted, IntakeState};
+use crate::intake::{
+    IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
+};
 use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::panel::{PanelConfig, PanelState};
-use crate::phasor::{CyclePhasors, PhasorState};
+use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
 use crate::report::{NotJudged, Report};
 use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
-use crate::sample::{RawSample, Sample};
+use crate::sample::{RawBlock, RawSample, Sample};
 use crate::supply::{SupplyConfig, SupplyFinding};
-use crate::sync::{SyncConfig, SyncState};
+use crate::sync::{SyncConfig, SyncState, SyncTick};
 use crate::window::{Cycle, Window, WindowState};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Monitor {
-    config: MonitorConfig,
-    sync: SyncConfig,
-    encoder: EncoderConfig,
+    pub(crate) config: MonitorConfig,
+    pub(crate) sync: SyncConfig,
+    pub(crate) encoder: EncoderConfig,
+    pub(crate) codes: Codes,
+    /// Turns [`reference_of`] voltages in V and of currents in A into shares of rated.
+    reference_per_si: [f32; 2],
+    /// What a peak keeps of itself from one sample to the next.
+    pub(crate) peak_keep: f32,
     model: ResidualModel,
     health: HealthConfig,
     supply: SupplyConfig,
@@ -35,22 +42,39 @@ pub struct Monitor {
 /// All that changes from sample to sample; a few kilobytes, no allocation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MonitorState {
-    intake: IntakeState,
-    sync: SyncState,
-    phasor: PhasorState,
-    encoder: EncoderState,
+    pub(crate) intake: IntakeState,
+    pub(crate) sync: SyncState,
+    pub(crate) phasor: PhasorState,
+    pub(crate) axes: Axes,
+    pub(crate) encoder: EncoderState,
     window: WindowState,
     panel: PanelState,
     measured: [bool; 2],
     samples: u64,
     since_report: u32,
     rehearsal: Rehearsal,
+    /// Whether the open cycle is summed up in codes.
+    in_codes: bool,
 }
 
 impl MonitorState {
     /// Rehearses sensor faults from the next window on; [`Rehearsal::default`] ends it.
     pub fn rehearse(&mut self, gains: Rehearsal) {
         self.rehearsal = gains;
+    }
+
+    /// Counts samples that ended no cycle.
+    pub(crate) fn count(&mut self, samples: usize) {
+        self.samples = self.samples.wrapping_add(samples as u64);
+        self.since_report = self.since_report.saturating_add(samples as u32);
+    }
+
+    /// A cycle that began in other units cannot be continued.
+    pub(crate) fn expect_codes(&mut self, codes: bool) {
+        if self.in_codes != codes {
+            self.phasor = PhasorState::default();
+            self.in_codes = codes;
+        }
     }
 
     /// After missing samples: finds the supply anew; lamps and their persistence stay as they are.
@@ -66,8 +90,6 @@ impl MonitorState {
 
 /// Supply frequencies that lock, rad/s: 5..100 Hz with a tenth to spare.
 const OMEGA_RANGE: [f32; 2] = [28.0, 690.0];
-/// Share of rated voltage (current, where voltages are missing) that counts as a supply.
-const LEAST_REFERENCE: f32 = 0.05;
 /// Fastest believable shaft, as a multiple of the synchronous speed at the highest frequency.
 const OVERSPEED: f32 = 1.5;
 /// Without a supply a report comes at this interval, s.
@@ -95,11 +117,14 @@ impl Monitor {
                 omega_max,
                 min_amplitude: LEAST_REFERENCE,
             },
-            encoder: EncoderConfig {
-                t_sample: config.t_sample,
-                counts_per_revolution: config.encoder_counts_per_revolution,
-                omega_mech_max: OVERSPEED * omega_max / config.mechanics.n_p,
-            },
+            encoder: EncoderConfig::new(
+                config.t_sample,
+                config.encoder_counts_per_revolution,
+                OVERSPEED * omega_max / config.mechanics.n_p,
+            ),
+            codes: Codes::new(&config),
+            reference_per_si: reference_scales(&config),
+            peak_keep: 1.0 - PEAK_DECAY_PER_SECOND * config.t_sample,
             model: ResidualModel {
                 mechanics: config.mechanics,
                 field: config.field,
@@ -133,39 +158,44 @@ impl Monitor {
         &self.config
     }
 
-    /// Takes one instant in ADC codes. See [`Monitor::update`].
+    /// Takes one instant in ADC codes. See [`Monitor::update`] and, for many instants, [`Monitor::update_block`].
     pub fn update_raw(&self, state: &mut MonitorState, raw: &RawSample) -> Option<Report> {
-        self.update(state, &self.config.converter.convert(raw))
+        let (codes, counts) = ([raw.interleaved()], [raw.encoder_count]);
+        self.update_block(state, &mut RawBlock::new(&codes, &counts))
     }
 
     /// Takes one instant in SI units; a report comes once per supply cycle, or every 0.1 s without a supply.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Option<Report> {
-        let admitted = state.intake.admit(sample, self.config.t_sample);
-        state.samples = state.samples.wrapping_add(1);
-        state.since_report = state.since_report.saturating_add(1);
-        let reference = self.reference(state, &admitted);
+        state.expect_codes(false);
+        let admitted = state.intake.admit(sample);
+        state.count(1);
+        let (u, i) = (admitted.u_s_abc, admitted.i_s_abc);
+        let [per_volt, per_ampere] = self.reference_per_si;
+        let shares = [reference_of(u) * per_volt, reference_of(i) * per_ampere];
+        let reference = state.intake.reference(shares, self.peak_keep);
         let tick = self.sync.update(&mut state.sync, reference);
         self.encoder.update(&mut state.encoder, sample.speed);
+        let x = [u.a, u.b, u.c, i.a, i.b, i.c];
+        self.take_instant(state, &tick, &x, &[Unit::SI; CHANNELS])
+    }
+
+    /// What follows from one instant, whose channels are in `units`.
+    #[inline]
+    pub(crate) fn take_instant(
+        &self,
+        state: &mut MonitorState,
+        tick: &SyncTick,
+        x: &[f32; CHANNELS],
+        units: &[Unit; CHANNELS],
+    ) -> Option<Report> {
         if tick.restarted {
             self.restart(state);
         }
-        match state
-            .phasor
-            .update(&tick, admitted.u_s_abc, admitted.i_s_abc)
-        {
-            Some(phasors) => Some(self.close_cycle(state, phasors)),
-            None => self.idle_report(state),
+        if state.sync.is_searching() {
+            return self.idle_report(state);
         }
-    }
-
-    /// Phase a without zero sequence, of the voltage or, where there is none, of the current; 1 is rated.
-    fn reference(&self, state: &MonitorState, admitted: &Admitted) -> f32 {
-        let u = AlphaBeta::from(admitted.u_s_abc).alpha / self.config.rated_voltage;
-        let i = AlphaBeta::from(admitted.i_s_abc).alpha / self.config.rated_current;
-        let [u_peak, i_peak] = state.intake.peaks();
-        let no_voltage = u_peak < LEAST_REFERENCE * self.config.rated_voltage;
-        let current = i_peak > LEAST_REFERENCE * self.config.rated_current;
-        if no_voltage && current { i } else { u }
+        let phasors = state.phasor.update(tick, x, units)?;
+        Some(self.close_cycle(state, phasors))
     }
 
     fn restart(&self, state: &mut MonitorState) {
@@ -198,8 +228,7 @@ impl Monitor {
     }
 
     fn idle_report(&self, state: &mut MonitorState) -> Option<Report> {
-        let searching = state.sync.omega() == 0.0;
-        if !searching || state.since_report < self.idle_samples {
+        if state.since_report < self.idle_samples {
             return None;
         }
         state.window.clear();
@@ -224,10 +253,8 @@ impl Monitor {
     }
 
     fn explain_silence(&self, state: &MonitorState, report: &mut Report) {
-        let [u_peak, i_peak] = state.intake.peaks();
-        let dark = u_peak < LEAST_REFERENCE * self.config.rated_voltage
-            && i_peak < LEAST_REFERENCE * self.config.rated_current;
-        let searching = state.sync.omega() == 0.0;
+        let dark = state.intake.is_dark();
+        let searching = state.sync.is_searching();
         report.supply = (dark && state.measured[0]).then_some(SupplyFinding::Lost);
         report.not_judged = Some(match (report.supply, searching) {
             (Some(finding), _) => NotJudged::Supply(finding),

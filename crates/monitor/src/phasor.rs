@@ -6,23 +6,52 @@
 
 use num_complex::Complex32;
 
-use crate::frames::Abc;
 use crate::sync::SyncTick;
 
 /// Channels: voltages a, b, c, then currents a, b, c.
 pub const CHANNELS: usize = 6;
 
-/// Running sums over one cycle.
+/// Running sums over one cycle, in V and A or in whatever [`Unit`] says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhasorState {
     gram: Gram,
     channels: [Projection; CHANNELS],
 }
 
+/// What one channel was summed up in: `value = scale * x - offset`, V or A.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// V or A per unit of `x`.
+    pub scale: f32,
+    /// V or A.
+    pub offset: f32,
+}
+
+/// ADC codes as they are summed up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CodeRange {
+    /// Code of 0 V and of 0 A, which is taken off.
+    pub zero: [f32; 2],
+    /// Lowest and highest code that are no rail.
+    pub lowest: i32,
+    /// See `lowest`.
+    pub highest: i32,
+}
+
+impl Unit {
+    /// Summed up in V and A.
+    pub const SI: Unit = Unit {
+        scale: 1.0,
+        offset: 0.0,
+    };
+}
+
 /// Weighted inner products of the three basis functions 1, cos, sin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Gram {
-    one: f32,
+    /// Instants of weight 1, and the weights of the others: whole numbers do not round, however they are grouped.
+    whole: u32,
+    shared: f32,
     cos: f32,
     sin: f32,
     cos_cos: f32,
@@ -60,32 +89,62 @@ pub struct CyclePhasors {
 
 impl PhasorState {
     /// Adds one instant; returns the finished cycle when the oscillator completes its turn.
+    #[inline]
     pub fn update(
         &mut self,
         tick: &SyncTick,
-        voltages: Abc,
-        currents: Abc,
+        x: &[f32; CHANNELS],
+        units: &[Unit; CHANNELS],
     ) -> Option<CyclePhasors> {
         if tick.restarted {
             *self = PhasorState::default();
         }
-        let x = [
-            voltages.a, voltages.b, voltages.c, currents.a, currents.b, currents.c,
-        ];
-        let Some(share) = tick.turn_ends else {
-            self.add(1.0, tick.axis, &x);
-            return None;
-        };
-        self.add(share, tick.axis, &x);
-        let cycle = self.solve();
+        match tick.turn_ends {
+            Some(share) => self.turn(tick.axis, share, x, units),
+            None => {
+                self.gram.whole += 1;
+                self.add(1.0, tick.axis, x);
+                None
+            }
+        }
+    }
+
+    /// The instant in which a turn ends is shared by two of them.
+    #[inline(never)]
+    fn turn(
+        &mut self,
+        axis: Complex32,
+        share: f32,
+        x: &[f32; CHANNELS],
+        units: &[Unit; CHANNELS],
+    ) -> Option<CyclePhasors> {
+        self.gram.shared += share;
+        self.add(share, axis, x);
+        let cycle = self.solve(units);
         *self = PhasorState::default();
-        self.add(1.0 - share, tick.axis, &x);
+        self.gram.shared = 1.0 - share;
+        self.add(1.0 - share, axis, x);
         cycle
     }
 
+    /// Adds instants inside a turn, in codes above the code of zero; tells whether none of them is at a rail.
+    pub fn add_codes(
+        &mut self,
+        codes: &[[u16; CHANNELS]],
+        axes: &[Complex32],
+        range: &CodeRange,
+    ) -> bool {
+        self.gram.whole += codes.len().min(axes.len()) as u32;
+        self.gram.add_axes(axes);
+        let [v_a, v_b, v_c, i_a, i_b, i_c] = &mut self.channels;
+        let voltages = add_phases::<0>([v_a, v_b, v_c], codes, axes, range);
+        let currents = add_phases::<1>([i_a, i_b, i_c], codes, axes, range);
+        voltages && currents
+    }
+
+    #[inline]
     fn add(&mut self, weight: f32, axis: Complex32, x: &[f32; CHANNELS]) {
         let (cos, sin) = (weight * axis.re, weight * axis.im);
-        self.gram.one += weight;
         self.gram.cos += cos;
         self.gram.sin += sin;
         self.gram.cos_cos += cos * axis.re;
@@ -98,16 +157,62 @@ impl PhasorState {
         }
     }
 
-    fn solve(&self) -> Option<CyclePhasors> {
+    fn solve(&self, units: &[Unit; CHANNELS]) -> Option<CyclePhasors> {
         let inverse = self.gram.invert()?;
+        let samples = self.gram.one();
         let mut cycle = CyclePhasors {
-            samples: self.gram.one,
+            samples,
             ..CyclePhasors::default()
         };
-        for (result, sums) in cycle.channels.iter_mut().zip(&self.channels) {
-            *result = inverse.apply(sums, self.gram.one);
+        for ((result, sums), unit) in cycle.channels.iter_mut().zip(&self.channels).zip(units) {
+            *result = inverse.apply(&sums.in_si(unit, &self.gram), samples);
         }
         Some(cycle)
+    }
+}
+
+/// One quantity of the three phases over many instants; `QUANTITY` is 0 for voltages, 1 for currents. The sums of
+/// three channels fit into the processor's registers, those of six do not.
+#[inline(always)]
+fn add_phases<const QUANTITY: usize>(
+    mut channels: [&mut Projection; 3],
+    codes: &[[u16; CHANNELS]],
+    axes: &[Complex32],
+    range: &CodeRange,
+) -> bool {
+    let zero = range.zero[QUANTITY];
+    // Negative as soon as one code was outside: two subtractions instead of two branches.
+    let mut inside = 0;
+    let mut sums = channels.each_ref().map(|channel| **channel);
+    for (codes, axis) in codes.iter().zip(axes) {
+        let (phases, _) = codes.as_chunks::<2>();
+        for (sums, phase) in sums.iter_mut().zip(phases) {
+            let code = phase[QUANTITY];
+            inside |= (i32::from(code) - range.lowest) | (range.highest - i32::from(code));
+            let x = f32::from(code) - zero;
+            sums.one += x;
+            sums.cos += axis.re * x;
+            sums.sin += axis.im * x;
+            sums.square += x * x;
+        }
+    }
+    for (channel, sums) in channels.iter_mut().zip(sums) {
+        **channel = sums;
+    }
+    inside >= 0
+}
+
+impl Projection {
+    /// The sums that `scale * x - offset` would have given.
+    fn in_si(&self, unit: &Unit, gram: &Gram) -> Projection {
+        let Unit { scale, offset } = *unit;
+        let n = gram.one();
+        Projection {
+            one: scale * self.one - offset * n,
+            cos: scale * self.cos - offset * gram.cos,
+            sin: scale * self.sin - offset * gram.sin,
+            square: scale * (scale * self.square - 2.0 * offset * self.one) + offset * offset * n,
+        }
     }
 }
 
@@ -125,9 +230,27 @@ struct InverseGram {
 const LEAST_DETERMINANT: f32 = 0.05;
 
 impl Gram {
+    /// Weight of all instants.
+    fn one(&self) -> f32 {
+        self.whole as f32 + self.shared
+    }
+
+    /// Adds instants of weight 1, but not their number.
+    #[inline(always)]
+    fn add_axes(&mut self, axes: &[Complex32]) {
+        let mut sums = *self;
+        for axis in axes {
+            sums.cos += axis.re;
+            sums.sin += axis.im;
+            sums.cos_cos += axis.re * axis.re;
+            sums.cos_sin += axis.re * axis.im;
+        }
+        *self = sums;
+    }
+
     /// `None` when the samples do not cover enough of a cycle to tell the three functions apart.
     fn invert(&self) -> Option<InverseGram> {
-        let n = self.one;
+        let n = self.one();
         let (c, s) = (self.cos / n, self.sin / n);
         let (cc, cs) = (self.cos_cos / n, self.cos_sin / n);
         let ss = 1.0 - cc;
@@ -182,7 +305,11 @@ mod tests {
                 restarted: false,
             };
             let x = signal(TAU * turn) as f32;
-            if let Some(cycle) = state.update(&tick, Abc::splat(x), Abc::splat(2.0 * x)) {
+            if let Some(cycle) = state.update(
+                &tick,
+                &[x, x, x, 2.0 * x, 2.0 * x, 2.0 * x],
+                &[Unit::SI; CHANNELS],
+            ) {
                 finished += 1;
                 if finished == 2 {
                     return cycle;
@@ -230,6 +357,9 @@ mod tests {
             turn_ends: Some(0.5),
             restarted: false,
         };
-        assert_eq!(state.update(&tick, Abc::splat(1.0), Abc::splat(1.0)), None);
+        assert_eq!(
+            state.update(&tick, &[1.0; CHANNELS], &[Unit::SI; CHANNELS]),
+            None
+        );
     }
 }

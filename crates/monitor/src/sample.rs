@@ -1,6 +1,7 @@
 //! What arrives at the core: one instant of the six analogue channels and the speed sensor.
 
 use crate::frames::Abc;
+use crate::phasor::CHANNELS;
 
 /// One sampling instant as the hardware delivers it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,6 +12,53 @@ pub struct RawSample {
     pub current_codes: [u16; 3],
     /// Free-running encoder counter, four counts per pulse, wrapping.
     pub encoder_count: u16,
+}
+
+/// Consecutive instants as the converter's and the encoder's DMA leave them; taken from the front.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RawBlock<'a> {
+    codes: &'a [[u16; CHANNELS]],
+    counts: &'a [u16],
+}
+
+impl<'a> RawBlock<'a> {
+    /// `codes` are ADC codes in the order voltage a, current a, voltage b, current b, voltage c, current c; `counts`
+    /// the free-running encoder counter at the same instants. The longer of the two is cut to the shorter.
+    pub fn new(codes: &'a [[u16; CHANNELS]], counts: &'a [u16]) -> Self {
+        let length = codes.len().min(counts.len());
+        RawBlock {
+            codes: codes.get(..length).unwrap_or_default(),
+            counts: counts.get(..length).unwrap_or_default(),
+        }
+    }
+
+    /// Whether every instant was taken.
+    pub fn is_empty(&self) -> bool {
+        self.codes.is_empty()
+    }
+
+    /// The instants that are left.
+    pub(crate) fn instants(&self) -> impl Iterator<Item = (&'a [u16; CHANNELS], u16)> + use<'a> {
+        self.codes.iter().zip(self.counts.iter().copied())
+    }
+
+    /// Takes at most `length` instants and gives their codes.
+    pub(crate) fn take(&mut self, length: usize) -> &'a [[u16; CHANNELS]] {
+        let length = length.min(self.codes.len());
+        let taken = self.codes.get(..length).unwrap_or_default();
+        self.codes = self.codes.get(length..).unwrap_or_default();
+        self.counts = self.counts.get(length..).unwrap_or_default();
+        taken
+    }
+}
+
+impl RawSample {
+    /// The codes in the order of [`RawBlock`].
+    pub(crate) fn interleaved(&self) -> [u16; CHANNELS] {
+        let [v_a, v_b, v_c] = self.voltage_codes;
+        let [i_a, i_b, i_c] = self.current_codes;
+        [v_a, i_a, v_b, i_b, v_c, i_c]
+    }
 }
 
 /// What is known about the shaft at this instant.

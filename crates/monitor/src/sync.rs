@@ -8,6 +8,9 @@ use core::f32::consts::{PI, TAU};
 
 use num_complex::Complex32;
 
+use crate::intake::{PEAK_DECAY_PER_SECOND, higher};
+use crate::rotation::{renormalise, small_rotation};
+
 /// Limits and gains of the synchronisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SyncConfig {
@@ -37,8 +40,6 @@ const HOLDOVER_TURNS: u8 = 3;
 const ARM_SHARE: f32 = 0.3;
 /// Two periods this close to each other (share) start the tracking.
 const ACQUIRE_SPREAD: f32 = 0.1;
-/// Share of the peak that is forgotten per second, so that the arming level follows a falling supply.
-const PEAK_DECAY_PER_SECOND: f32 = 5.0;
 
 /// What the synchronisation knows between two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,6 +103,11 @@ impl SyncState {
         matches!(self.mode, Mode::Tracking { good, missed } if good >= LOCK_AFTER && missed <= HOLDOVER_TURNS)
     }
 
+    /// Whether the oscillator is still to be set to the supply's phase.
+    pub fn is_searching(&self) -> bool {
+        self.mode == Mode::Searching
+    }
+
     /// Tracked supply frequency, rad/s; 0 while nothing is tracked.
     pub fn omega(&self) -> f32 {
         match self.mode {
@@ -122,6 +128,7 @@ impl SyncState {
 
 impl SyncConfig {
     /// Takes one sample of the reference channel (phase a) and advances the oscillator by one sample.
+    #[inline(always)]
     pub fn update(&self, state: &mut SyncState, reference: f32) -> SyncTick {
         let crossing = self.detect_crossing(state, reference);
         let restarted = crossing.is_some_and(|fraction| self.take_crossing(state, fraction));
@@ -130,14 +137,17 @@ impl SyncConfig {
     }
 
     /// The share of a sample interval that has passed since a rising crossing, if there was one.
+    #[inline(always)]
     fn detect_crossing(&self, state: &mut SyncState, x: f32) -> Option<f32> {
-        state.peak = (state.peak * (1.0 - PEAK_DECAY_PER_SECOND * self.t_sample)).max(x.abs());
+        let keep = 1.0 - PEAK_DECAY_PER_SECOND * self.t_sample;
+        state.peak = higher(state.peak * keep, x.abs());
         state.since_crossing += 1.0;
         let previous = core::mem::replace(&mut state.previous, x);
-        if x < -ARM_SHARE * state.peak && state.peak > self.min_amplitude {
-            state.armed = true;
+        if x < 0.0 {
+            state.armed |= x < -ARM_SHARE * state.peak && state.peak > self.min_amplitude;
+            return None;
         }
-        if !state.armed || x < 0.0 || previous >= 0.0 {
+        if !state.armed || previous >= 0.0 {
             return None;
         }
         state.armed = false;
@@ -145,6 +155,7 @@ impl SyncConfig {
     }
 
     /// Feeds a crossing `fraction` samples ago into the loop; true when the oscillator was set anew.
+    #[inline(never)]
     fn take_crossing(&self, state: &mut SyncState, fraction: f32) -> bool {
         let period = state.since_crossing - fraction;
         state.since_crossing = fraction;
@@ -202,6 +213,7 @@ impl SyncConfig {
         state.step = small_rotation(omega * self.t_sample);
     }
 
+    #[inline(always)]
     fn give_up_when_silent(&self, state: &mut SyncState) {
         let lost = matches!(state.mode, Mode::Tracking { missed, .. } if missed > HOLDOVER_TURNS);
         if lost || state.peak < self.min_amplitude {
@@ -209,6 +221,7 @@ impl SyncConfig {
         }
     }
 
+    #[inline(always)]
     fn advance(&self, state: &mut SyncState, restarted: bool) -> SyncTick {
         let d_theta = state.omega_oscillator * self.t_sample;
         let tick_axis = state.axis;
@@ -222,16 +235,18 @@ impl SyncConfig {
         }
     }
 
+    #[inline(always)]
     fn step_theta(&self, state: &mut SyncState, d_theta: f32) -> Option<f32> {
         let Mode::Tracking { good, missed } = state.mode else {
             return None;
         };
-        let remaining = TAU - state.theta;
-        state.theta += d_theta;
-        if state.theta < TAU {
+        let next = state.theta + d_theta;
+        if next < TAU {
+            state.theta = next;
             return None;
         }
-        state.theta -= TAU;
+        let remaining = TAU - state.theta;
+        state.theta = next - TAU;
         state.mode = Mode::Tracking {
             good,
             missed: missed.saturating_add(1),
@@ -239,19 +254,6 @@ impl SyncConfig {
         renormalise(&mut state.axis);
         Some((remaining / d_theta).clamp(0.0, 1.0))
     }
-}
-
-/// `e^{j x}` for `|x| <= 0.8` rad (100 Hz sampled at 800 Hz) by Taylor series; error below 2e-7.
-fn small_rotation(x: f32) -> Complex32 {
-    let x2 = x * x;
-    let cos = 1.0 - x2 / 2.0 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0)));
-    let sin = x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0))));
-    Complex32::new(cos, sin)
-}
-
-/// One Newton step towards unit length; the drift of one turn is some 1e-6.
-fn renormalise(axis: &mut Complex32) {
-    *axis *= 1.5 - 0.5 * axis.norm_sqr();
 }
 
 #[cfg(test)]
@@ -391,14 +393,5 @@ mod tests {
         assert!(state.is_locked());
         // Crossing jitter 0.002 rad times FREQUENCY_GAIN 0.06 per turn of 6.28 rad, three sigma: 6e-5.
         assert!((state.omega() / (TAU * 51.0) - 1.0).abs() < 1e-4);
-    }
-
-    #[test]
-    fn the_small_rotation_is_exact_to_two_roundings() {
-        for k in 0..=800 {
-            let x = k as f32 * 1e-3;
-            let error = small_rotation(x) - Complex32::new(libm::cosf(x), libm::sinf(x));
-            assert!(error.norm() < 3e-7, "{x}: {error}");
-        }
     }
 }

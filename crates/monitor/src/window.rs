@@ -44,6 +44,8 @@ impl Cycle {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowState {
     cycles: [Cycle; MAX_WINDOW_CYCLES],
+    /// Where the newest lies; older ones follow, around the end.
+    newest: usize,
     filled: usize,
 }
 
@@ -51,6 +53,7 @@ impl Default for WindowState {
     fn default() -> Self {
         WindowState {
             cycles: [Cycle::default(); MAX_WINDOW_CYCLES],
+            newest: 0,
             filled: 0,
         }
     }
@@ -91,8 +94,8 @@ pub struct Window {
 impl WindowState {
     /// Adds the latest cycle, keeping at most `length` (2..=[`MAX_WINDOW_CYCLES`]) of them.
     pub fn push(&mut self, cycle: Cycle, length: usize) {
-        self.cycles.rotate_right(1);
-        if let Some(newest) = self.cycles.first_mut() {
+        self.newest = self.newest.checked_sub(1).unwrap_or(MAX_WINDOW_CYCLES - 1);
+        if let Some(newest) = self.cycles.get_mut(self.newest) {
             *newest = cycle;
         }
         self.filled = (self.filled + 1).min(length.clamp(2, MAX_WINDOW_CYCLES));
@@ -103,21 +106,25 @@ impl WindowState {
         self.filled = 0;
     }
 
+    /// The latest `length` cycles, newest first; `None` until there are that many.
+    fn latest(&self, length: usize) -> Option<impl Iterator<Item = &Cycle> + Clone> {
+        let (wrapped, straight) = self.cycles.split_at_checked(self.newest)?;
+        let latest = straight.iter().chain(wrapped).take(length);
+        (self.filled >= length).then_some(latest)
+    }
+
     /// The window over the latest `length` cycles; `None` until there are that many.
     pub fn measure(&self, length: usize, t_sample: f32) -> Option<Window> {
         let length = length.clamp(2, MAX_WINDOW_CYCLES);
-        let cycles = self.cycles.get(..length)?;
-        let (newest, oldest) = (cycles.first()?, cycles.last()?);
-        if self.filled < length {
-            return None;
-        }
-        let mut window = mean(cycles);
-        let all: f32 = cycles.iter().map(|cycle| cycle.phasors.samples).sum();
+        let cycles = self.latest(length)?;
+        let (newest, oldest) = (cycles.clone().next()?, cycles.clone().last()?);
+        let mut window = mean(cycles.clone(), length);
+        let all: f32 = cycles.clone().map(|cycle| cycle.phasors.samples).sum();
         let span = all - 0.5 * (newest.phasors.samples + oldest.phasors.samples);
         window.span = span * t_sample;
         window.omega_sync =
             (TAU * (length - 1) as f32 + phase_advance(oldest, newest)) / window.span;
-        window.current_change = current_change(cycles, oldest, newest);
+        window.current_change = current_change(cycles, length, oldest, newest);
         if let (Some(first), Some(last)) = (oldest.speed.omega_mech, newest.speed.omega_mech) {
             window.speed_change = last - first;
         }
@@ -126,21 +133,26 @@ impl WindowState {
 }
 
 /// From the first cycle to the last, or what an excursion in between adds to the window's mean, whichever is larger.
-fn current_change(cycles: &[Cycle], oldest: &Cycle, newest: &Cycle) -> f32 {
+fn current_change<'a>(
+    cycles: impl Iterator<Item = &'a Cycle>,
+    length: usize,
+    oldest: &Cycle,
+    newest: &Cycle,
+) -> f32 {
     let start = seen_from_voltage(oldest);
     let change = |cycle: &Cycle| magnitude(seen_from_voltage(cycle) - start);
-    let largest = cycles.iter().map(change).fold(0.0, f32::max);
-    change(newest).max(largest / cycles.len() as f32)
+    let largest = cycles.map(change).fold(0.0, f32::max);
+    change(newest).max(largest / length as f32)
 }
 
-fn mean(cycles: &[Cycle]) -> Window {
+fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> Window {
     let mut window = Window {
-        encoder_silent: cycles.iter().all(|cycle| cycle.speed.silent),
-        omega_mech: mean_of(cycles, |cycle| cycle.speed.omega_mech),
-        tau_load: mean_of(cycles, |cycle| cycle.tau_load),
+        encoder_silent: cycles.clone().all(|cycle| cycle.speed.silent),
+        omega_mech: mean_of(cycles.clone(), |cycle| cycle.speed.omega_mech),
+        tau_load: mean_of(cycles.clone(), |cycle| cycle.tau_load),
         ..Window::default()
     };
-    let share = 1.0 / cycles.len() as f32;
+    let share = 1.0 / length as f32;
     for cycle in cycles {
         for (sum, channel) in window.channels.iter_mut().zip(&cycle.phasors.channels) {
             sum.phasor += channel.phasor * share;
@@ -156,7 +168,10 @@ fn mean(cycles: &[Cycle]) -> Window {
 }
 
 /// Mean weighted by cycle length; `None` as soon as one cycle has no value.
-fn mean_of(cycles: &[Cycle], value: impl Fn(&Cycle) -> Option<f32>) -> Option<f32> {
+fn mean_of<'a>(
+    cycles: impl Iterator<Item = &'a Cycle>,
+    value: impl Fn(&Cycle) -> Option<f32>,
+) -> Option<f32> {
     let (mut sum, mut weight) = (0.0, 0.0);
     for cycle in cycles {
         sum += cycle.phasors.samples * value(cycle)?;

@@ -1,0 +1,130 @@
+//! Many instants in ADC codes at once: what a processor without time does sample by sample, and what it does by block.
+//!
+//! Synchronisation and encoder follow every instant. The sums behind the phasors only need every instant's axis, so they
+//! wait for the end of the block (or of the turn) and then keep their place in the processor's registers. Sample by
+//! sample, in blocks of any length: the operations and their order are the same, and so is every bit of the result.
+
+use num_complex::Complex32;
+
+use crate::config::MonitorConfig;
+use crate::intake::{IntakeState, reference_scales};
+use crate::monitor::{Monitor, MonitorState};
+use crate::phasor::{CHANNELS, CodeRange, Unit};
+use crate::report::Report;
+use crate::sample::RawBlock;
+use crate::sync::SyncTick;
+
+/// Most instants that wait to be summed up.
+const PART: usize = 32;
+
+/// Axes of the instants that wait to be summed up. Kept in the state only to spare their initialisation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Axes([Complex32; PART]);
+
+/// What the sample path needs to know about ADC codes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Codes {
+    pub range: CodeRange,
+    pub units: [Unit; CHANNELS],
+    /// Turns `2a - b - c` of voltage codes and of current codes into shares of rated.
+    pub reference_per_code: [f32; 2],
+}
+
+impl Codes {
+    pub fn new(config: &MonitorConfig) -> Self {
+        let converter = &config.converter;
+        let [per_volt, per_ampere] = reference_scales(config);
+        Codes {
+            range: converter.code_range(),
+            units: converter.units(),
+            reference_per_code: [
+                converter.voltage.unit_per_code * per_volt,
+                converter.current.unit_per_code * per_ampere,
+            ],
+        }
+    }
+}
+
+impl Monitor {
+    /// Takes instants from the front of `block` until a report is due or none is left. See [`Monitor::update`].
+    pub fn update_block(
+        &self,
+        state: &mut MonitorState,
+        block: &mut RawBlock<'_>,
+    ) -> Option<Report> {
+        state.expect_codes(true);
+        while !block.is_empty() {
+            let (plain, event) = self.follow(state, block);
+            self.sum_up(state, block.take(plain));
+            let report = event.and_then(|tick| self.take_event(state, block.take(1), &tick));
+            if report.is_some() {
+                return report;
+            }
+        }
+        None
+    }
+
+    /// Follows supply and shaft through the instants inside one turn, whose axes it notes, to the first that is more.
+    fn follow(&self, state: &mut MonitorState, block: &RawBlock<'_>) -> (usize, Option<SyncTick>) {
+        let mut plain = 0;
+        for ((codes, count), axis) in block.instants().zip(&mut state.axes.0) {
+            let reference = self.reference(&mut state.intake, codes);
+            let tick = self.sync.update(&mut state.sync, reference);
+            self.encoder.count(&mut state.encoder, count);
+            if tick.restarted || tick.turn_ends.is_some() || state.sync.is_searching() {
+                return (plain, Some(tick));
+            }
+            *axis = tick.axis;
+            plain += 1;
+        }
+        (plain, None)
+    }
+
+    /// Uncalibrated: where the oscillator's phase stands does not matter, only that it stands there in every cycle.
+    #[inline(always)]
+    fn reference(&self, intake: &mut IntakeState, codes: &[u16; CHANNELS]) -> f32 {
+        let [v_a, i_a, v_b, i_b, v_c, i_c] = codes.map(i32::from);
+        let [per_voltage_code, per_current_code] = self.codes.reference_per_code;
+        let u = (2 * v_a - v_b - v_c) as f32 * per_voltage_code;
+        let i = (2 * i_a - i_b - i_c) as f32 * per_current_code;
+        intake.reference([u, i], self.peak_keep)
+    }
+
+    fn sum_up(&self, state: &mut MonitorState, codes: &[[u16; CHANNELS]]) {
+        state.count(codes.len());
+        let axes = state.axes.0.get(..codes.len()).unwrap_or_default();
+        let inside = state.phasor.add_codes(codes, axes, &self.codes.range);
+        self.admit(state, codes, inside);
+    }
+
+    fn admit(&self, state: &mut MonitorState, codes: &[[u16; CHANNELS]], inside: bool) {
+        let clipped = if inside {
+            Default::default()
+        } else {
+            self.config.converter.clipped(codes)
+        };
+        state.intake.admit_codes(codes.len(), clipped);
+    }
+
+    #[inline(never)]
+    fn take_event(
+        &self,
+        state: &mut MonitorState,
+        codes: &[[u16; CHANNELS]],
+        tick: &SyncTick,
+    ) -> Option<Report> {
+        let [v_a, i_a, v_b, i_b, v_c, i_c] = codes.first()?.map(f32::from);
+        let [volt, ampere] = self.codes.range.zero;
+        let x = [
+            v_a - volt,
+            v_b - volt,
+            v_c - volt,
+            i_a - ampere,
+            i_b - ampere,
+            i_c - ampere,
+        ];
+        state.count(codes.len());
+        self.admit(state, codes, false);
+        self.take_instant(state, tick, &x, &self.codes.units)
+    }
+}

@@ -1,0 +1,30 @@
+//! The oscillator's step: a rotation without trigonometry, which the board's processor lacks.
+
+use num_complex::Complex32;
+
+/// `e^{j x}` for `|x| <= 0.8` rad (100 Hz sampled at 800 Hz) by Taylor series; error below 2e-7.
+pub fn small_rotation(x: f32) -> Complex32 {
+    let x2 = x * x;
+    let cos = 1.0 - x2 / 2.0 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0)));
+    let sin = x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0))));
+    Complex32::new(cos, sin)
+}
+
+/// One Newton step towards unit length; the drift of one turn is some 1e-6.
+pub fn renormalise(axis: &mut Complex32) {
+    *axis *= 1.5 - 0.5 * axis.norm_sqr();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_small_rotation_is_exact_to_two_roundings() {
+        for k in 0..=800 {
+            let x = k as f32 * 1e-3;
+            let error = small_rotation(x) - Complex32::new(libm::cosf(x), libm::sinf(x));
+            assert!(error.norm() < 3e-7, "{x}: {error}");
+        }
+    }
+}
