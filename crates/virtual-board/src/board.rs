@@ -7,6 +7,7 @@ use crate::CORE_HZ;
 use crate::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE};
 use crate::elf::Firmware;
 use crate::gpio::Pin;
+use crate::log::Log;
 use crate::machine::{Cause, Inputs, Machine, Tally};
 
 /// Why the board cannot go on.
@@ -62,6 +63,7 @@ pub struct Snapshot {
 pub struct VirtualBoard {
     cpu: Cpu,
     firmware: Firmware,
+    log: Log,
 }
 
 impl VirtualBoard {
@@ -76,7 +78,8 @@ impl VirtualBoard {
             cpu.core.mem_write(u64::from(*address), bytes)?;
         }
         cpu.reset()?;
-        Ok(VirtualBoard { cpu, firmware })
+        let log = Log::parse(elf)?;
+        Ok(VirtualBoard { cpu, firmware, log })
     }
 
     /// Runs for `seconds` of emulated time.
@@ -219,6 +222,12 @@ impl VirtualBoard {
         self.firmware.symbol(part)
     }
 
+    /// Bytes of flash that the program takes.
+    pub fn flash_used(&self) -> u32 {
+        let bytes = |(_, bytes): &(u32, Vec<u8>)| bytes.len() as u32;
+        self.firmware.segments.iter().map(bytes).sum()
+    }
+
     /// Counters.
     pub fn tally(&mut self) -> Tally {
         self.cpu.machine().tally
@@ -232,6 +241,12 @@ impl VirtualBoard {
     /// Keeps no samples from here on: an hour of them is half a gigabyte.
     pub fn forget_taken(&mut self) {
         self.cpu.machine().taken = None;
+    }
+
+    /// Takes the lines that the firmware logged since the last call; what was not taken in time is dropped on the board.
+    pub fn log(&mut self) -> Vec<String> {
+        let bytes = self.drain_rtt(0).unwrap_or_default();
+        self.log.lines(&bytes)
     }
 
     /// Takes what the firmware wrote to a debugger channel (0 is the log).

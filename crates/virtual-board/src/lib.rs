@@ -13,6 +13,7 @@ mod elf;
 mod flash;
 mod gpio;
 mod iwdg;
+mod log;
 mod machine;
 mod nvic;
 mod rcc;

@@ -43,6 +43,8 @@ pub struct Timer {
     since: u64,
     /// Ticks since `since` whose flags were evaluated.
     evaluated: u64,
+    /// What happened before a write and is still to be handed out.
+    pending: Ticked,
     /// Encoder count in encoder mode, as last seen and when the program set it.
     encoder: u16,
 }
@@ -56,6 +58,15 @@ pub struct Ticked {
     pub trigger: bool,
 }
 
+impl Ticked {
+    fn and(self, later: Ticked) -> Ticked {
+        Ticked {
+            update_dma: self.update_dma || later.update_dma,
+            trigger: self.trigger || later.trigger,
+        }
+    }
+}
+
 impl Timer {
     /// After reset.
     pub fn new() -> Self {
@@ -66,6 +77,7 @@ impl Timer {
             count: 0,
             since: 0,
             evaluated: 0,
+            pending: Ticked::default(),
             encoder: 0,
         }
     }
@@ -94,10 +106,18 @@ impl Timer {
         (self.count + self.ticks(now)) % self.period()
     }
 
-    /// Starts counting anew from the present count, so that changed settings apply from here on.
+    /// Starts counting anew from the present count, so that changed settings apply from here on. What happened until
+    /// now has happened: its flags must not be lost because the program writes to the timer in that very moment.
     fn rebase(&mut self, now: u64) {
+        let before = self.evaluate(now);
+        self.pending = self.pending.and(before);
         self.count = self.count_now(now);
-        self.since = now;
+        // Not simply `now`: the prescaler keeps its place within a tick.
+        self.since = if self.is_counting() {
+            self.since + self.ticks(now) * self.prescaler
+        } else {
+            now
+        };
         self.evaluated = 0;
     }
 
@@ -141,6 +161,11 @@ impl Timer {
 
     /// Sets the flags of everything that happened up to `now`.
     pub fn advance(&mut self, now: u64) -> Ticked {
+        let now = self.evaluate(now);
+        std::mem::take(&mut self.pending).and(now)
+    }
+
+    fn evaluate(&mut self, now: u64) -> Ticked {
         let ticks = self.ticks(now);
         let mut reached = 0;
         for (value, flag) in self.marks() {
@@ -179,7 +204,7 @@ impl Timer {
             SR => self.status &= value,
             EGR => {
                 self.prescaler = u64::from(self.registers.get(PSC)) + 1;
-                self.count = 0;
+                (self.count, self.since) = (0, now);
                 let only_overflow = self.registers.get(CR1) & 4 != 0;
                 self.status |= u32::from(!only_overflow);
             }
@@ -188,5 +213,62 @@ impl Timer {
             _ => return self.registers.write(offset, value),
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERIOD: u64 = 0x1_0000;
+    const PRESCALER: u64 = 170;
+
+    /// As the time driver sets it up: interrupts at the wrap and at half a period.
+    fn time_driver() -> Timer {
+        let mut timer = Timer::new();
+        for (offset, value) in [
+            (PSC, 169),
+            (EGR, 1),
+            (SR, 0),
+            (CCR[0], 0x8000),
+            (DIER, 3),
+            (CR1, 1),
+        ] {
+            timer.write(offset, value, 0).expect("a register");
+        }
+        timer
+    }
+
+    /// Around the wrap and around half a period, a cycle apart.
+    fn moments() -> impl Iterator<Item = u64> {
+        let around = |tick: u64| PRESCALER * tick - 3..PRESCALER * tick + 200;
+        around(PERIOD / 2).chain(around(PERIOD))
+    }
+
+    #[test]
+    fn a_write_in_the_moment_of_an_event_loses_no_flag() {
+        for moment in moments() {
+            let mut timer = time_driver();
+            let half = PRESCALER * PERIOD / 2;
+            timer.advance(moment.min(half - 1));
+            // The driver sets its alarm.
+            timer.write(CCR[1], 0x1234, moment).expect("a register");
+            timer.advance(moment + 1_000);
+            let expected = if moment + 1_000 < PRESCALER * PERIOD {
+                2
+            } else {
+                3
+            };
+            assert_eq!(timer.status & 3, expected, "at cycle {moment}");
+        }
+    }
+
+    #[test]
+    fn writes_cost_no_time() {
+        let mut timer = time_driver();
+        for moment in (0..1_000_000).step_by(997) {
+            timer.write(CCR[1], 0x1234, moment).expect("a register");
+        }
+        assert_eq!(timer.read(CNT, 1_000_000), Ok(1_000_000 / 170));
     }
 }

@@ -46,6 +46,9 @@ fn nothing_is_missed_drifts_or_grows() {
         for _ in 0..10 {
             board.run(0.1).expect("a run");
             reader.take(&board.drain_rtt(1).expect("a channel for frames"));
+            for line in board.log() {
+                println!("{second} s: {line}");
+            }
         }
         if second == 30.min(seconds as u32 / 2) {
             stack_after_warm_up = board.stack_used().expect("a stack");
