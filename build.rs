@@ -4,7 +4,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use board::MotorImage;
-use monitor::{Monitor, MonitorConfig};
+use monitor::{MAX_EFFECTS, Monitor, MonitorConfig};
+use motor::effects::{self, SteadyEffect};
 use motor::motor_file::MotorFile;
 
 /// The motor file that is compiled in unless the environment names another.
@@ -57,11 +58,37 @@ fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
     let file = MotorFile::read(path)?;
     let config = MonitorConfig::from_motor_file(&file, T_SAMPLE);
     Monitor::new(config).map_err(|error| format!("{}: {error}", path.display()))?;
-    let image = MotorImage::new(&config).map_err(|error| format!("{}: {error}", path.display()))?;
-    let words = image.0;
+    let terms = effect_terms(&file).map_err(|error| format!("{}: {error}", path.display()))?;
+    let words = MotorImage::new(&config).0;
     let name: String = file.name.chars().flat_map(char::escape_default).collect();
     Ok(format!(
         "/// Name of the motor in the motor file.\npub const NAME: &str = \"{name}\";\n\
-         /// Its constants, checked at power-up.\npub static IMAGE: board::MotorImage = board::MotorImage({words:?});\n"
+         /// Its constants, checked at power-up.\npub static IMAGE: board::MotorImage = board::MotorImage({words:?});\n\
+         /// The steady-state terms of its effects, in its order.\npub static EFFECTS: board::EffectTerms = [{terms}];\n"
     ))
+}
+
+/// Only the motor file's own effects become part of the program.
+fn effect_terms(file: &MotorFile) -> Result<String, Box<dyn Error>> {
+    let configs = effects::from_motor_file(file, &file.name)?;
+    if configs.len() > MAX_EFFECTS {
+        return Err(format!(
+            "effects: {} of them, but at most {MAX_EFFECTS} fit",
+            configs.len()
+        )
+        .into());
+    }
+    let mut terms = vec!["None".to_owned(); MAX_EFFECTS];
+    for (term, config) in terms.iter_mut().zip(configs) {
+        let known = |(steady, _): &(&&dyn SteadyEffect, &&str)| {
+            core::ptr::eq(steady.descriptor(), config.effect.descriptor())
+        };
+        let found = effects::STEADY.iter().zip(effects::TYPES).find(known);
+        let (_, name) = found.ok_or_else(|| {
+            let name = config.effect.descriptor().name;
+            format!("effects.{name}: a formula runs on a host only; remove it to flash the board")
+        })?;
+        *term = format!("Some(&motor::effects::types::{name})");
+    }
+    Ok(terms.join(", "))
 }

@@ -1,7 +1,8 @@
 //! Learning on the running motor, and what flash knows from earlier learning.
 
 use board::{
-    Calibration, CalibrationSource, LearnState, Learner, Loaded, MotorImage, Progress, Refusal,
+    Calibration, CalibrationSource, EffectTerms, LearnState, Learner, Loaded, MotorImage, Progress,
+    Refusal,
 };
 use monitor::{Lamp, Lamps, Monitor, MonitorConfig, Report};
 
@@ -20,10 +21,10 @@ pub struct Commissioning {
 }
 
 impl Commissioning {
-    /// Takes the compiled-in constants.
-    pub fn new(image: &MotorImage, store: Option<FlashStore>) -> Self {
+    /// Takes the compiled-in constants and the steady-state terms of their effects.
+    pub fn new(image: &MotorImage, terms: &EffectTerms, store: Option<FlashStore>) -> Self {
         Commissioning {
-            factory: image.config().ok(),
+            factory: image.config(terms).ok(),
             motor: image.identification(),
             store,
             learner: None,

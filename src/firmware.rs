@@ -51,7 +51,11 @@ async fn main(_spawner: Spawner) -> ! {
         housekeeping: Housekeeping::new(board.housekeeping),
         telemetry,
         // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
-        commissioning: Commissioning::new(black_box(&IMAGE), flash_store::open(board.flash)),
+        commissioning: Commissioning::new(
+            black_box(&IMAGE),
+            &EFFECTS,
+            flash_store::open(board.flash),
+        ),
         display: Display::default(),
         instrument_faulty: false,
         vdda_millivolt: 0,

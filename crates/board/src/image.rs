@@ -2,22 +2,26 @@
 //! corrupted constant is noticed at power-up instead of being computed with.
 
 use monitor::{
-    Abc, ActiveEffects, CHANNELS, ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame,
-    LoadKind, MonitorConfig,
+    Abc, ActiveEffect, ActiveEffects, CHANNELS, ChannelScale, ComparatorConfig, Converter,
+    FieldCurrent, Frame, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MonitorConfig,
 };
+use motor::effects::{STEADY, SteadyEffect};
 use motor::{Mechanics, TParams};
 
 use crate::checksum::crc32_words;
 
 /// Words of an image, version and checksum included.
-pub const IMAGE_WORDS: usize = 42;
+pub const IMAGE_WORDS: usize = 42 + CHANNELS + MAX_EFFECTS * (1 + MAX_EFFECT_PARAMETERS);
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0001;
+const SCHEMA: u32 = 0x444D_0002;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MotorImage(pub [u32; IMAGE_WORDS]);
+
+/// The steady-state terms that a program holds, in the order in which its motor file names them.
+pub type EffectTerms = [Option<&'static dyn SteadyEffect>; MAX_EFFECTS];
 
 /// Why an image cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +32,7 @@ pub enum ImageError {
     Schema,
     /// A choice that this version does not know.
     Choice,
-    /// The motor file switches on effects, which this layout has no place for.
+    /// An effect is switched on that the program does not hold.
     Effects,
 }
 
@@ -39,7 +43,7 @@ impl core::fmt::Display for ImageError {
             ImageError::Schema => "the motor constants have another layout than this program",
             ImageError::Choice => "the motor constants hold an unknown frame, field or load",
             ImageError::Effects => {
-                "[[effects]] cannot be flashed yet: remove them, or monitor this motor on a host"
+                "the motor constants switch on an effect that this program lacks"
             }
         })
     }
@@ -49,22 +53,16 @@ impl core::error::Error for ImageError {}
 
 impl MotorImage {
     /// Packs a configuration.
-    ///
-    /// # Errors
-    /// Effects or channel gains: leaving them out would light lamps that the host leaves dark.
-    pub fn new(config: &MonitorConfig) -> Result<Self, ImageError> {
-        let corrected = config.channel_gain != [1.0; CHANNELS];
-        if corrected || config.effects.iter().any(Option::is_some) {
-            return Err(ImageError::Effects);
-        }
+    pub fn new(config: &MonitorConfig) -> Self {
         let mut writer = Writer::default();
         writer.word(SCHEMA);
         write_measurement(&mut writer, config);
         write_motor(&mut writer, config);
         write_judgement(&mut writer, config);
+        write_effects(&mut writer, config);
         let mut words = writer.words;
         words[IMAGE_WORDS - 1] = crc32_words(&words[..IMAGE_WORDS - 1]);
-        Ok(MotorImage(words))
+        MotorImage(words)
     }
 
     /// What tells these constants from any others: their checksum.
@@ -72,11 +70,11 @@ impl MotorImage {
         self.0[IMAGE_WORDS - 1]
     }
 
-    /// Checks and unpacks an image. Ranges are checked by [`monitor::Monitor::new`].
+    /// Checks and unpacks an image, whose effects are `terms`. Ranges are checked by [`monitor::Monitor::new`].
     ///
     /// # Errors
-    /// A wrong checksum, another layout, or an unknown choice.
-    pub fn config(&self) -> Result<MonitorConfig, ImageError> {
+    /// A wrong checksum, another layout, an unknown choice or effect.
+    pub fn config(&self, terms: &EffectTerms) -> Result<MonitorConfig, ImageError> {
         let (content, checksum) = self.0.split_at(IMAGE_WORDS - 1);
         if [crc32_words(content)] != *checksum {
             return Err(ImageError::Checksum);
@@ -85,7 +83,12 @@ impl MotorImage {
         if reader.word() != SCHEMA {
             return Err(ImageError::Schema);
         }
-        read(&mut reader)
+        let config = read(&mut reader)?;
+        Ok(MonitorConfig {
+            channel_gain: reader.numbers(),
+            effects: effects(&mut reader, terms)?,
+            ..config
+        })
     }
 }
 
@@ -124,6 +127,35 @@ fn write_judgement(w: &mut Writer, config: &MonitorConfig) {
     w.numbers(&config.thresholds);
     w.word(u32::from(config.comparator.persistence));
     w.number(config.comparator.hysteresis);
+}
+
+fn write_effects(w: &mut Writer, config: &MonitorConfig) {
+    w.numbers(&config.channel_gain);
+    for effect in &config.effects {
+        w.word(effect.as_ref().map_or(0, number));
+        w.numbers(&effect.map_or([0.0; MAX_EFFECT_PARAMETERS], |effect| effect.parameters));
+    }
+}
+
+/// Place in [`STEADY`], from 1: it only tells this image from that of another effect, a program knows its terms.
+fn number(active: &ActiveEffect) -> u32 {
+    let wanted = active.effect.descriptor();
+    let place = STEADY
+        .iter()
+        .position(|effect| core::ptr::eq(effect.descriptor(), wanted));
+    place.map_or(u32::MAX, |place| place as u32 + 1)
+}
+
+fn effects(r: &mut Reader<'_>, terms: &EffectTerms) -> Result<ActiveEffects, ImageError> {
+    let mut active = ActiveEffects::default();
+    for (slot, term) in active.iter_mut().zip(terms) {
+        let (is_on, parameters) = (r.word() != 0, r.numbers());
+        if is_on {
+            let effect = term.ok_or(ImageError::Effects)?;
+            *slot = Some(ActiveEffect { effect, parameters });
+        }
+    }
+    Ok(active)
 }
 
 fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
@@ -281,21 +313,45 @@ mod tests {
     }
 
     fn image(config: &MonitorConfig) -> MotorImage {
-        MotorImage::new(config).expect("no effects")
+        MotorImage::new(config)
+    }
+
+    fn terms(config: &MonitorConfig) -> EffectTerms {
+        config
+            .effects
+            .map(|effect| effect.map(|active| active.effect))
+    }
+
+    fn with_effects() -> MonitorConfig {
+        let mut config = shipped("assumed-300w.toml");
+        config.channel_gain[4] = 0.98;
+        for (slot, number) in config.effects.iter_mut().zip([2, 9]) {
+            *slot = Some(ActiveEffect {
+                effect: STEADY[number],
+                parameters: [0.1, 2.0, 0.3, number as f32],
+            });
+        }
+        config
     }
 
     #[test]
-    fn a_channel_gain_is_refused_rather_than_dropped() {
-        let mut config = shipped("assumed-300w.toml");
-        config.channel_gain[4] = 0.98;
-        assert_eq!(MotorImage::new(&config), Err(ImageError::Effects));
+    fn effects_and_channel_gains_survive_the_round_trip() {
+        let config = with_effects();
+        assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+    }
+
+    #[test]
+    fn an_effect_that_the_program_lacks_is_refused_rather_than_dropped() {
+        let image = image(&with_effects());
+        let refused = image.config(&EffectTerms::default());
+        assert_eq!(refused, Err(ImageError::Effects));
     }
 
     #[test]
     fn every_shipped_motor_survives_the_round_trip_bit_for_bit() {
         for name in ["assumed-300w.toml", "peer-2k2.toml", "imc-18k5.toml"] {
             let config = shipped(name);
-            assert_eq!(image(&config).config(), Ok(config), "{name}");
+            assert_eq!(image(&config).config(&terms(&config)), Ok(config), "{name}");
         }
     }
 
@@ -307,17 +363,16 @@ mod tests {
             field: FieldCurrent::Nominal(1.25),
             ..shipped("assumed-300w.toml")
         };
-        assert_eq!(image(&config).config(), Ok(config));
+        assert_eq!(image(&config).config(&terms(&config)), Ok(config));
     }
 
     #[test]
     fn the_last_word_before_the_checksum_is_used() {
-        let image = image(&shipped("assumed-300w.toml"));
-        let hysteresis = f32::from_bits(image.0[IMAGE_WORDS - 2]);
-        assert_eq!(
-            hysteresis,
-            shipped("assumed-300w.toml").comparator.hysteresis
-        );
+        let mut config = with_effects();
+        config.effects[MAX_EFFECTS - 1] = config.effects[0];
+        let [.., last] = config.effects[0].expect("an effect").parameters;
+        let image = image(&config);
+        assert_eq!(f32::from_bits(image.0[IMAGE_WORDS - 2]), last);
     }
 
     proptest! {
@@ -326,7 +381,7 @@ mod tests {
         fn any_flipped_bit_is_found(word in 0..IMAGE_WORDS, bit in 0..32_u32) {
             let mut image = image(&shipped("assumed-300w.toml"));
             image.0[word] ^= 1 << bit;
-            prop_assert_eq!(image.config(), Err(ImageError::Checksum));
+            prop_assert_eq!(image.config(&EffectTerms::default()), Err(ImageError::Checksum));
         }
     }
 }

@@ -18,5 +18,5 @@ pub use calibration::{
 pub use checksum::{crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, levels};
 pub use frame::{Frame, FrameError, MAX_FRAME_BYTES};
-pub use image::{IMAGE_WORDS, ImageError, MotorImage};
+pub use image::{EffectTerms, IMAGE_WORDS, ImageError, MotorImage};
 pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal, calibrated};

@@ -1,13 +1,12 @@
 //! Physical effects that the motor file adds to the T model, as the lamps need them: their steady-state terms.
 
 use motor::TParams;
+pub use motor::effects::MAX_PARAMETERS as MAX_EFFECT_PARAMETERS;
 use motor::effects::{Rated, SteadyEffect, SteadyPoint};
 use num_complex::Complex32;
 
 /// Most effects that one motor file may switch on.
 pub const MAX_EFFECTS: usize = 4;
-/// Most parameters of one effect.
-pub const MAX_EFFECT_PARAMETERS: usize = 4;
 
 /// One effect with its parameters.
 #[derive(Clone, Copy)]

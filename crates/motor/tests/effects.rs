@@ -1,8 +1,8 @@
 //! Every effect of the library: consistent with itself, absent at zero, the same in dynamics and steady state.
 
 use motor::effects::{
-    ALL, At, Between, EffectConfig, EffectError, Inputs, Outputs, Plant, Rated, Role, Run,
-    SpeedSource, SteadyPoint, Timeline, simulate,
+    ALL, At, Between, EffectConfig, EffectError, Inputs, MAX_PARAMETERS, Outputs, Plant, Rated,
+    Role, Run, SpeedSource, SteadyPoint, Timeline, simulate,
 };
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
@@ -220,7 +220,11 @@ fn steady_terms_agree_with_the_settled_dynamics() {
 fn single_and_double_precision_agree() {
     for effect in ALL {
         let config = EffectConfig::typical(*effect, &plant().rated);
-        let p32: Vec<f32> = config.values.iter().map(|&x| x as f32).collect();
+        let mut p32 = [0.0; MAX_PARAMETERS];
+        assert!(config.values.len() <= MAX_PARAMETERS);
+        for (narrow, wide) in p32.iter_mut().zip(&config.values) {
+            *narrow = *wide as f32;
+        }
         let (mut wide, mut narrow) = (example_point(), example_point_f32());
         effect.correct_f64(&config.values, &mut wide);
         effect.correct_f32(&p32, &mut narrow);

@@ -10,18 +10,30 @@ use core::panic::PanicInfo;
 
 use core_on_target::CONFIG;
 use cortex_m_rt::entry;
-use monitor::{Monitor, MonitorState, RawSample};
+use monitor::{ActiveEffect, Monitor, MonitorConfig, MonitorState, RawSample};
+use motor::effects::STEADY;
 
 #[entry]
 fn main() -> ! {
     let mut state = MonitorState::default();
-    if let Ok(monitor) = Monitor::new(black_box(CONFIG)) {
+    if let Ok(monitor) = Monitor::new(with_any_effect()) {
         loop {
             let raw = black_box(RawSample::default());
             black_box(sample_path(&monitor, &mut state, &raw));
         }
     }
     loop {}
+}
+
+/// Which effect nobody knows before the program runs: all of them are part of it.
+fn with_any_effect() -> MonitorConfig {
+    let active = |effect: &&'static _| ActiveEffect {
+        effect: *effect,
+        parameters: black_box([0.1; monitor::MAX_EFFECT_PARAMETERS]),
+    };
+    let mut config = black_box(CONFIG);
+    config.effects[0] = STEADY.get(black_box(0)).map(active);
+    config
 }
 
 /// The whole way of one sample, kept as a symbol of its own.

@@ -1,8 +1,7 @@
 //! Coulomb friction: `T_c sgn(w)`, smoothed over 0.5 % of synchronous speed.
 
-use super::steady::{lit, steady_effect};
+use super::steady::{Real, lit, steady_effect};
 use super::{Applies, Descriptor, Kind, Parameter, Rated, Scale, SteadyPoint};
-use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "coulomb-friction",
@@ -26,11 +25,12 @@ pub struct CoulombFriction;
 
 steady_effect!(CoulombFriction, DESCRIPTOR, correct);
 
-fn torque<F: Float>(p: &[F], rated: &Rated<F>, omega_mech: F) -> F {
-    p[0] * (omega_mech / (rated.speed() * lit(0.005))).tanh()
+#[inline(always)]
+fn torque<F: Real>(p: &[F], rated: &Rated<F>, omega_mech: F) -> F {
+    p[0] * (omega_mech / (rated.speed() * lit(0.005))).tangent()
 }
 
-fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
     point.tau_extra = point.tau_extra + torque(p, &point.rated, point.omega_mech);
 }
 

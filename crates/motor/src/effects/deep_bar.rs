@@ -1,9 +1,8 @@
 //! Skin effect in the rotor bars: `R_r (1 + k_R abs(s)^n)`, `L_lr (1 - k_L abs(s)^n)`.
 
-use super::steady::{lit, steady_effect};
+use super::steady::{Real, lit, steady_effect};
 use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use crate::TParams;
-use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "deep-bar",
@@ -33,14 +32,15 @@ pub struct DeepBar;
 
 steady_effect!(DeepBar, DESCRIPTOR, correct);
 
-fn apply<F: Float>(p: &[F], slip: F, motor: &mut TParams<F>) {
+#[inline(always)]
+fn apply<F: Real>(p: &[F], slip: F, motor: &mut TParams<F>) {
     // Skin depth saturates beyond supply frequency (plugging).
-    let f = slip.abs().min(lit(2.0)).powf(p[2]);
+    let f = slip.abs().min(lit(2.0)).power(p[2]);
     motor.r_r = motor.r_r * (F::one() + p[0] * f).max(lit(0.05));
     motor.l_lr = motor.l_lr * (F::one() - p[1] * f).max(lit(0.05));
 }
 
-fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
     apply(p, point.slip(), &mut point.motor);
 }
 

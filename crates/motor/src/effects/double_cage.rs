@@ -37,6 +37,7 @@ pub struct DoubleCage;
 steady_effect!(DoubleCage, DESCRIPTOR, correct);
 
 /// Both cages: resistances and leakages `(r_1, l_1, r_2, l_2)`.
+#[inline(always)]
 fn cages<F: Float>(p: &[F], motor: &TParams<F>) -> (F, F, F, F) {
     // Below this share the second cage's time constant is too short for the integration step.
     let a = p[0].max(lit(0.03));

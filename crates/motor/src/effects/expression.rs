@@ -13,8 +13,8 @@
 //! angle (rad), `slip` 1 at standstill, `t` seconds from the start of the recording.
 
 use super::{
-    Applies, At, Descriptor, Effect, EffectConfig, EffectError, Hook, Kind, Parameter, Rates, Role,
-    Scale, SteadyEffect, SteadyPoint, Written,
+    Applies, At, Descriptor, Effect, EffectConfig, EffectError, Hook, Kind, MAX_PARAMETERS,
+    Parameter, Rates, Role, Scale, SteadyEffect, SteadyPoint, Written,
 };
 use crate::dynamic::{Flow, Terminal, Winding};
 use exmex::{Express, FlatEx};
@@ -270,7 +270,7 @@ impl SteadyEffect for Expression {
     }
 
     /// A formula needs an operating system: single precision, the board's, leaves the point as it is.
-    fn correct_f32(&self, _p: &[f32], _point: &mut SteadyPoint<f32>) {}
+    fn correct_f32(&self, _p: &[f32; MAX_PARAMETERS], _point: &mut SteadyPoint<f32>) {}
 
     fn correct_f64(&self, p: &[f64], point: &mut SteadyPoint<f64>) {
         let motor = &point.motor;

@@ -1,9 +1,7 @@
 //! The voltages are turned against the currents: `u e^(j delta)`.
 
-use super::steady::steady_effect;
+use super::steady::{Real, steady_effect};
 use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
-use num_complex::Complex;
-use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "frame-rotation",
@@ -22,8 +20,8 @@ pub struct FrameRotation;
 
 steady_effect!(FrameRotation, DESCRIPTOR, correct);
 
-fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
-    point.u_s = point.u_s * Complex::new(p[0].cos(), p[0].sin());
+fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
+    point.u_s = point.u_s * p[0].turn();
 }
 
 #[cfg(feature = "std")]

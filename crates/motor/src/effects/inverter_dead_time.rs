@@ -1,7 +1,8 @@
 //! Dead time and device drop of an inverter: `-V tanh(i_k/I_0)` per phase, decided once per hold period.
 
-use super::steady::{lit, steady_effect};
+use super::steady::{length, lit, steady_effect};
 use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use num_complex::Complex;
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -34,7 +35,8 @@ steady_effect!(InverterDeadTime, DESCRIPTOR, correct);
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
     // Describing function of tanh for a sine: V/I_0 for small currents, 4V/(pi i) for large ones.
     let quarter_pi = lit::<F>(core::f64::consts::FRAC_PI_4);
-    let gain = p[0] / p[1].hypot(quarter_pi * point.i_s.norm());
+    let limits = Complex::new(p[1], quarter_pi * length(point.i_s));
+    let gain = p[0] / length(limits);
     point.u_s = point.u_s - point.i_s * gain;
 }
 

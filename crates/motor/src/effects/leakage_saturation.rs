@@ -32,6 +32,7 @@ pub struct LeakageSaturation;
 steady_effect!(LeakageSaturation, DESCRIPTOR, correct);
 
 /// Factor on both leakages at the squared current `i2`, A2.
+#[inline(always)]
 fn factor<F: Float>(p: &[F], i2: F) -> F {
     let x2 = i2 / (p[1] * p[1]);
     (F::one() - p[0] * x2 / (F::one() + x2)).max(lit(0.05))

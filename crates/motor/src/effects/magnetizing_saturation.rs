@@ -1,6 +1,6 @@
 //! Magnetizing saturation: `i_m = psi/L_m (1 + k((psi/psi_rated)^n - 1))`.
 
-use super::steady::steady_effect;
+use super::steady::{Real, length, steady_effect};
 use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use crate::TParams;
 use num_traits::Float;
@@ -48,10 +48,10 @@ fn relocated<F: Float>(motor: &TParams<F>, g: F) -> TParams<F> {
     }
 }
 
-fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
     point.motor = relocated(&point.motor, p[2]);
-    let x = point.air_gap_flux().norm() / point.rated.flux();
-    let factor = F::one() + p[0] * (x.powf(p[1]) - F::one());
+    let x = length(point.air_gap_flux()) / point.rated.flux();
+    let factor = F::one() + p[0] * (x.power(p[1]) - F::one());
     point.motor.l_m = point.motor.l_m / factor;
 }
 

@@ -36,7 +36,7 @@ pub use signals::{Inputs, Outputs};
 pub use simulate::{Between, Plant, Run, SpeedSource, simulate};
 #[cfg(feature = "std")]
 pub use stack::{EffectStack, Timeline, extra_states};
-pub use steady::{SteadyEffect, SteadyPoint};
+pub use steady::{MAX_PARAMETERS, SteadyEffect, SteadyPoint};
 
 /// Registers effects: the file and the type in it.
 macro_rules! effects {
@@ -45,6 +45,15 @@ macro_rules! effects {
 
         /// All effects, as the monitor core and the firmware see them.
         pub static STEADY: &[&dyn SteadyEffect] = &[$(&$file::$effect),*];
+
+        /// Types of [`STEADY`], in its order, by name: a program that names one holds its code and no other's.
+        pub mod types {
+            $(pub use super::$file::$effect;)*
+        }
+
+        /// Names in [`types`] of [`STEADY`], in its order.
+        #[cfg(feature = "std")]
+        pub static TYPES: &[&str] = &[$(stringify!($effect)),*];
 
         /// All effects, as simulator and discovery see them.
         #[cfg(feature = "std")]

@@ -1,9 +1,7 @@
 //! The currents are sampled later than the voltages: `i(t - d)`.
 
-use super::steady::steady_effect;
+use super::steady::{Real, steady_effect};
 use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
-use num_complex::Complex;
-use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "sample-delay",
@@ -22,9 +20,9 @@ pub struct SampleDelay;
 
 steady_effect!(SampleDelay, DESCRIPTOR, correct);
 
-fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
+fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
     let phase = point.omega_sync * p[0];
-    point.i_s = point.i_s * Complex::new(phase.cos(), phase.sin());
+    point.i_s = point.i_s * phase.turn();
 }
 
 #[cfg(feature = "std")]

@@ -47,6 +47,9 @@ impl<F: Float> SteadyPoint<F> {
     }
 }
 
+/// Most parameters that an effect has: the room for each in flash.
+pub const MAX_PARAMETERS: usize = 4;
+
 /// An effect in steady state.
 pub trait SteadyEffect: Sync {
     /// What is known about it.
@@ -54,9 +57,13 @@ pub trait SteadyEffect: Sync {
 
     /// Turns what was measured into what the model without this effect would have measured: moves `u_s`, `i_s`
     /// and `omega_mech` behind the effect, or changes the parameters that hold at this point.
-    fn correct_f32(&self, p: &[f32], point: &mut SteadyPoint<f32>);
+    ///
+    /// Parameters that the effect does not have are not looked at. The length is fixed so that the board's program
+    /// holds no check of it.
+    fn correct_f32(&self, p: &[f32; MAX_PARAMETERS], point: &mut SteadyPoint<f32>);
 
-    /// As [`SteadyEffect::correct_f32`], in double precision.
+    /// As [`SteadyEffect::correct_f32`], in double precision, which the board does not have.
+    #[cfg(feature = "std")]
     fn correct_f64(&self, p: &[f64], point: &mut SteadyPoint<f64>);
 }
 
@@ -68,10 +75,15 @@ macro_rules! steady_effect {
                 &$descriptor
             }
 
-            fn correct_f32(&self, p: &[f32], point: &mut $crate::effects::SteadyPoint<f32>) {
+            fn correct_f32(
+                &self,
+                p: &[f32; $crate::effects::MAX_PARAMETERS],
+                point: &mut $crate::effects::SteadyPoint<f32>,
+            ) {
                 $correct(p, point);
             }
 
+            #[cfg(feature = "std")]
             fn correct_f64(&self, p: &[f64], point: &mut $crate::effects::SteadyPoint<f64>) {
                 $correct(p, point);
             }
@@ -80,6 +92,60 @@ macro_rules! steady_effect {
 }
 pub(crate) use steady_effect;
 
+/// Functions of steady terms beyond `+ - * /` and the square root. In single precision none of them goes through double
+/// precision, which is a thousand instructions on the board, and all give the same bits on a host.
+pub(crate) trait Real: Float {
+    /// `self^n`.
+    fn power(self, n: Self) -> Self;
+
+    /// Hyperbolic tangent.
+    fn tangent(self) -> Self;
+
+    /// `e^(j self)` of an angle in rad, at most pi.
+    fn turn(self) -> Complex<Self>;
+}
+
+impl Real for f32 {
+    fn power(self, n: f32) -> f32 {
+        libm::powf(self, n)
+    }
+
+    fn tangent(self) -> f32 {
+        libm::tanhf(self)
+    }
+
+    /// By the Taylor series of a quarter of the angle, squared twice: at most 1e-6 off.
+    fn turn(self) -> Complex<f32> {
+        let x = 0.25 * self;
+        let x2 = x * x;
+        let cos = 1.0 - x2 / 2.0 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0)));
+        let sin = x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0))));
+        let quarter = Complex::new(cos, sin);
+        let half = quarter * quarter;
+        half * half
+    }
+}
+
+#[cfg(feature = "std")]
+impl Real for f64 {
+    fn power(self, n: f64) -> f64 {
+        self.powf(n)
+    }
+
+    fn tangent(self) -> f64 {
+        self.tanh()
+    }
+
+    fn turn(self) -> Complex<f64> {
+        Complex::from_polar(1.0, self)
+    }
+}
+
+/// Length of a phasor; `Complex::norm` goes through `hypot`, which on the board is double precision.
+pub(crate) fn length<F: Float>(x: Complex<F>) -> F {
+    x.norm_sqr().sqrt()
+}
+
 /// A constant of the formulas in the precision of the caller.
 pub(crate) fn lit<F: Float>(x: f64) -> F {
     F::from(x).unwrap_or_else(F::nan)
@@ -87,3 +153,18 @@ pub(crate) fn lit<F: Float>(x: f64) -> F {
 
 /// The effect leaves the fundamental in steady state as it is.
 pub(crate) fn unchanged<F: Float>(_p: &[F], _point: &mut SteadyPoint<F>) {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_turn_in_single_precision_is_within_1e_6() {
+        for k in -3_141..=3_141 {
+            let x = k as f32 * 1e-3;
+            let (narrow, wide) = (x.turn(), f64::from(x).turn());
+            let error = (f64::from(narrow.re) - wide.re).hypot(f64::from(narrow.im) - wide.im);
+            assert!(error < 1e-6, "{x}: {error:e}");
+        }
+    }
+}

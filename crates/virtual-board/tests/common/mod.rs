@@ -22,13 +22,23 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// A program and the motor that is compiled into it.
+pub struct Program {
+    pub elf: Vec<u8>,
+    pub motor: MotorFile,
+}
+
 /// The release ELF: `DRIVE_MONITOR_ELF`, or where `tools/thumb build --release -p drive-monitor` puts it.
 pub fn firmware() -> Vec<u8> {
     let default = root().join("target/thumbv7em-none-eabihf/release/drive-monitor");
-    let path = std::env::var_os("DRIVE_MONITOR_ELF").map_or(default, PathBuf::from);
+    elf("DRIVE_MONITOR_ELF", default)
+}
+
+fn elf(variable: &str, default: PathBuf) -> Vec<u8> {
+    let path = std::env::var_os(variable).map_or(default, PathBuf::from);
     std::fs::read(&path).unwrap_or_else(|error| {
         panic!(
-            "{}: {error}; build it first: tools/thumb build --release -p drive-monitor",
+            "{}: {error}; tools/test-virtual-board builds it",
             path.display()
         )
     })
@@ -37,6 +47,29 @@ pub fn firmware() -> Vec<u8> {
 /// The motor that is compiled into the firmware by default.
 pub fn motor() -> MotorFile {
     MotorFile::read(root().join("motors/assumed-300w.toml")).expect("a shipped motor file")
+}
+
+/// The default program.
+pub fn plain() -> Program {
+    Program {
+        elf: firmware(),
+        motor: motor(),
+    }
+}
+
+/// The program of the same motor with an adopted effect: `DRIVE_MONITOR_CORE_LOSS_ELF`.
+pub fn with_core_loss() -> Program {
+    let read = |path| std::fs::read_to_string(root().join(path)).expect("a file of the project");
+    let text = [
+        "motors/assumed-300w.toml",
+        "crates/virtual-board/tests/core-loss.toml",
+    ]
+    .map(read);
+    let default = root().join("target/thumbv7em-none-eabihf/release/drive-monitor-core-loss");
+    Program {
+        elf: elf("DRIVE_MONITOR_CORE_LOSS_ELF", default),
+        motor: MotorFile::parse(&text.concat(), "core-loss.toml").expect("a valid motor file"),
+    }
 }
 
 /// A running motor with the noise of its file, for `seconds` after the first sample.
@@ -87,7 +120,11 @@ pub fn board(scenario: &Scenario) -> VirtualBoard {
 
 /// The host's lamps after every sample of `taken`, as the firmware's core sees them without a gap.
 pub fn host_lamps(taken: &[RawSample]) -> Vec<Lamps> {
-    let config = MonitorConfig::from_motor_file(&motor(), 1e-4);
+    host_lamps_of(&motor(), taken)
+}
+
+fn host_lamps_of(motor: &MotorFile, taken: &[RawSample]) -> Vec<Lamps> {
+    let config = MonitorConfig::from_motor_file(motor, 1e-4);
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut state = MonitorState::default();
     let mut lamps = Lamps {
@@ -142,20 +179,28 @@ pub struct Seen {
     pub board: VirtualBoard,
 }
 
-/// Runs a scenario on the board, looking at the lamps every 20 ms from the end of the lamp test on.
+/// Runs a scenario on the default program. See [`Program::watch`].
 pub fn watch(scenario: &Scenario) -> Seen {
-    let mut board = board(scenario);
-    board.run(LAMP_TEST_S).expect("a lamp test");
-    let mut observed = Vec::new();
-    for _ in 0..(scenario.duration_s / 0.02) as usize {
-        board.run(0.02).expect("a run without an unknown access");
-        observed.push((board.lamps(), board.taken().len()));
-    }
-    let host = host_lamps(board.taken());
-    Seen {
-        observed,
-        host,
-        board,
+    plain().watch(scenario)
+}
+
+impl Program {
+    /// Runs a scenario on the board, looking at the lamps every 20 ms from the end of the lamp test on.
+    pub fn watch(&self, scenario: &Scenario) -> Seen {
+        let sensors = Box::new(Sensors::new(scenario));
+        let mut board = VirtualBoard::new(&self.elf, sensors).expect("a firmware that loads");
+        board.run(LAMP_TEST_S).expect("a lamp test");
+        let mut observed = Vec::new();
+        for _ in 0..(scenario.duration_s / 0.02) as usize {
+            board.run(0.02).expect("a run without an unknown access");
+            observed.push((board.lamps(), board.taken().len()));
+        }
+        let host = host_lamps_of(&self.motor, board.taken());
+        Seen {
+            observed,
+            host,
+            board,
+        }
     }
 }
 
