@@ -141,10 +141,16 @@ impl Inputs for Remembered {
     }
 }
 
+/// The first lesson ends at 19.2 s of the scenario, the second begins at 27.3 s.
+const BETWEEN_LESSONS_S: f64 = 22.0;
+
 /// A board with an old calibration, about to store a new one, and the old one.
 fn about_to_store() -> (VirtualBoard, Calibration) {
+    // One offset goes between the two lessons: what they teach can then be told apart by the frames.
+    let mut scenario = offsets();
+    scenario.faults[1].to_s = BETWEEN_LESSONS_S;
     let inputs = Remembered {
-        sensors: Sensors::new(&offsets()),
+        sensors: Sensors::new(&scenario),
         seen: Vec::new(),
     };
     let mut board = VirtualBoard::new(&firmware(), Box::new(inputs)).expect("a firmware");

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Program, Seen, plain, with_core_loss};
+use common::{Program, Seen, plain, variant};
 use motor::motor_file::Frame;
 use sim_host::scenario::{Fault, Scenario};
 
@@ -10,7 +10,7 @@ const END_S: f64 = 2.0;
 
 /// The motor with its losses, whatever the program knows of them.
 fn lossy(faults: &[(&str, f64)]) -> Scenario {
-    let mut scenario = Scenario::of(with_core_loss().motor, END_S);
+    let mut scenario = Scenario::of(variant("core-loss").motor, END_S);
     scenario.seed = 11;
     let fault = |(name, percent): &(&str, f64)| {
         let fault = Fault::percent(name, *percent, Frame::RotorFlux).expect("a known fault");
@@ -44,7 +44,7 @@ fn losses_that_the_motor_file_does_not_know_light_a_lamp() {
 
 #[test]
 fn adopted_losses_light_nothing() {
-    let seen = check(&with_core_loss(), &lossy(&[]), "losses, adopted");
+    let seen = check(&variant("core-loss"), &lossy(&[]), "losses, adopted");
     let (levels, _) = seen.observed.last().expect("observations");
     assert_eq!(
         levels,
@@ -55,7 +55,7 @@ fn adopted_losses_light_nothing() {
 #[test]
 fn a_fault_beside_adopted_losses_still_lights_a_lamp() {
     let seen = check(
-        &with_core_loss(),
+        &variant("core-loss"),
         &lossy(&[("Rs", 50.0)]),
         "losses adopted, Rs +50 %",
     );

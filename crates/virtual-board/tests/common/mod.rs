@@ -30,13 +30,16 @@ pub struct Program {
 
 /// The release ELF: `DRIVE_MONITOR_ELF`, or where `tools/thumb build --release -p drive-monitor` puts it.
 pub fn firmware() -> Vec<u8> {
-    let default = root().join("target/thumbv7em-none-eabihf/release/drive-monitor");
-    elf("DRIVE_MONITOR_ELF", default)
+    read(&elf_path())
 }
 
-fn elf(variable: &str, default: PathBuf) -> Vec<u8> {
-    let path = std::env::var_os(variable).map_or(default, PathBuf::from);
-    std::fs::read(&path).unwrap_or_else(|error| {
+fn elf_path() -> PathBuf {
+    let default = root().join("target/thumbv7em-none-eabihf/release/drive-monitor");
+    std::env::var_os("DRIVE_MONITOR_ELF").map_or(default, PathBuf::from)
+}
+
+fn read(path: &Path) -> Vec<u8> {
+    std::fs::read(path).unwrap_or_else(|error| {
         panic!(
             "{}: {error}; tools/test-virtual-board builds it",
             path.display()
@@ -57,18 +60,15 @@ pub fn plain() -> Program {
     }
 }
 
-/// The program of the same motor with an adopted effect: `DRIVE_MONITOR_CORE_LOSS_ELF`.
-pub fn with_core_loss() -> Program {
-    let read = |path| std::fs::read_to_string(root().join(path)).expect("a file of the project");
-    let text = [
-        "motors/assumed-300w.toml",
-        "crates/virtual-board/tests/core-loss.toml",
-    ]
-    .map(read);
-    let default = root().join("target/thumbv7em-none-eabihf/release/drive-monitor-core-loss");
+/// A program of another motor file that tools/test-virtual-board builds beside the default one, with its motor file.
+pub fn variant(name: &str) -> Program {
+    let mut path = elf_path().into_os_string();
+    path.push(format!("-{name}"));
+    let elf = read(Path::new(&path));
+    path.push(".toml");
     Program {
-        elf: elf("DRIVE_MONITOR_CORE_LOSS_ELF", default),
-        motor: MotorFile::parse(&text.concat(), "core-loss.toml").expect("a valid motor file"),
+        elf,
+        motor: MotorFile::read(path).expect("a valid motor file"),
     }
 }
 
