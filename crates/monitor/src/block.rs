@@ -7,12 +7,13 @@
 use num_complex::Complex32;
 
 use crate::config::MonitorConfig;
+use crate::encoder::EncoderState;
 use crate::intake::{IntakeState, reference_scales};
 use crate::monitor::{Monitor, MonitorState};
 use crate::phasor::{CHANNELS, CodeRange, Unit};
 use crate::report::Report;
-use crate::sample::RawBlock;
-use crate::sync::SyncTick;
+use crate::sample::{RawBlock, RawSample};
+use crate::sync::{SyncState, SyncTick};
 
 /// Most instants that wait to be summed up.
 const PART: usize = 32;
@@ -46,6 +47,15 @@ impl Codes {
 }
 
 impl Monitor {
+    /// Takes one instant in ADC codes. See [`Monitor::update`] and, for many instants, [`Monitor::update_block`].
+    pub fn update_raw(&self, state: &mut MonitorState, raw: &RawSample) -> Option<Report> {
+        state.expect_codes(true);
+        let codes = raw.interleaved();
+        let parts = (&mut state.intake, &mut state.sync, &mut state.encoder);
+        let tick = self.follow_instant(parts, &codes, raw.encoder_count);
+        self.take_codes(state, &codes, &tick)
+    }
+
     /// Takes instants from the front of `block` until a report is due or none is left. See [`Monitor::update`].
     pub fn update_block(
         &self,
@@ -68,9 +78,11 @@ impl Monitor {
     fn follow(&self, state: &mut MonitorState, block: &RawBlock<'_>) -> (usize, Option<SyncTick>) {
         let mut plain = 0;
         for ((codes, count), axis) in block.instants().zip(&mut state.axes.0) {
-            let reference = self.reference(&mut state.intake, codes);
-            let tick = self.sync.update(&mut state.sync, reference);
-            self.encoder.count(&mut state.encoder, count);
+            let tick = self.follow_instant(
+                (&mut state.intake, &mut state.sync, &mut state.encoder),
+                codes,
+                count,
+            );
             if tick.restarted || tick.turn_ends.is_some() || state.sync.is_searching() {
                 return (plain, Some(tick));
             }
@@ -78,6 +90,18 @@ impl Monitor {
             plain += 1;
         }
         (plain, None)
+    }
+
+    #[inline(always)]
+    fn follow_instant(
+        &self,
+        (intake, sync, encoder): (&mut IntakeState, &mut SyncState, &mut EncoderState),
+        codes: &[u16; CHANNELS],
+        count: u16,
+    ) -> SyncTick {
+        let reference = self.reference(intake, codes);
+        self.encoder.count(encoder, count);
+        self.sync.update(sync, reference)
     }
 
     /// Uncalibrated: where the oscillator's phase stands does not matter, only that it stands there in every cycle.
@@ -113,7 +137,17 @@ impl Monitor {
         codes: &[[u16; CHANNELS]],
         tick: &SyncTick,
     ) -> Option<Report> {
-        let [v_a, i_a, v_b, i_b, v_c, i_c] = codes.first()?.map(f32::from);
+        self.take_codes(state, codes.first()?, tick)
+    }
+
+    #[inline(always)]
+    fn take_codes(
+        &self,
+        state: &mut MonitorState,
+        codes: &[u16; CHANNELS],
+        tick: &SyncTick,
+    ) -> Option<Report> {
+        let [v_a, i_a, v_b, i_b, v_c, i_c] = codes.map(f32::from);
         let [volt, ampere] = self.codes.range.zero;
         let x = [
             v_a - volt,
@@ -123,8 +157,8 @@ impl Monitor {
             i_b - ampere,
             i_c - ampere,
         ];
-        state.count(codes.len());
-        self.admit(state, codes, false);
+        state.count(1);
+        self.admit(state, core::slice::from_ref(codes), false);
         self.take_instant(state, tick, &x, &self.codes.units)
     }
 }

@@ -59,12 +59,13 @@ impl Tally {
 
 impl IntakeState {
     /// Takes one sample; whatever is not finite is replaced by its predecessor and counted.
+    #[inline(always)]
     pub fn admit(&mut self, sample: &Sample) -> Admitted {
         let tally = &mut self.tally;
         tally.samples = tally.samples.saturating_add(1);
         tally.clipped = tally.clipped.union(sample.clipped);
-        let voltages = hold_last(&mut self.held_voltages, sample.u_s_abc);
-        let currents = hold_last(&mut self.held_currents, sample.i_s_abc);
+        let (u_s_abc, voltages) = hold_last(&mut self.held_voltages, sample.u_s_abc);
+        let (i_s_abc, currents) = hold_last(&mut self.held_currents, sample.i_s_abc);
         for (count, quality) in tally.present.iter_mut().zip([voltages, currents]) {
             *count = count.saturating_add(u16::from(quality != Quality::Missing));
         }
@@ -75,10 +76,7 @@ impl IntakeState {
             tally.torque_sum += tau;
             tally.torque_samples = tally.torque_samples.saturating_add(1);
         }
-        Admitted {
-            u_s_abc: self.held_voltages,
-            i_s_abc: self.held_currents,
-        }
+        Admitted { u_s_abc, i_s_abc }
     }
 
     /// Notes `instants` whose voltages and currents come from a converter and are numbers by construction.
@@ -140,19 +138,18 @@ enum Quality {
     Invalid,
 }
 
-fn hold_last(held: &mut Abc, value: Option<Abc>) -> Quality {
-    match value {
-        None => {
-            *held = Abc::default();
-            Quality::Missing
-        }
+#[inline(always)]
+fn hold_last(held: &mut Abc, value: Option<Abc>) -> (Abc, Quality) {
+    let (admitted, quality) = match value {
+        None => (Abc::default(), Quality::Missing),
         // NaN and infinity fail the comparison too.
         Some(x) if x.a.abs() < LARGEST && x.b.abs() < LARGEST && x.c.abs() < LARGEST => {
-            *held = x;
-            Quality::Good
+            (x, Quality::Good)
         }
-        Some(_) => Quality::Invalid,
-    }
+        Some(_) => (*held, Quality::Invalid),
+    };
+    *held = admitted;
+    (admitted, quality)
 }
 
 /// No motor that this monitor is for carries more than this, V or A; squares stay far from overflow.

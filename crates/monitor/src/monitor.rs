@@ -15,7 +15,7 @@ use crate::panel::{PanelConfig, PanelState};
 use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
 use crate::report::{NotJudged, Report};
 use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
-use crate::sample::{RawBlock, RawSample, Sample};
+use crate::sample::Sample;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
 use crate::window::{Cycle, Window, WindowState};
@@ -158,12 +158,6 @@ impl Monitor {
         &self.config
     }
 
-    /// Takes one instant in ADC codes. See [`Monitor::update`] and, for many instants, [`Monitor::update_block`].
-    pub fn update_raw(&self, state: &mut MonitorState, raw: &RawSample) -> Option<Report> {
-        let (codes, counts) = ([raw.interleaved()], [raw.encoder_count]);
-        self.update_block(state, &mut RawBlock::new(&codes, &counts))
-    }
-
     /// Takes one instant in SI units; a report comes once per supply cycle, or every 0.1 s without a supply.
     pub fn update(&self, state: &mut MonitorState, sample: &Sample) -> Option<Report> {
         state.expect_codes(false);
@@ -180,7 +174,7 @@ impl Monitor {
     }
 
     /// What follows from one instant, whose channels are in `units`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn take_instant(
         &self,
         state: &mut MonitorState,

@@ -89,7 +89,7 @@ pub struct CyclePhasors {
 
 impl PhasorState {
     /// Adds one instant; returns the finished cycle when the oscillator completes its turn.
-    #[inline]
+    #[inline(always)]
     pub fn update(
         &mut self,
         tick: &SyncTick,
@@ -142,7 +142,7 @@ impl PhasorState {
         voltages && currents
     }
 
-    #[inline]
+    #[inline(always)]
     fn add(&mut self, weight: f32, axis: Complex32, x: &[f32; CHANNELS]) {
         let (cos, sin) = (weight * axis.re, weight * axis.im);
         self.gram.cos += cos;
