@@ -1,5 +1,6 @@
 //! Learning on the running motor, and what flash knows from earlier learning.
 
+use board::modbus::BoardStatus;
 use board::{
     Calibration, CalibrationSource, EffectTerms, LearnState, Learner, Loaded, MotorImage, Progress,
     Refusal,
@@ -34,42 +35,47 @@ impl Commissioning {
         }
     }
 
-    /// Where the calibration comes from, and how learning stands.
-    pub fn state(&self) -> (CalibrationSource, LearnState) {
-        (self.source, self.learning)
+    /// Writes what Modbus tells about it.
+    pub fn describe(&self, status: &mut BoardStatus) {
+        status.motor = self.motor;
+        status.calibration = self.source;
+        status.learning = self.learning;
+        status.learned_windows = self.learner.as_ref().map_or(0, Learner::windows) as u16;
+    }
+
+    /// What tells the motor's constants from others.
+    pub fn motor(&self) -> u32 {
+        self.motor
     }
 
     /// A monitor with the calibration in flash, or without it where it does not hold; `None` when the compiled-in
     /// constants do not hold themselves.
     #[inline(never)]
     pub fn monitor(&mut self) -> Option<Monitor> {
-        let factory = self.factory?;
-        let plain = Monitor::new(factory).ok()?;
-        let loaded = self.store.as_mut().and_then(|store| store.load().ok());
-        let (source, calibrated) = self.choose(&factory, loaded);
-        self.source = source;
-        defmt::info!("calibration: {=u8}", source as u8);
-        Some(calibrated.unwrap_or(plain))
+        let mut config = self.factory?;
+        self.source = self.calibrate(&mut config);
+        defmt::info!("calibration: {=u8}", self.source as u8);
+        Monitor::new(config).ok()
     }
 
-    fn choose(
-        &self,
-        factory: &MonitorConfig,
-        loaded: Option<Loaded>,
-    ) -> (CalibrationSource, Option<Monitor>) {
-        let Some(Loaded { newest, lost }) = loaded else {
-            return (CalibrationSource::Lost, None);
-        };
-        match newest {
-            None if lost => (CalibrationSource::Lost, None),
-            None => (CalibrationSource::CompiledIn, None),
-            Some(calibration) if calibration.motor != self.motor => {
-                (CalibrationSource::OtherMotor, None)
-            }
-            Some(calibration) => match calibrated(factory, &calibration) {
-                Some(monitor) => (CalibrationSource::Flash, Some(monitor)),
-                None => (CalibrationSource::Lost, None),
-            },
+    /// Puts the calibration in flash over the motor file's values, if it is whole, this motor's and within its ranges.
+    #[inline(never)]
+    fn calibrate(&mut self, config: &mut MonitorConfig) -> CalibrationSource {
+        let loaded = self.store.as_mut().and_then(|store| store.load().ok());
+        match loaded {
+            Some(Loaded {
+                newest: None,
+                lost: false,
+            }) => CalibrationSource::CompiledIn,
+            Some(Loaded {
+                newest: Some(calibration),
+                ..
+            }) if calibration.motor != self.motor => CalibrationSource::OtherMotor,
+            Some(Loaded {
+                newest: Some(calibration),
+                ..
+            }) if calibration.apply_checked(config) => CalibrationSource::Flash,
+            _ => CalibrationSource::Lost,
         }
     }
 
@@ -139,8 +145,4 @@ impl Commissioning {
         }
         shown
     }
-}
-
-fn calibrated(factory: &MonitorConfig, calibration: &Calibration) -> Option<Monitor> {
-    Monitor::new(board::calibrated(factory, calibration).ok()?).ok()
 }

@@ -3,13 +3,15 @@
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
-use board::{Button, Calibration, Display, LAMPS, Press};
+use board::modbus::Command;
+use board::{Button, Calibration, Capture, Display, LAMPS, Press};
 use embassy_executor::Spawner;
 use embassy_stm32::gpio::Input;
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_time::{Duration, Timer};
 use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};
+use static_cell::ConstStaticCell;
 
 use crate::commissioning::Commissioning;
 use crate::hardware::board::{Board, clocks};
@@ -17,7 +19,9 @@ use crate::hardware::flash_store;
 use crate::hardware::housekeeping::{Housekeeping, ResetCause, is_vdda_credible};
 use crate::hardware::lamps::Lamps as LampWires;
 use crate::hardware::sampling::{Acquisition, Block, Gap};
+use crate::hardware::serial;
 use crate::hardware::telemetry::Telemetry;
+use crate::record::Record;
 
 include!(concat!(env!("OUT_DIR"), "/motor.rs"));
 
@@ -32,15 +36,20 @@ const HOUSEKEEPING_BLOCKS: u32 = 312;
 /// Half of a 1 Hz blink, in blocks of 3.2 ms.
 const BLINK_BLOCKS: u32 = 156;
 
+/// 9 KiB that are never moved: the stack has not the room.
+static CAPTURE: ConstStaticCell<Capture> = ConstStaticCell::new(Capture::new());
+
 /// Starts up; nothing comes back from here.
 #[embassy_executor::main]
-async fn main(_spawner: Spawner) -> ! {
+async fn main(spawner: Spawner) -> ! {
     let cause = ResetCause::take();
     let board = Board::new(embassy_stm32::init(clocks()));
     let telemetry = Telemetry::start();
+    let capture = CAPTURE.take();
     defmt::info!("drive-monitor: {=str}, reset: {}", NAME, cause);
     let mut watchdog = IndependentWatchdog::new(board.watchdog, WATCHDOG);
     watchdog.unleash();
+    serial::start(spawner, board.lines);
     let mut lamps = board.lamps;
     test_lamps(&mut lamps, &mut watchdog).await;
     let mut panel = Panel {
@@ -49,7 +58,7 @@ async fn main(_spawner: Spawner) -> ! {
         button: board.button,
         press: Button::default(),
         housekeeping: Housekeeping::new(board.housekeeping),
-        telemetry,
+        record: Record::new(telemetry, cause, capture),
         // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
         commissioning: Commissioning::new(
             black_box(&IMAGE),
@@ -58,12 +67,12 @@ async fn main(_spawner: Spawner) -> ! {
         ),
         display: Display::default(),
         instrument_faulty: false,
-        vdda_millivolt: 0,
         blocks: 0,
     };
     panel.look_after_supply();
-    match panel.commissioning.monitor() {
-        Some(monitor) => run(monitor, panel, board.sources).await,
+    let mut monitor = panel.commissioning.monitor();
+    match &mut monitor {
+        Some(monitor) => run(monitor, &mut panel, board.sources).await,
         None => panel.refuse().await,
     }
 }
@@ -81,8 +90,8 @@ async fn test_lamps(wires: &mut LampWires, watchdog: &mut IndependentWatchdog<'s
 
 /// Samples to lamps. Every gap in the samples ends in a fresh acquisition, and every calibration in a fresh monitor.
 async fn run(
-    mut monitor: Monitor,
-    mut panel: Panel,
+    monitor: &mut Monitor,
+    panel: &mut Panel,
     mut sources: crate::hardware::sampling::Sources,
 ) -> ! {
     let mut state = MonitorState::default();
@@ -93,19 +102,24 @@ async fn run(
     loop {
         let mut acquisition = Acquisition::start(&mut sources);
         let pause = watch(
-            &monitor,
+            monitor,
             &mut state,
             &mut acquisition,
-            &mut panel,
+            panel,
             &mut lamps,
         )
         .await;
         drop(acquisition);
         match pause {
-            Pause::Gap(gap) => defmt::warn!("samples are missing: {}", gap),
+            Pause::Gap(gap) => {
+                defmt::warn!("samples are missing: {}", gap);
+                panel.record.interrupt();
+            }
             Pause::Learnt(calibration) => {
                 panel.commissioning.store(&calibration);
-                monitor = panel.commissioning.monitor().unwrap_or(monitor);
+                if let Some(calibrated) = panel.commissioning.monitor() {
+                    *monitor = calibrated;
+                }
             }
         }
         state.resume_after_gap();
@@ -136,11 +150,12 @@ async fn watch(
         {
             *lamps = report.lamps;
             panel.display.observe(lamps);
-            panel.telemetry.send(&report, panel.vdda_millivolt as u16);
+            panel.record.tell(&report, monitor, &panel.commissioning);
             if let Some(calibration) = panel.commissioning.observe(&report, monitor) {
                 return Pause::Learnt(calibration);
             }
         }
+        panel.record.keep(block.samples());
         panel.after_block(lamps);
     }
 }
@@ -164,11 +179,10 @@ struct Panel {
     button: Input<'static>,
     press: Button,
     housekeeping: Housekeeping,
-    telemetry: Telemetry,
+    record: Record,
     commissioning: Commissioning,
     display: Display,
     instrument_faulty: bool,
-    vdda_millivolt: u32,
     blocks: u32,
 }
 
@@ -181,6 +195,7 @@ impl Panel {
             self.look_after_supply();
         }
         self.obey_button();
+        self.obey_master();
         let bright = (self.blocks / BLINK_BLOCKS).is_multiple_of(2);
         let lamps = self.with_instrument(&self.commissioning.overlay(lamps));
         self.wires.set(self.display.levels(&lamps, bright));
@@ -188,10 +203,7 @@ impl Panel {
 
     fn obey_button(&mut self) {
         match self.press.look(self.button.is_high()) {
-            Some(Press::Short) => {
-                self.display.acknowledge();
-                self.commissioning.acknowledge();
-            }
+            Some(Press::Short) => self.acknowledge(),
             Some(Press::Long) => self.display.set_latched(!self.display.is_latched()),
             Some(Press::VeryLong) => {
                 // On the way here the press was a long one; the lamp mode stays what it was.
@@ -200,6 +212,20 @@ impl Panel {
             }
             None => {}
         }
+    }
+
+    fn obey_master(&mut self) {
+        match serial::take_command() {
+            Some(Command::Acknowledge) => self.acknowledge(),
+            Some(Command::Learn) => self.commissioning.begin(),
+            None => {}
+        }
+    }
+
+    fn acknowledge(&mut self) {
+        self.display.acknowledge();
+        self.commissioning.acknowledge();
+        self.record.acknowledge();
     }
 
     /// A board that cannot measure says so, whatever its numbers say about the motor.
@@ -221,11 +247,12 @@ impl Panel {
             defmt::warn!("VDDA {=u32} mV", millivolt);
         }
         self.instrument_faulty = faulty;
-        self.vdda_millivolt = millivolt;
+        let degc = self.housekeeping.temperature_degc(millivolt);
+        self.record.note_chip(millivolt as u16, degc);
     }
 
     /// Nothing is measured with constants that do not hold: SENSOR and FAULT light, RUN stays dark.
-    async fn refuse(mut self) -> ! {
+    async fn refuse(&mut self) -> ! {
         defmt::error!("the motor constants in flash are corrupted: flash the board again");
         loop {
             self.instrument_faulty = true;

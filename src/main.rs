@@ -7,6 +7,8 @@ mod commissioning;
 mod firmware;
 #[cfg(target_os = "none")]
 mod hardware;
+#[cfg(target_os = "none")]
+mod record;
 
 #[cfg(not(target_os = "none"))]
 fn main() {

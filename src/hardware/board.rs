@@ -16,6 +16,10 @@
 //! | PC9  | lamp LINE (white) | high is on |
 //! | PC4  | lamp LOAD (yellow) | high is on |
 //! | PC5  | lamp FAULT (red) | high is on |
+//! | PA2  | frames to the virtual COM port | LPUART1, 115200 8N1 |
+//! | PA9  | RS-485 data to the transceiver (DI) | USART1, 19200 8E1 |
+//! | PA10 | RS-485 data from the transceiver (RO) | USART1 |
+//! | PA12 | RS-485 driver enable (DE and /RE) | USART1, high while sending |
 //! | PC13 | button B1 of the NUCLEO | high is pressed |
 
 use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
@@ -27,6 +31,7 @@ use embassy_stm32::{Config, Peri, Peripherals};
 use super::encoder::Encoder;
 use super::lamps::Lamps;
 use super::sampling::Sources;
+use super::serial::Lines;
 
 /// The crystal X3 of the NUCLEO. The internal oscillator is 1 % off, and so would be every measured
 /// speed and frequency; residual thresholds lie at 0.3 %.
@@ -44,6 +49,8 @@ pub struct Board {
     pub housekeeping: Peri<'static, ADC5>,
     /// Flash with the calibration.
     pub flash: Peri<'static, FLASH>,
+    /// Modbus and frames.
+    pub lines: Lines,
     /// Watchdog.
     pub watchdog: Peri<'static, IWDG>,
 }
@@ -96,6 +103,10 @@ impl Board {
             button: Input::new(p.PC13, Pull::None),
             housekeeping: p.ADC5,
             flash: p.FLASH,
+            lines: Lines {
+                modbus: (p.USART1, p.PA10, p.PA9, p.PA12),
+                frames: (p.LPUART1, p.PA2, p.DMA1_CH3),
+            },
             watchdog: p.IWDG,
         }
     }

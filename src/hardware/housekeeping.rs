@@ -1,7 +1,7 @@
-//! The chip's own health: why it was reset, and its analogue reference.
+//! The chip's own health: why it was reset, its analogue reference, its temperature.
 
 use embassy_stm32::Peri;
-use embassy_stm32::adc::{Adc, AdcConfig, SampleTime, VREF_CALIB_MV, VrefInt};
+use embassy_stm32::adc::{Adc, AdcConfig, SampleTime, Temperature, VREF_CALIB_MV, VrefInt};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::ADC5;
 
@@ -10,11 +10,17 @@ const NOMINAL_VDDA: u32 = 3_300;
 /// Per mille; the NUCLEO's regulator and the factory's reference value together stay within 2 %.
 const VDDA_TOLERANCE: u32 = 30;
 
-/// Why the program started.
+/// Codes of the temperature sensor at two temperatures, degrees Celsius, which the factory leaves in the chip (3.0 V).
+const TEMPERATURE_CALIBRATION: [(*const u16, f32); 2] = [
+    (0x1FFF_75A8 as *const u16, 30.0),
+    (0x1FFF_75CA as *const u16, 130.0),
+];
+
+/// Why the program started. The numbers are those of the Modbus register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum ResetCause {
     /// Power came (back): the chip cannot tell a brown-out from a first power-up.
-    PowerOrBrownOut,
+    PowerOrBrownOut = 1,
     /// The watchdog: no good block came in time.
     Watchdog,
     /// The program itself, after a panic.
@@ -45,6 +51,8 @@ impl ResetCause {
 pub struct Housekeeping {
     adc: Adc<'static, ADC5>,
     reference: VrefInt,
+    temperature: Temperature,
+    calibration: [(f32, f32); 2],
 }
 
 impl Housekeeping {
@@ -52,7 +60,24 @@ impl Housekeeping {
     pub fn new(adc: Peri<'static, ADC5>) -> Self {
         let adc = Adc::new(adc, AdcConfig::default());
         let reference = adc.enable_vrefint();
-        Housekeeping { adc, reference }
+        let temperature = adc.enable_temperature();
+        Housekeeping {
+            adc,
+            reference,
+            temperature,
+            calibration: TEMPERATURE_CALIBRATION.map(|(address, degc)| (factory_code(address), degc)),
+        }
+    }
+
+    /// Temperature of the chip, degrees Celsius, with converters supplied by `vdda_millivolt`.
+    pub fn temperature_degc(&mut self, vdda_millivolt: u32) -> f32 {
+        // 247.5 cycles are 5.8 us; the sensor wants at least 5.
+        let code = self
+            .adc
+            .blocking_read(&mut self.temperature, SampleTime::CYCLES247_5);
+        let at_calibration = f32::from(code) * vdda_millivolt as f32 / VREF_CALIB_MV as f32;
+        let [(cold, cold_degc), (hot, hot_degc)] = self.calibration;
+        cold_degc + (at_calibration - cold) * (hot_degc - cold_degc) / (hot - cold)
     }
 
     /// Supply of the converters, mV; 0 when the reference shows nothing.
@@ -66,6 +91,13 @@ impl Housekeeping {
             .checked_div(u32::from(measured))
             .unwrap_or(0)
     }
+}
+
+/// Reads a constant that the factory wrote beside the flash.
+#[allow(unsafe_code)]
+fn factory_code(address: *const u16) -> f32 {
+    // Safety: both addresses are readable, aligned and never change on every chip of this family.
+    f32::from(unsafe { address.read_volatile() })
 }
 
 /// Whether codes can be taken for volts and amperes at this converter supply, mV.

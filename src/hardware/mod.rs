@@ -7,4 +7,5 @@ pub mod housekeeping;
 pub mod lamps;
 mod ring;
 pub mod sampling;
+pub mod serial;
 pub mod telemetry;

@@ -1,9 +1,12 @@
-//! What the board says: a log for people and a frame per window for programs, over the debugger's memory channels.
+//! What the board says: a log for people and a frame per window for programs, over the debugger's memory channels; the
+//! frames over the serial line too.
 
-use board::{Frame, MAX_FRAME_BYTES};
+use board::{CaptureChunk, Frame, MAX_FRAME_BYTES};
 use monitor::Report;
 use rtt_target::ChannelMode::NoBlockSkip;
 use rtt_target::{UpChannel, rtt_init, set_defmt_channel};
+
+use super::serial;
 
 /// The channel of the frames. Neither it nor the log ever blocks: what nobody reads is dropped.
 pub struct Telemetry {
@@ -17,7 +20,7 @@ impl Telemetry {
         let channels = rtt_init! {
             up: {
                 0: { size: 512, mode: NoBlockSkip, name: "defmt" }
-                1: { size: 2048, mode: NoBlockSkip, name: "frames" }
+                1: { size: 1024, mode: NoBlockSkip, name: "frames" }
             }
         };
         set_defmt_channel(channels.up.0);
@@ -31,6 +34,17 @@ impl Telemetry {
     pub fn send(&mut self, report: &Report, vdda_millivolt: u16) {
         let frame = Frame::new(report, self.sequence, vdda_millivolt);
         self.sequence = self.sequence.wrapping_add(1);
-        self.frames.write(frame.encode(&mut [0; MAX_FRAME_BYTES]));
+        self.send_bytes(frame.encode(&mut [0; MAX_FRAME_BYTES]));
+    }
+
+    /// Sends a piece of the samples around an alarm.
+    pub fn send_chunk(&mut self, chunk: &CaptureChunk) {
+        self.send_bytes(chunk.encode(&mut [0; MAX_FRAME_BYTES]));
+    }
+
+    #[inline(never)]
+    fn send_bytes(&mut self, bytes: &[u8]) {
+        self.frames.write(bytes);
+        serial::send(bytes);
     }
 }

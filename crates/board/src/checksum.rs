@@ -1,9 +1,9 @@
 //! The one checksum of everything stored: CRC-32 as in Ethernet and zip.
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
-/// Without a table: 1 KiB of flash is worth more than the microseconds at start-up.
-const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+/// With a table of 1 KiB: bit by bit, the frame of every window cost 17 instructions per sample.
+static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
 /// CRC-32 (ISO-HDLC) of the words' little-endian bytes.
 pub fn crc32_words(words: &[u32]) -> u32 {

@@ -1,18 +1,14 @@
-//! One window's result on its way to a computer: postcard, CRC-32, COBS, a zero byte behind.
-//!
-//! COBS keeps zeros out of a frame, so that a reader that comes in the middle waits for the next zero.
+//! One window's result on its way to a computer.
 
 use monitor::{Lamp, NotJudged, RESIDUALS, Report};
 use serde::{Deserialize, Serialize};
 
-use crate::checksum::crc32;
 use crate::display::LAMPS;
+use crate::framing::{self, MAX_FRAME_BYTES};
+use crate::message::Message;
 
 /// What the fields mean; a reader refuses every other number.
-const SCHEMA: u8 = 1;
-/// Bytes of the longest frame, zero byte included: 62 of content at most, 4 of checksum, 2 of COBS and end.
-pub const MAX_FRAME_BYTES: usize = 96;
-const CHECKSUM_BYTES: usize = 4;
+pub(crate) const SCHEMA: u8 = 1;
 
 /// What the board says about one window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,6 +67,7 @@ impl core::error::Error for FrameError {}
 
 impl Frame {
     /// What a report says.
+    #[inline(never)]
     pub fn new(report: &Report, sequence: u32, vdda_millivolt: u16) -> Self {
         let window = report.window.unwrap_or_default();
         Frame {
@@ -98,28 +95,9 @@ impl Frame {
     }
 
     /// The bytes to send, zero byte included; empty if they did not fit, which a test rules out.
+    #[inline(never)]
     pub fn encode<'a>(&self, buffer: &'a mut [u8; MAX_FRAME_BYTES]) -> &'a [u8] {
-        let mut plain = [0; MAX_FRAME_BYTES - 2];
-        let Some(length) = self.write_plain(&mut plain) else {
-            return &[];
-        };
-        let content = plain.get(..length).unwrap_or(&[]);
-        match cobs::try_encode(content, &mut buffer[..MAX_FRAME_BYTES - 1]) {
-            Ok(encoded) => {
-                let end = encoded.min(MAX_FRAME_BYTES - 1);
-                buffer[end] = 0;
-                buffer.get(..=end).unwrap_or(&[])
-            }
-            Err(_) => &[],
-        }
-    }
-
-    fn write_plain(&self, plain: &mut [u8]) -> Option<usize> {
-        let used = postcard::to_slice(self, plain).ok()?.len();
-        let checksum = crc32(plain.get(..used)?).to_le_bytes();
-        let end = used + CHECKSUM_BYTES;
-        plain.get_mut(used..end)?.copy_from_slice(&checksum);
-        Some(end)
+        framing::encode(self, buffer)
     }
 
     /// Reads one frame; the zero byte behind it may be there or not.
@@ -127,20 +105,9 @@ impl Frame {
     /// # Errors
     /// Anything but a whole, undamaged frame of this schema.
     pub fn decode(bytes: &[u8]) -> Result<Self, FrameError> {
-        let bytes = bytes.strip_suffix(&[0]).unwrap_or(bytes);
-        let mut plain = [0; MAX_FRAME_BYTES];
-        let length = cobs::decode(bytes, &mut plain).map_err(|_| FrameError::Framing)?;
-        let plain = plain.get(..length).ok_or(FrameError::Framing)?;
-        let (content, checksum) = plain
-            .split_last_chunk::<CHECKSUM_BYTES>()
-            .ok_or(FrameError::Framing)?;
-        if crc32(content) != u32::from_le_bytes(*checksum) {
-            return Err(FrameError::Checksum);
-        }
-        match content.first() {
-            Some(&SCHEMA) => postcard::from_bytes(content).map_err(|_| FrameError::Content),
-            Some(&other) => Err(FrameError::Schema(other)),
-            None => Err(FrameError::Framing),
+        match Message::decode(bytes)? {
+            Message::Window(frame) => Ok(frame),
+            Message::Capture(_) => Err(FrameError::Content),
         }
     }
 }

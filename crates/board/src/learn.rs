@@ -1,6 +1,6 @@
 //! Learning from a healthy motor: offsets of the channels, statistics of the residuals, and thresholds that follow from them.
 
-use monitor::{CHANNELS, ConfigError, Lamp, MonitorConfig, NotJudged, RESIDUALS, Report};
+use monitor::{CHANNELS, Lamp, MonitorConfig, NotJudged, RESIDUALS, Report};
 
 use crate::calibration::{COVARIANCES, Calibration, ChannelTrim, Healthy};
 
@@ -263,21 +263,6 @@ fn trim(scale: &monitor::ChannelScale, shown: [f32; 3]) -> Result<ChannelTrim, R
         }
     }
     Ok(trim)
-}
-
-/// The configuration with a calibration in it, checked like any other.
-///
-/// # Errors
-/// A value outside its range.
-#[inline(never)]
-pub fn calibrated(
-    config: &MonitorConfig,
-    calibration: &Calibration,
-) -> Result<MonitorConfig, ConfigError> {
-    let mut calibrated = *config;
-    calibration.apply(&mut calibrated);
-    calibrated.validate()?;
-    Ok(calibrated)
 }
 
 #[cfg(test)]

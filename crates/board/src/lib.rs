@@ -3,11 +3,14 @@
 
 mod button;
 mod calibration;
+mod capture;
 mod checksum;
 mod display;
 mod frame;
+mod framing;
 mod image;
 mod learn;
+mod message;
 pub mod modbus;
 
 pub use button::{Button, Press};
@@ -15,8 +18,11 @@ pub use calibration::{
     COVARIANCES, Calibration, CalibrationSource, ChannelTrim, Healthy, Loaded, PAGE_BYTES, PAGES,
     RECORD_BYTES, Store, StoreError,
 };
+pub use capture::{CAPTURE_EVERY, CAPTURE_INSTANTS, Capture, CaptureChunk, CaptureState};
 pub use checksum::{crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, levels};
-pub use frame::{Frame, FrameError, MAX_FRAME_BYTES};
+pub use frame::{Frame, FrameError};
+pub use framing::MAX_FRAME_BYTES;
 pub use image::{EffectTerms, IMAGE_WORDS, ImageError, MotorImage};
-pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal, calibrated};
+pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal};
+pub use message::Message;

@@ -8,7 +8,8 @@ use crate::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE};
 use crate::elf::Firmware;
 use crate::gpio::Pin;
 use crate::log::Log;
-use crate::machine::{Cause, Inputs, Machine, Tally};
+use crate::machine::{Cause, Inputs, Machine, Port, Tally};
+use crate::usart::{Quality, Sent};
 
 /// Why the board cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -260,6 +261,23 @@ impl VirtualBoard {
     /// The emulator refuses.
     pub fn stack_used(&mut self) -> Result<u32, BoardError> {
         Ok(self.cpu.word(FLASH)? - self.cpu.lowest_stack.max(RAM))
+    }
+
+    /// Sets the temperature of the chip, degrees Celsius.
+    pub fn set_temperature(&mut self, degc: f64) {
+        self.cpu.machine().temperature_degc = degc;
+    }
+
+    /// Puts bytes on the wire towards a port, from now on and at the speed that it is set to.
+    pub fn deliver(&mut self, port: Port, bytes: &[(u8, Quality)]) {
+        let machine = self.cpu.machine();
+        let now = machine.now;
+        machine.port(port).deliver(now, bytes);
+    }
+
+    /// Takes what the program has sent over a port.
+    pub fn take_sent(&mut self, port: Port) -> Vec<Sent> {
+        std::mem::take(&mut self.cpu.machine().port(port).sent)
     }
 
     /// Lets DMA answer no request, as when the bus is taken: the converter overruns.

@@ -1,7 +1,7 @@
 //! The address map: which peripheral answers where, and that its clock runs.
 
-use crate::machine::{Machine, VREFINT_CAL};
-use crate::rcc::{AHB1ENR, AHB2ENR, APB1ENR1, APB2ENR};
+use crate::machine::{Machine, TS_CAL_30, TS_CAL_130, VREFINT_CAL};
+use crate::rcc::{AHB1ENR, AHB2ENR, APB1ENR1, APB1ENR2, APB2ENR};
 use crate::registers::Unmodelled;
 
 #[derive(Clone, Copy, Debug)]
@@ -9,6 +9,8 @@ enum Block {
     Tim3,
     Tim4,
     Tim15,
+    Usart1,
+    Lpuart1,
     Pwr,
     Iwdg,
     Syscfg,
@@ -34,8 +36,10 @@ const MAP: &[(Block, u32, u32, Option<Enable>)] = &[
     (Block::Tim4, 0x4000_0800, 0x400, Some((APB1ENR1, 2))),
     (Block::Iwdg, 0x4000_3000, 0x400, None),
     (Block::Pwr, 0x4000_7000, 0x400, Some((APB1ENR1, 28))),
+    (Block::Lpuart1, 0x4000_8000, 0x400, Some((APB1ENR2, 0))),
     (Block::Syscfg, 0x4001_0000, 0x30, Some((APB2ENR, 0))),
     (Block::Exti, 0x4001_0400, 0x400, None),
+    (Block::Usart1, 0x4001_3800, 0x400, Some((APB2ENR, 14))),
     (Block::Tim15, 0x4001_4000, 0x400, Some((APB2ENR, 16))),
     (Block::Dma1, 0x4002_0000, 0x400, Some((AHB1ENR, 0))),
     (Block::Dmamux, 0x4002_0800, 0x400, Some((AHB1ENR, 2))),
@@ -57,8 +61,11 @@ const MAP: &[(Block, u32, u32, Option<Enable>)] = &[
 ];
 
 /// Factory constants live in a page of read-only memory.
-pub(crate) const VREFINT_CAL_ADDRESS: u32 = 0x1FFF_75AA;
-pub(crate) const FACTORY_VALUE: u16 = VREFINT_CAL;
+pub(crate) const FACTORY_VALUES: [(u32, u16); 3] = [
+    (0x1FFF_75AA, VREFINT_CAL),
+    (0x1FFF_75A8, TS_CAL_30),
+    (0x1FFF_75CA, TS_CAL_130),
+];
 
 impl Machine {
     fn locate(&self, address: u32) -> Result<(Block, u32), Unmodelled> {
@@ -87,6 +94,8 @@ impl Machine {
             Block::Tim3 => self.tim3.read(offset, now),
             Block::Tim4 => self.tim4.read(offset, now),
             Block::Tim15 => self.tim15.read(offset, now),
+            Block::Usart1 => self.usart1.read(offset),
+            Block::Lpuart1 => self.lpuart1.read(offset),
             Block::Pwr => self.pwr.read(offset),
             Block::Iwdg => self.iwdg.read(offset),
             Block::Syscfg => self.syscfg.read(offset),
@@ -112,6 +121,8 @@ impl Machine {
             Block::Tim3 => self.tim3.write(offset, value, now)?,
             Block::Tim4 => self.tim4.write(offset, value, now)?,
             Block::Tim15 => self.tim15.write(offset, value, now)?,
+            Block::Usart1 => self.usart1.write(offset, value, now)?,
+            Block::Lpuart1 => self.lpuart1.write(offset, value, now)?,
             Block::Pwr => self.pwr.write(offset, value)?,
             Block::Iwdg => self.iwdg.write(offset, value, now)?,
             Block::Syscfg => self.syscfg.write(offset, value)?,
@@ -157,7 +168,15 @@ impl Machine {
                     self.tim4 = crate::timer::Timer::new();
                 }
             }
-            0x40 if is_held(16) => self.tim15 = crate::timer::Timer::new(),
+            0x3C if is_held(0) => self.lpuart1.reset(),
+            0x40 => {
+                if is_held(14) {
+                    self.usart1.reset();
+                }
+                if is_held(16) {
+                    self.tim15 = crate::timer::Timer::new();
+                }
+            }
             _ => {}
         }
     }

@@ -6,7 +6,7 @@
 use unicorn_engine::{Arch, Mode, Prot, RegisterARM as R, Unicorn, uc_error};
 
 use crate::board::BoardError;
-use crate::bus::{FACTORY_VALUE, VREFINT_CAL_ADDRESS};
+use crate::bus::FACTORY_VALUES;
 use crate::flash::Step;
 use crate::machine::Machine;
 
@@ -19,6 +19,8 @@ const CALIBRATION: u32 = FLASH + FLASH_SIZE - 2 * crate::flash::PAGE;
 const CALIBRATION_SIZE: u64 = 2 * crate::flash::PAGE as u64;
 pub(crate) const RAM: u32 = 0x2000_0000;
 pub(crate) const RAM_SIZE: u32 = 128 * 1024;
+/// Page of the constants that the factory leaves.
+const FACTORY: u64 = 0x1FFF_7000;
 /// Where a return from an exception "jumps" to; a page of NOPs, so that the jump itself succeeds.
 const RETURNS: u64 = 0xFFFF_F000;
 const WFE: u16 = 0xBF20;
@@ -145,7 +147,26 @@ impl Cpu {
             self.core
                 .mem_write(u64::from(address), &value.to_le_bytes())?;
         }
-        Ok(())
+        self.feed()
+    }
+
+    /// Carries what DMA brings from memory to ports.
+    fn feed(&mut self) -> Result<(), BoardError> {
+        loop {
+            let transfer = match self.machine().next_feed() {
+                Ok(Some(transfer)) => transfer,
+                Ok(None) => return Ok(()),
+                Err(unmodelled) => return Err(self.stopped(unmodelled.to_string())),
+            };
+            let mut byte = [0];
+            self.core.mem_read(u64::from(transfer.memory), &mut byte)?;
+            let written = self
+                .machine()
+                .write(transfer.peripheral, u32::from(byte[0]));
+            if let Err(unmodelled) = written {
+                return Err(self.stopped(unmodelled.to_string()));
+            }
+        }
     }
 
     /// Takes the non-maskable interrupt of the flash, or a waiting interrupt unless PRIMASK forbids it.
@@ -291,9 +312,10 @@ fn map_memory(core: &mut Core) -> Result<(), uc_error> {
     core.mem_map(u64::from(RAM), u64::from(RAM_SIZE), Prot::ALL)?;
     let erased = vec![0xFF; FLASH_SIZE as usize];
     core.mem_write(u64::from(FLASH), &erased)?;
-    let factory = u64::from(VREFINT_CAL_ADDRESS) & !0xFFF;
-    core.mem_map(factory, 0x1000, Prot::READ)?;
-    core.mem_write(u64::from(VREFINT_CAL_ADDRESS), &FACTORY_VALUE.to_le_bytes())?;
+    core.mem_map(FACTORY, 0x1000, Prot::READ)?;
+    for (address, value) in FACTORY_VALUES {
+        core.mem_write(u64::from(address), &value.to_le_bytes())?;
+    }
     core.mem_map(RETURNS, 0x1000, Prot::READ | Prot::EXEC)?;
     let nops: Vec<u8> = NOP.to_le_bytes().repeat(0x800);
     core.mem_write(RETURNS, &nops)

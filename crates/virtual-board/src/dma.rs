@@ -1,4 +1,5 @@
-//! DMA1 and its request multiplexer: peripheral to memory, half-words, circular, half and complete flags.
+//! DMA1 and its request multiplexer: half-words from peripherals to memory in circles, bytes from memory to peripherals,
+//! half and complete flags.
 
 use crate::registers::{Registers, Unmodelled};
 
@@ -8,8 +9,10 @@ const COMPLETE_IE: u32 = 2;
 const HALF_IE: u32 = 4;
 const ERROR_IE: u32 = 8;
 const CIRCULAR: u32 = 1 << 5;
-/// Peripheral to memory, memory increments, 16 bits on both sides; enable, interrupts and priority are free.
-const SUPPORTED: u32 = CIRCULAR | 1 << 7 | 1 << 8 | 1 << 10;
+const TO_PERIPHERAL: u32 = 1 << 4;
+/// Memory increments. Peripheral to memory: 16 bits on both sides, in a circle. The other way: 8 bits, once. Enable,
+/// interrupts and priority are free.
+const SUPPORTED: [u32; 2] = [CIRCULAR | 1 << 7 | 1 << 8 | 1 << 10, TO_PERIPHERAL | 1 << 7];
 const FREE: u32 = ENABLE | COMPLETE_IE | HALF_IE | ERROR_IE | 3 << 12;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -70,7 +73,7 @@ impl Dma {
         if channel.control & ENABLE == 0 || channel.remaining == 0 {
             return Ok(None);
         }
-        if channel.control & !FREE != SUPPORTED {
+        if !SUPPORTED.contains(&(channel.control & !FREE)) {
             let access = format!("transfer with CCR {:#x}", channel.control);
             return Err(unmodelled(access, index as u32));
         }
@@ -78,7 +81,13 @@ impl Dma {
         channel.remaining -= 1;
         let transfer = Transfer {
             peripheral: channel.peripheral,
-            memory: channel.memory + 2 * done,
+            memory: channel.memory
+                + done
+                    * if channel.control & TO_PERIPHERAL == 0 {
+                        2
+                    } else {
+                        1
+                    },
         };
         if channel.remaining == channel.reload / 2 {
             self.flags |= 0b0101 << (4 * index);
@@ -89,6 +98,16 @@ impl Dma {
             self.flags |= 0b0011 << (4 * index);
         }
         Ok(Some(transfer))
+    }
+
+    /// Whether an enabled channel with something left listens to a request line.
+    pub fn listens(&self, line: u32) -> bool {
+        (0..CHANNELS).any(|k| {
+            let channel = &self.channels[k];
+            self.multiplexer.get(4 * k as u32) & 0x7F == line
+                && channel.control & ENABLE != 0
+                && channel.remaining > 0
+        })
     }
 
     /// Whether the interrupt line of channel `index` is asserted.

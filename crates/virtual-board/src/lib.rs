@@ -20,10 +20,12 @@ mod rcc;
 mod registers;
 mod rtt;
 mod timer;
+mod usart;
 
 pub use board::{BoardError, LAMPS, Snapshot, VirtualBoard};
 pub use gpio::Pin;
-pub use machine::{Cause, Inputs, Tally};
+pub use machine::{Cause, Inputs, Port, Tally};
+pub use usart::{Quality, Sent};
 
 /// Core cycles per second.
 pub const CORE_HZ: u64 = 170_000_000;

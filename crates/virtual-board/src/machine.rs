@@ -8,12 +8,13 @@ use monitor::RawSample;
 use crate::adc::Adc;
 use crate::dma::{Dma, Transfer};
 use crate::flash::Flash;
-use crate::gpio::Port;
+use crate::gpio::Port as Gpio;
 use crate::iwdg::Iwdg;
 use crate::nvic::Nvic;
 use crate::rcc::Rcc;
 use crate::registers::{Registers, Unmodelled};
 use crate::timer::Timer;
+use crate::usart::Usart;
 
 /// What the sensors deliver, sampling instant by sampling instant.
 pub trait Inputs {
@@ -44,6 +45,15 @@ impl Cause {
     }
 }
 
+/// A serial port, as docs/wiring.md names them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Port {
+    /// RS-485.
+    Modbus,
+    /// The virtual COM port.
+    Frames,
+}
+
 /// What was counted since power-up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -63,13 +73,20 @@ pub struct Tally {
 
 pub(crate) const IRQ_DMA1_CH1: usize = 11;
 pub(crate) const IRQ_TIM15: usize = 24;
+const IRQ_USART1: usize = 37;
+const IRQ_LPUART1: usize = 91;
 /// Request lines of the multiplexer (RM0440, table of DMAMUX inputs).
 const LINE_ADC1: u32 = 5;
 const LINE_TIM4_UP: u32 = 71;
+const LINE_LPUART1_TX: u32 = 35;
 /// Cycles between sampling instants of the simulated sensors.
 const INSTANT: u64 = crate::CORE_HZ / 10_000;
 /// ADC5's channel of the reference.
 const VREFINT_CHANNEL: u32 = 18;
+/// ADC5's channel of the temperature sensor, and its codes at 30 and 130 degrees Celsius (3.0 V).
+const TEMPERATURE_CHANNEL: u32 = 4;
+pub(crate) const TS_CAL_30: u16 = 1037;
+pub(crate) const TS_CAL_130: u16 = 1379;
 /// Factory value of the reference: its code at 3.0 V.
 pub(crate) const VREFINT_CAL: u16 = 1655;
 
@@ -77,10 +94,12 @@ pub(crate) const VREFINT_CAL: u16 = 1655;
 pub(crate) struct Machine {
     pub now: u64,
     pub rcc: Rcc,
-    pub ports: [Port; 7],
+    pub ports: [Gpio; 7],
     pub tim3: Timer,
     pub tim4: Timer,
     pub tim15: Timer,
+    pub usart1: Usart,
+    pub lpuart1: Usart,
     pub adc1: Adc,
     pub adc5: Adc,
     pub common: [Registers; 2],
@@ -102,6 +121,8 @@ pub(crate) struct Machine {
     pub taken: Option<Vec<RawSample>>,
     /// Converter supply, mV.
     pub vdda_millivolt: u32,
+    /// Temperature of the chip, degrees Celsius.
+    pub temperature_degc: f64,
     pub tally: Tally,
     pub event_register: bool,
     pub failure: Option<String>,
@@ -142,10 +163,12 @@ impl Machine {
         Machine {
             now: 0,
             rcc: Rcc::new(Cause::Power, 0),
-            ports: std::array::from_fn(|_| Port::new()),
+            ports: std::array::from_fn(|_| Gpio::new()),
             tim3: Timer::new(),
             tim4: Timer::new(),
             tim15: Timer::new(),
+            usart1: Usart::new(false),
+            lpuart1: Usart::new(true),
             adc1: Adc::new(),
             adc5: Adc::new(),
             common: [0, 1].map(|_| Registers::new("ADC common", ADC_COMMON)),
@@ -163,6 +186,7 @@ impl Machine {
             first_instant: None,
             taken: Some(Vec::new()),
             vdda_millivolt: 3_300,
+            temperature_degc: 40.0,
             tally: Tally::default(),
             event_register: false,
             failure: None,
@@ -182,10 +206,12 @@ impl Machine {
             self.rcc.flags()
         };
         self.rcc = Rcc::new(cause, flags);
-        self.ports.iter_mut().for_each(Port::reset);
+        self.ports.iter_mut().for_each(Gpio::reset);
         for timer in [&mut self.tim3, &mut self.tim4, &mut self.tim15] {
             *timer = Timer::new();
         }
+        self.usart1.reset();
+        self.lpuart1.reset();
         self.adc1.reset();
         self.adc5.reset();
         self.dma = Dma::new();
@@ -210,6 +236,9 @@ impl Machine {
             self.adc5.next_event(),
             self.iwdg.deadline(),
             self.spurious.map(|(_, next)| next),
+            self.usart1.next_event(),
+            self.lpuart1.next_event(),
+            self.is_fed().then_some(self.now),
         ];
         events.into_iter().flatten().min().unwrap_or(u64::MAX)
     }
@@ -248,14 +277,14 @@ impl Machine {
         {
             self.serve(LINE_ADC1, &mut writes)?;
         }
-        let reference = self.reference_code();
-        self.adc5.advance(self.now, |channel| {
-            if channel == VREFINT_CHANNEL {
-                reference
-            } else {
-                0
-            }
+        let (reference, temperature) = (self.reference_code(), self.temperature_code());
+        self.adc5.advance(self.now, |channel| match channel {
+            VREFINT_CHANNEL => reference,
+            TEMPERATURE_CHANNEL => temperature,
+            _ => 0,
         });
+        self.usart1.advance(self.now);
+        self.lpuart1.advance(self.now);
         self.update_lines();
         Ok(writes)
     }
@@ -270,6 +299,34 @@ impl Machine {
     fn reference_code(&self) -> u16 {
         // The reference does not move; the scale does: code = cal * 3.0 V / VDDA.
         (u32::from(VREFINT_CAL) * 3_000 / self.vdda_millivolt) as u16
+    }
+
+    fn temperature_code(&self) -> u16 {
+        let slope = f64::from(TS_CAL_130 - TS_CAL_30) / 100.0;
+        let at_3_volt = f64::from(TS_CAL_30) + slope * (self.temperature_degc - 30.0);
+        (at_3_volt * 3_000.0 / f64::from(self.vdda_millivolt)).round() as u16
+    }
+
+    fn is_fed(&self) -> bool {
+        self.lpuart1.wants_byte() && self.dma.listens(LINE_LPUART1_TX) && !self.dma_blocked
+    }
+
+    /// What DMA carries from memory to a port next.
+    pub fn next_feed(&mut self) -> Result<Option<Transfer>, Unmodelled> {
+        if self.is_fed() {
+            self.dma.request(LINE_LPUART1_TX)
+        } else {
+            self.update_lines();
+            Ok(None)
+        }
+    }
+
+    /// A serial port.
+    pub fn port(&mut self, port: Port) -> &mut Usart {
+        match port {
+            Port::Modbus => &mut self.usart1,
+            Port::Frames => &mut self.lpuart1,
+        }
     }
 
     fn serve(&mut self, line: u32, writes: &mut Vec<(u32, u16)>) -> Result<(), Unmodelled> {
@@ -291,8 +348,13 @@ impl Machine {
                 self.nvic.pend(IRQ_DMA1_CH1 + channel);
             }
         }
-        if self.tim15.interrupt() {
-            self.nvic.pend(IRQ_TIM15);
+        let lines = [
+            (self.tim15.interrupt(), IRQ_TIM15),
+            (self.usart1.interrupt(), IRQ_USART1),
+            (self.lpuart1.interrupt(), IRQ_LPUART1),
+        ];
+        for (_, irq) in lines.iter().filter(|(asserted, _)| *asserted) {
+            self.nvic.pend(*irq);
         }
     }
 }

@@ -15,6 +15,8 @@ pub const AHB2ENR: u32 = 0x4C;
 /// See [`AHB1ENR`].
 pub const APB1ENR1: u32 = 0x58;
 /// See [`AHB1ENR`].
+pub const APB1ENR2: u32 = 0x5C;
+/// See [`AHB1ENR`].
 pub const APB2ENR: u32 = 0x60;
 const RESET: &[(u32, u32)] = &[
     (CR, 0x0000_0500),
@@ -33,7 +35,7 @@ const RESET: &[(u32, u32)] = &[
     (AHB2ENR, 0),
     (0x50, 0),
     (APB1ENR1, 0x400),
-    (0x5C, 0),
+    (APB1ENR2, 0),
     (APB2ENR, 0),
     (0x88, 0), // CCIPR
     (BDCR, 0),

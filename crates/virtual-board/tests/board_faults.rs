@@ -162,8 +162,10 @@ fn a_storm_of_encoder_edges_costs_neither_samples_nor_time() {
     let tally = board.tally();
     assert_eq!((tally.resets, tally.missed_triggers), (0, 0));
     assert_eq!(tally.conversions, quiet.conversions);
+    // The alarm's samples are handed over, which takes a frame more in each of 48 windows and three interrupts a frame;
+    // a single interrupt for each edge would be 48 million.
     assert!(
-        tally.exceptions <= quiet.exceptions + 2,
+        tally.exceptions <= quiet.exceptions + 150,
         "{tally:?} against {quiet:?}"
     );
 }

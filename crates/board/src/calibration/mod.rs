@@ -35,6 +35,12 @@ impl From<&ChannelScale> for ChannelTrim {
 }
 
 impl ChannelTrim {
+    /// Gains as far from 1 as `drivemon`'s motor files allow channel corrections to be, and offsets that are numbers.
+    fn is_sound(&self) -> bool {
+        self.offset.iter().all(|offset| offset.is_finite())
+            && self.gain.iter().all(|gain| (0.1..=10.0).contains(gain))
+    }
+
     fn apply(&self, scale: &mut ChannelScale) {
         scale.offset = Abc::from_array(self.offset);
         scale.gain = Abc::from_array(self.gain);
@@ -84,6 +90,19 @@ impl Calibration {
         self.current.apply(&mut config.converter.current);
         config.thresholds = self.thresholds;
     }
+
+    /// The same where every value is within its range; otherwise nothing changes and the answer is `false`.
+    #[inline(never)]
+    pub fn apply_checked(&self, config: &mut MonitorConfig) -> bool {
+        let before = *config;
+        self.apply(config);
+        let trims = [self.voltage, self.current];
+        let sound = trims.iter().all(ChannelTrim::is_sound) && config.validate().is_ok();
+        if !sound {
+            *config = before;
+        }
+        sound
+    }
 }
 
 /// Which values the board computes with. The numbers are those of the Modbus register.
@@ -130,6 +149,29 @@ pub(crate) mod tests {
                 mean: [f32::MIN; RESIDUALS],
                 covariance: [1.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 9.0, 0.0, 16.0],
             },
+        }
+    }
+
+    #[test]
+    fn values_beyond_their_ranges_change_nothing() {
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../motors/assumed-300w.toml"
+        );
+        let file = motor::motor_file::MotorFile::read(path).expect("a shipped motor file");
+        let factory = MonitorConfig::from_motor_file(&file, 1e-4);
+        let mut config = factory;
+        assert!(example(0).apply_checked(&mut config) && config != factory);
+        let breakages: [fn(&mut Calibration); 3] = [
+            |calibration| calibration.thresholds[2] = f32::NAN,
+            |calibration| calibration.voltage.gain[1] = 0.0,
+            |calibration| calibration.current.offset[0] = f32::INFINITY,
+        ];
+        for change in breakages {
+            let (mut config, mut calibration) = (factory, example(0));
+            change(&mut calibration);
+            assert!(!calibration.apply_checked(&mut config));
+            assert_eq!(config, factory);
         }
     }
 

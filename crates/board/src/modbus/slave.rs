@@ -273,6 +273,7 @@ impl Default for Collector {
 
 impl Collector {
     /// Takes bytes from the wire.
+    #[inline(never)]
     pub fn push(&mut self, bytes: &[u8]) {
         for byte in bytes {
             match self.bytes.get_mut(self.length) {

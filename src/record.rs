@@ -1,0 +1,76 @@
+//! What is kept and told about every window: frames, registers, and the samples around an alarm.
+
+use board::modbus::{BoardStatus, Status};
+use board::{CAPTURE_EVERY, Capture};
+use monitor::{Lamp, Monitor, RawSample, Report};
+
+use crate::commissioning::Commissioning;
+use crate::hardware::housekeeping::ResetCause;
+use crate::hardware::serial;
+use crate::hardware::telemetry::Telemetry;
+
+/// Frames, registers and capture.
+pub struct Record {
+    telemetry: Telemetry,
+    status: Status,
+    board: BoardStatus,
+    capture: &'static mut Capture,
+    was_lit: bool,
+}
+
+impl Record {
+    /// Nothing recorded yet.
+    pub fn new(telemetry: Telemetry, cause: ResetCause, capture: &'static mut Capture) -> Self {
+        Record {
+            telemetry,
+            status: Status::default(),
+            board: BoardStatus {
+                reset_cause: cause as u16,
+                ..BoardStatus::default()
+            },
+            capture,
+            was_lit: false,
+        }
+    }
+
+    /// Notes the chip's supply, mV, and temperature, degrees Celsius.
+    pub fn note_chip(&mut self, vdda_millivolt: u16, temperature_degc: f32) {
+        self.board.vdda_millivolt = vdda_millivolt;
+        self.board.temperature_degc = temperature_degc;
+    }
+
+    /// Takes a block's samples into the ring.
+    pub fn keep(&mut self, samples: impl Iterator<Item = RawSample>) {
+        samples
+            .step_by(CAPTURE_EVERY)
+            .for_each(|raw| self.capture.push(&raw));
+    }
+
+    /// Samples are missing.
+    pub fn interrupt(&mut self) {
+        self.capture.interrupt();
+    }
+
+    /// Waits for the next alarm.
+    pub fn acknowledge(&mut self) {
+        self.capture.arm();
+    }
+
+    /// Tells one window's result everywhere.
+    #[inline(never)]
+    pub fn tell(&mut self, report: &Report, monitor: &Monitor, commissioning: &Commissioning) {
+        let lit = report.lamps.fault == Lamp::On;
+        if lit && !self.was_lit {
+            self.capture.alarm();
+        }
+        self.was_lit = lit;
+        commissioning.describe(&mut self.board);
+        self.board.thresholds = monitor.config().thresholds;
+        self.board.capture = self.capture.state() as u16;
+        serial::publish(self.status.take(report, &self.board));
+        self.telemetry.send(report, self.board.vdda_millivolt);
+        if let Some(chunk) = self.capture.next_chunk(commissioning.motor()) {
+            self.telemetry.send_chunk(&chunk);
+        }
+    }
+}
