@@ -2,6 +2,7 @@
 
 pub mod cli;
 pub mod demo;
+pub mod live;
 pub mod motor_text;
 pub mod operating_points;
 pub mod overlay;

@@ -10,7 +10,7 @@ use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer};
 use embassy_stm32::{Peri, bind_interrupts, dma, pac, triggers};
 use embassy_time::{Duration, with_timeout};
-use monitor::RawBlock;
+use monitor::{RawBlock, RawSample};
 
 use super::encoder::{self, Encoder};
 use super::ring::{self, HalfFilled, Ring};
@@ -81,7 +81,19 @@ impl Block {
         }
     }
 
-    /// The instants.
+    /// The instants one by one.
+    pub fn samples(&self) -> impl Iterator<Item = RawSample> {
+        let (instants, _) = self.codes.as_chunks::<CHANNELS>();
+        instants.iter().zip(&self.counts).map(
+            |(&[v_a, i_a, v_b, i_b, v_c, i_c], &encoder_count)| RawSample {
+                voltage_codes: [v_a, v_b, v_c],
+                current_codes: [i_a, i_b, i_c],
+                encoder_count,
+            },
+        )
+    }
+
+    /// The instants as the core takes them.
     pub fn raw(&self) -> RawBlock<'_> {
         let (instants, _) = self.codes.as_chunks();
         RawBlock::new(instants, &self.counts)

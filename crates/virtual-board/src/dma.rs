@@ -91,7 +91,8 @@ impl Dma {
         };
         if channel.remaining == channel.reload / 2 {
             self.flags |= 0b0101 << (4 * index);
-        } else if channel.remaining == 0 {
+        }
+        if channel.remaining == 0 {
             if channel.control & CIRCULAR != 0 {
                 channel.remaining = channel.reload;
             }

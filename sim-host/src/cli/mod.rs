@@ -5,7 +5,9 @@ mod compare;
 mod demo;
 mod explain;
 mod failure;
+mod flash;
 mod input;
+mod live;
 mod monitor;
 mod output;
 mod paint;
@@ -43,6 +45,7 @@ First steps:
   drivemon compare rec.csv.gz --motor motor.toml       where the model fails
   drivemon explain rec.csv.gz --motor motor.toml       which physical effect it misses
   drivemon adopt EFFECT rec.csv.gz --motor motor.toml -o better.toml
+  drivemon flash --motor motor.toml                    build the firmware for this motor and write it to the board
 
 Exit codes: 0 fine or healthy, 1 a finding (a fault was lit), 2 bad input or usage, 3 the data do not support an answer.
 Colour is left out when NO_COLOR is set or the output is not a terminal.
@@ -56,6 +59,7 @@ enum Command {
     Compare(compare::Compare),
     Explain(explain::Explain),
     Adopt(adopt::Adopt),
+    Flash(flash::Flash),
 }
 
 impl Cli {
@@ -68,6 +72,7 @@ impl Cli {
             Command::Compare(compare) => compare.run(),
             Command::Explain(explain) => explain.run(),
             Command::Adopt(adopt) => adopt.run(),
+            Command::Flash(flash) => flash.run(),
         };
         match outcome {
             Ok(finding) => ExitCode::from(finding.exit_code()),

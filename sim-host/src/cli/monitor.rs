@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, Finding};
 use super::input::{InputArgs, read_motor};
+use super::live::LiveArgs;
 use super::output::OutputArgs;
 use super::{paint, progress};
 use crate::operating_points::OperatingPoints;
@@ -29,11 +30,13 @@ use crate::words;
 #[command(after_help = EXAMPLES)]
 pub struct MonitorArgs {
     /// Recording (.csv, .csv.gz) or load-test table
-    #[arg(value_name = "REC")]
-    recording: PathBuf,
+    #[arg(value_name = "REC", required_unless_present_any = ["serial", "probe"])]
+    recording: Option<PathBuf>,
     /// Motor file; without it only audit and sequence components are reported
     #[arg(long, value_name = "M")]
     motor: Option<PathBuf>,
+    #[command(flatten)]
+    live: LiveArgs,
     #[command(flatten)]
     input: InputArgs,
     #[command(flatten)]
@@ -45,6 +48,8 @@ Examples:
   drivemon monitor rec.csv.gz --motor motors/peer-2k2.toml
   drivemon monitor lab.csv --motor m.toml --column ic=ic2 --column speed=speed_raw --unit speed=rpm --offset speed=-2.11 --scale speed=9.687
   drivemon monitor currents.csv                                  three currents only: negative sequence and its angle
+  drivemon monitor --serial /dev/ttyACM0                         the lamps of a running board, until Ctrl-C
+  drivemon monitor --serial /dev/ttyACM0 --motor m.toml --capture alarm.csv     wait for an alarm and keep the samples around it
 Lamps:  ● on   ◐ blinking: waiting or not judged   ○ off";
 
 /// Everything that `drivemon monitor` says, as JSON.
@@ -76,10 +81,20 @@ struct ResidualPercent {
 impl MonitorArgs {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        match self.input.read(&self.recording)? {
+        let Some(recording) = &self.recording else {
+            return self.watch();
+        };
+        match self.input.read(recording)? {
             Source::Recording(recording) => self.monitor(&recording),
             Source::LoadTable(table) => self.show_table(&table),
         }
+    }
+
+    fn watch(&self) -> Result<Finding, Failure> {
+        let quiet = self.output.takes_stdout();
+        let (watched, finding) = self.live.run(self.motor.as_deref(), quiet)?;
+        self.output.write_json(&watched)?;
+        Ok(finding)
     }
 
     fn monitor(&self, recording: &Recording) -> Result<Finding, Failure> {
@@ -231,7 +246,7 @@ fn print_lamps(timeline: &Timeline) {
     }
 }
 
-fn symbol(lamp: &str) -> &'static str {
+pub(super) fn symbol(lamp: &str) -> &'static str {
     match lamp {
         "on" => "●",
         "blink" => "◐",

@@ -25,7 +25,7 @@ impl OutputArgs {
     ///
     /// # Errors
     /// A path that cannot be written.
-    fn write_json(&self, value: &impl Serialize) -> Result<(), Failure> {
+    pub fn write_json(&self, value: &impl Serialize) -> Result<(), Failure> {
         let Some(path) = &self.json else {
             return Ok(());
         };
