@@ -101,14 +101,7 @@ async fn run(
     };
     loop {
         let mut acquisition = Acquisition::start(&mut sources);
-        let pause = watch(
-            monitor,
-            &mut state,
-            &mut acquisition,
-            panel,
-            &mut lamps,
-        )
-        .await;
+        let pause = watch(monitor, &mut state, &mut acquisition, panel, &mut lamps).await;
         drop(acquisition);
         match pause {
             Pause::Gap(gap) => {

@@ -32,7 +32,7 @@ fn codes(scenario: &Scenario) -> impl Iterator<Item = RawSample> {
 fn sent(seconds: f64) -> Vec<u8> {
     let motor = MotorFile::read(motor_path()).expect("a shipped motor file");
     let config = MonitorConfig::from_motor_file(&motor, 1e-4);
-    let image = MotorImage::new(&config).expect("constants for the board");
+    let image = MotorImage::new(&config);
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut scenario = Scenario::of(motor, seconds);
     let fault = Fault::percent("Rs", 50.0, MotorFrame::RotorFlux).expect("a known fault");

@@ -65,7 +65,8 @@ impl Housekeeping {
             adc,
             reference,
             temperature,
-            calibration: TEMPERATURE_CALIBRATION.map(|(address, degc)| (factory_code(address), degc)),
+            calibration: TEMPERATURE_CALIBRATION
+                .map(|(address, degc)| (factory_code(address), degc)),
         }
     }
 

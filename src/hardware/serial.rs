@@ -58,7 +58,8 @@ type FrameLine = (
 
 /// Two windows' worth: the line is faster than the frames come.
 static FRAMES: Pipe<CriticalSectionRawMutex, { 2 * MAX_FRAME_BYTES }> = Pipe::new();
-static IMAGE: CriticalSectionMutex<Cell<Option<Image>>> = CriticalSectionMutex::new(Cell::new(None));
+static IMAGE: CriticalSectionMutex<Cell<Option<Image>>> =
+    CriticalSectionMutex::new(Cell::new(None));
 static COMMAND: CriticalSectionMutex<Cell<Option<Command>>> =
     CriticalSectionMutex::new(Cell::new(None));
 
@@ -131,8 +132,7 @@ async fn serve_modbus(parts: ModbusLine) {
         collect(&mut line, &mut collector).await;
         let image = IMAGE.lock(Cell::get).unwrap_or_default();
         let now_ms = Instant::now().as_millis() as u32;
-        let (length, command) =
-            slave.respond(now_ms, collector.frame(), &image, &mut response);
+        let (length, command) = slave.respond(now_ms, collector.frame(), &image, &mut response);
         collector.clear();
         if command.is_some() {
             COMMAND.lock(|shared| shared.set(command));

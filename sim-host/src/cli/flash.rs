@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus};
 
-use board::MotorImage;
 use clap::Args;
 use monitor::{Monitor, MonitorConfig};
+use motor::effects;
 
 use super::failure::{Failure, Finding};
 use super::input::read_motor;
@@ -79,7 +79,19 @@ impl Flash {
             file: file.clone(),
             error,
         })?;
-        MotorImage::new(&config).map_err(|error| Failure::Usage(format!("{file}: {error}")))?;
+        for effect in effects::from_motor_file(&motor, &file)? {
+            let descriptor = effect.effect.descriptor();
+            if !effects::STEADY
+                .iter()
+                .any(|known| std::ptr::eq(known.descriptor(), descriptor))
+            {
+                let name = descriptor.name;
+                let message = format!(
+                    "{file}: effects.{name}: a formula runs on a host only; remove it to flash the board"
+                );
+                return Err(Failure::Usage(message));
+            }
+        }
         Ok(motor.name)
     }
 

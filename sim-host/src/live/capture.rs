@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use board::{CAPTURE_EVERY, CaptureChunk, ImageError, MotorImage};
+use board::{CAPTURE_EVERY, CaptureChunk, MotorImage};
 use monitor::{MonitorConfig, RawSample};
 use motor::motor_file::{LoadKind, MotorFile};
 use recording::{Channel, LoadTorque, Metadata, Recording, Sensors, StartsFrom};
@@ -38,9 +38,6 @@ pub enum CaptureError {
         "the board was flashed with other motor constants than those in this motor file; name the file that it was flashed with"
     )]
     OtherMotor,
-    /// The motor file cannot be on a board at all.
-    #[error("{0}")]
-    Image(#[from] ImageError),
     /// The samples do not make a recording.
     #[error(transparent)]
     Recording(#[from] recording::Error),
@@ -77,7 +74,7 @@ impl Collector {
 /// A motor file that the board was not flashed with.
 pub fn recording(fetched: &Fetched, motor: &MotorFile) -> Result<Recording, CaptureError> {
     let config = MonitorConfig::from_motor_file(motor, T_SAMPLE);
-    if MotorImage::new(&config)?.identification() != fetched.motor {
+    if MotorImage::new(&config).identification() != fetched.motor {
         return Err(CaptureError::OtherMotor);
     }
     let step = T_SAMPLE * CAPTURE_EVERY as f64;
