@@ -13,7 +13,7 @@ use embassy_stm32::usart::{self, BufferedUart, Config, Parity, UartTx};
 use embassy_stm32::{Peri, bind_interrupts, dma};
 use embassy_sync::blocking_mutex::CriticalSectionMutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_sync::pipe::Pipe;
+use embassy_sync::channel::Channel;
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_io_async::{Read, Write};
 
@@ -56,8 +56,14 @@ type FrameLine = (
     Peri<'static, DMA1_CH3>,
 );
 
+/// One frame on its way.
+struct Packet {
+    bytes: [u8; MAX_FRAME_BYTES],
+    length: usize,
+}
+
 /// Two windows' worth: the line is faster than the frames come.
-static FRAMES: Pipe<CriticalSectionRawMutex, { 2 * MAX_FRAME_BYTES }> = Pipe::new();
+static PACKETS: Channel<CriticalSectionRawMutex, Packet, 2> = Channel::new();
 static IMAGE: CriticalSectionMutex<Cell<Option<Image>>> =
     CriticalSectionMutex::new(Cell::new(None));
 static COMMAND: CriticalSectionMutex<Cell<Option<Command>>> =
@@ -73,11 +79,16 @@ pub fn start(spawner: Spawner, lines: Lines) {
     }
 }
 
-/// Hands a frame to the line; dropped where there is no room for the whole of it.
+/// Hands a frame to the line; dropped when two are waiting.
 pub fn send(frame: &[u8]) {
-    if FRAMES.free_capacity() >= frame.len() {
-        let _ = FRAMES.try_write(frame);
+    let mut packet = Packet {
+        bytes: [0; MAX_FRAME_BYTES],
+        length: frame.len().min(MAX_FRAME_BYTES),
+    };
+    for (place, byte) in packet.bytes.iter_mut().zip(frame) {
+        *place = *byte;
     }
+    let _ = PACKETS.try_send(packet);
 }
 
 /// Shows these registers from now on.
@@ -98,10 +109,10 @@ async fn send_frames(parts: FrameLine) {
     let Ok(mut line) = UartTx::new(line, pin, dma, Irqs, config) else {
         return;
     };
-    let mut bytes = [0; MAX_FRAME_BYTES];
     loop {
-        let length = FRAMES.read(&mut bytes).await;
-        let _ = line.write(bytes.get(..length).unwrap_or_default()).await;
+        let packet = PACKETS.receive().await;
+        let bytes = packet.bytes.get(..packet.length).unwrap_or_default();
+        let _ = line.write(bytes).await;
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod common;
 
-use board::Frame;
+use board::{Frame, Message};
 use common::{LAMP_TEST_S, board as board_of, scenario};
 use motor::motor_file::Frame as MotorFrame;
 use sim_host::scenario::Fault;
@@ -93,7 +93,9 @@ impl Reader {
         self.rest.extend(bytes);
         while let Some(end) = self.rest.iter().position(|byte| *byte == 0) {
             let frame: Vec<u8> = self.rest.drain(..=end).collect();
-            self.frame(&Frame::decode(&frame).expect("an undamaged frame"));
+            if let Message::Window(frame) = Message::decode(&frame).expect("an undamaged frame") {
+                self.frame(&frame);
+            }
         }
     }
 

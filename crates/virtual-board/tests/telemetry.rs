@@ -2,7 +2,7 @@
 
 mod common;
 
-use board::{Frame, LAMP_NAMES};
+use board::{Frame, LAMP_NAMES, Message};
 use common::{INHIBITED, LAMP_TEST_S, board as board_of, motor, scenario};
 use monitor::{Monitor, MonitorConfig, MonitorState, Report};
 use motor::motor_file::Frame as MotorFrame;
@@ -34,7 +34,12 @@ fn every_frame_is_the_hosts_report_bit_for_bit() {
     }
     let frames: Vec<Frame> = bytes
         .split_inclusive(|byte| *byte == 0)
-        .map(|bytes| Frame::decode(bytes).expect("an undamaged frame"))
+        .filter_map(
+            |bytes| match Message::decode(bytes).expect("an undamaged frame") {
+                Message::Window(frame) => Some(frame),
+                Message::Capture(_) => None,
+            },
+        )
         .collect();
     let reports = host_reports(board.taken());
     assert!(frames.len() > 200, "{} frames", frames.len());
