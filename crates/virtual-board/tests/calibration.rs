@@ -59,8 +59,12 @@ fn frames_after_reset(board: &mut VirtualBoard) -> (Vec<Frame>, Vec<RawSample>) 
 
 fn frames(board: &mut VirtualBoard) -> (Vec<Frame>, Vec<RawSample>) {
     let before = board.taken().len();
-    board.run(LAMP_TEST_S + 0.8).expect("a run");
-    let bytes = board.drain_rtt(1).expect("a channel for frames");
+    board.run(LAMP_TEST_S).expect("a run");
+    let mut bytes = Vec::new();
+    for _ in 0..8 {
+        board.run(0.1).expect("a run");
+        bytes.extend(board.drain_rtt(1).expect("a channel for frames"));
+    }
     let frames = bytes
         .split_inclusive(|byte| *byte == 0)
         .map(|bytes| Frame::decode(bytes).expect("an undamaged frame"))
