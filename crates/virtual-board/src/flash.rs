@@ -118,9 +118,11 @@ impl Flash {
         !self.broken.is_empty()
     }
 
-    /// A read of the array; whether it raises the non-maskable interrupt.
+    /// A read of the array; whether it raises the non-maskable interrupt. The emulator shows only the first read of each
+    /// kibibyte, so all reads beside a broken double word count as reads of it.
     pub fn check(&mut self, address: u32) -> bool {
-        let found = self.broken.contains(&(address & !7));
+        let beside = |broken: &u32| broken & !0x3FF == address & !0x3FF;
+        let found = self.broken.iter().any(beside);
         self.ecc_detected |= found;
         found
     }
