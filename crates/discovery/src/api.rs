@@ -2,7 +2,7 @@
 
 use crate::accept::{explained, proven};
 use crate::confirm::{best_of, only};
-use crate::explain::{self, Explanation, is_loss, nominal_name};
+use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::fit::Effort;
 use crate::gram::dot;
 use crate::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
@@ -132,7 +132,8 @@ fn steps(study: &Study, found: &Explanation) -> Vec<StepReport> {
         report
     });
     let contested = found.contests.iter().filter_map(|(k, candidates)| {
-        let best = candidates.iter().find(|c| is_loss(*k, c))?;
+        let moved = found.last().fit.hypothesis.z[*k];
+        let best = candidates.iter().find(|c| stands_for(*k, moved, c))?;
         let index = best.trial.fit.hypothesis.effects.len() - 1;
         let before = found.last();
         let mut report = step_report(study, before, &best.trial, &best.trial, index);
@@ -171,9 +172,10 @@ fn descriptor(trial: &Trial, index: usize) -> &'static Descriptor {
     trial.fit.hypothesis.effects[index].effect.descriptor()
 }
 
+/// By how much of the floor the error would rise if an effect of typical size were missing.
 fn visibility(study: &Study, visible: f64) -> f64 {
     let expected = study.fitted.floor.mean * study.fitted.case.judged();
-    (visible / expected).max(0.0).sqrt()
+    (1.0 + (visible / expected).max(0.0)).sqrt() - 1.0
 }
 
 /// All effects of the first round, refitted ones with their refit; each name once.

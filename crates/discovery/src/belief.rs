@@ -14,6 +14,8 @@ pub(crate) const NOMINALS: [Nominal; 6] = [
 ];
 /// Number of nominal parameters.
 pub(crate) const N_NOMINAL: usize = NOMINALS.len();
+/// Index of the leakages.
+pub(crate) const LEAKAGE: usize = 2;
 /// Index of the magnetizing inductance.
 pub(crate) const MAGNETIZING: usize = 3;
 /// Index of the viscous friction, the only nominal that is added instead of multiplied.

@@ -21,6 +21,10 @@ const RELATIVE_CURRENT: f64 = 0.005;
 const BLOCK: f64 = 0.04;
 /// Time after an interruption of the current during which it is not judged, s.
 const AFTER_SWITCH: f64 = 0.03;
+/// Mean square of a current, in units of its noise, from which it is more than noise ...
+const CARRIES: f64 = 20.0;
+/// ... and up to which it is only noise: three standard deviations over a period of 200 samples are 1.3.
+const NOISE_ONLY: f64 = 1.6;
 /// Residual rows per second that are worth their time.
 const ROW_RATE: f64 = 5500.0;
 
@@ -57,6 +61,8 @@ pub(crate) struct Case {
     pub speed_is_input: bool,
     /// Speed at the start unless from standstill.
     pub running_at: Option<f64>,
+    /// Samples at which a switch has taken the motor off the supply.
+    pub open: Vec<Range<usize>>,
     /// Integration steps per residual row.
     pub decimation: usize,
     /// Measured rows.
@@ -120,6 +126,7 @@ impl Case {
             speed,
             speed_is_input: load.unknown,
             running_at,
+            open: Vec::new(),
             decimation: 1,
             measured: Vec::new(),
             weight: Vec::new(),
@@ -152,6 +159,7 @@ impl Case {
             speed: Vec::new(),
             speed_is_input: false,
             running_at: None,
+            open: Vec::new(),
             decimation: 1,
             measured,
             weight,
@@ -204,14 +212,15 @@ impl Case {
         let stride = self.between.stride() * self.decimation;
         let last = (rec.len() - 1) / self.between.stride() * self.between.stride();
         let limits = [0, 1, 2].map(|k| clip_limit(rec, k, currents[k]));
-        let switched = switched_off(currents, sigma_i, self.inputs.t_sample);
+        self.open = switched_off(currents, sigma_i, self.inputs.t_sample);
         let settles = (AFTER_SWITCH / self.inputs.t_sample) as usize;
         for k in (0..=last).step_by(stride) {
             let i = currents.map(|c| c[k]);
             let w_i = |p: usize| {
-                let settled = switched
+                let settled = self
+                    .open
                     .iter()
-                    .all(|&off| k + 10 < off || k > off + settles);
+                    .all(|off| k + 10 < off.start || k > off.start + settles);
                 let judged = settled && i[p].abs() < limits[p];
                 f64::from(u8::from(judged)) / sigma_i[p].hypot(RELATIVE_CURRENT * i[p])
             };
@@ -223,26 +232,65 @@ impl Case {
     }
 }
 
-/// Samples at which a switch interrupts the current: all phases carry some, then none for 10 ms.
+/// Samples during which the motor is off its supply: the phases carried current, now they carry noise.
 ///
 /// The voltage impulse that forces the current to zero falls between two samples: no model driven by the sampled
-/// voltage can follow for a few leakage time constants.
-fn switched_off(currents: [&[f64]; 3], sigma: [f64; 3], t_sample: f64) -> Vec<usize> {
-    let window = ((0.01 / t_sample) as usize).max(4);
-    let power = |k: usize| {
-        (0..3)
-            .map(|p| (currents[p][k] / sigma[p]).powi(2))
-            .sum::<f64>()
-    };
-    let mut running: Vec<f64> = vec![0.0];
-    for k in 0..currents[0].len() {
-        running.push(running[k] + power(k));
+/// voltage can follow it. An arc or a snubber that still conducts is no open switch.
+fn switched_off(currents: [&[f64]; 3], sigma: [f64; 3], t_sample: f64) -> Vec<Range<usize>> {
+    let window = ((0.02 / t_sample) as usize).max(8);
+    let n = currents[0].len();
+    let running: Vec<Running> = (0..3)
+        .map(|p| Running::new(currents[p], sigma[p]))
+        .collect();
+    let loudest = |of: &dyn Fn(&Running) -> f64| running.iter().map(of).fold(0.0, f64::max);
+    let carried = |k: usize| loudest(&|r| r.power(k - window..k)) > CARRIES;
+    let silent = |k: usize| loudest(&|r| r.variance(k..k + window)) < NOISE_ONLY;
+    let back = |k: usize| loudest(&|r| r.variance(k..k + 4)) > CARRIES;
+    let mut open = Vec::new();
+    let mut k = window;
+    while k + window < n {
+        if silent(k) && carried(k) {
+            let end = (k..n - 4).find(|&j| back(j)).unwrap_or(n);
+            open.push(k..end);
+            k = end;
+        }
+        k += 1;
     }
-    let mean = |a: usize, b: usize| (running[b] - running[a]) / (3 * (b - a)) as f64;
-    // An offset or a core loss still shows behind an open switch; a load step leaves far more.
-    let dead = |k: &usize| mean(k - 4, *k) > 20.0 && mean(*k, k + window) < 0.05 * mean(k - 4, *k);
-    let last = currents[0].len().saturating_sub(window);
-    (window..last).filter(dead).collect()
+    open
+}
+
+/// Running sums of a current in units of its noise.
+struct Running {
+    sum: Vec<f64>,
+    square: Vec<f64>,
+}
+
+impl Running {
+    fn new(x: &[f64], sigma: f64) -> Self {
+        let total = |f: &dyn Fn(f64) -> f64| {
+            let mut sum = 0.0;
+            let next = |x: &f64| {
+                sum += f(x / sigma);
+                sum
+            };
+            std::iter::once(0.0).chain(x.iter().map(next)).collect()
+        };
+        Self {
+            sum: total(&|x| x),
+            square: total(&|x| x * x),
+        }
+    }
+
+    /// Mean square.
+    fn power(&self, r: Range<usize>) -> f64 {
+        (self.square[r.end] - self.square[r.start]) / r.len() as f64
+    }
+
+    /// Mean square about the mean: an offset carries no current.
+    fn variance(&self, r: Range<usize>) -> f64 {
+        let mean = (self.sum[r.end] - self.sum[r.start]) / r.len() as f64;
+        self.power(r) - mean * mean
+    }
 }
 
 /// Magnitude from which a current counts as clipped: its largest, if it stands still there.

@@ -1,7 +1,7 @@
 //! Which physical effect is missing: step by step, each proven on data that was not fitted.
 
 use crate::accept::{beats, explained, proven};
-use crate::belief::{FRICTION, N_NOMINAL, NOMINALS};
+use crate::belief::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::confirm::{Candidate, Round, likely, round};
 use crate::fit::Effort;
 use crate::present::off_nominals;
@@ -14,6 +14,10 @@ const MOST_EFFECTS: usize = 3;
 const ADEQUATE: f64 = 1.02;
 /// Share of the excess that accepted effects must explain to be named without adequacy.
 const NAMED_SHARE: f64 = 0.85;
+
+/// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: beliefs are commonly
+/// wrong by a tenth.
+const WORTH_A_CABLE: f64 = 0.12;
 
 /// One accepted effect.
 #[derive(Clone, Debug)]
@@ -143,13 +147,18 @@ fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Cand
     found.candidates.into_iter().filter(equal).collect()
 }
 
-/// Whether a contested parameter is better told as an effect: friction stands for every loss torque.
-pub(crate) fn is_loss(k: usize, candidate: &Candidate) -> bool {
+/// Whether a candidate is the physics that a moved parameter may stand for: friction for every loss torque, leakage
+/// for a cable or filter in series when its logarithm `moved` by more than beliefs are commonly wrong.
+pub(crate) fn stands_for(k: usize, moved: f64, candidate: &Candidate) -> bool {
     let effects = &candidate.trial.fit.hypothesis.effects;
-    let physics = effects
-        .last()
-        .is_some_and(|e| e.effect.descriptor().kind == Kind::Physics);
-    k == FRICTION && physics
+    let Some(descriptor) = effects.last().map(|e| e.effect.descriptor()) else {
+        return false;
+    };
+    match k {
+        FRICTION => descriptor.kind == Kind::Physics,
+        LEAKAGE => descriptor.name == "series-inductance" && moved.abs() > WORTH_A_CABLE,
+        _ => false,
+    }
 }
 
 /// Name of a nominal.

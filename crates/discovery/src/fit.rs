@@ -33,6 +33,8 @@ pub(crate) struct Fit {
     pub penalty: Penalty,
     /// Weighted model outputs.
     pub outputs: Vec<f64>,
+    /// Inflation of the nominals' prior weight: so many rows count as one.
+    pub kappa: f64,
     /// Treatment of the speed in this fit.
     pub teacher: Teacher,
 }
@@ -60,7 +62,8 @@ impl Effort {
 impl Fit {
     /// Covariance of the fitted coordinates.
     pub fn covariance(&self) -> DMatrix<f64> {
-        gram::covariance(&self.blocks, &self.penalty)
+        let nominals = self.free.iter().filter(|&&k| k < N_NOMINAL).count();
+        gram::covariance(&self.blocks, &self.penalty, nominals, self.kappa)
     }
 
     /// Held-out squared error of each block.
@@ -158,6 +161,7 @@ pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effo
         jacobian: j,
         blocks,
         outputs: out,
+        kappa,
         teacher: effort.teacher,
     }
 }

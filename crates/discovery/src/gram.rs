@@ -176,7 +176,15 @@ pub(crate) fn score_inflation(blocks: &[Block], n: usize) -> f64 {
 }
 
 /// Covariance of the coordinates: a sandwich over blocks, never below the naive value.
-pub(crate) fn covariance(blocks: &[Block], penalty: &Penalty) -> DMatrix<f64> {
+///
+/// The first `nominals` carry a prior `kappa` times too heavy because so many rows count as one; what the data
+/// leave open keeps the uncertainty of the true prior.
+pub(crate) fn covariance(
+    blocks: &[Block],
+    penalty: &Penalty,
+    nominals: usize,
+    kappa: f64,
+) -> DMatrix<f64> {
     let all = total(blocks);
     let h = &all.gram + DMatrix::from_diagonal(&penalty.weight);
     let n = h.nrows();
@@ -192,7 +200,8 @@ pub(crate) fn covariance(blocks: &[Block], penalty: &Penalty) -> DMatrix<f64> {
     let meat = blocks.iter().fold(DMatrix::zeros(n, n), spread);
     let mut out = &inverse * meat * &inverse;
     for k in 0..n {
-        out[(k, k)] = out[(k, k)].max(inverse[(k, k)]);
+        let rows_per_datum = if k < nominals { kappa } else { 1.0 };
+        out[(k, k)] = out[(k, k)].max(rows_per_datum * inverse[(k, k)]);
     }
     out
 }

@@ -28,6 +28,7 @@ pub(crate) fn run(case: &Case, plant: &Plant, inputs: &Inputs, teacher: Teacher)
         speed,
         timeline: &case.timeline,
         running_at: case.running_at,
+        open: &case.open,
     };
     simulate(plant, &run)
 }

@@ -56,6 +56,7 @@ fn outputs(plant: &Plant, inputs: &Inputs, between: Between) -> Outputs {
         speed: SpeedSource::Free,
         timeline: &Arc::new(Timeline::constant(OMEGA)),
         running_at: None,
+        open: &[],
     };
     simulate(plant, &run)
 }

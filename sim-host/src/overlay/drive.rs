@@ -77,6 +77,7 @@ impl Drive {
                 speed: imposed.map_or(SpeedSource::Free, SpeedSource::Imposed),
                 timeline: &self.timeline,
                 running_at: self.running_at,
+                open: &[],
             },
         )
     }

@@ -8,6 +8,11 @@ use std::ops::Range;
 const ORDERS: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
 /// Share of the largest voltage below which the supply counts as off.
 const OFF: f64 = 0.03;
+/// Samples on each side over which the denoised voltage is held against the raw one.
+const NEAR: usize = 10;
+/// Mean square of the rest, in variances, above which the raw voltage is believed there: twelve standard deviations
+/// of the mean square of 21 two-axis samples.
+const LOCAL_LIMIT: f64 = 3.6;
 /// The rest may exceed the declared noise by this factor before the raw voltage is believed instead.
 const WHITE_LIMIT: f64 = 1.25;
 
@@ -24,6 +29,8 @@ pub(crate) struct Supply {
     pub segments: Vec<Range<usize>>,
     /// Whether the voltage could be described by fundamental and harmonics.
     pub denoised: bool,
+    /// Samples at which it could not (a switch that opens, a dip): the raw voltage is used there.
+    pub raw: Vec<Range<usize>>,
     /// Component of each order relative to the fundamental (order 0: V).
     pub harmonics: Vec<(f64, Complex64)>,
     window: usize,
@@ -44,6 +51,8 @@ pub(crate) fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated:
     if rms > WHITE_LIMIT * sigma {
         supply.u_s = raw.to_vec();
         supply.denoised = false;
+    } else {
+        supply.restore(raw, sigma);
     }
     supply
 }
@@ -65,6 +74,7 @@ impl Supply {
             theta,
             segments,
             denoised: true,
+            raw: Vec::new(),
             harmonics: Vec::new(),
             window,
         };
@@ -79,6 +89,33 @@ impl Supply {
         supply.u_s = supply.with_harmonics(&fundamental);
         supply.hold_frequency(&fundamental);
         supply
+    }
+
+    /// Takes the raw voltage back where fundamental and harmonics do not describe it.
+    fn restore(&mut self, raw: &[Complex64], sigma: f64) {
+        let rest: Vec<f64> = raw
+            .iter()
+            .zip(&self.u_s)
+            .map(|(a, b)| (a - b).norm_sqr())
+            .collect();
+        let limit = LOCAL_LIMIT * 2.0 * sigma * sigma;
+        let around = |k: usize| k.saturating_sub(NEAR)..(k + NEAR + 1).min(rest.len());
+        let mean = |r: Range<usize>| rest[r.clone()].iter().sum::<f64>() / r.len() as f64;
+        // Smoothing smears what it cannot follow over its window, less and less visibly.
+        let smeared = |k: usize| {
+            let reach = NEAR + self.window;
+            k.saturating_sub(reach)..(k + reach + 1).min(rest.len())
+        };
+        for k in (0..rest.len()).filter(|&k| mean(around(k)) > limit) {
+            let near = smeared(k);
+            match self.raw.last_mut() {
+                Some(last) if near.start <= last.end => last.end = near.end,
+                _ => self.raw.push(near),
+            }
+        }
+        for r in &self.raw {
+            self.u_s[r.clone()].copy_from_slice(&raw[r.clone()]);
+        }
     }
 
     /// Where the supply is off its angle is noise: the last frequency stays.
@@ -114,11 +151,14 @@ impl Supply {
 
     /// What the denoising makes of a disturbance of the raw voltage (the operation is linear).
     pub fn filter(&self, disturbance: &[Complex64]) -> Vec<Complex64> {
-        if self.denoised {
-            self.fundamental(disturbance)
-        } else {
-            disturbance.to_vec()
+        if !self.denoised {
+            return disturbance.to_vec();
         }
+        let mut filtered = self.fundamental(disturbance);
+        for r in &self.raw {
+            filtered[r.clone()].copy_from_slice(&disturbance[r.clone()]);
+        }
+        filtered
     }
 
     /// The fundamental: the envelope in the turning frame, smoothed within each segment.
@@ -261,6 +301,28 @@ mod tests {
         let rms = ((0..8000).map(error).sum::<f64>() / 16000.0).sqrt();
         // A quadratic over 200 points leaves 1.5/sqrt(200) of the noise; ends of segments three times as much.
         assert!(rms < 0.2, "{rms}");
+    }
+
+    #[test]
+    fn where_a_switch_opens_the_raw_voltage_is_used() {
+        // Within 6 ms the terminals pass from the supply to a decaying voltage of another phase.
+        let clean = |k: usize| {
+            let supply = Complex64::from_polar(320.0, 0.0314159 * k as f64);
+            let decaying = Complex64::from_polar(280.0, 0.0310 * k as f64 - 0.2)
+                * (-(k as f64 - 4000.0) * 1e-3).exp();
+            let share = ((k as f64 - 4000.0) / 60.0).clamp(0.0, 1.0);
+            supply * (1.0 - share) + decaying * share
+        };
+        let raw = noisy(8000, 1.0, clean);
+        let supply = denoise(&raw, 1e-4, 1.0, 314.159);
+        let worst = |r: std::ops::Range<usize>| {
+            let error = r.map(|k| (supply.u_s[k] - clean(k)).norm());
+            error.fold(0.0, f64::max)
+        };
+        assert!(supply.raw.iter().any(|r| r.contains(&4030)));
+        // Five standard deviations of the raw voltage.
+        assert!(worst(3900..4200) < 5.0, "{}", worst(3900..4200));
+        assert!(supply.raw.iter().map(|r| r.len()).sum::<usize>() < 1200);
     }
 
     #[test]

@@ -8,7 +8,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
     name: "series-inductance",
     form: "",
     kind: Kind::Physics,
-    applies: Applies::Inverter,
+    applies: Applies::Samples,
     parameters: &[Parameter::positive(
         "series_inductance_henry",
         "H",

@@ -4,6 +4,7 @@ use super::{EffectConfig, EffectStack, Hook, Inputs, Outputs, Rated, Timeline, e
 use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, phases};
 use crate::{Mechanics, TParams};
 use num_complex::Complex64;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A motor with its effects: what a simulation is about.
@@ -62,6 +63,8 @@ pub struct Run<'a> {
     pub timeline: &'a Arc<Timeline>,
     /// Speed at the first sample, rad/s; `None` starts de-energised from standstill.
     pub running_at: Option<f64>,
+    /// Input samples at which the terminals are open: no current flows, the rotor flux decays alone.
+    pub open: &'a [Range<usize>],
 }
 
 impl DynamicState {
@@ -122,19 +125,33 @@ fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &I
         e.effect.hooks().iter().any(|h| !outer.contains(h))
     };
     let start = start_state(plant, motor, run, inputs);
+    // Stator inductance while the rotor flux stands still.
+    let transient = motor.l_ls + motor.l_lr * motor.l_m / motor.l_r();
     if !plant.effects.iter().any(inside) {
         let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
-        return integrate(&model, start, run, inputs);
+        return integrate(&model, start, run, inputs, transient);
     }
     let (mechanics, timeline) = (&plant.mechanics, run.timeline.clone());
     if extra_states(&plant.effects) == 0 {
         let stack = EffectStack::<0>::new(&plant.effects, motor, &plant.rated, timeline);
         let model = Dynamic::with_effects(motor, mechanics, stack);
-        return integrate(&model, DynamicState::with_extra(&start), run, inputs);
+        return integrate(
+            &model,
+            DynamicState::with_extra(&start),
+            run,
+            inputs,
+            transient,
+        );
     }
     let stack = EffectStack::<8>::new(&plant.effects, motor, &plant.rated, timeline);
     let model = Dynamic::with_effects(motor, mechanics, stack);
-    integrate(&model, DynamicState::with_extra(&start), run, inputs)
+    integrate(
+        &model,
+        DynamicState::with_extra(&start),
+        run,
+        inputs,
+        transient,
+    )
 }
 
 fn start_state(
@@ -157,6 +174,7 @@ fn integrate<H: Hooks>(
     mut state: DynamicState<H::Extra>,
     run: &Run<'_>,
     inputs: &Inputs,
+    transient: f64,
 ) -> Outputs {
     let stride = run.between.stride();
     let h = inputs.t_sample * stride as f64;
@@ -172,6 +190,9 @@ fn integrate<H: Hooks>(
         let k = step * stride;
         let t = inputs.t_sample * k as f64;
         steer(&mut state, run.speed, k, h);
+        if run.open.iter().any(|open| open.contains(&k)) {
+            interrupt(model, &mut state, t, inputs.u_s[k], transient);
+        }
         let i = model.current(t, &state, inputs.u_s[k]);
         out.i_s_abc.push(phases(i));
         out.omega_mech.push(state.omega_mech);
@@ -183,6 +204,21 @@ fn integrate<H: Hooks>(
     }
     out.u_measured = (0..=steps).map(|k| run.inputs.u_s[k * stride]).collect();
     out
+}
+
+/// Takes the current out of the stator: its flux jumps by the leakage flux, the rotor's stays.
+///
+/// Newton's steps with the unsaturated inductance; saturation and losses at the terminals need the second one.
+fn interrupt<H: Hooks>(
+    model: &Dynamic<H>,
+    state: &mut DynamicState<H::Extra>,
+    t: f64,
+    u: Complex64,
+    transient: f64,
+) {
+    for _ in 0..2 {
+        state.psi_s -= model.current(t, state, u) * transient;
+    }
 }
 
 /// Imposes or draws the speed.

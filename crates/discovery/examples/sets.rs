@@ -1,0 +1,48 @@
+//! Asks `explain` about folders of recordings with known truth, both directions, and prints what it says.
+//!
+//! `cargo run --release -p discovery --example sets -- FOLDER...`: each folder holds `motor.toml`,
+//! `recording.csv.gz`, `recording_b.csv.gz` with their sidecars, and is named after what is hidden.
+
+use discovery::explain;
+use motor::MotorFile;
+use rayon::prelude::*;
+use recording::{Source, read_recording};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+fn read(path: PathBuf) -> Source {
+    Source::Recording(read_recording(&path, &Default::default(), &mut |_| {}).expect("a recording"))
+}
+
+fn asked(folder: &Path, first: &str, second: &str) -> String {
+    let motor = MotorFile::read(folder.join("motor.toml")).expect("a motor file");
+    let sources = [first, second].map(|name| read(folder.join(name)));
+    let start = Instant::now();
+    let report = explain(&sources, &motor, &mut |_, _| {}).expect("a report");
+    let error = |f: &Option<discovery::FitReport>| {
+        f.as_ref().map_or(f64::NAN, |f| f.held_out_error_over_noise)
+    };
+    let sizes = report.steps.iter().flat_map(|s| &s.parameters);
+    let sizes: Vec<String> = sizes
+        .map(|p| format!("{} {:.4}", p.name, p.value))
+        .collect();
+    format!(
+        "{:36} {:?} {:.3} -> {:.3} ({:.1} s): {} [{}]",
+        folder.file_name().unwrap_or_default().to_string_lossy(),
+        report.verdict,
+        error(&report.baseline),
+        error(&report.final_),
+        start.elapsed().as_secs_f64(),
+        report.summary,
+        sizes.join(", "),
+    )
+}
+
+fn main() {
+    let folders: Vec<PathBuf> = std::env::args().skip(1).map(PathBuf::from).collect();
+    let (a, b) = ("recording.csv.gz", "recording_b.csv.gz");
+    folders.par_iter().for_each(|folder| {
+        println!("a {}", asked(folder, a, b));
+        println!("b {}", asked(folder, b, a));
+    });
+}

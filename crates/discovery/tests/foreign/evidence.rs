@@ -1,0 +1,191 @@
+//! Questions put to `explain` about foreign machines, and how the answers are counted.
+
+use super::cases::{self, Case};
+use super::{
+    COAST, Course, Hidden, INVERTER, INVERTER_B, LOADS, Machine, STEADY, STEPS, beliefs, record,
+};
+use discovery::{ExplainReport, explain, explain_without};
+use recording::Source;
+
+/// What is recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Setting {
+    /// Two recordings, one of them with a coast-down.
+    CoastDown,
+    /// Two recordings of starts, loads and voltages.
+    Loads,
+    /// One recording of one steady load.
+    Steady,
+}
+
+/// One question.
+#[derive(Clone, Debug)]
+pub struct Question {
+    pub names: Vec<&'static str>,
+    pub hidden: Hidden,
+    pub inverter: bool,
+    pub setting: Setting,
+    pub without: Option<&'static str>,
+    pub seed: u64,
+}
+
+/// An answer, and how it is counted.
+pub struct Answer {
+    pub question: Question,
+    pub report: ExplainReport,
+}
+
+impl Question {
+    pub fn of(case: &Case, setting: Setting, seed: u64) -> Self {
+        Self {
+            names: vec![case.name],
+            hidden: case.hidden,
+            inverter: case.inverter,
+            setting,
+            without: None,
+            seed,
+        }
+    }
+
+    pub fn healthy(setting: Setting, inverter: bool, seed: u64) -> Self {
+        Self {
+            names: Vec::new(),
+            hidden: Hidden::default(),
+            inverter,
+            setting,
+            without: None,
+            seed,
+        }
+    }
+
+    fn courses(&self) -> Vec<&'static Course> {
+        match (self.setting, self.inverter) {
+            (Setting::Steady, _) => vec![&STEADY],
+            (_, true) => vec![&INVERTER, &INVERTER_B],
+            (Setting::CoastDown, _) => vec![&COAST, &LOADS],
+            (Setting::Loads, _) => vec![&STEPS, &LOADS],
+        }
+    }
+
+    pub fn sources(&self) -> Vec<Source> {
+        let machine = Machine::of(self.seed);
+        let one = |(k, course): (usize, &&Course)| {
+            let seed = 10 * self.seed + k as u64;
+            Source::Recording(record(&machine, &self.hidden, course, seed))
+        };
+        self.courses().iter().enumerate().map(one).collect()
+    }
+
+    pub fn ask(&self) -> Answer {
+        let motor = beliefs(&Machine::of(self.seed), self.seed);
+        let (sources, quiet) = (self.sources(), &mut |_: &str, _: f64| {});
+        let report = match self.without {
+            Some(name) => explain_without(&sources, &motor, &[name], quiet),
+            None => explain(&sources, &motor, quiet),
+        };
+        Answer {
+            question: self.clone(),
+            report: report.unwrap(),
+        }
+    }
+}
+
+impl Answer {
+    /// Whether a step names `name`, alone or in its tie.
+    pub fn names(&self, name: &str) -> bool {
+        let mut steps = self.report.steps.iter();
+        steps.any(|s| s.effect == name || s.tied_with.iter().any(|t| t == name))
+    }
+
+    /// Whether everything that is hidden is in a tie set, and there are no more steps.
+    pub fn is_found(&self) -> bool {
+        self.question.names.iter().all(|n| self.names(n))
+    }
+
+    /// Whether exactly what is hidden is named, alone.
+    pub fn is_unique(&self) -> bool {
+        let steps = &self.report.steps;
+        self.is_found()
+            && steps.len() == self.question.names.len()
+            && steps.iter().all(|s| s.tied_with.is_empty())
+    }
+
+    /// Whether a step names something else, the truth not in its tie.
+    pub fn is_wrong(&self) -> bool {
+        let names = &self.question.names;
+        let right = |s: &discovery::StepReport| {
+            let tied = |n: &&str| s.effect == **n || s.tied_with.iter().any(|t| t == *n);
+            names.iter().any(|n| tied(&n))
+        };
+        !self.report.steps.iter().all(right)
+    }
+
+    /// Whether the report says that this recording cannot show `name`.
+    pub fn is_invisible(&self, name: &str) -> bool {
+        self.report.not_testable.iter().any(|n| n == name)
+    }
+
+    pub fn line(&self) -> String {
+        let q = &self.question;
+        let error = |f: &Option<discovery::FitReport>| {
+            f.as_ref().map_or(f64::NAN, |f| f.held_out_error_over_noise)
+        };
+        let (before, after) = (error(&self.report.baseline), error(&self.report.final_));
+        let mark = match (self.is_found(), self.is_wrong()) {
+            (_, true) => "WRONG",
+            (true, _) => "ok",
+            _ => "-",
+        };
+        let hidden = if q.names.is_empty() {
+            "nothing".to_owned()
+        } else {
+            q.names.join("+")
+        };
+        format!(
+            "{mark:5} {hidden:28} {:3} {:?} {before:.3} -> {after:.3}: {}",
+            q.seed, q.setting, self.report.summary
+        )
+    }
+}
+
+/// Single effects in one setting. An inverter has no coast-down and no steady load here.
+pub fn single(setting: Setting, seed: u64) -> Vec<Question> {
+    let all = cases::single(seed);
+    let asked = all
+        .iter()
+        .filter(|c| setting != Setting::Steady || !c.inverter);
+    asked.map(|c| Question::of(c, setting, seed)).collect()
+}
+
+/// Single effects with the truth taken out of the library.
+pub fn without_truth(seed: u64) -> Vec<Question> {
+    let mut all = single(Setting::CoastDown, seed);
+    all.iter_mut().for_each(|q| q.without = Some(q.names[0]));
+    all
+}
+
+/// Two effects at once.
+pub fn double(seed: u64) -> Vec<Question> {
+    let question = |(names, hidden): ([&'static str; 2], Hidden)| Question {
+        names: names.to_vec(),
+        hidden,
+        inverter: false,
+        setting: Setting::CoastDown,
+        without: None,
+        seed,
+    };
+    cases::double(seed).into_iter().map(question).collect()
+}
+
+/// Healthy machines of every kind.
+pub fn healthy(seed: u64) -> Vec<Question> {
+    use Setting::{CoastDown, Loads, Steady};
+    let kinds = [
+        (CoastDown, false),
+        (Loads, false),
+        (Steady, false),
+        (Loads, true),
+    ];
+    let question = |(setting, inverter)| Question::healthy(setting, inverter, seed);
+    kinds.map(question).to_vec()
+}
