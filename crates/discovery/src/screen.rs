@@ -55,7 +55,7 @@ fn grid(p: &Parameter) -> Vec<f64> {
     if p.role == Role::Size {
         return vec![0.0];
     }
-    if !p.name.ends_with("_hz") {
+    if p.role == Role::Form || !p.name.ends_with("_hz") {
         return p.grid.to_vec();
     }
     let (first, last) = (p.grid[0], p.grid[p.grid.len() - 1]);

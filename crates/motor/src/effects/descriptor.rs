@@ -46,6 +46,8 @@ pub enum Scale {
     Conductance,
     /// Rated voltage over rated current and frequency, H.
     Inductance,
+    /// Rated current over rated voltage and frequency, F.
+    Capacitance,
     /// One over the rated electrical power, 1/W.
     PerPower,
 }
@@ -62,6 +64,7 @@ impl Scale {
             Scale::Current => rated.current,
             Scale::Conductance => rated.current / rated.voltage,
             Scale::Inductance => rated.voltage / (rated.current * rated.omega_sync),
+            Scale::Capacitance => rated.current / (rated.voltage * rated.omega_sync),
             Scale::PerPower => F::one() / (three_halves * rated.current * rated.voltage),
         }
     }
