@@ -1,7 +1,7 @@
 //! Writing a changed motor file so that the comments of its author survive.
 
 use motor::MotorFile;
-use motor::motor_file::{EffectEntry, EffectValue};
+use motor::motor_file::{EffectEntry, EffectValue, FieldCurrent, Frame, MonitorSettings};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value, value};
 
 /// The text of `motor`: `old` with its parameters and effects changed where they differ. Comments, order and everything
@@ -23,6 +23,7 @@ fn edited(old: &str, motor: &MotorFile) -> Option<String> {
     for (key, number) in numbers(motor) {
         set(parameters.entry(key).or_insert(value(number)), number);
     }
+    set_frame(&mut document, motor)?;
     if !motor.effects.is_empty() {
         let effects = document
             .entry("effects")
@@ -45,6 +46,51 @@ fn numbers(motor: &MotorFile) -> [(&'static str, f64); 8] {
         ("friction_nm_s", mechanical.friction),
         ("load_friction_nm_s", mechanical.load_friction),
     ]
+}
+
+/// Frame and field current, where the file names them or they are no longer what silence means.
+fn set_frame(document: &mut DocumentMut, motor: &MotorFile) -> Option<()> {
+    let silence = MonitorSettings::default();
+    let frame = match motor.monitor.frame {
+        Frame::RotorFlux => "rotor-flux",
+        Frame::Voltage => "voltage",
+    };
+    let field = match motor.monitor.field_current {
+        FieldCurrent::Live => "live",
+        FieldCurrent::Nominal => "nominal",
+    };
+    set_word(
+        document,
+        "frame",
+        frame,
+        motor.monitor.frame != silence.frame,
+    )?;
+    let spoken = motor.monitor.field_current != silence.field_current;
+    set_word(document, "field_current", field, spoken)
+}
+
+fn set_word(document: &mut DocumentMut, key: &str, word: &str, must: bool) -> Option<()> {
+    if !must && document.get("monitor").is_none() {
+        return Some(());
+    }
+    let monitor = document
+        .entry("monitor")
+        .or_insert_with(|| Item::Table(Table::new()))
+        .as_table_like_mut()?;
+    match monitor.get_mut(key) {
+        Some(item) if item.as_str() == Some(word) => {}
+        Some(item) => {
+            let old = item.as_value_mut()?;
+            let around = old.decor().clone();
+            *old = Value::from(word);
+            *old.decor_mut() = around;
+        }
+        None if must => {
+            monitor.insert(key, value(word));
+        }
+        None => {}
+    }
+    Some(())
 }
 
 /// A number in place of another, with what stood around it.
@@ -138,6 +184,20 @@ mod tests {
             read.effects[0].number("core_loss_resistance_ohm"),
             Some(980.0)
         );
+    }
+
+    #[test]
+    fn another_frame_is_written_where_the_old_one_stood() {
+        let old = format!(
+            "{OLD}\n[monitor]\nframe = \"voltage\" # as published\nfield_current = \"nominal\"\n"
+        );
+        let mut motor = MotorFile::parse(&old, "old").unwrap();
+        motor.monitor.frame = Frame::RotorFlux;
+        motor.monitor.field_current = FieldCurrent::Live;
+        let text = updated(&old, &motor);
+        assert!(text.contains("frame = \"rotor-flux\" # as published"));
+        let read = MotorFile::parse(&text, "new").unwrap();
+        assert_eq!(read.monitor, motor.monitor);
     }
 
     #[test]

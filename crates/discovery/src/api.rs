@@ -1,9 +1,11 @@
 //! The three questions a user asks.
 
 use crate::accept::{explained, proven};
+use crate::case::Case;
 use crate::confirm::{best_of, only};
 use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::fit::Effort;
+use crate::frame::{self, FrameReport};
 use crate::gram::dot;
 use crate::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
 use crate::question::{Error, Question};
@@ -14,7 +16,7 @@ use crate::study::{Study, Trial};
 use crate::unexplained;
 use motor::MotorFile;
 use motor::effects::{Descriptor, expression, find, names, to_entry};
-use motor::motor_file::EffectEntry;
+use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
 use recording::Source;
 
 /// Hears what is being done, and how far it is (0 to 1).
@@ -52,8 +54,9 @@ pub fn explain_without(
     match Question::new(sources, motor, progress) {
         Ok(question) => {
             let found = explain::explain(&question.study, excluded, progress);
+            let frame = judged_frame(&question, motor);
             progress("done", 1.0);
-            Ok(report(&question, &found))
+            Ok(report(&question, &found, frame))
         }
         Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
             audit: *audit,
@@ -70,7 +73,15 @@ pub fn explain_without(
     }
 }
 
-fn report(question: &Question, found: &Explanation) -> ExplainReport {
+/// What the frame of the monitor's model costs on the recordings of a question.
+fn judged_frame(question: &Question, motor: &MotorFile) -> Option<FrameReport> {
+    let study = &question.study;
+    let all = std::iter::once(&study.fitted).chain(&study.proofs);
+    let cases: Vec<&Case> = all.map(|s| &s.case).collect();
+    frame::judge(motor, &study.belief, &cases)
+}
+
+fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) -> ExplainReport {
     let study = &question.study;
     let steps = if found.nameable {
         steps(study, found)
@@ -97,8 +108,50 @@ fn report(question: &Question, found: &Explanation) -> ExplainReport {
         not_testable: not_testable(study, found),
         unexplained,
     };
+    if let Some(frame) = frame.filter(|f| f.proven) {
+        add_frame(&mut report, frame);
+    }
     report.summary = crate::words::summary(&report);
     report
+}
+
+/// Puts the frame before all physics: it is an error of the monitor's model, whatever the motor does.
+fn add_frame(report: &mut ExplainReport, frame: FrameReport) {
+    if report.verdict == Verdict::Adequate {
+        report.verdict = Verdict::Effect;
+    }
+    report.ranking.insert(
+        0,
+        RankReport {
+            effect: frame::NAME.to_owned(),
+            held_out_error_over_noise: frame.held_out_after,
+            gain_percent: 100.0 * (1.0 - frame.held_out_after / frame.held_out_before),
+            refitted: true,
+            visibility_percent: 100.0 * (frame.held_out_before - 1.0).max(0.0),
+        },
+    );
+    report.steps.insert(0, frame_step(frame));
+}
+
+fn frame_step(frame: FrameReport) -> StepReport {
+    let excess = |e: f64| (e * e - 1.0).max(0.0);
+    let left = excess(frame.held_out_after) / excess(frame.held_out_before);
+    StepReport {
+        effect: frame::NAME.to_owned(),
+        form: String::new(),
+        kind: "model".to_owned(),
+        tied_with: Vec::new(),
+        separating_test: String::new(),
+        symptom: "the residuals of the published model, formed with the voltage on the q axis or with a constant \
+                  field current, grow with the load of a healthy motor: the frame error"
+            .to_owned(),
+        held_out_error_over_noise: frame.held_out_after,
+        fold_error_over_noise: frame.held_out_after,
+        explained_percent: 100.0 * (1.0 - left),
+        loss_watt: None,
+        parameters: Vec::new(),
+        frame: Some(frame),
+    }
 }
 
 fn verdict(found: &Explanation, steps: &[StepReport]) -> Verdict {
@@ -132,8 +185,7 @@ fn steps(study: &Study, found: &Explanation) -> Vec<StepReport> {
         report
     });
     let contested = found.contests.iter().filter_map(|(k, candidates)| {
-        let moved = found.last().fit.hypothesis.z[*k];
-        let best = candidates.iter().find(|c| stands_for(*k, moved, c))?;
+        let best = candidates.iter().find(|c| stands_for(*k, c))?;
         let index = best.trial.fit.hypothesis.effects.len() - 1;
         let before = found.last();
         let mut report = step_report(study, before, &best.trial, &best.trial, index);
@@ -165,6 +217,7 @@ fn step_report(
         explained_percent: 100.0 * explained(study, before, trial),
         loss_watt: loss_watt(study, fitted, index),
         parameters: effect_parameters(study, fitted, index),
+        frame: None,
     }
 }
 
@@ -243,6 +296,9 @@ pub fn adopt(
     check_name(effect, motor)?;
     let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
+    if effect == frame::NAME {
+        return adopted_frame(&question, motor);
+    }
     progress("refitting the parameters", 0.2);
     let before = study.trial(&study.beliefs(), Effort::FULL);
     progress("fitting the effect", 0.5);
@@ -267,8 +323,40 @@ pub fn adopt(
         },
         nominals,
         motor_file: String::new(),
+        frame: None,
     };
     Ok((report, updated(study, &after, motor)))
+}
+
+/// Changes nothing but the frame in which the monitor forms its residuals.
+fn adopted_frame(
+    question: &Question,
+    motor: &MotorFile,
+) -> Result<(AdoptReport, MotorFile), Error> {
+    let Some(frame) = judged_frame(question, motor) else {
+        let message = "the motor file already asks for the rotor-flux frame with live field current, \
+                       or the recordings hold less than ten windows of steady running";
+        return Err(Error::UnknownEffect(message.to_owned()));
+    };
+    let errors = |fitted, held_out| ErrorReport {
+        error_over_noise: fitted,
+        held_out_error_over_noise: held_out,
+    };
+    let report = AdoptReport {
+        audit: question.audit.clone(),
+        effect: frame::NAME.to_owned(),
+        before: errors(frame.fitted_before, frame.held_out_before),
+        after: errors(frame.fitted_after, frame.held_out_after),
+        proven: frame.proven,
+        parameters: Vec::new(),
+        nominals: Vec::new(),
+        motor_file: String::new(),
+        frame: Some(frame),
+    };
+    let mut file = motor.clone();
+    file.monitor.frame = Frame::RotorFlux;
+    file.monitor.field_current = FieldCurrent::Live;
+    Ok((report, file))
 }
 
 fn check_name(effect: &str, motor: &MotorFile) -> Result<(), Error> {
@@ -276,11 +364,13 @@ fn check_name(effect: &str, motor: &MotorFile) -> Result<(), Error> {
     let formula = effect == expression::NAME;
     let message = if formula && !present {
         "write the formula into the motor file first, its parameters zero".to_owned()
-    } else if !formula && effect != PARAMETERS && find(effect, "").is_none() {
+    } else if !formula && ![PARAMETERS, frame::NAME].contains(&effect) && find(effect, "").is_none()
+    {
         let known = names().join(", ");
         format!(
-            "no effect is called `{effect}`; use one of: {known}, {formula_name}, {PARAMETERS}",
-            formula_name = expression::NAME
+            "no effect is called `{effect}`; use one of: {known}, {formula_name}, {frame_name}, {PARAMETERS}",
+            formula_name = expression::NAME,
+            frame_name = frame::NAME
         )
     } else if !formula && present {
         format!("the motor file already holds `{effect}`; remove it there to fit it anew")

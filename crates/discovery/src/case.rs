@@ -16,7 +16,7 @@ pub(crate) const CHANNELS: [&str; 5] = ["ia", "ib", "ic", "speed", "v0"];
 /// Number of output channels.
 pub(crate) const N_CHANNELS: usize = CHANNELS.len();
 /// Trust in the model of a current sensor beside its noise: half a per cent of the reading.
-const RELATIVE_CURRENT: f64 = 0.005;
+pub(crate) const RELATIVE_CURRENT: f64 = 0.005;
 /// Length of a block, s: short, so that a direct-on-line start reaches every fold.
 const BLOCK: f64 = 0.04;
 /// Time after an interruption of the current during which it is not judged, s.

@@ -1,5 +1,6 @@
 //! Refits the best candidates with free shapes.
 
+use crate::accept::explained;
 use crate::belief::Hypothesis;
 use crate::fit::{Effort, Fit, fit};
 use crate::gram;
@@ -29,6 +30,9 @@ const LEAST_GAIN: f64 = 0.005;
 const LIKELY: f64 = 0.6;
 /// Error below which no further candidates are looked for.
 const SOLVED: f64 = 1.05;
+
+/// Share of the excess that a candidate explains when no better valley is looked for.
+const SETTLED_SHARE: f64 = 0.9;
 
 /// A candidate effect, refitted together with everything else.
 #[derive(Clone, Debug)]
@@ -87,8 +91,11 @@ pub(crate) fn round(study: &Study, base: &Trial, nominal: &Hypothesis, excluded:
     let error = study.fold_error(&base.folds);
     let (likely, rest) = promising(study, &base.fit, &groups, error);
     let mut candidates = confirm(study, base, &likely);
-    let solved = candidates.first().is_some_and(|c| c.error < SOLVED);
-    if !solved {
+    let settled = |c: &Candidate| {
+        c.error < SOLVED
+            || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < WRONG_VALLEY
+    };
+    if !candidates.first().is_some_and(settled) {
         if error > WRONG_VALLEY && !case.speed.is_empty() && !case.speed_is_input {
             candidates.extend(retaught(study, base, nominal, excluded));
         }

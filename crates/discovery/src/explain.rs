@@ -15,6 +15,10 @@ const ADEQUATE: f64 = 1.02;
 /// Share of the excess that accepted effects must explain to be named without adequacy.
 const NAMED_SHARE: f64 = 0.85;
 
+/// Error over noise above which nothing is named, however large the explained share.
+const NAMED_ERROR: f64 = 1.25;
+/// Share of the first excess that a later effect explains at least, unless it makes the model adequate.
+const PATCH_SHARE: f64 = 0.03;
 /// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: beliefs are commonly
 /// wrong by a tenth.
 const WORTH_A_CABLE: f64 = 0.12;
@@ -91,7 +95,9 @@ pub(crate) fn explain(
             break;
         }
     }
-    let nameable = adequate(study, &base) || explained(study, &baseline, &base) > NAMED_SHARE;
+    drop_patches(study, &baseline, &mut steps);
+    let base = steps.last().map_or(&baseline, |s| &s.trial);
+    let nameable = adequate(study, base) || mostly_explained(study, &baseline, base);
     let mut explanation = Explanation {
         first: first.unwrap_or_else(Round::empty),
         contests: Vec::new(),
@@ -104,6 +110,26 @@ pub(crate) fn explain(
         explanation.contests = contests(study, &explanation, excluded);
     }
     explanation
+}
+
+/// Whether the accepted effects may be named although something small is left over.
+fn mostly_explained(study: &Study, baseline: &Trial, last: &Trial) -> bool {
+    explained(study, baseline, last) > NAMED_SHARE && study.proof_error(last) < NAMED_ERROR
+}
+
+/// Takes back what only patches the form of an earlier effect: later effects that explain little of what was missing
+/// at first and do not make the model adequate either.
+fn drop_patches(study: &Study, baseline: &Trial, steps: &mut Vec<Step>) {
+    let assumed = study.fitted.case.table.is_some();
+    while steps.len() > 1 && !assumed {
+        let last = &steps[steps.len() - 1];
+        let share = explained(study, baseline, &last.trial);
+        let gained = share - explained(study, baseline, &last.before);
+        if adequate(study, &last.trial) || gained > PATCH_SHARE {
+            break;
+        }
+        steps.pop();
+    }
 }
 
 /// The effects of a trial with the nominals at their beliefs.
@@ -126,15 +152,18 @@ fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec
         .collect()
 }
 
-/// Effects that explain the recording as well as a parameter that moved.
+/// Effects that explain the recording as well as a parameter that moved, for parameters that can stand for one.
 fn contests(
     study: &Study,
     explanation: &Explanation,
     excluded: &[&str],
 ) -> Vec<(usize, Vec<Candidate>)> {
     let last = explanation.last();
+    let moved = |k: usize| last.fit.hypothesis.z[k];
+    let doubtful = |&k: &usize| k == FRICTION || k == LEAKAGE && moved(k) > WORTH_A_CABLE;
     let contest = |k: usize| (k, contest(study, last, k, excluded));
-    off_nominals(last).into_iter().map(contest).collect()
+    let off = off_nominals(last).into_iter();
+    off.filter(doubtful).map(contest).collect()
 }
 
 fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Candidate> {
@@ -148,15 +177,15 @@ fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Cand
 }
 
 /// Whether a candidate is the physics that a moved parameter may stand for: friction for every loss torque, leakage
-/// for a cable or filter in series when its logarithm `moved` by more than beliefs are commonly wrong.
-pub(crate) fn stands_for(k: usize, moved: f64, candidate: &Candidate) -> bool {
+/// for a cable or filter in series.
+pub(crate) fn stands_for(k: usize, candidate: &Candidate) -> bool {
     let effects = &candidate.trial.fit.hypothesis.effects;
     let Some(descriptor) = effects.last().map(|e| e.effect.descriptor()) else {
         return false;
     };
     match k {
         FRICTION => descriptor.kind == Kind::Physics,
-        LEAKAGE => descriptor.name == "series-inductance" && moved.abs() > WORTH_A_CABLE,
+        LEAKAGE => descriptor.name == "series-inductance",
         _ => false,
     }
 }

@@ -13,6 +13,7 @@ mod confirm;
 mod explain;
 mod fit;
 mod floor;
+mod frame;
 mod gram;
 mod predict;
 mod present;
@@ -29,6 +30,7 @@ mod words;
 pub use api::{Progress, adopt, explain, explain_without};
 pub use case::Unsupported;
 pub use compare::compare;
+pub use frame::{FrameBand, FrameReport};
 pub use question::Error;
 pub use report::{
     AdoptReport, BandReport, CompareReport, ErrorReport, ExplainReport, FitReport, NominalReport,

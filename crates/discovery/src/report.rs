@@ -1,5 +1,6 @@
 //! What the user gets, with the stable keys of the JSON interface.
 
+use crate::frame::FrameReport;
 use recording::Audit;
 use serde::Serialize;
 
@@ -78,6 +79,9 @@ pub struct StepReport {
     pub loss_watt: Option<f64>,
     /// Its parameters.
     pub parameters: Vec<ParameterReport>,
+    /// What the frame of the monitor's model costs, if that is what the step is about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame: Option<FrameReport>,
 }
 
 /// A model's error and parameters.
@@ -247,4 +251,7 @@ pub struct AdoptReport {
     pub nominals: Vec<NominalReport>,
     /// Where the new motor file was written; empty until it is.
     pub motor_file: String,
+    /// What the frame of the monitor's model cost, if that is what was adopted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame: Option<FrameReport>,
 }

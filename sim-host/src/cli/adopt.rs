@@ -143,7 +143,11 @@ fn print(result: &AdoptJson) {
     );
     line("after", report.after.error_over_noise);
     print_verdict(report);
-    print_values(report);
+    if let Some(frame) = &report.frame {
+        print_frame(frame);
+    } else {
+        print_values(report);
+    }
     print_next(
         &format!(
             "{} is written. Is anything still missing?",

@@ -1,7 +1,7 @@
 //! `drivemon explain`: which physical effect a model misses.
 
 use clap::Args;
-use discovery::{ExplainReport, FitReport, RankReport, StepReport, Verdict};
+use discovery::{ExplainReport, FitReport, FrameReport, RankReport, StepReport, Verdict};
 use motor::MotorFile;
 use recording::Source;
 use serde::Serialize;
@@ -241,6 +241,22 @@ fn print_ranking(report: &ExplainReport) {
     );
 }
 
+/// The first residual before and after, at every load.
+pub(super) fn print_frame(frame: &FrameReport) {
+    let line = "First residual of a motor as the motor file says, percent of the voltage, over windows of steady running:";
+    anstream::println!("{}", wrapped(line));
+    anstream::println!("  load     windows   in its frame   rotor-flux frame");
+    for band in &frame.by_load {
+        anstream::println!(
+            "  {:>4.0} %   {:>7}   {:>12.3}   {:>16.3}",
+            band.load_percent,
+            band.windows,
+            band.r1_before_percent,
+            band.r1_after_percent
+        );
+    }
+}
+
 fn print_step(step: &StepReport) {
     let form = if step.form.is_empty() {
         String::new()
@@ -259,6 +275,9 @@ fn print_step(step: &StepReport) {
     for p in &step.parameters {
         let value = uncertain(p.value, p.std_error);
         anstream::println!("  {:<34} {value} {}", p.name, p.unit);
+    }
+    if let Some(frame) = &step.frame {
+        print_frame(frame);
     }
     if let Some(loss) = step.loss_watt {
         anstream::println!("  it takes {loss:.0} W at rated voltage and synchronous speed");
