@@ -411,6 +411,7 @@ fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     let mut file = motor.clone();
     file.parameters = plant.motor;
     file.mechanics = plant.mechanics;
+    file.mechanics.load_friction = motor.mechanics.load_friction;
     let added = trial.fit.hypothesis.configs(&study.belief.plant.rated);
     if added
         .iter()

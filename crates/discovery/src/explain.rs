@@ -2,7 +2,7 @@
 
 use crate::accept::{beats, explained, proven};
 use crate::belief::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
-use crate::confirm::{Candidate, Round, likely, round};
+use crate::confirm::{Candidate, Round, combined, likely, round};
 use crate::fit::Effort;
 use crate::present::off_nominals;
 use crate::study::{Study, Trial};
@@ -15,6 +15,8 @@ const ADEQUATE: f64 = 1.02;
 /// Share of the excess that accepted effects must explain to be named without adequacy.
 const NAMED_SHARE: f64 = 0.85;
 
+/// Relative error of a fit from another start that shows the first one to have been in a wrong valley.
+const DEEPER: f64 = 0.98;
 /// Error over noise above which nothing is named, however large the explained share.
 const NAMED_ERROR: f64 = 1.25;
 /// Share of the first excess that a later effect explains at least, unless it makes the model adequate.
@@ -69,13 +71,20 @@ pub(crate) fn explain(
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
     progress("refitting the parameters", 0.1);
-    let baseline = study.trial(&study.beliefs(), Effort::FULL);
+    let mut baseline = study.trial(&study.beliefs(), Effort::FULL);
     let mut steps: Vec<Step> = Vec::new();
     let mut first = None;
     let mut base = baseline.clone();
     for number in 0..MOST_EFFECTS {
         progress("trying all effects", 0.15 + 0.2 * number as f64);
-        let found = round(study, &base, &at_beliefs(&base), excluded);
+        let mut found = round(study, &base, &at_beliefs(&base), excluded);
+        if let Some(deeper) = deeper_valley(study, &base, &found) {
+            found = round(study, &deeper, &at_beliefs(&deeper), excluded);
+            base = deeper;
+        }
+        if steps.is_empty() {
+            baseline = base.clone();
+        }
         let best = found
             .candidates
             .iter()
@@ -110,6 +119,21 @@ pub(crate) fn explain(
         explanation.contests = contests(study, &explanation, excluded);
     }
     explanation
+}
+
+/// The base once more from where its best candidate ended, if that is better without the candidate too: then the
+/// first fit had settled in a wrong valley.
+fn deeper_valley(study: &Study, base: &Trial, found: &Round) -> Option<Trial> {
+    let best = found.candidates.first()?;
+    let error = combined(study, base);
+    if best.error > DEEPER * error {
+        return None;
+    }
+    let mut start = base.fit.hypothesis.clone();
+    let nominals = &best.trial.fit.hypothesis.z[..N_NOMINAL];
+    start.z[..N_NOMINAL].copy_from_slice(nominals);
+    let again = study.trial(&start, Effort::FULL);
+    (combined(study, &again) < DEEPER * error).then_some(again)
 }
 
 /// Whether the accepted effects may be named although something small is left over.

@@ -5,7 +5,7 @@ use crate::case::{Case, Unsupported};
 use crate::study::Study;
 use motor::MotorFile;
 use motor::effects::{Rated, from_motor_file};
-use recording::{Audit, Expectation, Source, audit};
+use recording::{Audit, Expectation, LoadTorque, Source, audit};
 use std::fmt;
 
 /// Why nothing can be answered.
@@ -57,7 +57,11 @@ impl Question {
         let effects = from_motor_file(motor, &motor.name).map_err(Error::MotorFile)?;
         progress("auditing the recordings", 0.0);
         let audited = audit_of(first, motor);
-        let belief = Belief::new(motor, effects);
+        let mut belief = Belief::new(motor, effects);
+        if sources.iter().any(measures_torque) {
+            // A measured brake torque holds the friction of the load.
+            belief.plant.mechanics.load_friction = 0.0;
+        }
         let refuse = |why| Error::Unsupported(Box::new(audited.clone()), why);
         let mut cases = Vec::new();
         for source in sources {
@@ -81,6 +85,14 @@ impl Question {
             study: Study::new(belief, fitted, cases),
         })
     }
+}
+
+/// Whether a recording holds the torque at the shaft.
+fn measures_torque(source: &Source) -> bool {
+    let Source::Recording(rec) = source else {
+        return false;
+    };
+    rec.torque().is_some() && rec.metadata.load_torque != LoadTorque::Friction
 }
 
 fn case_of(source: &Source, rated: &Rated<f64>) -> Result<Case, Unsupported> {

@@ -6,6 +6,7 @@ use clap::Args;
 use discovery::AdoptReport;
 use serde::Serialize;
 
+use super::explain::print_frame;
 use super::failure::{Failure, Finding};
 use super::paint;
 use super::study::{

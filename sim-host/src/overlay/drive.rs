@@ -25,6 +25,8 @@ pub struct Drive {
     timeline: Arc<Timeline>,
     imposed_speed: Option<Vec<f64>>,
     running_at: Option<f64>,
+    /// Whether the recording holds the torque at the shaft.
+    torque_measured: bool,
 }
 
 /// Supply over some samples.
@@ -58,6 +60,8 @@ impl Drive {
             }),
             imposed_speed: imposed_speed(recording, half),
             running_at: running_at(recording, rated),
+            torque_measured: recording.metadata.load_torque != LoadTorque::Friction
+                && recording.torque().is_some(),
             inputs: Inputs {
                 t_sample,
                 tau_load: load(recording),
@@ -69,8 +73,13 @@ impl Drive {
     /// Runs a motor on this drive.
     pub fn run(&self, plant: &Plant) -> Outputs {
         let imposed = self.imposed_speed.as_deref();
+        let mut plant = plant.clone();
+        if self.torque_measured {
+            // A measured brake torque holds the friction of the load.
+            plant.mechanics.load_friction = 0.0;
+        }
         simulate(
-            plant,
+            &plant,
             &Run {
                 inputs: &self.inputs,
                 between: self.between,
