@@ -7,9 +7,44 @@
 #[path = "../tests/foreign/mod.rs"]
 mod foreign;
 
-use foreign::evidence::{Answer, Question, Setting, double, healthy, single, without_truth};
+use foreign::cases;
+use foreign::evidence::{Answer, Question, Setting, double};
 use rayon::prelude::*;
 use std::ops::Range;
+
+/// Single effects in one setting. An inverter has no coast-down and no steady load here.
+fn single(setting: Setting, seed: u64) -> Vec<Question> {
+    let all = cases::single(seed);
+    let asked = all
+        .iter()
+        .filter(|c| setting != Setting::Steady || !c.inverter);
+    asked.map(|c| Question::of(c, setting, seed)).collect()
+}
+
+/// Single effects with the truth taken out of the library.
+fn without_truth(seed: u64) -> Vec<Question> {
+    let mut all = single(Setting::CoastDown, seed);
+    all.iter_mut().for_each(|q| q.without = Some(q.names[0]));
+    all
+}
+
+/// Healthy machines of every kind.
+fn healthy(seed: u64) -> Vec<Question> {
+    use Setting::{CoastDown, Loads, Steady};
+    let kinds = [
+        (CoastDown, false),
+        (Loads, false),
+        (Steady, false),
+        (Loads, true),
+    ];
+    let question = |(setting, inverter)| Question::healthy(setting, inverter, seed);
+    kinds.map(question).to_vec()
+}
+/// Whether the report says that this recording cannot show what is hidden in it.
+fn is_invisible(answer: &Answer) -> bool {
+    let mut hidden = answer.report.not_testable.iter();
+    hidden.any(|n| n == answer.question.names[0])
+}
 
 /// What the command line asks for.
 struct Asked {
@@ -86,7 +121,7 @@ fn main() {
         ">= 85 %",
     );
     let mut loads = asked.answers("loads", |s| single(Setting::Loads, s), seeds.clone());
-    loads.retain(|a| !a.is_invisible(a.question.names[0]));
+    loads.retain(|a| !is_invisible(a));
     print(
         "starts and loads only, visible effects: found",
         count(&loads, Answer::is_found),

@@ -54,7 +54,7 @@ pub fn explain_without(
     match Question::new(sources, motor, progress) {
         Ok(question) => {
             let found = explain::explain(&question.study, excluded, progress);
-            let frame = judged_frame(&question, motor);
+            let frame = judged_frame(&question, motor, found.last());
             progress("done", 1.0);
             Ok(report(&question, &found, frame))
         }
@@ -74,11 +74,12 @@ pub fn explain_without(
 }
 
 /// What the frame of the monitor's model costs on the recordings of a question.
-fn judged_frame(question: &Question, motor: &MotorFile) -> Option<FrameReport> {
+fn judged_frame(question: &Question, motor: &MotorFile, trial: &Trial) -> Option<FrameReport> {
     let study = &question.study;
     let all = std::iter::once(&study.fitted).chain(&study.proofs);
     let cases: Vec<&Case> = all.map(|s| &s.case).collect();
-    frame::judge(motor, &study.belief, &cases)
+    let fitted = trial.fit.hypothesis.plant(&study.belief).motor;
+    frame::judge(motor, &study.belief, &fitted, &cases)
 }
 
 fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) -> ExplainReport {
@@ -120,16 +121,6 @@ fn add_frame(report: &mut ExplainReport, frame: FrameReport) {
     if report.verdict == Verdict::Adequate {
         report.verdict = Verdict::Effect;
     }
-    report.ranking.insert(
-        0,
-        RankReport {
-            effect: frame::NAME.to_owned(),
-            held_out_error_over_noise: frame.held_out_after,
-            gain_percent: 100.0 * (1.0 - frame.held_out_after / frame.held_out_before),
-            refitted: true,
-            visibility_percent: 100.0 * (frame.held_out_before - 1.0).max(0.0),
-        },
-    );
     report.steps.insert(0, frame_step(frame));
 }
 
@@ -296,11 +287,11 @@ pub fn adopt(
     check_name(effect, motor)?;
     let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
-    if effect == frame::NAME {
-        return adopted_frame(&question, motor);
-    }
     progress("refitting the parameters", 0.2);
     let before = study.trial(&study.beliefs(), Effort::FULL);
+    if effect == frame::NAME {
+        return adopted_frame(&question, motor, &before);
+    }
     progress("fitting the effect", 0.5);
     let after = if effect == PARAMETERS {
         before.clone()
@@ -332,8 +323,9 @@ pub fn adopt(
 fn adopted_frame(
     question: &Question,
     motor: &MotorFile,
+    trial: &Trial,
 ) -> Result<(AdoptReport, MotorFile), Error> {
-    let Some(frame) = judged_frame(question, motor) else {
+    let Some(frame) = judged_frame(question, motor, trial) else {
         let message = "the motor file already asks for the rotor-flux frame with live field current, \
                        or the recordings hold less than ten windows of steady running";
         return Err(Error::UnknownEffect(message.to_owned()));

@@ -205,10 +205,29 @@ fn print_errors(report: &ExplainReport) {
     };
     anstream::println!("\nError on data that was not fitted:");
     line("all parameters refitted", full);
-    for step in &report.steps {
+    for step in report.steps.iter().filter(|step| step.frame.is_none()) {
         line(
             &format!("with {}", step.effect),
             step.held_out_error_over_noise,
+        );
+    }
+    for frame in report.steps.iter().filter_map(|step| step.frame.as_ref()) {
+        print_frame_errors(frame);
+    }
+}
+
+/// The error of the monitor's own model, on its own scale.
+fn print_frame_errors(frame: &FrameReport) {
+    let full = frame.held_out_before.max(frame.held_out_after);
+    anstream::println!("\nError of the monitor's first residual on data that was not fitted:");
+    let both = [
+        ("in the motor file's frame", frame.held_out_before),
+        ("in the rotor-flux frame", frame.held_out_after),
+    ];
+    for (name, error) in both {
+        anstream::println!(
+            "  {name:<34} {error:8.3} x noise  {}",
+            bar(error, full, WIDTH)
         );
     }
 }

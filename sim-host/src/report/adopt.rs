@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::audit;
+use super::frame;
 use super::number::{decimals, shown};
 use super::overlay;
 use super::parameters::{Bar, NOISE, bars, nominals, of_effect};
@@ -16,6 +17,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (cards(&summary(result)))
         (next("Is anything still missing?", result.text("next_command")))
         (errors(result))
+        (frame::section(result))
         (overlay::section(result))
         (values(result))
         (audit::section(result))

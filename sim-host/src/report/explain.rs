@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::audit;
+use super::frame;
 use super::number::{decimals, shown};
 use super::overlay;
 use super::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
@@ -21,7 +22,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (next(result.text("next/why"), result.text("next/command")))
         (errors(result, &steps))
         (where_it_fails(result))
-        @for (k, step) in steps.iter().enumerate() { (effect(step, k)) }
+        @for (k, step) in steps.iter().enumerate() { (effect(step, k)) (frame::section(step)) }
         (unexplained(result))
         (overlay::section(result))
         (ranking(result, &steps))
@@ -137,6 +138,7 @@ fn errors(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
     rows.extend(
         steps
             .iter()
+            .filter(|step| step.get("frame").is_none())
             .map(|step| row(format!("with {}", step.text("effect")), step, "chosen")),
     );
     html! {

@@ -10,6 +10,7 @@ mod chart;
 mod compare;
 mod demo;
 mod explain;
+mod frame;
 mod load_table;
 mod monitor;
 mod number;

@@ -114,15 +114,10 @@ impl Answer {
     pub fn is_wrong(&self) -> bool {
         let names = &self.question.names;
         let right = |s: &discovery::StepReport| {
-            let tied = |n: &&str| s.effect == **n || s.tied_with.iter().any(|t| t == *n);
-            names.iter().any(|n| tied(&n))
+            let tied = |n: &str| s.effect == n || s.tied_with.iter().any(|t| t == n);
+            names.iter().any(|n| tied(n))
         };
         !self.report.steps.iter().all(right)
-    }
-
-    /// Whether the report says that this recording cannot show `name`.
-    pub fn is_invisible(&self, name: &str) -> bool {
-        self.report.not_testable.iter().any(|n| n == name)
     }
 
     pub fn line(&self) -> String {
@@ -148,22 +143,6 @@ impl Answer {
     }
 }
 
-/// Single effects in one setting. An inverter has no coast-down and no steady load here.
-pub fn single(setting: Setting, seed: u64) -> Vec<Question> {
-    let all = cases::single(seed);
-    let asked = all
-        .iter()
-        .filter(|c| setting != Setting::Steady || !c.inverter);
-    asked.map(|c| Question::of(c, setting, seed)).collect()
-}
-
-/// Single effects with the truth taken out of the library.
-pub fn without_truth(seed: u64) -> Vec<Question> {
-    let mut all = single(Setting::CoastDown, seed);
-    all.iter_mut().for_each(|q| q.without = Some(q.names[0]));
-    all
-}
-
 /// Two effects at once.
 pub fn double(seed: u64) -> Vec<Question> {
     let question = |(names, hidden): ([&'static str; 2], Hidden)| Question {
@@ -175,17 +154,4 @@ pub fn double(seed: u64) -> Vec<Question> {
         seed,
     };
     cases::double(seed).into_iter().map(question).collect()
-}
-
-/// Healthy machines of every kind.
-pub fn healthy(seed: u64) -> Vec<Question> {
-    use Setting::{CoastDown, Loads, Steady};
-    let kinds = [
-        (CoastDown, false),
-        (Loads, false),
-        (Steady, false),
-        (Loads, true),
-    ];
-    let question = |(setting, inverter)| Question::healthy(setting, inverter, seed);
-    kinds.map(question).to_vec()
 }
