@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p discovery --example evidence -- --seeds 10 --first 101`
 //! `--only coast-down|loads|steady|healthy|without|double` asks one row, `--effect NAME` one effect; every answer
-//! goes to standard error.
+//! goes to standard error, with `--verbose` its ranking too.
 
 #[path = "../tests/foreign/mod.rs"]
 mod foreign;
@@ -46,11 +46,23 @@ fn is_invisible(answer: &Answer) -> bool {
     hidden.any(|n| n == answer.question.names[0])
 }
 
+/// The first effects of the ranking; `~`: linearised.
+fn print_ranking(answer: &Answer) {
+    for row in answer.report.ranking.iter().take(8) {
+        let mark = if row.refitted { ' ' } else { '~' };
+        eprintln!(
+            "    {mark}{:28} {:.4} ({:+.2} %)",
+            row.effect, row.held_out_error_over_noise, -row.gain_percent
+        );
+    }
+}
+
 /// What the command line asks for.
 struct Asked {
     seeds: Range<u64>,
     only: Option<String>,
     effect: Option<String>,
+    verbose: bool,
 }
 
 impl Asked {
@@ -64,6 +76,7 @@ impl Asked {
             seeds: first..first + number("--seeds", 10),
             only: value("--only"),
             effect: value("--effect"),
+            verbose: std::env::args().any(|a| a == "--verbose"),
         }
     }
 
@@ -84,6 +97,9 @@ impl Asked {
         let ask = |q: &Question| {
             let answer = q.ask();
             eprintln!("{row:10} {}", answer.line());
+            if self.verbose {
+                print_ranking(&answer);
+            }
             answer
         };
         all.par_iter().map(ask).collect()

@@ -12,6 +12,8 @@ const LESSER_GAIN: f64 = 0.004;
 const P_LIMIT: f64 = 0.005;
 /// Least share of the excess over the floor that must be explained.
 const SHARE: f64 = 0.2;
+/// Error over noise below which a model is adequate.
+const ADEQUATE: f64 = 1.02;
 /// Least size, in typical sizes.
 const LEAST_SIZE: f64 = 0.05;
 
@@ -36,26 +38,52 @@ pub(crate) fn beats(better: &Trial, worse: &Trial) -> bool {
     folds.min(proof) > LESSER_GAIN && folds.max(proof) > GAIN
 }
 
-/// Share of the excess over the floor that `after` explains, the lesser of folds and proof.
-pub(crate) fn explained(study: &Study, before: &Trial, after: &Trial) -> f64 {
-    let share = |b: f64, a: f64| {
-        let excess = b * b - 1.0;
-        if excess <= 0.0 {
-            1.0
-        } else {
-            (b * b - a * a) / excess
-        }
-    };
-    let folds = share(
+/// Share of an excess over the floor that is explained, from errors over noise.
+fn share(before: f64, after: f64) -> f64 {
+    let excess = before * before - 1.0;
+    if excess <= 0.0 {
+        1.0
+    } else {
+        (before * before - after * after) / excess
+    }
+}
+
+fn fold_share(study: &Study, before: &Trial, after: &Trial) -> f64 {
+    share(
         study.fold_error(&before.folds),
         study.fold_error(&after.folds),
-    );
-    folds.min(share(study.proof_error(before), study.proof_error(after)))
+    )
+}
+
+/// Share of the excess over the floor that `after` explains, the lesser of folds and proof.
+pub(crate) fn explained(study: &Study, before: &Trial, after: &Trial) -> f64 {
+    let proof = share(study.proof_error(before), study.proof_error(after));
+    fold_share(study, before, after).min(proof)
 }
 
 /// Whether the last effect of `after` is proven over `before`.
 pub(crate) fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
-    beats(after, before) && explained(study, before, after) > SHARE && large_enough(after)
+    if !large_enough(after) {
+        return false;
+    }
+    if beats(after, before) {
+        return explained(study, before, after) > SHARE;
+    }
+    beats_on_folds(after, before)
+        && fold_share(study, before, after) > SHARE
+        && study.proof_is_silent(before, after)
+        && !worse_on_proof(before, after)
+}
+
+/// Whether `better` beats `worse` on the fitted recording alone.
+fn beats_on_folds(better: &Trial, worse: &Trial) -> bool {
+    gain(&worse.folds, &better.folds) > GAIN
+}
+
+/// Whether the proving recordings speak against the effect.
+fn worse_on_proof(before: &Trial, after: &Trial) -> bool {
+    let sum = |t: &Trial| t.proof.iter().sum::<f64>();
+    sum(after) > (1.0 + LESSER_GAIN) * sum(before)
 }
 
 /// Whether the last effect's size is worth naming.
@@ -66,4 +94,10 @@ fn large_enough(trial: &Trial) -> bool {
     let mut coordinates = (crate::belief::N_NOMINAL..h.z.len()).filter(mine);
     let resonance = h.effects[last].effect.descriptor().is_resonance();
     resonance || coordinates.any(|k| h.parameter(k).role == Role::Size && h.z[k].abs() > LEAST_SIZE)
+}
+
+/// Whether nothing provable is left.
+pub(crate) fn adequate(study: &Study, trial: &Trial) -> bool {
+    let gate = ADEQUATE * (1.0 + 2.0 * study.allowance());
+    study.proof_error(trial) < gate && study.fold_error(&trial.folds) < gate
 }

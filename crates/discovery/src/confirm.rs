@@ -1,6 +1,6 @@
 //! Refits the best candidates with free shapes.
 
-use crate::accept::explained;
+use crate::accept::{adequate, explained};
 use crate::belief::Hypothesis;
 use crate::fit::{Effort, Fit, fit};
 use crate::gram;
@@ -103,10 +103,26 @@ pub(crate) fn round(study: &Study, base: &Trial, nominal: &Hypothesis, excluded:
             candidates.extend(confirm(study, base, &rest));
         }
     }
+    let explains = |c: &Candidate| adequate(study, &c.trial);
+    if !adequate(study, base) && !candidates.iter().any(explains) {
+        candidates.extend(confirm(study, base, &second_chances(&base.fit, &groups)));
+    }
     Round {
         candidates: best_of_each(candidates),
         screened: groups.into_iter().map(|g| g[0].clone()).collect(),
     }
+}
+
+/// Effects whose linear estimate has an impossible sign: from a base in a wrong valley that is no verdict.
+fn second_chances(fit: &Fit, groups: &[Vec<Screened>]) -> Vec<Start> {
+    let impossible =
+        |g: &&Vec<Screened>| !g[0].possible && !g[0].config.effect.descriptor().is_resonance();
+    let start = |group: &Vec<Screened>| Start {
+        hypothesis: fit.hypothesis.clone(),
+        group: group.clone(),
+        teacher: fit.teacher,
+    };
+    groups.iter().filter(impossible).map(start).collect()
 }
 
 /// Screens all effects and refits only those that may explain most of the excess.

@@ -1,6 +1,6 @@
 //! Which physical effect is missing: step by step, each proven on data that was not fitted.
 
-use crate::accept::{beats, explained, proven};
+use crate::accept::{adequate, beats, explained, proven};
 use crate::belief::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::confirm::{Candidate, Round, combined, likely, round};
 use crate::fit::Effort;
@@ -10,8 +10,6 @@ use motor::effects::Kind;
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
-/// Error over noise below which a model is adequate.
-const ADEQUATE: f64 = 1.02;
 /// Share of the excess that accepted effects must explain to be named without adequacy.
 const NAMED_SHARE: f64 = 0.85;
 
@@ -56,12 +54,6 @@ impl Explanation {
     pub fn last(&self) -> &Trial {
         self.steps.last().map_or(&self.baseline, |s| &s.trial)
     }
-}
-
-/// Whether nothing provable is left.
-pub(crate) fn adequate(study: &Study, trial: &Trial) -> bool {
-    let gate = ADEQUATE * (1.0 + 2.0 * study.allowance());
-    study.proof_error(trial) < gate && study.fold_error(&trial.folds) < gate
 }
 
 /// Explains a study. `excluded` effects are not asked about; `progress` hears what is being done.

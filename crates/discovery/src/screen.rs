@@ -11,6 +11,8 @@ use rayon::prelude::*;
 
 /// Size of the secant, in typical sizes.
 const SECANT: f64 = 0.5;
+/// Start of a refit whose linear estimate is impossible, in typical sizes.
+const SMALL: f64 = 0.3;
 /// Prior weight of an effect's size: one over the square of four typical sizes.
 const SIZE_WEIGHT: f64 = 1.0 / 16.0;
 /// Finest ratio between neighbouring frequencies of a resonance scan.
@@ -23,6 +25,8 @@ pub(crate) struct Screened {
     pub config: EffectConfig,
     /// Held-out squared error of each block.
     pub held_out: Vec<f64>,
+    /// Whether physics allows the estimated sizes; linearised from a wrong valley a sign may be wrong.
+    pub possible: bool,
     /// Mean squared signature of a typical size that the nominals cannot imitate, in noise units.
     pub visible: f64,
 }
@@ -146,9 +150,13 @@ fn judge(
     } else {
         gram::held_out(&fit.blocks, &fit.penalty)
     };
+    if !possible {
+        make_small(belief, &mut config);
+    }
     Screened {
         config,
         held_out,
+        possible,
         visible: visible(&all, &penalty, first, n),
     }
 }
@@ -178,6 +186,16 @@ fn estimate(belief: &Belief, config: &mut EffectConfig, sizes: &[f64]) -> bool {
             (size * p.typical).clamp(p.range[0].max(-limit), p.range[1].min(limit)) * scale;
     }
     possible
+}
+
+/// Sizes from which a refit may find out by itself: a little of what cannot be negative, nothing of the rest.
+fn make_small(belief: &Belief, config: &mut EffectConfig) {
+    let parameters = config.effect.descriptor().parameters.iter().enumerate();
+    for (k, p) in parameters.filter(|(_, p)| p.role == Role::Size) {
+        let one_sided = p.range[0] >= 0.0;
+        let share = if one_sided { SMALL } else { 0.0 };
+        config.values[k] = share * p.typical * p.scale.of(&belief.plant.rated);
+    }
 }
 
 /// Largest squared signature of the columns behind the first `first`, after the nominals took their share.

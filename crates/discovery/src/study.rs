@@ -10,6 +10,10 @@ use crate::predict::{Teacher, outputs, residual};
 /// Seed of the propagated noise: the same input gives the same bytes.
 const SEED: u64 = 20_220_913;
 
+/// Mean squared difference of two predictions, in units of the floor, that no proof can resolve: a hundredth moves the
+/// error by half a per cent.
+const SILENT: f64 = 0.01;
+
 /// A recording with its noise floor.
 #[derive(Clone, Debug)]
 pub(crate) struct Subject {
@@ -105,6 +109,19 @@ impl Study {
         let floor = |s: &Subject| s.floor.mean * s.case.judged();
         let expected: f64 = self.proofs.iter().map(floor).sum();
         (trial.proof.iter().sum::<f64>() / expected).sqrt()
+    }
+
+    /// Whether the proving recordings cannot tell two trials apart: their predictions there differ by too little.
+    pub fn proof_is_silent(&self, one: &Trial, other: &Trial) -> bool {
+        let difference = |s: &Subject| {
+            let run = |t: &Trial| outputs(&s.case, &self.belief, &t.fit.hypothesis, Teacher::Off);
+            let squares = run(one)
+                .into_iter()
+                .zip(run(other))
+                .map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>() / (s.floor.mean * s.case.judged())
+        };
+        !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
     }
 
     /// Relative allowance of the gate for the uncertainty of the floor.
