@@ -46,13 +46,15 @@ pub(crate) fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated:
     let clean = first.cleaned(raw);
     let segments = segments(&clean, window / 2, sigma);
     let mut supply = Supply::described(raw, &clean, segments, t_sample, window, 4);
+    supply.restore(raw, sigma);
+    let restored: usize = supply.raw.iter().map(Range::len).sum();
     let rest = raw.iter().zip(&supply.u_s).map(|(a, b)| (a - b).norm_sqr());
-    let rms = (0.5 * rest.sum::<f64>() / raw.len() as f64).sqrt();
-    if rms > WHITE_LIMIT * sigma {
+    let described = (raw.len() - restored).max(1);
+    let rms = (0.5 * rest.sum::<f64>() / described as f64).sqrt();
+    if rms > WHITE_LIMIT * sigma || 2 * restored > raw.len() {
         supply.u_s = raw.to_vec();
+        supply.raw.clear();
         supply.denoised = false;
-    } else {
-        supply.restore(raw, sigma);
     }
     supply
 }
