@@ -13,7 +13,9 @@ struct Place {
 
 impl Place {
     fn new(name: &str) -> Self {
-        let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("flash-{name}"));
+        // Not below the build folder: that may itself lie in a source tree, which would be found instead.
+        let own = format!("drivemon-flash-{name}-{}", std::process::id());
+        let root = std::env::temp_dir().join(own);
         let _ = fs::remove_dir_all(&root);
         fs::create_dir_all(root.join("tree/tools")).expect("a folder");
         fs::create_dir_all(root.join("bin")).expect("a folder");
@@ -50,6 +52,12 @@ impl Place {
     fn log(&self) -> Vec<String> {
         let text = fs::read_to_string(self.root.join("log")).unwrap_or_default();
         text.lines().map(str::to_owned).collect()
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.root);
     }
 }
 
