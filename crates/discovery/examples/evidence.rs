@@ -1,4 +1,4 @@
-//! How often the hidden effect is found: the table of `docs/evidence.md`.
+//! How often the hidden effect is found on foreign machines, as a table.
 //!
 //! `cargo run --release -p discovery --example evidence -- --seeds 10 --first 101`
 //! `--only coast-down|loads|steady|healthy|without|double` asks one row, `--effect NAME` one effect; every answer
@@ -40,6 +40,7 @@ fn healthy(seed: u64) -> Vec<Question> {
     let question = |(setting, inverter)| Question::healthy(setting, inverter, seed);
     kinds.map(question).to_vec()
 }
+
 /// Whether the report says that this recording cannot show what is hidden in it.
 fn is_invisible(answer: &Answer) -> bool {
     let mut hidden = answer.report.not_testable.iter();
