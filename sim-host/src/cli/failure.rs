@@ -49,6 +49,9 @@ pub enum Failure {
         /// What the system said.
         error: std::io::Error,
     },
+    /// Results of a campaign.
+    #[error(transparent)]
+    Store(#[from] crate::campaign::StoreError),
     /// The data do not support an answer.
     #[error("{0}")]
     Unsupported(String),

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand.
 
 mod adopt;
+mod campaign;
 mod compare;
 mod demo;
 mod explain;
@@ -59,6 +60,7 @@ enum Command {
     Compare(compare::Compare),
     Explain(explain::Explain),
     Adopt(adopt::Adopt),
+    Campaign(campaign::Campaign),
     Flash(flash::Flash),
 }
 
@@ -72,6 +74,7 @@ impl Cli {
             Command::Compare(compare) => compare.run(),
             Command::Explain(explain) => explain.run(),
             Command::Adopt(adopt) => adopt.run(),
+            Command::Campaign(campaign) => campaign.run(),
             Command::Flash(flash) => flash.run(),
         };
         match outcome {

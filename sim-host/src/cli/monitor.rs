@@ -219,7 +219,7 @@ fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Ve
     print_verdict(timeline, verdict);
 }
 
-fn print_lamps(timeline: &Timeline) {
+pub(super) fn print_lamps(timeline: &Timeline) {
     if timeline.lamps.is_empty() {
         return;
     }
@@ -254,7 +254,7 @@ pub(super) fn symbol(lamp: &str) -> &'static str {
     }
 }
 
-fn print_windows(timeline: &Timeline) {
+pub(super) fn print_windows(timeline: &Timeline) {
     anstream::println!(
         "\n{} of {} windows judged",
         timeline.judged,
@@ -273,7 +273,7 @@ fn print_windows(timeline: &Timeline) {
     }
 }
 
-fn print_sequence(sequence: &SequenceSummary) {
+pub(super) fn print_sequence(sequence: &SequenceSummary) {
     let percent =
         |x: Option<f64>| x.map_or("not measured".to_owned(), |x| format!("{:.2} %", 100.0 * x));
     let angle = sequence
@@ -287,7 +287,7 @@ fn print_sequence(sequence: &SequenceSummary) {
     );
 }
 
-fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
+pub(super) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
     match verdict.state {
         VerdictState::Healthy => anstream::println!("{}", paint::good("healthy: no fault was lit")),
         VerdictState::NotJudged => anstream::println!("{}", paint::caution("not judged")),

@@ -6,6 +6,7 @@
 
 mod adopt;
 mod audit;
+mod campaign;
 mod chart;
 mod compare;
 mod demo;
@@ -41,6 +42,8 @@ pub enum Subject {
     Explain,
     /// `drivemon adopt`.
     Adopt,
+    /// `drivemon campaign table`.
+    Campaign,
 }
 
 /// The page for a result, complete.
@@ -60,6 +63,10 @@ pub fn page(subject: Subject, result: &impl Serialize) -> Result<String, serde_j
         Subject::Compare => ("Where the model fails", compare::content(&place)),
         Subject::Explain => ("Which physics the model misses", explain::content(&place)),
         Subject::Adopt => ("A model made better", adopt::content(&place)),
+        Subject::Campaign => (
+            "What the lamps can be trusted with",
+            campaign::content(&place),
+        ),
     };
     Ok(shell::page(
         title,

@@ -51,11 +51,22 @@ pub enum Probe {
     Speed,
 }
 
+/// What is no longer alike in all three phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asymmetry {
+    /// Resistance in series with one phase, 0..=2, as a share of the stator resistance.
+    Series(usize),
+    /// Broken rotor bars: the asymmetry of the rotor resistance.
+    RotorBars,
+}
+
 /// What breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// The motor itself.
     Parameter(Parameter),
+    /// The symmetry of the motor.
+    Asymmetry(Asymmetry),
     /// A d-q signal, the published way: the other component and the angle stay.
     Dq(DqSignal, Frame),
     /// One sensor.
@@ -104,6 +115,14 @@ impl Fault {
         (self.from_s..self.to_s).contains(&t)
     }
 
+    /// How far a parameter or gain is from its healthy value, as a share of it; an offset has none.
+    pub fn share(&self) -> f64 {
+        match self.change {
+            Change::Factor(factor) => factor - 1.0,
+            Change::Offset(_) => 0.0,
+        }
+    }
+
     /// What becomes of a value while the fault is present.
     pub fn apply(&self, x: f64) -> f64 {
         match self.change {
@@ -114,7 +133,7 @@ impl Fault {
 }
 
 /// Every fault by its name; d-q signals stand with the paper's frame until the file says otherwise.
-const NAMES: [(&str, Target); 21] = [
+const NAMES: [(&str, Target); 25] = [
     ("Rs", Target::Parameter(Parameter::Rs)),
     ("Rr", Target::Parameter(Parameter::Rr)),
     ("Ls", Target::Parameter(Parameter::Ls)),
@@ -124,6 +143,10 @@ const NAMES: [(&str, Target); 21] = [
     ("Lm", Target::Parameter(Parameter::Lm)),
     ("B", Target::Parameter(Parameter::B)),
     ("Bl", Target::Parameter(Parameter::Bl)),
+    ("Rsa", Target::Asymmetry(Asymmetry::Series(0))),
+    ("Rsb", Target::Asymmetry(Asymmetry::Series(1))),
+    ("Rsc", Target::Asymmetry(Asymmetry::Series(2))),
+    ("bars", Target::Asymmetry(Asymmetry::RotorBars)),
     ("Id", Target::Dq(DqSignal::Id, Frame::Voltage)),
     ("Iq", Target::Dq(DqSignal::Iq, Frame::Voltage)),
     ("Vd", Target::Dq(DqSignal::Vd, Frame::Voltage)),
@@ -193,6 +216,7 @@ fn read_target(
         (Target::Parameter(Ls), PlantKind::Full) => "\"Lls\" or \"Lm\"",
         (Target::Parameter(Lr), PlantKind::Full) => "\"Llr\" or \"Lm\"",
         (Target::Parameter(Lls | Llr | Lm), PlantKind::Linear) => "\"Ls\" or \"Lr\"",
+        (Target::Asymmetry(_), PlantKind::Linear) => "\"Rs\" or \"Rr\", or plant = \"full\"",
         (Target::Dq(..), _) => {
             let frame = section.choice_or("frame", &FRAMES, Frame::Voltage)?;
             return Some(in_frame(target, frame));
@@ -239,7 +263,7 @@ fn read_change(section: &Section<'_>, target: Option<Target>) -> Option<Change> 
         // The name is wrong already: what it could change is not known.
         (_, None) => None,
         // `finish` refuses those keys, and that is the remedy.
-        ([], Some(Target::Parameter(_) | Target::Dq(..)))
+        ([], Some(Target::Parameter(_) | Target::Asymmetry(_) | Target::Dq(..)))
             if ["gain", "offset", "dead"]
                 .iter()
                 .any(|key| section.has(key)) =>

@@ -14,7 +14,7 @@ mod malformed;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use faults::{Change, DqSignal, Fault, Parameter, Probe, Target};
+pub use faults::{Asymmetry, Change, DqSignal, Fault, Parameter, Probe, Target};
 pub use load::LoadSpec;
 pub use sensors::{SensorSpec, SpeedSensor};
 pub use supply::{Piecewise, SupplySpec};

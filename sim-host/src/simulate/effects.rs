@@ -4,11 +4,13 @@ use super::SimulationError;
 use super::full::Make;
 use super::plant::EXTRA_STATES;
 use super::waveform::Waveform;
-use crate::scenario::Scenario;
+use crate::scenario::{Asymmetry, Fault, Scenario, Target};
 use motor::MotorFile;
 use motor::dynamic::Dynamic;
 use motor::effects::{EffectConfig, EffectStack, Hook, Timeline, extra_states, from_entry, rated};
 use motor::motor_file::EffectEntry;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The supply frequency is told to effects this often, s.
@@ -67,6 +69,61 @@ pub(crate) fn check_entry(
     from_entry(entry, &rated(motor)).map_err(|error| (error.key().to_owned(), error.to_string()))
 }
 
+/// What the faults of a scenario bring along when all of them are present, checked.
+pub(super) fn of_faults(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
+    let faults: Vec<&Fault> = scenario.faults.iter().collect();
+    let effect = |entry: EffectEntry| {
+        check_entry(&scenario.motor, &entry).map_err(|(key, message)| SimulationError::Effect {
+            name: entry.name,
+            key,
+            message: format!("{message}: give the fault another size"),
+        })
+    };
+    broken_symmetry(&faults).into_iter().map(effect).collect()
+}
+
+/// Faults of symmetry as effects.
+fn broken_symmetry(faults: &[&Fault]) -> Vec<EffectEntry> {
+    let sum = |name: &'static str, part: fn(Asymmetry, f64) -> Option<Complex64>| {
+        let parts = faults.iter().filter_map(|fault| match fault.target {
+            Target::Asymmetry(asymmetry) => part(asymmetry, fault.share()),
+            _ => None,
+        });
+        let k: Complex64 = parts.sum();
+        (k.norm_sqr() > 0.0).then_some((name, k))
+    };
+    // Relative to the resistance that `common_series` has raised already.
+    let stator = sum("stator-asymmetry", series_in_phase)
+        .map(|(name, k)| (name, k / (1.0 + common_series(faults))));
+    let rotor = sum("rotor-asymmetry", bars);
+    let entry = |(name, k): (&str, Complex64)| {
+        EffectEntry::with_numbers(name, [("asymmetry_re", k.re), ("asymmetry_im", k.im)])
+    };
+    stator.into_iter().chain(rotor).map(entry).collect()
+}
+
+/// Resistance in series with one phase, `share` of `R_s`, drops `share/3 R_s (i + e^(2j gamma) conj(i))`, gamma being
+/// the axis of the phase. This is the sum of the first terms, a higher `R_s`.
+pub(super) fn common_series(faults: &[&Fault]) -> f64 {
+    let series = faults
+        .iter()
+        .filter(|fault| matches!(fault.target, Target::Asymmetry(Asymmetry::Series(_))));
+    series.map(|fault| fault.share() / 3.0).sum()
+}
+
+/// The second term of [`common_series`].
+fn series_in_phase(asymmetry: Asymmetry, share: f64) -> Option<Complex64> {
+    let Asymmetry::Series(phase) = asymmetry else {
+        return None;
+    };
+    let gamma = [0.0, TAU / 3.0, 2.0 * TAU / 3.0][phase % 3];
+    Some(Complex64::from_polar(share / 3.0, 2.0 * gamma))
+}
+
+fn bars(asymmetry: Asymmetry, share: f64) -> Option<Complex64> {
+    (asymmetry == Asymmetry::RotorBars).then_some(share.into())
+}
+
 /// Builds the motor with its effects, again whenever a fault changes its parameters.
 pub(super) fn factory(
     scenario: &Scenario,
@@ -74,8 +131,13 @@ pub(super) fn factory(
 ) -> Make<EffectStack<EXTRA_STATES>> {
     let rated = rated(&scenario.motor);
     let timeline = Arc::new(timeline(scenario));
-    Box::new(move |motor, mechanics| {
+    let file = scenario.motor.clone();
+    Box::new(move |motor, mechanics, faults| {
         let mut motor = *motor;
+        // Checked by `of_faults`. They have no states of their own: those of the others stay where they are.
+        let broken = broken_symmetry(faults).into_iter();
+        let broken = broken.filter_map(|entry| check_entry(&file, &entry).ok());
+        let effects: Vec<_> = effects.iter().cloned().chain(broken).collect();
         for effect in &effects {
             if effect.effect.hooks().contains(&Hook::Motor) {
                 effect.effect.motor(&effect.values, &rated, &mut motor);

@@ -1,9 +1,10 @@
 //! The five-state motor on the scenario's supply and load.
 
+use super::effects::common_series;
 use super::plant::Presence;
 use super::waveform::Waveform;
 use super::{SimulationError, Truth};
-use crate::scenario::{Fault, Parameter, Scenario, Start};
+use crate::scenario::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::{Dynamic, DynamicState, Extra, Hooks, phases};
 use motor::load::Load;
 use motor::steady_state::SteadyState;
@@ -17,7 +18,9 @@ const STEP_TIMES_RATE: f64 = 0.5;
 /// Width of the band of speeds in which a passive load changes its sign, rad/s (see `motor::load`).
 const STANDSTILL_RAD_S: f64 = 0.1;
 
-pub(super) type Make<H> = Box<dyn Fn(&TParams<f64>, &Mechanics<f64>) -> Dynamic<H> + Send>;
+/// Builds the motor from its parameters and the faults in force, which may bring effects along.
+pub(super) type Make<H> =
+    Box<dyn Fn(&TParams<f64>, &Mechanics<f64>, &[&Fault]) -> Dynamic<H> + Send>;
 
 pub(super) struct Full<H: Hooks> {
     healthy: (TParams<f64>, Mechanics<f64>),
@@ -38,7 +41,7 @@ impl<H: Hooks> Full<H> {
         let motor = scenario.motor.parameters;
         let waveform = Waveform::new(&scenario.supply);
         let mut plant = Full {
-            model: make(&motor, &mechanics),
+            model: make(&motor, &mechanics, &[]),
             state: DynamicState::rest(),
             now: (motor, mechanics),
             presence: Presence::default(),
@@ -83,9 +86,9 @@ impl<H: Hooks> Full<H> {
 
     pub(super) fn switch_faults(&mut self, faults: &[Fault], t: f64) {
         if let Some(present) = self.presence.changed_at(faults, t) {
-            self.now = changed(&self.healthy, present);
+            self.now = changed(&self.healthy, &present);
             let (motor, mechanics) = &self.now;
-            self.model = (self.make)(motor, mechanics);
+            self.model = (self.make)(motor, mechanics, &present);
         }
     }
 
@@ -122,25 +125,36 @@ impl<H: Hooks> Full<H> {
 }
 
 /// The motor with its faults.
-fn changed<'f>(
+fn changed(
     healthy: &(TParams<f64>, Mechanics<f64>),
-    present: impl Iterator<Item = (Parameter, &'f Fault)>,
+    present: &[&Fault],
 ) -> (TParams<f64>, Mechanics<f64>) {
     let (mut motor, mut mechanics) = *healthy;
-    for (parameter, fault) in present {
-        let value = match parameter {
-            Parameter::Rs => &mut motor.r_s,
-            Parameter::Rr => &mut motor.r_r,
-            // Scenario files refuse Ls and Lr here; a program that asks for them changes the leakage.
-            Parameter::Ls | Parameter::Lls => &mut motor.l_ls,
-            Parameter::Lr | Parameter::Llr => &mut motor.l_lr,
-            Parameter::Lm => &mut motor.l_m,
-            Parameter::B => &mut mechanics.friction,
-            Parameter::Bl => &mut mechanics.load_friction,
-        };
-        *value = fault.apply(*value);
+    for fault in present {
+        if let Target::Parameter(parameter) = fault.target {
+            let value = value_of(&mut motor, &mut mechanics, parameter);
+            *value = fault.apply(*value);
+        }
     }
+    motor.r_s *= 1.0 + common_series(present);
     (motor, mechanics)
+}
+
+fn value_of<'p>(
+    motor: &'p mut TParams<f64>,
+    mechanics: &'p mut Mechanics<f64>,
+    parameter: Parameter,
+) -> &'p mut f64 {
+    match parameter {
+        Parameter::Rs => &mut motor.r_s,
+        Parameter::Rr => &mut motor.r_r,
+        // Scenario files refuse Ls and Lr here; a program that asks for them changes the leakage.
+        Parameter::Ls | Parameter::Lls => &mut motor.l_ls,
+        Parameter::Lr | Parameter::Llr => &mut motor.l_lr,
+        Parameter::Lm => &mut motor.l_m,
+        Parameter::B => &mut mechanics.friction,
+        Parameter::Bl => &mut mechanics.load_friction,
+    }
 }
 
 /// A passive torque yields within a narrow band around standstill: steep, and the step must resolve it.
@@ -153,6 +167,8 @@ fn largest_step(scenario: &Scenario, mechanics: &Mechanics<f64>) -> f64 {
 fn largest_torque(load: &Load) -> f64 {
     match load {
         Load::None | Load::Friction(_) | Load::Quadratic(_) => 0.0,
+        // What drives the shaft at standstill does not yield there.
+        Load::Constant { active: true, .. } | Load::Profile { active: true, .. } => 0.0,
         Load::Constant { torque, .. } => torque.abs(),
         Load::Profile { profile, .. } => {
             let torques = profile.points().iter().map(|(_, torque)| torque.abs());

@@ -5,7 +5,7 @@
 use super::Truth;
 use super::plant::Presence;
 use super::waveform::Waveform;
-use crate::scenario::{Fault, Parameter, Scenario, Start};
+use crate::scenario::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::phases;
 use motor::linear_plant::{LinearParams, LinearState, LinearStep};
 use num_complex::Complex64;
@@ -47,7 +47,7 @@ impl Linear {
 
     pub(super) fn switch_faults(&mut self, faults: &[Fault], t: f64) {
         if let Some(present) = self.presence.changed_at(faults, t) {
-            self.params = changed(&self.healthy, present);
+            self.params = changed(&self.healthy, &present);
             self.step = self.params.discretise(self.t_sample);
         }
     }
@@ -78,12 +78,12 @@ impl Linear {
     }
 }
 
-fn changed<'f>(
-    healthy: &LinearParams,
-    present: impl Iterator<Item = (Parameter, &'f Fault)>,
-) -> LinearParams {
+fn changed(healthy: &LinearParams, present: &[&Fault]) -> LinearParams {
     let mut params = *healthy;
-    for (parameter, fault) in present {
+    for fault in present {
+        let Target::Parameter(parameter) = fault.target else {
+            continue;
+        };
         let value = match parameter {
             Parameter::Rs => &mut params.r_s,
             Parameter::Rr => &mut params.r_r,

@@ -11,6 +11,8 @@ mod side_by_side;
 mod waveform;
 
 #[cfg(test)]
+mod asymmetry_tests;
+#[cfg(test)]
 mod instrument_tests;
 #[cfg(test)]
 mod tests;

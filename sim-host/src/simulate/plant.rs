@@ -4,7 +4,7 @@ use super::effects;
 use super::full::Full;
 use super::linear::Linear;
 use super::{SimulationError, Truth};
-use crate::scenario::{Fault, Parameter, PlantKind, Scenario, Target};
+use crate::scenario::{Fault, PlantKind, Scenario};
 use motor::dynamic::{Dynamic, NoEffects};
 use motor::effects::EffectStack;
 use motor::{Mechanics, TParams};
@@ -35,9 +35,10 @@ impl Plant {
             return Ok(Plant::Linear(Linear::new(scenario)));
         }
         let effects = effects::inside(scenario)?;
-        if effects.is_empty() {
-            let make =
-                |motor: &TParams<f64>, mechanics: &Mechanics<f64>| Dynamic::new(motor, mechanics);
+        if effects.is_empty() && effects::of_faults(scenario)?.is_empty() {
+            let make = |motor: &TParams<f64>, mechanics: &Mechanics<f64>, _: &[&Fault]| {
+                Dynamic::new(motor, mechanics)
+            };
             return Ok(Plant::Plain(Full::new(scenario, Box::new(make))?));
         }
         let make = effects::factory(scenario, effects);
@@ -77,21 +78,13 @@ impl Plant {
 pub(super) struct Presence(Vec<bool>);
 
 impl Presence {
-    /// The parameter faults in force at `t`, when they are others than the last time.
-    pub(super) fn changed_at<'f>(
-        &mut self,
-        faults: &'f [Fault],
-        t: f64,
-    ) -> Option<impl Iterator<Item = (Parameter, &'f Fault)>> {
+    /// The faults in force at `t`, when they are others than the last time.
+    pub(super) fn changed_at<'f>(&mut self, faults: &'f [Fault], t: f64) -> Option<Vec<&'f Fault>> {
         let now = faults.iter().map(|fault| fault.is_active(t));
         if now.clone().eq(self.0.iter().copied()) {
             return None;
         }
         self.0 = now.collect();
-        let in_force = faults.iter().filter(move |fault| fault.is_active(t));
-        Some(in_force.filter_map(|fault| match fault.target {
-            Target::Parameter(parameter) => Some((parameter, fault)),
-            _ => None,
-        }))
+        Some(faults.iter().filter(|fault| fault.is_active(t)).collect())
     }
 }

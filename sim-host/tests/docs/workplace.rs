@@ -8,7 +8,7 @@ use crate::pieces::File;
 use crate::{PROMPT, root};
 
 /// What the commands of the documentation may read.
-const INPUTS: [&str; 3] = ["motors", "sim-host/scenarios", "tests/data"];
+const INPUTS: [&str; 4] = ["motors", "sim-host/scenarios", "tests/data", "campaigns"];
 
 /// A folder for one run, with copies of the inputs, removed at the end.
 pub struct Workplace(PathBuf);

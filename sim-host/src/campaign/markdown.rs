@@ -1,0 +1,192 @@
+//! The golden table: one page that is written by the program and reviewed as a whole.
+
+use std::fmt::Write;
+
+use super::fault::FaultKind;
+use super::print::{named, percent};
+use super::table::{Detection, Size, Table};
+
+/// Alarms that are listed one by one.
+const MOST_ALARMS: usize = 50;
+
+const INTRODUCTION: &str = "\
+# What is detected, how small, how fast, how often wrongly
+
+Written by `drivemon campaign table`; do not edit. How it is measured, and how any line of it is made again, is in
+[campaign](campaign.md). Every run is simulated, replayed through the core in ADC codes as the board sees it, and
+judged with the nominal motor file.
+
+*Smallest* is the smallest size from which on FAULT comes in at least 99 of 100 runs; *proven* is the exact lower bound of
+that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays count from the fault to FAULT. *Cause right*: the true cause
+is likelier than any other, at the smallest size; *at twice*: cause and phase, at the first size that is at least twice the smallest.
+";
+
+/// The page for some campaigns.
+pub fn page(tables: &[Table]) -> String {
+    let mut page = INTRODUCTION.to_owned();
+    for table in tables {
+        // Writing to a String cannot fail.
+        let _ = campaign(&mut page, table);
+    }
+    page
+}
+
+fn campaign(page: &mut String, table: &Table) -> std::fmt::Result {
+    let about = &table.about;
+    writeln!(page, "\n## {}\n", about.plan)?;
+    writeln!(
+        page,
+        "{} of {} runs, seed {}, fingerprint `{}`, version {}. Runs whose motor cannot carry the load under their conditions: {}.\n",
+        table.counted, about.runs, about.seed, about.fingerprint, about.version, table.not_run
+    )?;
+    healthy(page, table)?;
+    alarms(page, table)?;
+    detection(page, table)
+}
+
+fn healthy(page: &mut String, table: &Table) -> std::fmt::Result {
+    writeln!(
+        page,
+        "| motor | block | healthy windows judged | FAULT in | runs | with FAULT | at most (95 %) |"
+    )?;
+    writeln!(page, "|---|---|---|---|---|---|---|")?;
+    for row in &table.healthy {
+        writeln!(
+            page,
+            "| {} | {} | {} | {} | {} | {} | {:.2} % |",
+            row.motor,
+            row.block,
+            row.judged_windows,
+            row.fault_windows,
+            row.fault_runs.of,
+            row.fault_runs.count,
+            100.0 * row.fault_run_probability_at_most
+        )?;
+    }
+    writeln!(
+        page,
+        "\nAltogether {} healthy windows were judged, FAULT was lit in {}.",
+        table.healthy_windows, table.fault_windows
+    )
+}
+
+fn alarms(page: &mut String, table: &Table) -> std::fmt::Result {
+    if table.alarms.is_empty() {
+        return Ok(());
+    }
+    writeln!(page, "\nFAULT on a healthy motor, run by run:\n")?;
+    writeln!(
+        page,
+        "| run | motor | from | windows with it | judged | lamps | named | conditions |"
+    )?;
+    writeln!(page, "|---|---|---|---|---|---|---|---|")?;
+    for alarm in table.alarms.iter().take(MOST_ALARMS) {
+        writeln!(
+            page,
+            "| {} | {} | {:.3} s | {} | {} | {} | {} | {} |",
+            alarm.index,
+            alarm.motor,
+            alarm.first_s,
+            alarm.fault_windows,
+            alarm.judged_windows,
+            alarm.lamps,
+            cell(&alarm.named),
+            alarm.conditions
+        )?;
+    }
+    let more = table.alarms.len().saturating_sub(MOST_ALARMS);
+    if more > 0 {
+        writeln!(page, "\n{more} more runs are left out.")?;
+    }
+    Ok(())
+}
+
+fn detection(page: &mut String, table: &Table) -> std::fmt::Result {
+    let mut place = (String::new(), String::new());
+    for row in &table.detection {
+        let now = (row.motor.clone(), row.block.clone());
+        if now != place {
+            writeln!(page, "\n### {}, {}\n", now.0, now.1)?;
+            writeln!(
+                page,
+                "| fault | smallest | proven | median | 95 % | cause right | at twice | target | named |"
+            )?;
+            writeln!(page, "|---|---|---|---|---|---|---|---|---|")?;
+            place = now;
+        }
+        one(page, row)?;
+    }
+    limits(page, table)
+}
+
+fn one(page: &mut String, row: &Detection) -> std::fmt::Result {
+    let words = FaultKind::find(&row.fault).map_or("", |kind| kind.words);
+    let isolated = row.isolation().map(|size| size.isolated);
+    writeln!(
+        page,
+        "| `{}` {words} | {} | {} | {} | {} |",
+        row.fault,
+        row.smallest().map_or_else(|| best(row), smallest),
+        percent(isolated),
+        target(row),
+        cell(&named(&row.named, 4))
+    )
+}
+
+fn smallest(size: &Size) -> String {
+    let time = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{:.0} ms", 1000.0 * s));
+    format!(
+        "{:+} % | {:.1} % | {} | {} | {}",
+        size.change_percent,
+        100.0 * size.probability_at_least,
+        time(size.delay_median_s),
+        time(size.delay_95_s),
+        percent(Some(size.cause_right))
+    )
+}
+
+/// How far the largest size comes.
+fn best(row: &Detection) -> String {
+    let largest = row.sizes.last().map_or(String::new(), |size| {
+        format!(
+            "{} of {:+} %",
+            percent(Some(size.detected)),
+            size.change_percent
+        )
+    });
+    format!("none: {largest} | - | - | - | -")
+}
+
+fn target(row: &Detection) -> String {
+    match (row.target_percent, row.target_met) {
+        (Some(target), Some(true)) => format!("{target} %, met"),
+        (Some(target), _) => format!("**{target} %, not met**"),
+        _ => "-".to_owned(),
+    }
+}
+
+/// What limits the targets that are not met.
+fn limits(page: &mut String, table: &Table) -> std::fmt::Result {
+    let missed = table
+        .detection
+        .iter()
+        .filter(|row| row.target_met == Some(false));
+    let missed: Vec<_> = missed.filter(|row| !row.limit.is_empty()).collect();
+    if missed.is_empty() {
+        return Ok(());
+    }
+    writeln!(page, "\nWhat limits the targets that are not met:\n")?;
+    for row in missed {
+        writeln!(
+            page,
+            "- `{}`, {}, {}: {}",
+            row.fault, row.motor, row.block, row.limit
+        )?;
+    }
+    Ok(())
+}
+
+/// A bar would end the cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', " or ")
+}

@@ -1,0 +1,32 @@
+//! Campaigns: what the lamps can be trusted with, measured over faults, sizes and conditions.
+//!
+//! A plan names motors, conditions and faults. Every run follows from its index alone: it is simulated, replayed
+//! through the core in ADC codes as the board sees it, and becomes one row. Rows become the table of what is detected,
+//! how small, how fast, and how often wrongly.
+
+mod axis;
+mod check;
+mod fault;
+mod file;
+mod markdown;
+mod outcome;
+mod parts;
+mod plan;
+mod print;
+mod read;
+mod row;
+mod run;
+mod statistics;
+mod table;
+
+pub use axis::{AXES, Axis, Conditions, Grid};
+pub use fault::{FAULTS, FaultKind};
+pub use file::{About, Results, StoreError};
+pub use markdown::page as markdown;
+pub use outcome::{Answer, Cause, LampsSeen, Outcome};
+pub use parts::{Done, run as run_range};
+pub use plan::{Block, Case, LoadKnowledge, MotorPair, Place, Plan, Target};
+pub use row::Row;
+pub use run::{Run, T_SAMPLE_S};
+pub use statistics::{RISK, Share};
+pub use table::{Alarm, DETECTED, Detection, Healthy, Named, Size, Table, conditions};

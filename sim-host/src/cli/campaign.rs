@@ -1,0 +1,281 @@
+//! `drivemon campaign`: what the lamps can be trusted with.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use serde::Serialize;
+
+use super::failure::{Failure, Finding};
+use super::output::OutputArgs;
+use super::{monitor, paint, progress};
+use crate::campaign::{self, Plan, Results, Row, Run, Table};
+use crate::replay::Timeline;
+use crate::report::Subject;
+use crate::simulate;
+
+/// Measure what the lamps can be trusted with: faults, sizes and conditions, thousands of runs on all cores.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Campaign {
+    #[command(subcommand)]
+    action: Action,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  drivemon campaign run campaigns/smoke.toml -o smoke.parquet       killed? The same command goes on
+  drivemon campaign run PLAN.toml --from 0 --to 5000 -o a.parquet   one machine's share
+  drivemon campaign merge a.parquet b.parquet -o all.parquet
+  drivemon campaign table all.parquet --report table.html           what is detected, how small, how fast, how often wrongly
+  drivemon campaign replay PLAN.toml --index 17 -o run17.csv.gz     that very run as a recording, with its lamps
+Exit codes: 0 fine, 1 FAULT was lit on a healthy motor, 2 bad input or usage.";
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    Run(RunArgs),
+    Merge(Merge),
+    Table(TableArgs),
+    Replay(Replay),
+}
+
+/// Make the runs of a plan, or a share of them.
+///
+/// A run follows from its index alone: the same range gives the same rows wherever it is made. Finished runs survive
+/// a crash; the same command goes on where it was.
+#[derive(Debug, Args)]
+struct RunArgs {
+    /// Plan file
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// Results to write (.parquet)
+    #[arg(short, long, value_name = "RESULT")]
+    output: PathBuf,
+    /// First run
+    #[arg(long, value_name = "INDEX", default_value_t = 0)]
+    from: u64,
+    /// Run after the last; all that are left when it is not given
+    #[arg(long, value_name = "INDEX")]
+    to: Option<u64>,
+}
+
+/// Put shares of one campaign together.
+#[derive(Debug, Args)]
+struct Merge {
+    /// Results of shares
+    #[arg(value_name = "RESULT", required = true)]
+    results: Vec<PathBuf>,
+    /// Results to write (.parquet)
+    #[arg(short, long, value_name = "RESULT")]
+    output: PathBuf,
+}
+
+/// Count results: healthy windows with FAULT, smallest detected sizes, delays, confusion.
+#[derive(Debug, Args)]
+struct TableArgs {
+    /// Results of one or more campaigns
+    #[arg(value_name = "RESULT", required = true)]
+    results: Vec<PathBuf>,
+    /// Write the table as a page of the book
+    #[arg(long, value_name = "FILE.md")]
+    markdown: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Make one run of a plan again: its conditions and lamps, and with -o its recording.
+#[derive(Debug, Args)]
+struct Replay {
+    /// Plan file
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// The run
+    #[arg(long, value_name = "INDEX")]
+    index: u64,
+    /// Recording to write (.csv or .csv.gz); the motor file that the monitor was told goes beside it, .motor.toml
+    #[arg(short, long, value_name = "REC")]
+    output: Option<PathBuf>,
+}
+
+/// Everything that `drivemon campaign table` says.
+#[derive(Debug, Serialize)]
+struct TableJson {
+    campaigns: Vec<Table>,
+}
+
+impl Campaign {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        match &self.action {
+            Action::Run(run) => run.run(),
+            Action::Merge(merge) => merge.run(),
+            Action::Table(table) => table.run(),
+            Action::Replay(replay) => replay.run(),
+        }
+    }
+}
+
+impl RunArgs {
+    fn run(&self) -> Result<Finding, Failure> {
+        let plan = Plan::read(&self.plan)?;
+        let range = self.range(plan.runs())?;
+        let bar = progress::bar("campaign", range.end - range.start);
+        let done = campaign::run_range(&plan, range, &self.output, &|runs| bar.inc(runs))?;
+        bar.finish_and_clear();
+        if done.there_already > 0 {
+            anstream::println!("{} runs were there already", done.there_already);
+        }
+        Ok(tell(&done.results, &self.output))
+    }
+
+    fn range(&self, runs: u64) -> Result<Range<u64>, Failure> {
+        let to = self.to.unwrap_or(runs);
+        if self.from < to && to <= runs {
+            return Ok(self.from..to);
+        }
+        Err(Failure::Usage(format!(
+            "--from {} --to {to}: the plan has runs 0..{runs}, of which these are none; give 0 <= from < to <= {runs}",
+            self.from
+        )))
+    }
+}
+
+impl Merge {
+    fn run(&self) -> Result<Finding, Failure> {
+        let read = |path: &PathBuf| Ok((path.clone(), Results::read(path)?));
+        let parts = self
+            .results
+            .iter()
+            .map(read)
+            .collect::<Result<_, Failure>>()?;
+        let results = Results::merge(parts)?;
+        results.write(&self.output)?;
+        Ok(tell(&results, &self.output))
+    }
+}
+
+impl TableArgs {
+    fn run(&self) -> Result<Finding, Failure> {
+        let read = |path: &PathBuf| Ok(Table::of(&Results::read(path)?));
+        let tables = self
+            .results
+            .iter()
+            .map(read)
+            .collect::<Result<_, Failure>>()?;
+        let result = TableJson { campaigns: tables };
+        if !self.output.takes_stdout() {
+            for table in &result.campaigns {
+                anstream::println!("{table}");
+            }
+        }
+        if let Some(path) = &self.markdown {
+            write(path, &campaign::markdown(&result.campaigns))?;
+        }
+        self.output.write(Subject::Campaign, &result)?;
+        let windows: u64 = result
+            .campaigns
+            .iter()
+            .map(|table| table.fault_windows)
+            .sum();
+        Ok(if windows == 0 {
+            Finding::Nothing
+        } else {
+            Finding::Something
+        })
+    }
+}
+
+impl Replay {
+    fn run(&self) -> Result<Finding, Failure> {
+        let plan = Plan::read(&self.plan)?;
+        let runs = plan.runs();
+        let run = Run::new(&plan, self.index).ok_or_else(|| {
+            Failure::Usage(format!(
+                "--index {}: the plan has runs 0..{runs}; give one of them",
+                self.index
+            ))
+        })?;
+        self.show(&run)?;
+        match &self.output {
+            Some(path) => record(&run, path),
+            None => Ok(Finding::Nothing),
+        }
+    }
+
+    fn show(&self, run: &Run<'_>) -> Result<(), Failure> {
+        let mut timeline = Timeline::default();
+        run.replay(|t, report| timeline.add(t, report))
+            .map_err(Failure::Usage)?;
+        timeline.finish();
+        print_run(run);
+        monitor::print_lamps(&timeline);
+        monitor::print_windows(&timeline);
+        monitor::print_sequence(&timeline.sequence());
+        monitor::print_verdict(&timeline, &timeline.verdict());
+        Ok(())
+    }
+}
+
+fn print_run(run: &Run<'_>) {
+    let (motor, block) = (&run.place.motor.name, &run.place.block.name);
+    let row = Row::of(run);
+    anstream::println!("run {} of {motor}, {block}", paint::strong(run.index));
+    anstream::println!("  {}", campaign::conditions(&row));
+    if let Some(case) = run.place.case {
+        let phase = if row.phase.is_empty() {
+            String::new()
+        } else {
+            format!(", phase {}", row.phase)
+        };
+        anstream::println!(
+            "  {} {:+} %{phase}, from {:.4} s on",
+            case.kind.words,
+            case.percent,
+            run.fault_from_s
+        );
+    }
+}
+
+fn record(run: &Run<'_>, path: &Path) -> Result<Finding, Failure> {
+    let refused = |error| Failure::Usage(format!("run {}: {error}", run.index));
+    let recording = simulate::record(&run.scenario(), |_| {}).map_err(refused)?;
+    recording::write_recording(path, &recording)?;
+    let name = path.to_string_lossy();
+    let stem = name.trim_end_matches(".gz").trim_end_matches(".csv");
+    let motor = PathBuf::from(format!("{stem}.motor.toml"));
+    write(&motor, &run.monitor_file().to_toml())?;
+    let (path, motor) = (path.display(), motor.display());
+    anstream::println!("{path}, {motor}: drivemon monitor {path} --motor {motor}");
+    Ok(Finding::Nothing)
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| Failure::Write {
+        path: path.display().to_string(),
+        error,
+    })
+}
+
+fn tell(results: &Results, output: &Path) -> Finding {
+    let rows = &results.rows;
+    let windows: u64 = rows
+        .iter()
+        .map(|row| u64::from(row.healthy_judged_windows))
+        .sum();
+    let alarms = rows
+        .iter()
+        .filter(|row| row.healthy_fault_windows > 0)
+        .count();
+    anstream::println!(
+        "{}: {} of {} runs of \"{}\"; {windows} healthy windows judged, FAULT among them in {alarms} runs",
+        output.display(),
+        rows.len(),
+        results.about.runs,
+        results.about.plan
+    );
+    if alarms == 0 {
+        Finding::Nothing
+    } else {
+        Finding::Something
+    }
+}
