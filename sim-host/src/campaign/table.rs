@@ -192,7 +192,7 @@ fn healthy(rows: &[Row]) -> Vec<Healthy> {
     };
     let groups = grouped(rows, key).into_iter();
     let count = |group: Vec<&Row>| {
-        let fault_runs = Share::count(group.iter().map(|row| is_alarm(row)));
+        let fault_runs = Share::count(group.iter().map(is_alarm));
         let sum = |of: fn(&Row) -> u32| group.iter().map(|row| u64::from(of(row))).sum();
         Healthy {
             motor: group[0].motor.clone(),
