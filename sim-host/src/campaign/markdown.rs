@@ -74,16 +74,20 @@ fn alarms(page: &mut String, table: &Table) -> std::fmt::Result {
     if table.alarms.is_empty() {
         return Ok(());
     }
-    writeln!(page, "\nFAULT on a healthy motor, run by run:\n")?;
+    let causes = named(&table.causes, table.causes.len());
     writeln!(
         page,
-        "| run | motor | from | windows with it | judged | lamps | named | conditions |"
+        "\nTo blame for FAULT (without it the same run stays dark): {causes}.\n\nRun by run:\n"
     )?;
-    writeln!(page, "|---|---|---|---|---|---|---|---|")?;
+    writeln!(
+        page,
+        "| run | motor | from | windows with it | judged | lamps | named | to blame | conditions |"
+    )?;
+    writeln!(page, "|---|---|---|---|---|---|---|---|---|")?;
     for alarm in table.alarms.iter().take(MOST_ALARMS) {
         writeln!(
             page,
-            "| {} | {} | {:.3} s | {} | {} | {} | {} | {} |",
+            "| {} | {} | {:.3} s | {} | {} | {} | {} | {} | {} |",
             alarm.index,
             alarm.motor,
             alarm.first_s,
@@ -91,6 +95,7 @@ fn alarms(page: &mut String, table: &Table) -> std::fmt::Result {
             alarm.judged_windows,
             alarm.lamps,
             cell(&alarm.named),
+            alarm.cause,
             alarm.conditions
         )?;
     }

@@ -5,6 +5,7 @@
 //! how small, how fast, and how often wrongly.
 
 mod axis;
+mod cause;
 mod check;
 mod fault;
 mod file;

@@ -47,10 +47,17 @@ fn healthy(f: &mut Formatter<'_>, table: &Table) -> Result {
             100.0 * row.fault_run_probability_at_most
         )?;
     }
+    if !table.causes.is_empty() {
+        writeln!(
+            f,
+            "  to blame for FAULT: {}",
+            named(&table.causes, table.causes.len())
+        )?;
+    }
     for alarm in table.alarms.iter().take(MOST_ALARMS) {
         writeln!(
             f,
-            "  run {:>6} {}: FAULT from {:.3} s in {} windows ({} judged), lamps {}, named {}; {}",
+            "  run {:>6} {}: FAULT from {:.3} s in {} windows ({} judged), lamps {}, named {}, to blame: {}; {}",
             alarm.index,
             alarm.motor,
             alarm.first_s,
@@ -58,6 +65,7 @@ fn healthy(f: &mut Formatter<'_>, table: &Table) -> Result {
             alarm.judged_windows,
             alarm.lamps,
             alarm.named,
+            alarm.cause,
             alarm.conditions
         )?;
     }

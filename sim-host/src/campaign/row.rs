@@ -3,6 +3,7 @@
 use parquet_derive::{ParquetRecordReader, ParquetRecordWriter};
 
 use super::axis::Axis;
+use super::cause;
 use super::outcome::Outcome;
 use super::run::Run;
 
@@ -59,6 +60,8 @@ pub struct Row {
     pub healthy_fault_windows: u32,
     /// Time of the first of them, s.
     pub first_false_s: f64,
+    /// The conditions without any single one of which FAULT stays dark on the healthy motor; empty without FAULT.
+    pub false_cause: String,
     /// Lamps seen while healthy, RUN apart.
     pub healthy_lamps: String,
     /// Lamps seen with the fault.
@@ -153,6 +156,10 @@ fn with_outcome(row: Row, run: &Run<'_>, outcome: &Outcome) -> Row {
         healthy_judged_windows: outcome.healthy_judged,
         healthy_fault_windows: outcome.healthy_fault,
         first_false_s: outcome.first_false_s.unwrap_or(f64::NAN),
+        false_cause: match outcome.healthy_fault {
+            0 => String::new(),
+            _ => cause::of(run),
+        },
         healthy_lamps: outcome.healthy_lamps.to_string(),
         faulty_lamps: outcome.faulty_lamps.to_string(),
         not_judged: outcome.main_reason(),

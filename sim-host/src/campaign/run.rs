@@ -42,8 +42,11 @@ pub struct Run<'p> {
     pub conditions: Conditions,
     /// Phase of the fault, 0..=2.
     pub phase: usize,
-    /// Time of the fault, s; the end of the run where there is none.
+    /// Time of the fault, s; infinite where there is none.
     pub fault_from_s: f64,
+    /// At rest, switched on at t = 0, or running.
+    pub(super) start: Start,
+    duration_s: f64,
     chance: Chance,
 }
 
@@ -79,10 +82,36 @@ impl<'p> Run<'p> {
                 Some(_) => place.block.healthy_s + jitter / conditions.of(Axis::Frequency),
                 None => f64::INFINITY,
             },
+            start: place.block.start,
+            duration_s: place.block.duration_s(),
             chance: Chance::draw(&mut random),
             conditions,
             place,
         })
+    }
+
+    /// The same run up to its fault.
+    pub(super) fn healthy_part(&self) -> Run<'p> {
+        Run {
+            duration_s: self.place.block.healthy_s,
+            ..self.clone()
+        }
+    }
+
+    /// Changes a condition.
+    pub(super) fn set(&mut self, axis: Axis, value: f64) {
+        self.conditions.0[axis as usize] = value;
+    }
+
+    /// What a condition is where the plan does not name it.
+    pub(super) fn nominal(&self, axis: Axis) -> f64 {
+        nominal(axis, &self.place).unwrap_or(f64::NAN)
+    }
+
+    /// Whether anything is asked of this run that is not asked of the other; a step that does not come equals itself.
+    pub(super) fn differs_from(&self, other: &Run<'_>) -> bool {
+        let bits = |run: &Run<'_>| run.conditions.0.map(f64::to_bits);
+        bits(self) != bits(other) || self.start != other.start
     }
 
     /// What is simulated.
@@ -91,7 +120,7 @@ impl<'p> Run<'p> {
         let motor = self.plant_motor();
         let case = self.place.case;
         Scenario {
-            start: self.place.block.start,
+            start: self.start,
             seed: self.chance.noise_seed,
             supply: self.supply(&motor),
             load: self.load(&motor),
@@ -100,7 +129,7 @@ impl<'p> Run<'p> {
                 case.kind
                     .faults(case.percent, self.phase, self.fault_from_s)
             }),
-            ..Scenario::of(motor, self.place.block.duration_s())
+            ..Scenario::of(motor, self.duration_s)
         }
     }
 
@@ -180,7 +209,7 @@ impl<'p> Run<'p> {
             return LoadSpec::default();
         }
         // A load that holds its direction needs no steep law around standstill, and a running shaft never comes there.
-        let active = self.place.block.start == Start::Running;
+        let active = self.start == Start::Running;
         let torque = |percent: f64| percent / 100.0 * motor.nameplate.torque_nm;
         let first = torque(self.conditions.of(Axis::Load));
         let step_to = self.conditions.of(Axis::LoadStepTo);
@@ -268,25 +297,25 @@ impl Chance {
 
 /// Fills in what the plan leaves to the motor file.
 fn resolved(drawn: &Conditions, place: &Place<'_>) -> Conditions {
-    let file = &place.motor.monitor;
-    let plant = &place.motor.plant;
-    let own = [
-        (Axis::Frequency, file.nameplate.frequency_hz),
-        (
-            Axis::Winding,
-            plant.parameter_temperature_degc.unwrap_or(COLD_DEGC),
-        ),
-        (
-            Axis::Noise,
-            100.0 * file.sensors.noise_sigma_fraction_of_full_scale,
-        ),
-        (Axis::Bits, f64::from(file.sensors.adc_bits)),
-    ];
     let mut conditions = *drawn;
-    for (axis, value) in own {
-        conditions.0[axis as usize] = drawn.or(axis, value);
+    for axis in [Axis::Frequency, Axis::Winding, Axis::Noise, Axis::Bits] {
+        if let Some(value) = nominal(axis, place) {
+            conditions.0[axis as usize] = drawn.or(axis, value);
+        }
     }
     conditions
+}
+
+/// What the motor files say about a condition.
+fn nominal(axis: Axis, place: &Place<'_>) -> Option<f64> {
+    let (file, plant) = (&place.motor.monitor, &place.motor.plant);
+    match axis {
+        Axis::Frequency => Some(file.nameplate.frequency_hz),
+        Axis::Winding => Some(plant.parameter_temperature_degc.unwrap_or(COLD_DEGC)),
+        Axis::Noise => Some(100.0 * file.sensors.noise_sigma_fraction_of_full_scale),
+        Axis::Bits => Some(f64::from(file.sensors.adc_bits)),
+        _ => None,
+    }
 }
 
 fn raw(measured: &Measured) -> RawSample {

@@ -31,6 +31,8 @@ pub struct Table {
     pub healthy: Vec<Healthy>,
     /// Runs with FAULT on a healthy motor.
     pub alarms: Vec<Alarm>,
+    /// How often each condition was to blame for them.
+    pub causes: Vec<Named>,
     /// What is detected.
     pub detection: Vec<Detection>,
 }
@@ -71,6 +73,8 @@ pub struct Alarm {
     pub lamps: String,
     /// Likeliest cause named.
     pub named: String,
+    /// The conditions without any single one of which FAULT stays dark.
+    pub cause: String,
     /// The conditions in words.
     pub conditions: String,
 }
@@ -143,6 +147,11 @@ impl Table {
             fault_windows: healthy.iter().map(|row| row.fault_windows).sum(),
             targets_met: Share::count(detection.iter().filter_map(|row| row.target_met)),
             alarms: rows.iter().filter(is_alarm).map(alarm).collect(),
+            causes: counted(
+                rows.iter()
+                    .filter(is_alarm)
+                    .map(|row| row.false_cause.clone()),
+            ),
             healthy,
             detection,
         }
@@ -220,6 +229,7 @@ fn alarm(row: &Row) -> Alarm {
         first_s: row.first_false_s,
         lamps: row.healthy_lamps.clone(),
         named: row.named.clone(),
+        cause: row.false_cause.clone(),
         conditions: conditions(row),
     }
 }
@@ -337,10 +347,16 @@ fn at_least_twice(sizes: &[Size], smallest: f64) -> Option<f64> {
 }
 
 fn named(group: &[&Row], from: f64) -> Vec<Named> {
+    let is_counted =
+        |row: &&&Row| row.is_a_try() && row.detected && row.change_percent.abs() >= from;
+    counted(group.iter().filter(is_counted).map(|row| answer(row)))
+}
+
+/// How often each text came, the most frequent first.
+fn counted(texts: impl Iterator<Item = String>) -> Vec<Named> {
     let mut counts: BTreeMap<String, u64> = BTreeMap::new();
-    let counted = |row: &&&Row| row.is_a_try() && row.detected && row.change_percent.abs() >= from;
-    for row in group.iter().filter(counted) {
-        *counts.entry(answer(row)).or_default() += 1;
+    for text in texts {
+        *counts.entry(text).or_default() += 1;
     }
     let mut named: Vec<_> = counts
         .into_iter()

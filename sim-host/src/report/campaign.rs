@@ -85,14 +85,15 @@ fn alarms(campaign: &Place<'_>) -> Markup {
             h2 { "FAULT on a healthy motor" }
             p.subtle { "drivemon campaign replay PLAN --index RUN makes any of these runs again." }
             @if alarms.len() > MOST_ALARMS { p.subtle { "The first " (MOST_ALARMS) " of them; the embedded result has all." } }
+            p { "To blame: " @for cause in campaign.items("causes") { (cause.text("cause")) " in " (shown(&cause, "runs", decimals(0))) " runs. " } }
             div.wide tabindex="0" { table {
                 thead { tr {
-                    @for head in ["run", "motor", "from, s", "windows", "lamps", "named", "conditions"] { th scope="col" { (head) } }
+                    @for head in ["run", "motor", "from, s", "windows", "lamps", "named", "to blame", "conditions"] { th scope="col" { (head) } }
                 } }
                 tbody { @for row in alarms.iter().take(MOST_ALARMS) { tr {
                     th scope="row" { (shown(row, "index", decimals(0))) } td { (row.text("motor")) }
                     td { (shown(row, "first_s", decimals(3))) } td { (shown(row, "fault_windows", decimals(0))) }
-                    td { (row.text("lamps")) } td { (row.text("named")) } td { (row.text("conditions")) }
+                    td { (row.text("lamps")) } td { (row.text("named")) } td { (row.text("cause")) } td { (row.text("conditions")) }
                 } } }
             } }
         }

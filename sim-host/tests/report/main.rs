@@ -46,6 +46,19 @@ fn the_page_of_a_load_table_is_self_contained_and_true_to_its_json() {
 }
 
 #[test]
+fn the_page_of_a_campaign_is_self_contained_and_true_to_its_json() {
+    let results = page::scratch("campaign-page.parquet");
+    let _ = std::fs::remove_file(&results);
+    let plan = page::project("campaigns/smoke.toml");
+    page::drivemon(&["campaign", "run", &plan, "-o", &results]);
+    let page = Page::of("campaign", &["campaign", "table", &results]);
+    page.check();
+    // One figure for each fault and direction of the plan.
+    assert_eq!(page.charts().len(), 6);
+    browser::check(&page);
+}
+
+#[test]
 fn a_page_that_cannot_be_written_is_an_error_that_names_it() {
     let table = page::project("tests/data/imc_18k5_load_test/load_test.csv");
     let done = page::drivemon(&["monitor", &table, "--report", "no/such/folder/x.html"]);
