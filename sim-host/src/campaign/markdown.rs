@@ -19,6 +19,7 @@ judged with the nominal motor file.
 *Smallest* is the smallest size from which on FAULT comes in at least 99 of 100 runs; *proven* is the exact lower bound of
 that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays count from the fault to FAULT. *Cause right*: the true cause
 is likelier than any other, at the smallest size; *at twice*: cause and phase, at the first size that is at least twice the smallest.
+*Left out*: runs that say nothing because FAULT was lit before the fault came.
 ";
 
 /// The page for some campaigns.
@@ -114,9 +115,9 @@ fn detection(page: &mut String, table: &Table) -> std::fmt::Result {
             writeln!(page, "\n### {}, {}\n", now.0, now.1)?;
             writeln!(
                 page,
-                "| fault | smallest | proven | median | 95 % | cause right | at twice | target | named |"
+                "| fault | smallest | proven | median | 95 % | cause right | at twice | left out | target | named |"
             )?;
-            writeln!(page, "|---|---|---|---|---|---|---|---|---|")?;
+            writeln!(page, "|---|---|---|---|---|---|---|---|---|---|")?;
             place = now;
         }
         one(page, row)?;
@@ -129,10 +130,11 @@ fn one(page: &mut String, row: &Detection) -> std::fmt::Result {
     let isolated = row.isolation().map(|size| size.isolated);
     writeln!(
         page,
-        "| `{}` {words} | {} | {} | {} | {} |",
+        "| `{}` {words} | {} | {} | {} | {} | {} |",
         row.fault,
         row.smallest().map_or_else(|| best(row), smallest),
         percent(isolated),
+        percent(Some(row.lit_before)),
         target(row),
         cell(&named(&row.named, 4))
     )

@@ -79,7 +79,7 @@ fn healthy(f: &mut Formatter<'_>, table: &Table) -> Result {
 fn detection(f: &mut Formatter<'_>, table: &Table) -> Result {
     writeln!(
         f,
-        "\nDetection: smallest size seen in 99 of 100 runs, and what is named from there on"
+        "\nDetection: smallest size seen in 99 of 100 runs, and what is named from there on; left out: FAULT was lit before the fault"
     )?;
     let mut place = (String::new(), String::new());
     for row in &table.detection {
@@ -88,7 +88,7 @@ fn detection(f: &mut Formatter<'_>, table: &Table) -> Result {
             writeln!(f, "\n  {}, {}", now.0, now.1)?;
             writeln!(
                 f,
-                "  fault     smallest  proven  median     95 %  cause  at twice  target  named"
+                "  fault     smallest  proven  median     95 %  cause  at twice  left out  target  named"
             )?;
             place = now;
         }
@@ -106,8 +106,9 @@ fn one(f: &mut Formatter<'_>, row: &Detection) -> Result {
     let isolated = row.isolation().map(|size| size.isolated);
     writeln!(
         f,
-        " {:>8}  {:<7} {}",
+        " {:>8}  {:>8}  {:<7} {}",
         percent(isolated),
+        percent(Some(row.lit_before)),
         target(row),
         named(&row.named, 3)
     )

@@ -88,6 +88,8 @@ pub struct Detection {
     pub block: String,
     /// The fault.
     pub fault: String,
+    /// Runs that say nothing because FAULT was lit before the fault came.
+    pub lit_before: Share,
     /// The sizes, from small to large.
     pub sizes: Vec<Size>,
     /// The smallest size from which on 99 of 100 runs are detected, percent.
@@ -287,6 +289,7 @@ fn one_fault(about: &About, group: &[&Row]) -> Detection {
         motor: first.motor.clone(),
         block: first.block.clone(),
         fault: first.fault.clone(),
+        lit_before: Share::count(group.iter().map(|row| row.lit_before)),
         smallest_percent: smallest,
         target_percent,
         target_met: target_percent.map(met),
