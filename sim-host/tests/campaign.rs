@@ -229,7 +229,7 @@ fn the_table_counts_what_the_rows_say() {
     assert_eq!(dead["sizes"][0]["isolated"]["percent"], 100.0);
     assert!(
         String::from_utf8_lossy(&bytes(&page))
-            .contains("| `i` gain of one current sensor | -100 % |")
+            .contains("| `i` gain of one current sensor | dead |")
     );
 }
 
@@ -336,14 +336,25 @@ fn every_problem_of_a_plan_is_told_with_line_and_remedy() {
 }
 
 #[test]
-fn every_plan_that_ships_is_valid() {
+fn every_plan_that_ships_is_valid_and_on_the_page() {
     let folder = Path::new(common::PROJECT).join("campaigns");
+    let page = std::fs::read_to_string(Path::new(common::PROJECT).join("docs/campaign.md"))
+        .expect("shipped");
     let mut plans = 0;
     for entry in std::fs::read_dir(folder).expect("shipped") {
         let path = entry.expect("readable").path();
         let plan = Plan::read(&path).unwrap_or_else(|error| panic!("{error}"));
         assert!(plan.runs() > 0 && Run::new(&plan, plan.runs()).is_none());
+        let name = path.file_name().expect("a name").to_string_lossy();
+        let line = page
+            .lines()
+            .find(|line| line.contains(&format!("| `campaigns/{name}`")));
+        assert!(
+            line.is_some_and(|line| line.ends_with(&format!("| {} |", plan.runs()))),
+            "{name}: {}",
+            plan.runs()
+        );
         plans += 1;
     }
-    assert!(plans >= 1);
+    assert!(plans >= 3);
 }

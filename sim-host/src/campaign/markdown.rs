@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use super::detection::{Detection, Size};
 use super::fault::FaultKind;
-use super::print::{named, percent};
-use super::table::{Detection, Size, Table};
+use super::print::{named, percent, size_of};
+use super::table::Table;
 
 /// Alarms that are listed one by one.
 const MOST_ALARMS: usize = 50;
@@ -19,7 +20,8 @@ judged with the nominal motor file.
 *Smallest* is the smallest size from which on FAULT comes in at least 99 of 100 runs; *proven* is the exact lower bound of
 that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays count from the fault to FAULT. *Cause right*: the true cause
 is likelier than any other, at the smallest size; *at twice*: cause and phase, at the first size that is at least twice the smallest.
-*Left out*: runs that say nothing because FAULT was lit before the fault came.
+`<=` stands where nothing smaller was tried. *Left out*: runs that say nothing because FAULT was lit before the fault came; where they are
+most of the runs, no size counts as detected.
 ";
 
 /// The page for some campaigns.
@@ -132,7 +134,8 @@ fn one(page: &mut String, row: &Detection) -> std::fmt::Result {
         page,
         "| `{}` {words} | {} | {} | {} | {} | {} |",
         row.fault,
-        row.smallest().map_or_else(|| best(row), smallest),
+        row.smallest()
+            .map_or_else(|| best(row), |size| smallest(&size_of(row), size)),
         percent(isolated),
         percent(Some(row.lit_before)),
         target(row),
@@ -140,11 +143,10 @@ fn one(page: &mut String, row: &Detection) -> std::fmt::Result {
     )
 }
 
-fn smallest(size: &Size) -> String {
+fn smallest(words: &str, size: &Size) -> String {
     let time = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{:.0} ms", 1000.0 * s));
     format!(
-        "{:+} % | {:.1} % | {} | {} | {}",
-        size.change_percent,
+        "{words} | {:.1} % | {} | {} | {}",
         100.0 * size.probability_at_least,
         time(size.delay_median_s),
         time(size.delay_95_s),

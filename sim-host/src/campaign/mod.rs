@@ -7,6 +7,7 @@
 mod axis;
 mod cause;
 mod check;
+mod detection;
 mod fault;
 mod file;
 mod markdown;
@@ -19,8 +20,11 @@ mod row;
 mod run;
 mod statistics;
 mod table;
+#[cfg(test)]
+mod table_tests;
 
 pub use axis::{AXES, Axis, Conditions, Grid};
+pub use detection::{DETECTED, Detection, Size};
 pub use fault::{FAULTS, FaultKind};
 pub use file::{About, Results, StoreError};
 pub use markdown::page as markdown;
@@ -30,4 +34,4 @@ pub use plan::{Block, Case, LoadKnowledge, MotorPair, Place, Plan, Target};
 pub use row::Row;
 pub use run::{Run, T_SAMPLE_S};
 pub use statistics::{RISK, Share};
-pub use table::{Alarm, DETECTED, Detection, Healthy, Named, Size, Table, conditions};
+pub use table::{Alarm, Healthy, Named, Table, conditions};

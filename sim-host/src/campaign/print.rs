@@ -2,8 +2,9 @@
 
 use std::fmt::{Display, Formatter, Result};
 
+use super::detection::{Detection, Size};
 use super::statistics::Share;
-use super::table::{Detection, Named, Size, Table};
+use super::table::{Named, Table};
 
 /// More alarms than this are left to the JSON.
 const MOST_ALARMS: usize = 20;
@@ -100,7 +101,7 @@ fn detection(f: &mut Formatter<'_>, table: &Table) -> Result {
 fn one(f: &mut Formatter<'_>, row: &Detection) -> Result {
     write!(f, "  {:<8} ", row.fault)?;
     match row.smallest() {
-        Some(size) => smallest(f, size)?,
+        Some(size) => smallest(f, &size_of(row), size)?,
         None => write!(f, "{:>9}  {:<30}", "none", best(row))?,
     }
     let isolated = row.isolation().map(|size| size.isolated);
@@ -114,11 +115,20 @@ fn one(f: &mut Formatter<'_>, row: &Detection) -> Result {
     )
 }
 
-fn smallest(f: &mut Formatter<'_>, size: &Size) -> Result {
+/// The smallest size in words: `dead`, `+15 %`, `<= +2 %` where nothing smaller was tried.
+pub(super) fn size_of(row: &Detection) -> String {
+    let percent = row.smallest_percent.unwrap_or(f64::NAN);
+    match (row.direction, row.or_smaller) {
+        ("dead", _) => "dead".to_owned(),
+        (_, true) => format!("<= {percent:+} %"),
+        (_, false) => format!("{percent:+} %"),
+    }
+}
+
+fn smallest(f: &mut Formatter<'_>, words: &str, size: &Size) -> Result {
     write!(
         f,
-        "{:>+8.1}%  {:>5.1}%  {}  {}  {:>5}",
-        size.change_percent,
+        "{words:>9}  {:>5.1}%  {}  {}  {:>5}",
         100.0 * size.probability_at_least,
         milliseconds(size.delay_median_s),
         milliseconds(size.delay_95_s),

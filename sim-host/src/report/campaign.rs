@@ -127,7 +127,7 @@ fn detected(row: &Place<'_>) -> Markup {
         Some(_) => "no",
     };
     html! { tr {
-        th scope="row" { (row.text("fault")) } td { (row.text("motor")) } td { (row.text("block")) }
+        th scope="row" { (row.text("fault")) " " (row.text("direction")) } td { (row.text("motor")) } td { (row.text("block")) }
         td { (shown(row, "smallest_percent", decimals(1).signed())) }
         td { (shown(row, "target_percent", decimals(0))) } td { (met) }
         td { (shown(row, "isolation_percent", decimals(1).signed())) }
@@ -143,8 +143,9 @@ fn chart(row: &Place<'_>) -> Markup {
         Series::line(label, at(&format!("{key}/percent")), colour).kind(Kind::Marked)
     };
     let heading = format!(
-        "{}, {}, {}",
+        "{} {}, {}, {}",
         row.text("fault"),
+        row.text("direction"),
         row.text("motor"),
         row.text("block")
     );
