@@ -4,7 +4,7 @@ use core::hint::black_box;
 use core::panic::PanicInfo;
 
 use board::modbus::Command;
-use board::{Button, Calibration, Capture, Display, LAMPS, Press};
+use board::{Button, Calibration, Capture, Display, LAMPS, Press, StuckChannels};
 use embassy_executor::Spawner;
 use embassy_stm32::gpio::Input;
 use embassy_stm32::peripherals::IWDG;
@@ -67,6 +67,7 @@ async fn main(spawner: Spawner) -> ! {
         ),
         display: Display::default(),
         instrument_faulty: false,
+        channels: StuckChannels::default(),
         blocks: 0,
     };
     panel.look_after_supply();
@@ -149,6 +150,7 @@ async fn watch(
             }
         }
         panel.record.keep(block.samples());
+        panel.channels.look(block.first());
         panel.after_block(lamps);
     }
 }
@@ -176,6 +178,7 @@ struct Panel {
     commissioning: Commissioning,
     display: Display,
     instrument_faulty: bool,
+    channels: StuckChannels,
     blocks: u32,
 }
 
@@ -223,7 +226,7 @@ impl Panel {
 
     /// A board that cannot measure says so, whatever its numbers say about the motor.
     fn with_instrument(&self, lamps: &Lamps) -> Lamps {
-        if !self.instrument_faulty {
+        if !self.instrument_faulty && !self.channels.is_any() {
             return *lamps;
         }
         Lamps {

@@ -93,6 +93,12 @@ impl Block {
         )
     }
 
+    /// Codes of the first instant: voltage and current of each phase in turn.
+    pub fn first(&self) -> &[u16; CHANNELS] {
+        let (instants, _) = self.codes.as_chunks::<CHANNELS>();
+        instants.first().unwrap_or(&[0; CHANNELS])
+    }
+
     /// The instants as the core takes them.
     pub fn raw(&self) -> RawBlock<'_> {
         let (instants, _) = self.codes.as_chunks();

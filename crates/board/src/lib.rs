@@ -12,6 +12,7 @@ mod image;
 mod learn;
 mod message;
 pub mod modbus;
+mod stuck;
 
 pub use button::{Button, Press};
 pub use calibration::{
@@ -26,3 +27,4 @@ pub use framing::MAX_FRAME_BYTES;
 pub use image::{EffectTerms, IMAGE_WORDS, ImageError, MotorImage};
 pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal};
 pub use message::Message;
+pub use stuck::StuckChannels;

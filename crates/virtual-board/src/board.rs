@@ -4,7 +4,7 @@ use monitor::RawSample;
 use unicorn_engine::uc_error;
 
 use crate::CORE_HZ;
-use crate::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE};
+use crate::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE, UNTOUCHED};
 use crate::elf::Firmware;
 use crate::gpio::Pin;
 use crate::log::Log;
@@ -185,6 +185,7 @@ impl VirtualBoard {
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), BoardError> {
         *self.cpu.machine() = snapshot.machine.clone();
         self.cpu.core.context_restore(&snapshot.registers)?;
+        self.cpu.forget_sleep();
         self.cpu.core.mem_write(u64::from(RAM), &snapshot.ram)?;
         self.cpu.core.mem_write(u64::from(FLASH), &snapshot.flash)?;
         self.cpu.guard_flash()
@@ -255,12 +256,24 @@ impl VirtualBoard {
         crate::rtt::drain(&mut self.cpu, channel)
     }
 
-    /// Bytes of stack used at most, seen at interrupts, of a stack that begins at the vector table's first word.
+    /// Bytes of stack used at most since power-up: from its beginning, the vector table's first word, down to the deepest
+    /// word that was written. It ends where the program's variables end.
     ///
     /// # Errors
-    /// The emulator refuses.
+    /// A program without the symbol `_stack_end`, or the emulator refuses.
     pub fn stack_used(&mut self) -> Result<u32, BoardError> {
-        Ok(self.cpu.word(FLASH)? - self.cpu.lowest_stack.max(RAM))
+        let no_symbol = || BoardError::Elf("no symbol _stack_end".into());
+        let end = self.symbol("_stack_end").ok_or_else(no_symbol)?;
+        let length = self.cpu.word(FLASH)? - end;
+        let stack = self
+            .cpu
+            .core
+            .mem_read_as_vec(u64::from(end), length as usize)?;
+        let (words, _) = stack.as_chunks::<4>();
+        let untouched = words
+            .iter()
+            .take_while(|word| u32::from_le_bytes(**word) == UNTOUCHED);
+        Ok(length - 4 * untouched.count() as u32)
     }
 
     /// Sets the temperature of the chip, degrees Celsius.
@@ -283,6 +296,25 @@ impl VirtualBoard {
     /// Lets DMA answer no request, as when the bus is taken: the converter overruns.
     pub fn block_dma(&mut self, blocked: bool) {
         self.cpu.machine().dma_blocked = blocked;
+    }
+
+    /// Leaves the next `requests` of the encoder's DMA unanswered: its ring falls behind the converter's.
+    pub fn lose_encoder_counts(&mut self, requests: u32) {
+        self.cpu.machine().lost_encoder_requests = requests;
+    }
+
+    /// Holds the processor up while everything else goes on, as a bus master does that does not let go.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn hold_up(&mut self, seconds: f64) -> Result<(), BoardError> {
+        let end = self.cpu.machine().now + (seconds * CORE_HZ as f64) as u64;
+        while self.cpu.machine().now < end {
+            self.cpu.happen()?;
+            let machine = self.cpu.machine();
+            machine.now = machine.horizon().clamp(machine.now + 1, end);
+        }
+        Ok(())
     }
 
     /// Counts instructions by function from here on.

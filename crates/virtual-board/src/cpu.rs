@@ -19,6 +19,8 @@ const CALIBRATION: u32 = FLASH + FLASH_SIZE - 2 * crate::flash::PAGE;
 const CALIBRATION_SIZE: u64 = 2 * crate::flash::PAGE as u64;
 pub(crate) const RAM: u32 = 0x2000_0000;
 pub(crate) const RAM_SIZE: u32 = 128 * 1024;
+/// What RAM holds at power-up. On silicon that is anything; here a word that nobody has written can be told.
+pub(crate) const UNTOUCHED: u32 = 0xA5C3_965A;
 /// Page of the constants that the factory leaves.
 const FACTORY: u64 = 0x1FFF_7000;
 /// Where a return from an exception "jumps" to; a page of NOPs, so that the jump itself succeeds.
@@ -58,8 +60,8 @@ pub(crate) struct Cpu {
     pub core: Core,
     /// Off only to show that its absence is noticed.
     pub stacks_floats: bool,
-    /// Lowest stack pointer seen at exception entries and block starts.
-    pub lowest_stack: u32,
+    /// Address of the WFE at which the program sleeps.
+    asleep: Option<u32>,
 }
 
 impl Cpu {
@@ -73,12 +75,13 @@ impl Cpu {
         Ok(Cpu {
             core,
             stacks_floats: true,
-            lowest_stack: RAM + RAM_SIZE,
+            asleep: None,
         })
     }
 
     /// Loads stack pointer and program counter from the vector table.
     pub fn reset(&mut self) -> Result<(), BoardError> {
+        self.asleep = None;
         for register in BASIC.into_iter().chain(FLOATS) {
             self.core.reg_write(register, 0)?;
         }
@@ -98,6 +101,9 @@ impl Cpu {
 
     /// Executes until something happens that is not an instruction.
     pub fn run(&mut self) -> Result<(), BoardError> {
+        if let Some(pc) = self.asleep {
+            return self.wait_for_event(pc);
+        }
         let begin = self.core.reg_read(R::PC)? | 1;
         let ended = self.core.emu_start(begin, u64::MAX, 0, 0);
         if let Some(failure) = self.machine().failure.take() {
@@ -132,8 +138,11 @@ impl Cpu {
                 return Err(self.stopped("sleeps for ever".into()));
             }
         }
-        let next = if wakes { pc + 2 } else { pc };
-        self.core.reg_write(R::PC, u64::from(next) | 1)?;
+        if self.asleep.is_none() || wakes {
+            let next = if wakes { pc + 2 } else { pc };
+            self.core.reg_write(R::PC, u64::from(next) | 1)?;
+        }
+        self.asleep = (!wakes).then_some(pc);
         Ok(())
     }
 
@@ -186,6 +195,7 @@ impl Cpu {
 
     fn enter(&mut self, exception: u32) -> Result<(), BoardError> {
         self.machine().tally.exceptions += 1;
+        self.asleep = None;
         let with_floats = self.core.reg_read(R::CONTROL)? & FPCA != 0;
         self.push_frame(with_floats)?;
         let vector = self.machine().nvic.vector_table() + 4 * exception;
@@ -231,7 +241,6 @@ impl Cpu {
         // The handler starts outside any IT block.
         self.core
             .reg_write(R::XPSR, u64::from(xpsr & 0xF80F_0000 | THUMB))?;
-        self.lowest_stack = self.lowest_stack.min(base);
         Ok(())
     }
 
@@ -277,6 +286,11 @@ impl Cpu {
         Ok(())
     }
 
+    /// Goes on from registers and memory that were put in place from outside.
+    pub fn forget_sleep(&mut self) {
+        self.asleep = None;
+    }
+
     /// Makes reads of the calibration's pages visible while a double word in flash is broken: a hook on every read would
     /// slow all of them down.
     pub fn guard_flash(&mut self) -> Result<(), BoardError> {
@@ -310,6 +324,8 @@ fn map_memory(core: &mut Core) -> Result<(), uc_error> {
         Prot::READ | Prot::EXEC,
     )?;
     core.mem_map(u64::from(RAM), u64::from(RAM_SIZE), Prot::ALL)?;
+    let untouched = UNTOUCHED.to_le_bytes().repeat(RAM_SIZE as usize / 4);
+    core.mem_write(u64::from(RAM), &untouched)?;
     let erased = vec![0xFF; FLASH_SIZE as usize];
     core.mem_write(u64::from(FLASH), &erased)?;
     core.mem_map(FACTORY, 0x1000, Prot::READ)?;

@@ -27,7 +27,10 @@ impl Log {
         let mut lines = Vec::new();
         while let Some(end) = self.rest.iter().position(|byte| *byte == 0) {
             let frame: Vec<u8> = self.rest.drain(..=end).collect();
-            lines.push(self.line(&frame));
+            // Between two frames there may be more than one zero.
+            if frame != [0] {
+                lines.push(self.line(&frame));
+            }
         }
         lines
     }

@@ -73,6 +73,7 @@ pub struct Tally {
 
 pub(crate) const IRQ_DMA1_CH1: usize = 11;
 pub(crate) const IRQ_TIM15: usize = 24;
+const IRQ_TIM3: usize = 29;
 const IRQ_USART1: usize = 37;
 const IRQ_LPUART1: usize = 91;
 /// Request lines of the multiplexer (RM0440, table of DMAMUX inputs).
@@ -130,6 +131,8 @@ pub(crate) struct Machine {
     pub next_event: u64,
     /// DMA answers no request.
     pub dma_blocked: bool,
+    /// Requests of the encoder's DMA that will not be answered.
+    pub lost_encoder_requests: u32,
     /// Cycles between spurious interrupts of a DMA channel, and the cycle of the next one.
     pub spurious: Option<(u64, u64)>,
     /// Instructions by address of their block, while somebody asks for them.
@@ -193,6 +196,7 @@ impl Machine {
             stop: false,
             next_event: 0,
             dma_blocked: false,
+            lost_encoder_requests: 0,
             spurious: None,
             profile: None,
         }
@@ -251,7 +255,10 @@ impl Machine {
             self.sense();
         }
         if ticked.update_dma {
-            self.serve(LINE_TIM4_UP, &mut writes)?;
+            match self.lost_encoder_requests.checked_sub(1) {
+                Some(left) => self.lost_encoder_requests = left,
+                None => self.serve(LINE_TIM4_UP, &mut writes)?,
+            }
         }
         if ticked.trigger {
             if self.adc1.trigger(self.now) {
@@ -350,6 +357,7 @@ impl Machine {
         }
         let lines = [
             (self.tim15.interrupt(), IRQ_TIM15),
+            (self.tim3.interrupt(), IRQ_TIM3),
             (self.usart1.interrupt(), IRQ_USART1),
             (self.lpuart1.interrupt(), IRQ_LPUART1),
         ];

@@ -30,6 +30,8 @@ pub struct Nvic {
     /// Priorities of the running handlers, innermost last.
     active: Vec<(usize, u8)>,
     registers: Registers,
+    /// What [`Nvic::take`] would take; found anew whenever something changes, because it is asked for at every block.
+    candidate: Option<usize>,
     /// The program asked for a reset.
     pub reset_requested: bool,
 }
@@ -43,6 +45,7 @@ impl Nvic {
             priority: [0; IRQS],
             active: Vec::new(),
             registers: Registers::new("NVIC/SCB", RESET),
+            candidate: None,
             reset_requested: false,
         }
     }
@@ -54,15 +57,18 @@ impl Nvic {
 
     /// A peripheral's line is asserted.
     pub fn pend(&mut self, irq: usize) {
-        self.pending[irq] = true;
+        if !self.pending[irq] {
+            self.pending[irq] = true;
+            self.candidate = self.find_candidate();
+        }
     }
 
     /// Whether some enabled interrupt waits with a higher priority than what runs.
     pub fn is_waiting(&self) -> bool {
-        self.candidate().is_some()
+        self.candidate.is_some()
     }
 
-    fn candidate(&self) -> Option<usize> {
+    fn find_candidate(&self) -> Option<usize> {
         let running = self.active.last().map_or(u16::MAX, |(_, p)| u16::from(*p));
         if self
             .active
@@ -85,21 +91,25 @@ impl Nvic {
             .is_none_or(|(irq, _)| *irq != NON_MASKABLE);
         if free {
             self.active.push((NON_MASKABLE, 0));
+            self.candidate = self.find_candidate();
         }
         free
     }
 
     /// Takes the next interrupt to be served.
     pub fn take(&mut self) -> Option<usize> {
-        let irq = self.candidate()?;
+        let irq = self.candidate?;
         self.pending[irq] = false;
         self.active.push((irq, self.priority[irq]));
+        self.candidate = self.find_candidate();
         Some(irq)
     }
 
     /// Ends the innermost handler and names it.
     pub fn leave(&mut self) -> Option<usize> {
-        self.active.pop().map(|(irq, _)| irq)
+        let ended = self.active.pop().map(|(irq, _)| irq);
+        self.candidate = self.find_candidate();
+        ended
     }
 
     /// A bus read; offsets count from 0xE000_E000.
@@ -140,6 +150,7 @@ impl Nvic {
             AIRCR => self.reset_requested = value == 0x05FA_0004,
             _ => return self.registers.write(offset, value),
         }
+        self.candidate = self.find_candidate();
         Ok(())
     }
 }

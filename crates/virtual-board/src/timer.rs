@@ -13,6 +13,7 @@ const PSC: u32 = 0x28;
 const ARR: u32 = 0x2C;
 const CCR: [u32; 2] = [0x34, 0x38];
 const UPDATE: u32 = 1;
+const CAPTURE: u32 = 2;
 const UPDATE_DMA: u32 = 1 << 8;
 const RESET: &[(u32, u32)] = &[
     (CR1, 0),
@@ -45,8 +46,13 @@ pub struct Timer {
     evaluated: u64,
     /// What happened before a write and is still to be handed out.
     pending: Ticked,
+    /// Cycle of the next flag, and of the next one that anybody waits for: looked at far more often than they change.
+    next_flag: Option<u64>,
+    next_event: Option<u64>,
     /// Encoder count in encoder mode, as last seen and when the program set it.
     encoder: u16,
+    /// Edges of the encoder that the program has asked to be interrupted for and has not acknowledged.
+    edges: u64,
 }
 
 /// What one advance of a timer brought.
@@ -78,7 +84,10 @@ impl Timer {
             since: 0,
             evaluated: 0,
             pending: Ticked::default(),
+            next_flag: None,
+            next_event: None,
             encoder: 0,
+            edges: 0,
         }
     }
 
@@ -121,10 +130,24 @@ impl Timer {
         self.evaluated = 0;
     }
 
-    /// The encoder's count, where the timer is switched to count it.
+    /// The encoder's count, where the timer is switched to count it. All edges since the last call come at once; one
+    /// capture interrupt each, where the program wants them.
     pub fn apply_encoder(&mut self, count: u16) {
-        if self.registers.get(CR1) & 1 == 1 && self.is_encoder() {
-            self.encoder = count;
+        if self.registers.get(CR1) & 1 != 1 || !self.is_encoder() {
+            return;
+        }
+        let moved = count.wrapping_sub(self.encoder) as i16;
+        self.encoder = count;
+        if self.registers.get(DIER) & CAPTURE != 0 {
+            self.edges += u64::from(moved.unsigned_abs());
+            self.raise_capture();
+        }
+    }
+
+    fn raise_capture(&mut self) {
+        if self.edges > 0 {
+            self.edges -= 1;
+            self.status |= CAPTURE;
         }
     }
 
@@ -143,16 +166,26 @@ impl Timer {
 
     /// Cycle of the next flag that anybody waits for.
     pub fn next_event(&self) -> Option<u64> {
+        self.next_event
+    }
+
+    /// Finds both next cycles anew, after anything that may move them.
+    fn look_ahead(&mut self) {
+        let wanted = self.registers.get(DIER) | self.registers.get(DIER) >> 8 | self.triggers();
+        self.next_flag = self.next_of(u32::MAX);
+        self.next_event = self.next_of(wanted);
+    }
+
+    /// Cycle of the next one of `flags`.
+    fn next_of(&self, flags: u32) -> Option<u64> {
         if !self.is_counting() {
             return None;
         }
-        let wanted = self.registers.get(DIER) | self.registers.get(DIER) >> 8 | self.triggers();
-        let marks = self
-            .marks()
-            .into_iter()
-            .filter(|(_, flag)| wanted & flag != 0);
-        let tick = marks.map(|(value, _)| self.next_tick(value)).min()?;
-        Some(self.since + tick * self.prescaler)
+        let marks = self.marks().into_iter();
+        let ticks = marks
+            .filter(|(_, flag)| flags & flag != 0)
+            .map(|(value, _)| self.next_tick(value));
+        Some(self.since + ticks.min()? * self.prescaler)
     }
 
     fn triggers(&self) -> u32 {
@@ -161,8 +194,12 @@ impl Timer {
 
     /// Sets the flags of everything that happened up to `now`.
     pub fn advance(&mut self, now: u64) -> Ticked {
-        let now = self.evaluate(now);
-        std::mem::take(&mut self.pending).and(now)
+        let mut ticked = std::mem::take(&mut self.pending);
+        if self.next_flag.is_some_and(|at| at <= now) {
+            ticked = ticked.and(self.evaluate(now));
+            self.look_ahead();
+        }
+        ticked
     }
 
     fn evaluate(&mut self, now: u64) -> Ticked {
@@ -200,8 +237,19 @@ impl Timer {
     /// A bus write at cycle `now`.
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Result<(), Unmodelled> {
         self.rebase(now);
+        let written = self.put(offset, value, now);
+        self.look_ahead();
+        written
+    }
+
+    fn put(&mut self, offset: u32, value: u32, now: u64) -> Result<(), Unmodelled> {
         match offset {
-            SR => self.status &= value,
+            SR => {
+                self.status &= value;
+                if self.is_encoder() && self.status & CAPTURE == 0 {
+                    self.raise_capture();
+                }
+            }
             EGR => {
                 self.prescaler = u64::from(self.registers.get(PSC)) + 1;
                 (self.count, self.since) = (0, now);

@@ -57,6 +57,39 @@ fn an_overrun_of_the_converter_is_recovered_from_without_a_reset() {
     assert_eq!(board.lamps(), HEALTHY);
 }
 
+/// Whether the firmware logged that samples are missing, and why.
+fn has_noticed(board: &mut VirtualBoard, gap: &str) -> bool {
+    let told = format!("samples are missing: {gap}");
+    board.log().iter().any(|line| line.contains(&told))
+}
+
+#[test]
+fn samples_overwritten_while_the_processor_was_held_up_are_not_computed_with() {
+    // Of half a ring, 3.2 ms: nearly a whole ring, a whole one, and one and a half.
+    for held_up_s in [0.0055, 0.0068, 0.0101] {
+        let mut board = running();
+        board.log();
+        board.hold_up(held_up_s).expect("a run");
+        board.run(0.3).expect("a run");
+        assert!(has_noticed(&mut board, "Overrun"), "{held_up_s} s");
+        board.run(0.2).expect("a run");
+        assert_eq!(board.lamps(), HEALTHY, "{held_up_s} s");
+        assert_eq!(board.tally().resets, 0, "{held_up_s} s");
+    }
+}
+
+#[test]
+fn encoder_counts_that_belong_to_other_instants_are_not_computed_with() {
+    let mut board = running();
+    board.log();
+    board.lose_encoder_counts(5);
+    board.run(0.3).expect("a run");
+    assert!(has_noticed(&mut board, "Misaligned"));
+    board.run(0.2).expect("a run");
+    assert_eq!(board.lamps(), HEALTHY);
+    assert_eq!(board.tally().resets, 0);
+}
+
 #[test]
 fn a_stopped_converter_clock_resets_the_board_and_its_return_brings_it_back() {
     let mut board = running();
@@ -83,6 +116,18 @@ fn a_converter_supply_5_percent_off_lights_sensor_and_clears_again() {
 }
 
 #[test]
+fn a_converter_supply_5_percent_off_lights_sensor_from_power_up_on() {
+    for millivolt in [3_465, 3_135] {
+        let mut board = board(&scenario(2.0));
+        board.set_vdda(millivolt);
+        // Two blocks behind the lamp test: long before the first look of once a second.
+        board.run(LAMP_TEST_S + 0.01).expect("a run");
+        let lamps = board.lamps();
+        assert!(lamps[SENSOR] && lamps[FAULT], "{millivolt} mV: {lamps:?}");
+    }
+}
+
+#[test]
 fn corrupted_motor_constants_are_never_computed_with() {
     let mut board = running();
     let image = board
@@ -104,24 +149,57 @@ fn corrupted_motor_constants_are_never_computed_with() {
     );
 }
 
-#[test]
-fn a_brown_out_starts_the_board_again() {
-    let mut board = running();
-    board.reset(Cause::Power).expect("a reset");
-    board.run(LAMP_TEST_S + 0.8).expect("a run");
-    assert_eq!(board.lamps(), HEALTHY);
-    assert_eq!(board.tally().resets, 1);
+/// Why the firmware says that it was started.
+fn told_cause(board: &mut VirtualBoard) -> String {
+    let start = board.log().into_iter().find(|line| line.contains("reset:"));
+    let start = start.expect("a line about the start");
+    start.rsplit(' ').next().unwrap_or_default().to_owned()
 }
 
 #[test]
-fn a_stuck_channel_lights_sensor() {
-    let mut board = falsified(|index, raw| {
-        if index > 8_000 {
-            raw.current_codes[1] = 2_048;
+fn a_brown_out_starts_the_board_again_and_each_start_tells_its_own_cause() {
+    let mut board = running();
+    assert_eq!(told_cause(&mut board), "PowerOrBrownOut");
+    for (cause, told) in [
+        (Cause::Watchdog, "Watchdog"),
+        (Cause::Power, "PowerOrBrownOut"),
+        (Cause::Software, "Software"),
+    ] {
+        board.reset(cause).expect("a reset");
+        board.run(LAMP_TEST_S + 0.8).expect("a run");
+        assert_eq!(board.lamps(), HEALTHY, "after {cause:?}");
+        assert_eq!(told_cause(&mut board), told);
+    }
+    assert_eq!(board.tally().resets, 3);
+}
+
+/// The channels in the order of the converter's sequence.
+fn channel(raw: &mut RawSample, place: usize) -> &mut u16 {
+    let codes = if place.is_multiple_of(2) {
+        &mut raw.voltage_codes
+    } else {
+        &mut raw.current_codes
+    };
+    &mut codes[place / 2]
+}
+
+#[test]
+fn each_stuck_channel_lights_sensor_wherever_it_stands() {
+    for place in 0..6 {
+        for code in [700, 1_800, 2_048, 3_000] {
+            let mut board = falsified(move |index, raw| {
+                if index > 8_000 {
+                    *channel(raw, place) = code;
+                }
+            });
+            board.run(LAMP_TEST_S + 1.5).expect("a run");
+            let lamps = board.lamps();
+            assert!(
+                lamps[SENSOR] && lamps[FAULT],
+                "channel {place} at {code}: {lamps:?}"
+            );
         }
-    });
-    board.run(LAMP_TEST_S + 1.5).expect("a run");
-    assert!(board.lamps()[SENSOR], "{:?}", board.lamps());
+    }
 }
 
 #[test]

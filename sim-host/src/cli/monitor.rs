@@ -91,6 +91,9 @@ impl MonitorArgs {
     }
 
     fn watch(&self) -> Result<Finding, Failure> {
+        if self.output.report.is_some() {
+            return Err(Failure::Usage(NO_LIVE_REPORT.to_owned()));
+        }
         let quiet = self.output.takes_stdout();
         let (watched, finding) = self.live.run(self.motor.as_deref(), quiet)?;
         self.output.write_json(&watched)?;
@@ -196,6 +199,10 @@ fn residual_percent(timeline: &Timeline) -> Option<ResidualPercent> {
         standard_deviation,
     })
 }
+
+/// Frames hold lamps and residuals, not the samples that a page draws.
+const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board sends none: fetch its samples with \
+    --motor M --capture FILE.csv, then run drivemon monitor FILE.csv --motor M --report FILE.html";
 
 /// More lamp changes than this are left to the JSON.
 const LONGEST_TIMELINE: usize = 40;

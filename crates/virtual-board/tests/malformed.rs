@@ -1,0 +1,149 @@
+//! Frames that are no sound requests, over the wire into the unmodified firmware: no reset, no lost sample, no wrong write.
+//!
+//! A frame takes some 10 ms of the wire, so that an ordinary run sends a few thousand; MODBUS_FRAMES says how many.
+//! `cargo test -p board modbus` gives the slave's own code a million.
+
+mod common;
+
+use board::modbus::{Field, UNLOCK_KEY, WORDS, address};
+use common::{LAMP_TEST_S, board as board_of, scenario};
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use virtual_board::{Port, Quality, VirtualBoard};
+
+const DEFAULT_FRAMES: u32 = 2_000;
+const UNIT: u8 = 1;
+/// A character of 11 bits at 19 200 bit/s, s.
+const CHARACTER_S: f64 = 11.0 / 19_200.0;
+/// The silence that ends a frame (2.1 ms), and until the sample loop lets the slave answer (a block's work, 0.1 ms).
+const PATIENCE_S: f64 = 0.004;
+/// Frames between two looks at the registers.
+const LOOK_EVERY: u32 = 500;
+
+/// The checksum bit by bit, after the protocol's own description (Modbus over serial line V1.02, 6.2.2).
+fn sealed(body: &[u8]) -> Vec<u8> {
+    let crc = body.iter().fold(0xFFFF_u16, |crc, byte| {
+        (0..8).fold(crc ^ u16::from(*byte), |crc, _| {
+            (crc >> 1) ^ if crc & 1 == 1 { 0xA001 } else { 0 }
+        })
+    });
+    [body, &crc.to_le_bytes()].concat()
+}
+
+/// Key and the command to learn in one request, for `unit`.
+fn unlock_and_learn(unit: u8) -> Vec<u8> {
+    let [high, low] = UNLOCK_KEY.to_be_bytes();
+    sealed(&[unit, 16, 0, 0, 0, 2, 4, high, low, 0, 2])
+}
+
+/// A frame, and whether the protocol demands an answer.
+fn frame(random: &mut Pcg64Mcg) -> (Vec<u8>, bool) {
+    let mut rubbish = |most| -> Vec<u8> {
+        let length = random.random_range(1..=most);
+        (0..length).map(|_| random.random()).collect()
+    };
+    let bytes = rubbish(12);
+    match random.random_range(0..6) {
+        0 => (bytes, false),
+        1 => {
+            let mut damaged = unlock_and_learn(UNIT);
+            let bit = random.random_range(0..8 * damaged.len());
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            (damaged, false)
+        }
+        2 => {
+            let others = [0, 2, 17, 246, 247];
+            let unit = others[random.random_range(0..others.len())];
+            (unlock_and_learn(unit), false)
+        }
+        // Sound, but locked: an answer that refuses.
+        3 => (
+            sealed(&[UNIT, 6, 0, 1, 0, random.random_range(1..=2)]),
+            true,
+        ),
+        // Any function but the two that write.
+        4 => {
+            let function = [1, 2, 5, 7, 8, 15, 17, 22, 23, 43, 99, 255][usize::from(bytes[0]) % 12];
+            (sealed(&[&[UNIT, function], &bytes[1..]].concat()), true)
+        }
+        // A write of the wrong length.
+        _ => {
+            let [high, low] = UNLOCK_KEY.to_be_bytes();
+            (sealed(&[UNIT, 6, 0, 0, high, low, bytes[0]]), true)
+        }
+    }
+}
+
+/// Sends a frame and gives what is answered.
+fn ask(board: &mut VirtualBoard, frame: &[u8], quality: impl Fn(usize) -> Quality) -> Vec<u8> {
+    let wire: Vec<_> = frame
+        .iter()
+        .enumerate()
+        .map(|(k, byte)| (*byte, quality(k)))
+        .collect();
+    board.deliver(Port::Modbus, &wire);
+    let seconds = CHARACTER_S * (frame.len() + 1) as f64 + PATIENCE_S;
+    board.run(seconds).expect("a run");
+    let mut answer = Vec::new();
+    loop {
+        let sent = board.take_sent(Port::Modbus);
+        if sent.is_empty() {
+            return answer;
+        }
+        answer.extend(sent.iter().map(|sent| sent.byte));
+        board.run(4.0 * CHARACTER_S).expect("a run");
+    }
+}
+
+/// Registers from `first` on, read with `function`.
+fn read(board: &mut VirtualBoard, function: u8, first: u16, count: u16) -> Vec<u16> {
+    let [[a, b], [c, d]] = [first, count].map(u16::to_be_bytes);
+    let answer = ask(board, &sealed(&[UNIT, function, a, b, c, d]), |_| {
+        Quality::Good
+    });
+    let length = 3 + 2 * usize::from(count);
+    assert_eq!(answer, sealed(&answer[..length]), "a sound answer");
+    let (words, _) = answer[3..length].as_chunks::<2>();
+    words.iter().map(|word| u16::from_be_bytes(*word)).collect()
+}
+
+fn assert_nothing_happened(board: &mut VirtualBoard, after: u32) {
+    let words = read(board, 4, 0, WORDS as u16);
+    let word = |field| words[usize::from(address(field))];
+    assert_eq!(word(Field::Learning), 0, "after {after} frames");
+    assert_eq!(word(Field::Verdict), 1, "after {after} frames");
+    assert_eq!(read(board, 3, 0, 1), [0], "unlocked after {after} frames");
+    let tally = board.tally();
+    assert_eq!((tally.resets, tally.missed_triggers), (0, 0), "{tally:?}");
+}
+
+#[test]
+fn frames_that_are_no_sound_requests_change_nothing() {
+    let asked = std::env::var("MODBUS_FRAMES").ok();
+    let frames: u32 = asked
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(DEFAULT_FRAMES);
+    let mut board = board_of(&scenario(10.0 + 0.1 * f64::from(frames)));
+    board.forget_taken();
+    board.run(LAMP_TEST_S + 0.8).expect("a run");
+    let mut random = Pcg64Mcg::seed_from_u64(7);
+    let mut answers = 0;
+    for sent in 1..=frames {
+        let (bytes, answered) = frame(&mut random);
+        // Half of the rubbish is disturbed on the wire too.
+        let disturbed = !answered && random.random_bool(0.5);
+        let answer = ask(&mut board, &bytes, |k| match (disturbed, k % 3) {
+            (true, 0) => Quality::Bad,
+            _ => Quality::Good,
+        });
+        assert_eq!(!answer.is_empty(), answered, "{bytes:02x?}: {answer:02x?}");
+        answers += u32::from(answered);
+        if sent % LOOK_EVERY == 0 || sent == frames {
+            assert_nothing_happened(&mut board, sent);
+        }
+        if sent % 50_000 == 0 {
+            println!("{sent} of {frames} frames");
+        }
+    }
+    println!("{frames} frames, {answers} of them refused with an answer, no reset, no write");
+}
