@@ -151,10 +151,19 @@ fn a_port_that_does_not_exist_is_an_error_with_a_remedy() {
 #[test]
 fn a_page_is_refused_with_the_way_to_get_one() {
     let output = Command::new(env!("CARGO_BIN_EXE_drivemon"))
-        .args(["monitor", "--serial", "/dev/no-such-port", "--report", "x.html"])
+        .args([
+            "monitor",
+            "--serial",
+            "/dev/no-such-port",
+            "--report",
+            "x.html",
+        ])
         .output()
         .expect("drivemon runs");
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("--report") && said.contains("--capture"), "{said}");
+    assert!(
+        said.contains("--report") && said.contains("--capture"),
+        "{said}"
+    );
 }
