@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p discovery --example evidence -- --seeds 10 --first 101`
 //! `--only coast-down|loads|steady|healthy|without|double` asks one row, `--effect NAME` one effect; every answer
-//! goes to standard error, with `--verbose` its ranking too.
+//! goes to standard error, with `--verbose` its ranking too. Exits with 1 when a promise is missed.
 
 #[path = "../tests/foreign/mod.rs"]
 mod foreign;
@@ -11,6 +11,7 @@ use foreign::cases;
 use foreign::evidence::{Answer, Question, Setting, double};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::process::ExitCode;
 
 /// Single effects in one setting. An inverter has no coast-down and no steady load here.
 fn single(setting: Setting, seed: u64) -> Vec<Question> {
@@ -107,77 +108,134 @@ impl Asked {
     }
 }
 
-fn count(answers: &[Answer], test: impl Fn(&Answer) -> bool) -> usize {
-    answers.iter().filter(|a| test(a)).count()
+/// A share of answers and what is promised of it, percent.
+struct Row {
+    what: &'static str,
+    promised: Promise,
+    part: usize,
+    all: usize,
 }
 
-fn print(what: &str, part: usize, all: usize, promised: &str) {
-    let percent = 100.0 * part as f64 / all.max(1) as f64;
-    println!("| {what} | {part} of {all} | {percent:.1} % | {promised} |");
+/// Bounds of a share, percent.
+#[derive(Clone, Copy)]
+enum Promise {
+    AtLeast(f64),
+    AtMost(f64),
 }
 
-fn main() {
-    let asked = Asked::from_arguments();
-    println!("| question | answers | share | promised |\n|---|---|---|---|");
+impl Row {
+    fn new(
+        what: &'static str,
+        promised: Promise,
+        answers: &[Answer],
+        test: impl Fn(&Answer) -> bool,
+    ) -> Self {
+        let part = answers.iter().filter(|a| test(a)).count();
+        Row {
+            what,
+            promised,
+            part,
+            all: answers.len(),
+        }
+    }
+
+    fn percent(&self) -> f64 {
+        100.0 * self.part as f64 / self.all.max(1) as f64
+    }
+
+    /// A row that was not asked for breaks nothing.
+    fn is_kept(&self) -> bool {
+        self.all == 0
+            || match self.promised {
+                Promise::AtLeast(least) => self.percent() >= least,
+                Promise::AtMost(most) => self.percent() <= most,
+            }
+    }
+
+    fn print(&self) {
+        let promised = match self.promised {
+            Promise::AtLeast(x) => format!(">= {x} %"),
+            Promise::AtMost(x) => format!("<= {x} %"),
+        };
+        let mark = if self.is_kept() { "" } else { " MISSED" };
+        println!(
+            "| {} | {} of {} | {:.1} % | {promised}{mark} |",
+            self.what,
+            self.part,
+            self.all,
+            self.percent()
+        );
+    }
+}
+
+/// The whole table, row by row.
+fn rows(asked: &Asked) -> Vec<Row> {
+    use Promise::{AtLeast, AtMost};
     let seeds = asked.seeds.clone();
-    let coast = asked.answers(
-        "coast-down",
-        |s| single(Setting::CoastDown, s),
-        seeds.clone(),
-    );
-    print(
-        "two recordings, one with a coast-down: truth in the tie set",
-        count(&coast, Answer::is_found),
-        coast.len(),
-        ">= 95 %",
-    );
-    print(
-        "the same: truth alone",
-        count(&coast, Answer::is_unique),
-        coast.len(),
-        ">= 85 %",
-    );
-    let mut loads = asked.answers("loads", |s| single(Setting::Loads, s), seeds.clone());
+    let single_in = |setting| move |seed| single(setting, seed);
+    let coast = asked.answers("coast-down", single_in(Setting::CoastDown), seeds.clone());
+    let mut loads = asked.answers("loads", single_in(Setting::Loads), seeds.clone());
     loads.retain(|a| !is_invisible(a));
-    print(
-        "starts and loads only, visible effects: found",
-        count(&loads, Answer::is_found),
-        loads.len(),
-        ">= 90 %",
-    );
-    let steady = asked.answers("steady", |s| single(Setting::Steady, s), seeds.clone());
-    print(
-        "one steady load: something else named",
-        count(&steady, Answer::is_wrong),
-        steady.len(),
-        "<= 2 %",
-    );
+    let steady = asked.answers("steady", single_in(Setting::Steady), seeds.clone());
     let every = seeds.start..seeds.start + 5 * (seeds.end - seeds.start) / 2;
     let nothing = asked.answers("healthy", healthy, every);
-    print(
-        "nothing hidden: something named",
-        count(&nothing, Answer::is_wrong),
-        nothing.len(),
-        "0",
-    );
     let without = asked.answers("without", without_truth, seeds.clone());
-    print(
-        "truth taken out of the library: something named",
-        count(&without, |a| !a.report.steps.is_empty()),
-        without.len(),
-        "<= 5 %",
-    );
     let two = asked.answers("double", double, seeds);
-    print(
-        "two at once: both found",
-        count(&two, Answer::is_found),
-        two.len(),
-        ">= 85 %",
-    );
-    print(
-        "the same: a false third",
-        count(&two, Answer::is_wrong),
-        two.len(),
-        "<= 5 %",
-    );
+    vec![
+        Row::new(
+            "two recordings, one with a coast-down: truth in the tie set",
+            AtLeast(95.0),
+            &coast,
+            Answer::is_found,
+        ),
+        Row::new(
+            "the same: truth alone",
+            AtLeast(85.0),
+            &coast,
+            Answer::is_unique,
+        ),
+        Row::new(
+            "starts and loads only, visible effects: found",
+            AtLeast(90.0),
+            &loads,
+            Answer::is_found,
+        ),
+        Row::new(
+            "one steady load: something else named",
+            AtMost(2.0),
+            &steady,
+            Answer::is_wrong,
+        ),
+        Row::new(
+            "nothing hidden: something named",
+            AtMost(0.0),
+            &nothing,
+            Answer::is_wrong,
+        ),
+        Row::new(
+            "truth taken out of the library: something named",
+            AtMost(5.0),
+            &without,
+            |a| !a.report.steps.is_empty(),
+        ),
+        Row::new(
+            "two at once: both found",
+            AtLeast(85.0),
+            &two,
+            Answer::is_found,
+        ),
+        Row::new(
+            "the same: a false third",
+            AtMost(5.0),
+            &two,
+            Answer::is_wrong,
+        ),
+    ]
+}
+
+fn main() -> ExitCode {
+    let rows = rows(&Asked::from_arguments());
+    println!("| question | answers | share | promised |\n|---|---|---|---|");
+    rows.iter().for_each(Row::print);
+    ExitCode::from(u8::from(!rows.iter().all(Row::is_kept)))
 }
