@@ -3,7 +3,8 @@
 
 use monitor::{
     Abc, ActiveEffect, ActiveEffects, CHANNELS, ChannelScale, ComparatorConfig, Converter,
-    FieldCurrent, Frame, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MonitorConfig,
+    FieldCurrent, Frame, Healthy, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MonitorConfig,
+    ROWS, Uncertainty,
 };
 use motor::effects::{STEADY, SteadyEffect};
 use motor::{Mechanics, TParams};
@@ -11,10 +12,14 @@ use motor::{Mechanics, TParams};
 use crate::checksum::crc32_words;
 
 /// Words of an image, version and checksum included.
-pub const IMAGE_WORDS: usize = 42 + CHANNELS + MAX_EFFECTS * (1 + MAX_EFFECT_PARAMETERS);
+pub const IMAGE_WORDS: usize =
+    42 + HEALTHY_WORDS + CHANNELS + MAX_EFFECTS * (1 + MAX_EFFECT_PARAMETERS);
+
+/// Words of the healthy motor's statistics.
+const HEALTHY_WORDS: usize = 5 + 2 * ROWS + 10;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0002;
+const SCHEMA: u32 = 0x444D_0003;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,6 +132,50 @@ fn write_judgement(w: &mut Writer, config: &MonitorConfig) {
     w.numbers(&config.thresholds);
     w.word(u32::from(config.comparator.persistence));
     w.number(config.comparator.hysteresis);
+    write_healthy(w, config.healthy.as_ref());
+}
+
+/// A significance is positive, so 0 stands for a motor that was not calibrated.
+fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
+    let Some(h) = healthy else {
+        w.numbers(&[0.0; HEALTHY_WORDS]);
+        return;
+    };
+    let u = &h.uncertainty;
+    w.number(h.significance);
+    w.numbers(&h.mean);
+    w.numbers(&h.scatter);
+    w.numbers(&h.current_unbalance);
+    w.numbers(&[h.current_unbalance_scatter, h.turns_angle]);
+    w.numbers(&[u.stator_resistance, u.rotor_resistance, u.heating]);
+    w.numbers(&[u.magnetizing_inductance, u.leakage, u.friction]);
+    w.numbers(&[u.current_gain, u.voltage_gain, u.speed]);
+    w.number(u.negative_impedance);
+}
+
+fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
+    let significance = r.number();
+    let healthy = Healthy {
+        mean: r.numbers(),
+        scatter: r.numbers(),
+        current_unbalance: r.numbers(),
+        current_unbalance_scatter: r.number(),
+        turns_angle: r.number(),
+        uncertainty: Uncertainty {
+            stator_resistance: r.number(),
+            rotor_resistance: r.number(),
+            heating: r.number(),
+            magnetizing_inductance: r.number(),
+            leakage: r.number(),
+            friction: r.number(),
+            current_gain: r.number(),
+            voltage_gain: r.number(),
+            speed: r.number(),
+            negative_impedance: r.number(),
+        },
+        significance,
+    };
+    (significance > 0.0).then_some(healthy)
 }
 
 fn write_effects(w: &mut Writer, config: &MonitorConfig) {
@@ -202,6 +251,7 @@ fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
             persistence: r.word() as u8,
             hysteresis: r.number(),
         },
+        healthy: read_healthy(r),
     })
 }
 

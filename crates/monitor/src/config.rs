@@ -4,6 +4,7 @@ use motor::{Mechanics, TParams};
 
 use crate::convert::Converter;
 use crate::effects::ActiveEffects;
+use crate::isolation::Healthy;
 use crate::operating_point::Frame;
 use crate::phasor::CHANNELS;
 use crate::residuals::{FieldCurrent, RESIDUALS};
@@ -59,6 +60,8 @@ pub struct MonitorConfig {
     pub window_cycles: usize,
     /// Persistence and hysteresis of all comparators.
     pub comparator: ComparatorConfig,
+    /// Statistics of the healthy motor; without them FAULT follows the thresholds of r1..r4.
+    pub healthy: Option<Healthy>,
 }
 
 /// A parameter outside its range.
@@ -138,11 +141,14 @@ impl MonitorConfig {
                 self.channel_gain
                     .map(|gain| ("channel_gain", gain, [0.1, 10.0])),
             )
-            .try_for_each(check_range)
+            .try_for_each(check_range)?;
+        self.healthy
+            .as_ref()
+            .map_or(Ok(()), |healthy| healthy.validate())
     }
 }
 
-fn check_range(
+pub(crate) fn check_range(
     (parameter, value, [least, greatest]): (&'static str, f32, [f32; 2]),
 ) -> Result<(), ConfigError> {
     if (least..=greatest).contains(&value) {

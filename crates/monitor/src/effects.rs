@@ -5,6 +5,8 @@ pub use motor::effects::MAX_PARAMETERS as MAX_EFFECT_PARAMETERS;
 use motor::effects::{Rated, SteadyEffect, SteadyPoint};
 use num_complex::Complex32;
 
+use crate::operating_point::Rehearsal;
+
 /// Most effects that one motor file may switch on.
 pub const MAX_EFFECTS: usize = 4;
 
@@ -33,6 +35,19 @@ pub struct Corrected {
     pub params: TParams<f32>,
     /// Torque that the effects take from the shaft, N m.
     pub tau_extra: f32,
+}
+
+impl Corrected {
+    /// The same as rehearsed sensor faults would show it.
+    #[must_use]
+    pub fn rehearsed(self, gains: &Rehearsal) -> Self {
+        Corrected {
+            u_s: self.u_s * gains.voltage_gain,
+            i_s: self.i_s * gains.current_q_gain,
+            omega_mech: self.omega_mech * gains.speed_gain,
+            ..self
+        }
+    }
 }
 
 /// Applies all effects to one operating point, in the order of the motor file.

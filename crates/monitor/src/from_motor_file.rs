@@ -1,13 +1,14 @@
 //! The monitor's configuration from a motor file (feature `motor-file`; hosts and build scripts only).
 
 use motor::effects::{self, EffectConfig, SteadyEffect};
-use motor::motor_file::{self, MotorFile, Sensors};
+use motor::motor_file::{self, HealthySettings, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
 
 use crate::config::{LoadKind, MonitorConfig};
 use crate::convert::{ChannelScale, Converter};
 use crate::effects::{ActiveEffect, ActiveEffects, MAX_EFFECT_PARAMETERS, MAX_EFFECTS};
 use crate::frames::Abc;
+use crate::isolation::{Healthy, Uncertainty};
 use crate::operating_point::Frame;
 use crate::phasor::CHANNELS;
 use crate::residuals::FieldCurrent;
@@ -48,6 +49,7 @@ impl MonitorConfig {
                 persistence: settings.persistence_windows.min(255) as u8,
                 hysteresis: settings.hysteresis as f32,
             },
+            healthy: file.healthy.as_ref().map(healthy),
         }
     }
 }
@@ -128,6 +130,30 @@ fn converter(sensors: &Sensors) -> Converter {
             sensors.current_offset_amp,
         ),
         ..Converter::bipolar(1.0, 1.0, sensors.adc_bits as u8)
+    }
+}
+
+fn healthy(settings: &HealthySettings) -> Healthy {
+    let share = |percent: f64| (percent / 100.0) as f32;
+    Healthy {
+        mean: settings.mean_percent.map(share),
+        scatter: settings.scatter_percent.map(share),
+        current_unbalance: settings.current_unbalance_percent.map(share),
+        current_unbalance_scatter: share(settings.current_unbalance_scatter_percent),
+        turns_angle: settings.turns_angle_deg.to_radians() as f32,
+        uncertainty: Uncertainty {
+            stator_resistance: share(settings.stator_resistance_percent),
+            rotor_resistance: share(settings.rotor_resistance_percent),
+            heating: share(settings.heating_percent),
+            magnetizing_inductance: share(settings.magnetizing_inductance_percent),
+            leakage: share(settings.leakage_percent),
+            friction: share(settings.friction_percent),
+            current_gain: share(settings.current_gain_percent),
+            voltage_gain: share(settings.voltage_gain_percent),
+            speed: share(settings.speed_percent),
+            negative_impedance: share(settings.negative_impedance_percent),
+        },
+        significance: settings.significance as f32,
     }
 }
 

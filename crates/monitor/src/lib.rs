@@ -14,6 +14,7 @@ mod frames;
 mod from_motor_file;
 mod health;
 mod intake;
+mod isolation;
 mod lamps;
 mod monitor;
 mod operating_point;
@@ -37,6 +38,9 @@ pub use effects::{
 pub use encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
 pub use health::{HealthConfig, Phase, SensorFinding};
+pub use isolation::{
+    ALL_CAUSES, CAUSES, Cause, Healthy, Isolation, ROWS, Row, Uncertainty, probabilities,
+};
 pub use lamps::{Lamp, Lamps};
 pub use monitor::{Monitor, MonitorState};
 pub use operating_point::{Frame, OperatingPoint, Rehearsal};

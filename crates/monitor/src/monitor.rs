@@ -4,17 +4,18 @@ use motor::effects::Rated;
 
 use crate::block::{Axes, Codes};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
-use crate::effects::correct;
+use crate::effects::{Corrected, correct};
 use crate::encoder::{EncoderConfig, EncoderState};
 use crate::health::{HealthConfig, SensorFinding};
 use crate::intake::{
     IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
 };
+use crate::isolation::{Bench, Evidence, Healthy, Isolation, PositiveEvidence};
 use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::panel::{PanelConfig, PanelState};
 use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
 use crate::report::{NotJudged, Report};
-use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
+use crate::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 use crate::sample::Sample;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
@@ -101,6 +102,9 @@ const VOLTAGE_RANGE: [f32; 2] = [0.75, 1.2];
 const MAX_UNBALANCE: f32 = 0.03;
 /// A window counts as steady when the neglected derivative terms stay below this share of the threshold.
 const STEADY_SHARE: f32 = 0.25;
+/// Share of the accelerating torque that stays in doubt: a difference over five cycles, and an inertia that is only
+/// roughly known.
+const ACCELERATION_DOUBT: f32 = 0.3;
 
 impl Monitor {
     /// Prepares a monitor.
@@ -268,6 +272,9 @@ impl Monitor {
         if voltages && currents {
             self.evaluate(&state.rehearsal, window, report);
         }
+        if let Some(healthy) = &self.config.healthy {
+            self.isolate(healthy, measured, &state.rehearsal, window, report);
+        }
     }
 
     fn check_channels(
@@ -287,8 +294,9 @@ impl Monitor {
         window: &Window,
         report: &Report,
     ) -> Option<NotJudged> {
+        let by_currents = self.judges_currents_alone(currents) && !voltages;
         let reasons = [
-            (!voltages, NotJudged::NoVoltages),
+            (!voltages && !by_currents, NotJudged::NoVoltages),
             (!currents, NotJudged::NoCurrents),
             (window.invalid_samples > 0, NotJudged::Invalid),
             (window.clipped.any(), NotJudged::Clipped),
@@ -303,7 +311,13 @@ impl Monitor {
             .or((report.supply == wrong_order)
                 .then_some(NotJudged::Supply(SupplyFinding::NegativeOrder)))
             .or((!self.health.has_current(window)).then_some(NotJudged::NoLoadCurrent))
-            .or(window.omega_mech.is_none().then_some(NotJudged::NoSpeed))
+            .or((window.omega_mech.is_none() && !by_currents).then_some(NotJudged::NoSpeed))
+    }
+
+    /// A motor whose healthy current unbalance is known can be judged by its currents.
+    fn judges_currents_alone(&self, currents: bool) -> bool {
+        let healthy = self.config.healthy.as_ref();
+        currents && healthy.is_some_and(|healthy| healthy.current_unbalance_scatter > 0.0)
     }
 
     fn evaluate(&self, rehearsal: &Rehearsal, window: &Window, report: &mut Report) {
@@ -324,6 +338,78 @@ impl Monitor {
         }
     }
 
+    /// Which cause explains the window, in a transient as well: what changes only makes it less sure.
+    fn isolate(
+        &self,
+        healthy: &Healthy,
+        [voltages, currents]: [bool; 2],
+        rehearsal: &Rehearsal,
+        window: &Window,
+        report: &mut Report,
+    ) {
+        let is_sound = matches!(report.not_judged, None | Some(NotJudged::Transient));
+        if !is_sound || report.sensor.is_some() {
+            return;
+        }
+        let evidence = if voltages {
+            self.evidence(healthy, rehearsal, window, report)
+        } else {
+            currents.then(|| Evidence::of_currents(healthy, window))
+        };
+        report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy));
+    }
+
+    fn evidence(
+        &self,
+        healthy: &Healthy,
+        rehearsal: &Rehearsal,
+        window: &Window,
+        report: &Report,
+    ) -> Option<Evidence> {
+        let measured = self.corrected(window)?.rehearsed(rehearsal);
+        let tau_load = window
+            .tau_load
+            .filter(|_| self.config.load == LoadKind::Measured);
+        let model = ResidualModel {
+            field: FieldCurrent::Live,
+            ..self.model
+        };
+        let bench = Bench {
+            model: &model,
+            measured: &measured,
+            omega_sync: window.omega_sync,
+            tau_load,
+        };
+        let mut residuals = bench.residuals()?;
+        let directions = bench.directions(&residuals)?;
+        let acceleration = self
+            .model
+            .acceleration_share(window.omega_sync, window.speed_change / window.span);
+        let [torque, ..] = &mut residuals;
+        *torque += acceleration; // (36) row 2
+        let [volt, _] = self.unsteadiness(window, report.point.as_ref()?);
+        let positive = PositiveEvidence {
+            residuals,
+            directions,
+            unsteadiness: [ACCELERATION_DOUBT * acceleration + volt, volt, volt],
+            torque_known: self.config.load == LoadKind::Friction || tau_load.is_some(),
+        };
+        let n_p = self.config.mechanics.n_p;
+        Some(Evidence::new(healthy, window, &measured, n_p, &positive))
+    }
+
+    /// What one window measured, freed from physical effects.
+    fn corrected(&self, window: &Window) -> Option<Corrected> {
+        let config = &self.config;
+        Some(correct(
+            &config.effects,
+            self.rated,
+            &config.params,
+            [window.u_s.positive, window.i_s.positive],
+            [window.omega_sync, window.omega_mech?],
+        ))
+    }
+
     fn operating_point(
         &self,
         frame: Frame,
@@ -331,13 +417,7 @@ impl Monitor {
         window: &Window,
     ) -> Option<OperatingPoint> {
         let config = &self.config;
-        let corrected = correct(
-            &config.effects,
-            self.rated,
-            &config.params,
-            [window.u_s.positive, window.i_s.positive],
-            [window.omega_sync, window.omega_mech?],
-        );
+        let corrected = self.corrected(window)?;
         let omega_el = corrected.omega_mech * config.mechanics.n_p;
         OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)
             .map(|point| point.rehearse(rehearsal))
@@ -365,11 +445,15 @@ impl Monitor {
     }
 
     fn is_steady(&self, window: &Window, point: &OperatingPoint) -> bool {
-        let current_rate = window.current_change / window.span;
-        let mech_rate = window.speed_change / window.span;
-        let unsteadiness = self.model.unsteadiness(point, current_rate, mech_rate);
+        let unsteadiness = self.unsteadiness(window, point);
         let [r1, r2, ..] = self.config.thresholds;
         let limits = [STEADY_SHARE * r1, STEADY_SHARE * r2];
         unsteadiness.iter().zip(limits).all(|(x, limit)| *x < limit)
+    }
+
+    fn unsteadiness(&self, window: &Window, point: &OperatingPoint) -> [f32; 2] {
+        let current_rate = window.current_change / window.span;
+        let mech_rate = window.speed_change / window.span;
+        self.model.unsteadiness(point, current_rate, mech_rate)
     }
 }

@@ -1,6 +1,7 @@
 //! From findings to lamps: persistence, hysteresis, and what each lamp means.
 
 use crate::config::{LoadKind, MonitorConfig};
+use crate::isolation::Isolation;
 use crate::lamps::{Lamp, Lamps};
 use crate::report::{NotJudged, Report};
 use crate::residuals::RESIDUALS;
@@ -13,6 +14,8 @@ use crate::threshold::{ComparatorConfig, ComparatorState};
 pub struct PanelConfig {
     comparator: ComparatorConfig,
     load: LoadKind,
+    /// Standard deviations at which FAULT lights on a calibrated motor.
+    significance: Option<f32>,
 }
 
 /// What the lamps remember.
@@ -22,6 +25,7 @@ pub struct PanelState {
     sensor: ComparatorState,
     line: ComparatorState,
     overload: ComparatorState,
+    isolated: ComparatorState,
 }
 
 /// Torque, as a share of rated, above which LOAD lights where the load is free: past the usual service factor of 1.15.
@@ -33,6 +37,7 @@ impl PanelConfig {
         PanelConfig {
             comparator: config.comparator,
             load: config.load,
+            significance: config.healthy.map(|healthy| healthy.significance),
         }
     }
 
@@ -47,8 +52,16 @@ impl PanelConfig {
         }
         self.confirm(&mut state.line, report.supply.is_some());
         self.confirm(&mut state.overload, self.is_overloaded(report));
+        self.follow_isolation(state, report);
         report.candidates = self.candidates(state, report);
-        report.lamps = lamps(state, report);
+        report.lamps = self.lamps(state, report);
+    }
+
+    fn follow_isolation(&self, state: &mut PanelState, report: &Report) {
+        if let (Some(isolation), Some(limit)) = (&report.isolation, self.significance) {
+            self.comparator
+                .update(&mut state.isolated, isolation.significance / limit);
+        }
     }
 
     fn compare(&self, state: &mut PanelState, normalised: &[f32; RESIDUALS]) {
@@ -70,30 +83,40 @@ impl PanelConfig {
             .is_some_and(|residuals| -residuals.r[1] > OVERLOAD)
     }
 
+    fn lamps(&self, state: &PanelState, report: &Report) -> Lamps {
+        let residual_lit = state.residuals.iter().any(ComparatorState::is_lit);
+        let motor_fault = if self.significance.is_some() {
+            state.isolated.is_lit()
+        } else {
+            residual_lit
+        };
+        let sensor = state.sensor.is_lit() || motor_fault && points_to_sensor(report);
+        Lamps {
+            run: run_lamp(report.not_judged),
+            r: state
+                .residuals
+                .map(|comparator| Lamp::lit(comparator.is_lit())),
+            sensor: sensor_lamp(sensor, report.not_judged),
+            line: line_lamp(state.line.is_lit(), report.not_judged),
+            load: load_lamp(state.overload.is_lit(), report.not_judged),
+            fault: Lamp::lit(motor_fault || state.sensor.is_lit()),
+        }
+    }
+
     fn candidates(&self, state: &PanelState, report: &Report) -> Option<Candidates> {
         let lit = state.residuals.iter().any(ComparatorState::is_lit);
-        let normalised = report
-            .normalised
-            .filter(|_| lit && report.not_judged.is_none())?;
+        let by_table = lit && self.significance.is_none() && report.not_judged.is_none();
+        let normalised = report.normalised.filter(|_| by_table)?;
         Some(Candidates::from_normalised(&normalised))
     }
 }
 
-fn lamps(state: &PanelState, report: &Report) -> Lamps {
-    let residual_lit = state.residuals.iter().any(ComparatorState::is_lit);
-    let points_to_sensor = report
-        .candidates
-        .is_some_and(|candidates| candidates.points_to_sensor());
-    Lamps {
-        run: run_lamp(report.not_judged),
-        r: state
-            .residuals
-            .map(|comparator| Lamp::lit(comparator.is_lit())),
-        sensor: sensor_lamp(state.sensor.is_lit() || points_to_sensor, report.not_judged),
-        line: line_lamp(state.line.is_lit(), report.not_judged),
-        load: load_lamp(state.overload.is_lit(), report.not_judged),
-        fault: Lamp::lit(residual_lit || state.sensor.is_lit()),
-    }
+/// Whether the instrument is a likelier cause than the motor.
+fn points_to_sensor(report: &Report) -> bool {
+    let by_table = report.candidates.as_ref();
+    let by_evidence = report.isolation.as_ref();
+    by_table.is_some_and(Candidates::points_to_sensor)
+        || by_evidence.is_some_and(Isolation::points_to_sensor)
 }
 
 fn run_lamp(not_judged: Option<NotJudged>) -> Lamp {

@@ -1,6 +1,7 @@
 //! What the monitor says about one window.
 
 use crate::health::SensorFinding;
+use crate::isolation::Isolation;
 use crate::lamps::Lamps;
 use crate::operating_point::OperatingPoint;
 use crate::residuals::{RESIDUALS, Residuals};
@@ -54,9 +55,11 @@ pub struct Report {
     pub supply: Option<SupplyFinding>,
     /// Residuals over their thresholds: beyond 1 is on.
     pub normalised: Option<[f32; RESIDUALS]>,
+    /// Which cause explains the window, where the motor was calibrated.
+    pub isolation: Option<Isolation>,
     /// Lamps after this window.
     pub lamps: Lamps,
-    /// Probability of each fault while FAULT is lit by the residuals.
+    /// Probability of each row of Table 1 while r1..r4 light FAULT: without a calibration.
     pub candidates: Option<Candidates>,
 }
 

@@ -90,7 +90,7 @@ impl ResidualModel {
             k_f: 1.5 * n_p * p.l_m * p.l_m / p.l_r() * i_f, // (29)
             n_p,
             b_t,
-            b_scale: self.friction_scale(point, b_t),
+            b_scale: self.friction_scale(point.omega_sync, b_t),
         }
     }
 
@@ -104,9 +104,26 @@ impl ResidualModel {
         declared + as_friction(point.tau_extra)
     }
 
-    fn friction_scale(&self, point: &OperatingPoint, b_t: f32) -> f32 {
+    /// What viscous friction takes of the torque balance, on the scale of `r2`.
+    pub fn friction_share(&self, omega_sync: f32, omega_mech: f32, torque_known: bool) -> f32 {
+        let b_t = if torque_known {
+            self.mechanics.friction
+        } else {
+            self.mechanics.total_friction()
+        };
+        let scale = self.friction_scale(omega_sync, b_t);
+        relative(b_t * omega_mech * self.mechanics.n_p, scale * omega_sync)
+    }
+
+    /// Rotor and load speeding up: the inertia's term of (36) row 2, on the scale of `r2`.
+    pub fn acceleration_share(&self, omega_sync: f32, mech_rate: f32) -> f32 {
+        let scale = self.friction_scale(omega_sync, 0.0) * omega_sync / self.mechanics.n_p;
+        relative(self.mechanics.inertia * mech_rate, scale)
+    }
+
+    fn friction_scale(&self, omega_sync: f32, b_t: f32) -> f32 {
         let declared = self.mechanics.total_friction();
-        let rated = relative(self.rated_torque * self.mechanics.n_p, point.omega_sync);
+        let rated = relative(self.rated_torque * self.mechanics.n_p, omega_sync);
         if declared > LEAST_FRICTION_SHARE * rated {
             declared
         } else {
@@ -143,8 +160,7 @@ impl ResidualModel {
         mech_rate: f32,
     ) -> [f32; 2] {
         let volt = relative(point.params.l_s() * current_rate, point.u_amplitude); // (36) row 1
-        let scale = self.friction_scale(point, 0.0) * point.omega_sync / self.mechanics.n_p;
-        let torque = relative(self.mechanics.inertia * mech_rate, scale); // (36) row 2
+        let torque = self.acceleration_share(point.omega_sync, mech_rate); // (36) row 2
         [volt.abs(), torque.abs()]
     }
 }

@@ -65,6 +65,7 @@ fn config() -> MonitorConfig {
             persistence: 3,
             hysteresis: 0.8,
         },
+        healthy: None,
     }
 }
 

@@ -82,6 +82,7 @@ impl Machine {
                 persistence: 3,
                 hysteresis: 0.8,
             },
+            healthy: None,
         }
     }
 }

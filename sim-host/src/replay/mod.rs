@@ -1,5 +1,6 @@
 //! Replaying a recording through the very core that the board runs.
 
+mod causes;
 mod samples;
 mod timeline;
 mod trace;
@@ -73,6 +74,7 @@ pub fn stand_in_config(recording: &Recording) -> MonitorConfig {
             persistence: 3,
             hysteresis: 0.8,
         },
+        healthy: None,
     }
 }
 
@@ -86,7 +88,7 @@ pub fn replay(
     progress: &mut dyn FnMut(usize),
 ) -> Timeline {
     let mut state = MonitorState::default();
-    let mut timeline = Timeline::default();
+    let mut timeline = Timeline::new(monitor.config());
     for (k, timed) in samples.iter().enumerate() {
         if timed.after_gap {
             state.resume_after_gap();

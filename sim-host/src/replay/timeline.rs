@@ -2,10 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use monitor::{Candidates, FAULTS, Fault, Lamps, NotJudged, Report, SensorFinding, TABLE_1};
+use monitor::{
+    Candidates, FAULTS, Fault, Lamps, LoadKind, MonitorConfig, NotJudged, Report, SensorFinding,
+    TABLE_1,
+};
 use num_complex::Complex64;
 use serde::Serialize;
 
+use super::causes::Causes;
 use super::trace::Trace;
 use crate::words;
 
@@ -57,6 +61,9 @@ pub struct Candidate {
     pub phase: Option<&'static str>,
     /// Probability, 0..=1; for a sensor finding the share of windows since the alarm that show it.
     pub probability: f64,
+    /// Change that explains the windows best, percent of the healthy value, on a calibrated motor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size_percent: Option<f64>,
 }
 
 /// Verdict over the whole recording.
@@ -126,6 +133,12 @@ pub struct Timeline {
     sensor_findings: Vec<(SensorFinding, u64)>,
     windows_since_alarm: u64,
     sequences: Sequences,
+    causes: Causes,
+    rated_current: f32,
+    load_friction: bool,
+    /// Resistance rise of the judged windows of a calibrated motor.
+    heating_sum: f64,
+    heating_windows: u64,
 }
 
 /// Ratios of the sequence components of each complete window.
@@ -143,6 +156,15 @@ struct CurrentRatios {
 }
 
 impl Timeline {
+    /// For a monitor of this configuration.
+    pub fn new(config: &MonitorConfig) -> Self {
+        Timeline {
+            rated_current: config.rated_current,
+            load_friction: config.load == LoadKind::Friction,
+            ..Timeline::default()
+        }
+    }
+
     /// Adds one report; `t` is the time of the window's end, s.
     pub fn add(&mut self, t: f64, report: &Report) {
         self.windows += 1;
@@ -185,6 +207,10 @@ impl Timeline {
             return;
         }
         self.judged += 1;
+        if let Some(isolation) = &report.isolation {
+            self.heating_sum += f64::from(isolation.heating);
+            self.heating_windows += 1;
+        }
         let Some(residuals) = report.residuals else {
             return;
         };
@@ -214,6 +240,9 @@ impl Timeline {
         self.windows_since_alarm += 1;
         if let Some(candidates) = &report.candidates {
             self.add_candidates(candidates);
+        }
+        if alarm && report.is_judged() {
+            self.causes.add(report, self.rated_current);
         }
         if let Some(finding) = report.sensor {
             self.add_sensor_finding(finding);
@@ -247,7 +276,11 @@ impl Timeline {
             (None, _) => VerdictState::Healthy,
         };
         let mut candidates = self.sensor_candidates();
-        candidates.extend(self.table_candidates());
+        if self.causes.is_empty() {
+            candidates.extend(self.table_candidates());
+        } else {
+            candidates.extend(self.isolated_candidates());
+        }
         candidates.sort_by(|x, y| y.probability.total_cmp(&x.probability));
         Verdict { state, candidates }
     }
@@ -260,8 +293,14 @@ impl Timeline {
                 fault: words::sensor_row(*finding).name(),
                 phase: words::sensor_phase(*finding),
                 probability: share(*windows),
+                size_percent: None,
             })
             .collect()
+    }
+
+    fn isolated_candidates(&self) -> impl Iterator<Item = Candidate> + use<> {
+        let all = self.causes.candidates(self.load_friction).into_iter();
+        all.filter(|candidate| candidate.probability >= LEAST_PROBABILITY)
     }
 
     fn table_candidates(&self) -> Vec<Candidate> {
@@ -282,9 +321,15 @@ impl Timeline {
                 fault,
                 phase: None,
                 probability: sum / n,
+                size_percent: None,
             })
             .filter(|candidate| candidate.probability >= LEAST_PROBABILITY)
             .collect()
+    }
+
+    /// Relative rise of the resistances since the calibration, the mean over the judged windows; `None` without one.
+    pub fn resistance_rise(&self) -> Option<f64> {
+        (self.heating_windows > 0).then(|| self.heating_sum / self.heating_windows as f64)
     }
 
     /// Mean sequence components.

@@ -44,6 +44,7 @@ pub const CONFIG: MonitorConfig = MonitorConfig {
         persistence: 3,
         hysteresis: 0.8,
     },
+healthy: None,
 };
 
 const CHANNEL: monitor::ChannelScale = monitor::ChannelScale {

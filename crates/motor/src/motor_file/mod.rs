@@ -3,6 +3,7 @@
 //! Everything is validated once, here, the effects by their library; what a [`MotorFile`] holds is physically possible.
 
 mod effects;
+mod healthy;
 mod monitor;
 mod nameplate;
 mod parameters;
@@ -15,6 +16,7 @@ mod malformed;
 mod tests;
 
 pub use effects::{EffectEntry, EffectParameter, EffectValue};
+pub use healthy::{EVIDENCE_ROWS, HealthySettings};
 pub use monitor::{FieldCurrent, Frame, LoadKind, MonitorSettings};
 pub use nameplate::{Connection, Nameplate};
 pub use sensors::Sensors;
@@ -42,6 +44,8 @@ pub struct MotorFile {
     pub sensors: Sensors,
     /// How the residuals are formed and judged.
     pub monitor: MonitorSettings,
+    /// Statistics of the healthy motor, once it was calibrated.
+    pub healthy: Option<HealthySettings>,
     /// Physical effects beyond the T model, in the order of the file.
     pub effects: Vec<EffectEntry>,
 }
@@ -101,6 +105,7 @@ fn read_document(document: &Document) -> Option<MotorFile> {
     let load = monitor::read_load(&root);
     let sensors = sensors::read(&root, nameplate.as_ref());
     let monitor = monitor::read(&root);
+    let healthy = healthy::read(&root);
     let effects = read_effects(&root);
     if let (Some(plate), Some(effects)) = (&nameplate, &effects) {
         crate::effects::check(document, plate, effects);
@@ -116,6 +121,7 @@ fn read_document(document: &Document) -> Option<MotorFile> {
         load: load?,
         sensors: sensors?,
         monitor: monitor?,
+        healthy: healthy?,
         effects: effects?,
     })
 }

@@ -1,7 +1,10 @@
 //! A motor as the text of a motor file.
 
 use super::monitor::{FIELD_CURRENTS, FRAMES, LOADS};
-use super::{Connection, EffectEntry, EffectValue, MonitorSettings, MotorFile, Nameplate, Sensors};
+use super::{
+    Connection, EffectEntry, EffectValue, HealthySettings, MonitorSettings, MotorFile, Nameplate,
+    Sensors,
+};
 use std::fmt::Write;
 
 pub(super) fn to_toml(motor: &MotorFile) -> String {
@@ -13,6 +16,9 @@ pub(super) fn to_toml(motor: &MotorFile) -> String {
     text.words("kind", word(&LOADS, motor.load));
     sensors(&mut text, &motor.sensors);
     monitor(&mut text, &motor.monitor);
+    if let Some(settings) = &motor.healthy {
+        healthy(&mut text, settings);
+    }
     for effect in &motor.effects {
         write_effect(&mut text, effect);
     }
@@ -129,6 +135,21 @@ fn monitor(text: &mut Text, settings: &MonitorSettings) {
     text.integer("window_cycles", settings.window_cycles);
     text.integer("persistence_windows", settings.persistence_windows);
     text.number("hysteresis", settings.hysteresis);
+}
+
+fn healthy(text: &mut Text, settings: &HealthySettings) {
+    text.header("[healthy]");
+    text.numbers("mean_percent", &settings.mean_percent);
+    text.numbers("scatter_percent", &settings.scatter_percent);
+    text.numbers(
+        "current_unbalance_percent",
+        &settings.current_unbalance_percent,
+    );
+    for (key, share) in settings.shares() {
+        text.number(key, share);
+    }
+    text.number("turns_angle_deg", settings.turns_angle_deg);
+    text.number("significance", settings.significance);
 }
 
 fn write_effect(text: &mut Text, effect: &EffectEntry) {

@@ -1,0 +1,131 @@
+//! What can be wrong with a calibrated motor, as the evidence tells it apart.
+
+use crate::health::Phase;
+
+/// One cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// Stator resistance of all phases, off the direction of heating.
+    StatorResistance,
+    /// Rotor resistance, off the direction of heating.
+    RotorResistance,
+    /// Magnetizing inductance.
+    MagnetizingInductance,
+    /// Leakage inductances of stator and rotor.
+    Leakage,
+    /// Friction of motor and load: they only ever appear as `B + B_l`.
+    Friction,
+    /// All current channels alike.
+    CurrentGain,
+    /// All voltage channels alike.
+    VoltageGain,
+    /// The speed measurement.
+    SpeedGain,
+    /// A resistance in series with one phase: a joint, a contact, a winding.
+    SeriesResistance(Phase),
+    /// Shorted turns in one phase.
+    Turns(Phase),
+    /// One current channel.
+    CurrentChannel(Phase),
+    /// One voltage channel.
+    VoltageChannel(Phase),
+}
+
+/// How many causes are weighed.
+pub const CAUSES: usize = 20;
+
+use Phase::{A, B, C};
+
+/// All causes, in the order of [`super::Isolation::scores`].
+pub const ALL_CAUSES: [Cause; CAUSES] = [
+    Cause::StatorResistance,
+    Cause::RotorResistance,
+    Cause::MagnetizingInductance,
+    Cause::Leakage,
+    Cause::Friction,
+    Cause::CurrentGain,
+    Cause::VoltageGain,
+    Cause::SpeedGain,
+    Cause::SeriesResistance(A),
+    Cause::SeriesResistance(B),
+    Cause::SeriesResistance(C),
+    Cause::Turns(A),
+    Cause::Turns(B),
+    Cause::Turns(C),
+    Cause::CurrentChannel(A),
+    Cause::CurrentChannel(B),
+    Cause::CurrentChannel(C),
+    Cause::VoltageChannel(A),
+    Cause::VoltageChannel(B),
+    Cause::VoltageChannel(C),
+];
+
+impl Cause {
+    /// Short name as in Table 1 where there is a row for it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Cause::StatorResistance | Cause::SeriesResistance(_) => "Rs",
+            Cause::RotorResistance => "Rr",
+            Cause::MagnetizingInductance => "Lm",
+            Cause::Leakage => "leakage",
+            Cause::Friction => "B",
+            Cause::CurrentGain | Cause::CurrentChannel(_) => "Iq",
+            Cause::VoltageGain | Cause::VoltageChannel(_) => "Vq",
+            Cause::SpeedGain => "wr",
+            Cause::Turns(_) => "turns",
+        }
+    }
+
+    /// The phase, where the cause has one.
+    pub const fn phase(self) -> Option<Phase> {
+        match self {
+            Cause::SeriesResistance(phase)
+            | Cause::Turns(phase)
+            | Cause::CurrentChannel(phase)
+            | Cause::VoltageChannel(phase) => Some(phase),
+            _ => None,
+        }
+    }
+
+    /// Whether the cause lies in the instrument, not in the motor.
+    pub const fn is_sensor(self) -> bool {
+        matches!(
+            self,
+            Cause::CurrentGain
+                | Cause::VoltageGain
+                | Cause::SpeedGain
+                | Cause::CurrentChannel(_)
+                | Cause::VoltageChannel(_)
+        )
+    }
+
+    /// A typical size as a share of the healthy value: it weighs a cause that explains much with little against others.
+    pub const fn typical_size(self) -> f32 {
+        match self {
+            Cause::StatorResistance | Cause::RotorResistance => 0.3,
+            Cause::MagnetizingInductance => 0.15,
+            Cause::Leakage | Cause::Friction | Cause::SeriesResistance(_) => 0.5,
+            Cause::CurrentGain | Cause::VoltageGain => 0.1,
+            Cause::CurrentChannel(_) | Cause::VoltageChannel(_) => 0.2,
+            Cause::SpeedGain => 0.05,
+            Cause::Turns(_) => 0.3,
+        }
+    }
+
+    /// Whether only an increase is possible: a contact or a short only ever adds.
+    pub const fn only_adds(self) -> bool {
+        matches!(self, Cause::SeriesResistance(_) | Cause::Turns(_))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cause_is_listed_once() {
+        for (k, cause) in ALL_CAUSES.iter().enumerate() {
+            assert!(!ALL_CAUSES.iter().skip(k + 1).any(|other| other == cause));
+        }
+    }
+}

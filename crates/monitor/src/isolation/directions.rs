@@ -1,0 +1,135 @@
+//! How each quantity, changed alone, would move the residuals of the positive sequence.
+//!
+//! A residual is a function of parameters and measurements, zero when both are right. If a parameter of the motor
+//! changed, the residual with the old parameter becomes minus its derivative; if a sensor's gain changed, plus its
+//! derivative. So no motor model is solved: the directions are difference quotients at the measured point.
+
+use motor::TParams;
+use num_complex::Complex32;
+
+use crate::effects::Corrected;
+use crate::frames::magnitude;
+use crate::operating_point::{Frame, OperatingPoint};
+use crate::residuals::ResidualModel;
+
+/// Residuals of the positive sequence: torque balance, `e_d`, `e_q`.
+pub type Positive = [f32; 3];
+
+/// Change of the residuals per relative change of each quantity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Directions {
+    pub r_s: Positive,
+    pub r_r: Positive,
+    pub l_m: Positive,
+    pub leakage: Positive,
+    pub friction: Positive,
+    pub current: Positive,
+    pub voltage: Positive,
+    pub speed: Positive,
+    /// Current through shorted turns, in phase with the voltage, per motor current.
+    pub turns: Positive,
+}
+
+/// Large enough against the rounding of a residual (1e-6), small enough against its curvature.
+const STEP: f32 = 0.01;
+
+/// The residuals as a function of everything that they depend on.
+#[derive(Clone, Copy)]
+pub struct Bench<'a> {
+    pub model: &'a ResidualModel,
+    pub measured: &'a Corrected,
+    pub omega_sync: f32,
+    pub tau_load: Option<f32>,
+}
+
+impl Bench<'_> {
+    /// The residuals at the measured point.
+    pub fn residuals(&self) -> Option<Positive> {
+        self.at(self.measured)
+    }
+
+    fn at(&self, measured: &Corrected) -> Option<Positive> {
+        let omega_el = measured.omega_mech * self.model.mechanics.n_p;
+        let point = OperatingPoint::new(measured, Frame::RotorFlux, self.omega_sync, omega_el)?;
+        let residuals = self.model.evaluate(&point, self.tau_load);
+        let [_, r2, ..] = residuals.r;
+        Some([r2, residuals.e_d, residuals.e_q])
+    }
+
+    /// All directions at the measured point, whose residuals are `base`.
+    pub fn directions(&self, base: &Positive) -> Option<Directions> {
+        let sensor = |changed: Corrected| self.quotient(base, &changed);
+        let parameter = |changed: TParams<f32>| {
+            let moved = self.with_parameters(changed);
+            self.quotient(base, &moved).map(|d| d.map(|x| -x))
+        };
+        let (m, p) = (self.measured, self.measured.params);
+        let more = 1.0 + STEP;
+        let shunt = m.u_s * (magnitude(m.i_s) * STEP / magnitude(m.u_s));
+        Some(Directions {
+            r_s: parameter(TParams {
+                r_s: p.r_s * more,
+                ..p
+            })?,
+            r_r: parameter(TParams {
+                r_r: p.r_r * more,
+                ..p
+            })?,
+            l_m: parameter(TParams {
+                l_m: p.l_m * more,
+                ..p
+            })?,
+            leakage: parameter(TParams {
+                l_ls: p.l_ls * more,
+                l_lr: p.l_lr * more,
+                ..p
+            })?,
+            friction: [
+                -self
+                    .model
+                    .friction_share(self.omega_sync, m.omega_mech, self.tau_load.is_some()),
+                0.0,
+                0.0,
+            ],
+            current: sensor(Corrected {
+                i_s: m.i_s * more,
+                ..*m
+            })?,
+            voltage: sensor(Corrected {
+                u_s: m.u_s * more,
+                ..*m
+            })?,
+            speed: sensor(Corrected {
+                omega_mech: m.omega_mech * more,
+                ..*m
+            })?,
+            turns: sensor(Corrected {
+                i_s: m.i_s + shunt,
+                ..*m
+            })?,
+        })
+    }
+
+    fn with_parameters(&self, params: TParams<f32>) -> Corrected {
+        Corrected {
+            params,
+            ..*self.measured
+        }
+    }
+
+    fn quotient(&self, base: &Positive, changed: &Corrected) -> Option<Positive> {
+        let mut moved = self.at(changed)?;
+        for (x, base) in moved.iter_mut().zip(base) {
+            *x = (*x - base) / STEP;
+        }
+        Some(moved)
+    }
+}
+
+/// Impedance of the T model's star phase at `slip`, ohm; the negative sequence sees `2 - s`.
+pub fn impedance(p: &TParams<f32>, omega_sync: f32, slip: f32) -> Complex32 {
+    let stator = Complex32::new(p.r_s, omega_sync * p.l_ls);
+    let rotor = Complex32::new(p.r_r / slip, omega_sync * p.l_lr);
+    let main = Complex32::new(0.0, omega_sync * p.l_m);
+    stator + main * rotor / (main + rotor)
+}

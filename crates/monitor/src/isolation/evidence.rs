@@ -1,0 +1,292 @@
+//! One window's evidence: what it shows beyond the healthy motor, how surely, and where each cause would move it.
+
+use num_complex::Complex32;
+
+use super::cause::Cause;
+use super::directions::{Directions, Positive, impedance};
+use super::gauss::Covariance;
+use super::healthy::{Healthy, ROWS, Row};
+use crate::effects::Corrected;
+use crate::health::Phase;
+use crate::window::Window;
+
+/// A vector over the rows of evidence.
+pub type Rows = [f32; ROWS];
+
+/// What one window shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evidence {
+    /// Departure from the healthy motor; 0 where a row is not known.
+    pub departure: Rows,
+    /// Whether each row is known.
+    known: [bool; ROWS],
+    scatter: Rows,
+    positive: Directions,
+    negative: Negative,
+}
+
+/// How the row of the negative sequence moves, per relative change in all three phases; one phase gives a third of it,
+/// turned by its axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Negative {
+    value: Complex32,
+    voltage: Complex32,
+    current: Complex32,
+    series: Complex32,
+    turns: Complex32,
+    /// `Z_2 I_2/V_1`, whose impedance is only roughly known.
+    drop: Complex32,
+}
+
+/// Positive-sequence residuals with their directions, and how far from steady they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositiveEvidence {
+    pub residuals: Positive,
+    pub directions: Directions,
+    /// Standard deviation that changing currents and speeds add.
+    pub unsteadiness: Positive,
+    /// Whether the load is known, so that the torque balance says something about the motor.
+    pub torque_known: bool,
+}
+
+impl Evidence {
+    /// From voltages, currents and speed.
+    pub fn new(
+        healthy: &Healthy,
+        window: &Window,
+        measured: &Corrected,
+        n_p: f32,
+        positive: &PositiveEvidence,
+    ) -> Self {
+        let slip = (2.0 * window.omega_sync - (window.omega_sync - measured.omega_mech * n_p))
+            / window.omega_sync;
+        let negative = Negative::from_voltages(window, measured, slip);
+        let mut known = healthy.scatter.map(|scatter| scatter > 0.0);
+        let [torque, ..] = &mut known;
+        *torque &= positive.torque_known;
+        let mut scatter = healthy.scatter;
+        for (scatter, unsteady) in scatter.iter_mut().zip(positive.unsteadiness) {
+            *scatter = libm::sqrtf(*scatter * *scatter + unsteady * unsteady);
+        }
+        let zero = [window.i_s.zero_ratio(), window.u_s.zero_ratio()];
+        let evidence = Evidence {
+            departure: assemble(&positive.residuals, negative.value, zero),
+            known,
+            scatter,
+            positive: positive.directions,
+            negative,
+        };
+        evidence.less(&healthy.mean)
+    }
+
+    /// From currents alone: their negative and zero sequence.
+    pub fn of_currents(healthy: &Healthy, window: &Window) -> Self {
+        let value = window.i_s.unbalance();
+        let negative = Negative {
+            value,
+            current: Complex32::ONE,
+            turns: Complex32::new(
+                libm::cosf(healthy.turns_angle),
+                libm::sinf(healthy.turns_angle),
+            ),
+            ..Negative::default()
+        };
+        let [re, im] = healthy.current_unbalance;
+        let mut mean = healthy.mean;
+        let mut scatter = healthy.scatter;
+        let mut known = [false; ROWS];
+        for (row, m) in [
+            (Row::Negative as usize, re),
+            (Row::Negative as usize + 1, im),
+        ] {
+            set(&mut mean, row, m);
+            set(&mut scatter, row, healthy.current_unbalance_scatter);
+            set(&mut known, row, healthy.current_unbalance_scatter > 0.0);
+        }
+        for row in [Row::ZeroCurrent as usize, Row::ZeroCurrent as usize + 1] {
+            set(&mut known, row, scatter.get(row).is_some_and(|s| *s > 0.0));
+        }
+        let zero = [window.i_s.zero_ratio(), Complex32::ZERO];
+        let evidence = Evidence {
+            departure: assemble(&[0.0; 3], value, zero),
+            known,
+            scatter,
+            positive: Directions::default(),
+            negative,
+        };
+        evidence.less(&mean)
+    }
+
+    fn less(mut self, mean: &Rows) -> Self {
+        let departure = self.departure.iter_mut().zip(mean).zip(&self.known);
+        for ((x, mean), known) in departure {
+            *x = if *known { *x - mean } else { 0.0 };
+        }
+        self
+    }
+
+    /// How many rows are known.
+    pub fn known_rows(&self) -> usize {
+        self.known.iter().filter(|known| **known).count()
+    }
+
+    /// Where a cause moves the evidence, per relative change.
+    pub fn direction(&self, cause: Cause) -> Rows {
+        let (d, n) = (&self.positive, &self.negative);
+        let no = Complex32::ZERO;
+        match cause {
+            Cause::StatorResistance => self.all(&d.r_s),
+            Cause::RotorResistance => self.all(&d.r_r),
+            Cause::MagnetizingInductance => self.all(&d.l_m),
+            Cause::Leakage => self.all(&d.leakage),
+            Cause::Friction => self.all(&d.friction),
+            Cause::CurrentGain => self.all(&d.current),
+            Cause::VoltageGain => self.all(&d.voltage),
+            Cause::SpeedGain => self.all(&d.speed),
+            Cause::SeriesResistance(phase) => self.one(phase, &d.r_s, n.series, [no, no]),
+            Cause::Turns(phase) => self.one(phase, &d.turns, n.turns, [no, no]),
+            Cause::CurrentChannel(phase) => {
+                self.one(phase, &d.current, n.current, [Complex32::ONE, no])
+            }
+            Cause::VoltageChannel(phase) => {
+                self.one(phase, &d.voltage, n.voltage, [no, Complex32::ONE])
+            }
+        }
+    }
+
+    /// Heating moves both resistances by the same ratio.
+    pub fn heating(&self) -> Rows {
+        let mut sum = self.direction(Cause::StatorResistance);
+        for (x, y) in sum.iter_mut().zip(self.direction(Cause::RotorResistance)) {
+            *x += y;
+        }
+        sum
+    }
+
+    fn all(&self, positive: &Positive) -> Rows {
+        let no = Complex32::ZERO;
+        self.masked(assemble(positive, no, [no, no]))
+    }
+
+    fn one(
+        &self,
+        phase: Phase,
+        positive: &Positive,
+        negative: Complex32,
+        zero: [Complex32; 2],
+    ) -> Rows {
+        let third = 1.0 / 3.0;
+        let (axis, zero_axis) = axes(phase);
+        let rows = assemble(
+            &positive.map(|x| x * third),
+            negative * axis * third,
+            zero.map(|x| x * zero_axis * third),
+        );
+        self.masked(rows)
+    }
+
+    fn masked(&self, mut rows: Rows) -> Rows {
+        for (x, known) in rows.iter_mut().zip(&self.known) {
+            if !known {
+                *x = 0.0;
+            }
+        }
+        rows
+    }
+
+    /// Covariance of the healthy motor's departures.
+    pub fn covariance(&self, healthy: &Healthy) -> Covariance<ROWS> {
+        let mut own = self.scatter;
+        for (scatter, known) in own.iter_mut().zip(&self.known) {
+            *scatter = if *known { *scatter } else { 1.0 };
+        }
+        let mut covariance = Covariance::of_independent(&own);
+        let u = &healthy.uncertainty;
+        let of_all = [
+            (Cause::StatorResistance, u.stator_resistance),
+            (Cause::RotorResistance, u.rotor_resistance),
+            (Cause::MagnetizingInductance, u.magnetizing_inductance),
+            (Cause::Leakage, u.leakage),
+            (Cause::Friction, u.friction),
+            (Cause::SpeedGain, u.speed),
+        ];
+        for (cause, deviation) in of_all {
+            covariance.add(&self.direction(cause), deviation);
+        }
+        covariance.add(&self.heating(), u.heating);
+        for phase in Phase::ALL {
+            covariance.add(
+                &self.direction(Cause::CurrentChannel(phase)),
+                u.current_gain,
+            );
+            covariance.add(
+                &self.direction(Cause::VoltageChannel(phase)),
+                u.voltage_gain,
+            );
+        }
+        self.add_negative_impedance(&mut covariance, u.negative_impedance);
+        covariance
+    }
+
+    /// The drop over the negative sequence's impedance may be wrong in size and in angle.
+    fn add_negative_impedance(&self, covariance: &mut Covariance<ROWS>, deviation: f32) {
+        let no = Complex32::ZERO;
+        for turn in [Complex32::ONE, Complex32::I] {
+            let rows = assemble(&[0.0; 3], self.negative.drop * turn, [no, no]);
+            covariance.add(&self.masked(rows), deviation);
+        }
+    }
+}
+
+impl Negative {
+    fn from_voltages(window: &Window, measured: &Corrected, slip: f32) -> Self {
+        let z_2 = impedance(&measured.params, window.omega_sync, slip);
+        let (v_1, i_1) = (window.u_s.positive, window.i_s.positive);
+        let drop = z_2 * window.i_s.negative / v_1;
+        let current = -z_2 * i_1 / v_1;
+        // Per motor current, in phase with the voltage.
+        let length = libm::sqrtf(i_1.norm_sqr() / v_1.norm_sqr());
+        Negative {
+            value: window.u_s.unbalance() - drop,
+            voltage: Complex32::ONE,
+            current,
+            series: i_1 / v_1 * measured.params.r_s,
+            turns: -z_2 * length,
+            drop,
+        }
+    }
+}
+
+/// Axes on which a change in one phase enters the negative and the zero sequence.
+fn axes(phase: Phase) -> (Complex32, Complex32) {
+    let turn = Complex32::new(-0.5, 0.866_025_4);
+    match phase {
+        Phase::A => (Complex32::ONE, Complex32::ONE),
+        Phase::B => (turn, turn.conj()),
+        Phase::C => (turn.conj(), turn),
+    }
+}
+
+fn assemble(
+    [torque, e_d, e_q]: &Positive,
+    negative: Complex32,
+    [current, voltage]: [Complex32; 2],
+) -> Rows {
+    [
+        *torque,
+        *e_d,
+        *e_q,
+        negative.re,
+        negative.im,
+        current.re,
+        current.im,
+        voltage.re,
+        voltage.im,
+    ]
+}
+
+fn set<T>(rows: &mut [T], row: usize, value: T) {
+    if let Some(place) = rows.get_mut(row) {
+        *place = value;
+    }
+}

@@ -1,0 +1,98 @@
+//! What a calibration learned about the healthy motor and its instrument.
+
+use crate::config::{ConfigError, check_range};
+
+/// Rows of evidence.
+pub const ROWS: usize = 9;
+
+/// The rows, each relative to its own scale.
+///
+/// Negative and zero sequence are complex and take two rows each: real and imaginary part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Row {
+    /// Torque balance: `r2` of (37) with the inertia's term of (36).
+    Torque = 0,
+    /// `e_d`: rotor flux against `L_m I_d`.
+    Flux = 1,
+    /// `e_q`: slip against the rotor's resistance.
+    Slip = 2,
+    /// `(V_2 - Z_2 I_2)/V_1`; with currents alone `I_2/I_1`.
+    Negative = 3,
+    /// `I_0/I_1`.
+    ZeroCurrent = 5,
+    /// `V_0/V_1`.
+    ZeroVoltage = 7,
+}
+
+/// Standard uncertainties of what the evidence rests on, as shares of the values.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Uncertainty {
+    /// Stator resistance, off the direction of heating.
+    pub stator_resistance: f32,
+    /// Rotor resistance, off the direction of heating.
+    pub rotor_resistance: f32,
+    /// Both resistances together: the range of winding temperature, 0.39 % per kelvin.
+    pub heating: f32,
+    /// Magnetizing inductance.
+    pub magnetizing_inductance: f32,
+    /// Leakage inductances.
+    pub leakage: f32,
+    /// Friction of motor and load.
+    pub friction: f32,
+    /// Gain of each current channel.
+    pub current_gain: f32,
+    /// Gain of each voltage channel.
+    pub voltage_gain: f32,
+    /// Speed measurement.
+    pub speed: f32,
+    /// Impedance of the negative sequence: deep bars make it differ from the T model's.
+    pub negative_impedance: f32,
+}
+
+/// Statistics of the healthy motor. Shares of the scales of [`Row`]; a row whose scatter is 0 was not calibrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Healthy {
+    /// What the healthy motor shows.
+    pub mean: [f32; ROWS],
+    /// How much that scatters from window to window and from load to load.
+    pub scatter: [f32; ROWS],
+    /// `I_2/I_1` of the healthy motor where only currents are measured: real and imaginary part.
+    pub current_unbalance: [f32; 2],
+    /// Its scatter; 0 if it was not calibrated.
+    pub current_unbalance_scatter: f32,
+    /// Angle by which a shorted turn's current leads the motor's current, rad: how far the motor's current lags its voltage.
+    pub turns_angle: f32,
+    /// What remains uncertain.
+    pub uncertainty: Uncertainty,
+    /// Standard deviations at which FAULT lights, > 0.
+    pub significance: f32,
+}
+
+impl Healthy {
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+        let share = |name, value| (name, value, [0.0, 10.0]);
+        let of_rows = self.mean.map(|x| ("healthy.mean", x, [-10.0, 10.0]));
+        let scatter = self.scatter.map(|x| share("healthy.scatter", x));
+        let unbalance = self
+            .current_unbalance
+            .map(|x| ("healthy.current_unbalance", x, [-10.0, 10.0]));
+        let u = &self.uncertainty;
+        let others = [
+            share("current_unbalance_scatter", self.current_unbalance_scatter),
+            share("stator_resistance", u.stator_resistance),
+            share("rotor_resistance", u.rotor_resistance),
+            share("heating", u.heating),
+            share("magnetizing_inductance", u.magnetizing_inductance),
+            share("leakage", u.leakage),
+            share("friction", u.friction),
+            share("current_gain", u.current_gain),
+            share("voltage_gain", u.voltage_gain),
+            share("speed", u.speed),
+            share("negative_impedance", u.negative_impedance),
+            ("turns_angle", self.turns_angle, [-7.0, 7.0]),
+            ("significance", self.significance, [1.0, 1000.0]),
+        ];
+        let all = of_rows.into_iter().chain(scatter).chain(unbalance);
+        all.chain(others).try_for_each(check_range)
+    }
+}

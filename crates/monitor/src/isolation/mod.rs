@@ -1,0 +1,157 @@
+//! Which cause explains what a calibrated motor shows: the direction of the evidence, in units of its uncertainty.
+//!
+//! Residuals `(r2, e_d, e_q)` and the negative and zero sequence form one vector. Each cause moves it in a direction of
+//! its own ([`directions`]); what calibration left uncertain and the range of winding temperature give its covariance.
+//! A departure that is long in units of that covariance lights FAULT; its direction names the cause.
+
+mod cause;
+mod directions;
+mod evidence;
+mod gauss;
+mod healthy;
+
+pub use cause::{ALL_CAUSES, CAUSES, Cause};
+pub use healthy::{Healthy, ROWS, Row, Uncertainty};
+
+pub(crate) use directions::Bench;
+pub(crate) use evidence::{Evidence, PositiveEvidence};
+use gauss::{Cholesky, dot};
+
+/// What one window says about the causes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Isolation {
+    /// Logarithm of how much better each cause explains the window than health does, in the order of [`ALL_CAUSES`].
+    pub scores: [f32; CAUSES],
+    /// The same for "something else": a departure in any direction.
+    pub unknown: f32,
+    /// Change of each quantity that explains the window best, as a share of its healthy value.
+    pub sizes: [f32; CAUSES],
+    /// Length of the departure along the best cause, or of all of it, in standard deviations of the healthy motor.
+    pub significance: f32,
+    /// Relative rise of the resistances that explains the window best: winding temperature.
+    pub heating: f32,
+}
+
+impl Isolation {
+    pub(crate) fn of(evidence: &Evidence, healthy: &Healthy) -> Self {
+        let cholesky = evidence.covariance(healthy).factorise();
+        let white = cholesky.whiten(&evidence.departure);
+        let mut isolation = Isolation {
+            scores: [0.0; CAUSES],
+            unknown: score_of_anything(&white, evidence.known_rows()),
+            sizes: [0.0; CAUSES],
+            significance: significance_of_anything(&white, evidence.known_rows()),
+            heating: heating(evidence, healthy, &cholesky, &white),
+        };
+        let places = isolation.scores.iter_mut().zip(&mut isolation.sizes);
+        for ((score, size), cause) in places.zip(ALL_CAUSES) {
+            let fit = Fit::along(&cholesky.whiten(&evidence.direction(cause)), &white);
+            *size = fit.size;
+            *score = fit.score(cause);
+            if !fit.is_impossible(cause) {
+                isolation.significance = isolation.significance.max(fit.significance());
+            }
+        }
+        isolation
+    }
+
+    /// Whether the instrument is a likelier cause than the motor.
+    pub fn points_to_sensor(&self) -> bool {
+        let (probabilities, _) = self.probabilities();
+        let sensors = probabilities.iter().zip(ALL_CAUSES);
+        let sum: f32 = sensors
+            .filter(|(_, cause)| cause.is_sensor())
+            .map(|(p, _)| p)
+            .sum();
+        sum > 0.5
+    }
+
+    /// Probabilities of the causes in the order of [`ALL_CAUSES`], and of "something else"; all held equally likely
+    /// beforehand.
+    pub fn probabilities(&self) -> ([f32; CAUSES], f32) {
+        probabilities(&self.scores, self.unknown)
+    }
+}
+
+/// Probabilities from logarithmic scores; their sum is 1.
+pub fn probabilities(scores: &[f32; CAUSES], unknown: f32) -> ([f32; CAUSES], f32) {
+    let best = scores.iter().fold(unknown, |a, b| a.max(*b));
+    let mut weights = scores.map(|score| libm::expf(score - best));
+    let rest = libm::expf(unknown - best);
+    let sum = weights.iter().sum::<f32>() + rest;
+    weights.iter_mut().for_each(|weight| *weight /= sum);
+    (weights, rest / sum)
+}
+
+/// Least squares along one direction, all white.
+struct Fit {
+    /// Squared length of the direction per unit change.
+    information: f32,
+    size: f32,
+}
+
+impl Fit {
+    fn along(direction: &[f32; ROWS], departure: &[f32; ROWS]) -> Self {
+        let information = dot(direction, direction);
+        let size = dot(direction, departure) / information.max(LEAST_INFORMATION);
+        Fit { information, size }
+    }
+
+    fn significance(&self) -> f32 {
+        libm::sqrtf(self.information) * self.size.abs()
+    }
+
+    fn is_impossible(&self, cause: Cause) -> bool {
+        cause.only_adds() && self.size < 0.0
+    }
+
+    /// Logarithm of the Bayes factor against health for a change of the cause's typical size, normally distributed.
+    fn score(&self, cause: Cause) -> f32 {
+        if self.is_impossible(cause) {
+            return IMPOSSIBLE;
+        }
+        let typical = cause.typical_size();
+        let k = self.information * typical * typical;
+        let z_square = self.information * self.size * self.size;
+        let both_signs = if cause.only_adds() {
+            core::f32::consts::LN_2
+        } else {
+            0.0
+        };
+        0.5 * z_square * k / (1.0 + k) - 0.5 * libm::logf(1.0 + k) + both_signs
+    }
+}
+
+/// A direction without length says nothing about its cause.
+const LEAST_INFORMATION: f32 = 1e-12;
+/// Score of a cause whose sign is impossible.
+const IMPOSSIBLE: f32 = -1e3;
+/// Departures of an unknown kind are held to be this many standard deviations long in every row.
+const UNKNOWN_SPREAD: f32 = 30.0;
+
+/// Logarithm of the Bayes factor of a departure in any direction.
+fn score_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
+    let k = UNKNOWN_SPREAD * UNKNOWN_SPREAD;
+    0.5 * dot(white, white) * k / (1.0 + k) - 0.5 * known as f32 * libm::logf(1.0 + k)
+}
+
+/// The squared length as an equally rare standard deviation (Wilson and Hilferty, doi:10.1073/pnas.17.12.684).
+fn significance_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
+    let n = known as f32;
+    if known == 0 {
+        return 0.0;
+    }
+    let spread = 2.0 / (9.0 * n);
+    (libm::cbrtf(dot(white, white) / n) - (1.0 - spread)) / libm::sqrtf(spread)
+}
+
+/// Mean of the relative rise of both resistances, given the window and its range beforehand.
+fn heating(
+    evidence: &Evidence,
+    healthy: &Healthy,
+    cholesky: &Cholesky<ROWS>,
+    white: &[f32; ROWS],
+) -> f32 {
+    let deviation = healthy.uncertainty.heating;
+    deviation * deviation * dot(&cholesky.whiten(&evidence.heating()), white)
+}

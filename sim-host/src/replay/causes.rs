@@ -1,0 +1,114 @@
+//! What all windows since the alarm say together about the cause, on a calibrated motor.
+
+use monitor::{ALL_CAUSES, CAUSES, Cause, Isolation, Report, magnitude, probabilities};
+
+use super::Candidate;
+
+/// Bands of current, as shares of rated: windows in one band share their systematic errors and count as one witness;
+/// bands are witnesses of their own.
+const BANDS: [f32; 3] = [0.4, 0.7, 1.0];
+
+/// Mean scores of one band.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Band {
+    windows: u64,
+    scores: [f64; CAUSES],
+    unknown: f64,
+    sizes: [f64; CAUSES],
+}
+
+/// Evidence about the cause.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Causes {
+    bands: [Band; BANDS.len() + 1],
+}
+
+impl Causes {
+    /// Adds a window; `rated_current` is an amplitude, A.
+    pub fn add(&mut self, report: &Report, rated_current: f32) {
+        let (Some(isolation), Some(window)) = (&report.isolation, &report.window) else {
+            return;
+        };
+        let share = magnitude(window.i_s.positive) / rated_current;
+        let band = BANDS.iter().filter(|limit| share > **limit).count();
+        if let Some(band) = self.bands.get_mut(band) {
+            band.add(isolation);
+        }
+    }
+
+    /// Whether there is any evidence.
+    pub fn is_empty(&self) -> bool {
+        self.bands.iter().all(|band| band.windows == 0)
+    }
+
+    /// Causes by probability, the likeliest first; `load_friction` splits friction between motor and load.
+    pub fn candidates(&self, load_friction: bool) -> Vec<Candidate> {
+        let (shares, unknown) = self.probabilities();
+        let sizes = self.sizes();
+        let mut candidates = Vec::new();
+        for ((cause, probability), size) in ALL_CAUSES.into_iter().zip(shares).zip(sizes) {
+            let candidate = Candidate {
+                fault: cause.name(),
+                phase: cause.phase().map(monitor::Phase::letter),
+                probability,
+                size_percent: Some(100.0 * size),
+            };
+            if cause == Cause::Friction && load_friction {
+                // B and B_l only ever appear as their sum.
+                let half = |fault| Candidate {
+                    fault,
+                    probability: 0.5 * probability,
+                    ..candidate.clone()
+                };
+                candidates.extend([half("B"), half("Bl")]);
+            } else {
+                candidates.push(candidate);
+            }
+        }
+        candidates.push(Candidate {
+            fault: "unknown",
+            phase: None,
+            probability: unknown,
+            size_percent: None,
+        });
+        candidates
+    }
+
+    fn probabilities(&self) -> ([f64; CAUSES], f64) {
+        let mut scores = [0.0_f32; CAUSES];
+        let mut unknown = 0.0;
+        for band in self.bands.iter().filter(|band| band.windows > 0) {
+            let share = 1.0 / band.windows as f64;
+            for (score, sum) in scores.iter_mut().zip(band.scores) {
+                *score += (sum * share) as f32;
+            }
+            unknown += (band.unknown * share) as f32;
+        }
+        let (shares, rest) = probabilities(&scores, unknown);
+        (shares.map(f64::from), f64::from(rest))
+    }
+
+    fn sizes(&self) -> [f64; CAUSES] {
+        let windows: u64 = self.bands.iter().map(|band| band.windows).sum();
+        let mut sizes = [0.0; CAUSES];
+        for band in &self.bands {
+            for (size, sum) in sizes.iter_mut().zip(band.sizes) {
+                *size += sum / windows.max(1) as f64;
+            }
+        }
+        sizes
+    }
+}
+
+impl Band {
+    fn add(&mut self, isolation: &Isolation) {
+        self.windows += 1;
+        self.unknown += f64::from(isolation.unknown);
+        for (sum, x) in self.scores.iter_mut().zip(isolation.scores) {
+            *sum += f64::from(x);
+        }
+        for (sum, x) in self.sizes.iter_mut().zip(isolation.sizes) {
+            *sum += f64::from(x);
+        }
+    }
+}
