@@ -1,5 +1,6 @@
 //! What `drivemon` is made of: scenarios and their simulation, replay through the board's core, and the command line.
 
+pub mod calibrate;
 pub mod campaign;
 pub mod cli;
 pub mod demo;

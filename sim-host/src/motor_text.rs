@@ -2,7 +2,7 @@
 
 use motor::MotorFile;
 use motor::motor_file::{EffectEntry, EffectValue, FieldCurrent, Frame, MonitorSettings};
-use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value, value};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value, value};
 
 /// The text of `motor`: `old` with its parameters and effects changed where they differ. Comments, order and everything
 /// else of `old` stay. A text that cannot be changed in this way is replaced by a fresh one.
@@ -24,6 +24,8 @@ fn edited(old: &str, motor: &MotorFile) -> Option<String> {
         set(parameters.entry(key).or_insert(value(number)), number);
     }
     set_frame(&mut document, motor)?;
+    set_thresholds(&mut document, motor)?;
+    set_healthy(&mut document, motor)?;
     if !motor.effects.is_empty() {
         let effects = document
             .entry("effects")
@@ -67,6 +69,43 @@ fn set_frame(document: &mut DocumentMut, motor: &MotorFile) -> Option<()> {
     )?;
     let spoken = motor.monitor.field_current != silence.field_current;
     set_word(document, "field_current", field, spoken)
+}
+
+/// Thresholds, where the file names them or they are no longer what silence means.
+fn set_thresholds(document: &mut DocumentMut, motor: &MotorFile) -> Option<()> {
+    let thresholds = motor.monitor.threshold_percent;
+    let spoken = thresholds != MonitorSettings::default().threshold_percent;
+    let named = document
+        .get("monitor")
+        .and_then(|monitor| monitor.get("threshold_percent"));
+    if !spoken && named.is_none() {
+        return Some(());
+    }
+    let monitor = document
+        .entry("monitor")
+        .or_insert_with(|| Item::Table(Table::new()))
+        .as_table_like_mut()?;
+    monitor.insert("threshold_percent", value(Array::from_iter(thresholds)));
+    Some(())
+}
+
+/// The statistics of the healthy motor come from `calibrate` alone and are replaced as a whole.
+fn set_healthy(document: &mut DocumentMut, motor: &MotorFile) -> Option<()> {
+    let fresh: DocumentMut = motor.to_toml().parse().ok()?;
+    let (old, new) = (document.get("healthy"), fresh.get("healthy"));
+    if old.map(ToString::to_string) == new.map(ToString::to_string) {
+        return Some(());
+    }
+    document.remove("healthy");
+    if let Some(Item::Table(table)) = new {
+        let mut table = table.clone();
+        table.set_position(None);
+        table
+            .decor_mut()
+            .set_prefix("\n# Written by `drivemon calibrate`.\n");
+        document.insert("healthy", Item::Table(table));
+    }
+    Some(())
 }
 
 fn set_word(document: &mut DocumentMut, key: &str, word: &str, must: bool) -> Option<()> {

@@ -352,19 +352,38 @@ impl Monitor {
             return;
         }
         let evidence = if voltages {
-            self.evidence(healthy, rehearsal, window, report)
+            self.evidence_of_all(healthy, rehearsal, window)
         } else {
             currents.then(|| Evidence::of_currents(healthy, window))
         };
         report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy));
     }
 
-    fn evidence(
+    /// What a window shows beyond the healthy motor: the material of a calibration. Currents alone give their sequence
+    /// components; with voltages the speed is needed too, and `None` without it.
+    pub fn evidence(&self, healthy: &Healthy, window: &Window) -> Option<Evidence> {
+        if window.u_s.positive.norm_sqr() > 0.0 {
+            self.evidence_of_all(healthy, &Rehearsal::default(), window)
+        } else {
+            Some(Evidence::of_currents(healthy, window))
+        }
+    }
+
+    /// The residuals of a window, where voltages, currents and speed allow them.
+    pub fn residuals(&self, window: &Window) -> Option<Residuals> {
+        let rehearsal = Rehearsal::default();
+        let point = self.operating_point(self.config.frame, &rehearsal, window)?;
+        let tau_load = window
+            .tau_load
+            .filter(|_| self.config.load == LoadKind::Measured);
+        Some(self.model.evaluate(&point, tau_load))
+    }
+
+    fn evidence_of_all(
         &self,
         healthy: &Healthy,
         rehearsal: &Rehearsal,
         window: &Window,
-        report: &Report,
     ) -> Option<Evidence> {
         let measured = self.corrected(window)?.rehearsed(rehearsal);
         let tau_load = window
@@ -382,12 +401,12 @@ impl Monitor {
         };
         let mut residuals = bench.residuals()?;
         let directions = bench.directions(&residuals)?;
-        let acceleration = self
-            .model
-            .acceleration_share(window.omega_sync, window.speed_change / window.span);
+        let mech_rate = window.speed_change / window.span;
+        let acceleration = self.model.acceleration_share(window.omega_sync, mech_rate);
         let [torque, ..] = &mut residuals;
         *torque += acceleration; // (36) row 2
-        let [volt, _] = self.unsteadiness(window, report.point.as_ref()?);
+        let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
+        let [volt, _] = self.unsteadiness(window, &point);
         let positive = PositiveEvidence {
             residuals,
             directions,

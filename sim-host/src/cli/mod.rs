@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand.
 
 mod adopt;
+mod calibrate;
 mod campaign;
 mod compare;
 mod demo;
@@ -46,6 +47,7 @@ First steps:
   drivemon compare rec.csv.gz --motor motor.toml       where the model fails
   drivemon explain rec.csv.gz --motor motor.toml       which physical effect it misses
   drivemon adopt EFFECT rec.csv.gz --motor motor.toml -o better.toml
+  drivemon calibrate healthy.csv.gz --motor motor.toml -o calibrated.toml
   drivemon flash --motor motor.toml                    build the firmware for this motor and write it to the board
 
 Exit codes: 0 fine or healthy, 1 a finding (a fault was lit), 2 bad input or usage, 3 the data do not support an answer.
@@ -61,6 +63,7 @@ enum Command {
     Explain(explain::Explain),
     Adopt(adopt::Adopt),
     Campaign(campaign::Campaign),
+    Calibrate(calibrate::Calibrate),
     Flash(flash::Flash),
 }
 
@@ -75,6 +78,7 @@ impl Cli {
             Command::Explain(explain) => explain.run(),
             Command::Adopt(adopt) => adopt.run(),
             Command::Campaign(campaign) => campaign.run(),
+            Command::Calibrate(calibrate) => calibrate.run(),
             Command::Flash(flash) => flash.run(),
         };
         match outcome {

@@ -1,6 +1,6 @@
 //! What all windows since the alarm say together about the cause, on a calibrated motor.
 
-use monitor::{ALL_CAUSES, CAUSES, Cause, Isolation, Report, magnitude, probabilities};
+use monitor::{ALL_CAUSES, CAUSES, Cause, Isolation, Report, magnitude};
 
 use super::Candidate;
 
@@ -8,11 +8,14 @@ use super::Candidate;
 /// bands are witnesses of their own.
 const BANDS: [f32; 3] = [0.4, 0.7, 1.0];
 
-/// Mean scores of one band.
+/// What a band of windows cannot rule out by itself.
+const DOUBT: f64 = 1e-3;
+
+/// Sums over one band.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Band {
     windows: u64,
-    scores: [f64; CAUSES],
+    probabilities: [f64; CAUSES],
     unknown: f64,
     sizes: [f64; CAUSES],
 }
@@ -74,18 +77,19 @@ impl Causes {
         candidates
     }
 
+    /// Windows of one band vote, bands multiply: a cause that one band rules out stays ruled out.
     fn probabilities(&self) -> ([f64; CAUSES], f64) {
-        let mut scores = [0.0_f32; CAUSES];
-        let mut unknown = 0.0;
+        let mut shares = [1.0; CAUSES];
+        let mut unknown = 1.0;
         for band in self.bands.iter().filter(|band| band.windows > 0) {
-            let share = 1.0 / band.windows as f64;
-            for (score, sum) in scores.iter_mut().zip(band.scores) {
-                *score += (sum * share) as f32;
+            let mean = |sum: f64| (sum / band.windows as f64).max(DOUBT);
+            for (share, sum) in shares.iter_mut().zip(band.probabilities) {
+                *share *= mean(sum);
             }
-            unknown += (band.unknown * share) as f32;
+            unknown *= mean(band.unknown);
         }
-        let (shares, rest) = probabilities(&scores, unknown);
-        (shares.map(f64::from), f64::from(rest))
+        let sum = shares.iter().sum::<f64>() + unknown;
+        (shares.map(|share| share / sum), unknown / sum)
     }
 
     fn sizes(&self) -> [f64; CAUSES] {
@@ -103,8 +107,9 @@ impl Causes {
 impl Band {
     fn add(&mut self, isolation: &Isolation) {
         self.windows += 1;
-        self.unknown += f64::from(isolation.unknown);
-        for (sum, x) in self.scores.iter_mut().zip(isolation.scores) {
+        let (probabilities, unknown) = isolation.probabilities();
+        self.unknown += f64::from(unknown);
+        for (sum, x) in self.probabilities.iter_mut().zip(probabilities) {
             *sum += f64::from(x);
         }
         for (sum, x) in self.sizes.iter_mut().zip(isolation.sizes) {

@@ -112,6 +112,15 @@ impl Cause {
         }
     }
 
+    /// How far a real fault's direction may lie off the computed one, as a share of its length: large changes bend it, and
+    /// the current of a short is only nearly in phase with its voltage.
+    pub const fn looseness(self) -> f32 {
+        match self {
+            Cause::Turns(_) => 0.35,
+            _ => 0.1,
+        }
+    }
+
     /// Whether only an increase is possible: a contact or a short only ever adds.
     pub const fn only_adds(self) -> bool {
         matches!(self, Cause::SeriesResistance(_) | Cause::Turns(_))

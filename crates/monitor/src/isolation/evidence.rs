@@ -51,7 +51,7 @@ pub struct PositiveEvidence {
 
 impl Evidence {
     /// From voltages, currents and speed.
-    pub fn new(
+    pub(crate) fn new(
         healthy: &Healthy,
         window: &Window,
         measured: &Corrected,
@@ -80,7 +80,7 @@ impl Evidence {
     }
 
     /// From currents alone: their negative and zero sequence.
-    pub fn of_currents(healthy: &Healthy, window: &Window) -> Self {
+    pub(crate) fn of_currents(healthy: &Healthy, window: &Window) -> Self {
         let value = window.i_s.unbalance();
         let negative = Negative {
             value,
@@ -123,6 +123,11 @@ impl Evidence {
             *x = if *known { *x - mean } else { 0.0 };
         }
         self
+    }
+
+    /// Whether each row is known.
+    pub fn known(&self) -> &[bool; ROWS] {
+        &self.known
     }
 
     /// How many rows are known.
@@ -195,7 +200,7 @@ impl Evidence {
     }
 
     /// Covariance of the healthy motor's departures.
-    pub fn covariance(&self, healthy: &Healthy) -> Covariance<ROWS> {
+    pub(crate) fn covariance(&self, healthy: &Healthy) -> Covariance<ROWS> {
         let mut own = self.scatter;
         for (scatter, known) in own.iter_mut().zip(&self.known) {
             *scatter = if *known { *scatter } else { 1.0 };

@@ -34,33 +34,41 @@ impl<const N: usize> Covariance<N> {
         }
     }
 
-    /// Factorises; a row without any uncertainty of its own gets the smallest one that single precision carries.
+    /// Factorises, row by row (Cholesky and Banachiewicz). Rounding may leave a row without uncertainty of its own: it
+    /// keeps the smallest one that single precision carries.
     pub fn factorise(self) -> Cholesky<N> {
-        let mut lower = self.lower;
-        for i in 0..N {
-            let (done, rest) = lower.split_at_mut(i);
-            let Some(row) = rest.first_mut() else { break };
-            factorise_row(done, row);
+        let mut lower = [[0.0; N]; N];
+        for (i, variances) in self.lower.iter().enumerate() {
+            let row = factor_row(&lower, i, variances);
+            if let Some(place) = lower.get_mut(i) {
+                *place = row;
+            }
         }
         Cholesky { lower }
     }
 }
 
-/// Row `i = done.len()` of the factor, in place: Cholesky-Banachiewicz.
-fn factorise_row<const N: usize>(done: &[[f32; N]], row: &mut [f32; N]) {
-    let i = done.len();
-    for (j, above) in done.iter().enumerate() {
-        let (known, open) = row.split_at_mut(j);
-        let (Some(x), Some(pivot)) = (open.first_mut(), above.get(j)) else {
-            return;
-        };
-        *x = (*x - dot(known, above)) / pivot;
+/// Row `i` of the factor from those before it. What lies behind the diagonal is 0, so whole rows may be multiplied.
+fn factor_row<const N: usize>(lower: &[[f32; N]; N], i: usize, variances: &[f32; N]) -> [f32; N] {
+    let mut row = [0.0; N];
+    for (j, (above, c)) in lower.iter().zip(variances).enumerate().take(i) {
+        let x = (c - dot(&row, above)) / entry(above, j);
+        set(&mut row, j, x);
     }
-    let (known, open) = row.split_at_mut(i);
-    if let Some(x) = open.first_mut() {
-        let square = dot(known, known);
-        let least = LEAST_SHARE * (*x + square) + f32::MIN_POSITIVE;
-        *x = libm::sqrtf((*x - square).max(least));
+    let variance = entry(variances, i);
+    let least = LEAST_SHARE * variance + f32::MIN_POSITIVE;
+    let own = (variance - dot(&row, &row)).max(least);
+    set(&mut row, i, libm::sqrtf(own));
+    row
+}
+
+fn entry<const N: usize>(row: &[f32; N], k: usize) -> f32 {
+    row.get(k).copied().unwrap_or(1.0)
+}
+
+fn set<const N: usize>(row: &mut [f32; N], k: usize, x: f32) {
+    if let Some(place) = row.get_mut(k) {
+        *place = x;
     }
 }
 
@@ -70,19 +78,17 @@ const LEAST_SHARE: f32 = 1e-6;
 impl<const N: usize> Cholesky<N> {
     /// `L^-1 x`: white if `x` has this covariance.
     pub fn whiten(&self, x: &[f32; N]) -> [f32; N] {
-        let mut white = *x;
-        for (i, row) in self.lower.iter().enumerate() {
-            let (known, open) = white.split_at_mut(i);
-            if let (Some(x), Some(pivot)) = (open.first_mut(), row.get(i)) {
-                *x = (*x - dot(known, row)) / pivot;
-            }
+        let mut white = [0.0; N];
+        for (i, (row, x)) in self.lower.iter().zip(x).enumerate() {
+            let rest = (x - dot(row, &white)) / entry(row, i);
+            set(&mut white, i, rest);
         }
         white
     }
 }
 
-/// Scalar product over the shorter length.
-pub fn dot(a: &[f32], b: &[f32]) -> f32 {
+/// Scalar product.
+pub fn dot<const N: usize>(a: &[f32; N], b: &[f32; N]) -> f32 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 

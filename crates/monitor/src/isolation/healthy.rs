@@ -96,3 +96,18 @@ impl Healthy {
         all.chain(others).try_for_each(check_range)
     }
 }
+
+impl Healthy {
+    /// Nothing known yet: evidence against it is what the windows show.
+    pub fn unknown() -> Self {
+        Healthy {
+            mean: [0.0; ROWS],
+            scatter: [1.0; ROWS],
+            current_unbalance: [0.0; 2],
+            current_unbalance_scatter: 1.0,
+            turns_angle: 0.0,
+            uncertainty: Uncertainty::default(),
+            significance: 1000.0,
+        }
+    }
+}

@@ -10,11 +10,14 @@ mod evidence;
 mod gauss;
 mod healthy;
 
+use core::f32::consts::LN_2;
+
 pub use cause::{ALL_CAUSES, CAUSES, Cause};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
 
 pub(crate) use directions::Bench;
-pub(crate) use evidence::{Evidence, PositiveEvidence};
+pub use evidence::Evidence;
+pub(crate) use evidence::PositiveEvidence;
 use gauss::{Cholesky, dot};
 
 /// What one window says about the causes.
@@ -33,21 +36,23 @@ pub struct Isolation {
 }
 
 impl Isolation {
-    pub(crate) fn of(evidence: &Evidence, healthy: &Healthy) -> Self {
+    /// Weighs all causes.
+    pub fn of(evidence: &Evidence, healthy: &Healthy) -> Self {
         let cholesky = evidence.covariance(healthy).factorise();
         let white = cholesky.whiten(&evidence.departure);
+        let known = evidence.known_rows();
         let mut isolation = Isolation {
             scores: [0.0; CAUSES],
-            unknown: score_of_anything(&white, evidence.known_rows()),
+            unknown: score_of_anything(&white, known),
             sizes: [0.0; CAUSES],
-            significance: significance_of_anything(&white, evidence.known_rows()),
+            significance: significance_of_anything(&white, known),
             heating: heating(evidence, healthy, &cholesky, &white),
         };
         let places = isolation.scores.iter_mut().zip(&mut isolation.sizes);
         for ((score, size), cause) in places.zip(ALL_CAUSES) {
             let fit = Fit::along(&cholesky.whiten(&evidence.direction(cause)), &white);
             *size = fit.size;
-            *score = fit.score(cause);
+            *score = fit.score(cause, &white, known);
             if !fit.is_impossible(cause) {
                 isolation.significance = isolation.significance.max(fit.significance());
             }
@@ -105,20 +110,22 @@ impl Fit {
         cause.only_adds() && self.size < 0.0
     }
 
-    /// Logarithm of the Bayes factor against health for a change of the cause's typical size, normally distributed.
-    fn score(&self, cause: Cause) -> f32 {
+    /// Logarithm of the Bayes factor against health for a change of the cause's typical size, normally distributed,
+    /// whose direction is only roughly the computed one.
+    fn score(&self, cause: Cause, white: &[f32; ROWS], known: usize) -> f32 {
         if self.is_impossible(cause) {
             return IMPOSSIBLE;
         }
         let typical = cause.typical_size();
         let k = self.information * typical * typical;
-        let z_square = self.information * self.size * self.size;
-        let both_signs = if cause.only_adds() {
-            core::f32::consts::LN_2
-        } else {
-            0.0
-        };
-        0.5 * z_square * k / (1.0 + k) - 0.5 * libm::logf(1.0 + k) + both_signs
+        let square = dot(white, white);
+        let along = self.information * self.size * self.size;
+        let astray = cause.looseness() * cause.looseness() * along;
+        let explained = along * k / (1.0 + k) + (square - along) * astray / (1.0 + astray);
+        let others = (known as f32 - 1.0).max(0.0);
+        let both_signs = if cause.only_adds() { LN_2 } else { 0.0 };
+        0.5 * explained - 0.5 * libm::logf(1.0 + k) - 0.5 * others * libm::logf(1.0 + astray)
+            + both_signs
     }
 }
 
@@ -127,7 +134,7 @@ const LEAST_INFORMATION: f32 = 1e-12;
 /// Score of a cause whose sign is impossible.
 const IMPOSSIBLE: f32 = -1e3;
 /// Departures of an unknown kind are held to be this many standard deviations long in every row.
-const UNKNOWN_SPREAD: f32 = 30.0;
+const UNKNOWN_SPREAD: f32 = 100.0;
 
 /// Logarithm of the Bayes factor of a departure in any direction.
 fn score_of_anything(white: &[f32; ROWS], known: usize) -> f32 {

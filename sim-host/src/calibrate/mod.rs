@@ -1,0 +1,151 @@
+//! Learning from healthy recordings what a motor and its instrument look like when nothing is wrong.
+//!
+//! One after another: relative gains from the zero sequences, parameters from the monitor's own residuals, then the
+//! statistics that decide how far a departure must go before FAULT lights.
+
+mod fit;
+mod gains;
+mod refuse;
+mod statistics;
+mod windows;
+
+use monitor::{Cause, Healthy, MonitorConfig};
+use motor::MotorFile;
+use motor::motor_file::HealthySettings;
+use recording::{Audit, Recording};
+
+pub use gains::Kind;
+pub use statistics::Surroundings;
+
+use crate::replay::config_for;
+use windows::{Healthily, Observed};
+
+/// Why recordings cannot calibrate a motor.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{recording}: {reason}")]
+pub struct Refusal {
+    /// The recording, or all of them.
+    pub recording: String,
+    /// Reason and remedy.
+    pub reason: String,
+}
+
+impl Refusal {
+    fn new(recording: &str, reason: impl Into<String>) -> Self {
+        Refusal {
+            recording: recording.to_owned(),
+            reason: reason.into(),
+        }
+    }
+}
+
+/// A calibrated motor and how it was found.
+#[derive(Clone, Debug)]
+pub struct Calibrated {
+    /// The motor with parameters, gains, statistics and thresholds.
+    pub motor: MotorFile,
+    /// Steady windows that it was learnt from.
+    pub windows: usize,
+    /// Audits of the recordings.
+    pub audits: Vec<Audit>,
+    /// Parameters: change against the believed value and its standard error, as shares. Empty without voltages.
+    pub changes: Vec<(Cause, f64, f64)>,
+    /// Gains of the channels a, b, c that were found.
+    pub gains: Vec<(Kind, [f64; 3])>,
+    /// What remains of torque balance, `e_d`, `e_q`, percent of their scales.
+    pub misfit_percent: [f64; 3],
+    /// The statistics, as they stand in the motor file.
+    pub healthy: HealthySettings,
+}
+
+/// Calibrates `motor` from healthy recordings.
+///
+/// # Errors
+/// Recordings that are faulty, contradict each other or say too little.
+pub fn calibrate(
+    motor: &MotorFile,
+    recordings: &[Recording],
+    surroundings: &Surroundings,
+) -> Result<Calibrated, Refusal> {
+    let mut believed = motor.clone();
+    believed.healthy = None;
+    let sources = windows::audited(recordings, &believed)?;
+    let config_of = |motor: &MotorFile, k: usize| {
+        let mut config = config_for(motor, sources[k].recording);
+        config.healthy = Some(Healthy::unknown());
+        config
+    };
+    let mut observed = windows::observe(&sources, &believed)?;
+    let has_voltages = observed
+        .iter()
+        .all(|o| o.window.u_s.positive.norm_sqr() > 0.0);
+    let mut gains = Vec::new();
+    if has_voltages {
+        for kind in [Kind::Current, Kind::Voltage] {
+            correct_gains(
+                kind,
+                &sources,
+                &mut believed,
+                &mut observed,
+                &mut gains,
+                &config_of,
+            )?;
+        }
+    }
+    let fitted = if has_voltages {
+        fit::fit(&believed, &observed, &config_of)?
+    } else {
+        fit::Fitted {
+            motor: believed,
+            changes: Vec::new(),
+            misfit: [0.0; 3],
+        }
+    };
+    refuse::implausible(&fitted, recordings)?;
+    let healthy = statistics::healthy(&fitted, &observed, surroundings, &config_of)?;
+    let mut motor = fitted.motor.clone();
+    if has_voltages {
+        motor.monitor.threshold_percent =
+            statistics::thresholds(&motor, &observed, &healthy, &config_of)?;
+    }
+    motor.healthy = Some(healthy);
+    refuse::contradictions(&motor, recordings, &observed)?;
+    Ok(Calibrated {
+        motor,
+        windows: observed.len(),
+        audits: sources.into_iter().map(|source| source.audit).collect(),
+        changes: fit::Fitted::causes()
+            .zip(&fitted.changes)
+            .map(|(cause, (change, error))| (cause, *change, *error))
+            .collect(),
+        gains,
+        misfit_percent: fitted.misfit.map(|x| 100.0 * x),
+        healthy,
+    })
+}
+
+/// Takes over the gains that the zero sequence implies, if the negative sequence balances better with them: a zero
+/// sequence of the supply itself would make it worse.
+fn correct_gains(
+    kind: Kind,
+    sources: &[Healthily<'_>],
+    motor: &mut MotorFile,
+    observed: &mut Vec<Observed>,
+    found: &mut Vec<(Kind, [f64; 3])>,
+    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+) -> Result<(), Refusal> {
+    let gains = gains::from_zero_sequence(gains::zero_ratio(observed, kind));
+    let Some(corrected) = gains::with_gains(motor, kind, gains) else {
+        return Ok(());
+    };
+    let again = windows::observe(sources, &corrected)?;
+    let before = refuse::negative_scatter(motor, observed, config_of);
+    let after = refuse::negative_scatter(&corrected, &again, config_of);
+    // Currents on three wires have no zero sequence of their own.
+    if kind == Kind::Current || after < before {
+        *motor = corrected;
+        *observed = again;
+        found.push((kind, gains));
+    }
+    Ok(())
+}

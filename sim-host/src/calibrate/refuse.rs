@@ -1,0 +1,146 @@
+//! Recordings that must not be learnt from: faulty ones, and ones that contradict each other.
+
+use monitor::{Healthy, Isolation, Monitor, MonitorConfig, Row, magnitude};
+use motor::MotorFile;
+use num_complex::Complex32;
+use recording::Recording;
+
+use super::Refusal;
+use super::fit::Fitted;
+use super::windows::Observed;
+use crate::replay::config_for;
+
+/// Largest believable change of a parameter.
+const LARGEST_CHANGE: f64 = 0.8;
+/// Largest change of `I_2/I_1` inside healthy recordings of unchanged supply: a tenth of the turns of a phase shorted
+/// moved a measured motor by 0.06 to 0.09, its healthy windows stay within 0.02.
+const LARGEST_UNBALANCE_CHANGE: f32 = 0.04;
+/// Share of windows that may exceed it: single disturbances.
+const STRAY_SHARE: f64 = 0.01;
+
+/// Refuses a fit that changed a parameter beyond belief.
+pub fn implausible(fitted: &Fitted, recordings: &[Recording]) -> Result<(), Refusal> {
+    let mut changes = Fitted::causes().zip(&fitted.changes);
+    match changes.find(|(_, (change, _))| change.abs() > LARGEST_CHANGE) {
+        None => Ok(()),
+        Some((cause, (change, _))) => Err(Refusal::new(
+            &names(recordings),
+            format!(
+                "{} would have to change by {:+.0} %: the motor file does not describe this motor, or it is not healthy; \
+                 see what `drivemon explain` says",
+                cause.name(),
+                100.0 * change
+            ),
+        )),
+    }
+}
+
+fn names(recordings: &[Recording]) -> String {
+    let names: Vec<&str> = recordings.iter().map(Recording::name).collect();
+    names.join(", ")
+}
+
+/// How much the balance of the negative sequence scatters, a share of the voltage.
+pub fn negative_scatter(
+    motor: &MotorFile,
+    observed: &[Observed],
+    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+) -> f64 {
+    let unknown = Healthy::unknown();
+    let value = |o: &Observed| {
+        let monitor = Monitor::new(config_of(motor, o.recording)).ok()?;
+        let rows = monitor.evidence(&unknown, &o.window)?.departure;
+        let row = Row::Negative as usize;
+        Some([f64::from(rows[row]), f64::from(rows[row + 1])])
+    };
+    let square = |o: &Observed| value(o).map_or(0.0, |[re, im]| o.weight * (re * re + im * im));
+    observed.iter().map(square).sum()
+}
+
+/// Refuses recordings that the calibrated motor would still call faulty: they differ from the others, or from themselves.
+pub fn contradictions(
+    motor: &MotorFile,
+    recordings: &[Recording],
+    observed: &[Observed],
+) -> Result<(), Refusal> {
+    changing_unbalance(recordings, observed)?;
+    for (k, recording) in recordings.iter().enumerate() {
+        let own: Vec<&Observed> = observed.iter().filter(|o| o.recording == k).collect();
+        let config = config_for(motor, recording);
+        let Some(healthy) = config.healthy else {
+            continue;
+        };
+        let monitor = Monitor::new(config)
+            .map_err(|error| Refusal::new(recording.name(), error.to_string()))?;
+        let alarms = own.iter().filter(|o| {
+            let evidence = monitor.evidence(&healthy, &o.window);
+            let isolation = evidence.map(|evidence| Isolation::of(&evidence, &healthy));
+            isolation.is_some_and(|isolation| isolation.significance > healthy.significance)
+        });
+        let alarms: Vec<_> = alarms.collect();
+        if alarms.len() as f64 > STRAY_SHARE * own.len() as f64 {
+            return Err(Refusal::new(
+                recording.name(),
+                format!(
+                    "{} of {} steady windows, first at {:.3} s, would light FAULT after calibration: this recording is not of \
+                     the same healthy motor as the others",
+                    alarms.len(),
+                    own.len(),
+                    alarms[0].t
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The current's unbalance of a healthy motor follows its voltage's; with currents alone it must stand still within each
+/// recording, and from one to the next.
+fn changing_unbalance(recordings: &[Recording], observed: &[Observed]) -> Result<(), Refusal> {
+    let without_voltage = |o: &&Observed| o.window.u_s.positive.norm_sqr() == 0.0;
+    let all: Vec<&Observed> = observed.iter().filter(without_voltage).collect();
+    let of = |k: usize| all.iter().copied().filter(move |o| o.recording == k);
+    let middles: Vec<Complex32> = (0..recordings.len())
+        .map(|k| middle(of(k).map(unbalance)))
+        .collect();
+    let common = middle(middles.iter().copied());
+    for (k, recording) in recordings.iter().enumerate() {
+        let astray = |from: Complex32| {
+            let beyond =
+                move |o: &&Observed| magnitude(unbalance(o) - from) > LARGEST_UNBALANCE_CHANGE;
+            let strays: Vec<&Observed> = of(k).filter(beyond).collect();
+            let many = strays.len() as f64 > STRAY_SHARE * of(k).count() as f64;
+            strays.first().copied().filter(|_| many)
+        };
+        let from_others = magnitude(middles[k] - common) > LARGEST_UNBALANCE_CHANGE;
+        let from = if from_others { common } else { middles[k] };
+        if let Some(stray) = astray(from) {
+            return Err(not_one_state(recording.name(), stray, from));
+        }
+    }
+    Ok(())
+}
+
+fn unbalance(o: &Observed) -> Complex32 {
+    o.window.i_s.unbalance()
+}
+
+/// Median of the real and of the imaginary parts.
+fn middle(values: impl Iterator<Item = Complex32> + Clone) -> Complex32 {
+    let median = |part: fn(&Complex32) -> f32| {
+        let mut sorted: Vec<f32> = values.clone().map(|x| part(&x)).collect();
+        sorted.sort_by(f32::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+    };
+    Complex32::new(median(|x| x.re), median(|x| x.im))
+}
+
+fn not_one_state(name: &str, stray: &Observed, middle: Complex32) -> Refusal {
+    let reason = format!(
+        "negative over positive sequence of the currents stands {:.1} % from its middle at {:.3} s: this is not one healthy \
+         state; calibrate from recordings without a fault in them",
+        100.0 * magnitude(unbalance(stray) - middle),
+        stray.t
+    );
+    Refusal::new(name, reason)
+}

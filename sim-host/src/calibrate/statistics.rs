@@ -1,0 +1,198 @@
+//! What the calibrated motor still shows: means, scatter, thresholds.
+
+use monitor::{Evidence, Healthy, Monitor, MonitorConfig, ROWS, Row};
+use motor::MotorFile;
+use motor::motor_file::HealthySettings;
+use num_complex::Complex64;
+
+use super::Refusal;
+use super::fit::Fitted;
+use super::windows::Observed;
+
+/// Least scatter of a row, percent: linearity of transformers and dividers.
+const LEAST_SCATTER_PERCENT: f64 = 0.02;
+/// Gain of a clamped or uncalibrated current transformer from one recording to the next, percent: between five healthy
+/// recordings of one laboratory motor it moved by 5 % in one channel, by less than 1 % in the others.
+const TRANSFORMER_REPEATABILITY_PERCENT: f64 = 2.0;
+/// Rows of the positive sequence, whose mean is zero by the fit.
+const POSITIVE_ROWS: usize = 3;
+
+/// What is known about the surroundings of the healthy motor.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings {
+    /// Windings are at most this much warmer or colder than in the recordings, K.
+    pub winding_kelvin: f64,
+    /// FAULT lamps per judged window that are accepted.
+    pub false_alarm_rate: f64,
+}
+
+/// Statistics of the healthy motor over all windows.
+///
+/// # Errors
+/// Values that the core does not take.
+pub fn healthy(
+    fitted: &Fitted,
+    observed: &[Observed],
+    surroundings: &Surroundings,
+    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+) -> Result<HealthySettings, Refusal> {
+    let monitors = monitors(&fitted.motor, observed, config_of)?;
+    let unknown = Healthy::unknown();
+    let one = |o: &Observed| {
+        Some((
+            monitors[o.recording].evidence(&unknown, &o.window)?,
+            o.weight,
+        ))
+    };
+    let evidence: Vec<(Evidence, f64)> = observed.iter().filter_map(one).collect();
+    let has_voltages = observed
+        .iter()
+        .all(|o| o.window.u_s.positive.norm_sqr() > 0.0);
+    let (mean, scatter) = moments(&evidence);
+    let mut settings = HealthySettings {
+        significance: significance(surroundings.false_alarm_rate),
+        heating_percent: 100.0 * surroundings.winding_kelvin * COPPER_PER_KELVIN,
+        ..HealthySettings::default()
+    };
+    if has_voltages {
+        settings.mean_percent = mean;
+        settings.scatter_percent = scatter;
+        take_uncertainty(&mut settings, fitted);
+    } else {
+        let zero = Row::ZeroCurrent as usize;
+        for row in [zero, zero + 1] {
+            settings.mean_percent[row] = mean[row];
+            settings.scatter_percent[row] = scatter[row];
+        }
+        settings.current_gain_percent = TRANSFORMER_REPEATABILITY_PERCENT;
+    }
+    set_current_unbalance(&mut settings, observed);
+    Ok(settings)
+}
+
+/// Relative change of copper's resistance per kelvin at 20 degC (IEC 60028).
+const COPPER_PER_KELVIN: f64 = 0.003_93;
+
+fn monitors(
+    motor: &MotorFile,
+    observed: &[Observed],
+    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+) -> Result<Vec<Monitor>, Refusal> {
+    let last = observed.iter().map(|o| o.recording).max().unwrap_or(0);
+    let monitors = (0..=last).map(|k| Monitor::new(config_of(motor, k)));
+    let monitors: Result<Vec<Monitor>, _> = monitors.collect();
+    monitors.map_err(|error| Refusal::new(&motor.name, error.to_string()))
+}
+
+/// Mean and scatter of every row, percent; 0 where a row is not known.
+fn moments(evidence: &[(Evidence, f64)]) -> ([f64; ROWS], [f64; ROWS]) {
+    let (mut mean, mut scatter) = ([0.0; ROWS], [0.0; ROWS]);
+    let votes: f64 = evidence.iter().map(|(_, weight)| weight).sum();
+    for row in 0..ROWS {
+        if !evidence.iter().all(|(e, _)| e.known()[row]) {
+            continue;
+        }
+        let value = |e: &Evidence| 100.0 * f64::from(e.departure[row]);
+        if row >= POSITIVE_ROWS {
+            mean[row] = evidence.iter().map(|(e, w)| w * value(e)).sum::<f64>() / votes;
+        }
+        let square = |(e, w): &(Evidence, f64)| w * (value(e) - mean[row]).powi(2);
+        let variance = evidence.iter().map(square).sum::<f64>() / votes;
+        scatter[row] = variance.sqrt().max(LEAST_SCATTER_PERCENT);
+    }
+    (mean, scatter)
+}
+
+/// What the fit leaves uncertain, on top of what a sound installation may drift by.
+fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
+    let places = [
+        &mut settings.stator_resistance_percent,
+        &mut settings.rotor_resistance_percent,
+        &mut settings.magnetizing_inductance_percent,
+        &mut settings.leakage_percent,
+        &mut settings.friction_percent,
+    ];
+    for (place, (_, error)) in places.into_iter().zip(&fitted.changes) {
+        *place = place.hypot(100.0 * error);
+    }
+}
+
+fn set_current_unbalance(settings: &mut HealthySettings, observed: &[Observed]) {
+    let ratio = |o: &Observed| {
+        let ratio = o.window.i_s.unbalance();
+        Complex64::new(f64::from(ratio.re), f64::from(ratio.im)) * 100.0
+    };
+    let votes: f64 = observed.iter().map(|o| o.weight).sum();
+    let mean = observed
+        .iter()
+        .map(|o| ratio(o) * o.weight)
+        .sum::<Complex64>()
+        / votes;
+    let square: f64 = observed
+        .iter()
+        .map(|o| o.weight * (ratio(o) - mean).norm_sqr())
+        .sum();
+    settings.current_unbalance_percent = [mean.re, mean.im];
+    // Two real parts share the squared distance.
+    let scatter = (0.5 * square / votes).sqrt();
+    settings.current_unbalance_scatter_percent = scatter.max(LEAST_SCATTER_PERCENT);
+}
+
+/// Standard deviations that any of the causes exceeds in `rate` of the windows by chance: normal, both tails, Bonferroni.
+pub fn significance(rate: f64) -> f64 {
+    let tail = rate / (2.0 * (monitor::CAUSES as f64 + 1.0));
+    let (mut low, mut high) = (0.0, 40.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if 0.5 * libm::erfc(middle * std::f64::consts::FRAC_1_SQRT_2) > tail {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// Thresholds of r1..r4 that the healthy motor keeps at every winding temperature, percent; those of rows that an
+/// unknown load makes meaningless stay.
+pub fn thresholds(
+    motor: &MotorFile,
+    observed: &[Observed],
+    settings: &HealthySettings,
+    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+) -> Result<[f64; 4], Refusal> {
+    let mut largest = [0.0_f64; 4];
+    for heating in [-settings.heating_percent, 0.0, settings.heating_percent] {
+        let mut warm = motor.clone();
+        warm.parameters.r_s *= 1.0 + heating / 100.0;
+        warm.parameters.r_r *= 1.0 + heating / 100.0;
+        let monitors = monitors(&warm, observed, config_of)?;
+        for o in observed {
+            let Some(residuals) = monitors[o.recording].residuals(&o.window) else {
+                continue;
+            };
+            for (largest, r) in largest.iter_mut().zip(residuals.r) {
+                *largest = largest.max(100.0 * f64::from(r).abs());
+            }
+        }
+    }
+    Ok(largest.map(|r| MARGIN * r + LEAST_SCATTER_PERCENT))
+}
+
+/// Thresholds stand this much beyond the largest healthy residual.
+const MARGIN: f64 = 1.2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two-sided 42 x 2.4e-8 is the tail beyond 5.46 (tables of the normal distribution: 5.45 leaves 2.5e-8).
+    #[test]
+    fn a_millionth_over_all_causes_is_five_and_a_half_deviations() {
+        assert!(
+            (significance(1e-6) - 5.46).abs() < 0.02,
+            "{}",
+            significance(1e-6)
+        );
+    }
+}

@@ -1,0 +1,146 @@
+//! The windows of healthy recordings that a calibration learns from.
+
+use monitor::{Healthy, Monitor, MonitorState, Report, Window};
+use motor::MotorFile;
+use recording::{Audit, Expectation, Recording, audit};
+
+use super::Refusal;
+use crate::replay::{Samples, config_for};
+use crate::words;
+
+/// One steady window.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed {
+    /// Which recording, in the order given.
+    pub recording: usize,
+    /// End of the window, s.
+    pub t: f64,
+    /// What it measured.
+    pub window: Window,
+    /// Windows of the same load and voltage share one vote: they share their systematic errors.
+    pub weight: f64,
+}
+
+/// A recording with its audit.
+pub struct Healthily<'r> {
+    /// The recording.
+    pub recording: &'r Recording,
+    /// What the audit found.
+    pub audit: Audit,
+}
+
+/// Fewest steady windows: two seconds at 50 Hz.
+const FEWEST: usize = 100;
+
+/// Audits recordings; refuses those that cannot be used.
+///
+/// # Errors
+/// A recording that the audit refuses.
+pub fn audited<'r>(
+    recordings: &'r [Recording],
+    motor: &MotorFile,
+) -> Result<Vec<Healthily<'r>>, Refusal> {
+    let expectation = Expectation::from(&motor.nameplate);
+    let one = |recording: &'r Recording| {
+        let audit = audit(recording, &expectation);
+        if audit.supported {
+            return Ok(Healthily { recording, audit });
+        }
+        let detail = audit.findings.iter().map(|f| f.detail.clone());
+        let detail = detail.collect::<Vec<_>>().join("; ");
+        Err(Refusal::new(recording.name(), detail))
+    };
+    recordings.iter().map(one).collect()
+}
+
+/// The steady windows of all recordings under `motor`.
+///
+/// # Errors
+/// A finding about a sensor, too few steady windows, or values that the core does not take.
+pub fn observe(sources: &[Healthily<'_>], motor: &MotorFile) -> Result<Vec<Observed>, Refusal> {
+    let mut all = Vec::new();
+    for (k, source) in sources.iter().enumerate() {
+        observe_one(k, source, motor, &mut all)?;
+    }
+    if all.len() < FEWEST {
+        let names: Vec<&str> = sources.iter().map(|s| s.recording.name()).collect();
+        return Err(Refusal::new(
+            &names.join(", "),
+            format!(
+                "only {} steady windows, {FEWEST} are needed: record at least two seconds of constant load",
+                all.len()
+            ),
+        ));
+    }
+    share_votes(&mut all);
+    Ok(all)
+}
+
+fn observe_one(
+    k: usize,
+    source: &Healthily<'_>,
+    motor: &MotorFile,
+    all: &mut Vec<Observed>,
+) -> Result<(), Refusal> {
+    let mut config = config_for(motor, source.recording);
+    config.healthy = Some(Healthy::unknown());
+    let name = source.recording.name();
+    let monitor = Monitor::new(config).map_err(|error| Refusal::new(name, error.to_string()))?;
+    let mut state = MonitorState::default();
+    for timed in Samples::new(source.recording, &source.audit).iter() {
+        if timed.after_gap {
+            state.resume_after_gap();
+        }
+        let Some(report) = monitor.update(&mut state, &timed.sample) else {
+            continue;
+        };
+        refuse_sensor(name, timed.t, &report)?;
+        if let (None, Some(window)) = (report.not_judged, report.window) {
+            all.push(Observed {
+                recording: k,
+                t: timed.t,
+                window,
+                weight: 1.0,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn refuse_sensor(name: &str, t: f64, report: &Report) -> Result<(), Refusal> {
+    match report.sensor {
+        Some(finding) => Err(Refusal::new(
+            name,
+            format!(
+                "at {t:.3} s: {}; a motor is calibrated with sound sensors",
+                words::sensor(finding)
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Steps of current and voltage within which windows share one vote.
+const BAND: f64 = 0.1;
+
+fn share_votes(all: &mut [Observed]) {
+    let largest = |of: &dyn Fn(&Window) -> f32| {
+        all.iter()
+            .map(|o| f64::from(of(&o.window)))
+            .fold(f64::MIN_POSITIVE, f64::max)
+    };
+    let current = |w: &Window| monitor::magnitude(w.i_s.positive);
+    let voltage = |w: &Window| monitor::magnitude(w.u_s.positive);
+    let (i, u) = (largest(&current), largest(&voltage));
+    let band = |o: &Observed| {
+        let step = |x: f32, scale: f64| (f64::from(x) / scale / BAND).round() as i64;
+        (step(current(&o.window), i), step(voltage(&o.window), u))
+    };
+    let mut votes = std::collections::BTreeMap::<_, f64>::new();
+    for observed in all.iter() {
+        *votes.entry(band(observed)).or_default() += 1.0;
+    }
+    for observed in all.iter_mut() {
+        observed.weight = 1.0 / votes[&band(observed)];
+    }
+}
