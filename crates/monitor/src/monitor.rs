@@ -338,7 +338,7 @@ impl Monitor {
         }
     }
 
-    /// Which cause explains the window, in a transient as well: what changes only makes it less sure.
+    /// Which cause explains a steady window.
     fn isolate(
         &self,
         healthy: &Healthy,
@@ -347,8 +347,7 @@ impl Monitor {
         window: &Window,
         report: &mut Report,
     ) {
-        let is_sound = matches!(report.not_judged, None | Some(NotJudged::Transient));
-        if !is_sound || report.sensor.is_some() {
+        if report.not_judged.is_some() {
             return;
         }
         let evidence = if voltages {
@@ -407,10 +406,17 @@ impl Monitor {
         *torque += acceleration; // (36) row 2
         let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
         let [volt, _] = self.unsteadiness(window, &point);
+        // While the rotor flux settles, e_d is its time constant times its rate (15), and the torque follows it.
+        let settling =
+            volt * (1.0 + window.omega_sync * measured.params.l_r() / measured.params.r_r);
         let positive = PositiveEvidence {
             residuals,
             directions,
-            unsteadiness: [ACCELERATION_DOUBT * acceleration + volt, volt, volt],
+            unsteadiness: [
+                ACCELERATION_DOUBT * acceleration.abs() + settling,
+                settling,
+                volt,
+            ],
             torque_known: self.config.load == LoadKind::Friction || tau_load.is_some(),
         };
         let n_p = self.config.mechanics.n_p;

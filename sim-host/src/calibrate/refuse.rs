@@ -15,8 +15,13 @@ const LARGEST_CHANGE: f64 = 0.8;
 /// Largest change of `I_2/I_1` inside healthy recordings of unchanged supply: a tenth of the turns of a phase shorted
 /// moved a measured motor by 0.06 to 0.09, its healthy windows stay within 0.02.
 const LARGEST_UNBALANCE_CHANGE: f32 = 0.04;
-/// Share of windows that may exceed it: single disturbances.
+/// Share of windows that may stray: single disturbances. A few never count: lamps want three in a row.
 const STRAY_SHARE: f64 = 0.01;
+const FEW_STRAYS: usize = 2;
+
+fn strays_allowed(windows: usize) -> usize {
+    ((STRAY_SHARE * windows as f64) as usize).max(FEW_STRAYS)
+}
 
 /// Refuses a fit that changed a parameter beyond belief.
 pub fn implausible(fitted: &Fitted, recordings: &[Recording]) -> Result<(), Refusal> {
@@ -78,7 +83,7 @@ pub fn contradictions(
             isolation.is_some_and(|isolation| isolation.significance > healthy.significance)
         });
         let alarms: Vec<_> = alarms.collect();
-        if alarms.len() as f64 > STRAY_SHARE * own.len() as f64 {
+        if alarms.len() > strays_allowed(own.len()) {
             return Err(Refusal::new(
                 recording.name(),
                 format!(
@@ -109,7 +114,7 @@ fn changing_unbalance(recordings: &[Recording], observed: &[Observed]) -> Result
             let beyond =
                 move |o: &&Observed| magnitude(unbalance(o) - from) > LARGEST_UNBALANCE_CHANGE;
             let strays: Vec<&Observed> = of(k).filter(beyond).collect();
-            let many = strays.len() as f64 > STRAY_SHARE * of(k).count() as f64;
+            let many = strays.len() > strays_allowed(of(k).count());
             strays.first().copied().filter(|_| many)
         };
         let from_others = magnitude(middles[k] - common) > LARGEST_UNBALANCE_CHANGE;

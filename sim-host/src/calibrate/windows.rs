@@ -29,8 +29,8 @@ pub struct Healthily<'r> {
     pub audit: Audit,
 }
 
-/// Fewest steady windows: two seconds at 50 Hz.
-const FEWEST: usize = 100;
+/// Fewest steady windows: one second at 50 Hz.
+const FEWEST: usize = 50;
 
 /// Audits recordings; refuses those that cannot be used.
 ///
@@ -67,7 +67,7 @@ pub fn observe(sources: &[Healthily<'_>], motor: &MotorFile) -> Result<Vec<Obser
         return Err(Refusal::new(
             &names.join(", "),
             format!(
-                "only {} steady windows, {FEWEST} are needed: record at least two seconds of constant load",
+                "only {} steady windows, {FEWEST} are needed: record at least one second of constant load",
                 all.len()
             ),
         ));
