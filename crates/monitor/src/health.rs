@@ -64,6 +64,9 @@ const CURRENT_SUM_SHARE: f32 = 0.18;
 /// speed of a locked rotor errs by some 0.3 (saturated leakage, deep bars); a lost encoder by 0.9.
 const SPEED_CONTRADICTION: f32 = 0.4;
 
+/// A hot rotor slips this much more than its cold resistance implies: copper from 20 to 150 degC.
+const HOT_ROTOR: f32 = 1.5;
+
 impl HealthConfig {
     /// Whether the supply is there at all.
     pub fn has_supply(&self, window: &Window) -> bool {
@@ -110,7 +113,10 @@ impl HealthConfig {
         measured: f32,
         implied: f32,
     ) -> Option<SensorFinding> {
-        let contradiction = (measured - implied).abs() > SPEED_CONTRADICTION * omega_sync;
+        let (slip, implied_slip) = (omega_sync - measured, omega_sync - implied);
+        let warm = implied_slip * HOT_ROTOR;
+        let off = (implied_slip.min(warm) - slip).max(slip - implied_slip.max(warm));
+        let contradiction = off > SPEED_CONTRADICTION * omega_sync;
         contradiction.then_some(SensorFinding::SpeedImplausible)
     }
 }
@@ -214,5 +220,7 @@ mod tests {
     fn a_lost_encoder_is_told_from_a_locked_rotor() {
         assert!(CONFIG.check_speed(314.0, 0.0, 300.0).is_some());
         assert!(CONFIG.check_speed(314.0, 0.0, 60.0).is_none());
+        // Stalled and hot: the cold resistance implies two thirds of the slip.
+        assert!(CONFIG.check_speed(314.0, 10.0, 314.0 * 0.42).is_none());
     }
 }

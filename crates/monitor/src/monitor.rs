@@ -324,9 +324,7 @@ impl Monitor {
         let Some(point) = self.operating_point(self.config.frame, rehearsal, window) else {
             return;
         };
-        let tau_load = window
-            .tau_load
-            .filter(|_| self.config.load == LoadKind::Measured);
+        let tau_load = self.tau_load(window);
         let residuals = self.model.evaluate(&point, tau_load);
         report.point = Some(point);
         report.residuals = Some(residuals);
@@ -356,6 +354,47 @@ impl Monitor {
             currents.then(|| Evidence::of_currents(healthy, window))
         };
         report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy));
+        if let Some(isolation) = report.isolation {
+            self.evaluate_warm(isolation.heating, rehearsal, window, report);
+        }
+    }
+
+    /// The residuals that the lamps show, with the resistances of the winding temperature that the evidence implies.
+    fn evaluate_warm(
+        &self,
+        heating: f32,
+        rehearsal: &Rehearsal,
+        window: &Window,
+        report: &mut Report,
+    ) {
+        if let Some((point, residuals)) = self.warm_residuals(heating, rehearsal, window) {
+            report.point = Some(point);
+            report.normalised = Some(self.normalise(&residuals, self.tau_load(window).is_some()));
+            report.residuals = Some(residuals);
+        }
+    }
+
+    fn warm_residuals(
+        &self,
+        heating: f32,
+        rehearsal: &Rehearsal,
+        window: &Window,
+    ) -> Option<(OperatingPoint, Residuals)> {
+        let mut corrected = self.corrected(window)?;
+        corrected.params.r_s *= 1.0 + heating;
+        corrected.params.r_r *= 1.0 + heating;
+        let omega_el = corrected.omega_mech * self.config.mechanics.n_p;
+        let frame = self.config.frame;
+        let point = OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)?;
+        let point = point.rehearse(rehearsal);
+        let residuals = self.model.evaluate(&point, self.tau_load(window));
+        Some((point, residuals))
+    }
+
+    /// The brake torque, where the motor file says that it is measured.
+    fn tau_load(&self, window: &Window) -> Option<f32> {
+        let is_measured = self.config.load == LoadKind::Measured;
+        window.tau_load.filter(|_| is_measured)
     }
 
     /// What a window shows beyond the healthy motor: the material of a calibration. Currents alone give their sequence
@@ -368,14 +407,18 @@ impl Monitor {
         }
     }
 
-    /// The residuals of a window, where voltages, currents and speed allow them.
-    pub fn residuals(&self, window: &Window) -> Option<Residuals> {
-        let rehearsal = Rehearsal::default();
-        let point = self.operating_point(self.config.frame, &rehearsal, window)?;
-        let tau_load = window
-            .tau_load
-            .filter(|_| self.config.load == LoadKind::Measured);
-        Some(self.model.evaluate(&point, tau_load))
+    /// The residuals of a window at the winding temperature that it implies, where voltages, currents and speed allow
+    /// them: what the lamps of a calibrated motor show, under rehearsed gains.
+    pub fn residuals(
+        &self,
+        healthy: &Healthy,
+        rehearsal: &Rehearsal,
+        window: &Window,
+    ) -> Option<Residuals> {
+        let evidence = self.evidence_of_all(healthy, rehearsal, window)?;
+        let heating = Isolation::of(&evidence, healthy).heating;
+        let (_, residuals) = self.warm_residuals(heating, rehearsal, window)?;
+        Some(residuals)
     }
 
     fn evidence_of_all(
@@ -385,9 +428,7 @@ impl Monitor {
         window: &Window,
     ) -> Option<Evidence> {
         let measured = self.corrected(window)?.rehearsed(rehearsal);
-        let tau_load = window
-            .tau_load
-            .filter(|_| self.config.load == LoadKind::Measured);
+        let tau_load = self.tau_load(window);
         let model = ResidualModel {
             field: FieldCurrent::Live,
             ..self.model

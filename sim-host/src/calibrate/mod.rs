@@ -104,11 +104,11 @@ pub fn calibrate(
     refuse::implausible(&fitted, recordings)?;
     let healthy = statistics::healthy(&fitted, &observed, surroundings, &config_of)?;
     let mut motor = fitted.motor.clone();
-    if has_voltages {
-        motor.monitor.threshold_percent =
-            statistics::thresholds(&motor, &observed, &healthy, &config_of)?;
-    }
     motor.healthy = Some(healthy);
+    if has_voltages {
+        let config_of = |motor: &MotorFile, k: usize| config_for(motor, sources[k].recording);
+        motor.monitor.threshold_percent = statistics::thresholds(&motor, &observed, &config_of)?;
+    }
     refuse::contradictions(&motor, recordings, &observed)?;
     Ok(Calibrated {
         motor,

@@ -1,6 +1,6 @@
 //! What the calibrated motor still shows: means, scatter, thresholds.
 
-use monitor::{Evidence, Healthy, Monitor, MonitorConfig, ROWS, Row};
+use monitor::{Evidence, Healthy, Monitor, MonitorConfig, ROWS, Rehearsal, Row};
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
 use num_complex::Complex64;
@@ -153,30 +153,51 @@ pub fn significance(rate: f64) -> f64 {
     low
 }
 
-/// Thresholds of r1..r4 that the healthy motor keeps at every winding temperature, percent; those of rows that an
-/// unknown load makes meaningless stay.
+/// Thresholds of r1..r4 that the healthy motor keeps, with gains as far off as a sound installation drifts, percent.
+///
+/// # Errors
+/// Values that the core does not take.
 pub fn thresholds(
     motor: &MotorFile,
     observed: &[Observed],
-    settings: &HealthySettings,
     config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
 ) -> Result<[f64; 4], Refusal> {
+    let monitors = monitors(motor, observed, config_of)?;
     let mut largest = [0.0_f64; 4];
-    for heating in [-settings.heating_percent, 0.0, settings.heating_percent] {
-        let mut warm = motor.clone();
-        warm.parameters.r_s *= 1.0 + heating / 100.0;
-        warm.parameters.r_r *= 1.0 + heating / 100.0;
-        let monitors = monitors(&warm, observed, config_of)?;
+    for gains in drifted() {
         for o in observed {
-            let Some(residuals) = monitors[o.recording].residuals(&o.window) else {
-                continue;
-            };
+            let monitor = &monitors[o.recording];
+            let healthy = monitor.config().healthy.unwrap_or_else(Healthy::unknown);
+            let residuals = monitor.residuals(&healthy, &gains, &o.window);
+            let residuals = residuals.unwrap_or_default();
             for (largest, r) in largest.iter_mut().zip(residuals.r) {
                 *largest = largest.max(100.0 * f64::from(r).abs());
             }
         }
     }
     Ok(largest.map(|r| MARGIN * r + LEAST_SCATTER_PERCENT))
+}
+
+/// Gains that are three of their standard uncertainties off: as they are, and voltage or current more or less.
+fn drifted() -> [Rehearsal; 5] {
+    let as_is = Rehearsal::default();
+    let off = (3.0 * HealthySettings::default().voltage_gain_percent / 100.0) as f32;
+    let voltage = |gain| Rehearsal {
+        voltage_gain: gain,
+        ..as_is
+    };
+    let current = |gain| Rehearsal {
+        current_q_gain: gain,
+        ..as_is
+    };
+    let (more, less) = (1.0 + off, 1.0 - off);
+    [
+        as_is,
+        voltage(more),
+        voltage(less),
+        current(more),
+        current(less),
+    ]
 }
 
 /// Thresholds stand this much beyond the largest healthy residual.

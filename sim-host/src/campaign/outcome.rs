@@ -1,6 +1,9 @@
 //! What a stream of reports amounts to: the only place of a campaign that looks into the monitor's answers.
 
-use monitor::{Candidates, Lamp, Lamps, NotJudged, Report, SensorFinding, TABLE_1};
+use monitor::{
+    ALL_CAUSES, Candidates, Isolation, Lamp, Lamps, NotJudged, Phase, Report, SensorFinding,
+    TABLE_1,
+};
 
 use super::fault::FaultKind;
 use crate::words;
@@ -42,6 +45,7 @@ pub struct Outcome {
 enum Evidence {
     Sensor(SensorFinding),
     Residuals(Candidates),
+    Isolation(Isolation),
 }
 
 /// One possible cause.
@@ -148,7 +152,10 @@ impl Outcome {
 
 fn evidence(report: &Report) -> Option<Evidence> {
     let sensor = report.sensor.map(Evidence::Sensor);
-    sensor.or(report.candidates.map(Evidence::Residuals))
+    let isolation = report.isolation.map(Evidence::Isolation);
+    sensor
+        .or(isolation)
+        .or(report.candidates.map(Evidence::Residuals))
 }
 
 /// Everything that the evidence makes possible.
@@ -159,6 +166,7 @@ fn causes(evidence: Evidence) -> Vec<Cause> {
             phase: words::sensor_phase(finding),
             probability: 1.0,
         }],
+        Evidence::Isolation(isolation) => isolated(&isolation),
         Evidence::Residuals(candidates) => {
             let cause = |(name, probability)| Cause {
                 name,
@@ -172,6 +180,23 @@ fn causes(evidence: Evidence) -> Vec<Cause> {
                 .collect()
         }
     }
+}
+
+/// The causes that the direction of the evidence tells apart.
+fn isolated(isolation: &Isolation) -> Vec<Cause> {
+    let (probabilities, unknown) = isolation.probabilities();
+    let named = ALL_CAUSES.iter().zip(probabilities);
+    let named = named.map(|(cause, probability)| Cause {
+        name: cause.name(),
+        phase: cause.phase().map(Phase::letter),
+        probability,
+    });
+    let unknown = Cause {
+        name: "unknown",
+        phase: None,
+        probability: unknown,
+    };
+    named.chain([unknown]).collect()
 }
 
 /// Lamps that were on at any time, RUN apart.
