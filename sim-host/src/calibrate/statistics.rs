@@ -112,8 +112,12 @@ fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
         &mut settings.leakage_percent,
         &mut settings.friction_percent,
     ];
-    for (place, (_, error)) in places.into_iter().zip(&fitted.changes) {
-        *place = place.hypot(100.0 * error);
+    let has_friction = fitted.motor.mechanics.total_friction() > 0.0;
+    let seen = [true, true, true, true, has_friction];
+    for ((place, (_, error)), seen) in places.into_iter().zip(&fitted.changes).zip(seen) {
+        if seen {
+            *place = place.hypot(100.0 * error);
+        }
     }
 }
 

@@ -17,7 +17,7 @@ pub struct Observed {
     pub t: f64,
     /// What it measured.
     pub window: Window,
-    /// Windows of the same load and voltage share one vote: they share their systematic errors.
+    /// Votes: windows of the same load and voltage share a few, as they share their systematic errors.
     pub weight: f64,
 }
 
@@ -123,6 +123,11 @@ fn refuse_sensor(name: &str, t: f64, report: &Report) -> Result<(), Refusal> {
 /// Steps of current and voltage within which windows share one vote.
 const BAND: f64 = 0.1;
 
+/// Windows overlap: so many of them hold the noise of one.
+const OVERLAP: f64 = 5.0;
+/// Votes of a band at most: noise averages out, what is wrong with a model at this load does not.
+const MOST_VOTES: f64 = 6.0;
+
 fn share_votes(all: &mut [Observed]) {
     let largest = |of: &dyn Fn(&Window) -> f32| {
         all.iter()
@@ -141,6 +146,7 @@ fn share_votes(all: &mut [Observed]) {
         *votes.entry(band(observed)).or_default() += 1.0;
     }
     for observed in all.iter_mut() {
-        observed.weight = 1.0 / votes[&band(observed)];
+        let windows = votes[&band(observed)];
+        observed.weight = (windows / OVERLAP).clamp(1.0, MOST_VOTES) / windows;
     }
 }

@@ -44,7 +44,8 @@ pub struct HealthySettings {
 }
 
 impl Default for HealthySettings {
-    /// Nothing calibrated; uncertainties of a careful installation.
+    /// Nothing calibrated; what drifts in a careful installation: winding temperatures of stator and rotor apart by 2.5 K,
+    /// inductances hardly, bearings and seals, dividers and transformers of class 0.2, a quartz.
     fn default() -> Self {
         HealthySettings {
             mean_percent: [0.0; EVIDENCE_ROWS],
@@ -52,15 +53,15 @@ impl Default for HealthySettings {
             current_unbalance_percent: [0.0; 2],
             current_unbalance_scatter_percent: 0.0,
             turns_angle_deg: TURNS_ANGLE_DEG,
-            stator_resistance_percent: 2.0,
-            rotor_resistance_percent: 2.0,
+            stator_resistance_percent: 1.0,
+            rotor_resistance_percent: 1.0,
             heating_percent: 30.0,
-            magnetizing_inductance_percent: 0.5,
-            leakage_percent: 3.0,
-            friction_percent: 3.0,
+            magnetizing_inductance_percent: 0.2,
+            leakage_percent: 0.5,
+            friction_percent: 2.0,
             current_gain_percent: 0.2,
             voltage_gain_percent: 0.2,
-            speed_percent: 0.05,
+            speed_percent: 0.01,
             negative_impedance_percent: 10.0,
             significance: 5.5,
         }
