@@ -16,7 +16,7 @@ pub const IMAGE_WORDS: usize =
     42 + HEALTHY_WORDS + CHANNELS + MAX_EFFECTS * (1 + MAX_EFFECT_PARAMETERS);
 
 /// Words of the healthy motor's statistics.
-const HEALTHY_WORDS: usize = 5 + 2 * ROWS + 10;
+const HEALTHY_WORDS: usize = 6 + 2 * ROWS + 10;
 
 /// Layout of the words; a different one gets a different number.
 const SCHEMA: u32 = 0x444D_0003;
@@ -146,7 +146,8 @@ fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
     w.numbers(&h.mean);
     w.numbers(&h.scatter);
     w.numbers(&h.current_unbalance);
-    w.numbers(&[h.current_unbalance_scatter, h.turns_angle]);
+    w.number(h.current_unbalance_scatter);
+    w.numbers(&h.turns_axis);
     w.numbers(&[u.stator_resistance, u.rotor_resistance, u.heating]);
     w.numbers(&[u.magnetizing_inductance, u.leakage, u.friction]);
     w.numbers(&[u.current_gain, u.voltage_gain, u.speed]);
@@ -160,7 +161,7 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
         scatter: r.numbers(),
         current_unbalance: r.numbers(),
         current_unbalance_scatter: r.number(),
-        turns_angle: r.number(),
+        turns_axis: r.numbers(),
         uncertainty: Uncertainty {
             stator_resistance: r.number(),
             rotor_resistance: r.number(),

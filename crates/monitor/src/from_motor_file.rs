@@ -140,7 +140,10 @@ fn healthy(settings: &HealthySettings) -> Healthy {
         scatter: settings.scatter_percent.map(share),
         current_unbalance: settings.current_unbalance_percent.map(share),
         current_unbalance_scatter: share(settings.current_unbalance_scatter_percent),
-        turns_angle: settings.turns_angle_deg.to_radians() as f32,
+        turns_axis: {
+            let (im, re) = settings.turns_angle_deg.to_radians().sin_cos();
+            [re as f32, im as f32]
+        },
         uncertainty: Uncertainty {
             stator_resistance: share(settings.stator_resistance_percent),
             rotor_resistance: share(settings.rotor_resistance_percent),

@@ -82,13 +82,11 @@ impl Evidence {
     /// From currents alone: their negative and zero sequence.
     pub(crate) fn of_currents(healthy: &Healthy, window: &Window) -> Self {
         let value = window.i_s.unbalance();
+        let [re, im] = healthy.turns_axis;
         let negative = Negative {
             value,
             current: Complex32::ONE,
-            turns: Complex32::new(
-                libm::cosf(healthy.turns_angle),
-                libm::sinf(healthy.turns_angle),
-            ),
+            turns: Complex32::new(re, im),
             ..Negative::default()
         };
         let [re, im] = healthy.current_unbalance;

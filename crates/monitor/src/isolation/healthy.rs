@@ -60,8 +60,9 @@ pub struct Healthy {
     pub current_unbalance: [f32; 2],
     /// Its scatter; 0 if it was not calibrated.
     pub current_unbalance_scatter: f32,
-    /// Angle by which a shorted turn's current leads the motor's current, rad: how far the motor's current lags its voltage.
-    pub turns_angle: f32,
+    /// Direction of a shorted turn's current seen from the motor's current, real and imaginary part, of length 1: it leads
+    /// by the angle that the motor's current lags its voltage.
+    pub turns_axis: [f32; 2],
     /// What remains uncertain.
     pub uncertainty: Uncertainty,
     /// Standard deviations at which FAULT lights, > 0.
@@ -89,11 +90,11 @@ impl Healthy {
             share("voltage_gain", u.voltage_gain),
             share("speed", u.speed),
             share("negative_impedance", u.negative_impedance),
-            ("turns_angle", self.turns_angle, [-7.0, 7.0]),
             ("significance", self.significance, [1.0, 1000.0]),
         ];
         let all = of_rows.into_iter().chain(scatter).chain(unbalance);
-        all.chain(others).try_for_each(check_range)
+        let axis = self.turns_axis.map(|x| ("turns_axis", x, [-1.01, 1.01]));
+        all.chain(others).chain(axis).try_for_each(check_range)
     }
 }
 
@@ -105,7 +106,7 @@ impl Healthy {
             scatter: [1.0; ROWS],
             current_unbalance: [0.0; 2],
             current_unbalance_scatter: 1.0,
-            turns_angle: 0.0,
+            turns_axis: [1.0, 0.0],
             uncertainty: Uncertainty::default(),
             significance: 1000.0,
         }

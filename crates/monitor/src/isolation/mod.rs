@@ -149,7 +149,9 @@ fn significance_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
         return 0.0;
     }
     let spread = 2.0 / (9.0 * n);
-    (libm::cbrtf(dot(white, white) / n) - (1.0 - spread)) / libm::sqrtf(spread)
+    let mean_square = (dot(white, white) / n).max(f32::MIN_POSITIVE);
+    let cube_root = libm::expf(libm::logf(mean_square) / 3.0);
+    (cube_root - (1.0 - spread)) / libm::sqrtf(spread)
 }
 
 /// Mean of the relative rise of both resistances, given the window and its range beforehand.
