@@ -57,6 +57,7 @@ impl Monitor {
     }
 
     /// Takes instants from the front of `block` until a report is due or none is left. See [`Monitor::update`].
+    #[inline]
     pub fn update_block(
         &self,
         state: &mut MonitorState,
@@ -75,6 +76,7 @@ impl Monitor {
     }
 
     /// Follows supply and shaft through the instants inside one turn, whose axes it notes, to the first that is more.
+    #[inline]
     fn follow(&self, state: &mut MonitorState, block: &RawBlock<'_>) -> (usize, Option<SyncTick>) {
         let mut plain = 0;
         for ((codes, count), axis) in block.instants().zip(&mut state.axes.0) {
@@ -114,6 +116,7 @@ impl Monitor {
         intake.reference([u, i], self.peak_keep)
     }
 
+    #[inline]
     fn sum_up(&self, state: &mut MonitorState, codes: &[[u16; CHANNELS]]) {
         state.count(codes.len());
         let axes = state.axes.0.get(..codes.len()).unwrap_or_default();
@@ -121,6 +124,7 @@ impl Monitor {
         self.admit(state, codes, inside);
     }
 
+    #[inline]
     fn admit(&self, state: &mut MonitorState, codes: &[[u16; CHANNELS]], inside: bool) {
         let clipped = if inside {
             Default::default()

@@ -94,6 +94,7 @@ impl MonitorConfig {
     ///
     /// # Errors
     /// The first parameter that is not a number or lies outside its range.
+    #[inline(never)]
     pub fn validate(&self) -> Result<(), ConfigError> {
         let positive = [TINY, HUGE];
         let non_negative = [0.0, HUGE];

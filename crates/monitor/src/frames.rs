@@ -127,13 +127,21 @@ pub struct Sequence {
     pub zero: Complex32,
 }
 
+/// `e^{j 2 pi / 3}`.
+const TURN: Complex32 = Complex32::new(-0.5, SQRT_3_OVER_2);
+
 impl Sequence {
+    /// The positive sequence alone of the phasors of phases a, b and c.
+    pub fn positive_of([a, b, c]: [Complex32; 3]) -> Complex32 {
+        (a + TURN * b + TURN.conj() * c) / 3.0
+    }
+
     /// Splits the phasors of phases a, b and c.
-    pub fn from_phases([a, b, c]: [Complex32; 3]) -> Self {
-        let turn = Complex32::new(-0.5, SQRT_3_OVER_2);
+    pub fn from_phases(phases: [Complex32; 3]) -> Self {
+        let [a, b, c] = phases;
         Sequence {
-            positive: (a + turn * b + turn.conj() * c) / 3.0,
-            negative: (a + turn.conj() * b + turn * c) / 3.0,
+            positive: Sequence::positive_of(phases),
+            negative: (a + TURN.conj() * b + TURN * c) / 3.0,
             zero: (a + b + c) / 3.0,
         }
     }

@@ -80,6 +80,7 @@ impl IntakeState {
     }
 
     /// Notes `instants` whose voltages and currents come from a converter and are numbers by construction.
+    #[inline]
     pub fn admit_codes(&mut self, instants: usize, clipped: ClippedChannels) {
         let instants = u16::try_from(instants).unwrap_or(u16::MAX);
         let tally = &mut self.tally;

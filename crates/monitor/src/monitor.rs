@@ -111,6 +111,7 @@ impl Monitor {
     ///
     /// # Errors
     /// A parameter outside its range.
+    #[inline(never)]
     pub fn new(config: MonitorConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         let [omega_min, omega_max] = OMEGA_RANGE;
@@ -202,6 +203,7 @@ impl Monitor {
         self.encoder.close_window(&mut state.encoder);
     }
 
+    #[inline(never)]
     fn close_cycle(&self, state: &mut MonitorState, phasors: CyclePhasors) -> Report {
         let tally = state.intake.close_cycle();
         state.measured = tally.measured();
@@ -320,6 +322,7 @@ impl Monitor {
         currents && healthy.is_some_and(|healthy| healthy.current_unbalance_scatter > 0.0)
     }
 
+    #[inline(never)]
     fn evaluate(&self, rehearsal: &Rehearsal, window: &Window, report: &mut Report) {
         let Some(point) = self.operating_point(self.config.frame, rehearsal, window) else {
             return;
@@ -337,6 +340,7 @@ impl Monitor {
     }
 
     /// Which cause explains a steady window.
+    #[inline(never)]
     fn isolate(
         &self,
         healthy: &Healthy,
@@ -360,6 +364,7 @@ impl Monitor {
     }
 
     /// The residuals that the lamps show, with the resistances of the winding temperature that the evidence implies.
+    #[inline(never)]
     fn evaluate_warm(
         &self,
         heating: f32,
@@ -421,6 +426,7 @@ impl Monitor {
         Some(residuals)
     }
 
+    #[inline(never)]
     fn evidence_of_all(
         &self,
         healthy: &Healthy,
@@ -465,6 +471,7 @@ impl Monitor {
     }
 
     /// What one window measured, freed from physical effects.
+    #[inline(never)]
     fn corrected(&self, window: &Window) -> Option<Corrected> {
         let config = &self.config;
         Some(correct(
@@ -476,6 +483,7 @@ impl Monitor {
         ))
     }
 
+    #[inline(never)]
     fn operating_point(
         &self,
         frame: Frame,

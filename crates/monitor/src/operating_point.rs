@@ -66,6 +66,7 @@ impl OperatingPoint {
     /// From what one window measured, corrected for physical effects, and speeds, rad/s electrical.
     ///
     /// `None` when there is no voltage, no flux or no frequency: then there is no frame either.
+    #[inline(never)]
     pub fn new(measured: &Corrected, frame: Frame, omega_sync: f32, omega_el: f32) -> Option<Self> {
         let Corrected { u_s, i_s, .. } = *measured;
         let params = &measured.params;

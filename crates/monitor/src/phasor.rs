@@ -128,6 +128,7 @@ impl PhasorState {
     }
 
     /// Adds instants inside a turn, in codes above the code of zero; tells whether none of them is at a rail.
+    #[inline]
     pub fn add_codes(
         &mut self,
         codes: &[[u16; CHANNELS]],

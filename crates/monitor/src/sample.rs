@@ -33,16 +33,19 @@ impl<'a> RawBlock<'a> {
     }
 
     /// Whether every instant was taken.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.codes.is_empty()
     }
 
     /// The instants that are left.
+    #[inline]
     pub(crate) fn instants(&self) -> impl Iterator<Item = (&'a [u16; CHANNELS], u16)> + use<'a> {
         self.codes.iter().zip(self.counts.iter().copied())
     }
 
     /// Takes at most `length` instants and gives their codes.
+    #[inline]
     pub(crate) fn take(&mut self, length: usize) -> &'a [[u16; CHANNELS]] {
         let length = length.min(self.codes.len());
         let taken = self.codes.get(..length).unwrap_or_default();

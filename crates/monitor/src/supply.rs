@@ -34,6 +34,7 @@ const FREQUENCY_BAND: f32 = 0.1;
 
 impl SupplyConfig {
     /// Checks the supply of one window that has a voltage.
+    #[inline(never)]
     pub fn check(&self, window: &Window) -> Option<SupplyFinding> {
         let (positive, negative) = (
             magnitude(window.u_s.positive),

@@ -104,6 +104,7 @@ impl SyncState {
     }
 
     /// Whether the oscillator is still to be set to the supply's phase.
+    #[inline]
     pub fn is_searching(&self) -> bool {
         self.mode == Mode::Searching
     }

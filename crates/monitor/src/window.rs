@@ -140,9 +140,9 @@ fn current_change<'a>(
     newest: &Cycle,
 ) -> f32 {
     let start = seen_from_voltage(oldest);
-    let change = |cycle: &Cycle| magnitude(seen_from_voltage(cycle) - start);
-    let largest = cycles.map(change).fold(0.0, f32::max);
-    change(newest).max(largest / length as f32)
+    let square = |cycle: &Cycle| (seen_from_voltage(cycle) - start).norm_sqr();
+    let largest = libm::sqrtf(cycles.map(square).fold(0.0, f32::max));
+    libm::sqrtf(square(newest)).max(largest / length as f32)
 }
 
 fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> Window {
@@ -181,10 +181,10 @@ fn mean_of<'a>(
 }
 
 fn sequences(channels: &[ChannelCycle; CHANNELS]) -> (Sequence, Sequence) {
-    let [ua, ub, uc, ia, ib, ic] = channels.map(|channel| channel.phasor);
+    let [ua, ub, uc, ia, ib, ic] = channels;
     (
-        Sequence::from_phases([ua, ub, uc]),
-        Sequence::from_phases([ia, ib, ic]),
+        Sequence::from_phases([ua.phasor, ub.phasor, uc.phasor]),
+        Sequence::from_phases([ia.phasor, ib.phasor, ic.phasor]),
     )
 }
 
@@ -200,22 +200,27 @@ fn phase_advance(from: &Cycle, to: &Cycle) -> f32 {
     sine * (1.0 + sine * sine * (1.0 / 6.0 + sine * sine * 3.0 / 40.0))
 }
 
+/// Positive sequences of voltages and currents.
+fn positive(cycle: &Cycle) -> (Complex32, Complex32) {
+    let [ua, ub, uc, ia, ib, ic] = &cycle.phasors.channels;
+    (
+        Sequence::positive_of([ua.phasor, ub.phasor, uc.phasor]),
+        Sequence::positive_of([ia.phasor, ib.phasor, ic.phasor]),
+    )
+}
+
 /// Positive-sequence voltage, or the current where voltages are not measured.
 fn reference(cycle: &Cycle) -> Complex32 {
-    let (u, i) = sequences(&cycle.phasors.channels);
-    if u.positive.norm_sqr() > 0.0 {
-        u.positive
-    } else {
-        i.positive
-    }
+    let (u, i) = positive(cycle);
+    if u.norm_sqr() > 0.0 { u } else { i }
 }
 
 fn seen_from_voltage(cycle: &Cycle) -> Complex32 {
-    let (u, i) = sequences(&cycle.phasors.channels);
-    let length = magnitude(u.positive);
+    let (u, i) = positive(cycle);
+    let length = magnitude(u);
     if length > 0.0 {
-        i.positive * u.positive.conj() / length
+        i * u.conj() / length
     } else {
-        Complex32::new(magnitude(i.positive), 0.0)
+        Complex32::new(magnitude(i), 0.0)
     }
 }

@@ -48,6 +48,7 @@ impl Bench<'_> {
         self.at(self.measured)
     }
 
+    #[inline(never)]
     fn at(&self, measured: &Corrected) -> Option<Positive> {
         let omega_el = measured.omega_mech * self.model.mechanics.n_p;
         let point = OperatingPoint::new(measured, Frame::RotorFlux, self.omega_sync, omega_el)?;
@@ -57,6 +58,7 @@ impl Bench<'_> {
     }
 
     /// All directions at the measured point, whose residuals are `base`.
+    #[inline(never)]
     pub fn directions(&self, base: &Positive) -> Option<Directions> {
         let sensor = |changed: Corrected| self.quotient(base, &changed);
         let parameter = |changed: TParams<f32>| {
@@ -117,6 +119,7 @@ impl Bench<'_> {
         }
     }
 
+    #[inline(never)]
     fn quotient(&self, base: &Positive, changed: &Corrected) -> Option<Positive> {
         let mut moved = self.at(changed)?;
         for (x, base) in moved.iter_mut().zip(base) {
@@ -127,6 +130,7 @@ impl Bench<'_> {
 }
 
 /// Impedance of the T model's star phase at `slip`, ohm; the negative sequence sees `2 - s`.
+#[inline(never)]
 pub fn impedance(p: &TParams<f32>, omega_sync: f32, slip: f32) -> Complex32 {
     let stator = Complex32::new(p.r_s, omega_sync * p.l_ls);
     let rotor = Complex32::new(p.r_r / slip, omega_sync * p.l_lr);

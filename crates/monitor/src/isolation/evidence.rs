@@ -134,6 +134,7 @@ impl Evidence {
     }
 
     /// Where a cause moves the evidence, per relative change.
+    #[inline(never)]
     pub fn direction(&self, cause: Cause) -> Rows {
         let (d, n) = (&self.positive, &self.negative);
         let no = Complex32::ZERO;
@@ -166,11 +167,13 @@ impl Evidence {
         sum
     }
 
+    #[inline(never)]
     fn all(&self, positive: &Positive) -> Rows {
         let no = Complex32::ZERO;
         self.masked(assemble(positive, no, [no, no]))
     }
 
+    #[inline(never)]
     fn one(
         &self,
         phase: Phase,
@@ -188,6 +191,7 @@ impl Evidence {
         self.masked(rows)
     }
 
+    #[inline(never)]
     fn masked(&self, mut rows: Rows) -> Rows {
         for (x, known) in rows.iter_mut().zip(&self.known) {
             if !known {
@@ -198,6 +202,7 @@ impl Evidence {
     }
 
     /// Covariance of the healthy motor's departures.
+    #[inline(never)]
     pub(crate) fn covariance(&self, healthy: &Healthy) -> Covariance<ROWS> {
         let mut own = self.scatter;
         for (scatter, known) in own.iter_mut().zip(&self.known) {

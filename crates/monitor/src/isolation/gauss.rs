@@ -25,6 +25,7 @@ impl<const N: usize> Covariance<N> {
     }
 
     /// Adds what one uncertain quantity contributes: its effect on each row, times its standard deviation.
+    #[inline(never)]
     pub fn add(&mut self, direction: &[f32; N], deviation: f32) {
         let scaled = direction.map(|x| x * deviation);
         for (i, (row, a)) in self.lower.iter_mut().zip(&scaled).enumerate() {
@@ -36,6 +37,7 @@ impl<const N: usize> Covariance<N> {
 
     /// Factorises, row by row (Cholesky and Banachiewicz). Rounding may leave a row without uncertainty of its own: it
     /// keeps the smallest one that single precision carries.
+    #[inline(never)]
     pub fn factorise(self) -> Cholesky<N> {
         let mut lower = [[0.0; N]; N];
         for (i, variances) in self.lower.iter().enumerate() {
@@ -49,6 +51,7 @@ impl<const N: usize> Covariance<N> {
 }
 
 /// Row `i` of the factor from those before it. What lies behind the diagonal is 0, so whole rows may be multiplied.
+#[inline(never)]
 fn factor_row<const N: usize>(lower: &[[f32; N]; N], i: usize, variances: &[f32; N]) -> [f32; N] {
     let mut row = [0.0; N];
     for (j, (above, c)) in lower.iter().zip(variances).enumerate().take(i) {
@@ -77,6 +80,7 @@ const LEAST_SHARE: f32 = 1e-6;
 
 impl<const N: usize> Cholesky<N> {
     /// `L^-1 x`: white if `x` has this covariance.
+    #[inline(never)]
     pub fn whiten(&self, x: &[f32; N]) -> [f32; N] {
         let mut white = [0.0; N];
         for (i, (row, x)) in self.lower.iter().zip(x).enumerate() {

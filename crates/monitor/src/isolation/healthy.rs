@@ -69,32 +69,50 @@ pub struct Healthy {
     pub significance: f32,
 }
 
+impl Uncertainty {
+    fn shares(&self) -> [f32; 10] {
+        [
+            self.stator_resistance,
+            self.rotor_resistance,
+            self.heating,
+            self.magnetizing_inductance,
+            self.leakage,
+            self.friction,
+            self.current_gain,
+            self.voltage_gain,
+            self.speed,
+            self.negative_impedance,
+        ]
+    }
+}
+
 impl Healthy {
+    #[inline(never)]
     pub(crate) fn validate(&self) -> Result<(), ConfigError> {
-        let share = |name, value| (name, value, [0.0, 10.0]);
-        let of_rows = self.mean.map(|x| ("healthy.mean", x, [-10.0, 10.0]));
-        let scatter = self.scatter.map(|x| share("healthy.scatter", x));
-        let unbalance = self
-            .current_unbalance
-            .map(|x| ("healthy.current_unbalance", x, [-10.0, 10.0]));
-        let u = &self.uncertainty;
-        let others = [
-            share("current_unbalance_scatter", self.current_unbalance_scatter),
-            share("stator_resistance", u.stator_resistance),
-            share("rotor_resistance", u.rotor_resistance),
-            share("heating", u.heating),
-            share("magnetizing_inductance", u.magnetizing_inductance),
-            share("leakage", u.leakage),
-            share("friction", u.friction),
-            share("current_gain", u.current_gain),
-            share("voltage_gain", u.voltage_gain),
-            share("speed", u.speed),
-            share("negative_impedance", u.negative_impedance),
-            ("significance", self.significance, [1.0, 1000.0]),
+        let signed = [-10.0, 10.0];
+        let share = [0.0, 10.0];
+        let unbalance_scatter = [self.current_unbalance_scatter];
+        let uncertainty = self.uncertainty.shares();
+        let significance = [self.significance];
+        let all: [(&str, &[f32], [f32; 2]); 7] = [
+            ("healthy.mean", &self.mean, signed),
+            ("healthy.scatter", &self.scatter, share),
+            ("healthy.current_unbalance", &self.current_unbalance, signed),
+            (
+                "healthy.current_unbalance_scatter",
+                &unbalance_scatter,
+                share,
+            ),
+            ("healthy.turns_axis", &self.turns_axis, [-1.01, 1.01]),
+            ("healthy.uncertainty", &uncertainty, share),
+            ("healthy.significance", &significance, [1.0, 1000.0]),
         ];
-        let all = of_rows.into_iter().chain(scatter).chain(unbalance);
-        let axis = self.turns_axis.map(|x| ("turns_axis", x, [-1.01, 1.01]));
-        all.chain(others).chain(axis).try_for_each(check_range)
+        for (name, values, range) in all {
+            values
+                .iter()
+                .try_for_each(|value| check_range((name, *value, range)))?;
+        }
+        Ok(())
     }
 }
 

@@ -37,6 +37,7 @@ pub struct Isolation {
 
 impl Isolation {
     /// Weighs all causes.
+    #[inline(never)]
     pub fn of(evidence: &Evidence, healthy: &Healthy) -> Self {
         let cholesky = evidence.covariance(healthy).factorise();
         let white = cholesky.whiten(&evidence.departure);
@@ -73,6 +74,7 @@ impl Isolation {
 
     /// Probabilities of the causes in the order of [`ALL_CAUSES`], and of "something else"; all held equally likely
     /// beforehand.
+    #[inline(never)]
     pub fn probabilities(&self) -> ([f32; CAUSES], f32) {
         probabilities(&self.scores, self.unknown)
     }
@@ -81,8 +83,11 @@ impl Isolation {
 /// Probabilities from logarithmic scores; their sum is 1.
 pub fn probabilities(scores: &[f32; CAUSES], unknown: f32) -> ([f32; CAUSES], f32) {
     let best = scores.iter().fold(unknown, |a, b| a.max(*b));
-    let mut weights = scores.map(|score| libm::expf(score - best));
-    let rest = libm::expf(unknown - best);
+    let mut weights = *scores;
+    for weight in &mut weights {
+        *weight = exp(*weight - best);
+    }
+    let rest = exp(unknown - best);
     let sum = weights.iter().sum::<f32>() + rest;
     weights.iter_mut().for_each(|weight| *weight /= sum);
     (weights, rest / sum)
@@ -124,8 +129,7 @@ impl Fit {
         let explained = along * k / (1.0 + k) + (square - along) * astray / (1.0 + astray);
         let others = (known as f32 - 1.0).max(0.0);
         let both_signs = if cause.only_adds() { LN_2 } else { 0.0 };
-        0.5 * explained - 0.5 * libm::logf(1.0 + k) - 0.5 * others * libm::logf(1.0 + astray)
-            + both_signs
+        0.5 * explained - 0.5 * ln(1.0 + k) - 0.5 * others * ln(1.0 + astray) + both_signs
     }
 }
 
@@ -139,7 +143,7 @@ const UNKNOWN_SPREAD: f32 = 100.0;
 /// Logarithm of the Bayes factor of a departure in any direction.
 fn score_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
     let k = UNKNOWN_SPREAD * UNKNOWN_SPREAD;
-    0.5 * dot(white, white) * k / (1.0 + k) - 0.5 * known as f32 * libm::logf(1.0 + k)
+    0.5 * dot(white, white) * k / (1.0 + k) - 0.5 * known as f32 * ln(1.0 + k)
 }
 
 /// The squared length as an equally rare standard deviation (Wilson and Hilferty, doi:10.1073/pnas.17.12.684).
@@ -150,7 +154,7 @@ fn significance_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
     }
     let spread = 2.0 / (9.0 * n);
     let mean_square = (dot(white, white) / n).max(f32::MIN_POSITIVE);
-    let cube_root = libm::expf(libm::logf(mean_square) / 3.0);
+    let cube_root = exp(ln(mean_square) / 3.0);
     (cube_root - (1.0 - spread)) / libm::sqrtf(spread)
 }
 
@@ -163,4 +167,15 @@ fn heating(
 ) -> f32 {
     let deviation = healthy.uncertainty.heating;
     deviation * deviation * dot(&cholesky.whiten(&evidence.heating()), white)
+}
+
+/// Called from many places: on the board one copy is enough.
+#[inline(never)]
+fn exp(x: f32) -> f32 {
+    libm::expf(x)
+}
+
+#[inline(never)]
+fn ln(x: f32) -> f32 {
+    libm::logf(x)
 }
