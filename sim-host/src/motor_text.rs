@@ -296,4 +296,69 @@ b = 1e-6  # from its data sheet
         let text = updated("not a motor file", &adopted());
         assert_eq!(text, adopted().to_toml());
     }
+
+    const CALIBRATED: &str = include_str!("../../motors/assumed-300w-calibrated.toml");
+
+    /// A calibration moves parameters and thresholds and writes `[healthy]`; effects come behind it.
+    #[test]
+    fn comments_survive_a_calibration() {
+        let old = OLD.replacen(
+            "stator_resistance_ohm = 3.7",
+            "stator_resistance_ohm = 3.7 # cold",
+            1,
+        );
+        assert_ne!(old, OLD, "the motor file says it otherwise");
+        let mut motor = MotorFile::parse(&old, "old").unwrap();
+        motor.parameters.r_s = 3.75;
+        motor.monitor.threshold_percent = [1.0, 2.0, 3.0, 4.5];
+        motor.healthy = MotorFile::parse(CALIBRATED, "calibrated").unwrap().healthy;
+        assert!(motor.healthy.is_some());
+        let text = updated(&old, &motor);
+        for comment in old.lines().filter(|line| line.starts_with('#')) {
+            assert!(text.contains(comment), "{comment}");
+        }
+        assert!(
+            text.contains("stator_resistance_ohm = 3.75 # cold"),
+            "{text}"
+        );
+        assert_eq!(text.matches("[healthy]").count(), 1);
+        let read = MotorFile::parse(&text, "new").unwrap();
+        assert_eq!(read.healthy, motor.healthy);
+        assert_eq!(read.monitor, motor.monitor);
+        assert_eq!(
+            updated(&text, &motor),
+            text,
+            "a second writing changes nothing"
+        );
+    }
+
+    #[test]
+    fn a_second_calibration_replaces_the_first() {
+        let mut motor = MotorFile::parse(CALIBRATED, "first").unwrap();
+        motor.healthy.as_mut().unwrap().significance = 6.25;
+        let text = updated(CALIBRATED, &motor);
+        assert_eq!(text.matches("[healthy]").count(), 1);
+        assert_eq!(text.matches("Written by `drivemon calibrate`").count(), 1);
+        assert!(text.contains("significance = 6.25"));
+        assert_eq!(
+            MotorFile::parse(&text, "second").unwrap().healthy,
+            motor.healthy
+        );
+    }
+
+    #[test]
+    fn an_adopted_effect_keeps_the_calibration() {
+        let mut motor = MotorFile::parse(CALIBRATED, "calibrated").unwrap();
+        let numbers = [("core_loss_resistance_ohm", 980.0)];
+        motor
+            .effects
+            .push(EffectEntry::with_numbers("core-loss", numbers));
+        let text = updated(CALIBRATED, &motor);
+        for line in CALIBRATED.lines() {
+            assert!(text.contains(line), "{line} is lost");
+        }
+        let read = MotorFile::parse(&text, "adopted").unwrap();
+        assert_eq!(read.healthy, motor.healthy);
+        assert_eq!(read.effects[0].name, "core-loss");
+    }
 }

@@ -1,5 +1,7 @@
 //! The windows of healthy recordings that a calibration learns from.
 
+use std::collections::BTreeMap;
+
 use monitor::{Healthy, Monitor, MonitorState, Report, Window};
 use motor::MotorFile;
 use recording::{Audit, Expectation, Recording, audit};
@@ -59,21 +61,31 @@ pub fn audited<'r>(
 /// A finding about a sensor, too few steady windows, or values that the core does not take.
 pub fn observe(sources: &[Healthily<'_>], motor: &MotorFile) -> Result<Vec<Observed>, Refusal> {
     let mut all = Vec::new();
+    let mut reasons = Reasons::new();
     for (k, source) in sources.iter().enumerate() {
-        observe_one(k, source, motor, &mut all)?;
+        observe_one(k, source, motor, &mut all, &mut reasons)?;
     }
     if all.len() < FEWEST {
-        let names: Vec<&str> = sources.iter().map(|s| s.recording.name()).collect();
-        return Err(Refusal::new(
-            &names.join(", "),
-            format!(
-                "only {} steady windows, {FEWEST} are needed: record at least one second of constant load",
-                all.len()
-            ),
-        ));
+        return Err(too_few(sources, all.len(), &reasons));
     }
     share_votes(&mut all);
     Ok(all)
+}
+
+/// Why windows were passed over, and how many for each reason.
+type Reasons = BTreeMap<String, usize>;
+
+fn too_few(sources: &[Healthily<'_>], windows: usize, reasons: &Reasons) -> Refusal {
+    let names: Vec<&str> = sources.iter().map(|s| s.recording.name()).collect();
+    let most = reasons.iter().max_by_key(|(_, count)| **count);
+    let passed_over = most.map_or_else(String::new, |(reason, count)| {
+        format!(" ({count} are not: {reason})")
+    });
+    let reason = format!(
+        "only {windows} steady windows{passed_over}, {FEWEST} are needed: record voltages, currents and speed for at least one \
+         second of constant load"
+    );
+    Refusal::new(&names.join(", "), reason)
 }
 
 fn observe_one(
@@ -81,6 +93,7 @@ fn observe_one(
     source: &Healthily<'_>,
     motor: &MotorFile,
     all: &mut Vec<Observed>,
+    reasons: &mut Reasons,
 ) -> Result<(), Refusal> {
     let mut config = config_for(motor, source.recording);
     config.healthy = Some(Healthy::unknown());
@@ -95,6 +108,9 @@ fn observe_one(
             continue;
         };
         refuse_sensor(name, timed.t, &report)?;
+        if let Some(reason) = report.not_judged {
+            *reasons.entry(words::not_judged(reason)).or_default() += 1;
+        }
         if let (None, Some(window)) = (report.not_judged, report.window) {
             all.push(Observed {
                 recording: k,
@@ -141,7 +157,7 @@ fn share_votes(all: &mut [Observed]) {
         let step = |x: f32, scale: f64| (f64::from(x) / scale / BAND).round() as i64;
         (step(current(&o.window), i), step(voltage(&o.window), u))
     };
-    let mut votes = std::collections::BTreeMap::<_, f64>::new();
+    let mut votes = BTreeMap::<_, f64>::new();
     for observed in all.iter() {
         *votes.entry(band(observed)).or_default() += 1.0;
     }

@@ -10,6 +10,9 @@ mod evidence;
 mod gauss;
 mod healthy;
 
+#[cfg(test)]
+mod tests;
+
 use core::f32::consts::LN_2;
 
 pub use cause::{ALL_CAUSES, CAUSES, Cause};

@@ -24,6 +24,27 @@ const FULL: &str = r#"
 speed_rpm = 1440
 "#;
 
+/// Every number another one, so that none can take another's place unseen.
+const HEALTHY: &str = r#"
+[healthy]
+mean_percent = [0.0, 0.0, 0.0, -0.1, 0.2, 0.3, -0.4, 0.5, 0.6]
+scatter_percent = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9]
+current_unbalance_percent = [2.1, -2.2]
+current_unbalance_scatter_percent = 2.3
+turns_angle_deg = 65.0
+stator_resistance_percent = 3.1
+rotor_resistance_percent = 3.2
+heating_percent = 3.3
+magnetizing_inductance_percent = 3.4
+leakage_percent = 3.5
+friction_percent = 3.6
+current_gain_percent = 3.7
+voltage_gain_percent = 3.8
+speed_percent = 3.9
+negative_impedance_percent = 4.1
+significance = 6.5
+"#;
+
 fn smallest() -> MotorFile {
     MotorFile::parse(SMALLEST, "motor.toml").expect("valid")
 }
@@ -60,6 +81,7 @@ threshold_percent = [1, 2, 3, 4]
 window_cycles = 10
 persistence_windows = 4
 hysteresis = 0.7
+{HEALTHY}
 [[effects]]
 name = "core-loss"
 core_loss_resistance_ohm = 980.0
@@ -124,6 +146,59 @@ fn what_is_written_reads_back_the_same() {
         let motor = without_lines(MotorFile::parse(&text, "motor.toml").expect("valid"));
         let again = MotorFile::parse(&motor.to_toml(), "written").expect("readable");
         assert_eq!(without_lines(again), motor);
+    }
+}
+
+#[test]
+fn a_healthy_section_is_read_key_by_key() {
+    let motor = MotorFile::parse(&largest_text(), "motor.toml").expect("valid");
+    let expected = HealthySettings {
+        mean_percent: [0.0, 0.0, 0.0, -0.1, 0.2, 0.3, -0.4, 0.5, 0.6],
+        scatter_percent: [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9],
+        current_unbalance_percent: [2.1, -2.2],
+        current_unbalance_scatter_percent: 2.3,
+        turns_angle_deg: 65.0,
+        stator_resistance_percent: 3.1,
+        rotor_resistance_percent: 3.2,
+        heating_percent: 3.3,
+        magnetizing_inductance_percent: 3.4,
+        leakage_percent: 3.5,
+        friction_percent: 3.6,
+        current_gain_percent: 3.7,
+        voltage_gain_percent: 3.8,
+        speed_percent: 3.9,
+        negative_impedance_percent: 4.1,
+        significance: 6.5,
+    };
+    assert_eq!(motor.healthy, Some(expected));
+    assert_eq!(
+        smallest().healthy,
+        None,
+        "without the section nothing is calibrated"
+    );
+}
+
+#[test]
+fn a_short_healthy_section_gets_the_documented_defaults() {
+    let text = format!("{SMALLEST}[healthy]\n");
+    let motor = MotorFile::parse(&text, "motor.toml").expect("valid");
+    assert_eq!(motor.healthy, Some(HealthySettings::default()));
+}
+
+#[test]
+fn a_healthy_section_out_of_range_is_refused_with_its_line() {
+    for (key, bad) in [
+        ("significance", "0.5"),
+        ("heating_percent", "-1.0"),
+        ("scatter_percent", "[1.0, 2.0]"),
+        ("mean_percent", "[0, 0, 0, 0, 0, 0, 0, 0, 1001]"),
+        ("stator_percent", "1.0"),
+    ] {
+        let text = format!("{SMALLEST}[healthy]\n{key} = {bad}\n");
+        let error = MotorFile::parse(&text, "motor.toml").expect_err(key);
+        let line = error.problems().first().map(|problem| problem.line);
+        assert_eq!(line, Some(text.lines().count()), "{error}");
+        assert!(error.to_string().contains(key), "{error}");
     }
 }
 

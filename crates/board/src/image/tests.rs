@@ -1,0 +1,143 @@
+use super::*;
+use motor::motor_file::MotorFile;
+use proptest::prelude::*;
+
+fn shipped(name: &str) -> MonitorConfig {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../motors/");
+    let file = MotorFile::read(format!("{folder}{name}")).expect("a shipped motor file");
+    MonitorConfig::from_motor_file(&file, 1e-4)
+}
+
+fn image(config: &MonitorConfig) -> MotorImage {
+    MotorImage::new(config)
+}
+
+fn terms(config: &MonitorConfig) -> EffectTerms {
+    config
+        .effects
+        .map(|effect| effect.map(|active| active.effect))
+}
+
+fn with_effects() -> MonitorConfig {
+    let mut config = shipped("assumed-300w.toml");
+    config.channel_gain[4] = 0.98;
+    for (slot, number) in config.effects.iter_mut().zip([2, 9]) {
+        *slot = Some(ActiveEffect {
+            effect: STEADY[number],
+            parameters: [0.1, 2.0, 0.3, number as f32],
+        });
+    }
+    config
+}
+
+#[test]
+fn effects_and_channel_gains_survive_the_round_trip() {
+    let config = with_effects();
+    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+}
+
+#[test]
+fn an_effect_that_the_program_lacks_is_refused_rather_than_dropped() {
+    let image = image(&with_effects());
+    let refused = image.config(&EffectTerms::default());
+    assert_eq!(refused, Err(ImageError::Effects));
+}
+
+#[test]
+fn every_shipped_motor_survives_the_round_trip_bit_for_bit() {
+    for name in ["assumed-300w.toml", "peer-2k2.toml", "imc-18k5.toml"] {
+        let config = shipped(name);
+        assert_eq!(image(&config).config(&terms(&config)), Ok(config), "{name}");
+    }
+}
+
+/// Every number another one, so that none can take another's place unseen.
+fn calibrated() -> MonitorConfig {
+    let mut next = 0.0;
+    let mut number = || {
+        next += 0.001_f32;
+        next
+    };
+    let healthy = Healthy {
+        mean: [(); ROWS].map(|()| -number()),
+        scatter: [(); ROWS].map(|()| number()),
+        current_unbalance: [number(), -number()],
+        current_unbalance_scatter: number(),
+        turns_axis: [number(), number()],
+        uncertainty: Uncertainty {
+            stator_resistance: number(),
+            rotor_resistance: number(),
+            heating: number(),
+            magnetizing_inductance: number(),
+            leakage: number(),
+            friction: number(),
+            current_gain: number(),
+            voltage_gain: number(),
+            speed: number(),
+            negative_impedance: number(),
+        },
+        significance: 5.5,
+    };
+    MonitorConfig {
+        healthy: Some(healthy),
+        ..with_effects()
+    }
+}
+
+#[test]
+fn a_calibrated_motor_survives_the_round_trip_number_by_number() {
+    let config = calibrated();
+    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+}
+
+#[test]
+fn every_calibrated_motor_that_ships_survives_the_round_trip() {
+    for motor in ["assumed-300w", "peer-2k2", "chalmers-4kw"] {
+        let config = shipped(&format!("{motor}-calibrated.toml"));
+        assert!(config.healthy.is_some(), "{motor} is not calibrated");
+        let read = image(&config).config(&terms(&config));
+        assert_eq!(read, Ok(config), "{motor}");
+    }
+}
+
+#[test]
+fn a_calibration_changes_the_identification() {
+    let without = MonitorConfig {
+        healthy: None,
+        ..calibrated()
+    };
+    let read = image(&without).config(&terms(&without));
+    assert_eq!(read, Ok(without));
+    let ids = [without, calibrated()].map(|config| image(&config).identification());
+    assert_ne!(ids[0], ids[1]);
+}
+
+#[test]
+fn choices_that_no_shipped_motor_makes_survive_too() {
+    let config = MonitorConfig {
+        frame: Frame::Voltage,
+        load: LoadKind::Measured,
+        field: FieldCurrent::Nominal(1.25),
+        ..shipped("assumed-300w.toml")
+    };
+    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+}
+
+#[test]
+fn the_last_word_before_the_checksum_is_used() {
+    let mut config = with_effects();
+    config.effects[MAX_EFFECTS - 1] = config.effects[0];
+    let [.., last] = config.effects[0].expect("an effect").parameters;
+    let image = image(&config);
+    assert_eq!(f32::from_bits(image.0[IMAGE_WORDS - 2]), last);
+}
+
+proptest! {
+    /// CRC-32 finds every single-bit error, in the content as in the checksum.
+    #[test]
+    fn any_flipped_bit_is_found(word in 0..IMAGE_WORDS, bit in 0..32_u32) {
+        let mut image = image(&shipped("assumed-300w.toml"));
+        image.0[word] ^= 1 << bit;
+        prop_assert_eq!(image.config(&EffectTerms::default()), Err(ImageError::Checksum));
+    }
+}

@@ -1,0 +1,5 @@
+//! The isolation against motors in steady state, solved in double precision by the crate `motor`.
+
+mod causes;
+mod degenerate;
+mod plant;

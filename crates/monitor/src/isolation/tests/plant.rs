@@ -1,0 +1,214 @@
+//! A motor in steady state seen through six channels, and a monitor that believes in the healthy one.
+
+use motor::steady_state::{OperatingPoint, SteadyState};
+use motor::{Mechanics, TParams};
+use num_complex::{Complex32, Complex64};
+
+use crate::config::{LoadKind, MonitorConfig};
+use crate::convert::Converter;
+use crate::frames::Sequence;
+use crate::health::Phase;
+use crate::isolation::{Healthy, ROWS, Uncertainty};
+use crate::operating_point::Frame;
+use crate::phasor::CHANNELS;
+use crate::residuals::FieldCurrent;
+use crate::threshold::ComparatorConfig;
+use crate::window::Window;
+use crate::{Evidence, Monitor};
+
+pub const OMEGA_SYNC: f64 = std::f64::consts::TAU * 50.0;
+const AMPLITUDE: f64 = 326.6;
+
+/// What stands between two perfect descriptions of one motor.
+#[derive(Clone, Copy, Debug)]
+pub struct Plant {
+    pub params: TParams<f64>,
+    /// `B + B_l`, N m s.
+    pub friction: f64,
+    /// Voltages a, b, c, then currents.
+    pub gains: [f64; CHANNELS],
+    pub speed_gain: f64,
+    /// Ohm in series with each phase, behind the voltage probes.
+    pub series: [f64; 3],
+    /// Current through shorted turns of each phase in phase with its voltage, as a share of the motor's current.
+    pub shorted: [f64; 3],
+}
+
+impl Plant {
+    /// A 2.2 kW motor at two thirds of its torque.
+    pub fn healthy() -> Self {
+        Plant {
+            params: TParams {
+                r_s: 3.7,
+                r_r: 2.3,
+                l_ls: 0.0107,
+                l_lr: 0.0107,
+                l_m: 0.234,
+            },
+            friction: 0.065,
+            gains: [1.0; CHANNELS],
+            speed_gain: 1.0,
+            series: [0.0; 3],
+            shorted: [0.0; 3],
+        }
+    }
+
+    fn curve(&self) -> SteadyState<f64> {
+        let mut params = self.params;
+        params.r_s += self.series.iter().sum::<f64>() / 3.0;
+        SteadyState::new(&params, 2.0, Complex64::new(AMPLITUDE, 0.0), OMEGA_SYNC)
+    }
+
+    /// A third of a resistance in one phase acts on the positive sequence; what the negative sequence gives back to it is
+    /// of second order.
+    pub fn point(&self) -> OperatingPoint<f64> {
+        self.curve().at_friction(self.friction)
+    }
+
+    fn negative_impedance(&self, point: &OperatingPoint<f64>) -> Complex64 {
+        let backwards = OMEGA_SYNC + point.omega_el;
+        point.u_s / self.curve().at_slip_speed(backwards).i_s
+    }
+
+    /// Phase currents, A.
+    fn currents(&self, point: &OperatingPoint<f64>) -> [Complex64; 3] {
+        let mut currents = phases(point.i_s);
+        let impedance = self.negative_impedance(point);
+        for (k, r) in self.series.iter().enumerate() {
+            // The unbalanced drop drives a current of negative sequence through the motor.
+            let drop = r / 3.0 * currents[k] * TURN.powi(2 * k as i32);
+            let negative = -drop / impedance;
+            for (m, current) in currents.iter_mut().enumerate() {
+                *current += negative * TURN.powi(m as i32);
+            }
+        }
+        let voltages = phases(point.u_s);
+        for (k, share) in self.shorted.iter().enumerate() {
+            let shunt = voltages[k] / AMPLITUDE * point.i_s.norm() * *share;
+            currents[k] += shunt;
+            // Three wires carry no zero sequence.
+            currents
+                .iter_mut()
+                .for_each(|current| *current -= shunt / 3.0);
+        }
+        currents
+    }
+
+    pub fn window(&self) -> Window {
+        let point = self.point();
+        let [ua, ub, uc] = phases(point.u_s);
+        let [ia, ib, ic] = self.currents(&point);
+        let mut channels = [ua, ub, uc, ia, ib, ic];
+        for (x, gain) in channels.iter_mut().zip(self.gains) {
+            *x *= gain;
+        }
+        let single = channels.map(|x| Complex32::new(x.re as f32, x.im as f32));
+        let [ua, ub, uc, ia, ib, ic] = single;
+        Window {
+            u_s: Sequence::from_phases([ua, ub, uc]),
+            i_s: Sequence::from_phases([ia, ib, ic]),
+            omega_sync: OMEGA_SYNC as f32,
+            omega_mech: Some((point.omega_mech * self.speed_gain) as f32),
+            span: 0.08,
+            ..Window::default()
+        }
+    }
+}
+
+/// `e^{j 2 pi / 3}`.
+const TURN: Complex64 = Complex64::new(-0.5, 0.866_025_403_784_438_6);
+
+fn phases(positive: Complex64) -> [Complex64; 3] {
+    [positive, positive * TURN.conj(), positive * TURN]
+}
+
+/// Statistics of a careful calibration: the defaults of the motor file, and a noise of 0.05 % in every row.
+pub fn statistics() -> Healthy {
+    Healthy {
+        mean: [0.0; ROWS],
+        scatter: [5e-4; ROWS],
+        current_unbalance: [0.0; 2],
+        current_unbalance_scatter: 5e-4,
+        turns_axis: [0.342, 0.94],
+        uncertainty: Uncertainty {
+            stator_resistance: 0.01,
+            rotor_resistance: 0.01,
+            heating: 0.3,
+            magnetizing_inductance: 0.002,
+            leakage: 0.005,
+            friction: 0.02,
+            current_gain: 0.002,
+            voltage_gain: 0.002,
+            speed: 1e-4,
+            negative_impedance: 0.1,
+        },
+        significance: 5.5,
+    }
+}
+
+/// A monitor of the healthy motor.
+pub fn monitor() -> Monitor {
+    Monitor::new(config()).expect("a valid motor")
+}
+
+fn config() -> MonitorConfig {
+    let plant = Plant::healthy();
+    let p = plant.params.into_single();
+    MonitorConfig {
+        t_sample: 1e-4,
+        converter: Converter::bipolar(600.0, 60.0, 12),
+        encoder_counts_per_revolution: 4096.0,
+        params: p,
+        effects: Default::default(),
+        channel_gain: [1.0; CHANNELS],
+        mechanics: Mechanics {
+            n_p: 2.0,
+            inertia: 0.015,
+            friction: plant.friction as f32,
+            load_friction: 0.0,
+        },
+        rated_voltage: AMPLITUDE as f32,
+        rated_current: 7.07,
+        rated_omega: OMEGA_SYNC as f32,
+        rated_torque: 14.6,
+        frame: Frame::RotorFlux,
+        field: FieldCurrent::Live,
+        load: LoadKind::Friction,
+        thresholds: [0.006, 0.05, 0.04, 0.003],
+        window_cycles: 5,
+        comparator: ComparatorConfig {
+            persistence: 3,
+            hysteresis: 0.8,
+        },
+        healthy: Some(statistics()),
+    }
+}
+
+trait IntoSingle {
+    fn into_single(self) -> TParams<f32>;
+}
+
+impl IntoSingle for TParams<f64> {
+    fn into_single(self) -> TParams<f32> {
+        TParams {
+            r_s: self.r_s as f32,
+            r_r: self.r_r as f32,
+            l_ls: self.l_ls as f32,
+            l_lr: self.l_lr as f32,
+            l_m: self.l_m as f32,
+        }
+    }
+}
+
+/// What the monitor of the healthy motor makes of a plant.
+pub fn evidence(plant: &Plant) -> Evidence {
+    let window = plant.window();
+    monitor()
+        .evidence(&statistics(), &window)
+        .expect("voltages, currents and speed are there")
+}
+
+/// Index of a phase in arrays over a, b, c.
+pub fn index(phase: Phase) -> usize {
+    phase as usize
+}
