@@ -133,7 +133,8 @@ impl Bench<'_> {
 #[inline(never)]
 pub fn impedance(p: &TParams<f32>, omega_sync: f32, slip: f32) -> Complex32 {
     let stator = Complex32::new(p.r_s, omega_sync * p.l_ls);
-    let rotor = Complex32::new(p.r_r / slip, omega_sync * p.l_lr);
     let main = Complex32::new(0.0, omega_sync * p.l_m);
-    stator + main * rotor / (main + rotor)
+    // The rotor's branch times the slip: without slip it is open, and nothing is divided by zero.
+    let rotor = Complex32::new(p.r_r, slip * omega_sync * p.l_lr);
+    stator + main * rotor / (main * slip + rotor)
 }

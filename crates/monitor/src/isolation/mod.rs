@@ -129,7 +129,8 @@ impl Fit {
         let square = dot(white, white);
         let along = self.information * self.size * self.size;
         let astray = cause.looseness() * cause.looseness() * along;
-        let explained = along * k / (1.0 + k) + (square - along) * astray / (1.0 + astray);
+        // Shares first: their products with lengths may exceed single precision.
+        let explained = along * (k / (1.0 + k)) + (square - along) * (astray / (1.0 + astray));
         let others = (known as f32 - 1.0).max(0.0);
         let both_signs = if cause.only_adds() { LN_2 } else { 0.0 };
         0.5 * explained - 0.5 * ln(1.0 + k) - 0.5 * others * ln(1.0 + astray) + both_signs
@@ -146,7 +147,7 @@ const UNKNOWN_SPREAD: f32 = 100.0;
 /// Logarithm of the Bayes factor of a departure in any direction.
 fn score_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
     let k = UNKNOWN_SPREAD * UNKNOWN_SPREAD;
-    0.5 * dot(white, white) * k / (1.0 + k) - 0.5 * known as f32 * ln(1.0 + k)
+    0.5 * dot(white, white) * (k / (1.0 + k)) - 0.5 * known as f32 * ln(1.0 + k)
 }
 
 /// The squared length as an equally rare standard deviation (Wilson and Hilferty, doi:10.1073/pnas.17.12.684).
