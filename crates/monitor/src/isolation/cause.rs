@@ -16,9 +16,9 @@ pub enum Cause {
     /// Friction of motor and load: they only ever appear as `B + B_l`.
     Friction,
     /// All current channels alike.
-    CurrentGain,
+    AllCurrents,
     /// All voltage channels alike.
-    VoltageGain,
+    AllVoltages,
     /// The speed measurement.
     SpeedGain,
     /// A resistance in series with one phase: a joint, a contact, a winding.
@@ -43,8 +43,8 @@ pub const ALL_CAUSES: [Cause; CAUSES] = [
     Cause::MagnetizingInductance,
     Cause::Leakage,
     Cause::Friction,
-    Cause::CurrentGain,
-    Cause::VoltageGain,
+    Cause::AllCurrents,
+    Cause::AllVoltages,
     Cause::SpeedGain,
     Cause::SeriesResistance(A),
     Cause::SeriesResistance(B),
@@ -69,8 +69,8 @@ impl Cause {
             Cause::MagnetizingInductance => "Lm",
             Cause::Leakage => "leakage",
             Cause::Friction => "B",
-            Cause::CurrentGain | Cause::CurrentChannel(_) => "Iq",
-            Cause::VoltageGain | Cause::VoltageChannel(_) => "Vq",
+            Cause::AllCurrents | Cause::CurrentChannel(_) => "Iq",
+            Cause::AllVoltages | Cause::VoltageChannel(_) => "Vq",
             Cause::SpeedGain => "wr",
             Cause::Turns(_) => "turns",
         }
@@ -91,8 +91,8 @@ impl Cause {
     pub const fn is_sensor(self) -> bool {
         matches!(
             self,
-            Cause::CurrentGain
-                | Cause::VoltageGain
+            Cause::AllCurrents
+                | Cause::AllVoltages
                 | Cause::SpeedGain
                 | Cause::CurrentChannel(_)
                 | Cause::VoltageChannel(_)
@@ -105,7 +105,7 @@ impl Cause {
             Cause::StatorResistance | Cause::RotorResistance => 0.3,
             Cause::MagnetizingInductance => 0.15,
             Cause::Leakage | Cause::Friction | Cause::SeriesResistance(_) => 0.5,
-            Cause::CurrentGain | Cause::VoltageGain => 0.1,
+            Cause::AllCurrents | Cause::AllVoltages => 0.1,
             Cause::CurrentChannel(_) | Cause::VoltageChannel(_) => 0.2,
             Cause::SpeedGain => 0.05,
             Cause::Turns(_) => 0.3,
