@@ -29,8 +29,12 @@ impl<const N: usize> Covariance<N> {
     pub fn add(&mut self, direction: &[f32; N], deviation: f32) {
         let scaled = direction.map(|x| x * deviation);
         for (i, (row, a)) in self.lower.iter_mut().zip(&scaled).enumerate() {
-            for (c, b) in row.iter_mut().zip(scaled.iter().take(i + 1)) {
-                *c += a * b;
+            // Most quantities move few rows.
+            if *a != 0.0 {
+                let before = scaled.get(..=i).unwrap_or_default();
+                for (c, b) in row.iter_mut().zip(before) {
+                    *c += a * b;
+                }
             }
         }
     }
@@ -50,12 +54,12 @@ impl<const N: usize> Covariance<N> {
     }
 }
 
-/// Row `i` of the factor from those before it. What lies behind the diagonal is 0, so whole rows may be multiplied.
+/// Row `i` of the factor from those before it.
 #[inline(never)]
 fn factor_row<const N: usize>(lower: &[[f32; N]; N], i: usize, variances: &[f32; N]) -> [f32; N] {
     let mut row = [0.0; N];
     for (j, (above, c)) in lower.iter().zip(variances).enumerate().take(i) {
-        let x = (c - dot(&row, above)) / entry(above, j);
+        let x = (c - dot_of(j, &row, above)) / entry(above, j);
         set(&mut row, j, x);
     }
     let variance = entry(variances, i);
@@ -84,11 +88,18 @@ impl<const N: usize> Cholesky<N> {
     pub fn whiten(&self, x: &[f32; N]) -> [f32; N] {
         let mut white = [0.0; N];
         for (i, (row, x)) in self.lower.iter().zip(x).enumerate() {
-            let rest = (x - dot(row, &white)) / entry(row, i);
-            set(&mut white, i, rest);
+            let known = dot_of(i, row, &white);
+            set(&mut white, i, (x - known) / entry(row, i));
         }
         white
     }
+}
+
+/// Scalar product of the first `k` entries.
+#[inline]
+fn dot_of<const N: usize>(k: usize, a: &[f32; N], b: &[f32; N]) -> f32 {
+    let first = a.get(..k).unwrap_or_default();
+    first.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Scalar product.

@@ -52,15 +52,17 @@ impl Isolation {
             significance: significance_of_anything(&white, known),
             heating: heating(evidence, healthy, &cholesky, &white),
         };
+        let mut longest = 0.0_f32;
         let places = isolation.scores.iter_mut().zip(&mut isolation.sizes);
         for ((score, size), cause) in places.zip(ALL_CAUSES) {
             let fit = Fit::along(&cholesky.whiten(&evidence.direction(cause)), &white);
             *size = fit.size;
             *score = fit.score(cause, &white, known);
             if !fit.is_impossible(cause) {
-                isolation.significance = isolation.significance.max(fit.significance());
+                longest = fit.square().max(longest);
             }
         }
+        isolation.significance = libm::sqrtf(longest).max(isolation.significance);
         isolation
     }
 
@@ -110,8 +112,9 @@ impl Fit {
         Fit { information, size }
     }
 
-    fn significance(&self) -> f32 {
-        libm::sqrtf(self.information) * self.size.abs()
+    /// Squared length of the departure along the direction.
+    fn square(&self) -> f32 {
+        self.information * self.size * self.size
     }
 
     fn is_impossible(&self, cause: Cause) -> bool {
@@ -127,7 +130,7 @@ impl Fit {
         let typical = cause.typical_size();
         let k = self.information * typical * typical;
         let square = dot(white, white);
-        let along = self.information * self.size * self.size;
+        let along = self.square();
         let astray = cause.looseness() * cause.looseness() * along;
         // Shares first: their products with lengths may exceed single precision.
         let explained = along * (k / (1.0 + k)) + (square - along) * (astray / (1.0 + astray));
