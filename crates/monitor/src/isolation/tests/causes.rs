@@ -18,8 +18,8 @@ fn changed(cause: Cause, by: f64) -> Plant {
             p.l_lr *= factor;
         }
         Cause::Friction => plant.friction *= factor,
-        Cause::VoltageGain => plant.gains[..3].fill(factor),
-        Cause::CurrentGain => plant.gains[3..].fill(factor),
+        Cause::AllVoltages => plant.gains[..3].fill(factor),
+        Cause::AllCurrents => plant.gains[3..].fill(factor),
         Cause::SpeedGain => plant.speed_gain = factor,
         Cause::SeriesResistance(phase) => plant.series[index(phase)] = by * p.r_s,
         Cause::Turns(phase) => plant.shorted[index(phase)] = by,
@@ -111,7 +111,7 @@ fn shorted_turns_are_named_in_their_phase() {
 /// The three numbers of the positive sequence leave resistances nearly as likely as a voltage gain: 0.28 and 0.15 to 0.35.
 #[test]
 fn gains_of_all_phases_are_the_likeliest_cause() {
-    for cause in [Cause::CurrentGain, Cause::VoltageGain] {
+    for cause in [Cause::AllCurrents, Cause::AllVoltages] {
         let isolation = isolated(&changed(cause, 0.05));
         assert_eq!(likeliest(&isolation).0, Some(cause), "{isolation:?}");
     }
