@@ -59,7 +59,7 @@ pub fn sensor_phase(finding: SensorFinding) -> Option<&'static str> {
     }
 }
 
-/// A row of Table 1 in plain words.
+/// A row of Table 1, or a cause that only a calibrated motor shows, in plain words.
 pub fn fault(name: &str) -> &'static str {
     match name {
         "Rs" => "stator resistance",
@@ -71,6 +71,9 @@ pub fn fault(name: &str) -> &'static str {
         "Iq" => "current sensor",
         "Vq" => "voltage sensor",
         "wr" => "speed sensor",
+        "Lm" => "magnetizing inductance",
+        "leakage" => "leakage inductance",
+        "turns" => "shorted turns",
         _ => "none of the faults in the table",
     }
 }
