@@ -4,6 +4,7 @@ use monitor::{Evidence, Healthy, Monitor, MonitorConfig, ROWS, Rehearsal, Row};
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
 use num_complex::Complex64;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::Refusal;
 use super::fit::Fitted;
@@ -145,16 +146,7 @@ fn set_current_unbalance(settings: &mut HealthySettings, observed: &[Observed]) 
 /// Standard deviations that any of the causes exceeds in `rate` of the windows by chance: normal, both tails, Bonferroni.
 pub fn significance(rate: f64) -> f64 {
     let tail = rate / (2.0 * (monitor::CAUSES as f64 + 1.0));
-    let (mut low, mut high) = (0.0, 40.0);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if 0.5 * libm::erfc(middle * std::f64::consts::FRAC_1_SQRT_2) > tail {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+    -Normal::standard().inverse_cdf(tail)
 }
 
 /// Thresholds of r1..r4 that the healthy motor keeps, with gains as far off as a sound installation drifts, percent.
