@@ -19,6 +19,8 @@ mod predict;
 mod present;
 mod proof;
 mod question;
+#[cfg(test)]
+mod refitted_folds;
 mod report;
 mod screen;
 mod signal;
