@@ -5,6 +5,7 @@
 //! phasors of whole cycles -> once per cycle: residuals -> thresholds -> signature -> lamps.
 
 mod block;
+mod calibrated;
 mod config;
 mod convert;
 mod effects;

@@ -10,12 +10,11 @@ use crate::health::{HealthConfig, SensorFinding};
 use crate::intake::{
     IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
 };
-use crate::isolation::{Bench, Evidence, Healthy, Isolation, PositiveEvidence};
 use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::panel::{PanelConfig, PanelState};
 use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
 use crate::report::{NotJudged, Report};
-use crate::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
+use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
 use crate::sample::Sample;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
@@ -32,7 +31,7 @@ pub struct Monitor {
     reference_per_si: [f32; 2],
     /// What a peak keeps of itself from one sample to the next.
     pub(crate) peak_keep: f32,
-    model: ResidualModel,
+    pub(crate) model: ResidualModel,
     health: HealthConfig,
     supply: SupplyConfig,
     panel: PanelConfig,
@@ -102,9 +101,6 @@ const VOLTAGE_RANGE: [f32; 2] = [0.75, 1.2];
 const MAX_UNBALANCE: f32 = 0.03;
 /// A window counts as steady when the neglected derivative terms stay below this share of the threshold.
 const STEADY_SHARE: f32 = 0.25;
-/// Share of the accelerating torque that stays in doubt: a difference over five cycles, and an inertia that is only
-/// roughly known.
-const ACCELERATION_DOUBT: f32 = 0.3;
 
 impl Monitor {
     /// Prepares a monitor.
@@ -339,140 +335,15 @@ impl Monitor {
         }
     }
 
-    /// Which cause explains a steady window.
-    #[inline(never)]
-    fn isolate(
-        &self,
-        healthy: &Healthy,
-        [voltages, currents]: [bool; 2],
-        rehearsal: &Rehearsal,
-        window: &Window,
-        report: &mut Report,
-    ) {
-        if report.not_judged.is_some() {
-            return;
-        }
-        let evidence = if voltages {
-            self.evidence_of_all(healthy, rehearsal, window)
-        } else {
-            currents.then(|| Evidence::of_currents(healthy, window))
-        };
-        report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy));
-        if let Some(isolation) = report.isolation {
-            self.evaluate_warm(isolation.heating, rehearsal, window, report);
-        }
-    }
-
-    /// The residuals that the lamps show, with the resistances of the winding temperature that the evidence implies.
-    #[inline(never)]
-    fn evaluate_warm(
-        &self,
-        heating: f32,
-        rehearsal: &Rehearsal,
-        window: &Window,
-        report: &mut Report,
-    ) {
-        if let Some((point, residuals)) = self.warm_residuals(heating, rehearsal, window) {
-            report.point = Some(point);
-            report.normalised = Some(self.normalise(&residuals, self.tau_load(window).is_some()));
-            report.residuals = Some(residuals);
-        }
-    }
-
-    fn warm_residuals(
-        &self,
-        heating: f32,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<(OperatingPoint, Residuals)> {
-        let mut corrected = self.corrected(window)?;
-        corrected.params.r_s *= 1.0 + heating;
-        corrected.params.r_r *= 1.0 + heating;
-        let omega_el = corrected.omega_mech * self.config.mechanics.n_p;
-        let frame = self.config.frame;
-        let point = OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)?;
-        let point = point.rehearse(rehearsal);
-        let residuals = self.model.evaluate(&point, self.tau_load(window));
-        Some((point, residuals))
-    }
-
     /// The brake torque, where the motor file says that it is measured.
-    fn tau_load(&self, window: &Window) -> Option<f32> {
+    pub(crate) fn tau_load(&self, window: &Window) -> Option<f32> {
         let is_measured = self.config.load == LoadKind::Measured;
         window.tau_load.filter(|_| is_measured)
     }
 
-    /// What a window shows beyond the healthy motor: the material of a calibration. Currents alone give their sequence
-    /// components; with voltages the speed is needed too, and `None` without it.
-    pub fn evidence(&self, healthy: &Healthy, window: &Window) -> Option<Evidence> {
-        if window.u_s.positive.norm_sqr() > 0.0 {
-            self.evidence_of_all(healthy, &Rehearsal::default(), window)
-        } else {
-            Some(Evidence::of_currents(healthy, window))
-        }
-    }
-
-    /// The residuals of a window at the winding temperature that it implies, where voltages, currents and speed allow
-    /// them: what the lamps of a calibrated motor show, under rehearsed gains.
-    pub fn residuals(
-        &self,
-        healthy: &Healthy,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<Residuals> {
-        let evidence = self.evidence_of_all(healthy, rehearsal, window)?;
-        let heating = Isolation::of(&evidence, healthy).heating;
-        let (_, residuals) = self.warm_residuals(heating, rehearsal, window)?;
-        Some(residuals)
-    }
-
-    #[inline(never)]
-    fn evidence_of_all(
-        &self,
-        healthy: &Healthy,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<Evidence> {
-        let measured = self.corrected(window)?.rehearsed(rehearsal);
-        let tau_load = self.tau_load(window);
-        let model = ResidualModel {
-            field: FieldCurrent::Live,
-            ..self.model
-        };
-        let bench = Bench {
-            model: &model,
-            measured: &measured,
-            omega_sync: window.omega_sync,
-            tau_load,
-        };
-        let mut residuals = bench.residuals()?;
-        let directions = bench.directions(&residuals)?;
-        let mech_rate = window.speed_change / window.span;
-        let acceleration = self.model.acceleration_share(window.omega_sync, mech_rate);
-        let [torque, ..] = &mut residuals;
-        *torque += acceleration; // (36) row 2
-        let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
-        let [volt, _] = self.unsteadiness(window, &point);
-        // While the rotor flux settles, e_d is its time constant times its rate (15), and the torque follows it.
-        let settling =
-            volt * (1.0 + window.omega_sync * measured.params.l_r() / measured.params.r_r);
-        let positive = PositiveEvidence {
-            residuals,
-            directions,
-            unsteadiness: [
-                ACCELERATION_DOUBT * acceleration.abs() + settling,
-                settling,
-                volt,
-            ],
-            torque_known: self.config.load == LoadKind::Friction || tau_load.is_some(),
-        };
-        let n_p = self.config.mechanics.n_p;
-        Some(Evidence::new(healthy, window, &measured, n_p, &positive))
-    }
-
     /// What one window measured, freed from physical effects.
     #[inline(never)]
-    fn corrected(&self, window: &Window) -> Option<Corrected> {
+    pub(crate) fn corrected(&self, window: &Window) -> Option<Corrected> {
         let config = &self.config;
         Some(correct(
             &config.effects,
@@ -484,7 +355,7 @@ impl Monitor {
     }
 
     #[inline(never)]
-    fn operating_point(
+    pub(crate) fn operating_point(
         &self,
         frame: Frame,
         rehearsal: &Rehearsal,
@@ -498,7 +369,7 @@ impl Monitor {
     }
 
     /// Over the thresholds; what an undeclared load makes meaningless becomes NaN, which no comparator counts.
-    fn normalise(&self, residuals: &Residuals, torque_known: bool) -> [f32; RESIDUALS] {
+    pub(crate) fn normalise(&self, residuals: &Residuals, torque_known: bool) -> [f32; RESIDUALS] {
         let load_known = self.config.load == LoadKind::Friction || torque_known;
         let mut normalised = residuals.r;
         for (x, threshold) in normalised.iter_mut().zip(self.config.thresholds) {
@@ -525,7 +396,7 @@ impl Monitor {
         unsteadiness.iter().zip(limits).all(|(x, limit)| *x < limit)
     }
 
-    fn unsteadiness(&self, window: &Window, point: &OperatingPoint) -> [f32; 2] {
+    pub(crate) fn unsteadiness(&self, window: &Window, point: &OperatingPoint) -> [f32; 2] {
         let current_rate = window.current_change / window.span;
         let mech_rate = window.speed_change / window.span;
         self.model.unsteadiness(point, current_rate, mech_rate)
