@@ -15,7 +15,7 @@ const INTRODUCTION: &str = "\
 
 Written by `drivemon campaign table`; do not edit. How it is measured, and how any line of it is made again, is in
 [campaign](campaign.md). Every run is simulated, replayed through the core in ADC codes as the board sees it, and
-judged with the nominal motor file.
+judged with the motor file that the table names; what is simulated departs from it.
 
 *Smallest* is the smallest size from which on FAULT comes in at least 99 of 100 runs; *proven* is the exact lower bound of
 that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays count from the fault to FAULT. *Cause right*: the true cause
