@@ -75,6 +75,13 @@ fn the_same_scenario_gives_the_same_bytes_and_the_fault_is_found_in_them() {
     let (first, second) = (record("first.csv.gz"), record("second.csv.gz"));
     let bytes = |file: &Path| std::fs::read(file).expect("recorded");
     assert_eq!(bytes(&first), bytes(&second));
+    let parquet = record("first.parquet");
+    assert_eq!(bytes(&parquet), bytes(&record("second.parquet")));
+    let judged = |file: &Path| {
+        let output = drivemon(&["monitor", text(file), "--motor", text(&motor)]);
+        stdout(&output).replace(text(file), "")
+    };
+    assert_eq!(judged(&first), judged(&parquet));
     let output = drivemon(&[
         "monitor",
         text(&first),

@@ -72,6 +72,8 @@ pub enum Origin {
     User,
     /// The sidecar, a part of the recording.
     Sidecar,
+    /// The file itself.
+    File,
 }
 
 impl ColumnMap {
@@ -89,6 +91,7 @@ impl ColumnMap {
         let who = match self.origin {
             Origin::User => "user's assumption",
             Origin::Sidecar => "as the sidecar declares",
+            Origin::File => "as the file declares",
         };
         let unit = self.unit.unwrap_or_else(|| Unit::si(target.quantity()));
         let shifted = match self.offset {

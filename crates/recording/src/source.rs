@@ -37,7 +37,7 @@ pub(crate) fn open(path: &Path) -> Result<Source, Error> {
         return Err(Error::bad(
             &name,
             "is a folder",
-            "name a .csv or .csv.gz file in it",
+            "name a .csv, .csv.gz, .parquet, .mat, .cfg or .cff file in it",
         ));
     }
     let bytes_read = Rc::new(Cell::new(0));
@@ -122,7 +122,7 @@ fn refuse_foreign(head: &[u8], name: &str) -> Result<(), Error> {
         return Err(Error::unsupported(
             name,
             message,
-            "export it as .csv or .csv.gz",
+            "export it as .csv, .parquet, or .mat of version 7",
         ));
     }
     if head.starts_with(&GZIP) {

@@ -81,6 +81,25 @@ impl Unit {
             .ok_or_else(|| known().map(|unit| unit.name).collect::<Vec<_>>().join(", "))
     }
 
+    /// The unit that an instrument calls `name`: as [`Unit::parse`], and case counts only where it
+    /// tells units apart (`mV` is not `MV`).
+    ///
+    /// # Errors
+    /// The units that the quantity does take, as text for a message.
+    pub fn declared(quantity: Quantity, name: &str) -> Result<Unit, String> {
+        let name = name.trim();
+        let usual = match name {
+            "v" | "Volt" | "Volts" | "volt" | "volts" => "V",
+            "a" | "Amp" | "Amps" | "amp" | "amps" | "Ampere" => "A",
+            "kv" | "KV" | "Kv" => "kV",
+            "ka" | "KA" | "Ka" => "kA",
+            "N.m" | "N m" | "N*m" => "Nm",
+            "r/min" | "RPM" | "1/min" | "min-1" => "rpm",
+            other => other,
+        };
+        Unit::parse(quantity, usual)
+    }
+
     /// The SI unit of a quantity.
     pub fn si(quantity: Quantity) -> Unit {
         // The table holds every quantity's SI name; the fallback has the same meaning.

@@ -94,7 +94,7 @@ fn a_folder_that_is_not_there_and_a_wrong_name_are_named() {
     let written = small(&[1.0, 2.0]);
     let absent = write_recording(&folder.path("no/x.csv"), &written).unwrap_err();
     assert!(absent.to_string().contains("check the folder"), "{absent}");
-    let name = write_recording(&folder.path("x.parquet"), &written).unwrap_err();
+    let name = write_recording(&folder.path("x.txt"), &written).unwrap_err();
     assert!(name.to_string().contains(".csv.gz"), "{name}");
 }
 

@@ -24,7 +24,7 @@ use crate::motor_text;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Calibrate {
-    /// Recordings of the healthy motor (.csv, .csv.gz)
+    /// Recordings of the healthy motor (.csv, .csv.gz, .parquet, .mat, .cfg, .cff)
     #[arg(value_name = "REC", required = true)]
     recordings: Vec<PathBuf>,
     /// Motor file with what is believed so far

@@ -92,7 +92,7 @@ struct Replay {
     /// The run
     #[arg(long, value_name = "INDEX")]
     index: u64,
-    /// Recording to write (.csv or .csv.gz); the motor file that the monitor was told goes beside it, .motor.toml
+    /// Recording to write (.csv, .csv.gz or .parquet); the motor file that the monitor was told goes beside it, .motor.toml
     #[arg(short, long, value_name = "REC")]
     output: Option<PathBuf>,
 }
@@ -241,7 +241,9 @@ fn record(run: &Run<'_>, path: &Path) -> Result<Finding, Failure> {
     let recording = simulate::record(&run.scenario(), |_| {}).map_err(refused)?;
     recording::write_recording(path, &recording)?;
     let name = path.to_string_lossy();
-    let stem = name.trim_end_matches(".gz").trim_end_matches(".csv");
+    let stem = [".gz", ".csv", ".parquet"]
+        .iter()
+        .fold(&*name, |stem, end| stem.trim_end_matches(end));
     let motor = PathBuf::from(format!("{stem}.motor.toml"));
     write(&motor, &run.monitor_file().to_toml())?;
     let (path, motor) = (path.display(), motor.display());

@@ -29,7 +29,7 @@ use crate::words;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct MonitorArgs {
-    /// Recording (.csv, .csv.gz) or load-test table
+    /// Recording or load-test table (.csv, .csv.gz, .parquet, .mat, .cfg, .cff)
     #[arg(value_name = "REC", required_unless_present_any = ["serial", "probe"])]
     recording: Option<PathBuf>,
     /// Motor file; without it only audit and sequence components are reported

@@ -18,7 +18,7 @@ pub struct Simulate {
     /// Scenario file
     #[arg(value_name = "SCENARIO")]
     scenario: PathBuf,
-    /// Recording to write (.csv or .csv.gz); the sidecar gets the same name with .toml
+    /// Recording to write (.csv, .csv.gz or .parquet); the sidecar gets the same name with .toml
     #[arg(short, long, value_name = "REC")]
     output: PathBuf,
     /// Seed of the sensor noise, instead of the scenario's

@@ -12,9 +12,9 @@ pub(super) fn recording(
     file: &str,
     mut raw: Raw,
     plan: Plan,
-    mapping: &Mapping,
     metadata: Metadata,
 ) -> Result<Recording, Error> {
+    let mapping = &plan.mapping;
     let t = clock::clock(file, &mut raw, mapping)?;
     let mut recording = Recording::new(file, t, metadata)?;
     recording.assumptions = plan.notes;

@@ -1,11 +1,18 @@
 //! Reading recordings and load tables from files.
 
 mod clock;
+mod columns;
+mod comtrade;
 mod csv_file;
 mod encoder;
 mod finish;
+mod format;
+mod header;
+mod mat;
+mod parquet;
 mod plan;
 mod table;
+mod table_file;
 
 use crate::error::Error;
 use crate::load_table::LoadTable;
@@ -14,11 +21,12 @@ use crate::metadata::Metadata;
 use crate::recording::Recording;
 use crate::sidecar::Sidecar;
 use crate::source::Progress;
-use csv_file::{Cells, CsvFile};
+use header::Header;
 use plan::Plan;
 use std::collections::BTreeMap;
 use std::path::Path;
 use table::Kind;
+use table_file::{Row, TableFile};
 
 /// What a file turned out to hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +37,7 @@ pub enum Source {
     LoadTable(LoadTable),
 }
 
-/// Reads a recording, `.csv` or `.csv.gz`, with the sidecar beside it; `flags` win over the sidecar.
+/// Reads a recording of any format, with the sidecar beside it; `flags` win over the sidecar.
 ///
 /// # Errors
 /// Whatever is wrong with the file or its sidecar, with file, line, column and remedy; also a load
@@ -49,7 +57,7 @@ pub fn read_recording(
     }
 }
 
-/// Reads a load table, `.csv` or `.csv.gz`.
+/// Reads a load table of any format.
 ///
 /// # Errors
 /// Whatever is wrong with the file, with file, line, column and remedy; also a recording.
@@ -84,42 +92,40 @@ pub fn read_any(
         None => Sidecar::beside(path)?,
     };
     let mapping = flags.clone().over(sidecar.mapping);
-    let csv = CsvFile::open(path, &mapping)?;
-    match table::kind(&csv, &mapping)? {
-        Kind::LoadTable => table::load_table(csv, progress).map(Source::LoadTable),
+    let mut file = format::open(path, &mapping)?;
+    match table::kind(file.header(), &mapping)? {
+        Kind::LoadTable => table::load_table(&mut *file, progress).map(Source::LoadTable),
         Kind::Recording => {
-            recording_of(csv, sidecar.metadata, &mapping, progress).map(Source::Recording)
+            recording_of(&mut *file, sidecar.metadata, &mapping, progress).map(Source::Recording)
         }
     }
 }
 
 fn recording_of(
-    mut csv: CsvFile,
+    file: &mut dyn TableFile,
     metadata: Metadata,
     mapping: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Recording, Error> {
-    let plan = Plan::new(&csv.name, csv.header_line, &csv.header, mapping)?;
-    plan_is_sufficient(&csv, &plan, mapping)?;
-    let raw = read_columns(&mut csv, &plan, mapping, progress)?;
-    finish::recording(&csv.name, raw, plan, mapping, metadata)
+    let plan = Plan::new(file.header(), mapping)?;
+    plan_is_sufficient(file.header(), &plan)?;
+    let raw = read_columns(file, &plan, progress)?;
+    finish::recording(&file.header().file, raw, plan, metadata)
 }
 
-fn plan_is_sufficient(csv: &CsvFile, plan: &Plan, mapping: &Mapping) -> Result<(), Error> {
+fn plan_is_sufficient(header: &Header, plan: &Plan) -> Result<(), Error> {
     let electrical = |target: &Target| matches!(target, Target::Channel(c) if c.is_electrical());
     if !plan.columns.keys().any(electrical) {
-        let message = format!(
-            "has neither currents nor voltages among {}",
-            plan::list(&csv.header)
-        );
+        let names = plan::list(&header.names);
+        let message = format!("has neither currents nor voltages among {names}");
         let remedy = "name the columns ia ib ic, va vb vc, or map them: --column ia=NAME";
-        return Err(Error::at(&csv.name, csv.header_line, "", message, remedy));
+        return Err(header.error("", message, remedy));
     }
-    if !plan.columns.contains_key(&Target::Time) && mapping.sample_rate_hz.is_none() {
+    if !plan.columns.contains_key(&Target::Time) && plan.mapping.sample_rate_hz.is_none() {
         let message = "the file has no clock";
         let remedy =
             "name the time column t, map it with --column t=NAME, or declare --sample-rate HZ";
-        return Err(Error::at(&csv.name, csv.header_line, "t", message, remedy));
+        return Err(header.error("t", message, remedy));
     }
     Ok(())
 }
@@ -135,13 +141,12 @@ pub(crate) struct Raw {
 }
 
 fn read_columns(
-    csv: &mut CsvFile,
+    file: &mut dyn TableFile,
     plan: &Plan,
-    mapping: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Raw, Error> {
-    let mut collector = Collector::new(csv, plan, mapping.skip_missing.unwrap_or(false));
-    csv.for_each_row(progress, |cells| collector.take(cells))?;
+    let mut collector = Collector::new(file.header(), plan);
+    file.for_each_row(progress, &mut |row| collector.take(row))?;
     let Collector {
         used, values, raw, ..
     } = collector;
@@ -168,11 +173,11 @@ struct Collector {
 }
 
 impl Collector {
-    fn new(csv: &CsvFile, plan: &Plan, skip_missing: bool) -> Collector {
+    fn new(header: &Header, plan: &Plan) -> Collector {
         let used = plan.columns.iter().map(|(target, index)| UsedColumn {
             target: *target,
             index: *index,
-            name: csv.header[*index].clone(),
+            name: header.names[*index].clone(),
         });
         let used: Vec<UsedColumn> = used.collect();
         Collector {
@@ -180,11 +185,11 @@ impl Collector {
             row: vec![0.0; used.len()],
             used,
             raw: Raw::default(),
-            skip_missing,
+            skip_missing: plan.mapping.skip_missing.unwrap_or(false),
         }
     }
 
-    fn take(&mut self, cells: &Cells<'_>) -> Result<(), Error> {
+    fn take(&mut self, cells: &dyn Row) -> Result<(), Error> {
         for (slot, column) in self.row.iter_mut().zip(&self.used) {
             match cells.number(column.index, &column.name)? {
                 Some(x) => *slot = x,
@@ -200,7 +205,7 @@ impl Collector {
         }
         let number = self.raw.skipped + self.raw.lines.len() as u64;
         self.raw.numbers.push(number);
-        self.raw.lines.push(cells.line);
+        self.raw.lines.push(cells.line());
         Ok(())
     }
 }

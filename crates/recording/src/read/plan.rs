@@ -1,10 +1,11 @@
 //! Which column of a file becomes which channel.
 
-use super::csv_file::shown;
+use super::header::{Header, shown};
 use crate::channel::{Channel, Signal};
-use crate::error::Error;
-use crate::mapping::{Mapping, Target};
+use crate::error::{Error, Problem};
+use crate::mapping::{Mapping, Origin, Target};
 use crate::suggest::closest;
+use crate::units::Unit;
 use std::collections::BTreeMap;
 
 /// The columns of a file by target.
@@ -14,6 +15,8 @@ pub(crate) struct Plan {
     pub columns: BTreeMap<Target, usize>,
     /// Whether `va vb vc` hold v_ab, v_bc, v_ca.
     pub line_voltages: bool,
+    /// The user's mapping, completed by the units that the file declares.
+    pub mapping: Mapping,
     /// What had to be assumed, one sentence each.
     pub notes: Vec<String>,
 }
@@ -27,17 +30,22 @@ const LINE: [(&str, Signal); 3] = [
 
 impl Plan {
     /// Assigns columns to targets: the mapping first, then the columns of known names.
-    pub fn new(file: &str, line: u64, header: &[String], mapping: &Mapping) -> Result<Plan, Error> {
+    pub fn new(header: &Header, mapping: &Mapping) -> Result<Plan, Error> {
+        let (file, line, units) = (&header.file, header.line, &header.units);
+        let notes = header.notes.clone();
+        let header = &header.names;
         let mut plan = Plan {
             columns: BTreeMap::new(),
             line_voltages: mapping.line_voltages.unwrap_or(false),
-            notes: Vec::new(),
+            mapping: mapping.clone(),
+            notes,
         };
         plan.assign_mapped(file, line, header, mapping)?;
         plan.assign_named(header);
         plan.assign_line_voltages(header);
         plan.require_mapped(file, line, mapping)?;
-        plan.note_conversions(header, mapping);
+        plan.adopt_units(file, line, header, units)?;
+        plan.note_conversions(header);
         plan.account_for_the_rest(file, line, header)?;
         Ok(plan)
     }
@@ -123,8 +131,38 @@ impl Plan {
         *target == Target::Time && mapping.sample_rate_hz.is_some()
     }
 
-    fn note_conversions(&mut self, header: &[String], mapping: &Mapping) {
-        for (target, map) in &mapping.columns {
+    /// A unit that the file declares holds where the user says nothing.
+    fn adopt_units(
+        &mut self,
+        file: &str,
+        line: u64,
+        header: &[String],
+        units: &[Option<String>],
+    ) -> Result<(), Error> {
+        for (target, &column) in &self.columns {
+            let Some(name) = units.get(column).and_then(Option::as_ref) else {
+                continue;
+            };
+            let said = self.mapping.columns.get(target);
+            if said.is_some_and(|map| map.unit.is_some()) {
+                continue;
+            }
+            let unit = Unit::declared(target.quantity(), name).map_err(|known| {
+                foreign_unit(file, line, *target, &header[column], name, &known)
+            })?;
+            if unit != Unit::si(target.quantity()) {
+                let map = self.mapping.entry(*target);
+                map.unit = Some(unit);
+                if (&map.name, map.scale, map.offset) == (&None, None, None) {
+                    map.origin = Origin::File;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn note_conversions(&mut self, header: &[String]) {
+        for (target, map) in &self.mapping.columns {
             let Some(&column) = self.columns.get(target) else {
                 continue;
             };
@@ -154,16 +192,19 @@ impl Plan {
             .iter()
             .enumerate()
             .filter(|(column, _)| !self.is_taken(*column));
-        let mut notes = Vec::new();
+        let (mut notes, mut problems) = (Vec::new(), Vec::new());
         for (_, name) in unused {
             let absent = absent.iter().map(String::as_str);
             match closest(name, absent).filter(|_| Target::parse(name).is_none()) {
-                Some(meant) => return Err(misspelt(file, line, name, meant)),
+                Some(meant) => problems.push(misspelt(file, line, name, meant)),
                 None => notes.push(format!("column {} is not used", shown(name))),
             }
         }
         self.notes.extend(notes);
-        Ok(())
+        match problems.is_empty() {
+            true => Ok(()),
+            false => Err(Error::of(problems)),
+        }
     }
 
     fn is_taken(&self, column: usize) -> bool {
@@ -171,11 +212,33 @@ impl Plan {
     }
 }
 
-fn misspelt(file: &str, line: u64, name: &str, meant: &str) -> Error {
+fn foreign_unit(
+    file: &str,
+    line: u64,
+    target: Target,
+    column: &str,
+    unit: &str,
+    known: &str,
+) -> Error {
+    let message = format!(
+        "the file declares `{}`, which is not a unit of {target}",
+        shown(unit)
+    );
+    let remedy = format!("say what the numbers are: --unit {target}=UNIT, one of {known}");
+    Error::at(file, line, &shown(column), message, remedy)
+}
+
+fn misspelt(file: &str, line: u64, name: &str, meant: &str) -> Problem {
     let name = shown(name);
     let remedy =
         format!("did you mean `{meant}`? Rename the column, or add --column {meant}={name}");
-    Error::at(file, line, &name, "is not a known column", remedy)
+    Problem {
+        file: file.to_owned(),
+        line,
+        field: name,
+        message: "is not a known column".to_owned(),
+        remedy,
+    }
 }
 
 /// Column names for a message.

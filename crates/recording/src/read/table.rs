@@ -1,7 +1,8 @@
 //! Load tables from files, and telling them from recordings.
 
-use super::csv_file::{CsvFile, shown};
+use super::header::{Header, shown};
 use super::plan::list;
+use super::table_file::TableFile;
 use crate::error::Error;
 use crate::load_table::{LoadTable, TableColumn, sufficient};
 use crate::mapping::{Mapping, Target};
@@ -17,9 +18,9 @@ pub(super) enum Kind {
 }
 
 /// Tells a load table from a recording.
-pub(super) fn kind(csv: &CsvFile, mapping: &Mapping) -> Result<Kind, Error> {
-    let of_table = csv
-        .header
+pub(super) fn kind(header: &Header, mapping: &Mapping) -> Result<Kind, Error> {
+    let of_table = header
+        .names
         .iter()
         .find(|name| TableColumn::parse(name).is_some());
     let mapped = |name: &String| {
@@ -29,8 +30,8 @@ pub(super) fn kind(csv: &CsvFile, mapping: &Mapping) -> Result<Kind, Error> {
             .any(|map| map.name.as_ref() == Some(name))
     };
     let electrical = |name: &String| matches!(Target::parse(name), Some(Target::Channel(channel)) if channel.is_electrical());
-    let of_recording = csv
-        .header
+    let of_recording = header
+        .names
         .iter()
         .find(|name| electrical(name) || mapped(name));
     match (of_table, of_recording) {
@@ -39,7 +40,7 @@ pub(super) fn kind(csv: &CsvFile, mapping: &Mapping) -> Result<Kind, Error> {
             let message =
                 format!("`{table}` belongs to a load table, `{recording}` to a recording in time");
             let remedy = "put the two into two files";
-            Err(Error::at(&csv.name, csv.header_line, "", message, remedy))
+            Err(header.error("", message, remedy))
         }
         (Some(_), None) => Ok(Kind::LoadTable),
         (None, _) => Ok(Kind::Recording),
@@ -48,13 +49,14 @@ pub(super) fn kind(csv: &CsvFile, mapping: &Mapping) -> Result<Kind, Error> {
 
 /// Reads a load table of which the header has been read.
 pub(super) fn load_table(
-    mut csv: CsvFile,
+    file: &mut dyn TableFile,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<LoadTable, Error> {
-    let (used, notes) = assign(&csv)?;
-    sufficient(&csv.name, used.iter().map(|(column, _)| *column))?;
+    let (used, notes) = assign(file.header())?;
+    let name = file.header().file.clone();
+    sufficient(&name, used.iter().map(|(column, _)| *column))?;
     let mut columns: BTreeMap<TableColumn, Vec<f64>> = BTreeMap::new();
-    csv.for_each_row(progress, |cells| {
+    file.for_each_row(progress, &mut |cells| {
         for (column, k) in &used {
             let x = cells
                 .number(*k, column.name())?
@@ -62,8 +64,8 @@ pub(super) fn load_table(
             if let Some((complaint, remedy)) = column.complaint(x) {
                 let message = format!("{x} {complaint}");
                 return Err(Error::at(
-                    cells.file,
-                    cells.line,
+                    &name,
+                    cells.line(),
                     column.name(),
                     message,
                     remedy,
@@ -73,7 +75,7 @@ pub(super) fn load_table(
         }
         Ok(())
     })?;
-    let mut table = LoadTable::new(&csv.name, columns_or_empty(columns, &used))?;
+    let mut table = LoadTable::new(&name, columns_or_empty(columns, &used))?;
     table.assumptions = notes;
     Ok(table)
 }
@@ -91,32 +93,27 @@ fn columns_or_empty(
 
 type Used = Vec<(TableColumn, usize)>;
 
-fn assign(csv: &CsvFile) -> Result<(Used, Vec<String>), Error> {
-    let (mut used, mut notes) = (Vec::new(), Vec::new());
-    for (k, name) in csv.header.iter().enumerate() {
+fn assign(header: &Header) -> Result<(Used, Vec<String>), Error> {
+    let (mut used, mut notes) = (Vec::new(), header.notes.clone());
+    for (k, name) in header.names.iter().enumerate() {
         match TableColumn::parse(name) {
             Some(column) => used.push((column, k)),
-            None => notes.push(stranger(csv, name)?),
+            None => notes.push(stranger(header, name)?),
         }
     }
     Ok((used, notes))
 }
 
-fn stranger(csv: &CsvFile, name: &str) -> Result<String, Error> {
+fn stranger(header: &Header, name: &str) -> Result<String, Error> {
     let absent = TableColumn::ALL.iter().map(|column| column.name());
-    let absent = absent.filter(|known| !csv.header.iter().any(|name| name == known));
+    let absent = absent.filter(|known| !header.names.iter().any(|name| name == known));
     match closest(name, absent) {
         None => Ok(format!("column {} is not used", shown(name))),
         Some(meant) => {
             let message = "is not a known column of a load table";
-            let remedy = format!("did you mean `{meant}`? The file has {}", list(&csv.header));
-            Err(Error::at(
-                &csv.name,
-                csv.header_line,
-                &shown(name),
-                message,
-                remedy,
-            ))
+            let known = list(&header.names);
+            let remedy = format!("did you mean `{meant}`? The file has {known}");
+            Err(header.error(&shown(name), message, &remedy))
         }
     }
 }

@@ -92,17 +92,17 @@ pub fn files() -> Vec<Case> {
             &["x.csv:3", "longer than 65536"],
         ),
         case("x".repeat(300_000), &["x.csv:1", "longer than 65536"]),
-        unsupported(
+        case(
             b"PAR1\x15\x04\x15".to_vec(),
-            &["Parquet", "export it as .csv"],
+            &["is a Parquet file", "rename it to", "x.parquet"],
         ),
         unsupported(
             b"\x89HDF\r\n\x1A\n".to_vec(),
             &["HDF5", "export it as .csv"],
         ),
-        unsupported(
+        case(
             b"MATLAB 5.0 MAT-file, Platform".to_vec(),
-            &["MAT-file", "export it"],
+            &["is a MAT-file", "rename it to", "x.mat"],
         ),
         unsupported(b"PK\x03\x04".to_vec(), &["zip archive", "export it"]),
     ]

@@ -1,4 +1,6 @@
-//! Writing recordings: CSV or CSV.gz with the sidecar beside it, whole or not at all.
+//! Writing recordings: CSV, CSV.gz or Parquet with the sidecar beside it, whole or not at all.
+
+mod parquet;
 
 use crate::channel::Channel;
 use crate::error::Error;
@@ -11,34 +13,46 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a recording to `path`, `.csv` or `.csv.gz`, and its sidecar beside it.
+/// How the name of a recording ends, and what is written then.
+const FORMATS: [(&str, Writer); 3] = [
+    (".csv", plain),
+    (".csv.gz", packed),
+    (".parquet", parquet::write),
+];
+
+type Writer = fn(&Recording, BufWriter<&File>) -> io::Result<()>;
+
+/// Writes a recording to `path`, `.csv`, `.csv.gz` or `.parquet`, and its sidecar beside it.
 ///
-/// Numbers are the shortest that read back to the same bits, and the gzip header holds neither time
-/// nor name: the same recording gives the same bytes. Each file appears whole or not at all.
+/// Numbers of a CSV file are the shortest that read back to the same bits, and neither time nor name
+/// of a file stands in it: the same recording gives the same bytes. Each file appears whole or not
+/// at all.
 ///
 /// # Errors
 /// Another file name, or a file that cannot be written.
 pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), Error> {
     let name = path.display().to_string();
-    let packed = name.ends_with(".csv.gz");
-    if !packed && !name.ends_with(".csv") {
-        let remedy = "choose a name that ends in .csv or .csv.gz";
+    let Some((_, write)) = FORMATS.iter().find(|(end, _)| name.ends_with(end)) else {
+        let remedy = "choose a name that ends in .csv, .csv.gz or .parquet";
         return Err(Error::bad(&name, "is not the name of a recording", remedy));
-    }
-    whole(path, |file| {
-        if !packed {
-            return table(recording, file).and_then(|mut file| file.flush());
-        }
-        let gzip = GzBuilder::new().mtime(0).write(file, Compression::new(6));
-        table(recording, BufWriter::new(gzip))?
-            .into_inner()?
-            .finish()?
-            .flush()
-    })?;
+    };
+    whole(path, |file| write(recording, file))?;
     let text = sidecar_text(&recording.metadata);
     whole(&sidecar_path(path), |mut file| {
         file.write_all(text.as_bytes())
     })
+}
+
+fn plain(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
+    table(recording, file)?.flush()
+}
+
+fn packed(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
+    let gzip = GzBuilder::new().mtime(0).write(file, Compression::new(6));
+    table(recording, BufWriter::new(gzip))?
+        .into_inner()?
+        .finish()?
+        .flush()
 }
 
 /// Writes beside the file, then renames: a reader never sees half a file.
@@ -68,11 +82,14 @@ fn part_of(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
+/// The channels that are written: all but a third current that a reader computes again.
+fn columns(recording: &Recording) -> Vec<(Channel, &[f64])> {
+    let kept = |(channel, _): &(Channel, _)| !is_implied(recording, *channel);
+    recording.channels().filter(kept).collect()
+}
+
 fn table<W: Write>(recording: &Recording, mut out: W) -> io::Result<W> {
-    let columns: Vec<(Channel, &[f64])> = recording
-        .channels()
-        .filter(|(channel, _)| !is_implied(recording, *channel))
-        .collect();
+    let columns = columns(recording);
     let mut line = String::from("t");
     for (channel, _) in &columns {
         let _ = write!(line, ",{channel}");

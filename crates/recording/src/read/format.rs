@@ -1,0 +1,102 @@
+//! The formats that are read; one entry registers one.
+
+use super::csv_file::CsvFile;
+use super::table_file::TableFile;
+use super::{comtrade, mat, parquet};
+use crate::error::Error;
+use crate::mapping::Mapping;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// A format other than CSV.
+struct Format {
+    /// The words of a message: "is {name}".
+    name: &'static str,
+    /// How its file names end, in lower case.
+    extensions: &'static [&'static str],
+    /// Whether the first bytes of a file are this format's and no other's.
+    is: fn(&[u8]) -> bool,
+    /// Reads a file of this name.
+    open: fn(&Path) -> Result<Box<dyn TableFile>, Error>,
+}
+
+/// Every format but CSV, which is what remains.
+const FORMATS: [Format; 3] = [
+    Format {
+        name: "a Parquet file",
+        extensions: &["parquet"],
+        is: parquet::is,
+        open: parquet::open,
+    },
+    Format {
+        name: "a MAT-file",
+        extensions: &["mat"],
+        is: mat::is,
+        open: mat::open,
+    },
+    Format {
+        name: "a COMTRADE recording",
+        extensions: &["cff", "cfg", "dat"],
+        is: comtrade::is,
+        open: comtrade::open,
+    },
+];
+
+/// Bytes that tell a format.
+const HEAD: u64 = 512;
+
+/// Opens a file of any format and reads its header.
+///
+/// # Errors
+/// A file that is damaged, or of another format than its name says.
+pub(super) fn open(path: &Path, mapping: &Mapping) -> Result<Box<dyn TableFile>, Error> {
+    let head = head(path)?;
+    let extension = extension(path);
+    // A table that is called .dat, and has no .cfg, is a table.
+    let is_table = extension == "dat" && !comtrade::has_configuration(path);
+    let named = |format: &&Format| !is_table && format.extensions.contains(&extension.as_str());
+    let by_name = FORMATS.iter().find(named);
+    let by_content = FORMATS.iter().find(|format| (format.is)(&head));
+    match (by_name, by_content) {
+        (Some(format), _) if head.is_empty() => Err(empty(path, format)),
+        (Some(format), Some(content)) if format.name != content.name => {
+            Err(misnamed(path, content))
+        }
+        (None, Some(content)) => Err(misnamed(path, content)),
+        (Some(format), _) => (format.open)(path),
+        (None, None) => Ok(Box::new(CsvFile::open(path, mapping)?)),
+    }
+}
+
+/// The first bytes; none of a folder or a pipe, whose bytes cannot be read twice.
+fn head(path: &Path) -> Result<Vec<u8>, Error> {
+    let mut head = Vec::new();
+    if path.is_file() {
+        let file = File::open(path).map_err(|error| Error::io(path, &error))?;
+        let read = file.take(HEAD).read_to_end(&mut head);
+        read.map_err(|error| Error::io(path, &error))?;
+    }
+    Ok(head)
+}
+
+fn extension(path: &Path) -> String {
+    let extension = path.extension().unwrap_or_default();
+    extension.to_string_lossy().to_lowercase()
+}
+
+fn empty(path: &Path, format: &Format) -> Error {
+    let message = format!("is empty, not {}", format.name);
+    let remedy = "record or export it again";
+    Error::bad(&path.display().to_string(), message, remedy)
+}
+
+fn misnamed(path: &Path, content: &Format) -> Error {
+    let extension = content.extensions[0];
+    let message = format!(
+        "is {}, but its name does not end in .{extension}",
+        content.name
+    );
+    let remedy = format!("rename it to {}", path.with_extension(extension).display());
+    Error::bad(&path.display().to_string(), message, remedy)
+}

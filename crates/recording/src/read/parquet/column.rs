@@ -1,0 +1,178 @@
+//! One column of a Parquet file as numbers.
+
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+use std::fs::File;
+
+/// How the stored values of a column become numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// As they stand, signed.
+    Number,
+    /// The bits of an unsigned integer.
+    Unsigned,
+    /// An integer with this factor: a decimal.
+    Decimal(f64),
+    /// An instant in units of this many seconds; counts from the first sample, because the instant
+    /// itself would cost a double the microseconds.
+    Instant(f64),
+}
+
+/// Samples that are decoded at once.
+const BATCH: usize = 1 << 14;
+
+impl Kind {
+    /// The kind of a column; `None` for text, lists and whatever else is no number.
+    pub fn of(column: &ColumnDescriptor) -> Option<Kind> {
+        let numeric = matches!(
+            column.physical_type(),
+            Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE
+        );
+        if !numeric || column.max_rep_level() > 0 {
+            return None;
+        }
+        match column.logical_type_ref() {
+            Some(LogicalType::Timestamp(stamp)) => return Some(Kind::Instant(seconds(stamp.unit))),
+            Some(LogicalType::Integer(int)) if !int.is_signed => return Some(Kind::Unsigned),
+            Some(LogicalType::Decimal(decimal)) => return Some(scaled(decimal.scale)),
+            _ => {}
+        }
+        Some(match column.converted_type() {
+            ConvertedType::TIMESTAMP_MILLIS => Kind::Instant(1e-3),
+            ConvertedType::TIMESTAMP_MICROS => Kind::Instant(1e-6),
+            ConvertedType::UINT_8 | ConvertedType::UINT_16 => Kind::Unsigned,
+            ConvertedType::UINT_32 | ConvertedType::UINT_64 => Kind::Unsigned,
+            ConvertedType::DECIMAL => scaled(column.type_scale()),
+            _ => Kind::Number,
+        })
+    }
+
+    #[allow(clippy::cast_precision_loss, clippy::cast_sign_loss)]
+    fn number(self, first: i64, x: i64) -> f64 {
+        match self {
+            Kind::Number => x as f64,
+            Kind::Unsigned => x as u64 as f64,
+            Kind::Decimal(factor) => x as f64 * factor,
+            Kind::Instant(second) => x.wrapping_sub(first) as f64 * second,
+        }
+    }
+}
+
+fn scaled(scale: i32) -> Kind {
+    Kind::Decimal(10f64.powi(scale.saturating_neg()))
+}
+
+fn seconds(unit: TimeUnit) -> f64 {
+    match unit {
+        TimeUnit::MILLIS => 1e-3,
+        TimeUnit::MICROS => 1e-6,
+        TimeUnit::NANOS => 1e-9,
+    }
+}
+
+/// Reads `rows` values of a column; NaN where there is none.
+///
+/// # Errors
+/// A damaged file, or one that holds another number of values than it declares.
+pub(super) fn read(
+    reader: &SerializedFileReader<File>,
+    index: usize,
+    kind: Kind,
+    rows: u64,
+) -> Result<Vec<f64>, ParquetError> {
+    let mut target = Target::new(kind);
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group)?;
+        let column = group.metadata().column(index).column_descr_ptr();
+        target.level = column.max_def_level();
+        target.take(group.get_column_reader(index)?, rows)?;
+    }
+    if target.values.len() as u64 == rows {
+        return Ok(target.values);
+    }
+    let held = target.values.len();
+    Err(ParquetError::General(format!(
+        "column {index} holds {held} values, the file declares {rows}"
+    )))
+}
+
+/// The values that were read so far.
+struct Target {
+    kind: Kind,
+    /// Definition level of a value that is there; 0 when all are.
+    level: i16,
+    first: Option<i64>,
+    values: Vec<f64>,
+}
+
+impl Target {
+    fn new(kind: Kind) -> Target {
+        Target {
+            kind,
+            level: 0,
+            first: None,
+            values: Vec::new(),
+        }
+    }
+
+    fn take(&mut self, reader: ColumnReader, rows: u64) -> Result<(), ParquetError> {
+        match reader {
+            ColumnReader::DoubleColumnReader(reader) => self.batches(reader, rows, |_, x| x),
+            ColumnReader::FloatColumnReader(reader) => {
+                self.batches(reader, rows, |_, x| f64::from(x))
+            }
+            ColumnReader::Int64ColumnReader(reader) => self.batches(reader, rows, Target::integer),
+            ColumnReader::Int32ColumnReader(reader) => {
+                let unsigned = self.kind == Kind::Unsigned;
+                self.batches(reader, rows, move |target, x: i32| {
+                    let wide = i64::from(x);
+                    target.integer(if unsigned { wide & 0xFFFF_FFFF } else { wide })
+                })
+            }
+            _ => Err(ParquetError::General(
+                "another type than declared".to_owned(),
+            )),
+        }
+    }
+
+    fn integer(&mut self, x: i64) -> f64 {
+        let first = *self.first.get_or_insert(x);
+        self.kind.number(first, x)
+    }
+
+    fn batches<T: DataType>(
+        &mut self,
+        mut reader: ColumnReaderImpl<T>,
+        rows: u64,
+        number: impl Fn(&mut Target, T::T) -> f64,
+    ) -> Result<(), ParquetError>
+    where
+        T::T: Copy,
+    {
+        let (mut levels, mut batch) = (Vec::new(), Vec::new());
+        loop {
+            levels.clear();
+            batch.clear();
+            let wanted = (self.level > 0).then_some(&mut levels);
+            let (records, _, _) = reader.read_records(BATCH, wanted, None, &mut batch)?;
+            if records == 0 {
+                return Ok(());
+            }
+            let mut present = batch.iter().copied();
+            for k in 0..records {
+                let there = levels.get(k).is_none_or(|level| *level == self.level);
+                let value = if there { present.next() } else { None };
+                let value = value.map_or(f64::NAN, |x| number(self, x));
+                self.values.push(value);
+            }
+            if self.values.len() as u64 > rows {
+                let message = "a column holds more values than the file declares";
+                return Err(ParquetError::General(message.to_owned()));
+            }
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! A file of named columns, whatever its format.
+
+use super::header::Header;
+use crate::error::Error;
+use crate::source::Progress;
+
+/// A file of which the header has been read.
+pub(super) trait TableFile {
+    /// The names of its columns.
+    fn header(&self) -> &Header;
+
+    /// Calls `row` for every row in the order of the file, and `progress` every few milliseconds.
+    ///
+    /// # Errors
+    /// A damaged row, or what `row` returns.
+    fn for_each_row(
+        &mut self,
+        progress: &mut dyn FnMut(Progress),
+        row: &mut dyn FnMut(&dyn Row) -> Result<(), Error>,
+    ) -> Result<(), Error>;
+}
+
+/// One row of a file.
+pub(super) trait Row {
+    /// Its line in a text file, its number in a binary one, counted from 1.
+    fn line(&self) -> u64;
+
+    /// The finite number in a column; `None` where there is none.
+    ///
+    /// # Errors
+    /// A cell that holds something else.
+    fn number(&self, column: usize, name: &str) -> Result<Option<f64>, Error>;
+
+    /// The error for a cell without a number.
+    fn missing(&self, name: &str) -> Error;
+}
+
+/// Numbers of one file: 1.6 GB in memory. A compression bomb stops here.
+pub(super) const MOST_NUMBERS: u64 = 200_000_000;
+
+/// The error for a file beyond [`MOST_NUMBERS`].
+pub(super) fn too_large(file: &str) -> Error {
+    let message = format!("holds more than {MOST_NUMBERS} numbers");
+    let remedy = "cut the recording; a few seconds with load steps are enough";
+    Error::unsupported(file, message, remedy)
+}
+
+/// The error for a cell without a number.
+pub(super) fn missing(file: &str, line: u64, name: &str) -> Error {
+    let remedy = "fill the cell, remove the row, or let --skip-missing drop such rows";
+    let message = "the cell holds no number (empty or NaN)";
+    Error::at(file, line, name, message, remedy)
+}
+
+/// The error for an infinite number, as the file writes it.
+pub(super) fn not_finite(file: &str, line: u64, name: &str, text: &str, x: f64) -> Error {
+    let remedy = "an overflow of the instrument: remove the row, or use --skip-missing";
+    Error::at(file, line, name, format!("`{text}` is {x}"), remedy)
+}

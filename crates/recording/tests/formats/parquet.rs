@@ -1,0 +1,107 @@
+//! Parquet files of pyarrow, our own, and damaged ones.
+
+use super::{N, assert_notes, assert_refused, assert_signals, bytes, data, read};
+use crate::common::Folder;
+use recording::{Channel, Mapping, Recording, read_any, write_recording};
+
+#[test]
+fn every_compression_but_brotli_is_read() {
+    for codec in ["gzip", "lz4"] {
+        let path = data(&format!("pyarrow-{codec}.parquet"));
+        let recording = read(&path, &Mapping::default()).unwrap();
+        assert_eq!(recording.len(), 20);
+        // The doubles are stored as they are; make.py and this test round cosines apart.
+        assert_signals(&recording, 1e-10, 1e-11);
+    }
+    let name = "pyarrow-brotli.parquet";
+    let words = ["compressed in a way that is not read", "snappy, zstd, gzip"];
+    assert_refused(name, &bytes(name), 3, &words);
+}
+
+#[test]
+fn a_missing_sample_is_a_gap_on_request_only() {
+    let name = "pyarrow-snappy.parquet";
+    let words = [
+        &format!("{name}:8: ic")[..],
+        "holds no number",
+        "--skip-missing",
+    ];
+    assert_refused(name, &bytes(name), 2, &words);
+    let flags = Mapping {
+        skip_missing: Some(true),
+        ..Mapping::default()
+    };
+    let recording = read(&data(name), &flags).unwrap();
+    assert_eq!(recording.len(), N - 1);
+    assert_eq!(recording.speed().unwrap()[60], 150.0);
+    assert_notes(
+        &recording,
+        &["column note is not used: it holds no numbers", "1 rows"],
+    );
+}
+
+#[test]
+fn instants_decimals_and_unsigned_integers_are_numbers() {
+    let mut flags = Mapping::default();
+    flags.set_unit("speed=rpm").unwrap();
+    let recording = read(&data("pyarrow-zstd.parquet"), &flags).unwrap();
+    assert_signals(&recording, 1e-10, 1e-11);
+    assert_eq!(recording.torque().unwrap()[N - 1], 14.625);
+    assert!((recording.speed().unwrap()[0] - 50.0 * std::f64::consts::PI).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_written_reads_back_to_its_bits_and_twice_to_the_same_bytes() {
+    let folder = Folder::new("parquet");
+    let values = vec![0.1, -2.5e-17, 1e300, f64::MIN_POSITIVE / 3.0, -0.0];
+    let t = (0..values.len()).map(|k| k as f64 / 3.0).collect();
+    let written = Recording::new("x", t, recording::Metadata::default())
+        .and_then(|r| r.with_channel(Channel::CURRENTS[0], values.clone()))
+        .and_then(|r| r.with_channel(Channel::SPEED, values.clone()))
+        .unwrap();
+    let bytes = ["x.parquet", "y.parquet"].map(|name| {
+        write_recording(&folder.path(name), &written).unwrap();
+        std::fs::read(folder.path(name)).unwrap()
+    });
+    assert_eq!(bytes[0], bytes[1]);
+    let again = read(&folder.path("x.parquet"), &Mapping::default()).unwrap();
+    assert_eq!(again.t(), written.t());
+    let bits = |r: &Recording| {
+        r.speed()
+            .unwrap()
+            .iter()
+            .map(|x| x.to_bits())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(bits(&again), bits(&written));
+    assert_eq!(again.channels().count(), 2);
+}
+
+#[test]
+fn damaged_files_are_refused() {
+    let whole = bytes("pyarrow-gzip.parquet");
+    let damaged = [
+        "x.parquet: is no Parquet file, or a truncated or damaged one",
+        "again",
+    ];
+    assert_refused("x.parquet", &whole[..whole.len() / 2], 2, &damaged);
+    assert_refused("x.parquet", &whole[..10], 2, &damaged);
+    assert_refused("x.parquet", b"PAR1", 2, &damaged);
+    assert_refused("x.parquet", b"t,ia\n0,1\n1,2\n", 2, &damaged);
+    let mut zeroed = whole.clone();
+    zeroed[60..160].fill(0);
+    assert_refused("x.parquet", &zeroed, 2, &damaged);
+}
+
+/// Whatever single byte is wrong: an error or a recording, never a panic.
+#[test]
+fn no_wrong_byte_panics() {
+    let folder = Folder::new("parquet-bytes");
+    let whole = bytes("pyarrow-gzip.parquet");
+    for at in (0..whole.len()).step_by(7) {
+        let mut wrong = whole.clone();
+        wrong[at] ^= 1 << (at % 8);
+        let path = folder.file("x.parquet", &wrong);
+        let _ = read_any(&path, &Mapping::default(), &mut crate::common::quiet());
+    }
+}
