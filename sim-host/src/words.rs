@@ -19,6 +19,26 @@ pub fn not_judged(reason: NotJudged) -> String {
     }
 }
 
+/// The reason that a board's frame gives by its number; `None` for a judged window.
+pub fn reason(number: u8) -> Option<String> {
+    let words = match number {
+        0 => return None,
+        1 => not_judged(NotJudged::NotLocked),
+        2 => not_judged(NotJudged::Settling),
+        3 => not_judged(NotJudged::Clipped),
+        4 => not_judged(NotJudged::Invalid),
+        5 => not_judged(NotJudged::NoVoltages),
+        6 => not_judged(NotJudged::NoCurrents),
+        7 => not_judged(NotJudged::NoSpeed),
+        8 => "the supply is missing or turns the wrong way".to_owned(),
+        9 => "a sensor is dead or contradicts the others".to_owned(),
+        10 => not_judged(NotJudged::Transient),
+        11 => not_judged(NotJudged::NoLoadCurrent),
+        _ => "a reason that this version does not know".to_owned(),
+    };
+    Some(words)
+}
+
 /// A finding about the supply.
 pub fn supply(finding: SupplyFinding) -> &'static str {
     match finding {

@@ -13,6 +13,7 @@ mod live;
 mod monitor;
 mod output;
 mod paint;
+mod panel;
 mod places;
 mod progress;
 mod simulate;
@@ -48,6 +49,7 @@ First steps:
   drivemon explain rec.csv.gz --motor motor.toml       which physical effect it misses
   drivemon adopt EFFECT rec.csv.gz --motor motor.toml -o better.toml
   drivemon calibrate healthy.csv.gz --motor motor.toml -o calibrated.toml
+  drivemon panel                                       the lamps in a browser, on a simulated motor
   drivemon flash --motor motor.toml                    build the firmware for this motor and write it to the board
 
 Exit codes: 0 fine or healthy, 1 a finding (a fault was lit), 2 bad input or usage, 3 the data do not support an answer.
@@ -64,6 +66,7 @@ enum Command {
     Adopt(adopt::Adopt),
     Campaign(campaign::Campaign),
     Calibrate(calibrate::Calibrate),
+    Panel(panel::Panel),
     Flash(flash::Flash),
 }
 
@@ -79,6 +82,7 @@ impl Cli {
             Command::Adopt(adopt) => adopt.run(),
             Command::Campaign(campaign) => campaign.run(),
             Command::Calibrate(calibrate) => calibrate.run(),
+            Command::Panel(panel) => panel.run(),
             Command::Flash(flash) => flash.run(),
         };
         match outcome {

@@ -29,7 +29,7 @@ pub enum SourceError {
 }
 
 /// Bytes as they come.
-pub trait Source {
+pub trait Source: Send {
     /// The bytes of the next tenth of a second; none when nothing came.
     ///
     /// # Errors

@@ -74,7 +74,8 @@ impl<'r> Samples<'r> {
         (0..self.len()).map(|k| self.at(k))
     }
 
-    fn at(&self, k: usize) -> Timed {
+    /// Sample `k`, below [`Samples::len`].
+    pub(crate) fn at(&self, k: usize) -> Timed {
         let t = self.recording.t();
         let step = if k == 0 { 0.0 } else { t[k] - t[k - 1] };
         Timed {

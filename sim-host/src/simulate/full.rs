@@ -92,6 +92,10 @@ impl<H: Hooks> Full<H> {
         }
     }
 
+    pub(super) fn forget_faults(&mut self) {
+        self.presence.forget();
+    }
+
     pub(super) fn truth(&self, t: f64) -> Truth {
         let supply = self.waveform.at(t);
         let omega_mech = self.state.omega_mech;

@@ -52,6 +52,10 @@ impl Linear {
         }
     }
 
+    pub(super) fn forget_faults(&mut self) {
+        self.presence.forget();
+    }
+
     pub(super) fn truth(&self, t: f64) -> Truth {
         let d_axis = self.waveform.d_axis(t);
         let turn = Complex64::from_polar(1.0, d_axis);

@@ -15,13 +15,15 @@ mod asymmetry_tests;
 #[cfg(test)]
 mod instrument_tests;
 #[cfg(test)]
+mod switching_tests;
+#[cfg(test)]
 mod tests;
 
 pub(crate) use effects::check_entry;
 pub use record::{RecordError, record};
 pub use side_by_side::{DataPair, SideBySide};
 
-use crate::scenario::Scenario;
+use crate::scenario::{Fault, Scenario};
 use motor::motor_file::Frame;
 use motor::steady_state::{DqPoint, NoOperatingPoint};
 use num_complex::Complex64;
@@ -166,6 +168,38 @@ impl Simulation {
             samples: scenario.samples(),
             scenario: scenario.clone(),
         })
+    }
+
+    /// An experiment without an end, whose faults can be switched while it runs. After `duration_s` supply and load go
+    /// on as they then are.
+    ///
+    /// # Errors
+    /// As of [`Simulation::new`].
+    pub fn endless(scenario: &Scenario) -> Result<Simulation, SimulationError> {
+        let mut simulation = Simulation::new(scenario)?;
+        simulation.plant = Plant::switchable(scenario)?;
+        simulation.samples = u64::MAX;
+        Ok(simulation)
+    }
+
+    /// Replaces the faults, from the next sample on; the motor keeps its state. Only in an [`Simulation::endless`] one
+    /// are all kinds of fault possible.
+    ///
+    /// # Errors
+    /// A fault of a size that cannot be simulated; the faults before it then stay.
+    pub fn switch_faults(&mut self, faults: Vec<Fault>) -> Result<(), SimulationError> {
+        let before = std::mem::replace(&mut self.scenario.faults, faults);
+        if let Err(error) = effects::of_faults(&self.scenario) {
+            self.scenario.faults = before;
+            return Err(error);
+        }
+        self.plant.forget_faults();
+        Ok(())
+    }
+
+    /// Time of the next sample, s.
+    pub fn now(&self) -> f64 {
+        self.time(self.next)
     }
 
     /// The experiment that is running.

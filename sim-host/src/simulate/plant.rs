@@ -45,6 +45,25 @@ impl Plant {
         Ok(Plant::Effects(Box::new(Full::new(scenario, make)?)))
     }
 
+    /// A motor that may get any fault while it runs: its equations always have room for effects.
+    pub(super) fn switchable(scenario: &Scenario) -> Result<Plant, SimulationError> {
+        if scenario.plant == PlantKind::Linear {
+            return Plant::new(scenario);
+        }
+        effects::of_faults(scenario)?;
+        let make = effects::factory(scenario, effects::inside(scenario)?);
+        Ok(Plant::Effects(Box::new(Full::new(scenario, make)?)))
+    }
+
+    /// The list of faults is another one: whatever was in force is put in force anew.
+    pub(super) fn forget_faults(&mut self) {
+        match self {
+            Plant::Plain(full) => full.forget_faults(),
+            Plant::Effects(full) => full.forget_faults(),
+            Plant::Linear(linear) => linear.forget_faults(),
+        }
+    }
+
     /// Puts the faults that are present at `t` in force.
     pub(super) fn switch_faults(&mut self, faults: &[Fault], t: f64) {
         match self {
@@ -75,16 +94,25 @@ impl Plant {
 
 /// Which faults are present, remembered so that the motor is rebuilt only when that changes.
 #[derive(Debug, Default)]
-pub(super) struct Presence(Vec<bool>);
+pub(super) struct Presence(Option<Vec<bool>>);
 
 impl Presence {
     /// The faults in force at `t`, when they are others than the last time.
     pub(super) fn changed_at<'f>(&mut self, faults: &'f [Fault], t: f64) -> Option<Vec<&'f Fault>> {
         let now = faults.iter().map(|fault| fault.is_active(t));
-        if now.clone().eq(self.0.iter().copied()) {
+        if self
+            .0
+            .iter()
+            .any(|before| now.clone().eq(before.iter().copied()))
+        {
             return None;
         }
-        self.0 = now.collect();
+        self.0 = Some(now.collect());
         Some(faults.iter().filter(|fault| fault.is_active(t)).collect())
+    }
+
+    /// As if nothing had ever been present.
+    pub(super) fn forget(&mut self) {
+        self.0 = None;
     }
 }

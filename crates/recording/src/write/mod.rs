@@ -14,11 +14,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// How the name of a recording ends, and what is written then.
-const FORMATS: [(&str, Writer); 3] = [
-    (".csv", plain),
-    (".csv.gz", packed),
-    (".parquet", parquet::write),
-];
+const FORMATS: [(&str, Writer); 3] = [(".csv", plain), (".csv.gz", packed), (".parquet", columnar)];
 
 type Writer = fn(&Recording, BufWriter<&File>) -> io::Result<()>;
 
@@ -44,7 +40,11 @@ pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), Error> 
 }
 
 fn plain(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
-    table(recording, file)?.flush()
+    write_csv(recording, file)
+}
+
+fn columnar(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
+    write_parquet(recording, file)
 }
 
 fn packed(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
@@ -53,6 +53,22 @@ fn packed(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
         .into_inner()?
         .finish()?
         .flush()
+}
+
+/// Writes the samples of a recording as CSV text, header first; the same bytes as [`write_recording`] puts into a file.
+///
+/// # Errors
+/// Whatever `out` refuses.
+pub fn write_csv<W: Write>(recording: &Recording, out: W) -> io::Result<()> {
+    table(recording, out).and_then(|mut out| out.flush())
+}
+
+/// Writes a recording as Parquet; the same bytes as [`write_recording`] puts into a file.
+///
+/// # Errors
+/// Whatever `out` refuses.
+pub fn write_parquet<W: Write + Send>(recording: &Recording, out: W) -> io::Result<()> {
+    parquet::write(recording, out)
 }
 
 /// Writes beside the file, then renames: a reader never sees half a file.

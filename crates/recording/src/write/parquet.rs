@@ -8,16 +8,15 @@ use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
-use std::fs::File;
-use std::io::{self, BufWriter};
+use std::io::{self, Write};
 use std::sync::Arc;
 
 /// Writes the clock and every measured channel, bit by bit.
-pub(super) fn write(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
-    write_columns(recording, file).map_err(io::Error::other)
+pub(super) fn write<W: Write + Send>(recording: &Recording, out: W) -> io::Result<()> {
+    write_columns(recording, out).map_err(io::Error::other)
 }
 
-fn write_columns(recording: &Recording, file: BufWriter<&File>) -> Result<(), ParquetError> {
+fn write_columns<W: Write + Send>(recording: &Recording, out: W) -> Result<(), ParquetError> {
     let channels = columns(recording);
     let clock = ("t".to_owned(), recording.t());
     let named = channels
@@ -29,10 +28,7 @@ fn write_columns(recording: &Recording, file: BufWriter<&File>) -> Result<(), Pa
         .set_dictionary_enabled(false)
         .set_created_by("drive-monitor".to_owned())
         .build();
-    let file = file
-        .into_inner()
-        .map_err(|error| ParquetError::General(error.to_string()))?;
-    let mut writer = SerializedFileWriter::new(file, schema(&all)?, Arc::new(properties))?;
+    let mut writer = SerializedFileWriter::new(out, schema(&all)?, Arc::new(properties))?;
     let mut group = writer.next_row_group()?;
     for (_, values) in &all {
         if let Some(mut column) = group.next_column()? {
@@ -43,7 +39,7 @@ fn write_columns(recording: &Recording, file: BufWriter<&File>) -> Result<(), Pa
         }
     }
     group.close()?;
-    writer.close()?;
+    writer.into_inner()?.flush()?;
     Ok(())
 }
 
