@@ -6,6 +6,7 @@
 
 mod audit;
 mod channel;
+mod contained;
 mod error;
 mod load_table;
 mod mapping;

@@ -93,6 +93,21 @@ fn damaged_files_are_refused() {
     assert_refused("x.parquet", &zeroed, 2, &damaged);
 }
 
+/// The library panics on the first, and on what `fuzz/findings/parquet` holds.
+#[test]
+fn lengths_that_lie_are_a_damaged_file() {
+    let whole = bytes("pyarrow-gzip.parquet");
+    let words = [
+        "x.parquet: is no Parquet file, or a truncated or damaged one",
+        "copy or export",
+    ];
+    let finding = data("../../../../fuzz/findings/parquet/byte-stream-split");
+    assert_refused("x.parquet", &std::fs::read(finding).unwrap(), 2, &words);
+    // The footer stays, 40 bytes of the data go: the last column stands beyond the file.
+    let shorter = [&whole[..100], &whole[140..]].concat();
+    assert_refused("x.parquet", &shorter, 2, &words);
+}
+
 /// Whatever single byte is wrong: an error or a recording, never a panic.
 #[test]
 fn no_wrong_byte_panics() {

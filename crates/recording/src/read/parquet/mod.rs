@@ -1,10 +1,12 @@
 //! Parquet files: flat columns of numbers, in every encoding and compression of the format but brotli.
 
 mod column;
+mod extent;
 
 use super::columns::{Columns, check_size};
 use super::header::{Header, shown};
 use super::table_file::TableFile;
+use crate::contained::contained;
 use crate::error::Error;
 use column::Kind;
 use parquet::errors::ParquetError;
@@ -20,19 +22,27 @@ pub(super) fn is(head: &[u8]) -> bool {
 /// Reads the columns of numbers; other columns are named in the notes.
 pub(super) fn open(path: &Path) -> Result<Box<dyn TableFile>, Error> {
     let name = path.display().to_string();
+    contained(|| read(path, &name)).unwrap_or_else(|| {
+        let error = "a page does not hold what it declares".to_owned();
+        Err(damaged(&name, &ParquetError::General(error)))
+    })
+}
+
+fn read(path: &Path, name: &str) -> Result<Box<dyn TableFile>, Error> {
     let file = File::open(path).map_err(|error| Error::io(path, &error))?;
     let bytes = file.metadata().map_or(0, |metadata| metadata.len());
-    let reader = SerializedFileReader::new(file).map_err(|error| damaged(&name, &error))?;
-    let (used, header) = header(&name, &reader)?;
+    let reader = SerializedFileReader::new(file).map_err(|error| damaged(name, &error))?;
+    let (used, header) = header(name, &reader)?;
     let rows = reader.metadata().file_metadata().num_rows();
     let rows = u64::try_from(rows).map_err(|_| {
         let error = ParquetError::General(format!("it declares {rows} rows"));
-        damaged(&name, &error)
+        damaged(name, &error)
     })?;
-    check_size(&name, rows, used.len())?;
+    check_size(name, rows, used.len())?;
+    extent::check(&reader, bytes).map_err(|error| damaged(name, &error))?;
     let columns = used.iter().map(|(index, kind)| {
         let column = column::read(&reader, *index, *kind, rows);
-        column.map_err(|error| damaged(&name, &error))
+        column.map_err(|error| damaged(name, &error))
     });
     let columns = columns.collect::<Result<_, _>>()?;
     Ok(Box::new(Columns::new(header, columns, bytes)?))

@@ -1,0 +1,11 @@
+//! The targets: bytes in, a panic when something that must hold does not.
+
+mod configuration;
+mod recordings;
+mod samples;
+mod wire;
+
+pub(crate) use configuration::{campaign, motor_file, scenario, sidecar};
+pub(crate) use recordings::{comtrade, csv, csv_gz, mat, parquet};
+pub(crate) use samples::monitor;
+pub(crate) use wire::{modbus, telemetry};
