@@ -12,6 +12,8 @@ mod supply;
 #[cfg(test)]
 mod malformed;
 #[cfg(test)]
+mod malformed_cases;
+#[cfg(test)]
 pub(crate) mod tests;
 
 pub use faults::{Asymmetry, Change, DqSignal, Fault, Parameter, Probe, Target};

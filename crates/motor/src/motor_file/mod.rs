@@ -13,6 +13,8 @@ mod write;
 #[cfg(test)]
 mod malformed;
 #[cfg(test)]
+mod malformed_cases;
+#[cfg(test)]
 mod tests;
 
 pub use effects::{EffectEntry, EffectParameter, EffectValue};

@@ -1,24 +1,6 @@
 use super::*;
 
-pub(super) const SMALLEST: &str = r#"name = "2.2 kW laboratory motor"
-[nameplate]
-pole_pairs = 2
-power_watt = 2200.0
-voltage_line_rms_volt = 400.0
-current_rms_amp = 5.0
-frequency_hz = 50.0
-torque_nm = 14.6
-connection = "star"
-[parameters]
-stator_resistance_ohm = 3.7
-rotor_resistance_ohm = 2.297
-stator_leakage_henry = 0.010735
-rotor_leakage_henry = 0.010735
-magnetizing_inductance_henry = 0.23426
-inertia_kg_m2 = 0.015
-friction_nm_s = 0.0
-load_friction_nm_s = 0.0
-"#;
+pub(super) const SMALLEST: &str = include_str!("smallest.toml");
 
 const FULL: &str = r#"
 speed_rpm = 1440

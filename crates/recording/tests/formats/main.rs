@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod comtrade;
+mod comtrade_cases;
 mod comtrade_damaged;
 mod mat;
 mod parquet;

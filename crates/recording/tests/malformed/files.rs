@@ -1,6 +1,6 @@
 //! Malformed recordings: the file as a whole, its header, its rows.
 
-use crate::common::gzip;
+use crate::recording_common::gzip;
 use crate::{Case, case, named, unsupported};
 
 fn long_table() -> String {

@@ -6,6 +6,7 @@ mod common;
 mod files;
 mod sidecars;
 
+use common as recording_common;
 use common::{Folder, quiet};
 use files::{files, headers, rows};
 use recording::{Error, Mapping, Source, read_any};

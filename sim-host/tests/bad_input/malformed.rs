@@ -1,19 +1,21 @@
 //! Malformed motor files and recordings: each is refused with exit code 2 or 3, its place and the remedy.
 
-mod common;
-
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Output;
 
-use common::{PROJECT, drivemon, scratch, stderr, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, text};
 
 /// One malformed input: what it is, the file, and words that its error must contain.
-struct Malformed {
-    what: &'static str,
-    file: &'static str,
-    content: Vec<u8>,
-    words: &'static [&'static str],
+pub struct Malformed {
+    /// What it is.
+    pub what: &'static str,
+    /// Its name.
+    pub file: &'static str,
+    /// Its bytes.
+    pub content: Vec<u8>,
+    /// Words of its error.
+    pub words: &'static [&'static str],
 }
 
 fn malformed(
@@ -30,7 +32,7 @@ fn malformed(
     }
 }
 
-const GOOD_MOTOR: &str = include_str!("../../motors/peer-2k2.toml");
+const GOOD_MOTOR: &str = include_str!("../../../motors/peer-2k2.toml");
 
 /// The good motor file with one line exchanged.
 fn motor_with(key: &str, line: &str) -> String {
@@ -49,7 +51,8 @@ fn motor_with(key: &str, line: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-fn bad_motors() -> Vec<Malformed> {
+/// Motor files.
+pub fn bad_motors() -> Vec<Malformed> {
     let number = |key, line: &str, words| malformed(key, "m.toml", motor_with(key, line), words);
     vec![
         malformed("empty", "m.toml", "", &["m.toml"]),
@@ -149,7 +152,8 @@ fn truncated_gz() -> Vec<u8> {
     whole[..whole.len() / 2].to_vec()
 }
 
-fn bad_recordings() -> Vec<Malformed> {
+/// Recordings.
+pub fn bad_recordings() -> Vec<Malformed> {
     let csv = |what, content: String, words| malformed(what, "r.csv", content, words);
     vec![
         csv("empty", String::new(), &["r.csv", "empty"]),
