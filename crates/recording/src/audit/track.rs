@@ -50,7 +50,8 @@ impl Tracked<'_> {
                 }
                 None => {
                     known = None;
-                    at += self.step_when_lost();
+                    // A step in time can be more samples than there are numbers for.
+                    at = at.saturating_add(self.step_when_lost());
                 }
             }
         }
