@@ -1,7 +1,7 @@
 // Charts that follow the source: drag to zoom, double-click or "Follow" to go on, cursor read-out, keyboard, PNG.
 
 import { make, show } from "./dom.js";
-import { shown } from "./format.js";
+import { fixed, shown } from "./format.js";
 
 /**
  * @typedef {object} Line
@@ -65,6 +65,16 @@ export function airy(least, most, zero) {
   return [middle - half, middle + half];
 }
 
+/**
+ * Digits behind the point that ticks of this distance need.
+ * @param {number} step
+ */
+export function decimals(step) {
+  let digits = 0;
+  while (digits < 6 && Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits)) > 1e-6) digits += 1;
+  return digits;
+}
+
 /** One chart in a box. */
 export class Chart {
   /**
@@ -95,8 +105,10 @@ export class Chart {
   }
 
   fit() {
-    const { width } = this.size();
-    if (width !== this.plot.width) this.plot.setSize(this.size());
+    const size = this.size();
+    // Another height means another size of text.
+    if (size.height !== this.plot.height) this.rebuild();
+    else if (size.width !== this.plot.width) this.plot.setSize(size);
   }
 
   rebuild() {
@@ -108,13 +120,16 @@ export class Chart {
     const { spec } = this;
     const font = `${0.8 * rem()}px system-ui, sans-serif`;
     const axis = { stroke: colour("ink-2"), font, labelFont: font, labelGap: 2, grid: { stroke: colour("rule"), width: 1 }, ticks: { stroke: colour("rule"), width: 1, size: 4 } };
-    const ticks = (/** @type {uPlot} */ _, /** @type {number[]} */ values) => values.map((value) => shown(value));
+    /** @type {uPlot.Axis.DynamicValues} */
+    const ticks = (_, values, _axis, _space, step) => values.map((value) => (value == null ? "" : fixed(value, decimals(step))));
+    /** @type {uPlot.Axis.DynamicValues} */
+    const powers = (_, values) => values.map((value) => (POWERS.includes(value) ? fixed(value, 0) : ""));
     /** @type {uPlot.Options} */
     const options = {
       ...this.size(),
       scales: { x: { time: false, auto: false }, y: this.scale() },
       series: [{ label: spec.x, value: (_, value) => shown(value, 5) }, ...this.lines()],
-      axes: [{ ...axis, size: 1.9 * rem(), values: ticks }, { ...axis, label: spec.unit, labelSize: 1.5 * rem(), size: 3.4 * rem(), values: ticks, ...(spec.asinh ? { splits: (u) => POWERS.filter((power) => power >= (u.scales.y.min ?? 0) && power <= (u.scales.y.max ?? 0)) } : {}) }],
+      axes: [{ ...axis, size: 1.9 * rem(), space: 4.8 * rem(), values: ticks }, { ...axis, label: spec.unit, labelSize: 1.5 * rem(), size: 3.4 * rem(), values: spec.asinh ? powers : ticks, ...(spec.asinh ? { filter: (_, values) => values, splits: (u) => POWERS.filter((power) => power >= (u.scales.y.min ?? 0) && power <= (u.scales.y.max ?? 0)) } : {}) }],
       bands: spec.limit ? [{ series: [spec.lines.length + 1, spec.lines.length + 2], fill: colour("inside") }] : [],
       cursor: { drag: { x: true, y: false }, sync: { key: spec.x } },
       legend: { live: true },
@@ -138,7 +153,7 @@ export class Chart {
   lines() {
     const { spec } = this;
     /** @type {uPlot.Series[]} */
-    const lines = spec.lines.map((line) => ({ label: line.label, stroke: colour(line.color), width: 2, dash: line.dash, points: { show: false }, value: (_, value) => shown(value) }));
+    const lines = spec.lines.map((line) => ({ label: line.label, stroke: colour(line.color), width: rem() / 8, dash: line.dash, points: { show: false }, value: (_, value) => shown(value) }));
     if (!spec.limit) return lines;
     const limit = { stroke: colour("limit"), dash: [6, 4], width: 1.25, points: { show: false }, value: (/** @type {uPlot} */ _, /** @type {number} */ value) => shown(value) };
     return [...lines, { ...limit, label: "threshold" }, { ...limit, label: "− threshold", class: "silent" }];
@@ -171,6 +186,8 @@ export class Chart {
       this.plot.setData(this.table(), false);
       if (!this.held) this.range(this.plot);
     });
+    // Away from the chart the legend reads out the newest value.
+    if ((this.plot.cursor.left ?? -1) < 0) this.plot.setLegend({ idx: data[0].length - 1 }, false);
   }
 
   hold() {

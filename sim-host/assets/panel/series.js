@@ -12,13 +12,14 @@ export class Series {
   constructor(keys, capacity) {
     this.keys = keys;
     this.capacity = capacity;
-    this.clear();
-  }
-
-  clear() {
     /** @type {number[]} */
     this.t = [];
     /** @type {(number | null)[][]} */
+    this.columns = keys.map(() => []);
+  }
+
+  clear() {
+    this.t = [];
     this.columns = this.keys.map(() => []);
   }
 

@@ -71,7 +71,7 @@ export class VectorDiagram {
     this.svg = shape("svg", { viewBox: "-112 -112 224 224", role: "img", "aria-label": "vector diagram", class: "vectors" });
     for (const r of [REACH, REACH / 2]) this.svg.append(shape("circle", { r, class: "ring" }));
     this.svg.append(shape("line", { x1: -100, x2: 100, class: "axis" }), shape("line", { y1: -100, y2: 100, class: "axis" }));
-    this.svg.append(shape("text", { x: 103, y: 4, class: "axis-name" }, "d"), shape("text", { x: -3, y: -103, class: "axis-name" }, "q"));
+    this.svg.append(shape("text", { x: 103, y: 14, class: "axis-name" }, "d"), shape("text", { x: -14, y: -100, class: "axis-name" }, "q"));
     /** @type {Map<string, {line: Element, head: Element, label: Element, number: HTMLElement}>} */
     this.parts = new Map();
     this.numbers = document.createElement("dl");

@@ -121,8 +121,8 @@ async fn parameters(State(session): State<Arc<Session>>, body: Body<Typed>) -> R
         let motor = motor
             .ok_or_else(|| Refusal::of("there is no motor file: start the panel with --motor M"))?;
         let motor = with_typed(&motor, &typed).map_err(|problems| Refusal {
-            message: "the motor file's reader refuses this".into(),
             problems,
+            ..Refusal::of("the motor file's reader refuses this")
         })?;
         Ok(Request::Motor(Box::new(motor)))
     });
@@ -134,8 +134,10 @@ async fn acknowledge(State(session): State<Arc<Session>>) -> Response {
 }
 
 fn body_of<T>(body: Body<T>) -> Result<T, Refusal> {
-    body.map(|Json(body)| body)
-        .map_err(|error| Refusal::of(error.body_text()))
+    body.map(|Json(body)| body).map_err(|error| Refusal {
+        status: error.status().as_u16(),
+        ..Refusal::of(error.body_text())
+    })
 }
 
 async fn ask(session: &Session, request: Result<Request, Refusal>) -> Response {
@@ -145,6 +147,10 @@ async fn ask(session: &Session, request: Result<Request, Refusal>) -> Response {
     };
     match done {
         Ok(()) => StatusCode::NO_CONTENT.into_response(),
-        Err(refusal) => (StatusCode::UNPROCESSABLE_ENTITY, Json(refusal)).into_response(),
+        Err(refusal) => {
+            let status = StatusCode::from_u16(refusal.status);
+            let status = status.unwrap_or(StatusCode::UNPROCESSABLE_ENTITY);
+            (status, Json(refusal)).into_response()
+        }
     }
 }

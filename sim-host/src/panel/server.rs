@@ -5,8 +5,10 @@ use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 
 use axum::extract::DefaultBodyLimit;
+use axum::serve::ListenerExt;
 use axum::{Router, middleware};
-use tokio::net::TcpListener;
+use socket2::SockRef;
+use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 
 use super::guard::{Guard, check};
@@ -15,6 +17,16 @@ use super::{api, assets, workbench};
 
 /// A request of the live page is far smaller; the workbench sets its own limit for recordings.
 const MOST_BODY_BYTES: usize = 64 * 1024;
+
+/// What the system may hold back for one page, bytes: a second of windows. With more, a page that cannot follow would
+/// show what is long past instead of losing it.
+const SEND_BUFFER_BYTES: usize = 64 * 1024;
+
+/// Windows go out at once. A system that knows neither option serves all the same.
+fn prepare(stream: &mut TcpStream) {
+    let _ = stream.set_nodelay(true);
+    let _ = SockRef::from(&*stream).set_send_buffer_size(SEND_BUFFER_BYTES);
+}
 
 /// Where to listen and who may come.
 #[derive(Clone, Debug)]
@@ -108,7 +120,7 @@ impl Running {
     /// The listener broke down.
     pub async fn serve(self, mut end: watch::Receiver<bool>) -> Result<(), PanelError> {
         tokio::select! {
-            served = axum::serve(self.listener, self.router).into_future() => served.map_err(PanelError::Ended),
+            served = axum::serve(self.listener.tap_io(prepare), self.router).into_future() => served.map_err(PanelError::Ended),
             _ = end.wait_for(|end| *end) => Ok(()),
         }
     }

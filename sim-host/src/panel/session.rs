@@ -43,9 +43,15 @@ pub enum Request {
     Acknowledge,
 }
 
+/// Understood, and not possible.
+const UNPROCESSABLE: u16 = 422;
+
 /// Why a request was refused.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Refusal {
+    /// Status of the answer.
+    #[serde(skip)]
+    pub status: u16,
     /// In words for the person at the page.
     pub message: String,
     /// Which fields of the page are to blame.
@@ -197,6 +203,7 @@ impl Refusal {
     /// Without a field to blame.
     pub fn of(message: impl Into<String>) -> Refusal {
         Refusal {
+            status: UNPROCESSABLE,
             message: message.into(),
             problems: Vec::new(),
         }

@@ -1,0 +1,50 @@
+//! The page in a real browser, as a person uses it. Skipped with a word where no Chromium is installed.
+//!
+//! `UPDATE_SCREENSHOTS=1 cargo test -p sim-host --test panel browser` writes the pictures of docs/images anew.
+
+mod driver;
+mod measure;
+mod page;
+mod shots;
+mod stories;
+
+use driver::Driver;
+use page::Page;
+
+/// Runs a visit with one browser.
+fn visit<F: Future<Output = ()>>(story: impl FnOnce(Page) -> F) {
+    let Some(driver) = Driver::start() else {
+        eprintln!("skipped: chromium and chromedriver are not installed, the page was not opened");
+        return;
+    };
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .expect("a runtime");
+    runtime.block_on(async {
+        let page = Page::open(&driver).await;
+        story(page.clone()).await;
+        page.close().await;
+    });
+}
+
+#[test]
+fn a_person_uses_the_panel() {
+    visit(|page| async move {
+        stories::faults_light_their_lamps_and_go_dark(&page).await;
+        stories::parameters_are_checked_at_their_field(&page).await;
+        stories::the_keyboard_and_a_screen_reader_suffice(&page).await;
+        stories::the_page_comes_back_after_a_restart(&page).await;
+        stories::a_measured_recording_is_played(&page).await;
+        if std::env::var_os("UPDATE_SCREENSHOTS").is_some() {
+            shots::all(&page).await;
+        }
+        page.assert_silent().await;
+    });
+}
+
+#[test]
+#[ignore = "prints measurements: cargo test --release -p sim-host --test panel -- --ignored --nocapture"]
+fn measure_page_and_server() {
+    visit(|page| async move { measure::rates(&page).await });
+}

@@ -1,0 +1,163 @@
+//! How a panel begins and ends, and what its interface says.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::http::{get, post};
+use crate::server::{Server, refused};
+
+/// Waits for something that the source's thread brings about.
+pub fn until(what: &str, mut holds: impl FnMut() -> bool) {
+    let begin = Instant::now();
+    while !holds() {
+        assert!(
+            begin.elapsed() < Duration::from_secs(30),
+            "{what} did not happen"
+        );
+        sleep(Duration::from_millis(50));
+    }
+}
+
+#[test]
+fn bad_input_ends_with_the_usual_words() {
+    for (arguments, word) in [
+        (vec!["--motor", "motors/none.toml"], "motors/none.toml"),
+        (vec!["--sim", "motors/peer-2k2.toml"], "motor"),
+        (vec!["--replay", "none.csv"], "none.csv"),
+        (
+            vec!["--replay", "tests/data/imc_18k5_load_test/load_test.csv"],
+            "drivemon monitor",
+        ),
+        (vec!["--serial", "/dev/no-such-port"], "/dev/no-such-port"),
+        (vec!["--speed", "0"], "0.01"),
+        (vec!["--sim", "a", "--replay", "b"], "cannot be used with"),
+    ] {
+        let (code, said) = refused(&[&["--port", "0"], arguments.as_slice()].concat());
+        assert_eq!(code, Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(word), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn a_port_in_use_is_named_and_ctrl_c_ends_it() {
+    let server = Server::start(&[]);
+    let (code, said) = refused(&["--port", server.port()]);
+    assert_eq!(code, Some(2));
+    assert!(
+        said.contains(&server.address) && said.contains("--port 0"),
+        "{said}"
+    );
+    // A page that listens must not keep it alive.
+    let _page = std::net::TcpStream::connect(&server.address).expect("it listens");
+    assert_eq!(server.interrupt(), Some(0));
+}
+
+#[test]
+fn an_alarm_leaves_a_recording_that_compare_reads() {
+    let server = Server::start(&["--speed", "4"]);
+    let address = server.address.as_str();
+    let second = || {
+        get(address, "/api/history")
+            .json()
+            .as_array()
+            .is_some_and(|rows| rows.len() > 80)
+    };
+    until("more than a second", second);
+    let faults = "{\"faults\": [{\"name\": \"Rs\", \"change_percent\": 50}]}";
+    assert_eq!(post(address, "/api/faults", faults).status, 204);
+    let event = || get(address, "/api/events").json()[0].clone();
+    until("the recording of the alarm", || {
+        event()["samples"].as_u64() > Some(0)
+    });
+    let event = event();
+    assert_eq!(event["lit"], serde_json::json!(["r1", "r4", "fault"]));
+    assert_eq!(event["causes"][0]["name"], "Rs");
+    assert_eq!(event["causes"][0]["tie"], event["causes"][1]["tie"]);
+    let folder = std::env::temp_dir().join(format!("drivemon-panel-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for format in ["csv", "parquet", "toml"] {
+        let answer = get(address, &format!("/api/events/0/recording.{format}"));
+        assert_eq!(answer.status, 200);
+        std::fs::write(folder.join(format!("alarm.{format}")), &answer.body).expect("written");
+    }
+    for name in ["alarm.csv", "alarm.parquet"] {
+        let recording = recording::read_recording(
+            &folder.join(name),
+            &recording::Mapping::default(),
+            &mut |_| {},
+        );
+        let recording = recording.expect("a recording");
+        // From 1 s before to 0.5 s after.
+        assert!(
+            (1.4..1.55).contains(&recording.duration()),
+            "{}",
+            recording.duration()
+        );
+        assert!(
+            recording.voltages().is_some()
+                && recording.currents().is_some()
+                && recording.speed().is_some()
+        );
+    }
+    for (format, begin) in [("csv", "t_s,"), ("json", "[{\"t_s\":"), ("parquet", "PAR1")] {
+        let answer = get(address, &format!("/api/export/windows.{format}"));
+        assert!(answer.text().starts_with(begin), "{format}");
+        assert!(
+            answer
+                .header("content-disposition")
+                .is_some_and(|value| value.starts_with("attachment"))
+        );
+    }
+    std::fs::remove_dir_all(folder).expect("it was made");
+}
+
+#[test]
+fn what_cannot_be_done_is_said() {
+    let server = Server::start(&[]);
+    let refusal = |path: &str, body: &str| {
+        let answer = post(&server.address, path, body);
+        assert_eq!(answer.status, 422, "{path}");
+        answer.json()
+    };
+    let negative = refusal(
+        "/api/parameters",
+        "{\"parameters.stator_leakage_henry\": \"-0.02\"}",
+    );
+    assert_eq!(
+        negative["problems"][0]["key"],
+        "parameters.stator_leakage_henry"
+    );
+    assert!(
+        negative["problems"][0]["message"]
+            .as_str()
+            .is_some_and(|words| words.contains("-0.02"))
+    );
+    for (body, word) in [
+        (
+            "{\"faults\": [{\"name\": \"Xx\", \"change_percent\": 5}]}",
+            "Rs, Rr",
+        ),
+        (
+            "{\"faults\": [{\"name\": \"Rs\", \"change_percent\": -100}]}",
+            "-95",
+        ),
+        (
+            "{\"faults\": [{\"name\": \"bars\", \"change_percent\": 900}]}",
+            "bars",
+        ),
+    ] {
+        let said = refusal("/api/faults", body)["message"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned();
+        assert!(
+            said.contains(word) || said.contains("another size"),
+            "{said}"
+        );
+    }
+    assert!(
+        refusal("/api/seek", "{\"t_s\": 1}")["message"]
+            .as_str()
+            .is_some_and(|words| words.contains("recording"))
+    );
+}

@@ -1,0 +1,8 @@
+//! The panel as others meet it: over a socket, and in a browser.
+
+mod browser;
+mod http;
+mod life;
+mod server;
+mod slow;
+mod strangers;

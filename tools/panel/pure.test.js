@@ -1,0 +1,154 @@
+// The pure functions of the panel's scripts.
+
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { groups, named } from "../../sim-host/assets/panel/causes.js";
+import { airy, decimals, symmetric } from "../../sim-host/assets/panel/charts.js";
+import { switched } from "../../sim-host/assets/panel/controls.js";
+import { lasting, likely } from "../../sim-host/assets/panel/events.js";
+import { clock, either, fixed, percent, shown } from "../../sim-host/assets/panel/format.js";
+import { advice, headline } from "../../sim-host/assets/panel/lamps.js";
+import { changed } from "../../sim-host/assets/panel/parameters.js";
+import { Series, firstAfter } from "../../sim-host/assets/panel/series.js";
+import { arrows, polar, tip } from "../../sim-host/assets/panel/vectors.js";
+
+/** @typedef {import("../../sim-host/assets/panel/messages").WindowMessage} WindowMessage */
+/** @typedef {import("../../sim-host/assets/panel/messages").Lamps} Lamps */
+/** @typedef {import("../../sim-host/assets/panel/messages").Cause} Cause */
+
+/** @type {Lamps} */
+const DARK = { run: "on", r1: "off", r2: "off", r3: "off", r4: "off", sensor: "off", line: "off", load: "off", fault: "off" };
+
+/** @type {import("../../sim-host/assets/panel/messages").Operation} */
+const NOTHING = {
+  voltage_rms_volt: null, current_rms_amp: null, frequency_hz: null, speed_rad_s: null, slip_percent: null, torque_nm: null, load_percent: null,
+  current_unbalance_percent: null, voltage_unbalance_percent: null,
+};
+
+/**
+ * @param {Partial<Lamps>} lamps
+ * @param {Partial<WindowMessage>} [rest]
+ * @returns {WindowMessage}
+ */
+const window = (lamps, rest = {}) => ({
+  sequence: 1, t_s: 1, lamps: { ...DARK, ...lamps }, not_judged: null, findings: [], r_percent: null, r_over_threshold: null,
+  significance_sigma: null, resistance_rise_percent: null, causes: [], operation: NOTHING, vectors: null, ...rest,
+});
+
+/**
+ * @param {string} name
+ * @param {number} probability_percent
+ * @param {number | null} tie
+ * @returns {Cause}
+ */
+const cause = (name, probability_percent, tie) => ({ name, words: name, phase: null, probability_percent, size_percent: null, tie });
+
+test("numbers keep their digits and never show a minus zero", () => {
+  assert.equal(shown(0.123456), "0.123");
+  assert.equal(shown(-1234.5), "−1235");
+  assert.equal(shown(0), "0.00");
+  assert.equal(shown(12), "12.0");
+  assert.equal(shown(-2e-7), "−2.00e−7");
+  assert.equal(shown(null), "–");
+  assert.equal(shown(NaN), "–");
+  assert.equal(fixed(-0.001, 2), "0.00");
+  assert.equal(fixed(-1.5, 1), "−1.5");
+  assert.equal(percent(99.7), "> 99 %");
+  assert.equal(percent(100), "100 %");
+  assert.equal(clock(7.5), "7.50 s");
+  assert.equal(clock(125), "2:05.0");
+  assert.equal(either(["a"]), "a");
+  assert.equal(either(["a", "b", "c"]), "a, b or c");
+});
+
+test("a series forgets the oldest, breaks at gaps and begins anew when the clock goes back", () => {
+  const series = new Series(["x"], 100);
+  for (let k = 0; k < 1000; k += 1) series.push(k * 0.02, [k]);
+  assert.ok(series.t.length >= 100 && series.t.length <= 125, String(series.t.length));
+  assert.equal(series.columns[0].at(-1), 999);
+  series.push(30, [1]);
+  assert.deepEqual(series.columns[0].slice(-3), [999, null, 1]);
+  series.push(1, [5]);
+  assert.deepEqual(series.t, [1]);
+});
+
+test("a chart gets the last seconds of the columns it names", () => {
+  const series = new Series(["x", "y"], 100);
+  for (let k = 0; k <= 10; k += 1) series.push(k * 0.1, [k, k === 9 ? null : -k]);
+  const [t, y] = series.last(0.25, ["y"]);
+  assert.deepEqual(t.map((x) => Math.round(10 * x)), [8, 9, 10]);
+  assert.deepEqual(y, [-8, null, -10]);
+  assert.equal(firstAfter([1, 2, 3], 2), 1);
+  assert.equal(firstAfter([], 2), 0);
+});
+
+test("each pattern of Table 1 has an advice of its own", () => {
+  const patterns = ["r1 r4", "r1 r3 r4", "r2 r3 r4", "r1 r2 r3", "r1 r2 r4", "r1 r2 r3 r4", "r2"];
+  const words = patterns.map((lit) => advice({ ...DARK, fault: "on", ...Object.fromEntries(lit.split(" ").map((name) => [name, "on"])) }, false));
+  assert.equal(new Set(words).size, patterns.length);
+  assert.ok(words.every((word) => word.length > 10));
+});
+
+test("the headline says the worst first", () => {
+  assert.equal(headline(window({}), false).mood, "good");
+  assert.deepEqual(headline(window({ run: "blink" }, { not_judged: "transient" }), false), { mood: "waiting", title: "Not judged", why: "Transient.", todo: "" });
+  const tied = window({ fault: "on", r1: "on", r4: "on", line: "on" }, { causes: [cause("Rs", 48, 1), cause("Rr", 48, 1), cause("unknown", 3, null)] });
+  assert.equal(headline(tied, false).why, "Likeliest: Rs or Rr.");
+  const dead = window({ run: "blink", fault: "on", sensor: "on" }, { findings: ["current sensor a is dead"], not_judged: "current sensor a is dead" });
+  assert.equal(headline(dead, false).title, "Fault");
+  assert.ok(headline(dead, false).why.startsWith("Current sensor a is dead."));
+  assert.equal(headline(window({ run: "off", line: "on" }, { not_judged: "no supply" }), false).todo, "Fuse, contactor.");
+  assert.equal(headline(window({ load: "on" }), false).title, "Overload");
+});
+
+test("tied causes stand together, others alone", () => {
+  const found = groups([cause("a", 40, 1), cause("b", 40, 1), cause("c", 10, 2), cause("d", 10, 2), cause("e", 1, null), cause("f", 1, null)]);
+  assert.deepEqual(found.map((group) => group.map((one) => one.name)), [["a", "b"], ["c", "d"], ["e"], ["f"]]);
+  assert.equal(named({ ...cause("turns", 90, null), words: "shorted turns", phase: "b", size_percent: 4.4 }), "shorted turns, phase b +4 %");
+});
+
+test("a switch changes its own fault and no other", () => {
+  const on = switched([{ name: "Rs", change_percent: 50 }], "Bl", true, -20);
+  assert.deepEqual(on, [{ name: "Rs", change_percent: 50 }, { name: "Bl", change_percent: -20 }]);
+  assert.deepEqual(switched(on, "Rs", true, 10)[1], { name: "Rs", change_percent: 10 });
+  assert.deepEqual(switched(on, "Rs", false, 0), [{ name: "Bl", change_percent: -20 }]);
+});
+
+test("only what was changed is sent", () => {
+  const fields = [{ key: "p.a", value: "8.0" }, { key: "p.b", value: "" }].map((field) => ({ ...field, label: "", symbol: "", unit: "" }));
+  assert.deepEqual(changed(fields, { "p.a": " 8 ", "p.b": "" }), {});
+  assert.deepEqual(changed(fields, { "p.a": "-8", "p.b": "2" }), { "p.a": "-8", "p.b": "2" });
+  assert.deepEqual(changed(fields, { "p.a": "" }), { "p.a": "" });
+});
+
+test("events say what, and for how long", () => {
+  const event = { id: 0, t_s: 1, cleared_s: null, unix_s: 0, lit: [], causes: [cause("Rs", 48, 1), cause("Rr", 48, 1)], findings: [], acknowledged: false, samples: 0 };
+  assert.equal(likely(event), "Rs or Rr");
+  assert.equal(likely({ ...event, findings: ["no supply"] }), "no supply");
+  assert.equal(lasting(event), "lit now");
+  assert.equal(lasting({ ...event, cleared_s: 2.5 }), "1.50 s");
+});
+
+test("axes keep the threshold in sight and noise small", () => {
+  assert.ok(symmetric(0.1, 0.2)[1] > 1 && symmetric(0.1, 0.2)[0] < -1);
+  assert.ok(symmetric(-50, 2)[0] < -50);
+  const [low, high] = airy(100, 100.1, false);
+  assert.ok(low < 99 && high > 101);
+  assert.equal(airy(2.5, 2.6, true)[0], 0);
+  assert.ok(airy(-2, 3, true)[0] < -2);
+});
+
+test("arrows: d to the right, q upwards, rated voltage at the rim, never far beyond", () => {
+  const vectors = { frame: /** @type {const} */ ("rotor-flux"), u_dq_volt: /** @type {[number, number]} */ ([0, 325]), i_dq_amp: /** @type {[number, number]} */ ([70, 0]), psi_r_dq_volt_second: /** @type {[number, number]} */ ([1, 0]) };
+  const [voltage, current, flux] = arrows(vectors, [325, 7], 314);
+  assert.deepEqual(tip(voltage).map(Math.round), [0, -86]);
+  assert.ok(tip(current)[0] > 86 && tip(current)[0] < 100);
+  assert.ok(Math.abs(tip(flux)[0] - 0.86 * 86 * 314 / 325) < 0.1);
+  assert.equal(Math.round(polar([3, 4]).degrees), 53);
+  assert.deepEqual(tip({ dq: [0, 0], full: 1, share: 1 }), [0, 0]);
+});
+
+test("ticks have as many digits as they need", () => {
+  assert.deepEqual([50, 1, 0.5, 0.25, 0.1, 0.02].map(decimals), [0, 0, 1, 2, 1, 2]);
+});
