@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use board::LAMP_NAMES;
 use recording::{Channel, LoadTorque, Metadata, Recording, Sensors, StartsFrom};
 use serde::Serialize;
 
@@ -139,12 +140,12 @@ impl Events {
             return false;
         };
         let known = event.lit.len();
-        event.lit.extend(
-            lit.iter()
-                .filter(|lamp| !event.lit.contains(lamp))
-                .copied()
-                .collect::<Vec<_>>(),
-        );
+        let more = lit.iter().filter(|lamp| !event.lit.contains(lamp));
+        let more: Vec<&str> = more.copied().collect();
+        event.lit.extend(more);
+        event
+            .lit
+            .sort_by_key(|lamp| LAMP_NAMES.iter().position(|name| name == lamp));
         if lit.is_empty() {
             event.cleared_s = Some(window.t_s);
             self.open = None;

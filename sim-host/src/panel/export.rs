@@ -20,7 +20,7 @@ use super::session::{Session, locked};
 pub async fn windows(State(session): State<Arc<Session>>, Path(format): Path<String>) -> Response {
     let rows = session.history();
     let content = match format.as_str() {
-        "csv" => Ok(table(&rows)),
+        "csv" => table(&rows),
         "json" => serde_json::to_vec(&rows).map_err(|error| error.to_string()),
         "parquet" => parquet_of(&rows).map_err(|error| error.to_string()),
         _ => return nothing(),
@@ -39,7 +39,7 @@ pub async fn around(
         return nothing();
     };
     let content = match format.as_str() {
-        "csv" => csv(&recording),
+        "csv" => plain(&recording),
         "toml" => Ok(sidecar_text(&recording.metadata).into_bytes()),
         "parquet" => columnar(&recording),
         _ => return nothing(),
@@ -73,7 +73,7 @@ fn file(name: &str, content: Result<Vec<u8>, String>) -> Response {
     }
 }
 
-fn csv(recording: &Recording) -> Result<Vec<u8>, String> {
+fn plain(recording: &Recording) -> Result<Vec<u8>, String> {
     let mut content = Vec::new();
     write_csv(recording, &mut content).map_err(|error| error.to_string())?;
     Ok(content)
@@ -86,30 +86,12 @@ fn columnar(recording: &Recording) -> Result<Vec<u8>, String> {
 }
 
 /// A line per window; what is not known is left empty.
-fn table(rows: &[HistoryRow]) -> Vec<u8> {
-    let mut lines = String::new();
-    for (k, row) in rows.iter().enumerate() {
-        let Ok(serde_json::Value::Object(cells)) = serde_json::to_value(row) else {
-            continue;
-        };
-        if k == 0 {
-            let head: Vec<&str> = cells.keys().map(String::as_str).collect();
-            lines.push_str(&head.join(","));
-            lines.push('\n');
-        }
-        let cells: Vec<String> = cells.values().map(cell).collect();
-        lines.push_str(&cells.join(","));
-        lines.push('\n');
+fn table(rows: &[HistoryRow]) -> Result<Vec<u8>, String> {
+    let mut lines = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        lines.serialize(row).map_err(|error| error.to_string())?;
     }
-    lines.into_bytes()
-}
-
-fn cell(value: &serde_json::Value) -> String {
-    match value {
-        serde_json::Value::Null => String::new(),
-        serde_json::Value::String(text) => text.clone(),
-        other => other.to_string(),
-    }
+    lines.into_inner().map_err(|error| error.to_string())
 }
 
 fn parquet_of<R>(rows: &[R]) -> Result<Vec<u8>, ParquetError>
