@@ -1,8 +1,9 @@
 //! What a calibrated monitor does with a window beyond the residuals: the cause behind it, and the winding's temperature.
 
 use crate::config::LoadKind;
-use crate::isolation::{Bench, Evidence, Healthy, Isolation, PositiveEvidence};
-use crate::monitor::Monitor;
+use crate::frames::magnitude;
+use crate::isolation::{Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence};
+use crate::monitor::{Monitor, MonitorState};
 use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::report::Report;
 use crate::residuals::{FieldCurrent, ResidualModel, Residuals};
@@ -13,6 +14,21 @@ use crate::window::Window;
 const ACCELERATION_DOUBT: f32 = 0.3;
 
 impl Monitor {
+    /// Time has passed since the last report, and current has heated the winding.
+    pub(crate) fn let_winding_warm(&self, state: &mut MonitorState, window: Option<&Window>) {
+        if self.config.healthy.is_none() {
+            return;
+        }
+        let seconds = state.since_report as f32 * self.config.t_sample;
+        match window {
+            Some(window) => {
+                let current = magnitude(window.i_s.positive) / self.config.rated_current;
+                state.temperature.pass(seconds, current);
+            }
+            None => state.temperature.rest(seconds),
+        }
+    }
+
     /// Which cause explains a steady window.
     #[inline(never)]
     pub(crate) fn isolate(
@@ -20,6 +36,7 @@ impl Monitor {
         healthy: &Healthy,
         [voltages, currents]: [bool; 2],
         rehearsal: &Rehearsal,
+        expected: Heating,
         window: &Window,
         report: &mut Report,
     ) {
@@ -31,9 +48,9 @@ impl Monitor {
         } else {
             currents.then(|| Evidence::of_currents(healthy, window))
         };
-        report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy));
+        report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy, expected));
         if let Some(isolation) = report.isolation {
-            self.evaluate_warm(isolation.heating, rehearsal, window, report);
+            self.evaluate_warm(isolation.heating.rise, rehearsal, window, report);
         }
     }
 
@@ -89,8 +106,8 @@ impl Monitor {
         window: &Window,
     ) -> Option<Residuals> {
         let evidence = self.evidence_of_all(healthy, rehearsal, window)?;
-        let heating = Isolation::of(&evidence, healthy).heating;
-        let (_, residuals) = self.warm_residuals(heating, rehearsal, window)?;
+        let heating = Isolation::of(&evidence, healthy, Heating::any(healthy)).heating;
+        let (_, residuals) = self.warm_residuals(heating.rise, rehearsal, window)?;
         Some(residuals)
     }
 

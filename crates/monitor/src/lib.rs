@@ -40,7 +40,8 @@ pub use encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
 pub use health::{HealthConfig, Phase, SensorFinding};
 pub use isolation::{
-    ALL_CAUSES, CAUSES, Cause, Evidence, Healthy, Isolation, ROWS, Row, Uncertainty, probabilities,
+    ALL_CAUSES, CAUSES, Cause, Evidence, Healthy, Heating, Isolation, ROWS, Row, Uncertainty,
+    probabilities,
 };
 pub use lamps::{Lamp, Lamps};
 pub use monitor::{Monitor, MonitorState};

@@ -10,6 +10,7 @@ use crate::health::{HealthConfig, SensorFinding};
 use crate::intake::{
     IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
 };
+use crate::isolation::Temperature;
 use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::panel::{PanelConfig, PanelState};
 use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
@@ -49,9 +50,10 @@ pub struct MonitorState {
     pub(crate) encoder: EncoderState,
     window: WindowState,
     panel: PanelState,
+    pub(crate) temperature: Temperature,
     measured: [bool; 2],
     samples: u64,
-    since_report: u32,
+    pub(crate) since_report: u32,
     rehearsal: Rehearsal,
     /// Whether the open cycle is summed up in codes.
     in_codes: bool,
@@ -81,6 +83,7 @@ impl MonitorState {
     pub fn resume_after_gap(&mut self) {
         *self = MonitorState {
             panel: self.panel,
+            temperature: self.temperature,
             samples: self.samples,
             rehearsal: self.rehearsal,
             ..MonitorState::default()
@@ -234,6 +237,7 @@ impl Monitor {
     }
 
     fn report(&self, state: &mut MonitorState, window: Option<Window>) -> Report {
+        self.let_winding_warm(state, window.as_ref());
         state.since_report = 0;
         let mut report = Report {
             sample_index: state.samples,
@@ -260,7 +264,7 @@ impl Monitor {
     }
 
     /// Everything that one complete window can say, and whether thresholds may be applied to it.
-    fn examine(&self, state: &MonitorState, window: &Window, report: &mut Report) {
+    fn examine(&self, state: &mut MonitorState, window: &Window, report: &mut Report) {
         let measured @ [voltages, currents] = state.measured;
         report.sensor = self.check_channels(measured, window);
         if voltages && self.health.has_supply(window) {
@@ -271,7 +275,19 @@ impl Monitor {
             self.evaluate(&state.rehearsal, window, report);
         }
         if let Some(healthy) = &self.config.healthy {
-            self.isolate(healthy, measured, &state.rehearsal, window, report);
+            let expected = state.temperature.expected(healthy);
+            self.isolate(
+                healthy,
+                measured,
+                &state.rehearsal,
+                expected,
+                window,
+                report,
+            );
+            if let Some(isolation) = &report.isolation {
+                let fault = state.panel.is_isolated();
+                state.temperature.follow(isolation, healthy, fault);
+            }
         }
     }
 

@@ -28,6 +28,13 @@ pub struct PanelState {
     isolated: ComparatorState,
 }
 
+impl PanelState {
+    /// Whether FAULT is lit by the evidence of a calibrated motor.
+    pub(crate) fn is_isolated(&self) -> bool {
+        self.isolated.is_lit()
+    }
+}
+
 /// Torque, as a share of rated, above which LOAD lights where the load is free: past the usual service factor of 1.15.
 const OVERLOAD: f32 = 1.15;
 

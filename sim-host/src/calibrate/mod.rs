@@ -109,7 +109,7 @@ pub fn calibrate(
         let config_of = |motor: &MotorFile, k: usize| config_for(motor, sources[k].recording);
         motor.monitor.threshold_percent = statistics::thresholds(&motor, &observed, &config_of)?;
     }
-    refuse::contradictions(&motor, recordings, &observed)?;
+    refuse::contradictions(&motor, &sources, &observed)?;
     Ok(Calibrated {
         motor,
         windows: observed.len(),

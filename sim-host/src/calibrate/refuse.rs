@@ -1,13 +1,13 @@
 //! Recordings that must not be learnt from: faulty ones, and ones that contradict each other.
 
-use monitor::{Healthy, Isolation, Monitor, MonitorConfig, Row, magnitude};
+use monitor::{Healthy, Monitor, MonitorConfig, Row, magnitude};
 use motor::MotorFile;
 use num_complex::Complex32;
 use recording::Recording;
 
 use super::Refusal;
 use super::fit::Fitted;
-use super::windows::Observed;
+use super::windows::{Healthily, Observed};
 use crate::replay::config_for;
 
 /// Largest believable change of a parameter.
@@ -62,36 +62,32 @@ pub fn negative_scatter(
     observed.iter().map(square).sum()
 }
 
-/// Refuses recordings that the calibrated motor would still call faulty: they differ from the others, or from themselves.
+/// Refuses recordings that the calibrated monitor would still call faulty: they differ from the others, or from themselves.
 pub fn contradictions(
     motor: &MotorFile,
-    recordings: &[Recording],
+    sources: &[Healthily<'_>],
     observed: &[Observed],
 ) -> Result<(), Refusal> {
-    changing_unbalance(recordings, observed)?;
-    for (k, recording) in recordings.iter().enumerate() {
-        let own: Vec<&Observed> = observed.iter().filter(|o| o.recording == k).collect();
-        let config = config_for(motor, recording);
-        let Some(healthy) = config.healthy else {
-            continue;
-        };
-        let monitor = Monitor::new(config)
-            .map_err(|error| Refusal::new(recording.name(), error.to_string()))?;
-        let alarms = own.iter().filter(|o| {
-            let evidence = monitor.evidence(&healthy, &o.window);
-            let isolation = evidence.map(|evidence| Isolation::of(&evidence, &healthy));
-            isolation.is_some_and(|isolation| isolation.significance > healthy.significance)
-        });
-        let alarms: Vec<_> = alarms.collect();
-        if alarms.len() > strays_allowed(own.len()) {
+    changing_unbalance(sources, observed)?;
+    for source in sources {
+        let config = config_for(motor, source.recording);
+        let limit = config.healthy.map_or(f32::INFINITY, |h| h.significance);
+        let (mut judged, mut alarms) = (0, Vec::new());
+        source.monitored(config, &mut |t, report| {
+            if let Some(isolation) = &report.isolation {
+                judged += 1;
+                alarms.extend((isolation.significance > limit).then_some(t));
+            }
+            Ok(())
+        })?;
+        if alarms.len() > strays_allowed(judged) {
             return Err(Refusal::new(
-                recording.name(),
+                source.recording.name(),
                 format!(
-                    "{} of {} steady windows, first at {:.3} s, would light FAULT after calibration: this recording is not of \
+                    "{} of {judged} steady windows, first at {:.3} s, would light FAULT after calibration: this recording is not of \
                      the same healthy motor as the others",
                     alarms.len(),
-                    own.len(),
-                    alarms[0].t
+                    alarms[0]
                 ),
             ));
         }
@@ -101,15 +97,15 @@ pub fn contradictions(
 
 /// The current's unbalance of a healthy motor follows its voltage's; with currents alone it must stand still within each
 /// recording, and from one to the next.
-fn changing_unbalance(recordings: &[Recording], observed: &[Observed]) -> Result<(), Refusal> {
+fn changing_unbalance(sources: &[Healthily<'_>], observed: &[Observed]) -> Result<(), Refusal> {
     let without_voltage = |o: &&Observed| o.window.u_s.positive.norm_sqr() == 0.0;
     let all: Vec<&Observed> = observed.iter().filter(without_voltage).collect();
     let of = |k: usize| all.iter().copied().filter(move |o| o.recording == k);
-    let middles: Vec<Complex32> = (0..recordings.len())
+    let middles: Vec<Complex32> = (0..sources.len())
         .map(|k| middle(of(k).map(unbalance)))
         .collect();
     let common = middle(middles.iter().copied());
-    for (k, recording) in recordings.iter().enumerate() {
+    for (k, source) in sources.iter().enumerate() {
         let astray = |from: Complex32| {
             let beyond =
                 move |o: &&Observed| magnitude(unbalance(o) - from) > LARGEST_UNBALANCE_CHANGE;
@@ -120,7 +116,7 @@ fn changing_unbalance(recordings: &[Recording], observed: &[Observed]) -> Result
         let from_others = magnitude(middles[k] - common) > LARGEST_UNBALANCE_CHANGE;
         let from = if from_others { common } else { middles[k] };
         if let Some(stray) = astray(from) {
-            return Err(not_one_state(recording.name(), stray, from));
+            return Err(not_one_state(source.recording.name(), stray, from));
         }
     }
     Ok(())

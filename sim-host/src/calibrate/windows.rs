@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use monitor::{Healthy, Monitor, MonitorState, Report, Window};
+use monitor::{Healthy, Monitor, MonitorConfig, MonitorState, Report, Window};
 use motor::MotorFile;
 use recording::{Audit, Expectation, Recording, audit};
 
@@ -98,29 +98,47 @@ fn observe_one(
     let mut config = config_for(motor, source.recording);
     config.healthy = Some(Healthy::unknown());
     let name = source.recording.name();
-    let monitor = Monitor::new(config).map_err(|error| Refusal::new(name, error.to_string()))?;
-    let mut state = MonitorState::default();
-    for timed in Samples::new(source.recording, &source.audit).iter() {
-        if timed.after_gap {
-            state.resume_after_gap();
-        }
-        let Some(report) = monitor.update(&mut state, &timed.sample) else {
-            continue;
-        };
-        refuse_sensor(name, timed.t, &report)?;
+    source.monitored(config, &mut |t, report| {
+        refuse_sensor(name, t, report)?;
         if let Some(reason) = report.not_judged {
             *reasons.entry(words::not_judged(reason)).or_default() += 1;
         }
         if let (None, Some(window)) = (report.not_judged, report.window) {
             all.push(Observed {
                 recording: k,
-                t: timed.t,
+                t,
                 window,
                 weight: 1.0,
             });
         }
+        Ok(())
+    })
+}
+
+impl Healthily<'_> {
+    /// Sends the recording through the core; `look` takes the time, s, and each report.
+    ///
+    /// # Errors
+    /// What `look` refuses, and values that the core does not take.
+    pub fn monitored(
+        &self,
+        config: MonitorConfig,
+        look: &mut dyn FnMut(f64, &Report) -> Result<(), Refusal>,
+    ) -> Result<(), Refusal> {
+        let refused =
+            |error: monitor::ConfigError| Refusal::new(self.recording.name(), error.to_string());
+        let monitor = Monitor::new(config).map_err(refused)?;
+        let mut state = MonitorState::default();
+        for timed in Samples::new(self.recording, &self.audit).iter() {
+            if timed.after_gap {
+                state.resume_after_gap();
+            }
+            if let Some(report) = monitor.update(&mut state, &timed.sample) {
+                look(timed.t, &report)?;
+            }
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 fn refuse_sensor(name: &str, t: f64, report: &Report) -> Result<(), Refusal> {

@@ -208,7 +208,7 @@ impl Timeline {
         }
         self.judged += 1;
         if let Some(isolation) = &report.isolation {
-            self.heating_sum += f64::from(isolation.heating);
+            self.heating_sum += f64::from(isolation.heating.rise);
             self.heating_windows += 1;
         }
         let Some(residuals) = report.residuals else {

@@ -201,9 +201,18 @@ impl Evidence {
         rows
     }
 
-    /// Covariance of the healthy motor's departures.
+    /// Departure from the healthy motor whose resistances have risen by this share.
+    pub(crate) fn departure_at(&self, rise: f32) -> Rows {
+        let mut departure = self.departure;
+        for (x, per_rise) in departure.iter_mut().zip(self.heating()) {
+            *x -= rise * per_rise;
+        }
+        departure
+    }
+
+    /// Covariance of the healthy motor's departures, its temperature known up to `heating`.
     #[inline(never)]
-    pub(crate) fn covariance(&self, healthy: &Healthy) -> Covariance<ROWS> {
+    pub(crate) fn covariance(&self, healthy: &Healthy, heating: f32) -> Covariance<ROWS> {
         let mut own = self.scatter;
         for (scatter, known) in own.iter_mut().zip(&self.known) {
             *scatter = if *known { *scatter } else { 1.0 };
@@ -221,7 +230,7 @@ impl Evidence {
         for (cause, deviation) in of_all {
             covariance.add(&self.direction(cause), deviation);
         }
-        covariance.add(&self.heating(), u.heating);
+        covariance.add(&self.heating(), heating);
         for phase in Phase::ALL {
             covariance.add(
                 &self.direction(Cause::CurrentChannel(phase)),

@@ -9,6 +9,7 @@ mod directions;
 mod evidence;
 mod gauss;
 mod healthy;
+mod temperature;
 
 #[cfg(test)]
 mod tests;
@@ -17,11 +18,13 @@ use core::f32::consts::LN_2;
 
 pub use cause::{ALL_CAUSES, CAUSES, Cause};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
+pub use temperature::Heating;
 
 pub(crate) use directions::Bench;
 pub use evidence::Evidence;
 pub(crate) use evidence::PositiveEvidence;
-use gauss::{Cholesky, dot};
+use gauss::dot;
+pub(crate) use temperature::Temperature;
 
 /// What one window says about the causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,30 +37,38 @@ pub struct Isolation {
     pub sizes: [f32; CAUSES],
     /// Length of the departure along the best cause, or of all of it, in standard deviations of the healthy motor.
     pub significance: f32,
-    /// Relative rise of the resistances that explains the window best: winding temperature.
-    pub heating: f32,
+    /// The same departure if the winding could have any temperature: without what was known of it before the window.
+    pub at_any_temperature: f32,
+    /// Rise of the resistances that explains the window best, and how surely this window alone tells it: winding temperature.
+    pub heating: Heating,
 }
 
 impl Isolation {
-    /// Weighs all causes.
+    /// Weighs all causes, given what is known of the winding's temperature.
     #[inline(never)]
-    pub fn of(evidence: &Evidence, healthy: &Healthy) -> Self {
-        let cholesky = evidence.covariance(healthy).factorise();
-        let white = cholesky.whiten(&evidence.departure);
+    pub fn of(evidence: &Evidence, healthy: &Healthy, expected: Heating) -> Self {
+        let cholesky = evidence.covariance(healthy, expected.deviation).factorise();
+        let white = cholesky.whiten(&evidence.departure_at(expected.rise));
         let known = evidence.known_rows();
+        let along = Warmth::new(&cholesky.whiten(&evidence.heating()), &white);
+        let square = dot(&white, &white);
         let mut isolation = Isolation {
             scores: [0.0; CAUSES],
-            unknown: score_of_anything(&white, known),
+            unknown: score_of_anything(square, known),
             sizes: [0.0; CAUSES],
-            significance: significance_of_anything(&white, known),
-            heating: heating(evidence, healthy, &cholesky, &white),
+            significance: significance_of_anything(square, known),
+            at_any_temperature: significance_of_anything(
+                along.square_at_any(square, healthy, expected),
+                known,
+            ),
+            heating: along.implied(healthy, expected),
         };
         let mut longest = 0.0_f32;
         let places = isolation.scores.iter_mut().zip(&mut isolation.sizes);
         for ((score, size), cause) in places.zip(ALL_CAUSES) {
             let fit = Fit::along(&cholesky.whiten(&evidence.direction(cause)), &white);
             *size = fit.size;
-            *score = fit.score(cause, &white, known);
+            *score = fit.score(cause, square, known);
             if !fit.is_impossible(cause) {
                 longest = fit.square().max(longest);
             }
@@ -122,14 +133,13 @@ impl Fit {
     }
 
     /// Logarithm of the Bayes factor against health for a change of the cause's typical size, normally distributed,
-    /// whose direction is only roughly the computed one.
-    fn score(&self, cause: Cause, white: &[f32; ROWS], known: usize) -> f32 {
+    /// whose direction is only roughly the computed one. `square`: squared length of the whole departure.
+    fn score(&self, cause: Cause, square: f32, known: usize) -> f32 {
         if self.is_impossible(cause) {
             return IMPOSSIBLE;
         }
         let typical = cause.typical_size();
         let k = self.information * typical * typical;
-        let square = dot(white, white);
         let along = self.square();
         let astray = cause.looseness() * cause.looseness() * along;
         // Shares first: their products with lengths may exceed single precision.
@@ -147,33 +157,62 @@ const IMPOSSIBLE: f32 = -1e3;
 /// Departures of an unknown kind are held to be this many standard deviations long in every row.
 const UNKNOWN_SPREAD: f32 = 100.0;
 
-/// Logarithm of the Bayes factor of a departure in any direction.
-fn score_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
+/// Logarithm of the Bayes factor of a departure of this squared length in any direction.
+fn score_of_anything(square: f32, known: usize) -> f32 {
     let k = UNKNOWN_SPREAD * UNKNOWN_SPREAD;
-    0.5 * dot(white, white) * (k / (1.0 + k)) - 0.5 * known as f32 * ln(1.0 + k)
+    0.5 * square * (k / (1.0 + k)) - 0.5 * known as f32 * ln(1.0 + k)
 }
 
 /// The squared length as an equally rare standard deviation (Wilson and Hilferty, doi:10.1073/pnas.17.12.684).
-fn significance_of_anything(white: &[f32; ROWS], known: usize) -> f32 {
+#[inline(never)]
+fn significance_of_anything(square: f32, known: usize) -> f32 {
     let n = known as f32;
     if known == 0 {
         return 0.0;
     }
     let spread = 2.0 / (9.0 * n);
-    let mean_square = (dot(white, white) / n).max(f32::MIN_POSITIVE);
+    let mean_square = (square / n).max(f32::MIN_POSITIVE);
     let cube_root = exp(ln(mean_square) / 3.0);
     (cube_root - (1.0 - spread)) / libm::sqrtf(spread)
 }
 
-/// Mean of the relative rise of both resistances, given the window and its range beforehand.
-fn heating(
-    evidence: &Evidence,
-    healthy: &Healthy,
-    cholesky: &Cholesky<ROWS>,
-    white: &[f32; ROWS],
-) -> f32 {
-    let deviation = healthy.uncertainty.heating;
-    deviation * deviation * dot(&cholesky.whiten(&evidence.heating()), white)
+/// The departure along the direction of heating, in units of a covariance that holds heating's deviation already.
+struct Warmth {
+    /// Squared length of the direction per unit rise.
+    information: f32,
+    /// Departure along it.
+    along: f32,
+}
+
+impl Warmth {
+    fn new(direction: &[f32; ROWS], white: &[f32; ROWS]) -> Self {
+        Warmth {
+            information: dot(direction, direction),
+            along: dot(direction, white),
+        }
+    }
+
+    /// Mean of the rise given the window and what was known; the deviation that the window alone would leave of any.
+    fn implied(&self, healthy: &Healthy, expected: Heating) -> Heating {
+        let variance = expected.deviation * expected.deviation;
+        // Sherman and Morrison: what the direction tells without heating's own share of the covariance.
+        let own = self.information / (1.0 - variance * self.information).max(LEAST_INFORMATION);
+        let any = Heating::any(healthy).deviation;
+        Heating {
+            rise: expected.rise + variance * self.along,
+            deviation: any / libm::sqrtf(1.0 + any * any * own),
+        }
+    }
+
+    /// Squared length of the departure if the winding could have any temperature (Sherman and Morrison).
+    fn square_at_any(&self, square: f32, healthy: &Healthy, expected: Heating) -> f32 {
+        let any = Heating::any(healthy).deviation;
+        let wider = any * any - expected.deviation * expected.deviation;
+        let rise = expected.rise;
+        let along = self.along + rise * self.information;
+        let from_zero = square + rise * (self.along + along);
+        from_zero - wider * along * along / (1.0 + wider * self.information)
+    }
 }
 
 /// Called from many places: on the board one copy is enough.

@@ -2,7 +2,7 @@
 
 use super::plant::{Plant, evidence, index, statistics};
 use crate::health::Phase;
-use crate::isolation::{ALL_CAUSES, Cause, Isolation};
+use crate::isolation::{ALL_CAUSES, Cause, Heating, Isolation};
 
 /// The healthy motor with one quantity changed by a share.
 fn changed(cause: Cause, by: f64) -> Plant {
@@ -60,7 +60,7 @@ fn a_changed_motor_departs_along_its_direction() {
 }
 
 fn isolated(plant: &Plant) -> Isolation {
-    Isolation::of(&evidence(plant), &statistics())
+    Isolation::of(&evidence(plant), &statistics(), Heating::any(&statistics()))
 }
 
 fn likeliest(isolation: &Isolation) -> (Option<Cause>, f32) {
@@ -139,9 +139,9 @@ fn heating_lights_nothing_and_is_measured() {
         "{isolation:?}"
     );
     assert!(
-        (isolation.heating - 0.2).abs() < 0.02,
+        (isolation.heating.rise - 0.2).abs() < 0.02,
         "{}",
-        isolation.heating
+        isolation.heating.rise
     );
 }
 

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::plant::{monitor, statistics};
 use crate::frames::Sequence;
-use crate::isolation::{CAUSES, Isolation, probabilities};
+use crate::isolation::{CAUSES, Heating, Isolation, probabilities};
 use crate::window::Window;
 
 /// Nothing, hardly anything, and more than any motor has.
@@ -58,10 +58,10 @@ proptest! {
         let healthy = statistics();
         if let Some(evidence) = monitor().evidence(&healthy, &window) {
             prop_assert!(evidence.departure.iter().all(|x| x.is_finite()), "{evidence:?}");
-            let isolation = Isolation::of(&evidence, &healthy);
+            let isolation = Isolation::of(&evidence, &healthy, Heating::any(&healthy));
             let numbers = isolation.scores.iter().chain(&isolation.sizes);
             prop_assert!(numbers.copied().all(f32::is_finite), "{isolation:?}");
-            prop_assert!(isolation.significance.is_finite() && isolation.heating.is_finite());
+            prop_assert!(isolation.significance.is_finite() && isolation.at_any_temperature.is_finite() && isolation.heating.rise.is_finite() && isolation.heating.deviation.is_finite());
             prop_assert!(is_distribution(isolation.probabilities()), "{isolation:?}");
         }
     }

@@ -3,3 +3,4 @@
 mod causes;
 mod degenerate;
 mod plant;
+mod temperature;

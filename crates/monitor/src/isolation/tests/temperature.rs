@@ -1,0 +1,129 @@
+//! The temperature from window to window: heating is followed, faults are not.
+
+use super::plant::{Plant, evidence, statistics};
+use crate::isolation::{Heating, Isolation, Temperature};
+
+/// A window comes every cycle of 50 Hz.
+const CYCLE_S: f32 = 0.02;
+
+/// A motor whose resistances changed by these shares.
+fn resistances(stator: f64, rotor: f64) -> Plant {
+    let mut plant = Plant::healthy();
+    plant.params.r_s *= 1.0 + stator;
+    plant.params.r_r *= 1.0 + rotor;
+    plant
+}
+
+/// A monitor at rated current that looks at one motor for a while.
+#[derive(Default)]
+struct Watch {
+    temperature: Temperature,
+    fault: bool,
+}
+
+impl Watch {
+    /// One window; FAULT follows at once.
+    fn look(&mut self, plant: &Plant) -> Isolation {
+        let healthy = statistics();
+        self.temperature.pass(CYCLE_S, 1.0);
+        let expected = self.temperature.expected(&healthy);
+        let isolation = Isolation::of(&evidence(plant), &healthy, expected);
+        self.temperature.follow(&isolation, &healthy, self.fault);
+        self.fault = isolation.significance > healthy.significance;
+        isolation
+    }
+
+    fn look_for(&mut self, seconds: f32, plant: &Plant) -> Isolation {
+        let windows = (seconds / CYCLE_S) as usize;
+        let all = (0..windows).map(|_| self.look(plant));
+        all.last().expect("at least one window")
+    }
+}
+
+fn at_any(plant: &Plant) -> Isolation {
+    let healthy = statistics();
+    Isolation::of(&evidence(plant), &healthy, Heating::any(&healthy))
+}
+
+#[test]
+fn a_rotor_resistance_that_jumps_is_a_fault_and_one_that_was_there_may_be_heat() {
+    let changed = resistances(0.0, 0.2);
+    let limit = statistics().significance;
+    assert!(at_any(&changed).significance < limit);
+    let mut watch = Watch::default();
+    watch.look_for(1.0, &Plant::healthy());
+    assert!(watch.look(&changed).significance > limit);
+}
+
+/// An hour at full load does not turn a fault into heat.
+#[test]
+fn a_fault_that_stays_is_never_learned() {
+    let mut watch = Watch::default();
+    watch.look_for(1.0, &Plant::healthy());
+    let changed = resistances(0.0, 0.2);
+    let first = watch.look(&changed);
+    let last = watch.look_for(3600.0, &changed);
+    assert!(watch.fault);
+    assert!((last.significance / first.significance - 1.0).abs() < 0.01);
+}
+
+/// 0.1 %/s: a quarter of a kelvin in a second, up to 75 K; then cold again at the same rate.
+#[test]
+fn a_winding_that_warms_and_cools_lights_nothing_and_its_temperature_is_known() {
+    let mut watch = Watch::default();
+    let up = (0..=300).map(f64::from);
+    let down = (0..300).rev().map(f64::from);
+    for second in up.chain(down) {
+        let rise = 0.001 * second;
+        let isolation = watch.look_for(1.0, &resistances(rise, rise));
+        assert!(!watch.fault, "at {rise}: {isolation:?}");
+        let seen = f64::from(isolation.heating.rise);
+        // Off by what a window leaves open (its deviation of 1 to 2 %) and by the bend of large changes.
+        assert!((seen - rise).abs() < 0.02, "{seen} at {rise}");
+    }
+}
+
+/// What was lit because of a jump that heating explains goes dark when the motor has stood for minutes.
+#[test]
+fn a_motor_that_has_rested_may_have_any_temperature() {
+    let warm = resistances(0.3, 0.3);
+    let mut watch = Watch::default();
+    watch.look_for(1.0, &Plant::healthy());
+    watch.look_for(1.0, &warm);
+    assert!(watch.fault, "30 % within a second is no heat");
+    (0..3000).for_each(|_| watch.temperature.rest(0.1));
+    assert!(watch.look(&warm).significance < statistics().significance);
+}
+
+/// A fault that no temperature explains stops nothing: what the winding did meanwhile is allowed for.
+#[test]
+fn a_sensor_that_failed_for_minutes_leaves_no_fault_behind() {
+    let mut watch = Watch::default();
+    watch.look_for(1.0, &Plant::healthy());
+    let mut broken = Plant::healthy();
+    broken.gains[3] = 0.7;
+    watch.look_for(120.0, &broken);
+    assert!(watch.fault);
+    let warmer = resistances(0.1, 0.1);
+    watch.look(&warmer);
+    assert!(!watch.fault);
+}
+
+/// The oracle is the same window with the wider covariance, factorised anew.
+#[test]
+fn what_any_temperature_would_leave_does_not_depend_on_what_was_expected() {
+    let healthy = statistics();
+    for plant in [resistances(0.1, 0.02), resistances(-0.05, 0.2)] {
+        let evidence = evidence(&plant);
+        let wide = Isolation::of(&evidence, &healthy, Heating::any(&healthy));
+        for (rise, deviation) in [(0.0, 0.01), (0.08, 0.02), (-0.1, 0.1)] {
+            let expected = Heating { rise, deviation };
+            let narrow = Isolation::of(&evidence, &healthy, expected);
+            let off = narrow.at_any_temperature - wide.at_any_temperature;
+            // Differences of squares near 1e4 in single precision.
+            assert!(off.abs() < 0.02, "{off} for {expected:?}");
+            let ratio = narrow.heating.deviation / wide.heating.deviation;
+            assert!((ratio - 1.0).abs() < 0.01, "{ratio} for {expected:?}");
+        }
+    }
+}
