@@ -97,3 +97,25 @@ pub fn fault(name: &str) -> &'static str {
         _ => "none of the faults in the table",
     }
 }
+
+/// The measurement that would prove or clear one cause; `None` for what is in no table.
+pub fn proof(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "Rs" => "measure the windings' DC resistance, phase by phase",
+        "Rr" => {
+            "record without load: the rotor's resistance no longer shows, a wrong speed still does"
+        }
+        "wr" => "hold a strobe or a second tachometer to the shaft",
+        "Lm" => "record without load, where the magnetizing inductance alone decides the current",
+        "Ls" | "Lr" | "leakage" => {
+            "record near rated load, where leakage weighs most, and without load, where it weighs least"
+        }
+        "B" | "Bl" => {
+            "let the motor coast down with the load uncoupled: what slows it then is its own friction"
+        }
+        "Iq" => "clamp a second ammeter around each lead",
+        "Vq" => "hold a second voltmeter to the terminals",
+        "turns" => "compare the windings' resistances and inductances phase by phase, at rest",
+        _ => return None,
+    })
+}

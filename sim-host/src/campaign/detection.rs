@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::fault::FaultKind;
 use super::file::{About, Results};
 use super::row::Row;
 use super::statistics::{Share, quantile};
@@ -37,8 +38,21 @@ pub struct Detection {
     pub limit: String,
     /// The size at which isolation counts: the first that is at least twice the smallest.
     pub isolation_percent: Option<f64>,
+    /// The rival of the paper's Table 1 and how often it was told apart at the size at which isolation counts.
+    pub rival: Option<Rival>,
     /// What was named, of the detected runs from the smallest size on (of all sizes where none is reached).
     pub named: Vec<Named>,
+}
+
+/// A pair that shares a row of the paper's Table 1.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rival {
+    /// The other cause, as the monitor calls it.
+    pub cause: &'static str,
+    /// Size at which it is counted, percent.
+    pub change_percent: f64,
+    /// Detected runs in which the true cause is named and the rival is not.
+    pub told_apart: Share,
 }
 
 /// One size of a fault.
@@ -56,6 +70,8 @@ pub struct Size {
     pub delay_95_s: Option<f64>,
     /// Detected runs in which the true cause is likelier than any other.
     pub cause_right: Share,
+    /// Detected runs in which the true cause is the likeliest or tied with it.
+    pub truth_named: Share,
     /// Detected runs in which cause and phase are right.
     pub isolated: Share,
     /// Runs that say nothing because FAULT was lit before.
@@ -116,6 +132,7 @@ fn one_fault(about: &About, group: &[&Row]) -> Detection {
         .iter()
         .find(|target| target.block == first.block && target.fault == first.fault);
     let direction = direction(first);
+    let isolation = smallest.and_then(|smallest| at_least_twice(&sizes, smallest));
     let target_percent = target.and_then(|target| target.percent).map(|percent| {
         if direction == "dead" {
             -DEAD_PERCENT
@@ -136,7 +153,8 @@ fn one_fault(about: &About, group: &[&Row]) -> Detection {
         target_percent,
         target_met: target_percent.map(met),
         limit: target.map_or(String::new(), |target| target.limit.clone()),
-        isolation_percent: smallest.and_then(|smallest| at_least_twice(&sizes, smallest)),
+        isolation_percent: isolation,
+        rival: isolation.and_then(|percent| rival(group, percent)),
         named: named(group, smallest.map_or(0.0, f64::abs)),
         sizes,
     }
@@ -172,6 +190,7 @@ fn size(change_percent: f64, rows: &[&Row]) -> Size {
         delay_median_s: quantile(&mut delays, 0.5),
         delay_95_s: quantile(&mut delays, 0.95),
         cause_right: Share::count(found.iter().map(|row| row.name_right)),
+        truth_named: Share::count(found.iter().map(|row| row.truth_named)),
         isolated: Share::count(found.iter().map(|row| row.is_isolated())),
         lit_before: rows.iter().filter(|row| row.lit_before).count() as u64,
     }
@@ -191,6 +210,17 @@ fn at_least_twice(sizes: &[Size], smallest: f64) -> Option<f64> {
     let twice = 1.999 * smallest.abs();
     let mut sizes = sizes.iter().map(|size| size.change_percent);
     sizes.find(|percent| percent.abs() >= twice)
+}
+
+fn rival(group: &[&Row], percent: f64) -> Option<Rival> {
+    let rival = FaultKind::find(&group.first()?.fault)?.rival?;
+    let is_counted = |row: &&&Row| row.is_a_try() && row.detected && row.change_percent == percent;
+    let apart = |row: &&Row| row.truth_named && !row.named.split('|').any(|name| name == rival);
+    Some(Rival {
+        cause: rival,
+        change_percent: percent,
+        told_apart: Share::count(group.iter().filter(is_counted).map(apart)),
+    })
 }
 
 fn named(group: &[&Row], from: f64) -> Vec<Named> {

@@ -20,6 +20,8 @@ pub struct FaultKind {
     /// Causes by which the monitor may call it. Where several stand here physics makes them one (B and B_l are only ever
     /// seen as a sum), or the monitor's words are coarser than the plan's.
     answers: &'static [&'static str],
+    /// What Table 1 of the paper cannot tell it from, as the monitor calls it.
+    pub rival: Option<&'static str>,
 }
 
 const fn motor(
@@ -35,6 +37,7 @@ const fn motor(
         has_phase: false,
         is_sensor: false,
         answers,
+        rival: None,
     }
 }
 
@@ -50,6 +53,13 @@ const fn sensor(
     }
 }
 
+const fn against(rival: &'static str, kind: FaultKind) -> FaultKind {
+    FaultKind {
+        rival: Some(rival),
+        ..kind
+    }
+}
+
 const fn in_one_phase(kind: FaultKind) -> FaultKind {
     FaultKind {
         has_phase: true,
@@ -59,9 +69,12 @@ const fn in_one_phase(kind: FaultKind) -> FaultKind {
 
 /// Every fault of a campaign.
 pub const FAULTS: [FaultKind; 15] = [
-    motor("Rs", "stator resistance", &["Rs"], &["Rs"]),
-    motor("Rr", "rotor resistance", &["Rr"], &["Rr"]),
-    motor("Lm", "magnetizing inductance", &["Lm"], &["Lm", "Ls", "Lr"]),
+    against("Rr", motor("Rs", "stator resistance", &["Rs"], &["Rs"])),
+    against("Rs", motor("Rr", "rotor resistance", &["Rr"], &["Rr"])),
+    against(
+        "Vq",
+        motor("Lm", "magnetizing inductance", &["Lm"], &["Lm", "Ls", "Lr"]),
+    ),
     motor(
         "Lls",
         "stator leakage",
@@ -74,11 +87,14 @@ pub const FAULTS: [FaultKind; 15] = [
         &["Llr"],
         &["Llr", "leakage", "Ls", "Lr"],
     ),
-    motor(
-        "leakage",
-        "both leakages",
-        &["Lls", "Llr"],
-        &["leakage", "Lls", "Llr", "Ls", "Lr"],
+    against(
+        "Vq",
+        motor(
+            "leakage",
+            "both leakages",
+            &["Lls", "Llr"],
+            &["leakage", "Lls", "Llr", "Ls", "Lr"],
+        ),
     ),
     motor("B", "friction of the motor", &["B"], &["B", "Bl"]),
     motor("Bl", "friction of the load", &["Bl"], &["B", "Bl"]),
@@ -107,11 +123,14 @@ pub const FAULTS: [FaultKind; 15] = [
         &["ia", "ib", "ic"],
         &["Iq", "i"],
     ),
-    sensor(
-        "v-all",
-        "gain of all voltage sensors",
-        &["va", "vb", "vc"],
-        &["Vq", "v"],
+    against(
+        "Lm",
+        sensor(
+            "v-all",
+            "gain of all voltage sensors",
+            &["va", "vb", "vc"],
+            &["Vq", "v"],
+        ),
     ),
     sensor("speed", "speed sensor", &["speed"], &["wr", "speed"]),
 ];

@@ -19,7 +19,8 @@ judged with the motor file that the table names; what is simulated departs from 
 
 *Smallest* is the smallest size from which on FAULT comes in at least 99 of 100 runs; *proven* is the exact lower bound of
 that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays count from the fault to FAULT. *Cause right*: the true cause
-is likelier than any other, at the smallest size; *at twice*: cause and phase, at the first size that is at least twice the smallest.
+is likelier than any other, at the smallest size; *or tied*: or at most \
+half a decade less likely than the likeliest; *at twice*: cause and phase, at the first size that is at least twice the smallest.
 `<=` stands where nothing smaller was tried. *Left out*: runs that say nothing because FAULT was lit before the fault came; where they are
 most of the runs, no size counts as detected.
 ";
@@ -117,14 +118,45 @@ fn detection(page: &mut String, table: &Table) -> std::fmt::Result {
             writeln!(page, "\n### {}, {}\n", now.0, now.1)?;
             writeln!(
                 page,
-                "| fault | smallest | proven | median | 95 % | cause right | at twice | left out | target | named |"
+                "| fault | smallest | proven | median | 95 % | cause right | or tied | at twice | left out | target | named |"
             )?;
-            writeln!(page, "|---|---|---|---|---|---|---|---|---|---|")?;
+            writeln!(page, "|---|---|---|---|---|---|---|---|---|---|---|")?;
             place = now;
         }
         one(page, row)?;
     }
+    pairs(page, table)?;
     limits(page, table)
+}
+
+/// The pairs that the paper leaves at 50 %.
+fn pairs(page: &mut String, table: &Table) -> std::fmt::Result {
+    let mut rows = table
+        .detection
+        .iter()
+        .filter_map(|row| Some((row, row.rival.as_ref()?)))
+        .peekable();
+    if rows.peek().is_none() {
+        return Ok(());
+    }
+    writeln!(
+        page,
+        "\n### Pairs that share a row of the paper's Table 1, at twice the smallest detected size\n\n\
+         | motor | block | fault | size | against | told apart |\n|---|---|---|---|---|---|"
+    )?;
+    for (row, rival) in rows {
+        writeln!(
+            page,
+            "| {} | {} | `{}` | {:+} % | {} | {} |",
+            row.motor,
+            row.block,
+            row.fault,
+            rival.change_percent,
+            rival.cause,
+            percent(Some(rival.told_apart))
+        )?;
+    }
+    Ok(())
 }
 
 fn one(page: &mut String, row: &Detection) -> std::fmt::Result {
@@ -146,11 +178,12 @@ fn one(page: &mut String, row: &Detection) -> std::fmt::Result {
 fn smallest(words: &str, size: &Size) -> String {
     let time = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{:.0} ms", 1000.0 * s));
     format!(
-        "{words} | {:.1} % | {} | {} | {}",
+        "{words} | {:.1} % | {} | {} | {} | {}",
         100.0 * size.probability_at_least,
         time(size.delay_median_s),
         time(size.delay_95_s),
-        percent(Some(size.cause_right))
+        percent(Some(size.cause_right)),
+        percent(Some(size.truth_named))
     )
 }
 
@@ -163,7 +196,7 @@ fn best(row: &Detection) -> String {
             size.change_percent
         )
     });
-    format!("none: {largest} | - | - | - | -")
+    format!("none: {largest} | - | - | - | - | -")
 }
 
 fn target(row: &Detection) -> String {
@@ -180,17 +213,18 @@ fn limits(page: &mut String, table: &Table) -> std::fmt::Result {
         .detection
         .iter()
         .filter(|row| row.target_met == Some(false));
-    let missed: Vec<_> = missed.filter(|row| !row.limit.is_empty()).collect();
+    let mut missed: Vec<_> = missed
+        .filter(|row| !row.limit.is_empty())
+        .map(|row| (&row.fault, &row.limit))
+        .collect();
+    missed.sort();
+    missed.dedup();
     if missed.is_empty() {
         return Ok(());
     }
     writeln!(page, "\nWhat limits the targets that are not met:\n")?;
-    for row in missed {
-        writeln!(
-            page,
-            "- `{}`, {}, {}: {}",
-            row.fault, row.motor, row.block, row.limit
-        )?;
+    for (fault, limit) in missed {
+        writeln!(page, "- `{fault}`: {limit}.")?;
     }
     Ok(())
 }

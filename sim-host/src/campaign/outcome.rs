@@ -6,10 +6,11 @@ use monitor::{
 };
 
 use super::fault::FaultKind;
+use crate::replay::TIE_RATIO;
 use crate::words;
 
-/// Probabilities closer than this are a tie: the core computes them in single precision.
-const TIE: f32 = 1e-3;
+/// Probabilities closer than this are equal: the core computes them in single precision.
+const EQUAL: f32 = 1e-3;
 
 /// What the core showed in one run.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +63,7 @@ pub struct Cause {
 /// The monitor's answer, beside the truth.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// The likeliest causes, ties joined by `|`; empty when nothing was said.
+    /// The likeliest cause and what is tied with it ([`TIE_RATIO`]), joined by `|`; empty when nothing was said.
     pub named: String,
     /// Phase of the likeliest cause; empty without one.
     pub phase: String,
@@ -72,6 +73,8 @@ pub struct Answer {
     pub truth: f64,
     /// Whether no wrong cause is as likely as the right one.
     pub name_is_right: bool,
+    /// Whether the right cause is among those named.
+    pub truth_is_named: bool,
 }
 
 impl Outcome {
@@ -127,10 +130,12 @@ impl Outcome {
             of_kind.map(|cause| cause.probability).fold(0.0, f32::max)
         };
         let best = largest(true).max(largest(false));
-        let first: Vec<&Cause> = causes
+        let mut first: Vec<&Cause> = causes
             .iter()
-            .filter(|cause| cause.probability > best - TIE)
+            .filter(|cause| f64::from(cause.probability) > f64::from(best) / TIE_RATIO)
             .collect();
+        first.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        let truth_is_named = first.iter().copied().any(is_right);
         let right = causes.iter().filter(|cause| is_right(cause));
         Answer {
             named: first
@@ -145,7 +150,8 @@ impl Outcome {
                 .to_owned(),
             probability: f64::from(best),
             truth: right.map(|cause| f64::from(cause.probability)).sum(),
-            name_is_right: largest(true) > largest(false) + TIE,
+            name_is_right: largest(true) > largest(false) + EQUAL,
+            truth_is_named,
         }
     }
 }

@@ -76,7 +76,7 @@ pub struct Row {
     pub delay_s: f64,
     /// Whether FAULT was lit at the end.
     pub lit_at_end: bool,
-    /// The likeliest cause, ties joined by `|`.
+    /// The likeliest cause and what is tied with it, joined by `|`.
     pub named: String,
     /// The phase that goes with it.
     pub named_phase: String,
@@ -86,6 +86,8 @@ pub struct Row {
     pub truth_probability: f64,
     /// Whether the true cause is likelier than any other.
     pub name_right: bool,
+    /// Whether the true cause is among those named.
+    pub truth_named: bool,
     /// Whether the phase is the right one; true where the fault has none.
     pub phase_right: bool,
 }
@@ -173,6 +175,7 @@ fn with_outcome(row: Row, run: &Run<'_>, outcome: &Outcome) -> Row {
         named_probability: answer.probability,
         truth_probability: answer.truth,
         name_right: answer.name_is_right,
+        truth_named: answer.truth_is_named,
         ..row
     }
 }

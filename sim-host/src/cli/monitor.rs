@@ -312,6 +312,20 @@ pub(super) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
                 let percent = 100.0 * candidate.probability;
                 anstream::println!("  {percent:5.1} %  {:<3} {cause}{phase}", candidate.fault);
             }
+            print_tie(verdict);
         }
+    }
+}
+
+fn print_tie(verdict: &Verdict) {
+    if verdict.tied < 2 {
+        return;
+    }
+    anstream::println!(
+        "the first {} are tied: this recording does not tell them apart. What does:",
+        verdict.tied
+    );
+    for test in &verdict.separating_tests {
+        anstream::println!("  - {test}");
     }
 }

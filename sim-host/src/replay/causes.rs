@@ -11,6 +11,10 @@ const BANDS: [f32; 3] = [0.4, 0.7, 1.0];
 /// What a band of windows cannot rule out by itself.
 const DOUBT: f64 = 1e-3;
 
+/// Causes whose probability is at least the likeliest one's divided by this are tied with it: half a decade is not worth
+/// more than a bare mention (Jeffreys, Theory of Probability, appendix B).
+pub const TIE_RATIO: f64 = 3.162_277_66;
+
 /// Sums over one band.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Band {

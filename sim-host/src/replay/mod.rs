@@ -5,6 +5,7 @@ mod samples;
 mod timeline;
 mod trace;
 
+pub use causes::TIE_RATIO;
 pub use samples::{Samples, Timed};
 pub use timeline::{
     Candidate, LampState, NotJudgedShare, SequenceSummary, Timeline, Verdict, VerdictState,

@@ -9,7 +9,7 @@ use monitor::{
 use num_complex::Complex64;
 use serde::Serialize;
 
-use super::causes::Causes;
+use super::causes::{Causes, TIE_RATIO};
 use super::trace::Trace;
 use crate::words;
 
@@ -71,8 +71,39 @@ pub struct Candidate {
 pub struct Verdict {
     /// The outcome.
     pub state: VerdictState,
-    /// Possible causes, likeliest first; equal probabilities are ties that this recording cannot break.
+    /// Possible causes, likeliest first.
     pub candidates: Vec<Candidate>,
+    /// How many of them, from the first, this recording cannot tell apart ([`TIE_RATIO`]); 1 where the first stands alone.
+    pub tied: usize,
+    /// What would tell them apart; empty without a tie.
+    pub separating_tests: Vec<&'static str>,
+}
+
+impl Verdict {
+    /// Candidates in any order.
+    fn new(state: VerdictState, mut candidates: Vec<Candidate>) -> Self {
+        candidates.sort_by(|x, y| y.probability.total_cmp(&x.probability));
+        let best = candidates.first().map_or(0.0, |first| first.probability);
+        let is_tied = |candidate: &&Candidate| candidate.probability > best / TIE_RATIO;
+        let tied = candidates.iter().take_while(is_tied).count();
+        let mut separating_tests = Vec::new();
+        if tied > 1 {
+            for test in candidates[..tied]
+                .iter()
+                .filter_map(|c| words::proof(c.fault))
+            {
+                if !separating_tests.contains(&test) {
+                    separating_tests.push(test);
+                }
+            }
+        }
+        Verdict {
+            state,
+            candidates,
+            tied,
+            separating_tests,
+        }
+    }
 }
 
 /// Sequence components over the recording. Angles refer to phase a.
@@ -281,8 +312,7 @@ impl Timeline {
         } else {
             candidates.extend(self.isolated_candidates());
         }
-        candidates.sort_by(|x, y| y.probability.total_cmp(&x.probability));
-        Verdict { state, candidates }
+        Verdict::new(state, candidates)
     }
 
     fn sensor_candidates(&self) -> Vec<Candidate> {

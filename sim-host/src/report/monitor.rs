@@ -76,12 +76,25 @@ fn candidates(result: &Place<'_>) -> Markup {
         @if !rows.is_empty() {
             section aria-labelledby="causes" {
                 h2 id="causes" { "Possible causes" }
-                p.subtle { "Equal probabilities are ties that this recording cannot break." }
                 div.wide tabindex="0" { table.bars.plain {
                     thead { tr { th scope="col" { "cause" } th scope="col" { "probability, %" } th.word scope="col" { "" } } }
                     tbody { @for row in &rows { (candidate(row)) } }
                 } }
+                (tie(result))
             }
+        }
+    }
+}
+
+fn tie(result: &Place<'_>) -> Markup {
+    let tests = result.items("verdict/separating_tests");
+    html! {
+        @if !tests.is_empty() {
+            p {
+                "The first " (shown(result, "verdict/tied", decimals(0)))
+                " are tied: this recording does not tell them apart. What does:"
+            }
+            ul { @for test in &tests { li { (test.as_text()) } } }
         }
     }
 }
@@ -94,6 +107,9 @@ fn candidate(row: &Place<'_>) -> Markup {
             th scope="row" {
                 (words::fault(name)) " (" (name) ")"
                 @if row.get("phase").is_some() { ", phase " (row.text("phase")) }
+                @if row.get("size_percent").is_some() {
+                    ", " (shown(row, "size_percent", decimals(0).signed())) " %"
+                }
             }
             td { (shown(row, "probability", decimals(1).times(100.0))) }
             td.bar { i style={ "width:" (format!("{share:.1}")) "%" } {} }
