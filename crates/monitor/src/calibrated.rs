@@ -29,7 +29,8 @@ impl Monitor {
         }
     }
 
-    /// Which cause explains a steady window.
+    /// Which cause explains a steady window. `expected`: what is known of the temperature; `near`: the rise around which
+    /// residuals are taken for straight lines.
     #[inline(never)]
     pub(crate) fn isolate(
         &self,
@@ -37,6 +38,7 @@ impl Monitor {
         [voltages, currents]: [bool; 2],
         rehearsal: &Rehearsal,
         expected: Heating,
+        near: f32,
         window: &Window,
         report: &mut Report,
     ) {
@@ -44,7 +46,7 @@ impl Monitor {
             return;
         }
         let evidence = if voltages {
-            self.evidence_of_all(healthy, rehearsal, window)
+            self.evidence_of_all(healthy, rehearsal, near, window)
         } else {
             currents.then(|| Evidence::of_currents(healthy, window))
         };
@@ -76,9 +78,7 @@ impl Monitor {
         rehearsal: &Rehearsal,
         window: &Window,
     ) -> Option<(OperatingPoint, Residuals)> {
-        let mut corrected = self.corrected(window)?;
-        corrected.params.r_s *= 1.0 + heating;
-        corrected.params.r_r *= 1.0 + heating;
+        let corrected = self.corrected_at(heating, window)?;
         let omega_el = corrected.omega_mech * self.config.mechanics.n_p;
         let frame = self.config.frame;
         let point = OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)?;
@@ -91,7 +91,7 @@ impl Monitor {
     /// components; with voltages the speed is needed too, and `None` without it.
     pub fn evidence(&self, healthy: &Healthy, window: &Window) -> Option<Evidence> {
         if window.u_s.positive.norm_sqr() > 0.0 {
-            self.evidence_of_all(healthy, &Rehearsal::default(), window)
+            self.evidence_of_all(healthy, &Rehearsal::default(), 0.0, window)
         } else {
             Some(Evidence::of_currents(healthy, window))
         }
@@ -105,7 +105,7 @@ impl Monitor {
         rehearsal: &Rehearsal,
         window: &Window,
     ) -> Option<Residuals> {
-        let evidence = self.evidence_of_all(healthy, rehearsal, window)?;
+        let evidence = self.evidence_of_all(healthy, rehearsal, 0.0, window)?;
         let heating = Isolation::of(&evidence, healthy, Heating::any(healthy)).heating;
         let (_, residuals) = self.warm_residuals(heating.rise, rehearsal, window)?;
         Some(residuals)
@@ -116,9 +116,10 @@ impl Monitor {
         &self,
         healthy: &Healthy,
         rehearsal: &Rehearsal,
+        near: f32,
         window: &Window,
     ) -> Option<Evidence> {
-        let measured = self.corrected(window)?.rehearsed(rehearsal);
+        let measured = self.corrected_at(near, window)?.rehearsed(rehearsal);
         let tau_load = self.tau_load(window);
         let model = ResidualModel {
             field: FieldCurrent::Live,
@@ -149,6 +150,7 @@ impl Monitor {
                 settling,
                 volt,
             ],
+            rise: near,
             torque_known: self.config.load == LoadKind::Friction || tau_load.is_some(),
         };
         let n_p = self.config.mechanics.n_p;

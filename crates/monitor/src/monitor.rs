@@ -1,5 +1,6 @@
 //! The monitor: one sample in, one report per supply cycle out.
 
+use motor::TParams;
 use motor::effects::Rated;
 
 use crate::block::{Axes, Codes};
@@ -276,11 +277,13 @@ impl Monitor {
         }
         if let Some(healthy) = &self.config.healthy {
             let expected = state.temperature.expected(healthy);
+            let near = state.temperature.latest();
             self.isolate(
                 healthy,
                 measured,
                 &state.rehearsal,
                 expected,
+                near,
                 window,
                 report,
             );
@@ -358,13 +361,23 @@ impl Monitor {
     }
 
     /// What one window measured, freed from physical effects.
-    #[inline(never)]
     pub(crate) fn corrected(&self, window: &Window) -> Option<Corrected> {
+        self.corrected_at(0.0, window)
+    }
+
+    /// The same with resistances that have risen by this share: an effect's law may depend on the flux behind them.
+    #[inline(never)]
+    pub(crate) fn corrected_at(&self, rise: f32, window: &Window) -> Option<Corrected> {
         let config = &self.config;
+        let params = TParams {
+            r_s: config.params.r_s * (1.0 + rise),
+            r_r: config.params.r_r * (1.0 + rise),
+            ..config.params
+        };
         Some(correct(
             &config.effects,
             self.rated,
-            &config.params,
+            &params,
             [window.u_s.positive, window.i_s.positive],
             [window.omega_sync, window.omega_mech?],
         ))

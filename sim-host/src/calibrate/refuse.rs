@@ -85,7 +85,7 @@ pub fn contradictions(
                 source.recording.name(),
                 format!(
                     "{} of {judged} steady windows, first at {:.3} s, would light FAULT after calibration: this recording is not of \
-                     the same healthy motor as the others",
+                     the same healthy motor as the others, or the model misses an effect: see what `drivemon explain` says of it",
                     alarms.len(),
                     alarms[0]
                 ),

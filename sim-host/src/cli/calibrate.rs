@@ -238,9 +238,7 @@ fn print(result: &CalibrateJson) {
         result.windows,
         result.recordings.join(", ")
     );
-    for finding in result.audits.iter().flat_map(|audit| &audit.findings) {
-        anstream::println!("  {} {}", paint::caution("audit:"), finding.detail);
-    }
+    print_findings(result);
     print_parameters(result);
     for gain in &result.gains {
         let [a, b, c] = gain.gain;
@@ -249,6 +247,26 @@ fn print(result: &CalibrateJson) {
     print_statistics(result);
     anstream::println!("\n{} is written.", result.motor_file);
     anstream::println!("  drivemon monitor REC --motor {}", result.motor_file);
+}
+
+/// What the audits found: once for all recordings where it is the same, else with the recording's name.
+fn print_findings(result: &CalibrateJson) {
+    let of_all = |detail: &str| {
+        result
+            .audits
+            .iter()
+            .all(|audit| audit.findings.iter().any(|f| f.detail == detail))
+    };
+    let word = paint::caution("audit:");
+    for (k, (name, audit)) in result.recordings.iter().zip(&result.audits).enumerate() {
+        for finding in &audit.findings {
+            match (of_all(&finding.detail), k) {
+                (true, 0) => anstream::println!("  {word} {}", finding.detail),
+                (true, _) => {}
+                (false, _) => anstream::println!("  {word} {name}: {}", finding.detail),
+            }
+        }
+    }
 }
 
 fn print_parameters(result: &CalibrateJson) {

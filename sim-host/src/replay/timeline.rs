@@ -136,6 +136,7 @@ pub struct NotJudgedShare {
 /// Residuals over the judged windows, percent of their scales.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
+    windows: u64,
     sum: [f64; 4],
     square: [f64; 4],
 }
@@ -245,6 +246,7 @@ impl Timeline {
         let Some(residuals) = report.residuals else {
             return;
         };
+        self.moments.windows += 1;
         for (k, r) in residuals.r.iter().enumerate() {
             let percent = 100.0 * f64::from(*r);
             self.moments.sum[k] += percent;
@@ -367,12 +369,12 @@ impl Timeline {
         self.sequences.summary()
     }
 
-    /// Mean and standard deviation of r1..r4 over the judged windows, percent of scale.
+    /// Mean and standard deviation of r1..r4 over the judged windows, percent of scale; `None` where none could be computed.
     pub fn residual_percent(&self) -> Option<([f64; 4], [f64; 4])> {
-        if self.judged == 0 {
+        if self.moments.windows == 0 {
             return None;
         }
-        let n = self.judged as f64;
+        let n = self.moments.windows as f64;
         let mean = self.moments.sum.map(|sum| sum / n);
         let mut deviation = self.moments.square.map(|square| square / n);
         for (square, mean) in deviation.iter_mut().zip(mean) {

@@ -23,6 +23,8 @@ pub struct Evidence {
     scatter: Rows,
     positive: Directions,
     negative: Negative,
+    /// Rise of the resistances at which all this was computed.
+    rise: f32,
 }
 
 /// How the row of the negative sequence moves, per relative change in all three phases; one phase gives a third of it,
@@ -41,6 +43,8 @@ struct Negative {
 /// Positive-sequence residuals with their directions, and how far from steady they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositiveEvidence {
+    /// Rise of the resistances with which they were computed.
+    pub rise: f32,
     pub residuals: Positive,
     pub directions: Directions,
     /// Standard deviation that changing currents and speeds add.
@@ -75,6 +79,7 @@ impl Evidence {
             scatter,
             positive: positive.directions,
             negative,
+            rise: positive.rise,
         };
         evidence.less(&healthy.mean)
     }
@@ -111,6 +116,7 @@ impl Evidence {
             scatter,
             positive: Directions::default(),
             negative,
+            rise: 0.0,
         };
         evidence.less(&mean)
     }
@@ -205,7 +211,7 @@ impl Evidence {
     pub(crate) fn departure_at(&self, rise: f32) -> Rows {
         let mut departure = self.departure;
         for (x, per_rise) in departure.iter_mut().zip(self.heating()) {
-            *x -= rise * per_rise;
+            *x -= (rise - self.rise) * per_rise;
         }
         departure
     }

@@ -32,6 +32,8 @@ pub struct Temperature {
     known: Option<Heating>,
     /// How far the rise may have moved since.
     slack: f32,
+    /// Rise that the latest window implied.
+    latest: f32,
     /// A fault that heating could be taken for is lit: time does not excuse it.
     is_frozen: bool,
 }
@@ -67,14 +69,20 @@ impl Temperature {
         }
     }
 
+    /// The rise near which the next window's residuals are best taken for straight lines: what the latest implied.
+    pub fn latest(&self) -> f32 {
+        self.latest
+    }
+
     /// Follows a window that was judged; `fault`: FAULT was lit when it came.
     pub fn follow(&mut self, isolation: &Isolation, healthy: &Healthy, fault: bool) {
+        let farthest = FARTHEST * healthy.uncertainty.heating;
+        self.latest = within(isolation.heating.rise, farthest);
         self.is_frozen = fault && isolation.at_any_temperature < healthy.significance;
         if self.is_frozen || isolation.significance > LEARNABLE * healthy.significance {
             return;
         }
         let seen = isolation.heating;
-        let farthest = FARTHEST * healthy.uncertainty.heating;
         let old = self
             .known
             .filter(|known| seen.deviation > BETTER * known.deviation);
