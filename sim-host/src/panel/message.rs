@@ -128,7 +128,7 @@ impl WindowMessage {
                 .normalised
                 .map(|r| r.map(|r| r.is_finite().then_some(r))),
             significance_sigma: isolation.map(|isolation| isolation.significance),
-            resistance_rise_percent: isolation.map(|isolation| 100.0 * isolation.heating),
+            resistance_rise_percent: isolation.map(|isolation| 100.0 * isolation.heating.rise),
             causes: likely_causes(report, plate.load_friction),
             operation: Operation::new(report, plate),
             vectors: report
