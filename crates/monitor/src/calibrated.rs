@@ -2,7 +2,9 @@
 
 use crate::config::LoadKind;
 use crate::frames::magnitude;
-use crate::isolation::{Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence};
+use crate::isolation::{
+    Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, Temperature,
+};
 use crate::monitor::{Monitor, MonitorState};
 use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::report::Report;
@@ -29,16 +31,14 @@ impl Monitor {
         }
     }
 
-    /// Which cause explains a steady window. `expected`: what is known of the temperature; `near`: the rise around which
-    /// residuals are taken for straight lines.
+    /// Which cause explains a steady window.
     #[inline(never)]
     pub(crate) fn isolate(
         &self,
         healthy: &Healthy,
         [voltages, currents]: [bool; 2],
         rehearsal: &Rehearsal,
-        expected: Heating,
-        near: f32,
+        temperature: &Temperature,
         window: &Window,
         report: &mut Report,
     ) {
@@ -46,10 +46,11 @@ impl Monitor {
             return;
         }
         let evidence = if voltages {
-            self.evidence_of_all(healthy, rehearsal, near, window)
+            self.evidence_of_all(healthy, rehearsal, temperature.latest(), window)
         } else {
             currents.then(|| Evidence::of_currents(healthy, window))
         };
+        let expected = temperature.expected(healthy);
         report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy, expected));
         if let Some(isolation) = report.isolation {
             self.evaluate_warm(isolation.heating.rise, rehearsal, window, report);
@@ -111,6 +112,7 @@ impl Monitor {
         Some(residuals)
     }
 
+    /// `near`: the rise of the resistances around which residuals are taken for straight lines.
     #[inline(never)]
     fn evidence_of_all(
         &self,

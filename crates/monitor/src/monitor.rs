@@ -276,14 +276,11 @@ impl Monitor {
             self.evaluate(&state.rehearsal, window, report);
         }
         if let Some(healthy) = &self.config.healthy {
-            let expected = state.temperature.expected(healthy);
-            let near = state.temperature.latest();
             self.isolate(
                 healthy,
                 measured,
                 &state.rehearsal,
-                expected,
-                near,
+                &state.temperature,
                 window,
                 report,
             );
