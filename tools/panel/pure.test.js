@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { groups, named } from "../../sim-host/assets/panel/causes.js";
-import { airy, decimals, symmetric } from "../../sim-host/assets/panel/charts.js";
+import { airy, decimals, following, symmetric } from "../../sim-host/assets/panel/charts.js";
 import { switched } from "../../sim-host/assets/panel/controls.js";
 import { lasting, likely } from "../../sim-host/assets/panel/events.js";
 import { clock, either, fixed, percent, shown } from "../../sim-host/assets/panel/format.js";
@@ -151,4 +151,9 @@ test("arrows: d to the right, q upwards, rated voltage at the rim, never far bey
 
 test("ticks have as many digits as they need", () => {
   assert.deepEqual([50, 1, 0.5, 0.25, 0.1, 0.02].map(decimals), [0, 0, 1, 2, 1, 2]);
+});
+
+test("a time axis fills from the left, then follows", () => {
+  assert.deepEqual(following(2, 3, 10), { min: 2, max: 12 });
+  assert.deepEqual(following(2, 30, 10), { min: 20, max: 30 });
 });

@@ -66,6 +66,17 @@ export function airy(least, most, zero) {
 }
 
 /**
+ * The part of the time axis in sight: it fills from the left, then follows the newest value.
+ * @param {number} first
+ * @param {number} last
+ * @param {number} span seconds
+ */
+export function following(first, last, span) {
+  const max = Math.max(last, first + span);
+  return { min: max - span, max };
+}
+
+/**
  * Digits behind the point that ticks of this distance need.
  * @param {number} step
  */
@@ -170,8 +181,8 @@ export class Chart {
   range(plot) {
     const [t] = this.data;
     if (t.length === 0) return;
-    const max = t[t.length - 1];
-    plot.setScale("x", { min: this.span > 0 ? max - this.span : t[0], max });
+    const [first, last] = [t[0], t[t.length - 1]];
+    plot.setScale("x", this.span > 0 ? following(first, last, this.span) : { min: first, max: last });
   }
 
   /**

@@ -13,7 +13,7 @@ import { leading } from "./lamps.js";
  */
 export function likely(event) {
   if (event.findings.length > 0) return event.findings.join("; ");
-  const names = leading(event.causes).map((cause) => cause.words + (cause.phase ? ` ${cause.phase}` : ""));
+  const names = leading(event.causes).map((cause) => cause.words + (cause.phase ? ` in phase ${cause.phase}` : ""));
   return either(names) || "–";
 }
 

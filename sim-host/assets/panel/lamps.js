@@ -77,7 +77,7 @@ export function headline(window, calibrated) {
   const todo = advice(lamps, calibrated);
   const found = window.findings.map(sentence).join(" ");
   if (lamps.fault === "on") {
-    const top = leading(window.causes).map((cause) => cause.words + (cause.phase ? ` ${cause.phase}` : ""));
+    const top = leading(window.causes).map((cause) => cause.words + (cause.phase ? ` in phase ${cause.phase}` : ""));
     const why = top.length > 0 ? `Likeliest: ${either(top)}.` : window.not_judged ? sentence(window.not_judged) : "";
     return { mood: "bad", title: "Fault", why: [found, why].filter(Boolean).join(" "), todo };
   }

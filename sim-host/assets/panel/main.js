@@ -116,6 +116,7 @@ function connection(state) {
   const pill = byId("connection");
   pill.dataset.state = state;
   say(pill, state === "open" ? "live" : "reconnecting …");
+  if (state !== "open") lost = 0;
   document.body.classList.toggle("stale", state !== "open");
 }
 
@@ -227,6 +228,7 @@ listen({
   wave: (message) => (wave = message),
   lost: (messages) => {
     lost += messages;
-    byId("connection").title = `${lost} messages were lost because this page was too slow`;
+    say(byId("connection"), `live, ${lost} messages lost`);
+    byId("connection").title = "this page could not follow; the source did not wait for it";
   },
 });

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use motor::MotorFile;
-use recording::{Expectation, Source as Read, audit};
+use recording::{Audit, Expectation, Source as Read, audit};
 use tokio::sync::watch;
 
 use super::failure::{Failure, Finding};
@@ -180,6 +180,9 @@ impl Panel {
             Expectation::from(&motor.nameplate)
         });
         let audit = audit(&recording, &expectation);
+        if !audit.supported {
+            return Err(Failure::Unsupported(why_not(path, &audit)));
+        }
         let source = ReplayedSource::new(recording, audit, motor.is_some());
         Ok((Box::new(source), motor))
     }
@@ -203,6 +206,13 @@ fn simulated(motor: Option<MotorFile>) -> Result<(Box<dyn Source>, Option<MotorF
     let source = SimulatedSource::of_motor(motor.clone());
     let source = source.map_err(|error| Failure::Usage(error.to_string()))?;
     Ok((Box::new(source), Some(motor)))
+}
+
+/// What makes a recording unusable, in the words of its audit.
+fn why_not(path: &Path, audit: &Audit) -> String {
+    let refusing = audit.findings.iter().filter(|finding| finding.refuses);
+    let details: Vec<&str> = refusing.map(|finding| finding.detail.as_str()).collect();
+    format!("{}: {}", path.display(), details.join(" "))
 }
 
 /// Opens a page in the usual browser; where there is none, the printed address is enough.

@@ -161,3 +161,52 @@ fn what_cannot_be_done_is_said() {
             .is_some_and(|words| words.contains("recording"))
     );
 }
+
+#[test]
+fn a_calibrated_motor_names_phase_and_size() {
+    let server = Server::start(&[
+        "--motor",
+        "motors/assumed-300w-calibrated.toml",
+        "--speed",
+        "4",
+    ]);
+    let address = server.address.as_str();
+    let faults = "{\"faults\": [{\"name\": \"Rsa\", \"change_percent\": 100}]}";
+    assert_eq!(post(address, "/api/faults", faults).status, 204);
+    let cause = || get(address, "/api/events").json()[0]["causes"][0].clone();
+    until("the cause", || cause()["phase"] == "a");
+    until("its size", || {
+        let size = cause()["size_percent"].as_f64().unwrap_or(0.0);
+        // As drivemon monitor estimates it; the first windows still contain the healthy motor.
+        (80.0..110.0).contains(&size)
+    });
+    assert_eq!(cause()["name"], "Rs");
+    let row = get(address, "/api/history")
+        .json()
+        .as_array()
+        .and_then(|rows| rows.last().cloned());
+    let sigma = row.and_then(|row| row["significance_sigma"].as_f64());
+    assert!(sigma.is_some_and(|sigma| sigma > 5.0), "{sigma:?}");
+}
+
+#[test]
+fn a_recording_that_the_audit_refuses_is_not_played() {
+    let path = std::env::temp_dir().join(format!("drivemon-rms-{}.csv", std::process::id()));
+    let rows = (0..3000).map(|k| format!("{},231,230,229,1,1,1,5\n", f64::from(k) * 1e-4));
+    let text: String = std::iter::once("t,va,vb,vc,ia,ib,ic,speed\n".to_owned())
+        .chain(rows)
+        .collect();
+    std::fs::write(&path, text).expect("written");
+    let name = path.to_str().expect("UTF-8");
+    let (code, said) = refused(&[
+        "--port",
+        "0",
+        "--replay",
+        name,
+        "--motor",
+        "motors/assumed-300w.toml",
+    ]);
+    std::fs::remove_file(&path).expect("it was made");
+    assert_eq!(code, Some(3), "{said}");
+    assert!(said.contains("effective values"), "{said}");
+}

@@ -119,3 +119,98 @@ impl Source for BoardSource {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::SourceError;
+    use ::board::MAX_FRAME_BYTES;
+    use monitor::{Lamp, Lamps, NotJudged, Report, Residuals, Window};
+
+    /// A link that delivers these bytes and then nothing.
+    struct Canned(Vec<u8>);
+
+    impl Link for Canned {
+        fn read(&mut self) -> Result<Vec<u8>, SourceError> {
+            Ok(std::mem::take(&mut self.0))
+        }
+    }
+
+    fn report() -> Report {
+        let mut report = Report {
+            sample_index: 25_000,
+            window: Some(Window {
+                omega_sync: 376.99,
+                omega_mech: Some(183.5),
+                ..Window::default()
+            }),
+            residuals: Some(Residuals {
+                r: [0.012, 0.0, 0.0, -0.006],
+                ..Residuals::default()
+            }),
+            ..Report::default()
+        };
+        report.lamps = Lamps {
+            run: Lamp::On,
+            r: [Lamp::On, Lamp::Off, Lamp::Off, Lamp::On],
+            fault: Lamp::On,
+            ..Lamps::default()
+        };
+        report
+    }
+
+    fn windows(reports: &[Report]) -> Vec<WindowMessage> {
+        let bytes = (0..).zip(reports).flat_map(|(k, report)| {
+            let frame = Frame::new(report, k, 3_300);
+            frame.encode(&mut [0; MAX_FRAME_BYTES]).to_vec()
+        });
+        let text = include_str!("../../../../motors/assumed-300w.toml");
+        let motor = MotorFile::parse(text, "motor").expect("it ships");
+        let link = Box::new(Canned(bytes.collect()));
+        let mut source = BoardSource::new(link, "port".into(), Some(motor));
+        let mut windows = Vec::new();
+        let mut take = |item| match item {
+            Item::Judged(window) => windows.push(*window),
+            other => panic!("{other:?}"),
+        };
+        assert!(source.advance(0.0, &mut take).expect("a sound link"));
+        windows
+    }
+
+    #[test]
+    fn a_board_s_window_is_told_with_its_lamps_and_numbers() {
+        let [window] = windows(&[report()]).try_into().expect("one window");
+        assert_eq!(window.lamps.lit(), ["r1", "r4", "fault"]);
+        assert_eq!((window.t_s, window.not_judged.as_deref()), (2.5, None));
+        let over = window.r_over_threshold.expect("residuals");
+        // Thresholds of r1 and r4: 0.6 % and 0.3 %.
+        assert!(
+            (over[0].expect("r1") - 2.0).abs() < 1e-3 && (over[3].expect("r4") + 2.0).abs() < 1e-3
+        );
+        let slip = window.operation.slip_percent.expect("a speed");
+        assert!(
+            (slip - 100.0 * (1.0 - 2.0 * 183.5 / 376.99)).abs() < 1e-3,
+            "{slip}"
+        );
+    }
+
+    #[test]
+    fn the_reason_of_a_window_that_was_not_judged_is_told() {
+        let reports = [NotJudged::Transient, NotJudged::NoSpeed].map(|reason| Report {
+            not_judged: Some(reason),
+            ..report()
+        });
+        let told = windows(&reports)
+            .into_iter()
+            .map(|window| window.not_judged);
+        let expected = [NotJudged::Transient, NotJudged::NoSpeed]
+            .map(|reason| Some(words::not_judged(reason)));
+        assert_eq!(told.collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn no_other_parameters_can_be_tried_on_a_board() {
+        let source = BoardSource::new(Box::new(Canned(Vec::new())), "port".into(), None);
+        assert!(source.config(None).is_none() && !source.info().can.parameters);
+    }
+}

@@ -30,6 +30,7 @@ pub async fn all(page: &Page) {
     page.click("#faults-off").await;
     page.until_lamps("run").await;
     parameters(page).await;
+    calibrated(page).await;
     replay(page).await;
     page.size(1400, 1000).await;
 }
@@ -48,6 +49,32 @@ async fn parameters(page: &Page) {
     page.run("document.querySelector('#parameters-card').scrollIntoView({block: 'center'})")
         .await;
     take(page, "panel-parameters").await;
+}
+
+/// Cause, phase and size.
+async fn calibrated(page: &Page) {
+    let server = Server::start(&[
+        "--motor",
+        "motors/assumed-300w-calibrated.toml",
+        "--speed",
+        "2",
+    ]);
+    page.size(1400, 800).await;
+    page.go(&server.url()).await;
+    page.until_lamps("run").await;
+    tokio::time::sleep(FILL / 2).await;
+    page.fill("#fault-size", "100").await;
+    page.click("#faults-card summary").await;
+    page.click("label[for=fault-Rsa]").await;
+    page.until(
+        "the cause",
+        "document.querySelector('#causes [data-cause=Rs]')",
+    )
+    .await;
+    tokio::time::sleep(FILL / 2).await;
+    page.run("scrollTo(0, 0)").await;
+    take(page, "panel-calibrated").await;
+    drop(server);
 }
 
 async fn replay(page: &Page) {

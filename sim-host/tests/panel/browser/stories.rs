@@ -184,6 +184,11 @@ pub async fn the_keyboard_and_a_screen_reader_suffice(page: &Page) {
     )
     .await;
     page.click("#pause").await;
+    page.until(
+        "motion",
+        "document.querySelector('#pause').textContent === 'Pause'",
+    )
+    .await;
 }
 
 /// The server goes away and another one comes on the same port.
