@@ -177,6 +177,14 @@ pub async fn the_keyboard_and_a_screen_reader_suffice(page: &Page) {
         "document.querySelector('#chart-residuals .follow').hidden",
     )
     .await;
+    page.run("HTMLAnchorElement.prototype.click = function () { window.saved_ = this.download; }")
+        .await;
+    page.click("#chart-residuals button[title]").await;
+    page.until(
+        "a picture of the chart",
+        "window.saved_ === 'residuals.png'",
+    )
+    .await;
     page.click("#pause").await;
     page.until(
         "standstill",
