@@ -51,7 +51,7 @@ impl Tracked<'_> {
                 None => {
                     known = None;
                     // A step in time can be more samples than there are numbers for.
-                    at = at.saturating_add(self.step_when_lost());
+                    at = at.saturating_add(self.step_when_lost()).min(self.t.len());
                 }
             }
         }
