@@ -267,8 +267,12 @@ impl Monitor {
     /// Everything that one complete window can say, and whether thresholds may be applied to it.
     fn examine(&self, state: &mut MonitorState, window: &Window, report: &mut Report) {
         let measured @ [voltages, currents] = state.measured;
-        report.sensor = self.check_channels(measured, window);
-        if voltages && self.health.has_supply(window) {
+        // What stands in for numbers that are none is no evidence of a dead sensor.
+        let numbers = window.invalid_samples == 0;
+        if numbers {
+            report.sensor = self.check_channels(measured, window);
+        }
+        if numbers && voltages && self.health.has_supply(window) {
             report.supply = self.supply.check(window);
         }
         report.not_judged = self.obstacle(measured, window, report);

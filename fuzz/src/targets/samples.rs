@@ -27,8 +27,7 @@ fn monitors() -> &'static [Monitor; 2] {
 }
 
 /// Steps of four bytes: what, how long, and two values. Whatever comes: no panic; a window that is judged holds finite
-/// numbers; FAULT comes on in judged windows or with SENSOR: numbers that are none, however long,
-/// are a matter of the sensor.
+/// numbers; FAULT comes on in judged windows or with SENSOR, and never in a window with a sample that is no number.
 pub(crate) fn monitor(bytes: &[u8]) {
     for monitor in monitors() {
         let mut state = MonitorState::default();
@@ -154,6 +153,13 @@ impl Watch {
         // docs/lamps.md: r1..r4 or SENSOR, and r1..r4 move in judged windows only.
         let reason = report.is_judged() || report.lamps.sensor == Lamp::On;
         assert!(!comes || reason, "FAULT came on in {report:?}");
+        let numbers = report
+            .window
+            .is_none_or(|window| window.invalid_samples == 0);
+        assert!(
+            !comes || numbers,
+            "FAULT came on without numbers: {report:?}"
+        );
         assert!(
             !fault || self.sound_seen,
             "FAULT without a number: {report:?}"

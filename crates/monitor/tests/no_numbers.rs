@@ -1,0 +1,116 @@
+//! Samples that are no numbers, for as long as they come, are not judged: they are no dead sensor and no fault.
+
+use std::f32::consts::TAU;
+
+use monitor::{
+    Abc, ComparatorConfig, Converter, FieldCurrent, Frame, Lamp, LoadKind, Monitor, MonitorConfig,
+    MonitorState, NotJudged, Report, Sample, SpeedSample,
+};
+use motor::{Mechanics, TParams};
+
+const T_SAMPLE: f32 = 1e-4;
+const OMEGA: f32 = TAU * 50.0;
+
+fn config() -> MonitorConfig {
+    MonitorConfig {
+        t_sample: T_SAMPLE,
+        converter: Converter::bipolar(600.0, 20.0, 12),
+        encoder_counts_per_revolution: 4096.0,
+        params: TParams {
+            r_s: 3.7,
+            r_r: 2.3,
+            l_ls: 0.0107,
+            l_lr: 0.0107,
+            l_m: 0.234,
+        },
+        effects: Default::default(),
+        channel_gain: [1.0; 6],
+        mechanics: Mechanics {
+            n_p: 2.0,
+            inertia: 0.015,
+            friction: 0.0,
+            load_friction: 0.065,
+        },
+        rated_voltage: 326.6,
+        rated_current: 7.07,
+        rated_omega: OMEGA,
+        rated_torque: 14.6,
+        frame: Frame::RotorFlux,
+        field: FieldCurrent::Live,
+        load: LoadKind::Friction,
+        thresholds: [0.006, 0.05, 0.04, 0.003],
+        window_cycles: 5,
+        comparator: ComparatorConfig {
+            persistence: 3,
+            hysteresis: 0.8,
+        },
+        healthy: None,
+    }
+}
+
+fn sine(amplitude: f32, angle: f32) -> Abc {
+    let phase = |turn: f32| amplitude * (angle - turn * TAU / 3.0).sin();
+    Abc {
+        a: phase(0.0),
+        b: phase(1.0),
+        c: phase(2.0),
+    }
+}
+
+fn sound(k: usize) -> Sample {
+    let angle = (OMEGA * T_SAMPLE * k as f32) % TAU;
+    Sample {
+        u_s_abc: Some(sine(326.6, angle)),
+        i_s_abc: Some(sine(5.0, angle - 0.7)),
+        speed: SpeedSample::RadPerSecond(152.0),
+        tau_load: None,
+        clipped: Default::default(),
+    }
+}
+
+/// A second of sound samples, a second of damaged ones; the reports of the latter.
+fn reports(damage: impl Fn(&mut Sample)) -> Vec<Report> {
+    let monitor = Monitor::new(config()).expect("a valid configuration");
+    let mut state = MonitorState::default();
+    let mut reports = Vec::new();
+    for k in 0..20_000 {
+        let mut sample = sound(k);
+        if k >= 10_000 {
+            damage(&mut sample);
+        }
+        let report = monitor.update(&mut state, &sample);
+        reports.extend(report.filter(|_| k >= 10_200));
+    }
+    assert!(reports.len() > 5, "{} reports", reports.len());
+    reports
+}
+
+fn assert_not_judged(reports: &[Report], what: &str) {
+    for report in reports {
+        assert!(report.not_judged.is_some(), "{what}: {report:?}");
+        let new = report.sensor.is_some() || report.lamps.sensor == Lamp::On;
+        assert!(!new, "{what}: {report:?}");
+    }
+    let invalid = reports
+        .iter()
+        .filter(|r| r.not_judged == Some(NotJudged::Invalid));
+    assert!(invalid.count() > 0, "{what}: never called what it is");
+}
+
+#[test]
+fn a_channel_that_stays_no_number_is_not_judged() {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let voltage = reports(|sample| {
+            if let Some(u) = &mut sample.u_s_abc {
+                u.b = bad;
+            }
+        });
+        assert_not_judged(&voltage, "voltage b");
+        let current = reports(|sample| {
+            if let Some(i) = &mut sample.i_s_abc {
+                i.c = bad;
+            }
+        });
+        assert_not_judged(&current, "current c");
+    }
+}
