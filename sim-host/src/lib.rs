@@ -8,6 +8,7 @@ pub mod live;
 pub mod motor_text;
 pub mod operating_points;
 pub mod overlay;
+#[cfg(feature = "panel")]
 pub mod panel;
 pub mod replay;
 pub mod report;

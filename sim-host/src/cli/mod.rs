@@ -13,6 +13,7 @@ mod live;
 mod monitor;
 mod output;
 mod paint;
+#[cfg(feature = "panel")]
 mod panel;
 mod places;
 mod progress;
@@ -66,6 +67,7 @@ enum Command {
     Adopt(adopt::Adopt),
     Campaign(campaign::Campaign),
     Calibrate(calibrate::Calibrate),
+    #[cfg(feature = "panel")]
     Panel(panel::Panel),
     Flash(flash::Flash),
 }
@@ -82,6 +84,7 @@ impl Cli {
             Command::Adopt(adopt) => adopt.run(),
             Command::Campaign(campaign) => campaign.run(),
             Command::Calibrate(calibrate) => calibrate.run(),
+            #[cfg(feature = "panel")]
             Command::Panel(panel) => panel.run(),
             Command::Flash(flash) => flash.run(),
         };
