@@ -83,11 +83,20 @@ fn short(teacher: Teacher) -> Effort {
 
 /// Screens all effects on top of `base` and refits the most promising.
 ///
+/// `tell` hears which of the two is being done.
 /// `nominal` is the same hypothesis with the nominals at their beliefs, from which a fit that settled in a
 /// wrong valley starts again.
-pub(crate) fn round(study: &Study, base: &Trial, nominal: &Hypothesis, excluded: &[&str]) -> Round {
+pub(crate) fn round(
+    study: &Study,
+    base: &Trial,
+    nominal: &Hypothesis,
+    excluded: &[&str],
+    tell: &mut dyn FnMut(&str),
+) -> Round {
     let (case, belief) = (&study.fitted.case, &study.belief);
+    tell("screening all effects");
     let groups = ranked(&screen(case, belief, &base.fit, excluded), STARTS);
+    tell("refitting the likeliest");
     let error = study.fold_error(&base.folds);
     let (likely, rest) = promising(study, &base.fit, &groups, error);
     let mut candidates = confirm(study, base, &likely);

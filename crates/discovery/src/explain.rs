@@ -68,10 +68,11 @@ pub(crate) fn explain(
     let mut first = None;
     let mut base = baseline.clone();
     for number in 0..MOST_EFFECTS {
-        progress("trying all effects", 0.15 + 0.2 * number as f64);
-        let mut found = round(study, &base, &at_beliefs(&base), excluded);
+        let share = 0.15 + 0.2 * number as f64;
+        let mut tell = |what: &str| progress(what, share);
+        let mut found = round(study, &base, &at_beliefs(&base), excluded, &mut tell);
         if let Some(deeper) = deeper_valley(study, &base, &found) {
-            found = round(study, &deeper, &at_beliefs(&deeper), excluded);
+            found = round(study, &deeper, &at_beliefs(&deeper), excluded, &mut tell);
             base = deeper;
         }
         if steps.is_empty() {

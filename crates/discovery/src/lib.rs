@@ -33,6 +33,7 @@ pub use api::{Progress, adopt, explain, explain_without};
 pub use case::Unsupported;
 pub use compare::compare;
 pub use frame::{FrameBand, FrameReport};
+pub use predict::simulations;
 pub use question::Error;
 pub use report::{
     AdoptReport, BandReport, CompareReport, ErrorReport, ExplainReport, FitReport, NominalReport,

@@ -5,6 +5,15 @@ use crate::case::{Case, N_CHANNELS};
 use crate::table::{self, Point};
 use motor::effects::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Recordings simulated by this process so far.
+static SIMULATIONS: AtomicU64 = AtomicU64::new(0);
+
+/// How many times this process has simulated a recording: what a search costs, whatever the machine.
+pub fn simulations() -> u64 {
+    SIMULATIONS.load(Ordering::Relaxed)
+}
 
 /// How the speed is treated in a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +26,7 @@ pub(crate) enum Teacher {
 
 /// Simulates a plant on the inputs of a case.
 pub(crate) fn run(case: &Case, plant: &Plant, inputs: &Inputs, teacher: Teacher) -> Outputs {
+    SIMULATIONS.fetch_add(1, Ordering::Relaxed);
     let speed = match teacher {
         _ if case.speed_is_input => SpeedSource::Imposed(&case.speed),
         Teacher::On(rate) if !case.speed.is_empty() => SpeedSource::Observed(&case.speed, rate),
