@@ -5,7 +5,7 @@ use crate::case::{Case, Unsupported};
 use crate::study::Study;
 use motor::MotorFile;
 use motor::effects::{Rated, from_motor_file};
-use recording::{Audit, Expectation, LoadTorque, Source, audit};
+use recording::{Audit, Expectation, LoadTorque, Source, audit, with_sound_probes};
 use std::fmt;
 
 /// Why nothing can be answered.
@@ -69,7 +69,7 @@ impl Question {
             if let Some(reason) = refusal(&audit) {
                 return Err(Error::Unsupported(Box::new(audit), reason));
             }
-            cases.push(case_of(source, &belief.plant.rated).map_err(refuse)?);
+            cases.push(case_of(source, &audit, &belief.plant.rated).map_err(refuse)?);
         }
         if cases
             .iter()
@@ -95,9 +95,9 @@ fn measures_torque(source: &Source) -> bool {
     rec.torque().is_some() && rec.metadata.load_torque != LoadTorque::Friction
 }
 
-fn case_of(source: &Source, rated: &Rated<f64>) -> Result<Case, Unsupported> {
+fn case_of(source: &Source, audit: &Audit, rated: &Rated<f64>) -> Result<Case, Unsupported> {
     match source {
-        Source::Recording(recording) => Case::new(recording, rated),
+        Source::Recording(recording) => Case::new(&with_sound_probes(recording, audit), rated),
         Source::LoadTable(table) => Case::of_table(table, rated),
     }
 }

@@ -19,7 +19,7 @@ mod suggest;
 mod units;
 mod write;
 
-pub use audit::{Audit, Code, Expectation, Finding, audit};
+pub use audit::{Audit, Code, Expectation, Finding, audit, with_sound_probes};
 pub use channel::{Channel, Quantity, Signal};
 pub use error::{Class, Error, Problem};
 pub use load_table::{LoadPoint, LoadTable, TableColumn};

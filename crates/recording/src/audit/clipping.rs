@@ -253,7 +253,7 @@ fn remedy(context: &Context<'_>, channel: Channel) -> String {
             .any(|clipped| clipped.channel == second);
     if !channel.second && spare {
         return format!(
-            "The second probe {second} does not clip: read it with --column {channel}={second}."
+            "The second probe {second} does not clip: compare, explain and adopt take it; for the lamps read it with --column {channel}={second}."
         );
     }
     let what = match channel.signal {

@@ -15,6 +15,7 @@ mod gap;
 mod missing;
 mod not_locked;
 mod offset;
+mod probes;
 mod rms_values;
 mod sequence;
 mod speed;
@@ -28,6 +29,7 @@ mod zero_sequence;
 
 pub use expectation::Expectation;
 pub use finding::{Audit, Code, Finding};
+pub use probes::with_sound_probes;
 
 use crate::recording::Recording;
 use context::Context;
