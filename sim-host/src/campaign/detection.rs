@@ -24,6 +24,8 @@ pub struct Detection {
     pub direction: &'static str,
     /// Runs that say nothing because FAULT was lit before the fault came.
     pub lit_before: Share,
+    /// Runs that say nothing because the motor stalled or swung with the fault and was never judged.
+    pub unsteady: Share,
     /// The sizes, from small to large.
     pub sizes: Vec<Size>,
     /// The smallest size from which on 99 of 100 runs are detected, percent.
@@ -76,6 +78,8 @@ pub struct Size {
     pub isolated: Share,
     /// Runs that say nothing because FAULT was lit before.
     pub lit_before: u64,
+    /// Runs that say nothing because the motor stalled or swung.
+    pub unsteady: u64,
 }
 
 impl Detection {
@@ -147,6 +151,7 @@ fn one_fault(about: &About, group: &[&Row]) -> Detection {
         fault: first.fault.clone(),
         direction,
         lit_before: Share::count(group.iter().map(|row| row.lit_before)),
+        unsteady: Share::count(group.iter().map(|row| row.is_unsteady())),
         smallest_percent: smallest,
         or_smaller: direction != "dead"
             && sizes.first().map(|size| size.change_percent) == smallest,
@@ -193,15 +198,18 @@ fn size(change_percent: f64, rows: &[&Row]) -> Size {
         truth_named: Share::count(found.iter().map(|row| row.truth_named)),
         isolated: Share::count(found.iter().map(|row| row.is_isolated())),
         lit_before: rows.iter().filter(|row| row.lit_before).count() as u64,
+        unsteady: rows.iter().filter(|row| row.is_unsteady()).count() as u64,
     }
 }
 
 /// The smallest size from which on every size is detected. Where FAULT was lit before in most of the runs, the few that
-/// are left are no evidence: their alarm would have come anyway.
+/// are left are no evidence: their alarm would have come anyway. Sizes with which most motors stall are beyond the scale.
 fn smallest(sizes: &[Size]) -> Option<f64> {
     let is_evidence = |size: &Size| size.detected.of > size.lit_before;
     let is_detected = |size: &&Size| is_evidence(size) && size.detected.value() >= DETECTED;
-    let from = sizes.iter().rev().take_while(is_detected).last();
+    let stalls = |size: &&Size| size.unsteady > size.detected.of + size.lit_before;
+    let judged = sizes.iter().rev().skip_while(stalls);
+    let from = judged.take_while(is_detected).last();
     from.map(|size| size.change_percent)
 }
 

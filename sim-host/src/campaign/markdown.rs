@@ -22,7 +22,8 @@ that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays coun
 is likelier than any other, at the smallest size; *or tied*: or at most \
 half a decade less likely than the likeliest; *at twice*: cause and phase, at the first size that is at least twice the smallest.
 `<=` stands where nothing smaller was tried. *Left out*: runs that say nothing because FAULT was lit before the fault came; where they are
-most of the runs, no size counts as detected.
+most of the runs, no size counts as detected. *Unsteady*: runs that say nothing because the motor stalled or swung with the fault, so that nothing
+was judged; sizes with which most motors do so are beyond the scale.
 ";
 
 /// The page for some campaigns.
@@ -118,9 +119,9 @@ fn detection(page: &mut String, table: &Table) -> std::fmt::Result {
             writeln!(page, "\n### {}, {}\n", now.0, now.1)?;
             writeln!(
                 page,
-                "| fault | smallest | proven | median | 95 % | cause right | or tied | at twice | left out | target | named |"
+                "| fault | smallest | proven | median | 95 % | cause right | or tied | at twice | left out | unsteady | target | named |"
             )?;
-            writeln!(page, "|---|---|---|---|---|---|---|---|---|---|---|")?;
+            writeln!(page, "|---|---|---|---|---|---|---|---|---|---|---|---|")?;
             place = now;
         }
         one(page, row)?;
@@ -164,12 +165,13 @@ fn one(page: &mut String, row: &Detection) -> std::fmt::Result {
     let isolated = row.isolation().map(|size| size.isolated);
     writeln!(
         page,
-        "| `{}` {words} | {} | {} | {} | {} | {} |",
+        "| `{}` {words} | {} | {} | {} | {} | {} | {} |",
         row.fault,
         row.smallest()
             .map_or_else(|| best(row), |size| smallest(&size_of(row), size)),
         percent(isolated),
         percent(Some(row.lit_before)),
+        percent(Some(row.unsteady)),
         target(row),
         cell(&named(&row.named, 4))
     )

@@ -92,6 +92,9 @@ pub struct Row {
     pub phase_right: bool,
 }
 
+/// Windows that a fault needs to be judged in, three of them for the lamp's persistence.
+const STEADY_WINDOWS: u32 = 10;
+
 const PHASES: [&str; 3] = ["a", "b", "c"];
 
 impl Row {
@@ -106,7 +109,19 @@ impl Row {
 
     /// Whether the fault was there and could be detected.
     pub fn is_a_try(&self) -> bool {
-        !self.fault.is_empty() && self.not_run.is_empty() && !self.lit_before
+        self.is_faulty() && !self.lit_before && !self.is_unsteady()
+    }
+
+    /// Whether the motor stalled or swung with the fault: nothing to judge, and nothing lit.
+    pub fn is_unsteady(&self) -> bool {
+        let judged = self
+            .judged_windows
+            .saturating_sub(self.healthy_judged_windows);
+        self.is_faulty() && !self.detected && judged < STEADY_WINDOWS
+    }
+
+    fn is_faulty(&self) -> bool {
+        !self.fault.is_empty() && self.not_run.is_empty()
     }
 
     /// Whether fault and phase were named rightly.

@@ -13,6 +13,7 @@ fn row(percent: f64, detected: bool) -> Row {
         phase: "a".to_owned(),
         change_percent: percent,
         healthy_judged_windows: 20,
+        judged_windows: 50,
         detected,
         delay_s: if detected { 0.1 } else { f64::NAN },
         named: if detected { "Iq" } else { "" }.to_owned(),
@@ -84,6 +85,19 @@ fn directions_and_dead_sensors_stand_apart() {
     assert_eq!(found("-"), (Some(-2.0), Some(5.0), true));
     assert_eq!(found("+"), (None, Some(5.0), false));
     assert_eq!(found("dead"), (Some(-100.0), Some(100.0), false));
+}
+
+#[test]
+fn a_motor_that_stalls_says_nothing_about_detection() {
+    let stalled = |row: Row| Row {
+        judged_windows: 20,
+        ..row
+    };
+    let rows = many(10.0, 10, 10).chain(many(50.0, 10, 0).map(stalled));
+    let table = Table::of(&results(rows.collect()));
+    let fault = &table.detection[0];
+    assert_eq!(fault.smallest_percent, Some(10.0));
+    assert_eq!((fault.unsteady.count, fault.sizes[1].detected.of), (10, 0));
 }
 
 #[test]
