@@ -1,7 +1,7 @@
-// Turns every <figure data-chart> into a uPlot chart. All numbers come from the result embedded in the page.
-(() => {
+// Turns every <figure data-chart> below an element into a uPlot chart. All numbers come from one result.
+// A report page draws the result that it carries; the panel draws what it has been sent, and removes it again.
+globalThis.drawFigures = (root, result) => {
   "use strict";
-  const result = JSON.parse(document.getElementById("result").textContent);
   const MOST_TABLE_ROWS = 400;
   const POWERS = [-1000, -100, -10, -1, 0, 1, 10, 100, 1000];
   const charts = [];
@@ -228,12 +228,35 @@
     figure.querySelector(".reset").addEventListener("click", () => zoomOut(entry));
     const details = figure.querySelector("details");
     details.addEventListener("toggle", () => details.open && numbers(entry, details.querySelector(".numbers")));
-    const fit = () => size(entry.box, chart).width === entry.plot.width || entry.plot.setSize(size(entry.box, chart));
-    new ResizeObserver(() => requestAnimationFrame(fit)).observe(entry.box);
+    const fit = () => entry.box.clientWidth === 0 || size(entry.box, chart).width === entry.plot.width || entry.plot.setSize(size(entry.box, chart));
+    entry.observer = new ResizeObserver(() => requestAnimationFrame(fit));
+    entry.observer.observe(entry.box);
   }
 
-  document.querySelectorAll("figure[data-chart]").forEach(start);
+  /** Draws the figures whose description names a part of the result that is another one now. */
+  function redraw(path) {
+    for (const entry of charts.filter(({ figure }) => figure.dataset.chart.includes(`"${path}`))) {
+      entry.data = table(entry.chart);
+      build(entry);
+    }
+  }
+
+  function remove() {
+    dark.removeEventListener("change", rebuild);
+    for (const { observer, plot } of charts) {
+      observer.disconnect();
+      plot.destroy();
+    }
+  }
+
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  dark.addEventListener("change", () => charts.forEach(build));
-  document.documentElement.dataset.charts = String(charts.length);
-})();
+  const rebuild = () => charts.forEach(build);
+  root.querySelectorAll("figure[data-chart]").forEach(start);
+  dark.addEventListener("change", rebuild);
+  return { count: charts.length, redraw, remove };
+};
+
+{
+  const embedded = document.getElementById("result");
+  if (embedded) document.documentElement.dataset.charts = String(globalThis.drawFigures(document, JSON.parse(embedded.textContent)).count);
+}

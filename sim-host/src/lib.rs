@@ -14,4 +14,5 @@ pub mod replay;
 pub mod report;
 pub mod scenario;
 pub mod simulate;
+pub mod study;
 pub mod words;

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use discovery::AdoptReport;
-use serde::Serialize;
 
 use super::explain::print_frame;
 use super::failure::{Failure, Finding};
@@ -13,8 +12,8 @@ use super::study::{
     StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain, with_progress,
 };
 use crate::motor_text;
-use crate::overlay::{Model, Overlay, TableOverlay};
 use crate::report::Subject;
+use crate::study::{Adopted, PARAMETERS};
 
 /// Add a physical effect to a motor file, refit everything, and show the error before and after.
 ///
@@ -41,46 +40,19 @@ Exit codes: 0 the gain is proven on data that was not fitted, 1 it is not (the f
 
 /// Longest bar, characters.
 const WIDTH: usize = 36;
-/// The name that adds nothing.
-const PARAMETERS: &str = "parameters";
-
-/// Everything that `drivemon adopt` says.
-#[derive(Debug, Serialize)]
-struct AdoptJson {
-    recordings: Vec<String>,
-    motor: String,
-    next_command: String,
-    #[serde(flatten)]
-    report: AdoptReport,
-    overlay: Option<Overlay>,
-    table_overlay: Option<TableOverlay>,
-}
 
 impl Adopt {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
-        let (mut report, adopted) =
-            with_progress(|progress| discovery::adopt(&self.effect, &sources, &motor, progress))?;
+        let names = self.study.names();
+        let inputs = self.study.inputs(&names, &sources, &motor);
+        let (mut result, adopted) =
+            with_progress(|progress| Adopted::new(&self.effect, inputs, progress))?;
         self.write_motor(&adopted)?;
-        report.motor_file = self.out.display().to_string();
-        let models = [
-            Model::believed(&motor),
-            Model::new(format!("with {}", self.effect), &adopted),
-        ];
-        let result = AdoptJson {
-            recordings: self.study.names(),
-            motor: motor.name.clone(),
-            next_command: self.next(),
-            overlay: sources
-                .last()
-                .and_then(|source| Overlay::new(source, &models)),
-            table_overlay: sources
-                .last()
-                .and_then(|source| TableOverlay::new(source, &motor, &models)),
-            report,
-        };
+        result.report.motor_file = self.out.display().to_string();
+        result.next_command = self.next();
         if !self.study.output.takes_stdout() {
             print(&result);
         }
@@ -112,7 +84,7 @@ impl Adopt {
     }
 }
 
-fn print(result: &AdoptJson) {
+fn print(result: &Adopted) {
     let report = &result.report;
     anstream::println!(
         "{} with {} on {}",

@@ -2,13 +2,12 @@
 
 use clap::Args;
 use discovery::{CompareReport, SignalReport};
-use serde::Serialize;
 
 use super::failure::{Failure, Finding};
 use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
 use super::{paint, places};
-use crate::overlay::{Model, Overlay, TableOverlay};
 use crate::report::{AGREES, Subject};
+use crate::study::{Compared, worst};
 
 /// Compare the model of a motor file with a recording: how far off, in which signal, and where.
 ///
@@ -27,35 +26,15 @@ Examples:
   drivemon compare rec.csv.gz --motor motor.toml --report compare.html     with figures
 Exit codes: 0 the model agrees within 10 % of the noise, 1 it does not, 2 bad input, 3 the audit refused.";
 
-/// Everything that `drivemon compare` says.
-#[derive(Debug, Serialize)]
-struct CompareJson {
-    recording: String,
-    motor: String,
-    next_command: String,
-    #[serde(flatten)]
-    report: CompareReport,
-    overlay: Option<Overlay>,
-    table_overlay: Option<TableOverlay>,
-}
-
 impl Compare {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
-        let report = with_progress(|progress| discovery::compare(&sources, &motor, progress))?;
-        let models = [Model::believed(&motor)];
-        let result = CompareJson {
-            recording: self.study.names().remove(0),
-            motor: motor.name.clone(),
-            next_command: format!("drivemon explain {}", self.study.typed()),
-            overlay: report
-                .overall
-                .and_then(|_| Overlay::new(&sources[0], &models)),
-            table_overlay: TableOverlay::new(&sources[0], &motor, &models),
-            report,
-        };
+        let names = self.study.names();
+        let inputs = self.study.inputs(&names, &sources, &motor);
+        let next = format!("drivemon explain {}", self.study.typed());
+        let result = with_progress(|progress| Compared::new(inputs, next, progress))?;
         if !self.study.output.takes_stdout() {
             print(&result);
         }
@@ -72,7 +51,7 @@ fn finding(report: &CompareReport) -> Finding {
     }
 }
 
-fn print(result: &CompareJson) {
+fn print(result: &Compared) {
     let report = &result.report;
     anstream::println!(
         "{} against {}, nothing refitted",
@@ -94,7 +73,7 @@ fn print(result: &CompareJson) {
     }
     if !report.regions.is_empty() {
         anstream::println!("It is furthest off:");
-        places::print(&places::worst(report));
+        places::print(&worst(report));
     }
     print_signals(&report.signals);
     if error > AGREES {

@@ -2,19 +2,15 @@
 
 use clap::Args;
 use discovery::{ExplainReport, FitReport, FrameReport, RankReport, StepReport, Verdict};
-use motor::MotorFile;
-use recording::Source;
-use serde::Serialize;
 
 use super::failure::{Failure, Finding};
-use super::places::Place;
 use super::study::{
     StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain, with_progress,
     wrapped,
 };
 use super::{paint, places};
-use crate::overlay::{Model, Overlay, TableOverlay};
 use crate::report::Subject;
+use crate::study::{Explained, anything_off};
 
 /// Find out which physical effect the model misses, and prove it on data that was not fitted.
 ///
@@ -41,49 +37,15 @@ const LEAST_GAIN_PERCENT: f64 = 0.5;
 /// Longest bar, characters.
 const WIDTH: usize = 36;
 
-/// Everything that `drivemon explain` says.
-#[derive(Debug, Serialize)]
-struct ExplainJson {
-    recordings: Vec<String>,
-    motor: String,
-    next: Next,
-    /// The worst places of the first recording, with the model as the motor file says.
-    where_it_fails: Vec<Place>,
-    #[serde(flatten)]
-    report: ExplainReport,
-    overlay: Option<Overlay>,
-    table_overlay: Option<TableOverlay>,
-}
-
-/// What to do next.
-#[derive(Debug, Serialize)]
-struct Next {
-    why: String,
-    command: Option<String>,
-}
-
 impl Explain {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
-        let report = with_progress(|progress| discovery::explain(&sources, &motor, progress))?;
-        let models = Model::of_explanation(&motor, &report);
-        let result = ExplainJson {
-            recordings: self.study.names(),
-            motor: motor.name.clone(),
-            next: self.next(&report),
-            where_it_fails: where_it_fails(&sources, &motor, &report)?,
-            overlay: sources
-                .last()
-                .filter(|_| report.baseline.is_some())
-                .and_then(|source| Overlay::new(source, &models)),
-            table_overlay: sources
-                .last()
-                .filter(|_| report.baseline.is_some())
-                .and_then(|source| TableOverlay::new(source, &motor, &models)),
-            report,
-        };
+        let names = self.study.names();
+        let inputs = self.study.inputs(&names, &sources, &motor);
+        let adopt = |name: &str| Some(self.adopt(name));
+        let result = with_progress(|progress| Explained::new(inputs, &adopt, progress))?;
         if !self.study.output.takes_stdout() {
             print(&result);
         }
@@ -91,60 +53,10 @@ impl Explain {
         Ok(finding(&result.report))
     }
 
-    fn next(&self, report: &ExplainReport) -> Next {
-        let adopt = |name: &str| {
-            let file = self.study.new_motor_file(name);
-            Some(format!(
-                "drivemon adopt {name} {} -o {file}",
-                self.study.typed()
-            ))
-        };
-        let (why, command) = match (report.verdict, report.steps.first()) {
-            (Verdict::Effect, Some(step)) => (
-                format!("Add {} to the model:", step.effect),
-                adopt(&step.effect),
-            ),
-            (Verdict::Ambiguous, Some(step)) => (
-                "Measure first what separates them, or take the first of the tie:".to_owned(),
-                adopt(&step.effect),
-            ),
-            (Verdict::Adequate, _) if anything_off(report) => (
-                "Take over the refitted parameters:".to_owned(),
-                adopt("parameters"),
-            ),
-            (Verdict::Adequate, _) => ("Nothing to do: the model is adequate.".to_owned(), None),
-            (Verdict::Unsupported, _) => ("Record again as the audit says.".to_owned(), None),
-            (Verdict::Implausible, _) => (
-                "Check nameplate, connection and scales of the sensors before anything else."
-                    .to_owned(),
-                None,
-            ),
-            _ => (
-                "Record more of what the description names, with a second load and a second voltage. \
-                 If you suspect what it is, write it as a formula into the motor file: docs/adding-an-effect.md."
-                    .to_owned(),
-                None,
-            ),
-        };
-        Next { why, command }
+    fn adopt(&self, name: &str) -> String {
+        let file = self.study.new_motor_file(name);
+        format!("drivemon adopt {name} {} -o {file}", self.study.typed())
     }
-}
-
-fn where_it_fails(
-    sources: &[Source],
-    motor: &MotorFile,
-    report: &ExplainReport,
-) -> Result<Vec<Place>, Failure> {
-    if report.baseline.is_none() {
-        return Ok(Vec::new());
-    }
-    let compared = with_progress(|progress| discovery::compare(sources, motor, progress))?;
-    Ok(places::worst(&compared))
-}
-
-fn anything_off(report: &ExplainReport) -> bool {
-    let last = report.final_.iter().flat_map(|fit| &fit.parameters);
-    last.into_iter().any(|parameter| parameter.off)
 }
 
 fn finding(report: &ExplainReport) -> Finding {
@@ -155,7 +67,7 @@ fn finding(report: &ExplainReport) -> Finding {
     }
 }
 
-fn print(result: &ExplainJson) {
+fn print(result: &Explained) {
     let report = &result.report;
     anstream::println!(
         "{} against {}",

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use monitor::MAX_EFFECTS;
 use motor::MotorFile;
 use recording::{Mapping, Source};
 
 use super::failure::Failure;
 use super::progress;
+use crate::study::effects_fit;
 
 /// How the columns of the file become channels in SI units. A sidecar `x.toml` beside `x.csv.gz` says the same things.
 #[derive(Debug, Default, Args)]
@@ -98,12 +98,6 @@ impl InputArgs {
 /// Everything that is wrong with it.
 pub fn read_motor(path: &Path) -> Result<MotorFile, Failure> {
     let motor = MotorFile::read(path)?;
-    if motor.effects.len() > MAX_EFFECTS {
-        let (file, count) = (path.display(), motor.effects.len());
-        let message = format!(
-            "{file}: effects: {count} of them, but the core takes at most {MAX_EFFECTS}; remove the smallest"
-        );
-        return Err(Failure::Usage(message));
-    }
+    effects_fit(&path.display().to_string(), &motor).map_err(Failure::Usage)?;
     Ok(motor)
 }

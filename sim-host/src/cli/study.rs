@@ -12,6 +12,7 @@ use super::input::{InputArgs, read_motor};
 use super::output::OutputArgs;
 use super::{paint, progress};
 use crate::report::{Style, decimals, significant};
+use crate::study::Inputs;
 
 /// Recordings, the motor file, and where results go.
 #[derive(Debug, Args)]
@@ -58,6 +59,20 @@ impl StudyArgs {
     pub fn names(&self) -> Vec<String> {
         let names = self.recordings.iter();
         names.map(|path| path.display().to_string()).collect()
+    }
+
+    /// What a question is asked about.
+    pub fn inputs<'a>(
+        &self,
+        names: &'a [String],
+        sources: &'a [Source],
+        motor: &'a MotorFile,
+    ) -> Inputs<'a> {
+        Inputs {
+            names,
+            sources,
+            motor,
+        }
     }
 
     /// The recordings and the motor file as they are typed behind a subcommand.

@@ -109,6 +109,35 @@ impl Overlay {
             blocks,
         })
     }
+
+    /// The same under the name by which people know the recording.
+    pub fn named(self, name: Option<&String>) -> Overlay {
+        Overlay {
+            recording: name.cloned().unwrap_or(self.recording),
+            ..self
+        }
+    }
+
+    /// Measured and modelled signals from one instant to another, s; every sample unless they are too many.
+    /// `None` as for [`Overlay::new`], and where the stretch holds no samples.
+    pub fn part(source: &Source, models: &[Model], from_s: f64, to_s: f64) -> Option<Traces> {
+        let Source::Recording(recording) = source else {
+            return None;
+        };
+        let drive = Drive::new(recording, &models.first()?.plant.rated)?;
+        let rows = drive.rows_around(0.5 * (from_s + to_s), to_s - from_s);
+        if rows.len() < 2 {
+            return None;
+        }
+        let outputs: Vec<Outputs> = models.iter().map(|model| drive.run(&model.plant)).collect();
+        let board = Board {
+            recording,
+            drive: &drive,
+            outputs: &outputs,
+        };
+        let every = rows.len().div_ceil(ROWS);
+        Some(board.traces(rows, every))
+    }
 }
 
 /// Everything that is laid over each other.

@@ -46,6 +46,14 @@ pub struct Quantities {
 }
 
 impl TableOverlay {
+    /// The same under the name by which people know the table.
+    pub fn named(self, name: Option<&String>) -> TableOverlay {
+        TableOverlay {
+            recording: name.cloned().unwrap_or(self.recording),
+            ..self
+        }
+    }
+
     /// Runs the models on a load table; `None` for recordings over time.
     pub fn new(source: &Source, motor: &MotorFile, models: &[Model]) -> Option<TableOverlay> {
         let Source::LoadTable(table) = source else {

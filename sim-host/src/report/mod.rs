@@ -52,8 +52,43 @@ pub enum Subject {
 /// A result that is no JSON.
 pub fn page(subject: Subject, result: &impl Serialize) -> Result<String, serde_json::Error> {
     let value = serde_json::to_value(result)?;
-    let place = Place::root(&value);
-    let (title, content) = match subject {
+    let (title, content) = content(subject, &value);
+    Ok(shell::page(
+        title,
+        &content,
+        &serde_json::to_string(&value)?,
+    ))
+}
+
+/// What a page holds between heading and footer, for pages that have their own.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fragment {
+    /// The heading.
+    pub title: &'static str,
+    /// HTML without scripts; figures are drawn by `report.js` from `result`.
+    pub html: String,
+    /// The result that every number comes from.
+    pub result: serde_json::Value,
+}
+
+/// The fragment for a result.
+///
+/// # Errors
+/// A result that is no JSON.
+pub fn fragment(subject: Subject, result: &impl Serialize) -> Result<Fragment, serde_json::Error> {
+    let result = serde_json::to_value(result)?;
+    let (title, content) = content(subject, &result);
+    Ok(Fragment {
+        title,
+        html: content.into_string(),
+        result,
+    })
+}
+
+/// Heading and content.
+fn content(subject: Subject, value: &serde_json::Value) -> (&'static str, maud::Markup) {
+    let place = Place::root(value);
+    match subject {
         Subject::Demo => ("Table 1 on a simulated motor", demo::content(&place)),
         Subject::Monitor => ("What the lamps would have shown", monitor::content(&place)),
         Subject::LoadTable => (
@@ -67,10 +102,5 @@ pub fn page(subject: Subject, result: &impl Serialize) -> Result<String, serde_j
             "What the lamps can be trusted with",
             campaign::content(&place),
         ),
-    };
-    Ok(shell::page(
-        title,
-        &content,
-        &serde_json::to_string(&value)?,
-    ))
+    }
 }

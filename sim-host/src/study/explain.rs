@@ -1,0 +1,130 @@
+//! Which physical effect a model misses.
+
+use discovery::{Error, ExplainReport, Progress, Verdict};
+use serde::Serialize;
+
+use super::places::{Place, worst};
+use super::{Inputs, PARAMETERS};
+use crate::overlay::{Model, Overlay, TableOverlay};
+
+/// Share of the work that the search takes; the rest goes into the worst places.
+const SEARCH: f64 = 0.9;
+
+/// Everything that an explanation says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Explained {
+    /// The recordings.
+    pub recordings: Vec<String>,
+    /// The motor's name.
+    pub motor: String,
+    /// What to do next.
+    pub next: Next,
+    /// The worst places of the first recording, with the model as the motor file says.
+    pub where_it_fails: Vec<Place>,
+    /// The explanation itself.
+    #[serde(flatten)]
+    pub report: ExplainReport,
+    /// Measured and modelled signals of the last recording.
+    pub overlay: Option<Overlay>,
+    /// The same for a load table.
+    pub table_overlay: Option<TableOverlay>,
+}
+
+/// What to do next.
+#[derive(Clone, Debug, Serialize)]
+pub struct Next {
+    /// In words.
+    pub why: String,
+    /// The name to adopt, where there is one.
+    pub adopt: Option<String>,
+    /// What to type, where there is something.
+    pub command: Option<String>,
+}
+
+impl Explained {
+    /// Searches the missing effect; `command` gives what to type for adopting a name.
+    ///
+    /// # Errors
+    /// As [`discovery::explain`].
+    pub fn new(
+        inputs: Inputs<'_>,
+        command: &dyn Fn(&str) -> Option<String>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Self, Error> {
+        let Inputs {
+            names,
+            sources,
+            motor,
+        } = inputs;
+        let searched = discovery::explain(sources, motor, &mut |what, share| {
+            progress(what, SEARCH * share)
+        });
+        let report = searched?;
+        let judged = sources.last().filter(|_| report.baseline.is_some());
+        let models = Model::of_explanation(motor, &report);
+        let where_it_fails = match judged {
+            Some(_) => worst(&discovery::compare(sources, motor, &mut |what, share| {
+                progress(what, SEARCH + (1.0 - SEARCH) * share);
+            })?),
+            None => Vec::new(),
+        };
+        Ok(Explained {
+            recordings: names.to_vec(),
+            motor: motor.name.clone(),
+            next: Next::new(&report, command),
+            where_it_fails,
+            overlay: judged
+                .and_then(|source| Overlay::new(source, &models))
+                .map(|overlay| overlay.named(names.last())),
+            table_overlay: judged
+                .and_then(|source| TableOverlay::new(source, motor, &models))
+                .map(|overlay| overlay.named(names.last())),
+            report,
+        })
+    }
+}
+
+impl Next {
+    fn new(report: &ExplainReport, command: &dyn Fn(&str) -> Option<String>) -> Next {
+        let (why, adopt) = match (report.verdict, report.steps.first()) {
+            (Verdict::Effect, Some(step)) => (
+                format!("Add {} to the model:", step.effect),
+                Some(step.effect.clone()),
+            ),
+            (Verdict::Ambiguous, Some(step)) => (
+                "Measure first what separates them, or take the first of the tie:".to_owned(),
+                Some(step.effect.clone()),
+            ),
+            (Verdict::Adequate, _) if anything_off(report) => (
+                "Take over the refitted parameters:".to_owned(),
+                Some(PARAMETERS.to_owned()),
+            ),
+            (verdict, _) => (nothing_to_adopt(verdict).to_owned(), None),
+        };
+        Next {
+            command: adopt.as_deref().and_then(command),
+            why,
+            adopt,
+        }
+    }
+}
+
+fn nothing_to_adopt(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Adequate => "Nothing to do: the model is adequate.",
+        Verdict::Unsupported => "Record again as the audit says.",
+        Verdict::Implausible => {
+            "Check nameplate, connection and scales of the sensors before anything else."
+        }
+        _ => {
+            "Record more of what the description names, with a second load and a second voltage. \
+             If you suspect what it is, write it as a formula into the motor file: docs/adding-an-effect.md."
+        }
+    }
+}
+
+/// Whether a refitted parameter is far from what was believed.
+pub fn anything_off(report: &ExplainReport) -> bool {
+    let last = report.final_.iter().flat_map(|fit| &fit.parameters);
+    last.into_iter().any(|parameter| parameter.off)
+}
