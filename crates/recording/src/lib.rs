@@ -25,7 +25,7 @@ pub use error::{Class, Error, Problem};
 pub use load_table::{LoadPoint, LoadTable, TableColumn};
 pub use mapping::{ColumnMap, Mapping, Origin, Target};
 pub use metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
-pub use read::{Source, read_any, read_load_table, read_recording};
+pub use read::{Preview, Source, preview, read_any, read_load_table, read_recording};
 pub use recording::Recording;
 pub use sidecar::{Sidecar, sidecar_path};
 pub use source::Progress;

@@ -46,20 +46,43 @@ const FORMATS: [Format; 3] = [
 /// Bytes that tell a format.
 const HEAD: u64 = 512;
 
-/// Opens a file of any format and reads its header.
-///
-/// # Errors
-/// A file that is damaged, or of another format than its name says.
-pub(super) fn open(path: &Path, mapping: &Mapping) -> Result<Box<dyn TableFile>, Error> {
+/// The format that a file's name means, and the one that its content is; neither for CSV.
+struct Found {
+    by_name: Option<&'static Format>,
+    by_content: Option<&'static Format>,
+    is_empty: bool,
+}
+
+fn find(path: &Path) -> Result<Found, Error> {
     let head = head(path)?;
     let extension = extension(path);
     // A table that is called .dat, and has no .cfg, is a table.
     let is_table = extension == "dat" && !comtrade::has_configuration(path);
     let named = |format: &&Format| !is_table && format.extensions.contains(&extension.as_str());
-    let by_name = FORMATS.iter().find(named);
-    let by_content = FORMATS.iter().find(|format| (format.is)(&head));
-    match (by_name, by_content) {
-        (Some(format), _) if head.is_empty() => Err(empty(path, format)),
+    Ok(Found {
+        by_name: FORMATS.iter().find(named),
+        by_content: FORMATS.iter().find(|format| (format.is)(&head)),
+        is_empty: head.is_empty(),
+    })
+}
+
+/// Whether a file is read as lines of text, compressed or not.
+///
+/// # Errors
+/// A file that cannot be opened.
+pub(super) fn is_text(path: &Path) -> Result<bool, Error> {
+    let found = find(path)?;
+    Ok(found.by_name.is_none() && found.by_content.is_none())
+}
+
+/// Opens a file of any format and reads its header.
+///
+/// # Errors
+/// A file that is damaged, or of another format than its name says.
+pub(super) fn open(path: &Path, mapping: &Mapping) -> Result<Box<dyn TableFile>, Error> {
+    let found = find(path)?;
+    match (found.by_name, found.by_content) {
+        (Some(format), _) if found.is_empty => Err(empty(path, format)),
         (Some(format), Some(content)) if format.name != content.name => {
             Err(misnamed(path, content))
         }

@@ -11,6 +11,7 @@ mod header;
 mod mat;
 mod parquet;
 mod plan;
+mod preview;
 mod table;
 mod table_file;
 
@@ -23,6 +24,7 @@ use crate::sidecar::Sidecar;
 use crate::source::Progress;
 use header::Header;
 use plan::Plan;
+pub use preview::{Preview, preview};
 use std::collections::BTreeMap;
 use std::path::Path;
 use table::Kind;
