@@ -11,6 +11,10 @@ import { clock, either, fixed, percent, shown } from "../../sim-host/assets/pane
 import { advice, headline } from "../../sim-host/assets/panel/lamps.js";
 import { changed } from "../../sim-host/assets/panel/parameters.js";
 import { Series, firstAfter } from "../../sim-host/assets/panel/series.js";
+import { columnsOf } from "../../sim-host/assets/panel/workbench/columns.js";
+import { inWords, sorted } from "../../sim-host/assets/panel/workbench/recordings.js";
+import { worstOf } from "../../sim-host/assets/panel/workbench/regions.js";
+import { adoptable } from "../../sim-host/assets/panel/workbench/results.js";
 import { arrows, polar, tip } from "../../sim-host/assets/panel/vectors.js";
 
 /** @typedef {import("../../sim-host/assets/panel/messages").WindowMessage} WindowMessage */
@@ -156,4 +160,36 @@ test("ticks have as many digits as they need", () => {
 test("a time axis fills from the left, then follows", () => {
   assert.deepEqual(following(2, 3, 10), { min: 2, max: 12 });
   assert.deepEqual(following(2, 30, 10), { min: 20, max: 30 });
+});
+
+test("a form of columns says what was said and nothing else", () => {
+  const form = new FormData();
+  for (const [name, value] of [["column-ia", " I1 "], ["unit-ia", "mA"], ["column-ib", ""], ["delimiter", ";"], ["decimal_comma", "on"], ["sample_rate_hz", "5000"]]) form.append(name, value);
+  const columns = columnsOf(form);
+  assert.deepEqual([columns.column, columns.unit, columns.scale], [{ ia: "I1" }, { ia: "mA" }, {}]);
+  const wrong = new FormData();
+  wrong.append("sample_rate_hz", "many");
+  assert.throws(() => columnsOf(wrong), /"many" is no number/);
+  assert.deepEqual([columns.delimiter, columns.decimal_comma, columns.line_voltages, columns.sample_rate_hz, columns.pulses_per_revolution], [";", true, false, 5000, null]);
+});
+
+test("a sidecar is told from its recording by its name", () => {
+  const files = [{ name: "x.TOML" }, { name: "x.csv.gz" }];
+  assert.deepEqual(sorted(files), { recording: files[1], sidecar: files[0] });
+  assert.deepEqual(sorted([files[0]]), { recording: undefined, sidecar: files[0] });
+  assert.equal(inWords({ kind: "recording", samples: 5000, sample_rate_hz: 5000, duration_s: 1, channels: ["ia", "ib"], notes: [] }), "1.00 s at 5.00 kHz: ia, ib");
+});
+
+test("what was found is offered first, and each name once", () => {
+  const result = { overlay: null, next: { adopt: "core-loss" }, steps: [{ effect: "core-loss", tied_with: ["windage", "stator resistance"] }], ranking: [{ effect: "windage" }, { effect: "skin-effect" }] };
+  assert.deepEqual(adoptable(result), ["core-loss", "windage", "skin-effect"]);
+});
+
+test("a band opens at the block of it that is furthest off", () => {
+  const block = (/** @type {number} */ t, /** @type {number} */ load_percent, /** @type {number} */ error) => ({ t, load_percent, voltage_percent: 100, slip_percent: null, frequency_hz: 25, current_error_amp: [error] });
+  const result = { overlay: { close: { t: [], signals: [] }, blocks: [block(1, 50, 2), block(2, -60, 3), block(3, 90, 9)] } };
+  const found = worstOf(result, { quantity: "load", from_percent: 50, to_percent: 75 }, 50);
+  assert.ok(found && Math.abs(found.from_s - 1.94) < 1e-9 && Math.abs(found.to_s - 2.06) < 1e-9);
+  assert.equal(worstOf(result, { quantity: "slip", from_percent: 0, to_percent: 5 }, 50), null);
+  assert.equal(worstOf(result, { quantity: "frequency", from_percent: 50, to_percent: 75 }, 50)?.from_s, 3 - 0.06);
 });

@@ -96,9 +96,9 @@ pub async fn bind(options: &Options, session: Arc<Session>) -> Result<Running, P
 
 fn router(session: Arc<Session>, guard: Arc<Guard>) -> Router {
     Router::new()
-        .merge(api::router(session))
+        .merge(api::router(session.clone()))
         .layer(DefaultBodyLimit::max(MOST_BODY_BYTES))
-        .merge(workbench::router())
+        .merge(workbench::router(session))
         .merge(assets::router())
         .fallback(assets::nowhere)
         .layer(middleware::from_fn_with_state(guard, check))

@@ -6,3 +6,4 @@ mod life;
 mod server;
 mod slow;
 mod strangers;
+mod workbench;

@@ -1,8 +1,92 @@
-//! The workbench: load recordings, compare, explain, adopt. It brings its own routes and state.
+//! The workbench: load recordings, compare, explain, adopt, save. It brings its own routes and state.
+//!
+//! One desk for all pages of a panel: two recordings, one motor file, one question at a time. What the questions
+//! answer is what the commands answer; what is shown of it is what their reports show.
 
-use axum::Router;
+mod desk;
+mod jobs;
+mod mapping;
+mod motors;
+mod recordings;
+mod regions;
+mod slot;
+mod upload;
+
+use std::sync::Arc;
+
+use axum::extract::{DefaultBodyLimit, Path, State};
+use axum::http::StatusCode;
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+
+use super::session::{Refusal, Session};
+use desk::{Bench, Kind};
+
+/// Requests apart from files: a mapping, a choice.
+const MOST_REQUEST_BYTES: usize = 64 * 1024;
 
 /// Its routes, all under `/api/workbench/`; the server merges them behind its guard.
-pub fn router() -> Router {
+pub fn router(session: Arc<Session>) -> Router {
+    let files = Router::new()
+        .route(
+            "/api/workbench/recordings/{slot}/file",
+            post(recordings::file),
+        )
+        // The handler counts for itself and says its bound.
+        .layer(DefaultBodyLimit::disable());
     Router::new()
+        .route("/api/workbench/state", get(state))
+        .route(
+            "/api/workbench/recordings/{slot}/sidecar",
+            post(recordings::sidecar),
+        )
+        .route(
+            "/api/workbench/recordings/{slot}/mapping",
+            post(recordings::mapping),
+        )
+        .route(
+            "/api/workbench/recordings/{slot}/remove",
+            post(recordings::remove),
+        )
+        .route("/api/workbench/motor", post(motors::choose))
+        .route("/api/workbench/motor/file", post(motors::file))
+        .route("/api/workbench/motor/undo", post(motors::undo))
+        .route("/api/workbench/motor.toml", get(motors::save))
+        .route("/api/workbench/jobs", post(jobs::begin))
+        .route("/api/workbench/results/{kind}", get(result))
+        .route("/api/workbench/region", get(regions::region))
+        .layer(DefaultBodyLimit::max(MOST_REQUEST_BYTES))
+        .merge(files)
+        .with_state(Bench::new(session))
+}
+
+async fn state(State(bench): State<Arc<Bench>>) -> Response {
+    Json(bench.state()).into_response()
+}
+
+async fn result(State(bench): State<Arc<Bench>>, Path(kind): Path<Kind>) -> Response {
+    match bench.desk().results.get(&kind) {
+        Some(json) => ([(CONTENT_TYPE, "application/json")], json.to_string()).into_response(),
+        None => refused(&Refusal {
+            status: 404,
+            ..Refusal::of("there is no such result")
+        }),
+    }
+}
+
+/// The answer to a request that was refused.
+fn refused(refusal: &Refusal) -> Response {
+    let status = StatusCode::from_u16(refusal.status);
+    let status = status.unwrap_or(StatusCode::UNPROCESSABLE_ENTITY);
+    (status, Json(refusal)).into_response()
+}
+
+/// The state after a request, or why it was refused.
+fn answer(bench: &Bench, done: Result<(), Refusal>) -> Response {
+    match done {
+        Ok(()) => Json(bench.state()).into_response(),
+        Err(refusal) => refused(&refusal),
+    }
 }

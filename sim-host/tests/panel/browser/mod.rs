@@ -2,6 +2,7 @@
 //!
 //! `UPDATE_SCREENSHOTS=1 cargo test -p sim-host --test panel browser` writes the pictures of docs/images anew.
 
+mod bench;
 mod driver;
 mod measure;
 mod page;
@@ -39,6 +40,15 @@ fn a_person_uses_the_panel() {
         if std::env::var_os("UPDATE_SCREENSHOTS").is_some() {
             shots::all(&page).await;
         }
+        page.assert_silent().await;
+    });
+}
+
+#[test]
+fn a_drive_engineer_uses_the_workbench() {
+    visit(|page| async move {
+        let pictures = std::env::var_os("UPDATE_SCREENSHOTS").is_some();
+        bench::a_hidden_effect_is_found_and_adopted(&page, pictures).await;
         page.assert_silent().await;
     });
 }

@@ -119,6 +119,23 @@ impl Page {
         found.send_keys(text).await.expect("an input");
     }
 
+    /// Chooses files in a file input.
+    pub async fn choose(&self, css: &str, files: &[std::path::PathBuf]) {
+        let found = self
+            .client
+            .find(Locator::Css(css))
+            .await
+            .expect("it is there");
+        let names: Vec<String> = files
+            .iter()
+            .map(|file| file.display().to_string())
+            .collect();
+        found
+            .send_keys(&names.join("\n"))
+            .await
+            .expect("a file input");
+    }
+
     /// Presses keys on what has the focus.
     pub async fn press(&self, keys: &str) {
         let active = self.client.active_element().await.expect("a focus");

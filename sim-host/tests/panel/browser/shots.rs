@@ -77,6 +77,34 @@ async fn calibrated(page: &Page) {
     drop(server);
 }
 
+/// The desk with its recordings; the columns of the first are open.
+pub async fn desk(page: &Page) {
+    page.run("document.querySelector('[data-slot=\"0\"] .mapping').open = true")
+        .await;
+    whole(page, "panel-workbench-load", 1500).await;
+    page.size(1400, 1000).await;
+}
+
+/// The upper part of an answer.
+pub async fn answer(page: &Page, name: &str) {
+    page.size(1500, 1400).await;
+    page.run(
+        "document.querySelector('#answer').scrollIntoView({block: 'start', behavior: 'instant'})",
+    )
+    .await;
+    tokio::time::sleep(Duration::from_millis(800)).await;
+    take(page, name).await;
+    page.size(1400, 1000).await;
+}
+
+/// The desk on a telephone, dark.
+pub async fn narrow_bench(page: &Page) {
+    scheme(page, "dark").await;
+    whole(page, "panel-workbench-narrow", 360).await;
+    scheme(page, "light").await;
+    page.size(1400, 1000).await;
+}
+
 async fn replay(page: &Page) {
     let peer = "tests/data/peer/supply-unbalance/recording.csv.gz";
     let server = Server::start(&[
@@ -100,7 +128,7 @@ async fn scheme(page: &Page, value: &str) {
 }
 
 /// The page from top to bottom.
-async fn whole(page: &Page, name: &str, width: u32) {
+pub async fn whole(page: &Page, name: &str, width: u32) {
     page.size(width, 900).await;
     tokio::time::sleep(Duration::from_millis(400)).await;
     let height = page

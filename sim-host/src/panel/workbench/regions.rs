@@ -1,0 +1,38 @@
+//! The signals of one part of the recording, every sample.
+
+use std::sync::Arc;
+
+use axum::Json;
+use axum::extract::{Query, State};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+
+use super::desk::Bench;
+use super::refused;
+use crate::overlay::{Model, Overlay};
+use crate::panel::session::Refusal;
+
+/// From where to where, s.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) struct Part {
+    from_s: f64,
+    to_s: f64,
+}
+
+/// Measured and modelled signals of the first recording, with the motor file as it is.
+pub(super) async fn region(State(bench): State<Arc<Bench>>, Query(part): Query<Part>) -> Response {
+    let (_, sources) = bench.desk().sources();
+    let Some((source, motor)) = sources.into_iter().next().zip(bench.motor()) else {
+        return refused(&Refusal::of(
+            "load a recording and choose a motor file first",
+        ));
+    };
+    let work = move || {
+        let models = [Model::believed(&motor.motor)];
+        Overlay::part(&source, &models, part.from_s, part.to_s)
+    };
+    match tokio::task::spawn_blocking(work).await.ok().flatten() {
+        Some(traces) => Json(traces).into_response(),
+        None => refused(&Refusal::of("the recording has no samples there")),
+    }
+}
