@@ -18,10 +18,10 @@ Written by `drivemon campaign table`; do not edit. How it is measured, and how a
 judged with the motor file that the table names; what is simulated departs from it.
 
 *Smallest* is the smallest size from which on FAULT comes in at least 99 of 100 runs; *proven* is the exact lower bound of
-that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays count from the fault to FAULT: \
+that probability (Clopper and Pearson, 95 % one-sided) at this size. Delays count from the fault to FAULT:
 a window of five cycles and three windows of persistence take 160 ms at 50 Hz; beyond 200 ms the smallest size stands so near the limit that
 noise keeps single windows below it. *Cause right*: the true cause
-is likelier than any other, at the smallest size; *or tied*: or at most \
+is likelier than any other, at the smallest size; *or tied*: or at most
 half a decade less likely than the likeliest; *at twice*: cause and phase, at the first size that is at least twice the smallest.
 `<=` stands where nothing smaller was tried. *Left out*: runs that say nothing because FAULT was lit before the fault came; where they are
 most of the runs, no size counts as detected. *Unsteady*: runs that say nothing because the motor stalled or swung with the fault, so that nothing
