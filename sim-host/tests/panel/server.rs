@@ -22,6 +22,8 @@ fn command(arguments: &[&str]) -> Command {
         .arg("panel")
         .args(arguments)
         .current_dir(root())
+        // A server that is killed leaves what was uploaded to it; it goes with the target folder.
+        .env("TMPDIR", env!("CARGO_TARGET_TMPDIR"))
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
@@ -67,6 +69,17 @@ impl Server {
     /// Its process.
     pub fn id(&self) -> u32 {
         self.child.id()
+    }
+
+    /// Folders of uploaded files that servers of these tests have now.
+    pub fn folders() -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        let ours = |path: &PathBuf| {
+            path.file_name()
+                .is_some_and(|name| name.to_string_lossy().starts_with("drivemon-panel-"))
+        };
+        paths.filter(ours).collect()
     }
 
     /// Presses Ctrl-C; its exit code.

@@ -251,6 +251,25 @@ fn foreign_columns_are_mapped_and_the_audit_speaks() {
     assert!(problem.contains("I9"), "{problem}");
 }
 
+#[test]
+fn uploaded_files_go_with_the_panel() {
+    let server = Server::start(&[]);
+    let sent = upload(
+        &server.address,
+        "recordings/0/file?name=only-here.csv",
+        b"t,ia\n",
+    );
+    assert_eq!(sent.status, 200);
+    let holds = || {
+        Server::folders()
+            .into_iter()
+            .find(|folder| folder.join("recording-0/only-here.csv").exists())
+    };
+    let folder = holds().expect("it is kept while the panel runs");
+    assert_eq!(server.interrupt(), Some(0));
+    assert!(!folder.exists());
+}
+
 /// Time from sending a file to its being read.
 #[test]
 #[ignore = "prints a measurement: cargo test --release -p sim-host --test panel -- --ignored --nocapture"]

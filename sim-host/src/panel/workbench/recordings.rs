@@ -139,7 +139,12 @@ fn folder(bench: &Bench, slot: usize) -> Result<PathBuf, Refusal> {
     let failed = |error: std::io::Error| Refusal::of(format!("no folder for files: {error}"));
     let folder = match &mut desk.folder {
         Some(folder) => folder,
-        none => none.insert(tempfile::tempdir().map_err(failed)?),
+        none => none.insert(
+            tempfile::Builder::new()
+                .prefix("drivemon-panel-")
+                .tempdir()
+                .map_err(failed)?,
+        ),
     };
     let path = folder.path().join(format!("recording-{slot}"));
     // What lay there belongs to a recording that is replaced now.
