@@ -191,3 +191,32 @@ fn a_folder_that_does_not_exist_is_named_and_the_result_is_still_shown() {
     assert!(stderr(&output).contains("no/such/folder/demo.json"));
     assert!(stdout(&output).contains("18 of 18"));
 }
+
+#[test]
+fn shells_complete_every_command_and_man_has_a_page_for_each() {
+    let help = stdout(&drivemon(&["--help"]));
+    let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let commands: Vec<&str> = commands
+        .take_while(|line| !line.is_empty())
+        .filter(|line| !line.starts_with("     "))
+        .filter_map(|line| line.split_whitespace().next())
+        .filter(|name| *name != "help")
+        .collect();
+    assert!(commands.len() >= 10, "{commands:?}");
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = stdout(&drivemon(&["completions", shell]));
+        for command in &commands {
+            assert!(script.contains(command), "{shell} does not know {command}");
+        }
+    }
+    let folder = common::scratch("man-pages");
+    let written = drivemon(&["man", &folder.display().to_string()]);
+    assert!(written.status.success(), "{written:?}");
+    for command in commands {
+        let page = folder.join(format!("drivemon-{command}.1"));
+        let text = std::fs::read_to_string(&page).expect("a page");
+        assert!(text.contains(".SH NAME"), "{}", page.display());
+    }
+    let nowhere = drivemon(&["man", "/nonexistent/folder"]);
+    assert_eq!(nowhere.status.code(), Some(2));
+}

@@ -4,6 +4,7 @@ mod adopt;
 mod calibrate;
 mod campaign;
 mod compare;
+mod completions;
 mod demo;
 mod explain;
 mod failure;
@@ -70,6 +71,8 @@ enum Command {
     #[cfg(feature = "panel")]
     Panel(panel::Panel),
     Flash(flash::Flash),
+    Completions(completions::Completions),
+    Man(completions::Man),
 }
 
 impl Cli {
@@ -87,6 +90,8 @@ impl Cli {
             #[cfg(feature = "panel")]
             Command::Panel(panel) => panel.run(),
             Command::Flash(flash) => flash.run(),
+            Command::Completions(completions) => completions.run(),
+            Command::Man(man) => man.run(),
         };
         match outcome {
             Ok(finding) => ExitCode::from(finding.exit_code()),
