@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Longest wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -42,13 +42,25 @@ pub fn send(address: &str, request: &[u8]) -> Answer {
     let _ = stream.write_all(request);
     let mut reader = BufReader::new(stream);
     let (status, headers) = head(&mut reader);
-    let mut body = Vec::new();
-    let _ = reader.read_to_end(&mut body);
+    let body = body(&mut reader);
     Answer {
         status,
         headers,
         body,
     }
+}
+
+/// The body, or what came of it in time: a stream of events never ends.
+fn body(reader: &mut impl Read) -> Vec<u8> {
+    let end = Instant::now() + PATIENCE;
+    let (mut body, mut piece) = (Vec::new(), [0; 1 << 16]);
+    while Instant::now() < end {
+        match reader.read(&mut piece) {
+            Ok(0) | Err(_) => break,
+            Ok(length) => body.extend_from_slice(&piece[..length]),
+        }
+    }
+    body
 }
 
 /// Status and headers; the reader then stands at the body.
