@@ -49,6 +49,15 @@ impl fmt::Display for Target {
     }
 }
 
+/// The factor of a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Factor {
+    /// Finite and not 0.
+    Known(f64),
+    /// Declared to be unknown: the channel is right up to a factor.
+    Unknown,
+}
+
 /// How one column becomes a channel: `SI = unit(scale (raw - offset))`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnMap {
@@ -56,8 +65,8 @@ pub struct ColumnMap {
     pub name: Option<String>,
     /// Unit of `scale (raw - offset)`; SI when absent.
     pub unit: Option<Unit>,
-    /// Factor, finite and not 0; 1 when absent.
-    pub scale: Option<f64>,
+    /// Factor; 1 when absent.
+    pub scale: Option<Factor>,
     /// Raw reading at zero, in the column's own unit; 0 when absent.
     pub offset: Option<f64>,
     /// Who said so.
@@ -80,7 +89,11 @@ impl ColumnMap {
     /// The SI value of a raw reading.
     pub fn to_si(&self, quantity: Quantity, raw: f64) -> f64 {
         let unit = self.unit.unwrap_or_else(|| Unit::si(quantity));
-        unit.to_si(self.scale.unwrap_or(1.0) * (raw - self.offset.unwrap_or(0.0)))
+        let factor = match self.scale {
+            Some(Factor::Known(factor)) => factor,
+            Some(Factor::Unknown) | None => 1.0,
+        };
+        unit.to_si(factor * (raw - self.offset.unwrap_or(0.0)))
     }
 
     /// The conversion in words: `speed = 1.0144 x (speed_raw + 2.11) rad/s`.
@@ -100,7 +113,8 @@ impl ColumnMap {
             _ => column.to_owned(),
         };
         let scaled = match self.scale {
-            Some(scale) => format!("{scale} x {shifted}"),
+            Some(Factor::Known(scale)) => format!("{scale} x {shifted}"),
+            Some(Factor::Unknown) => format!("an unknown factor x {shifted}"),
             None => shifted,
         };
         Some(format!("{target} = {scaled} in {}, {who}", unit.name))
@@ -172,12 +186,21 @@ impl Mapping {
         Ok(())
     }
 
-    /// `--scale TARGET=FACTOR`.
+    /// `--scale TARGET=FACTOR`; the factor of the speed may be `unknown`.
     ///
     /// # Errors
-    /// Text that is not `TARGET=FACTOR`, an unknown target, or a factor that is 0 or not finite.
+    /// Text that is not `TARGET=FACTOR`, an unknown target, a factor that is 0 or not finite, or an unknown factor
+    /// of another channel than the speed.
     pub fn set_scale(&mut self, flag: &str) -> Result<(), Error> {
         let (target, text) = split("--scale", flag)?;
+        if text == UNKNOWN {
+            if let Some(message) = refused_unknown(target) {
+                let remedy = "give a factor; only that of the speed can be fitted";
+                return Err(Error::at(COMMAND_LINE, 0, "--scale", message, remedy));
+            }
+            self.entry(target).scale = Some(Factor::Unknown);
+            return Ok(());
+        }
         let scale = number("--scale", text)?;
         if scale == 0.0 {
             let remedy = "give a factor other than 0";
@@ -189,7 +212,7 @@ impl Mapping {
                 remedy,
             ));
         }
-        self.entry(target).scale = Some(scale);
+        self.entry(target).scale = Some(Factor::Known(scale));
         Ok(())
     }
 
@@ -257,6 +280,15 @@ impl Mapping {
 }
 
 pub(crate) const COMMAND_LINE: &str = "command line";
+/// The word for a factor that nobody knows.
+pub(crate) const UNKNOWN: &str = "unknown";
+
+/// Why the factor of a target cannot be left open; `None` for the speed.
+pub(crate) fn refused_unknown(target: Target) -> Option<String> {
+    (target != Target::Channel(Channel::SPEED))
+        .then(|| format!("the factor of {target} cannot be unknown"))
+}
+
 pub(crate) const DELIMITERS: &str = "use one of `,` `;` `|` `tab`";
 
 /// The byte that a flag or sidecar calls a delimiter.
@@ -358,8 +390,27 @@ mod tests {
         flags.set_scale("speed=2").unwrap();
         let merged = flags.over(tachometer());
         let map = &merged.columns[&SPEED];
-        assert_eq!((map.scale, map.offset), (Some(2.0), Some(-2.11)));
+        assert_eq!(
+            (map.scale, map.offset),
+            (Some(Factor::Known(2.0)), Some(-2.11))
+        );
         assert_eq!(map.name.as_deref(), Some("speed_raw"));
+    }
+
+    #[test]
+    fn the_factor_of_the_speed_may_be_unknown_and_flags_may_know_it_again() {
+        let mut unknown = tachometer();
+        unknown.set_scale("speed=unknown").unwrap();
+        let map = &unknown.columns[&SPEED];
+        // In the unit of the column, without a factor: 152.43 + 2.11 rpm.
+        let expected = 154.54 * std::f64::consts::TAU / 60.0;
+        assert!((map.to_si(Quantity::Speed, 152.43) - expected).abs() < 1e-12);
+        assert_eq!(
+            map.sentence(SPEED, "speed_raw").as_deref(),
+            Some("speed = an unknown factor x (speed_raw + 2.11) in rpm, user's assumption")
+        );
+        let known = tachometer().over(unknown);
+        assert_eq!(known.columns[&SPEED].scale, Some(Factor::Known(9.6868)));
     }
 
     #[test]
@@ -370,6 +421,7 @@ mod tests {
             (m.set_column("spead=x"), "did you mean `speed`"),
             (m.set_unit("speed=kmh"), "rad/s, rpm"),
             (m.set_scale("speed=0"), "other than 0"),
+            (m.set_scale("ia=unknown"), "only that of the speed"),
             (m.set_scale("speed=1,02"), "decimal point"),
             (m.set_offset("speed=nan"), "finite"),
             (m.set_sample_rate(-1.0), "samples per second"),

@@ -3,8 +3,18 @@
 use crate::channel::Channel;
 use crate::error::Error;
 use crate::metadata::Metadata;
+use crate::units::Unit;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+
+/// A channel that is right up to a factor, and up to an offset if none was given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnknownScale {
+    /// Unit that the factor would give.
+    pub unit: Unit,
+    /// Raw reading at zero, in the column's own unit, if it was given.
+    pub offset: Option<f64>,
+}
 
 /// Samples of one motor over one clock, in SI units, with what is known about them.
 ///
@@ -18,6 +28,8 @@ pub struct Recording {
     derived: BTreeSet<Channel>,
     /// What is known beside the samples.
     pub metadata: Metadata,
+    /// Set when nobody knows the factor of the speed: the channel then holds `unit(raw - offset)`.
+    pub unknown_speed_scale: Option<Box<UnknownScale>>,
     /// What had to be assumed to read the file, one sentence each; a report shows them.
     pub assumptions: Vec<String>,
 }
@@ -36,6 +48,7 @@ impl Recording {
             channels: BTreeMap::new(),
             derived: BTreeSet::new(),
             metadata,
+            unknown_speed_scale: None,
             assumptions: Vec::new(),
         })
     }
@@ -134,6 +147,17 @@ impl Recording {
         self.channel(Channel::SPEED)
     }
 
+    /// The same with the speed `factor (speed - at_rest)`, its scale now known.
+    pub fn with_speed_scale(mut self, factor: f64, at_rest_rad_s: f64) -> Recording {
+        if let Some(speed) = self.channels.get_mut(&Channel::SPEED) {
+            speed
+                .iter_mut()
+                .for_each(|x| *x = factor * (*x - at_rest_rad_s));
+        }
+        self.unknown_speed_scale = None;
+        self
+    }
+
     /// Brake torque at the shaft, N m.
     pub fn torque(&self) -> Option<&[f64]> {
         self.channel(Channel::TORQUE)
@@ -158,6 +182,8 @@ impl Recording {
             cut.set(channel, values[range.clone()].to_vec())?;
         }
         cut.derived.clone_from(&self.derived);
+        cut.unknown_speed_scale
+            .clone_from(&self.unknown_speed_scale);
         cut.assumptions.clone_from(&self.assumptions);
         Ok(cut)
     }

@@ -1,7 +1,9 @@
 //! The sidecar of a recording: `x.toml` beside `x.csv.gz`.
 
 use crate::error::{Error, Problem};
-use crate::mapping::{ColumnMap, DELIMITERS, Mapping, Origin, Target, delimiter};
+use crate::mapping::{
+    ColumnMap, DELIMITERS, Factor, Mapping, Origin, Target, UNKNOWN, delimiter, refused_unknown,
+};
 use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 use crate::units::Unit;
 use motor::document::{Bounds, Document, FileError, Section, Value, read_text};
@@ -260,14 +262,8 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
     let table = section.optional_section(key)??;
     let name = table.optional_text("name");
     let unit = unit(&table, target);
-    let scale = table.optional_number("scale", &Bounds::between(-1e12, 1e12, ""));
+    let scale = scale(&table, target);
     let offset = table.optional_number("offset", &Bounds::between(-1e12, 1e12, ""));
-    if scale == Some(Some(0.0)) {
-        table.report(
-            "scale",
-            "0 would erase the column: write a factor other than 0",
-        );
-    }
     table.finish();
     Some(Some(ColumnMap {
         origin: Origin::Sidecar,
@@ -276,6 +272,27 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
         scale: scale?,
         offset: offset?,
     }))
+}
+
+/// A factor, or `"unknown"`.
+fn scale(table: &Section<'_>, target: Target) -> Option<Option<Factor>> {
+    let entry = table.entries().iter().find(|entry| entry.key == "scale");
+    if matches!(entry.map(|entry| &entry.value), Some(Value::Text(text)) if text == UNKNOWN) {
+        // Asking makes the key known.
+        table.optional_text("scale")?;
+        if let Some(message) = refused_unknown(target) {
+            table.report("scale", format!("{message}: write a number"));
+        }
+        return Some(Some(Factor::Unknown));
+    }
+    let factor = table.optional_number("scale", &Bounds::between(-1e12, 1e12, ""))?;
+    if factor == Some(0.0) {
+        table.report(
+            "scale",
+            "0 would erase the column: write a factor other than 0",
+        );
+    }
+    Some(factor.map(Factor::Known))
 }
 
 fn unit(table: &Section<'_>, target: Target) -> Option<Option<Unit>> {
@@ -346,9 +363,27 @@ mod tests {
             (Some(true), Some(b'\t'))
         );
         let speed = &mapping.columns[&Target::Channel(Channel::SPEED)];
-        assert_eq!((speed.scale, speed.offset), (Some(1.02), Some(-2.1)));
+        assert_eq!(
+            (speed.scale, speed.offset),
+            (Some(Factor::Known(1.02)), Some(-2.1))
+        );
         let ic = &mapping.columns[&Target::Channel(Channel::CURRENTS[2])];
         assert_eq!(ic.name.as_deref(), Some("ic2"));
+    }
+
+    #[test]
+    fn only_the_factor_of_the_speed_may_be_unknown() {
+        let text = "[columns.speed]\nscale = \"unknown\"";
+        let mapping = Sidecar::parse(text, "x.toml").unwrap().mapping;
+        let speed = &mapping.columns[&Target::Channel(Channel::SPEED)];
+        assert_eq!(speed.scale, Some(Factor::Unknown));
+        for (text, expected) in [
+            ("[columns.ia]\nscale = \"unknown\"", "ia cannot be unknown"),
+            ("[columns.speed]\nscale = \"unknwon\"", "scale"),
+        ] {
+            let error = Sidecar::parse(text, "x.toml").unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
     }
 
     #[test]

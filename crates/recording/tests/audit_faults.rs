@@ -278,6 +278,7 @@ fn the_json_is_stable() {
         (Code::SupplyUnbalance, "supply-unbalance"),
         (Code::SupplyHarmonics, "supply-harmonics"),
         (Code::SpeedImplausible, "speed-implausible"),
+        (Code::ScaleUnknown, "scale-unknown"),
         (Code::ChannelMissing, "channel-missing"),
     ];
     for (code, name) in codes {

@@ -157,10 +157,35 @@ fn implausible_speeds() {
             .contains("2 pole pairs instead of 3"),
         "{wrong:?}"
     );
+    assert!(wrong.findings[0].detail.contains("speed=unknown"));
     assert_eq!(wrong.unusable, ["speed"]);
     let volts = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 0.0156));
     assert_codes(&volts, &[Code::SpeedImplausible]);
     let fast = audited(|s| s.speed.iter_mut().for_each(|x| *x *= 1.06));
     assert_codes(&fast, &[Code::SpeedImplausible]);
     assert!(fast.unusable.is_empty() && fast.supported);
+}
+
+/// Half a hundredth of the speed, backwards and with an offset: nothing about it is judged, and it is said.
+#[test]
+fn a_speed_of_unknown_scale_is_left_alone() {
+    let mut signals = Signals::healthy(2);
+    signals.speed.iter_mut().for_each(|x| *x = 0.3 - 0.005 * *x);
+    let mut recording = signals.recording();
+    let undeclared = audit(&recording, &expectation());
+    assert!(!undeclared.findings.is_empty());
+    assert!(
+        undeclared.findings[0]
+            .detail
+            .contains("--scale speed=unknown"),
+        "{undeclared:?}"
+    );
+    recording.unknown_speed_scale = Some(Box::new(recording::UnknownScale {
+        unit: recording::UNITS[10],
+        offset: None,
+    }));
+    let declared = audit(&recording, &expectation());
+    assert_codes(&declared, &[Code::ScaleUnknown]);
+    assert_eq!(declared.unusable, ["speed"]);
+    assert!(declared.supported);
 }

@@ -232,6 +232,15 @@ fn a_raw_tachometer_is_named() {
         audit.findings
     );
     assert_eq!(audit.unusable, ["speed"]);
+    let told = audit
+        .findings
+        .iter()
+        .find(|f| f.code == Code::SpeedImplausible);
+    assert!(told.unwrap().detail.contains("--scale speed=unknown"));
+    flags.set_scale("speed=unknown").unwrap();
+    let declared = audited(&path, &LABORATORY, &flags);
+    assert!(codes(&declared).contains(&(Code::ScaleUnknown, "speed")));
+    assert!(!codes(&declared).contains(&(Code::SpeedImplausible, "speed")));
 }
 
 /// A blocked rotor has a slip of 1 and is no implausible speed.

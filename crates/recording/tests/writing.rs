@@ -56,6 +56,26 @@ fn packed_and_plain_files_read_back() {
 }
 
 #[test]
+fn an_unknown_scale_stays_unknown() {
+    let folder = Folder::new("unknown_scale");
+    for (k, offset) in [None, Some(-2.11)].into_iter().enumerate() {
+        let path = folder.path(&format!("{k}.csv"));
+        let mut written = small(&[1.0, 2.0, 3.0])
+            .with_channel(Channel::SPEED, vec![4.0, 5.0, 6.0])
+            .unwrap();
+        let unit = recording::UNITS[10];
+        written.unknown_speed_scale = Some(Box::new(recording::UnknownScale { unit, offset }));
+        write_recording(&path, &written).unwrap();
+        let read = read_recording(&path, &Mapping::default(), &mut quiet()).unwrap();
+        assert_same(&read, &written);
+        // The written column is free of the offset.
+        let offset = offset.map(|_| 0.0);
+        let expected = recording::UnknownScale { unit, offset };
+        assert_eq!(read.unknown_speed_scale.as_deref(), Some(&expected));
+    }
+}
+
+#[test]
 fn the_same_recording_gives_the_same_bytes() {
     let folder = Folder::new("same_bytes");
     let written = small(&[1.0, 2.0, 3.0]);

@@ -48,7 +48,7 @@ pub(super) struct Block {
     pub omega: f64,
     pub voltages: Option<Three>,
     pub currents: Option<Three>,
-    /// Mean speed, rad/s mechanical.
+    /// Mean speed, rad/s mechanical; absent where its scale is unknown.
     pub speed: Option<f64>,
     /// Whether frequency, amplitudes and speed stand still.
     pub steady: bool,
@@ -133,7 +133,9 @@ fn block(recording: &Recording, span: &Span) -> Option<Block> {
         Some(Three { fits })
     };
     let (voltages, currents) = (three(recording.voltages()), three(recording.currents()));
-    let speed = recording.speed().map(|speed| &speed[range.clone()]);
+    let known = recording.unknown_speed_scale.is_none();
+    let speed = recording.speed().filter(|_| known);
+    let speed = speed.map(|speed| &speed[range.clone()]);
     let steady = voltages
         .as_ref()
         .is_none_or(|v| v.change() < STEADY_VOLTAGE)

@@ -39,6 +39,8 @@ pub enum Code {
     SupplyHarmonics,
     /// The speed cannot be this motor's; value: slip, percent.
     SpeedImplausible,
+    /// The scale of a channel was declared unknown; value: 1.
+    ScaleUnknown,
     /// A channel that judging needs is absent.
     ChannelMissing,
 }

@@ -17,6 +17,7 @@ mod not_locked;
 mod offset;
 mod probes;
 mod rms_values;
+mod scale;
 mod sequence;
 mod speed;
 mod statistics;
@@ -51,6 +52,7 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
         findings.extend(not_locked::check(&context));
     }
     findings.extend(stuck::check(&mut context));
+    findings.extend(scale::check(&mut context));
     findings.extend(wiring::check(&mut context));
     findings.extend(unit::check(&mut context));
     findings.extend(offset::check(&context));

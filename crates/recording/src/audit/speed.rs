@@ -39,11 +39,13 @@ fn gross(context: &Context<'_>) -> Option<Finding> {
     {
         format!(
             "It would fit a motor of {:.0} pole pairs instead of {pole_pairs}, or a speed given in electrical \
-             rad/s; correct pole_pairs, or the scale with --scale speed=FACTOR.",
+             rad/s; correct pole_pairs, or the scale with --scale speed=FACTOR (speed=unknown if nobody knows it).",
             meant.round()
         )
     } else {
-        "Scale and offset of the channel are unknown: add --scale speed=FACTOR and --offset speed=RAW_AT_REST.".to_owned()
+        "Scale and offset of the channel are wrong: correct them with --scale speed=FACTOR and --offset \
+         speed=RAW_AT_REST; if nobody knows them, --scale speed=unknown makes compare, explain and adopt fit them."
+            .to_owned()
     };
     Some(Finding::new(Code::SpeedImplausible, Channel::SPEED, 100.0 * slip, "%").detail(format!(
         "speed is {ratio:.3} times the synchronous speed while the motor runs without overload. {hint}"
@@ -68,7 +70,8 @@ fn too_fast(context: &Context<'_>) -> Option<Finding> {
     (slip < MOTORING_SLIP).then(|| {
         Finding::new(Code::SpeedImplausible, Channel::SPEED, 100.0 * slip, "%").detail(format!(
             "speed lies {:.2} % above the synchronous speed while the motor takes active power: its scale is \
-             too large. Correct it with --scale speed=FACTOR; at no load the slip is nearly 0.",
+             too large. Correct it with --scale speed=FACTOR, at no load the slip is nearly 0; or leave it open \
+             with --scale speed=unknown.",
             -100.0 * slip
         ))
     })

@@ -271,7 +271,7 @@ fn inverted_speed() -> Finding {
     Finding::new(Code::Polarity, Channel::SPEED, 180.0, "degrees")
         .detail(
             "speed is negative while the phases follow each other as a, b, c: exchange the encoder's \
-             tracks, or add --scale speed=-1.",
+             tracks, or add --scale speed=-1; if its scale is not known at all, --scale speed=unknown.",
         )
         .refusing()
 }

@@ -4,9 +4,10 @@ use super::plan::Plan;
 use super::{Raw, clock, encoder};
 use crate::channel::Channel;
 use crate::error::Error;
-use crate::mapping::{Mapping, Target};
+use crate::mapping::{Factor, Mapping, Target};
 use crate::metadata::Metadata;
-use crate::recording::Recording;
+use crate::recording::{Recording, UnknownScale};
+use crate::units::Unit;
 
 pub(super) fn recording(
     file: &str,
@@ -18,6 +19,7 @@ pub(super) fn recording(
     let t = clock::clock(file, &mut raw, mapping)?;
     let mut recording = Recording::new(file, t, metadata)?;
     recording.assumptions = plan.notes;
+    recording.unknown_speed_scale = unknown_speed_scale(file, mapping)?;
     note_clock(&mut recording, &raw, mapping);
     for (target, values) in raw.columns {
         if let Target::Channel(channel) = target {
@@ -30,6 +32,29 @@ pub(super) fn recording(
     }
     third_of_three(&mut recording, Channel::CURRENTS, "no neutral conductor")?;
     Ok(recording)
+}
+
+/// What the mapping leaves open of the speed.
+///
+/// # Errors
+/// A count of encoder edges, whose scale is the encoder's.
+fn unknown_speed_scale(file: &str, mapping: &Mapping) -> Result<Option<Box<UnknownScale>>, Error> {
+    let speed = mapping.columns.get(&Target::Channel(Channel::SPEED));
+    let Some(map) = speed.filter(|map| map.scale == Some(Factor::Unknown)) else {
+        return Ok(None);
+    };
+    let unit = map
+        .unit
+        .unwrap_or_else(|| Unit::si(Channel::SPEED.quantity()));
+    if unit.counts {
+        let message = "a count of edges cannot have an unknown scale";
+        let remedy = "give the encoder's pulses: --pulses-per-revolution N";
+        return Err(Error::at(file, 0, "speed", message, remedy));
+    }
+    Ok(Some(Box::new(UnknownScale {
+        unit,
+        offset: map.offset,
+    })))
 }
 
 fn note_clock(recording: &mut Recording, raw: &Raw, mapping: &Mapping) {

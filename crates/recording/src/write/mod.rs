@@ -5,7 +5,7 @@ mod parquet;
 use crate::channel::Channel;
 use crate::error::Error;
 use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
-use crate::recording::Recording;
+use crate::recording::{Recording, UnknownScale};
 use crate::sidecar::sidecar_path;
 use flate2::{Compression, GzBuilder};
 use std::fmt::Write as _;
@@ -33,7 +33,7 @@ pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), Error> 
         return Err(Error::bad(&name, "is not the name of a recording", remedy));
     };
     whole(path, |file| write(recording, file))?;
-    let text = sidecar_text(&recording.metadata);
+    let text = sidecar_text(&recording.metadata) + &scale_text(recording);
     whole(&sidecar_path(path), |mut file| {
         file.write_all(text.as_bytes())
     })
@@ -152,6 +152,17 @@ pub fn sidecar_text(metadata: &Metadata) -> String {
     word("starts_from", starts_word(metadata.starts_from));
     sensors_text(&mut text, &metadata.sensors);
     text
+}
+
+/// What the sidecar says of a speed whose scale nobody knows; the written column is free of a given offset.
+fn scale_text(recording: &Recording) -> String {
+    match recording.unknown_speed_scale.as_deref() {
+        None => String::new(),
+        Some(UnknownScale { offset: None, .. }) => {
+            "\n[columns.speed]\nscale = \"unknown\"\n".into()
+        }
+        Some(_) => "\n[columns.speed]\nscale = \"unknown\"\noffset = 0.0\n".into(),
+    }
 }
 
 fn sensors_text(text: &mut String, sensors: &Sensors) {
