@@ -7,10 +7,12 @@ use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::fit::Effort;
 use crate::frame::{self, FrameReport};
 use crate::gram::dot;
+use crate::inconclusive::{self, Uncertainty};
 use crate::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
 use crate::question::{Error, Question};
 use crate::report::{
-    AdoptReport, ErrorReport, ExplainReport, RankReport, StepReport, Unexplained, Verdict,
+    AdoptReport, ErrorReport, ExplainReport, RankReport, SpeedScaleReport, StepReport, Unexplained,
+    Verdict,
 };
 use crate::study::{Study, Trial};
 use crate::unexplained;
@@ -22,8 +24,6 @@ use recording::Source;
 /// Hears what is being done, and how far it is (0 to 1).
 pub type Progress<'a> = dyn FnMut(&str, f64) + 'a;
 
-/// Share of the floor below which a typical effect cannot be seen in a recording.
-const VISIBLE: f64 = 0.02;
 /// Name under which [`adopt`] takes over refitted parameters without any effect.
 const PARAMETERS: &str = "parameters";
 
@@ -68,6 +68,8 @@ pub fn explain_without(
             ranking: Vec::new(),
             not_testable: Vec::new(),
             unexplained: None,
+            speed_scale: None,
+            cannot_be_concluded: Vec::new(),
         }),
         Err(error) => Err(error),
     }
@@ -78,8 +80,20 @@ fn judged_frame(question: &Question, motor: &MotorFile, trial: &Trial) -> Option
     let study = &question.study;
     let all = std::iter::once(&study.fitted).chain(&study.proofs);
     let cases: Vec<&Case> = all.map(|s| &s.case).collect();
-    let fitted = trial.fit.hypothesis.plant(&study.belief).motor;
-    frame::judge(motor, &study.belief, &fitted, &cases)
+    let fitted = trial.fit.hypothesis.plant(&study.belief);
+    if study.speed_scale.is_none() {
+        return frame::judge(motor, &study.belief, &fitted.motor, &cases);
+    }
+    let scaled: Vec<Case> = cases.iter().map(|case| case.as_seen_by(&fitted)).collect();
+    let cases: Vec<&Case> = scaled.iter().collect();
+    frame::judge(motor, &study.belief, &fitted.motor, &cases)
+}
+
+/// The scale of the speed that a trial found, where it was unknown.
+pub(crate) fn speed_scale_report(study: &Study, trial: &Trial) -> Option<SpeedScaleReport> {
+    let scale = study.speed_scale?;
+    let uncertainty = Uncertainty::of(study, trial);
+    Some(scale.report(&trial.fit.hypothesis, &study.belief, &uncertainty))
 }
 
 fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) -> ExplainReport {
@@ -108,6 +122,8 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
         ranking: ranking(study, found),
         not_testable: not_testable(study, found),
         unexplained,
+        speed_scale: speed_scale_report(study, found.last()),
+        cannot_be_concluded: inconclusive::list(study, found.last(), &found.first.screened),
     };
     if let Some(frame) = frame.filter(|f| f.proven) {
         add_frame(&mut report, frame);
@@ -164,11 +180,13 @@ fn verdict(found: &Explanation, steps: &[StepReport]) -> Verdict {
 
 /// Accepted effects, and the effects that explain a moved parameter as well.
 fn steps(study: &Study, found: &Explanation) -> Vec<StepReport> {
+    let given = study.given_effects();
     let number = found.steps.len();
-    let names: Vec<&str> = (0..number)
+    let names: Vec<&str> = (given..given + number)
         .map(|k| descriptor(found.last(), k).name)
         .collect();
     let accepted = found.steps.iter().enumerate().map(|(k, step)| {
+        let k = given + k;
         let mut report = step_report(study, &step.before, found.last(), &step.trial, k);
         report.tied_with.clone_from(&step.tied);
         // What was accepted beside it was no look-alike: both are there.
@@ -216,12 +234,6 @@ fn descriptor(trial: &Trial, index: usize) -> &'static Descriptor {
     trial.fit.hypothesis.effects[index].effect.descriptor()
 }
 
-/// By how much of the floor the error would rise if an effect of typical size were missing.
-fn visibility(study: &Study, visible: f64) -> f64 {
-    let expected = study.fitted.floor.mean * study.fitted.case.judged();
-    (1.0 + (visible / expected).max(0.0)).sqrt() - 1.0
-}
-
 /// All effects of the first round, refitted ones with their refit; each name once.
 fn ranking(study: &Study, found: &Explanation) -> Vec<RankReport> {
     let base = study.proof_error(&found.baseline);
@@ -240,7 +252,7 @@ fn ranking(study: &Study, found: &Explanation) -> Vec<RankReport> {
             held_out_error_over_noise: error,
             gain_percent: 100.0 * (1.0 - error / base),
             refitted: refit.is_some(),
-            visibility_percent: 100.0 * visibility(study, s.visible),
+            visibility_percent: 100.0 * study.visibility(s.visible),
         });
     }
     rows.sort_by(|a, b| {
@@ -255,9 +267,9 @@ fn not_testable(study: &Study, found: &Explanation) -> Vec<String> {
     let mut names = std::collections::BTreeMap::<&str, f64>::new();
     for s in &found.first.screened {
         let best = names.entry(s.config.effect.descriptor().name).or_default();
-        *best = best.max(visibility(study, s.visible));
+        *best = best.max(study.visibility(s.visible));
     }
-    let hidden = names.into_iter().filter(|(_, v)| *v < VISIBLE);
+    let hidden = names.into_iter().filter(|(_, v)| *v < Study::VISIBLE);
     hidden.map(|(name, _)| name.to_owned()).collect()
 }
 
@@ -308,13 +320,15 @@ pub fn adopt(
         after: errors(study, &after),
         proven: is_new && proven(study, &before, &after),
         parameters: if is_new {
-            effect_parameters(study, &after, 0)
+            effect_parameters(study, &after, study.given_effects())
         } else {
             Vec::new()
         },
         nominals,
         motor_file: String::new(),
         frame: None,
+        speed_scale: speed_scale_report(study, &after),
+        cannot_be_concluded: inconclusive::list(study, &after, &[]),
     };
     Ok((report, updated(study, &after, motor)))
 }
@@ -344,6 +358,8 @@ fn adopted_frame(
         nominals: Vec::new(),
         motor_file: String::new(),
         frame: Some(frame),
+        speed_scale: speed_scale_report(&question.study, trial),
+        cannot_be_concluded: inconclusive::list(&question.study, trial, &[]),
     };
     let mut file = motor.clone();
     file.monitor.frame = Frame::RotorFlux;
@@ -404,7 +420,9 @@ fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     file.parameters = plant.motor;
     file.mechanics = plant.mechanics;
     file.mechanics.load_friction = motor.mechanics.load_friction;
-    let added = trial.fit.hypothesis.configs(&study.belief.plant.rated);
+    let mut added = trial.fit.hypothesis.configs(&study.belief.plant.rated);
+    // The scale of a sensor belongs to the recording, not to the motor.
+    added.drain(..study.given_effects());
     if added
         .iter()
         .any(|c| c.effect.descriptor().name == expression::NAME)

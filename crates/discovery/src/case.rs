@@ -1,18 +1,22 @@
 //! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
 
 use crate::signal::{Supply, denoise, estimated_sigma, smooth};
+use crate::speed_scale;
 use crate::table::{self, Point};
 use motor::dynamic::clarke;
-use motor::effects::{Between, Inputs, Rated, Timeline};
+use motor::effects::{Between, Inputs, Plant, Rated, Timeline};
 use num_complex::Complex64;
 use recording::{
     Channel, LoadTable, LoadTorque, Recording, StartsFrom, Supply as SupplyKind, VoltageKind,
 };
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Output channels in the order of a residual row.
 pub(crate) const CHANNELS: [&str; 5] = ["ia", "ib", "ic", "speed", "v0"];
+/// The speed among them.
+const SPEED: usize = 3;
 /// Number of output channels.
 pub(crate) const N_CHANNELS: usize = CHANNELS.len();
 /// Trust in the model of a current sensor beside its noise: half a per cent of the reading.
@@ -46,6 +50,16 @@ impl Unsupported {
     }
 }
 
+/// Measured speeds in the scale of a hypothesis.
+pub(crate) struct Speeds<'a> {
+    /// Smoothed speed, rad/s.
+    pub speed: Cow<'a, [f64]>,
+    /// Speed at the start, rad/s.
+    pub running_at: Option<f64>,
+    /// Supply and measured angle.
+    pub timeline: Arc<Timeline>,
+}
+
 /// A recording made ready.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
@@ -77,6 +91,8 @@ pub(crate) struct Case {
     pub input_noise: (f64, f64),
     /// Whether an inverter feeds the motor.
     pub inverter: bool,
+    /// Whether the scale of the speed is a free parameter: the speeds here are right up to a factor near one.
+    pub speed_scale_is_free: bool,
     /// Operating points instead of samples.
     pub table: Option<Vec<Point>>,
 }
@@ -134,6 +150,7 @@ impl Case {
             supply,
             input_noise: (axis_noise, load.noise),
             inverter: rec.metadata.supply == SupplyKind::Inverter,
+            speed_scale_is_free: false,
             table: None,
         };
         case.fill_rows(rec, voltages, currents, sigma_u);
@@ -167,6 +184,7 @@ impl Case {
             supply: Supply::default(),
             input_noise: (0.0, 0.0),
             inverter: false,
+            speed_scale_is_free: false,
             table: Some(points),
         })
     }
@@ -174,6 +192,44 @@ impl Case {
     /// Time between residual rows, s.
     pub fn t_row(&self) -> f64 {
         self.inputs.t_sample * (self.between.stride() * self.decimation) as f64
+    }
+
+    /// The measured speeds that drive a simulation of `plant`: with a free scale they are what the plant's speed sensor
+    /// would have to see to show the channel.
+    pub fn speeds(&self, plant: &Plant) -> Speeds<'_> {
+        let gain = speed_scale::gain_of(&plant.effects);
+        if !self.speed_scale_is_free || gain == 1.0 {
+            return Speeds {
+                speed: Cow::Borrowed(&self.speed),
+                running_at: self.running_at,
+                timeline: self.timeline.clone(),
+            };
+        }
+        let over = |x: &[f64]| x.iter().map(|x| x / gain).collect::<Vec<f64>>();
+        Speeds {
+            speed: Cow::Owned(over(&self.speed)),
+            running_at: self.running_at.map(|x| x / gain),
+            timeline: Arc::new(Timeline {
+                theta_mech: over(&self.timeline.theta_mech),
+                ..(*self.timeline).clone()
+            }),
+        }
+    }
+
+    /// The same with the scale of the speed as a plant has it, for everything that looks at the measured speed.
+    pub fn as_seen_by(&self, plant: &Plant) -> Self {
+        let mut case = self.clone();
+        let speeds = self.speeds(plant);
+        case.speed = speeds.speed.into_owned();
+        (case.running_at, case.timeline) = (speeds.running_at, speeds.timeline);
+        if self.speed_scale_is_free {
+            let gain = speed_scale::gain_of(&plant.effects);
+            for (y, w) in case.measured.iter_mut().zip(&mut case.weight) {
+                y[SPEED] /= gain;
+                w[SPEED] *= gain;
+            }
+        }
+        case
     }
 
     /// Rows of each block; a short rest joins the last block.

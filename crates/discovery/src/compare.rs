@@ -1,10 +1,15 @@
 //! Where the model fails, as the motor file says it, nothing refitted.
 
-use crate::api::Progress;
+use crate::api::{Progress, speed_scale_report};
 use crate::case::{Case, N_CHANNELS};
+use crate::fit::Effort;
+use crate::inconclusive;
 use crate::predict::{Teacher, outputs, residual};
 use crate::question::{Error, Question};
-use crate::report::{BandReport, CompareReport, OrderReport, Overall, RegionReport, SignalReport};
+use crate::report::{
+    BandReport, CompareReport, Inconclusive, OrderReport, Overall, RegionReport, SignalReport,
+    SpeedScaleReport,
+};
 use crate::study::Study;
 use motor::MotorFile;
 use motor::dynamic::clarke;
@@ -37,6 +42,8 @@ pub fn compare(
         bands: Vec::new(),
         orders: Vec::new(),
         overall: None,
+        speed_scale: None,
+        cannot_be_concluded: Vec::new(),
     };
     let question = match Question::new(&sources[..sources.len().min(1)], motor, progress) {
         Ok(question) => question,
@@ -48,6 +55,7 @@ pub fn compare(
     let case = &study.fitted.case;
     let model = outputs(case, &study.belief, &study.beliefs(), Teacher::Off);
     let r = residual(case, &model);
+    let (speed_scale, cannot_be_concluded) = scale_of(study).unzip();
     progress("done", 1.0);
     Ok(CompareReport {
         signals: signals(case, &r),
@@ -57,8 +65,22 @@ pub fn compare(
         overall: Some(Overall {
             error_over_noise: study.fold_error(&[crate::gram::dot(&r, &r)]),
         }),
+        speed_scale,
+        cannot_be_concluded: cannot_be_concluded.unwrap_or_default(),
         ..empty(question.audit)
     })
+}
+
+/// The scale of the speed that suits the motor file as it is, where it was unknown, and what that leaves open.
+fn scale_of(study: &Study) -> Option<(SpeedScaleReport, Vec<Inconclusive>)> {
+    study.speed_scale?;
+    let nothing_moved = Effort {
+        iterations: 0,
+        ..Effort::FULL
+    };
+    let trial = study.trial(&study.beliefs(), nothing_moved);
+    let open = inconclusive::list(study, &trial, &[]);
+    Some((speed_scale_report(study, &trial)?, open))
 }
 
 /// Names and units of the channels of a case.

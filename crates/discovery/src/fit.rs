@@ -7,7 +7,7 @@ use crate::predict::{Teacher, jacobian, outputs, residual};
 use nalgebra::{DMatrix, DVector};
 
 /// Limits of the inflation of the nominals' prior weight.
-const KAPPA: [f64; 2] = [30.0, 400.0];
+pub(crate) const KAPPA: [f64; 2] = [30.0, 400.0];
 /// The same for a load table, whose few points cannot be correlated over thousands of samples.
 const KAPPA_TABLE: [f64; 2] = [1.0, 30.0];
 

@@ -15,6 +15,7 @@ mod fit;
 mod floor;
 mod frame;
 mod gram;
+mod inconclusive;
 mod predict;
 mod present;
 mod proof;
@@ -24,6 +25,7 @@ mod refitted_folds;
 mod report;
 mod screen;
 mod signal;
+mod speed_scale;
 mod study;
 mod table;
 mod unexplained;
@@ -36,8 +38,8 @@ pub use frame::{FrameBand, FrameReport};
 pub use predict::simulations;
 pub use question::Error;
 pub use report::{
-    AdoptReport, BandReport, CompareReport, ErrorReport, ExplainReport, FitReport, NominalReport,
-    OrderReport, Overall, ParameterReport, RankReport, RegionReport, SignalReport, StepReport,
-    Unexplained, Verdict,
+    AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,
+    FitReport, Inconclusive, NominalReport, OrderReport, Overall, ParameterReport, RankReport,
+    RegionReport, SignalReport, SpeedScaleReport, StepReport, Unexplained, Verdict,
 };
 pub use table::table_values;

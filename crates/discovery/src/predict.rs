@@ -27,17 +27,18 @@ pub(crate) enum Teacher {
 /// Simulates a plant on the inputs of a case.
 pub(crate) fn run(case: &Case, plant: &Plant, inputs: &Inputs, teacher: Teacher) -> Outputs {
     SIMULATIONS.fetch_add(1, Ordering::Relaxed);
+    let speeds = case.speeds(plant);
     let speed = match teacher {
-        _ if case.speed_is_input => SpeedSource::Imposed(&case.speed),
-        Teacher::On(rate) if !case.speed.is_empty() => SpeedSource::Observed(&case.speed, rate),
+        _ if case.speed_is_input => SpeedSource::Imposed(&speeds.speed),
+        Teacher::On(rate) if !case.speed.is_empty() => SpeedSource::Observed(&speeds.speed, rate),
         _ => SpeedSource::Free,
     };
     let run = Run {
         inputs,
         between: case.between,
         speed,
-        timeline: &case.timeline,
-        running_at: case.running_at,
+        timeline: &speeds.timeline,
+        running_at: speeds.running_at,
         open: &case.open,
     };
     simulate(plant, &run)

@@ -6,11 +6,11 @@ use crate::study::{Study, Trial};
 use motor::effects::{Kind, Role};
 
 /// A parameter is off when it moved by more than so many standard errors ...
-const SIGNIFICANT: f64 = 3.0;
+pub(crate) const SIGNIFICANT: f64 = 3.0;
 /// ... and by more than this share ...
-const RELEVANT: f64 = 0.05;
+pub(crate) const RELEVANT: f64 = 0.05;
 /// ... or, for friction, by more than this per cent of rated torque.
-const RELEVANT_FRICTION: f64 = 2.0;
+pub(crate) const RELEVANT_FRICTION: f64 = 2.0;
 /// A move beyond so many prior standard deviations is implausible, ...
 const IMPLAUSIBLE: f64 = 3.0;
 /// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.

@@ -2,10 +2,11 @@
 
 use crate::belief::Belief;
 use crate::case::{Case, Unsupported};
+use crate::speed_scale::{EFFECT, SpeedScale};
 use crate::study::Study;
 use motor::MotorFile;
 use motor::effects::{Rated, from_motor_file};
-use recording::{Audit, Expectation, LoadTorque, Source, audit, with_sound_probes};
+use recording::{Audit, Expectation, LoadTorque, Recording, Source, audit, with_sound_probes};
 use std::fmt;
 
 /// Why nothing can be answered.
@@ -63,13 +64,25 @@ impl Question {
             belief.plant.mechanics.load_friction = 0.0;
         }
         let refuse = |why| Error::Unsupported(Box::new(audited.clone()), why);
-        let mut cases = Vec::new();
+        let mut ready = Vec::new();
         for source in sources {
             let audit = audit_of(source, motor);
             if let Some(reason) = refusal(&audit) {
                 return Err(Error::Unsupported(Box::new(audit), reason));
             }
-            cases.push(case_of(source, &audit, &belief.plant.rated).map_err(refuse)?);
+            ready.push(sound(source, &audit));
+        }
+        let scale = speed_scale_of(&ready, &belief)?.map(|start| start.map_err(refuse));
+        let scale = scale.transpose()?;
+        let rated = &belief.plant.rated;
+        let prepared = |scale: Option<SpeedScale>| {
+            let case = |source: &Source| case_of(source, scale, rated).map_err(refuse);
+            ready.iter().map(case).collect::<Result<Vec<Case>, Error>>()
+        };
+        let mut cases = prepared(scale)?;
+        let scale = scale.map(|start| start.fitted(&cases[0], &belief));
+        if scale.is_some() {
+            cases = prepared(scale)?;
         }
         if cases
             .iter()
@@ -82,7 +95,7 @@ impl Question {
         let fitted = cases.remove(0);
         Ok(Self {
             audit: audited,
-            study: Study::new(belief, fitted, cases),
+            study: Study::new(belief, fitted, cases, scale),
         })
     }
 }
@@ -95,11 +108,61 @@ fn measures_torque(source: &Source) -> bool {
     rec.torque().is_some() && rec.metadata.load_torque != LoadTorque::Friction
 }
 
-fn case_of(source: &Source, audit: &Audit, rated: &Rated<f64>) -> Result<Case, Unsupported> {
+/// A source with its sound probes.
+fn sound(source: &Source, audit: &Audit) -> Source {
     match source {
-        Source::Recording(recording) => Case::new(&with_sound_probes(recording, audit), rated),
-        Source::LoadTable(table) => Case::of_table(table, rated),
+        Source::Recording(recording) => Source::Recording(with_sound_probes(recording, audit)),
+        Source::LoadTable(table) => Source::LoadTable(table.clone()),
     }
+}
+
+fn case_of(
+    source: &Source,
+    scale: Option<SpeedScale>,
+    rated: &Rated<f64>,
+) -> Result<Case, Unsupported> {
+    match (source, scale) {
+        (Source::LoadTable(table), _) => Case::of_table(table, rated),
+        (Source::Recording(recording), None) => Case::new(recording, rated),
+        (Source::Recording(recording), Some(scale)) => Ok(Case {
+            speed_scale_is_free: true,
+            ..Case::new(&scale.applied(recording), rated)?
+        }),
+    }
+}
+
+/// Where the fit of an unknown scale of the speed starts; `None` when every scale is known.
+///
+/// # Errors
+/// Recordings with known and unknown scales, or a motor file that holds the effect which is to be fitted.
+fn speed_scale_of(
+    sources: &[Source],
+    belief: &Belief,
+) -> Result<Option<Result<SpeedScale, Unsupported>>, Error> {
+    let recordings: Vec<&Recording> = sources
+        .iter()
+        .filter_map(|source| match source {
+            Source::Recording(recording) => Some(recording),
+            Source::LoadTable(_) => None,
+        })
+        .collect();
+    let unknown = |rec: &&&Recording| rec.unknown_speed_scale.is_some() && rec.speed().is_some();
+    match recordings.iter().filter(unknown).count() {
+        0 => return Ok(None),
+        count if count < recordings.len() => {
+            let message = "the scale of the speed is unknown in some recordings and known in others; declare one of both for all";
+            return Err(Error::Recordings(message.to_owned()));
+        }
+        _ => {}
+    }
+    let held = &belief.plant.effects;
+    if held.iter().any(|e| e.effect.descriptor().name == EFFECT) {
+        let message = format!(
+            "the motor file holds `{EFFECT}`, and the scale of the speed is declared unknown; remove one of both"
+        );
+        return Err(Error::Recordings(message));
+    }
+    Ok(Some(SpeedScale::start(&recordings, &belief.plant.rated)))
 }
 
 /// Audit of a source; a load table has nothing to audit beyond its reading.

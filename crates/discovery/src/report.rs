@@ -123,6 +123,70 @@ pub struct Unexplained {
     pub best_lead_explains_percent: f64,
 }
 
+/// Where the reading at rest comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AtRest {
+    /// The user gave it.
+    Given,
+    /// The recording holds the motor at rest.
+    Measured,
+    /// Nobody knows it: zero.
+    Assumed,
+}
+
+/// Where the standard error of a fitted scale comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ErrorSource {
+    /// The recording, which the model explains.
+    Recording,
+    /// The model does not explain the recording: all that is known is that the least slip lies between none and that
+    /// at rated load.
+    Physics,
+}
+
+/// The scale of a speed channel that was declared unknown, as fitted: speed = factor x (column - offset).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpeedScaleReport {
+    /// Factor.
+    pub factor: f64,
+    /// Its standard error.
+    pub std_error: f64,
+    /// Where the standard error comes from.
+    pub std_error_is: ErrorSource,
+    /// Unit of both.
+    pub unit: String,
+    /// Column at rest, in the column's own unit.
+    pub offset: f64,
+    /// Its standard error; 0 unless it was measured.
+    pub offset_std_error: f64,
+    /// Where the offset comes from.
+    pub offset_is: AtRest,
+    /// What is taken from the channel as it was read, rad/s, before the factor is applied.
+    pub at_rest_rad_s: f64,
+}
+
+/// Something that cannot be concluded while the scale of the speed is free.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Inconclusive {
+    /// A parameter of the motor file, a quantity or an effect.
+    pub name: String,
+    /// Which of the three: `parameter`, `quantity`, `effect`.
+    pub kind: String,
+    /// Standard error, percent of the value (friction: of rated torque at rated speed).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub std_error_percent: Option<f64>,
+    /// What the standard error would be if the scale were known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub std_error_with_known_scale_percent: Option<f64>,
+    /// Correlation of the estimates of the parameter and of the sensor's gain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correlation_with_scale: Option<f64>,
+    /// The same in words.
+    pub why: String,
+}
+
 /// The report of `explain`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExplainReport {
@@ -145,6 +209,12 @@ pub struct ExplainReport {
     pub not_testable: Vec<String>,
     /// What is left, if the library does not explain it.
     pub unexplained: Option<Unexplained>,
+    /// The fitted scale of the speed, where it was declared unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_scale: Option<SpeedScaleReport>,
+    /// What cannot be concluded because of it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cannot_be_concluded: Vec<Inconclusive>,
 }
 
 /// One signal: model against measurement.
@@ -221,6 +291,12 @@ pub struct CompareReport {
     pub orders: Vec<OrderReport>,
     /// Everything.
     pub overall: Option<Overall>,
+    /// The fitted scale of the speed, where it was declared unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_scale: Option<SpeedScaleReport>,
+    /// What cannot be concluded because of it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cannot_be_concluded: Vec<Inconclusive>,
 }
 
 /// Errors before or after an adoption.
@@ -254,4 +330,10 @@ pub struct AdoptReport {
     /// What the frame of the monitor's model cost, if that is what was adopted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame: Option<FrameReport>,
+    /// The fitted scale of the speed, where it was declared unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_scale: Option<SpeedScaleReport>,
+    /// What cannot be concluded because of it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cannot_be_concluded: Vec<Inconclusive>,
 }

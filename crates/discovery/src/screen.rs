@@ -1,10 +1,11 @@
 //! Tries every effect at once: secant columns against the normal equations of the present fit.
 
-use crate::belief::Belief;
+use crate::belief::{Belief, N_NOMINAL};
 use crate::case::Case;
 use crate::fit::Fit;
 use crate::gram::{self, Block, Penalty};
 use crate::predict::outputs;
+use crate::speed_scale::EFFECT;
 use motor::effects::{ALL, Applies, Effect, EffectConfig, Parameter, Role};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -29,6 +30,8 @@ pub(crate) struct Screened {
     pub possible: bool,
     /// Mean squared signature of a typical size that the nominals cannot imitate, in noise units.
     pub visible: f64,
+    /// The same if a free scale of the speed were known; `None` without one.
+    pub visible_with_known_scale: Option<f64>,
 }
 
 impl Screened {
@@ -158,7 +161,33 @@ fn judge(
         held_out,
         possible,
         visible: visible(&all, &penalty, first, n),
+        visible_with_known_scale: known_scale(fit).map(|scale| {
+            let (all, penalty) = without(&all, &penalty, scale);
+            visible(&all, &penalty, first - 1, n)
+        }),
     }
+}
+
+/// Position of a free scale of the speed among the fitted coordinates.
+fn known_scale(fit: &Fit) -> Option<usize> {
+    let h = &fit.hypothesis;
+    let is_scale =
+        |&k: &usize| k >= N_NOMINAL && h.effects[h.effect_of(k)].effect.descriptor().name == EFFECT;
+    fit.free.iter().position(is_scale)
+}
+
+/// Normal equations without one coordinate: its value is known.
+fn without(block: &Block, penalty: &Penalty, k: usize) -> (Block, Penalty) {
+    let block = Block {
+        gram: block.gram.clone().remove_row(k).remove_column(k),
+        score: block.score.clone().remove_row(k),
+        sse: block.sse,
+    };
+    let penalty = Penalty {
+        weight: penalty.weight.clone().remove_row(k),
+        pull: penalty.pull.clone().remove_row(k),
+    };
+    (block, penalty)
 }
 
 fn extended_penalty(base: &Penalty, n: usize) -> Penalty {

@@ -6,6 +6,7 @@ use crate::fit::{Effort, Fit, fit};
 use crate::floor::{Floor, floor};
 use crate::gram;
 use crate::predict::{Teacher, outputs, residual};
+use crate::speed_scale::{self, SpeedScale};
 
 /// Seed of the propagated noise: the same input gives the same bytes.
 const SEED: u64 = 20_220_913;
@@ -32,6 +33,8 @@ pub(crate) struct Study {
     pub fitted: Subject,
     /// Recordings that prove.
     pub proofs: Vec<Subject>,
+    /// How the speed channel becomes a speed, where its scale is a free parameter.
+    pub speed_scale: Option<SpeedScale>,
 }
 
 /// A hypothesis, fitted and measured on data that was not fitted.
@@ -61,21 +64,36 @@ impl Subject {
 
 impl Study {
     /// Prepares the floors.
-    pub fn new(belief: Belief, fitted: Case, proofs: Vec<Case>) -> Self {
+    pub fn new(
+        belief: Belief,
+        fitted: Case,
+        proofs: Vec<Case>,
+        speed_scale: Option<SpeedScale>,
+    ) -> Self {
         let subject = |case| Subject::new(case, &belief);
         Self {
             fitted: subject(fitted),
             proofs: proofs.into_iter().map(subject).collect(),
             belief,
+            speed_scale,
         }
     }
 
-    /// Nothing added, beliefs as they are.
+    /// Nothing added, beliefs as they are; a scale of the speed that nobody knows is free from the start.
     pub fn beliefs(&self) -> Hypothesis {
-        match self.fitted.case.table {
+        let beliefs = match self.fitted.case.table {
             Some(_) => Hypothesis::beliefs_of_table(),
             None => Hypothesis::beliefs(self.fitted.case.speed_is_input),
+        };
+        match self.speed_scale {
+            Some(_) => speed_scale::free(&beliefs, &self.belief),
+            None => beliefs,
         }
+    }
+
+    /// Effects that every hypothesis holds: they are no finding.
+    pub fn given_effects(&self) -> usize {
+        usize::from(self.speed_scale.is_some())
     }
 
     /// Fits a hypothesis and measures it.
@@ -122,6 +140,15 @@ impl Study {
             squares.sum::<f64>() / (s.floor.mean * s.case.judged())
         };
         !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
+    }
+
+    /// Share of the floor below which a typical effect cannot be seen in a recording.
+    pub const VISIBLE: f64 = 0.02;
+
+    /// By how much of the floor the error would rise if a signature of this size were missing.
+    pub fn visibility(&self, visible: f64) -> f64 {
+        let expected = self.fitted.floor.mean * self.fitted.case.judged();
+        (1.0 + (visible / expected).max(0.0)).sqrt() - 1.0
     }
 
     /// Relative allowance of the gate for the uncertainty of the floor.

@@ -7,10 +7,10 @@ use discovery::AdoptReport;
 
 use super::explain::print_frame;
 use super::failure::{Failure, Finding};
-use super::paint;
 use super::study::{
     StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain, with_progress,
 };
+use super::{paint, scale};
 use crate::motor_text;
 use crate::report::Subject;
 use crate::study::{Adopted, PARAMETERS};
@@ -121,6 +121,7 @@ fn print(result: &Adopted) {
     } else {
         print_values(report);
     }
+    scale::print(report.speed_scale.as_ref(), &report.cannot_be_concluded);
     print_next(
         &format!(
             "{} is written. Is anything still missing?",

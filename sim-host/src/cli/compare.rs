@@ -5,7 +5,7 @@ use discovery::{CompareReport, SignalReport};
 
 use super::failure::{Failure, Finding};
 use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
-use super::{paint, places};
+use super::{paint, places, scale};
 use crate::report::{AGREES, Subject};
 use crate::study::{Compared, worst};
 
@@ -54,9 +54,13 @@ fn finding(report: &CompareReport) -> Finding {
 fn print(result: &Compared) {
     let report = &result.report;
     anstream::println!(
-        "{} against {}, nothing refitted",
+        "{} against {}, {}",
         paint::strong(&result.motor),
-        result.recording
+        result.recording,
+        match report.speed_scale {
+            Some(_) => "nothing refitted but the scale of the speed",
+            None => "nothing refitted",
+        }
     );
     print_audit(&report.audit);
     let Some(overall) = report.overall else {
@@ -76,6 +80,7 @@ fn print(result: &Compared) {
         places::print(&worst(report));
     }
     print_signals(&report.signals);
+    scale::print(report.speed_scale.as_ref(), &report.cannot_be_concluded);
     if error > AGREES {
         print_next("Which physics is missing?", Some(&result.next_command));
     }

@@ -8,7 +8,7 @@ use super::study::{
     StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain, with_progress,
     wrapped,
 };
-use super::{paint, places};
+use super::{paint, places, scale};
 use crate::report::Subject;
 use crate::study::{Explained, anything_off};
 
@@ -28,6 +28,7 @@ const EXAMPLES: &str = "\
 Examples:
   drivemon explain a.csv.gz b.csv.gz --motor motor.toml       fit a, prove on b
   drivemon explain a.csv.gz --motor motor.toml --report explain.html
+  drivemon explain lab.csv --motor motor.toml --column speed=tacho --scale speed=unknown
 Exit codes: 0 the model is adequate, 1 something is missing or off, 2 bad input, 3 the data do not support an answer.";
 
 /// Ranks that are printed.
@@ -87,6 +88,7 @@ fn print(result: &Explained) {
         print_parameters(last);
     }
     print_unexplained(report);
+    scale::print(report.speed_scale.as_ref(), &report.cannot_be_concluded);
     if !report.not_testable.is_empty() {
         let names = report.not_testable.join(", ");
         let text = format!("This recording cannot show, present or not: {names}.");

@@ -20,7 +20,8 @@ pub struct InputArgs {
     /// Unit of a channel, e.g. `speed=rpm` or `ia=mA`
     #[arg(long, value_name = "CHANNEL=UNIT")]
     unit: Vec<String>,
-    /// Factor on a channel, applied after the offset: `scale x (raw - offset)`
+    /// Factor on a channel, applied after the offset: `scale x (raw - offset)`; `speed=unknown` lets compare, explain and
+    /// adopt fit it
     #[arg(long, value_name = "CHANNEL=FACTOR")]
     scale: Vec<String>,
     /// Raw reading of a channel at zero

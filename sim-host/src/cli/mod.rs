@@ -18,6 +18,7 @@ mod paint;
 mod panel;
 mod places;
 mod progress;
+mod scale;
 mod simulate;
 mod study;
 

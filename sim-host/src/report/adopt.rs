@@ -8,6 +8,7 @@ use super::number::{decimals, shown};
 use super::overlay;
 use super::parameters::{Bar, NOISE, bars, nominals, of_effect};
 use super::place::Place;
+use super::scale;
 use super::shell::{Mood, cards, next, verdict};
 
 /// Everything between heading and footer.
@@ -20,6 +21,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (frame::section(result))
         (overlay::section(result))
         (values(result))
+        (scale::section(result))
         (audit::section(result))
     }
 }

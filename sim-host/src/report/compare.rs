@@ -8,6 +8,7 @@ use super::number::{decimals, shown, significant};
 use super::overlay;
 use super::parameters::bar;
 use super::place::Place;
+use super::scale;
 use super::shell::{Mood, cards, next, verdict};
 
 /// From this error over noise on a model is called wrong.
@@ -31,6 +32,7 @@ pub fn content(result: &Place<'_>) -> Markup {
             (orders(result))
             (regions(result))
             (signals(result))
+            (scale::section(result))
         }
         (audit::section(result))
         @if wrong { (next("Find out which physics is missing:", result.text("next_command"))) }
@@ -54,7 +56,7 @@ fn answer(result: &Place<'_>, wrong: bool) -> Markup {
         ),
     };
     let more = html! {
-        p.subtle { (result.text("motor")) " against " (result.text("recording")) ", as the motor file says, nothing refitted. An error of 1 is what the sensors' own noise leaves." }
+        p.subtle { (result.text("motor")) " against " (result.text("recording")) ", as the motor file says, nothing refitted" @if result.get("speed_scale").is_some() { " but the scale of the speed" } ". An error of 1 is what the sensors' own noise leaves." }
     };
     verdict(mood, &text, &more)
 }

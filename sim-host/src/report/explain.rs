@@ -8,6 +8,7 @@ use super::number::{decimals, shown};
 use super::overlay;
 use super::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
 use super::place::Place;
+use super::scale;
 use super::shell::{Mood, cards, next, verdict};
 
 /// Key of the error on data that was not fitted.
@@ -27,6 +28,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (overlay::section(result))
         (ranking(result, &steps))
         (fitted(result))
+        (scale::section(result))
         (not_testable(result))
         (audit::section(result))
     }

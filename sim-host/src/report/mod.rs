@@ -18,6 +18,7 @@ mod number;
 mod overlay;
 mod parameters;
 mod place;
+mod scale;
 mod shell;
 mod table_overlay;
 

@@ -4,7 +4,7 @@ use discovery::{AdoptReport, Error, Progress};
 use motor::MotorFile;
 use serde::Serialize;
 
-use super::Inputs;
+use super::{Inputs, in_fitted_scale};
 use crate::overlay::{Model, Overlay, TableOverlay};
 
 /// Everything that an adoption says.
@@ -45,7 +45,9 @@ impl Adopted {
             Model::believed(motor),
             Model::new(format!("with {effect}"), &adopted),
         ];
-        let last = sources.last();
+        let scale = report.speed_scale.as_ref();
+        let last = sources.last().map(|source| in_fitted_scale(source, scale));
+        let last = last.as_deref();
         let shown = Adopted {
             recordings: names.to_vec(),
             motor: motor.name.clone(),

@@ -3,7 +3,7 @@
 use discovery::{CompareReport, Error, Progress};
 use serde::Serialize;
 
-use super::Inputs;
+use super::{Inputs, in_fitted_scale};
 use crate::overlay::{Model, Overlay, TableOverlay};
 
 /// Everything that a comparison says.
@@ -41,7 +41,9 @@ impl Compared {
         } = inputs;
         let report = discovery::compare(sources, motor, progress)?;
         let models = [Model::believed(motor)];
-        let first = sources.first();
+        let scale = report.speed_scale.as_ref();
+        let first = sources.first().map(|source| in_fitted_scale(source, scale));
+        let first = first.as_deref();
         Ok(Compared {
             recording: names.first().cloned().unwrap_or_default(),
             motor: motor.name.clone(),

@@ -4,7 +4,7 @@ use discovery::{Error, ExplainReport, Progress, Verdict};
 use serde::Serialize;
 
 use super::places::{Place, worst};
-use super::{Inputs, PARAMETERS};
+use super::{Inputs, PARAMETERS, in_fitted_scale};
 use crate::overlay::{Model, Overlay, TableOverlay};
 
 /// Share of the work that the search takes; the rest goes into the worst places.
@@ -60,7 +60,9 @@ impl Explained {
             progress(what, SEARCH * share)
         });
         let report = searched?;
-        let judged = sources.last().filter(|_| report.baseline.is_some());
+        let scale = report.speed_scale.as_ref();
+        let last = sources.last().map(|source| in_fitted_scale(source, scale));
+        let judged = last.as_deref().filter(|_| report.baseline.is_some());
         let models = Model::of_explanation(motor, &report);
         let where_it_fails = match judged {
             Some(_) => worst(&discovery::compare(sources, motor, &mut |what, share| {

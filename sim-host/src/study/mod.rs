@@ -10,6 +10,9 @@ pub use compare::Compared;
 pub use explain::{Explained, Next, anything_off};
 pub use places::{Place, worst};
 
+use std::borrow::Cow;
+
+use discovery::SpeedScaleReport;
 use monitor::MAX_EFFECTS;
 use motor::MotorFile;
 use recording::Source;
@@ -26,6 +29,21 @@ pub struct Inputs<'a> {
     pub sources: &'a [Source],
     /// What is believed of the motor.
     pub motor: &'a MotorFile,
+}
+
+/// A source as figures show it: a speed of unknown scale in the scale that was fitted.
+pub(crate) fn in_fitted_scale<'a>(
+    source: &'a Source,
+    scale: Option<&SpeedScaleReport>,
+) -> Cow<'a, Source> {
+    match (source, scale) {
+        (Source::Recording(recording), Some(scale)) => Cow::Owned(Source::Recording(
+            recording
+                .clone()
+                .with_speed_scale(scale.factor, scale.at_rest_rad_s),
+        )),
+        _ => Cow::Borrowed(source),
+    }
 }
 
 /// Whether the core takes all effects of a motor file.

@@ -116,7 +116,7 @@ export function columnForm(id, recording, apply) {
     ...(recording.preview ? [table(recording.preview)] : []),
     make("p", { class: "options" }, make("label", {}, "Columns are separated by ", select(`${id}-delimiter`, "delimiter", "Separator", separators, columns.delimiter)), box("decimal_comma", "numbers are written 3,7", columns.decimal_comma), box("line_voltages", "va vb vc hold line voltages", columns.line_voltages), box("skip_missing", "leave out rows with empty cells", columns.skip_missing), field("sample_rate_hz", "Sampling rate without a time column, Hz", columns.sample_rate_hz), field("pulses_per_revolution", "Encoder pulses per turn", columns.pulses_per_revolution)),
     make("div", { class: "wide", tabindex: "0" }, make("table", { "aria-label": "Columns and signals" }, make("thead", {}, head), make("tbody", {}, ...CHANNELS.map((channel) => row(id, recording, channel))))),
-    make("p", { class: "subtle" }, "A column of a signal’s own name needs no choice. Units are those that the file or its sidecar declares, or SI. Signal = factor × (column − zero)."),
+    make("p", { class: "subtle" }, "A column of a signal’s own name needs no choice. Units are those that the file or its sidecar declares, or SI. Signal = factor × (column − zero). The factor of the speed may be the word unknown: compare, explain and adopt then fit it."),
     make("p", { class: "actions" }, make("button", { type: "submit", class: "main" }, "Read again")));
   form.addEventListener("submit", (event) => {
     event.preventDefault();

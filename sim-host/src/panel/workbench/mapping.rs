@@ -91,6 +91,15 @@ mod tests {
     }
 
     #[test]
+    fn the_factor_of_the_speed_may_be_unknown() {
+        let columns: Columns =
+            serde_json::from_str(r#"{"scale": {"speed": "unknown"}}"#).expect("JSON");
+        let mut expected = Mapping::default();
+        expected.set_scale("speed=unknown").expect("sound");
+        assert_eq!(columns.mapping(), Ok(expected));
+    }
+
+    #[test]
     fn what_the_flags_refuse_is_refused() {
         for text in [
             r#"{"column": {"x": "I1"}}"#,
