@@ -76,11 +76,7 @@ impl Adopt {
     }
 
     fn next(&self) -> String {
-        let recordings = self.study.names().join(" ");
-        format!(
-            "drivemon explain {recordings} --motor {}",
-            self.out.display()
-        )
+        format!("drivemon explain {}", self.study.typed_with(&self.out))
     }
 }
 

@@ -8,6 +8,7 @@ use recording::{Mapping, Source};
 
 use super::failure::Failure;
 use super::progress;
+use super::study::quoted;
 use crate::study::effects_fit;
 
 /// How the columns of the file become channels in SI units. A sidecar `x.toml` beside `x.csv.gz` says the same things.
@@ -51,6 +52,48 @@ pub struct InputArgs {
 }
 
 impl InputArgs {
+    /// The flags as they were typed, each with a blank before it: a command that reads the same file needs them too.
+    pub fn typed(&self) -> String {
+        let mut typed = String::new();
+        let mut add = |flag: &str, value: &str| {
+            typed += &format!(" {flag}");
+            if !value.is_empty() {
+                typed += &format!(" {}", quoted(value));
+            }
+        };
+        let lists = [
+            ("--column", &self.column),
+            ("--unit", &self.unit),
+            ("--scale", &self.scale),
+            ("--offset", &self.offset),
+        ];
+        for (flag, values) in lists {
+            values.iter().for_each(|value| add(flag, value));
+        }
+        let text = |x: &PathBuf| x.display().to_string();
+        let values = [
+            ("--sample-rate", self.sample_rate.map(|x| x.to_string())),
+            ("--delimiter", self.delimiter.clone()),
+            (
+                "--pulses-per-revolution",
+                self.pulses_per_revolution.map(|x| x.to_string()),
+            ),
+            ("--sidecar", self.sidecar.as_ref().map(text)),
+        ];
+        for (flag, value) in values {
+            value.iter().for_each(|value| add(flag, value));
+        }
+        let switches = [
+            ("--line-voltages", self.line_voltages),
+            ("--skip-missing", self.skip_missing),
+            ("--decimal-comma", self.decimal_comma),
+        ];
+        for (flag, _) in switches.into_iter().filter(|(_, on)| *on) {
+            add(flag, "");
+        }
+        typed
+    }
+
     fn mapping(&self) -> Result<Mapping, Failure> {
         let mut mapping = Mapping {
             line_voltages: self.line_voltages.then_some(true),
@@ -101,4 +144,27 @@ pub fn read_motor(path: &Path) -> Result<MotorFile, Failure> {
     let motor = MotorFile::read(path)?;
     effects_fit(&path.display().to_string(), &motor).map_err(Failure::Usage)?;
     Ok(motor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Reading {
+        #[command(flatten)]
+        input: InputArgs,
+    }
+
+    #[test]
+    fn the_flags_are_repeated_as_they_were_typed() {
+        let line = "x --column ic=ic2 --column speed=n --unit speed=rpm --scale speed=unknown --offset va=-4.1 \
+                    --sample-rate 5000 --delimiter \";\" --pulses-per-revolution 1024 --sidecar a.toml --line-voltages \
+                    --skip-missing --decimal-comma";
+        let words = line.split(' ').map(|word| word.trim_matches('"'));
+        let typed = Reading::parse_from(words).input.typed();
+        assert_eq!(format!("x{typed}"), line);
+        assert_eq!(InputArgs::default().typed(), "");
+    }
 }

@@ -1,6 +1,6 @@
 //! What compare, explain and adopt share: their inputs, their progress, and how they speak.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use discovery::{Error, Progress};
@@ -75,11 +75,16 @@ impl StudyArgs {
         }
     }
 
-    /// The recordings and the motor file as they are typed behind a subcommand.
+    /// The recordings, the motor file and the flags of reading as they are typed behind a subcommand.
     pub fn typed(&self) -> String {
+        self.typed_with(&self.motor)
+    }
+
+    /// The same with another motor file.
+    pub fn typed_with(&self, motor: &Path) -> String {
         let names: Vec<String> = self.names().iter().map(|name| quoted(name)).collect();
-        let motor = quoted(&self.motor.display().to_string());
-        format!("{} --motor {motor}", names.join(" "))
+        let motor = quoted(&motor.display().to_string());
+        format!("{} --motor {motor}{}", names.join(" "), self.input.typed())
     }
 
     /// A name for the motor file that holds `addition` too, beside the old one.
@@ -90,7 +95,8 @@ impl StudyArgs {
     }
 }
 
-fn quoted(name: &str) -> String {
+/// A word of a command line, in quotes where a shell needs them.
+pub fn quoted(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@\\".contains(c);
     if name.chars().all(plain) {
         name.to_owned()
