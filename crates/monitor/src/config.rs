@@ -162,3 +162,27 @@ pub(crate) fn check_range(
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_says_what_was_wrong_and_what_would_be_right() {
+        let error = check_range(("hysteresis", 1.5, [0.1, 1.0])).expect_err("outside");
+        assert_eq!(error.to_string(), "hysteresis = 1.5 is outside 0.1..=1");
+    }
+
+    #[test]
+    fn both_ends_of_a_range_belong_to_it_and_not_a_number_never_does() {
+        for (value, ok) in [
+            (1.0, true),
+            (2.0, true),
+            (0.99, false),
+            (2.01, false),
+            (f32::NAN, false),
+        ] {
+            assert_eq!(check_range(("x", value, [1.0, 2.0])).is_ok(), ok, "{value}");
+        }
+    }
+}

@@ -179,4 +179,61 @@ mod tests {
         assert!(sample.clipped.voltage(0) && sample.clipped.current(2));
         assert!(!sample.clipped.voltage(1) && !sample.clipped.current(0));
     }
+
+    /// Sums of codes and single codes become the same V and A: `scale * code - offset` is the converted value.
+    #[test]
+    fn units_of_sums_agree_with_single_codes() {
+        let mut converter = Converter::bipolar(600.0, 60.0, 12);
+        converter.voltage.gain.b = 1.1;
+        converter.voltage.offset.b = 5.0;
+        converter.current.gain.c = 0.9;
+        converter.current.offset.c = -0.5;
+        let sample = converter.convert(&RawSample {
+            voltage_codes: [2100; 3],
+            current_codes: [2000; 3],
+            encoder_count: 0,
+        });
+        let volts = sample.u_s_abc.unwrap_or_default().to_array();
+        let amperes = sample.i_s_abc.unwrap_or_default().to_array();
+        let [volt_zero, ampere_zero] = converter.code_range().zero;
+        for (k, unit) in converter.units().into_iter().enumerate() {
+            let (code, expected) = if k < 3 {
+                (2100.0 - volt_zero, volts[k])
+            } else {
+                (2000.0 - ampere_zero, amperes[k - 3])
+            };
+            let si = unit.scale * code - unit.offset;
+            assert!(
+                (si - expected).abs() < 1e-5,
+                "channel {k}: {si} and {expected}"
+            );
+        }
+    }
+
+    /// The range within which nothing is clipped ends exactly where a code counts as clipped.
+    #[test]
+    fn the_range_of_sound_codes_ends_at_the_rails() {
+        let converter = Converter::bipolar(600.0, 60.0, 12);
+        let range = converter.code_range();
+        for code in [0, 1, 2, 3, 2048, 4092, 4093, 4094, 4095_u16] {
+            let sound = (range.lowest..=range.highest).contains(&i32::from(code));
+            assert_eq!(sound, (2..=4093).contains(&code), "{code}");
+            assert_eq!(
+                converter.clipped(&[[code; CHANNELS]]).any(),
+                !sound,
+                "{code}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_converter_of_any_resolution_spans_its_range() {
+        for (bits, max_code) in [(8, 255), (12, 4095), (16, 65_535), (20, 65_535)] {
+            let converter = Converter::bipolar(100.0, 10.0, bits);
+            assert_eq!(converter.max_code, max_code);
+            let lowest = converter.convert(&RawSample::default());
+            assert_eq!(lowest.u_s_abc, Some(Abc::splat(-100.0)));
+            assert_eq!(lowest.i_s_abc, Some(Abc::splat(-10.0)));
+        }
+    }
 }

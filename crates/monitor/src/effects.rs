@@ -95,3 +95,92 @@ impl PartialEq for ActiveEffect {
             && self.parameters == other.parameters
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use motor::effects::find_steady;
+
+    use super::*;
+
+    const PARAMS: TParams<f32> = TParams {
+        r_s: 3.7,
+        r_r: 2.3,
+        l_ls: 0.0107,
+        l_lr: 0.0107,
+        l_m: 0.234,
+    };
+    const RATED: Rated<f32> = Rated {
+        voltage: 326.6,
+        current: 7.07,
+        omega_sync: 314.2,
+        n_p: 2.0,
+        torque: 14.6,
+    };
+
+    fn effect(name: &str, parameter: f32) -> ActiveEffect {
+        let mut parameters = [0.0; MAX_EFFECT_PARAMETERS];
+        parameters[0] = parameter;
+        ActiveEffect {
+            effect: find_steady(name, "").expect("in the library"),
+            parameters,
+        }
+    }
+
+    fn corrected(effects: &[ActiveEffect]) -> Corrected {
+        let mut active = [None; MAX_EFFECTS];
+        for (slot, effect) in active.iter_mut().zip(effects) {
+            *slot = Some(*effect);
+        }
+        let (u_s, i_s) = (Complex32::new(300.0, 20.0), Complex32::new(3.0, -4.0));
+        correct(&active, RATED, &PARAMS, [u_s, i_s], [314.2, 150.0])
+    }
+
+    #[test]
+    fn without_effects_the_measurement_is_what_it_was() {
+        let plain = Corrected {
+            u_s: Complex32::new(300.0, 20.0),
+            i_s: Complex32::new(3.0, -4.0),
+            omega_mech: 150.0,
+            params: PARAMS,
+            tau_extra: 0.0,
+        };
+        assert_eq!(corrected(&[]), plain);
+    }
+
+    /// A speed channel that shows 2 % too much, and windage of `c w^2` at the speed that is left.
+    #[test]
+    fn effects_apply_in_their_order() {
+        let speed = effect("speed-scale", 0.02);
+        let windage = effect("windage", 1e-4);
+        let truth = 150.0 / 1.02;
+        let after = corrected(&[speed, windage]);
+        assert!((after.omega_mech - truth).abs() < 1e-4);
+        assert!((after.tau_extra - 1e-4 * truth * truth).abs() < 1e-5);
+        let before = corrected(&[windage, speed]);
+        assert!((before.tau_extra - 1e-4 * 150.0 * 150.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn effects_are_equal_in_kind_and_parameters_only() {
+        assert_eq!(effect("windage", 1.0), effect("windage", 1.0));
+        assert_ne!(effect("windage", 1.0), effect("windage", 2.0));
+        assert_ne!(effect("windage", 1.0), effect("speed-scale", 1.0));
+    }
+
+    #[test]
+    fn rehearsed_gains_act_on_their_signals() {
+        let gains = Rehearsal {
+            voltage_gain: 2.0,
+            current_q_gain: 3.0,
+            speed_gain: 4.0,
+        };
+        let plain = corrected(&[]);
+        let expected = Corrected {
+            u_s: plain.u_s * 2.0,
+            i_s: plain.i_s * 3.0,
+            omega_mech: plain.omega_mech * 4.0,
+            ..plain
+        };
+        assert_eq!(plain.rehearsed(&gains), expected);
+    }
+}

@@ -206,4 +206,58 @@ mod tests {
         }
         assert_eq!(config().close_window(&mut state).omega_mech, Some(101.0));
     }
+
+    /// A shaft of 700 rad/s and 4096 counts gives 45.6 counts in 0.1 ms; one more is allowed for the phase of the edges.
+    #[test]
+    fn the_fastest_shaft_is_believed_and_no_faster_one() {
+        for (counts, glitches) in [(46, 0), (47, 1), (-46, 0), (-47, 1)] {
+            let mut state = EncoderState::default();
+            for count in [0_i16, counts] {
+                config().update(&mut state, SpeedSample::Count(count as u16));
+            }
+            assert_eq!(
+                config().close_window(&mut state).glitches,
+                glitches,
+                "{counts}"
+            );
+        }
+    }
+
+    /// Edge to edge: the time before the first edge and after the last one counts in the window to which the next edge belongs.
+    #[test]
+    fn the_time_after_the_last_edge_goes_to_the_next_window() {
+        let mut state = EncoderState::default();
+        let mut feed = |count: u16, samples: u32| {
+            for _ in 0..samples {
+                config().update(&mut state, SpeedSample::Count(count));
+            }
+        };
+        feed(0, 1);
+        feed(1, 10);
+        let reading = config().close_window(&mut state);
+        // One count one sample after the first value; nine samples wait.
+        let one_count = core::f32::consts::TAU / 4096.0;
+        assert_eq!(reading.omega_mech, Some(one_count / 1e-4));
+        let mut feed = |count: u16| config().update(&mut state, SpeedSample::Count(count));
+        feed(2);
+        let speed = config().close_window(&mut state).omega_mech.unwrap_or(0.0);
+        assert!(
+            (speed * 10.0 * 1e-4 / one_count - 1.0).abs() < 1e-5,
+            "{speed}"
+        );
+    }
+
+    #[test]
+    fn half_of_the_samples_must_carry_a_speed() {
+        let numbers = [100.0, f32::NAN, f32::INFINITY];
+        for (take, expected) in [(2, Some(100.0)), (3, None)] {
+            let mut state = EncoderState::default();
+            for omega in numbers.into_iter().take(take) {
+                config().update(&mut state, SpeedSample::RadPerSecond(omega));
+            }
+            let reading = config().close_window(&mut state);
+            assert_eq!(reading.omega_mech, expected);
+            assert!(!reading.silent, "a number came");
+        }
+    }
 }

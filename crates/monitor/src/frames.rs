@@ -204,6 +204,7 @@ mod tests {
             let back = Abc::from(AlphaBeta::from(phases).to_dq(axis).to_alpha_beta(axis));
             let tolerance = 16.0 * f32::EPSILON * 1000.0; // sixteen roundings of the largest value
             prop_assert!((back.a - a).abs() < tolerance && (back.b - b).abs() < tolerance);
+            prop_assert!((back.c - phases.c).abs() < tolerance);
         }
     }
 
@@ -232,5 +233,46 @@ mod tests {
         assert!((sequence.negative - n).norm() < 1e-5);
         assert!((sequence.zero - z).norm() < 1e-5);
         assert!((sequence.unbalance() - n / p).norm() < 1e-6);
+    }
+
+    #[test]
+    fn ratios_are_complex_and_nothing_without_a_positive_sequence() {
+        let mut sequence = Sequence {
+            positive: Complex32::new(3.0, 4.0),
+            negative: Complex32::new(0.5, -0.3),
+            zero: Complex32::new(-0.2, 0.1),
+        };
+        assert!((sequence.zero_ratio() - sequence.zero / sequence.positive).norm() < 1e-6);
+        sequence.positive = Complex32::ZERO;
+        assert_eq!(sequence.zero_ratio(), Complex32::ZERO);
+        assert_eq!(sequence.unbalance(), Complex32::ZERO);
+    }
+
+    #[test]
+    fn arrays_keep_the_order_of_the_phases() {
+        let abc = Abc {
+            a: 1.0,
+            b: 2.0,
+            c: 3.0,
+        };
+        assert_eq!(abc.to_array(), [1.0, 2.0, 3.0]);
+        assert_eq!(Abc::from_array([1.0, 2.0, 3.0]), abc);
+    }
+
+    #[test]
+    fn one_bad_phase_makes_the_set_bad() {
+        assert!(Abc::splat(1.0).is_finite());
+        for bad in [f32::NAN, f32::INFINITY] {
+            for phase in 0..3 {
+                let mut values = [1.0; 3];
+                values[phase] = bad;
+                assert!(!Abc::from_array(values).is_finite());
+            }
+        }
+    }
+
+    #[test]
+    fn magnitude_is_the_length() {
+        assert_eq!(magnitude(Complex32::new(3.0, -4.0)), 5.0);
     }
 }

@@ -179,3 +179,173 @@ fn field(file: &MotorFile) -> FieldCurrent {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOTOR: &str = r#"
+name = "test"
+[nameplate]
+pole_pairs = 2
+power_watt = 300.0
+voltage_line_rms_volt = 220.0
+current_rms_amp = 1.3
+frequency_hz = 60.0
+torque_nm = 1.7
+connection = "star"
+[parameters]
+stator_resistance_ohm = 8.0
+rotor_resistance_ohm = 7.0
+stator_leakage_henry = 0.028
+rotor_leakage_henry = 0.035
+magnetizing_inductance_henry = 0.42
+inertia_kg_m2 = 0.002
+friction_nm_s = 0.0008
+load_friction_nm_s = 0.0035
+"#;
+
+    fn config(rest: &str) -> MonitorConfig {
+        let file = MotorFile::parse(&format!("{MOTOR}{rest}"), "test.toml").expect("a valid file");
+        MonitorConfig::from_motor_file(&file, 1e-4)
+    }
+
+    /// Amplitudes of the star phase: line to line over the root of 3, rms times the root of 2.
+    #[test]
+    fn the_nameplate_becomes_amplitudes_per_star_phase() {
+        let config = config("");
+        assert_eq!(config.t_sample, 1e-4);
+        assert!((config.rated_voltage - 220.0 * (2.0_f32 / 3.0).sqrt()).abs() < 1e-4);
+        assert!((config.rated_current - 1.3 * 2.0_f32.sqrt()).abs() < 1e-6);
+        assert!((config.rated_omega - 60.0 * core::f32::consts::TAU).abs() < 1e-4);
+        assert_eq!(config.rated_torque, 1.7);
+        assert_eq!(config.mechanics.n_p, 2.0);
+        assert_eq!(
+            (config.mechanics.inertia, config.mechanics.friction),
+            (0.002, 0.0008)
+        );
+        assert_eq!(config.mechanics.load_friction, 0.0035);
+        let p = config.params;
+        assert_eq!((p.r_s, p.r_r, p.l_m), (8.0, 7.0, 0.42));
+        assert_eq!((p.l_ls, p.l_lr), (0.028, 0.035));
+        assert!(config.validate().is_ok());
+    }
+
+    #[test]
+    fn sensors_become_codes_counts_and_corrections() {
+        let config = config(
+            "[sensors]\nvoltage_full_scale_volt = 400.0\ncurrent_full_scale_amp = 15.0\nadc_bits = 12\n\
+             encoder_pulses_per_revolution = 1024\nvoltage_gain = [1.0, 1.1, 1.2]\ncurrent_offset_amp = [0.1, 0.2, 0.3]\n",
+        );
+        assert_eq!(
+            config.encoder_counts_per_revolution, 4096.0,
+            "four counts per pulse"
+        );
+        let (voltage, current) = (config.converter.voltage, config.converter.current);
+        assert_eq!(config.converter.max_code, 4095);
+        assert!((voltage.unit_per_code - 800.0 / 4096.0).abs() < 1e-6);
+        assert!((current.unit_per_code - 30.0 / 4096.0).abs() < 1e-7);
+        assert_eq!((voltage.zero_code, current.zero_code), (2048.0, 2048.0));
+        assert_eq!(voltage.gain.to_array(), [1.0, 1.1, 1.2]);
+        assert_eq!(current.offset.to_array(), [0.1, 0.2, 0.3]);
+        assert_eq!(voltage.offset, Abc::default());
+        assert_eq!(current.gain, Abc::splat(1.0));
+    }
+
+    #[test]
+    fn percent_become_shares_and_settings_are_taken_over() {
+        let voltage = config(
+            "[monitor]\nthreshold_percent = [1.0, 2.0, 3.0, 4.0]\nwindow_cycles = 6\npersistence_windows = 4\n\
+             hysteresis = 0.7\nframe = \"voltage\"\nfield_current = \"nominal\"\nnominal_field_current_amp = 1.05\n",
+        );
+        assert_eq!(voltage.thresholds, [0.01, 0.02, 0.03, 0.04]);
+        assert_eq!(voltage.window_cycles, 6);
+        assert_eq!(
+            (
+                voltage.comparator.persistence,
+                voltage.comparator.hysteresis
+            ),
+            (4, 0.7)
+        );
+        assert_eq!(voltage.frame, Frame::Voltage);
+        assert_eq!(voltage.field, FieldCurrent::Nominal(1.05));
+        assert_eq!(voltage.healthy, None);
+        assert_eq!(config("").frame, Frame::RotorFlux);
+        assert_eq!(config("").field, FieldCurrent::Live);
+    }
+
+    #[test]
+    fn friction_is_a_declared_load_only_if_there_is_some() {
+        assert_eq!(
+            config("[load]\nkind = \"friction\"\n").load,
+            LoadKind::Friction
+        );
+        assert_eq!(config("[load]\nkind = \"free\"\n").load, LoadKind::Free);
+        assert_eq!(
+            config("[load]\nkind = \"measured\"\n").load,
+            LoadKind::Measured
+        );
+        let mut file = MotorFile::parse(MOTOR, "test.toml").expect("a valid file");
+        (file.mechanics.friction, file.mechanics.load_friction) = (0.0, 0.0);
+        file.load = motor_file::LoadKind::Friction;
+        assert_eq!(
+            MonitorConfig::from_motor_file(&file, 1e-4).load,
+            LoadKind::Free
+        );
+    }
+
+    /// A channel that shows 1.25 times the truth is brought back by 0.8; other effects leave the channels alone.
+    #[test]
+    fn channel_effects_are_undone_in_their_channel() {
+        let config = config(
+            "[[effects]]\nname = \"windage\"\nwindage_nm_s2 = 1e-5\n\
+             [[effects]]\nname = \"phase-current-gain\"\ncurrent_gain_a = 1.0\ncurrent_gain_b = 1.25\ncurrent_gain_c = 1.0\n\
+             [[effects]]\nname = \"phase-voltage-gain\"\nvoltage_gain_a = 0.5\nvoltage_gain_b = 1.0\nvoltage_gain_c = 1.0\n",
+        );
+        assert_eq!(config.channel_gain, [2.0, 1.0, 1.0, 1.0, 0.8, 1.0]);
+        let names = config
+            .effects
+            .map(|e| e.map(|e| e.effect.descriptor().name));
+        let expected = ["windage", "phase-current-gain", "phase-voltage-gain"];
+        assert_eq!(names[..3], expected.map(Some));
+        assert_eq!(names[3], None);
+        assert_eq!(config.effects[0].map(|e| e.parameters[0]), Some(1e-5));
+    }
+
+    #[test]
+    fn statistics_of_the_healthy_motor_become_shares() {
+        let config = config(
+            "[healthy]\nmean_percent = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]\n\
+             scatter_percent = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]\ncurrent_unbalance_percent = [0.5, -0.5]\n\
+             current_unbalance_scatter_percent = 0.05\nstator_resistance_percent = 1.0\nrotor_resistance_percent = 2.0\n\
+             heating_percent = 30.0\nmagnetizing_inductance_percent = 0.2\nleakage_percent = 0.5\nfriction_percent = 3.0\n\
+             current_gain_percent = 0.3\nvoltage_gain_percent = 0.4\nspeed_percent = 0.01\nnegative_impedance_percent = 10.0\n\
+             turns_angle_deg = 30.0\nsignificance = 6.0\n",
+        );
+        let healthy = config.healthy.expect("calibrated");
+        let close =
+            |got: f32, expected: f32| assert!((got - expected).abs() < 1e-6, "{got} {expected}");
+        for (row, (mean, scatter)) in healthy.mean.into_iter().zip(healthy.scatter).enumerate() {
+            close(mean, 0.01 * (row + 1) as f32);
+            close(scatter, 0.001 * (row + 1) as f32);
+        }
+        let [re, im] = healthy.turns_axis;
+        close(re, 0.75_f32.sqrt());
+        close(im, 0.5);
+        close(healthy.current_unbalance[1], -0.005);
+        close(healthy.current_unbalance_scatter, 0.0005);
+        let u = healthy.uncertainty;
+        close(u.stator_resistance, 0.01);
+        close(u.rotor_resistance, 0.02);
+        close(u.heating, 0.3);
+        close(u.magnetizing_inductance, 0.002);
+        close(u.leakage, 0.005);
+        close(u.friction, 0.03);
+        close(u.current_gain, 0.003);
+        close(u.voltage_gain, 0.004);
+        close(u.speed, 0.0001);
+        close(u.negative_impedance, 0.1);
+        assert_eq!(healthy.significance, 6.0);
+        assert!(config.validate().is_ok());
+    }
+}

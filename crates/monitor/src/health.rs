@@ -223,4 +223,70 @@ mod tests {
         // Stalled and hot: the cold resistance implies two thirds of the slip.
         assert!(CONFIG.check_speed(314.0, 10.0, 314.0 * 0.42).is_none());
     }
+
+    #[test]
+    fn a_twentieth_of_rated_is_where_silence_ends() {
+        let with_voltage = |share: f32| window([share * 325.0 / 325.0; 3], [0.0; 3]);
+        assert!(!CONFIG.has_supply(&with_voltage(0.049)));
+        assert!(CONFIG.has_supply(&with_voltage(0.051)));
+        let with_current = |ampere: f32| window([1.0; 3], [ampere / 5.0, 0.0, 0.0]);
+        assert!(!CONFIG.has_current(&with_current(0.049 * 7.0)));
+        assert!(CONFIG.has_current(&with_current(0.051 * 7.0)));
+    }
+
+    #[test]
+    fn without_current_no_current_channel_is_blamed() {
+        assert_eq!(CONFIG.check_currents(&window([1.0; 3], [0.0; 3])), None);
+    }
+
+    /// A lost phase of a running motor still carries half of the voltage; a dead channel less than a tenth.
+    #[test]
+    fn a_channel_is_dead_below_a_tenth_of_its_neighbours() {
+        for (gain, dead) in [(0.09, true), (0.11, false)] {
+            for phase in 0..3 {
+                let mut gains = [1.0; 3];
+                gains[phase] = gain;
+                let found = CONFIG.check_voltages(&window(gains, [1.0; 3]));
+                let expected = dead.then_some(SensorFinding::DeadVoltage(Phase::ALL[phase]));
+                assert_eq!(found, expected, "{gain} in phase {phase}");
+            }
+        }
+    }
+
+    /// The neighbours are both of the others: one of them at half its length moves the limit with it.
+    #[test]
+    fn unequal_neighbours_count_with_their_mean() {
+        // 0.1 * (0.4 + 1.0)/2 = 0.07.
+        for (own, dead) in [(0.068, true), (0.072, false)] {
+            for (phase, gains) in [[own, 0.4, 1.0], [0.4, own, 1.0], [1.0, 0.4, own]]
+                .into_iter()
+                .enumerate()
+            {
+                let found = CONFIG.check_voltages(&window(gains, [1.0; 3]));
+                let expected = dead.then_some(SensorFinding::DeadVoltage(Phase::ALL[phase]));
+                assert_eq!(found, expected);
+            }
+        }
+    }
+
+    /// A speed off by 0.4 of synchronous speed beyond what a hot rotor explains.
+    #[test]
+    fn a_contradiction_is_counted_from_the_hot_rotor_on() {
+        let found = |slip: f32, implied: f32| {
+            CONFIG
+                .check_speed(100.0, 100.0 - slip, 100.0 - implied)
+                .is_some()
+        };
+        // Implied slip 10, hot 15: implausible beyond 55 and below -30.
+        assert!(!found(54.0, 10.0) && found(56.0, 10.0));
+        assert!(!found(-29.0, 10.0) && found(-31.0, 10.0));
+        // A generator's slip is negative; hot is further from synchronous speed there as well.
+        assert!(!found(-54.0, -10.0) && found(-56.0, -10.0));
+        assert!(!found(29.0, -10.0) && found(31.0, -10.0));
+    }
+
+    #[test]
+    fn phases_have_their_letters() {
+        assert_eq!(Phase::ALL.map(Phase::letter), ["a", "b", "c"]);
+    }
 }

@@ -207,4 +207,99 @@ mod tests {
         state.admit(&sample(1.0, 1.0));
         assert_eq!(state.close_cycle().tau_load(), None);
     }
+
+    #[test]
+    fn more_than_half_of_the_samples_make_a_measurement() {
+        for (present, measured) in [(2, false), (3, true)] {
+            let mut state = IntakeState::default();
+            for k in 0..4 {
+                let mut sample = sample(1.0, 1.0);
+                if k >= present {
+                    sample.i_s_abc = None;
+                }
+                state.admit(&sample);
+            }
+            assert_eq!(state.close_cycle().measured(), [true, measured]);
+        }
+    }
+
+    #[test]
+    fn each_phase_alone_can_spoil_a_sample() {
+        for phase in 0..3 {
+            let mut state = IntakeState::default();
+            state.admit(&sample(7.0, 1.0));
+            let mut values = [2.0; 3];
+            values[phase] = -2.0 * LARGEST;
+            let bad = Sample {
+                u_s_abc: Some(Abc::from_array(values)),
+                ..sample(0.0, 1.0)
+            };
+            assert_eq!(state.admit(&bad).u_s_abc, Abc::splat(7.0), "phase {phase}");
+        }
+    }
+
+    #[test]
+    fn a_torque_that_is_no_number_is_counted_and_spoils_the_mean() {
+        let mut state = IntakeState::default();
+        let with = |tau| Sample {
+            tau_load: Some(tau),
+            ..sample(1.0, 1.0)
+        };
+        state.admit(&with(1.0));
+        state.admit(&with(f32::NAN));
+        let tally = state.close_cycle();
+        assert_eq!((tally.invalid, tally.tau_load()), (1, None));
+    }
+
+    #[test]
+    fn clipped_channels_are_gathered_over_the_cycle() {
+        let mut state = IntakeState::default();
+        for phase in [0, 2] {
+            let mut sample = sample(1.0, 1.0);
+            sample.clipped.mark_voltage(phase);
+            state.admit(&sample);
+        }
+        let mut converter = ClippedChannels::NONE;
+        converter.mark_current(1);
+        state.admit_codes(5, converter);
+        let tally = state.close_cycle();
+        assert!(tally.clipped.voltage(0) && tally.clipped.voltage(2) && tally.clipped.current(1));
+        assert!(!tally.clipped.voltage(1));
+        assert_eq!((tally.samples, tally.present), (7, [7, 7]));
+    }
+
+    /// The supply is found by the voltage; by the current only where there is no voltage.
+    #[test]
+    fn the_current_stands_in_for_a_missing_voltage() {
+        let keep = 0.5;
+        let mut state = IntakeState::default();
+        assert!(state.is_dark());
+        assert_eq!(state.reference([1.0, 0.8], keep), 1.0);
+        assert_eq!(state.reference([-0.2, 0.8], keep), -0.2);
+        assert!(!state.is_dark());
+        // 1, 0.5, 0.25, ...: after five samples the peak is below a twentieth.
+        let picked: Vec<f32> = (0..5).map(|_| state.reference([0.0, -0.6], keep)).collect();
+        assert_eq!(picked, [0.0, 0.0, 0.0, -0.6, -0.6]);
+        assert!(!state.is_dark(), "current flows");
+        for _ in 0..5 {
+            state.reference([0.0, 0.0], keep);
+        }
+        assert!(state.is_dark());
+    }
+
+    #[test]
+    fn the_reference_is_alpha_as_a_share_of_rated() {
+        let x = Abc {
+            a: 5.0,
+            b: 1.0,
+            c: -2.0,
+        };
+        let alpha = crate::frames::AlphaBeta::from(x).alpha;
+        assert!((reference_of(x) / 3.0 - alpha).abs() < 1e-6);
+        assert_eq!(
+            reference_of(Abc::splat(7.0)),
+            0.0,
+            "a zero sequence drops out"
+        );
+    }
 }

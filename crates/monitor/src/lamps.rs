@@ -79,3 +79,30 @@ impl Lamps {
         self.r.map(|lamp| lamp == Lamp::On)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lit_lamps_are_named_and_blinking_ones_are_not() {
+        let mut lamps = Lamps {
+            run: Lamp::On,
+            sensor: Lamp::Blink,
+            ..Lamps::default()
+        };
+        assert!(lamps.is_quiet());
+        lamps.r = [Lamp::On, Lamp::Off, Lamp::Blink, Lamp::On];
+        lamps.line = Lamp::On;
+        assert!(!lamps.is_quiet());
+        let names: Vec<_> = lamps.lit_names().collect();
+        assert_eq!(names, ["r1", "r4", "line"]);
+        assert_eq!(lamps.pattern(), [true, false, false, true]);
+    }
+
+    #[test]
+    fn lamps_have_stable_names() {
+        let names = [Lamp::lit(false), Lamp::lit(true), Lamp::Blink].map(Lamp::name);
+        assert_eq!(names, ["off", "on", "blink"]);
+    }
+}

@@ -156,3 +156,227 @@ fn load_lamp(overload: bool, not_judged: Option<NotJudged>) -> Lamp {
         _ => Lamp::lit(overload),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::health::SensorFinding;
+    use crate::residuals::Residuals;
+    use crate::window::Window;
+
+    fn panel(load: LoadKind, significance: Option<f32>) -> PanelConfig {
+        PanelConfig {
+            comparator: ComparatorConfig {
+                persistence: 3,
+                hysteresis: 0.8,
+            },
+            load,
+            significance,
+        }
+    }
+
+    fn judged(normalised: [f32; RESIDUALS]) -> Report {
+        Report {
+            window: Some(Window::default()),
+            normalised: Some(normalised),
+            residuals: Some(Residuals::default()),
+            ..Report::default()
+        }
+    }
+
+    fn not_judged(reason: NotJudged) -> Report {
+        Report {
+            not_judged: Some(reason),
+            ..judged([0.0; RESIDUALS])
+        }
+    }
+
+    /// The lamps after the same report came `times` in a row.
+    fn after(config: &PanelConfig, times: usize, report: Report) -> Report {
+        let mut state = PanelState::default();
+        let mut shown = report;
+        for _ in 0..times {
+            shown = report;
+            config.show(&mut state, &mut shown);
+        }
+        shown
+    }
+
+    const UNCALIBRATED: Option<f32> = None;
+
+    #[test]
+    fn residuals_beyond_their_thresholds_light_their_lamps_and_fault() {
+        let config = panel(LoadKind::Friction, UNCALIBRATED);
+        let report = judged([2.0, 0.0, 0.0, -2.0]);
+        assert!(
+            after(&config, 2, report).lamps.is_quiet(),
+            "persistence is three"
+        );
+        let shown = after(&config, 3, report);
+        assert_eq!(shown.lamps.pattern(), [true, false, false, true]);
+        assert_eq!((shown.lamps.fault, shown.lamps.run), (Lamp::On, Lamp::On));
+        assert_eq!(shown.lamps.sensor, Lamp::Off, "a resistance is no sensor");
+        assert!(shown.candidates.is_some());
+    }
+
+    #[test]
+    fn the_pattern_of_a_sensor_lights_sensor_as_well() {
+        let config = panel(LoadKind::Friction, UNCALIBRATED);
+        let shown = after(&config, 3, judged([2.0, 2.0, 2.0, 0.0]));
+        assert_eq!(
+            (shown.lamps.fault, shown.lamps.sensor),
+            (Lamp::On, Lamp::On)
+        );
+    }
+
+    /// What is not judged meets no threshold, and no row of Table 1.
+    #[test]
+    fn residuals_of_a_transient_light_nothing() {
+        let config = panel(LoadKind::Friction, UNCALIBRATED);
+        let report = Report {
+            not_judged: Some(NotJudged::Transient),
+            ..judged([9.0; RESIDUALS])
+        };
+        let shown = after(&config, 9, report);
+        assert_eq!(shown.lamps.pattern(), [false; RESIDUALS]);
+        assert_eq!(
+            (shown.lamps.load, shown.lamps.run),
+            (Lamp::Blink, Lamp::Blink)
+        );
+        assert_eq!((shown.lamps.fault, shown.candidates), (Lamp::Off, None));
+    }
+
+    #[test]
+    fn a_lamp_that_was_lit_stays_through_a_transient_but_its_row_is_not_named() {
+        let config = panel(LoadKind::Friction, UNCALIBRATED);
+        let mut state = PanelState::default();
+        for _ in 0..3 {
+            config.show(&mut state, &mut judged([2.0, 2.0, 2.0, 0.0]));
+        }
+        let mut transient = Report {
+            not_judged: Some(NotJudged::Transient),
+            ..judged([2.0, 2.0, 2.0, 0.0])
+        };
+        config.show(&mut state, &mut transient);
+        assert_eq!(transient.lamps.fault, Lamp::On);
+        assert_eq!(transient.candidates, None);
+    }
+
+    #[test]
+    fn findings_about_sensors_and_supply_persist_before_they_light() {
+        let config = panel(LoadKind::Friction, UNCALIBRATED);
+        let sensor = Report {
+            sensor: Some(SensorFinding::CurrentSum),
+            ..judged([0.0; RESIDUALS])
+        };
+        assert_eq!(after(&config, 2, sensor).lamps.sensor, Lamp::Off);
+        let lamps = after(&config, 3, sensor).lamps;
+        assert_eq!((lamps.sensor, lamps.fault), (Lamp::On, Lamp::On));
+        assert_eq!(lamps.line, Lamp::Off);
+        let supply = Report {
+            supply: Some(SupplyFinding::Unbalance),
+            ..judged([0.0; RESIDUALS])
+        };
+        assert_eq!(after(&config, 2, supply).lamps.line, Lamp::Off);
+        let lamps = after(&config, 3, supply).lamps;
+        assert_eq!(
+            (lamps.line, lamps.fault),
+            (Lamp::On, Lamp::Off),
+            "the line is no fault"
+        );
+    }
+
+    /// Without a window nothing is known about the sensors: the lamp stays as it was.
+    #[test]
+    fn silence_neither_lights_nor_darkens_sensor() {
+        let config = panel(LoadKind::Friction, UNCALIBRATED);
+        let mut state = PanelState::default();
+        for _ in 0..3 {
+            let mut dead = not_judged(NotJudged::Sensor(SensorFinding::CurrentSum));
+            dead.sensor = Some(SensorFinding::CurrentSum);
+            config.show(&mut state, &mut dead);
+        }
+        for _ in 0..9 {
+            let mut silent = Report {
+                window: None,
+                ..not_judged(NotJudged::NotLocked)
+            };
+            config.show(&mut state, &mut silent);
+            assert_eq!(silent.lamps.sensor, Lamp::On);
+        }
+    }
+
+    #[test]
+    fn run_line_and_sensor_say_why_nothing_is_judged() {
+        let config = panel(LoadKind::Friction, UNCALIBRATED);
+        let lamps = |reason| after(&config, 1, not_judged(reason)).lamps;
+        assert_eq!(lamps(NotJudged::Supply(SupplyFinding::Lost)).run, Lamp::Off);
+        assert_eq!(lamps(NotJudged::Settling).run, Lamp::Blink);
+        assert_eq!(lamps(NotJudged::NotLocked).line, Lamp::Blink);
+        assert_eq!(lamps(NotJudged::Settling).line, Lamp::Off);
+        assert_eq!(lamps(NotJudged::Clipped).sensor, Lamp::Blink);
+        assert_eq!(lamps(NotJudged::Invalid).sensor, Lamp::Blink);
+        assert_eq!(lamps(NotJudged::Settling).sensor, Lamp::Off);
+        assert_eq!(lamps(NotJudged::Settling).load, Lamp::Off);
+    }
+
+    /// Where the load is free, `r2` is minus the torque over the rated torque; LOAD lights beyond a service factor of 1.15.
+    #[test]
+    fn load_lights_for_an_undeclared_load_beyond_the_service_factor() {
+        let at = |load, torque: f32| {
+            let mut report = judged([f32::NAN; RESIDUALS]);
+            report.residuals = Some(Residuals {
+                r: [0.0, -torque, 0.0, 0.0],
+                ..Residuals::default()
+            });
+            after(&panel(load, UNCALIBRATED), 3, report).lamps.load
+        };
+        assert_eq!(at(LoadKind::Free, 1.16), Lamp::On);
+        assert_eq!(at(LoadKind::Free, 1.14), Lamp::Off);
+        assert_eq!(
+            at(LoadKind::Free, -1.5),
+            Lamp::Off,
+            "a generator is no overload"
+        );
+        assert_eq!(at(LoadKind::Friction, 1.5), Lamp::Off);
+        assert_eq!(at(LoadKind::Measured, 1.5), Lamp::Off);
+    }
+
+    fn isolation(significance: f32, sensor: bool) -> Isolation {
+        let mut scores = [0.0; crate::CAUSES];
+        let cause = if sensor { 5 } else { 0 }; // all currents, stator resistance
+        scores[cause] = 50.0;
+        Isolation {
+            scores,
+            unknown: 0.0,
+            sizes: [0.0; crate::CAUSES],
+            significance,
+            at_any_temperature: significance,
+            heating: crate::Heating::default(),
+        }
+    }
+
+    /// On a calibrated motor FAULT follows the evidence; r1..r4 show, but decide nothing and name no row.
+    #[test]
+    fn a_calibrated_motor_is_judged_by_its_evidence() {
+        let config = panel(LoadKind::Friction, Some(5.0));
+        let with = |significance, sensor, r1| Report {
+            isolation: Some(isolation(significance, sensor)),
+            ..judged([r1, 0.0, 0.0, 0.0])
+        };
+        let shown = after(&config, 3, with(4.9, false, 9.0));
+        assert_eq!(shown.lamps.fault, Lamp::Off);
+        assert_eq!(shown.lamps.pattern(), [true, false, false, false]);
+        assert_eq!(shown.candidates, None);
+        let lamps = after(&config, 3, with(5.1, false, 0.0)).lamps;
+        assert_eq!((lamps.fault, lamps.sensor), (Lamp::On, Lamp::Off));
+        let lamps = after(&config, 3, with(5.1, true, 0.0)).lamps;
+        assert_eq!((lamps.fault, lamps.sensor), (Lamp::On, Lamp::On));
+        let lamps = after(&config, 3, with(4.9, true, 0.0)).lamps;
+        assert_eq!(lamps.sensor, Lamp::Off, "no fault, no culprit");
+        assert_eq!(
+            after(&config, 2, with(5.1, false, 0.0)).lamps.fault,
+            Lamp::Off
+        );
+    }
+}

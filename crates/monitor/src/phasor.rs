@@ -363,4 +363,151 @@ mod tests {
             None
         );
     }
+
+    const RANGE: CodeRange = CodeRange {
+        zero: [2048.0, 1000.0],
+        lowest: 2,
+        highest: 4093,
+    };
+
+    /// Codes of whole numbers near the middle: single precision sums them without rounding.
+    fn instants() -> ([[u16; CHANNELS]; 8], [Complex32; 8]) {
+        let codes = core::array::from_fn(|k| {
+            core::array::from_fn(|n| (2000 + 100 * n + 37 * k % 91) as u16)
+        });
+        let axes = core::array::from_fn(|k| Complex32::from_polar(1.0, k as f32 * 0.7));
+        (codes, axes)
+    }
+
+    /// In bulk as one by one, to the last bit: the order of voltages and currents is that of the converter.
+    #[test]
+    fn codes_in_bulk_are_summed_up_like_instants() {
+        let (codes, axes) = instants();
+        let mut bulk = PhasorState::default();
+        assert!(bulk.add_codes(&codes, &axes, &RANGE));
+        let mut single = PhasorState::default();
+        for ([v_a, i_a, v_b, i_b, v_c, i_c], axis) in codes.into_iter().zip(axes) {
+            let tick = SyncTick {
+                axis,
+                omega: 314.0,
+                turn_ends: None,
+                restarted: false,
+            };
+            let volt = [v_a, v_b, v_c].map(|code| f32::from(code) - 2048.0);
+            let ampere = [i_a, i_b, i_c].map(|code| f32::from(code) - 1000.0);
+            let x = [volt[0], volt[1], volt[2], ampere[0], ampere[1], ampere[2]];
+            assert_eq!(single.update(&tick, &x, &[Unit::SI; CHANNELS]), None);
+        }
+        assert_eq!(bulk, single);
+    }
+
+    #[test]
+    fn a_code_at_a_rail_is_told_whichever_channel_it_is_in() {
+        let (sound, axes) = instants();
+        for channel in 0..CHANNELS {
+            for (code, inside) in [(1, false), (2, true), (4093, true), (4094, false)] {
+                let mut codes = sound;
+                codes[3][channel] = code;
+                let told = PhasorState::default().add_codes(&codes, &axes, &RANGE);
+                assert_eq!(told, inside, "{code} in channel {channel}");
+            }
+        }
+    }
+
+    /// What is summed up in codes comes out in V and A: `scale * x - offset` of every code.
+    #[test]
+    fn units_apply_to_phasor_offset_and_mean_square() {
+        let unit = Unit {
+            scale: 0.15,
+            offset: 4.0,
+        };
+        let mut state = PhasorState::default();
+        let (mut square, n) = (0.0, 200);
+        let mut last = None;
+        for k in 0..=n {
+            let angle = TAU * f64::from(k) / f64::from(n);
+            let code = (1000.0 * (angle + 0.5).cos() + 100.0) as f32;
+            let tick = SyncTick {
+                axis: Complex32::new(angle.cos() as f32, angle.sin() as f32),
+                omega: 314.0,
+                // The instant at which the turn is complete belongs to the next one.
+                turn_ends: (k == n).then_some(0.0),
+                restarted: false,
+            };
+            if k < n {
+                square += f64::from(0.15 * code - 4.0).powi(2) / f64::from(n);
+            }
+            last = state.update(&tick, &[code; CHANNELS], &[unit; CHANNELS]);
+        }
+        let channel = last.expect("a complete turn").channels[5];
+        assert!((channel.phasor - Complex32::from_polar(150.0, 0.5)).norm() < 1e-2);
+        assert!((channel.offset - (15.0 - 4.0)).abs() < 1e-2);
+        assert!((f64::from(channel.mean_square) / square - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_restart_forgets_what_was_summed_up() {
+        let mut state = PhasorState::default();
+        let mut tick = SyncTick {
+            axis: Complex32::ONE,
+            omega: 314.0,
+            turn_ends: None,
+            restarted: false,
+        };
+        state.update(&tick, &[5.0; CHANNELS], &[Unit::SI; CHANNELS]);
+        let mut fresh = PhasorState::default();
+        fresh.update(&tick, &[1.0; CHANNELS], &[Unit::SI; CHANNELS]);
+        tick.restarted = true;
+        state.update(&tick, &[1.0; CHANNELS], &[Unit::SI; CHANNELS]);
+        assert_eq!(state, fresh);
+    }
+
+    /// Normal equations of any instants are solved exactly: three fourths of a turn will do, a tenth will not.
+    #[test]
+    fn a_part_of_a_turn_gives_the_phasor_if_it_is_large_enough() {
+        for (instants, enough) in [(150, true), (20, false)] {
+            let mut state = PhasorState::default();
+            let mut last = None;
+            for k in 0..=instants {
+                let angle = TAU * f64::from(k) / 200.0;
+                let tick = SyncTick {
+                    axis: Complex32::new(angle.cos() as f32, angle.sin() as f32),
+                    omega: 314.0,
+                    turn_ends: (k == instants).then_some(0.5),
+                    restarted: false,
+                };
+                let x = (3.0 * (angle - 1.0).cos() + 2.0) as f32;
+                last = state.update(&tick, &[x; CHANNELS], &[Unit::SI; CHANNELS]);
+            }
+            assert_eq!(last.is_some(), enough, "{instants} of 200 instants");
+            if let Some(cycle) = last {
+                assert!((cycle.samples - (instants as f32 + 0.5)).abs() < 1e-3);
+                let channel = cycle.channels[2];
+                assert!((channel.phasor - Complex32::from_polar(3.0, -1.0)).norm() < 1e-4);
+                assert!((channel.offset - 2.0).abs() < 1e-4);
+            }
+        }
+    }
+
+    /// Three functions are told apart by four instants at least, evenly spread or not.
+    #[test]
+    fn three_instants_give_no_phasor_and_five_do() {
+        for (instants, enough) in [(3, false), (5, true)] {
+            let mut state = PhasorState::default();
+            let mut last = None;
+            for k in 0..=instants {
+                let tick = SyncTick {
+                    axis: Complex32::from_polar(
+                        1.0,
+                        core::f32::consts::TAU * k as f32 / instants as f32,
+                    ),
+                    omega: 314.0,
+                    turn_ends: (k == instants).then_some(0.0),
+                    restarted: false,
+                };
+                last = state.update(&tick, &[tick.axis.re; CHANNELS], &[Unit::SI; CHANNELS]);
+            }
+            assert_eq!(last.is_some(), enough, "{instants} instants");
+        }
+    }
 }

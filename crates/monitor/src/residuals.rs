@@ -175,3 +175,256 @@ fn relative(value: f32, scale: f32) -> f32 {
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use motor::TParams;
+
+    use super::*;
+    use crate::frames::Dq;
+
+    const PARAMS: TParams<f32> = TParams {
+        r_s: 8.0,
+        r_r: 7.0,
+        l_ls: 0.028,
+        l_lr: 0.035,
+        l_m: 0.42,
+    };
+    const OMEGA_SYNC: f32 = 377.0;
+    const FIELD: f32 = 1.1;
+    const N_P: f32 = 2.0;
+    const B: f32 = 0.0008;
+    const B_L: f32 = 0.0035;
+
+    const MODEL: ResidualModel = ResidualModel {
+        mechanics: Mechanics {
+            n_p: N_P,
+            inertia: 0.002,
+            friction: B,
+            load_friction: B_L,
+        },
+        field: FieldCurrent::Live,
+        rated_torque: 1.7,
+    };
+
+    /// Coefficients of the paper's matched DC motor, from the text of (29)-(34).
+    struct Coefficients {
+        r_a: f32,
+        psi: f32,
+        /// `K_f N_p`.
+        k: f32,
+    }
+
+    fn coefficients(i_d: f32) -> Coefficients {
+        let (l_s, l_r) = (PARAMS.l_ls + PARAMS.l_m, PARAMS.l_lr + PARAMS.l_m);
+        Coefficients {
+            r_a: PARAMS.r_s + l_s / l_r * PARAMS.r_r,
+            psi: l_s * i_d,
+            k: 1.5 * N_P * N_P * PARAMS.l_m * PARAMS.l_m / l_r * i_d,
+        }
+    }
+
+    /// The linear motor (33) at rest with itself: `R_a I_q + Psi w = V_q` and `K_f N_p I_q = B_t w`.
+    fn steady(friction: f32) -> OperatingPoint {
+        let c = coefficients(FIELD);
+        let i_q = 0.6;
+        let omega_el = c.k * i_q / friction;
+        let u_q = c.r_a * i_q + c.psi * omega_el;
+        OperatingPoint {
+            u_s_dq: Dq { d: -40.0, q: u_q },
+            i_s_dq: Dq { d: FIELD, q: i_q },
+            u_amplitude: libm::sqrtf(40.0 * 40.0 + u_q * u_q),
+            psi_r: PARAMS.l_m * FIELD,
+            params: PARAMS,
+            tau_extra: 0.0,
+            omega_sync: OMEGA_SYNC,
+            omega_el,
+        }
+    }
+
+    /// Single precision: a few roundings of numbers that are some times the result.
+    fn assert_close(got: f32, expected: f32) {
+        assert!(
+            (got - expected).abs() < 1e-5 * (1.0 + expected.abs()),
+            "{got} instead of {expected}"
+        );
+    }
+
+    fn assert_residuals(point: &OperatingPoint, tau_load: Option<f32>, expected: [f32; 4]) {
+        let got = MODEL.evaluate(point, tau_load).r;
+        println!("{got:?} {expected:?}");
+        for (got, expected) in got.into_iter().zip(expected) {
+            assert_close(got, expected);
+        }
+    }
+
+    #[test]
+    fn the_linear_motor_leaves_nothing() {
+        assert_residuals(&steady(B + B_L), None, [0.0; 4]);
+    }
+
+    /// Table 1: the current sensor leaves r4 dark, and moves each of the others by its own coefficient of (37).
+    #[test]
+    fn a_current_sensor_moves_all_but_r4() {
+        let (point, b_t) = (steady(B + B_L), B + B_L);
+        let c = coefficients(FIELD);
+        let more = 0.5 * point.i_s_dq.q;
+        let mut seen = point;
+        seen.i_s_dq.q += more;
+        let k1 = c.psi * c.k + c.r_a * b_t;
+        let expected = [
+            c.r_a * more / point.u_amplitude,
+            -c.k * more / (b_t * OMEGA_SYNC),
+            k1 * more / (b_t * point.u_amplitude),
+            0.0,
+        ];
+        assert_residuals(&seen, None, expected);
+    }
+
+    /// Table 1: the voltage sensor leaves r2 dark.
+    #[test]
+    fn a_voltage_sensor_moves_all_but_r2() {
+        let point = steady(B + B_L);
+        let mut seen = point;
+        seen.u_s_dq.q *= 1.5;
+        let x = -0.5 * point.u_s_dq.q / point.u_amplitude;
+        assert_residuals(&seen, None, [x, 0.0, x, x]);
+    }
+
+    /// Table 1: the speed sensor leaves r3 dark.
+    #[test]
+    fn a_speed_sensor_moves_all_but_r3() {
+        let (point, b_t) = (steady(B + B_L), B + B_L);
+        let c = coefficients(FIELD);
+        let more = 0.5 * point.omega_el;
+        let mut seen = point;
+        seen.omega_el += more;
+        let k1 = c.psi * c.k + c.r_a * b_t;
+        let expected = [
+            c.psi * more / point.u_amplitude,
+            more / OMEGA_SYNC,
+            0.0,
+            k1 * more / (c.k * point.u_amplitude),
+        ];
+        assert_residuals(&seen, None, expected);
+    }
+
+    #[test]
+    fn a_nominal_field_current_replaces_the_measured_one() {
+        let nominal = ResidualModel {
+            field: FieldCurrent::Nominal(FIELD),
+            ..MODEL
+        };
+        let mut point = steady(B + B_L);
+        point.i_s_dq.d = 2.0 * FIELD;
+        for r in nominal.evaluate(&point, None).r {
+            assert_close(r, 0.0);
+        }
+    }
+
+    /// A torque channel that reads `B_l w`, or an effect that takes it, says the same as the declared friction.
+    #[test]
+    fn torque_from_anywhere_counts_as_friction() {
+        let point = steady(B + B_L);
+        let brake = B_L * point.omega_el / N_P;
+        assert_residuals(&point, Some(brake), [0.0; 4]);
+        let mut with_effect = steady(B + 2.0 * B_L);
+        with_effect.tau_extra = B_L * with_effect.omega_el / N_P;
+        let r = MODEL.evaluate(&with_effect, None).r;
+        for r in r {
+            assert_close(r, 0.0);
+        }
+    }
+
+    /// At standstill no friction can stand for a torque.
+    #[test]
+    fn torque_at_standstill_adds_no_friction() {
+        let mut point = steady(B + B_L);
+        point.omega_el = 0.0;
+        let r2 = -coefficients(FIELD).k * point.i_s_dq.q / ((B + B_L) * OMEGA_SYNC);
+        assert_close(MODEL.evaluate(&point, Some(1.0)).r[1], r2);
+    }
+
+    /// `e_d = |psi_r| - L_m I_d` and (16), each on the scale of the voltage.
+    #[test]
+    fn the_rotor_equations_tell_flux_and_slip() {
+        let mut point = steady(B + B_L);
+        let l_r = PARAMS.l_lr + PARAMS.l_m;
+        let slip = PARAMS.r_r * PARAMS.l_m / l_r * point.i_s_dq.q / point.psi_r;
+        point.omega_el = OMEGA_SYNC - slip;
+        let residuals = MODEL.evaluate(&point, None);
+        assert_close(residuals.e_d, 0.0);
+        assert_close(residuals.e_q, 0.0);
+        assert!((MODEL.implied_speed(&point) - point.omega_el).abs() < 1e-3);
+
+        let mut faster = point;
+        faster.omega_el += 1.0;
+        let e_q = MODEL.evaluate(&faster, None).e_q;
+        assert_close(e_q, -point.psi_r / point.u_amplitude);
+
+        point.psi_r += 0.01;
+        let e_d = MODEL.evaluate(&point, None).e_d;
+        let volt = 0.01 * OMEGA_SYNC * PARAMS.l_m / l_r;
+        assert_close(e_d, volt / point.u_amplitude);
+    }
+
+    /// (36) row 1 beside (37) row 1: `L_s di/dt` over the voltage; row 2: `J dw/dt` over the torque of the friction scale.
+    #[test]
+    fn changing_currents_and_speeds_are_unsteady() {
+        let point = steady(B + B_L);
+        let [volt, torque] = MODEL.unsteadiness(&point, -3.0, -5.0);
+        assert_close(volt, (PARAMS.l_ls + PARAMS.l_m) * 3.0 / point.u_amplitude);
+        assert_close(torque, 0.002 * 5.0 / ((B + B_L) * OMEGA_SYNC / N_P));
+        assert_close(MODEL.acceleration_share(OMEGA_SYNC, -5.0), -torque);
+    }
+
+    /// Friction at synchronous speed is the whole scale; with a torque channel only the bearings' share of it is left.
+    #[test]
+    fn friction_has_its_share_of_the_torque_balance() {
+        let omega_mech = 0.9 * OMEGA_SYNC / N_P;
+        assert_close(MODEL.friction_share(OMEGA_SYNC, omega_mech, false), 0.9);
+        let bearings = 0.9 * B / (B + B_L);
+        assert_close(MODEL.friction_share(OMEGA_SYNC, omega_mech, true), bearings);
+    }
+
+    /// Friction that takes less than a twentieth of rated torque at synchronous speed is the bearings', no model of a
+    /// load: `r2` is then a share of rated torque.
+    #[test]
+    fn without_a_declared_load_r2_is_a_share_of_rated_torque() {
+        let rated_torque = 1.7;
+        let at_sync = |share: f32| share * rated_torque * N_P / OMEGA_SYNC;
+        for (share, scale) in [(0.04, 1.0), (0.06, 0.06)] {
+            let mut free = MODEL;
+            free.mechanics.friction = at_sync(share);
+            free.mechanics.load_friction = 0.0;
+            let mut point = steady(B + B_L);
+            point.omega_el = 0.0;
+            let torque = coefficients(FIELD).k * point.i_s_dq.q / N_P;
+            let r2 = free.evaluate(&point, None).r[1];
+            assert_close(r2, -torque / (scale * rated_torque));
+        }
+    }
+
+    /// A brake beyond rated torque makes its own scale, so that no residual of a stalled motor exceeds all bounds.
+    #[test]
+    fn a_brake_beyond_rated_torque_is_its_own_scale() {
+        let mut free = MODEL;
+        (free.mechanics.friction, free.mechanics.load_friction) = (0.0, 0.0);
+        let mut point = steady(B + B_L);
+        point.i_s_dq.q = 0.0;
+        point.omega_el = 100.0;
+        let r2 = free.evaluate(&point, Some(10.0 * 1.7)).r[1];
+        // Only `B_t w_r` is left of (37) row 2, over `B_t w_s`.
+        assert_close(r2, 100.0 / OMEGA_SYNC);
+    }
+
+    #[test]
+    fn a_scale_of_nothing_gives_nothing() {
+        let mut point = steady(B + B_L);
+        point.u_amplitude = 0.0;
+        point.i_s_dq.d = 0.0;
+        let residuals = MODEL.evaluate(&point, None);
+        assert_eq!((residuals.r[0], residuals.r[3]), (0.0, 0.0));
+        assert_eq!((residuals.e_d, residuals.e_q), (0.0, 0.0));
+    }
+}

@@ -27,4 +27,17 @@ mod tests {
             assert!(error.norm() < 3e-7, "{x}: {error}");
         }
     }
+
+    /// One Newton step squares the error: 1 % becomes 1.5 * 1e-4, and the angle stays.
+    #[test]
+    fn a_drifted_axis_is_brought_back_to_unit_length() {
+        for length in [0.99, 1.01] {
+            let mut axis = Complex32::from_polar(length, 0.7);
+            renormalise(&mut axis);
+            assert!(
+                (axis - Complex32::from_polar(1.0, 0.7)).norm() < 2e-4,
+                "{axis}"
+            );
+        }
+    }
 }

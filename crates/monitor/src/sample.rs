@@ -129,3 +129,60 @@ impl ClippedChannels {
         ClippedChannels(self.0 | other.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_channel_has_its_own_mark() {
+        for phase in 0..3 {
+            let (mut voltage, mut current) = (ClippedChannels::NONE, ClippedChannels::NONE);
+            voltage.mark_voltage(phase);
+            current.mark_current(phase);
+            for other in 0..3 {
+                assert_eq!(voltage.voltage(other), other == phase);
+                assert_eq!(current.current(other), other == phase);
+                assert!(!voltage.current(other) && !current.voltage(other));
+            }
+            assert!(voltage.any() && current.any());
+            // A mark stays when it is set again or joined with itself.
+            let mut twice = voltage.union(current);
+            twice.mark_voltage(phase);
+            twice.mark_current(phase);
+            assert_eq!(twice, voltage.union(current).union(voltage));
+            assert!(twice.voltage(phase) && twice.current(phase));
+        }
+        assert!(!ClippedChannels::NONE.any());
+    }
+
+    #[test]
+    fn a_block_is_as_long_as_its_shorter_half_and_is_taken_from_the_front() {
+        let codes: [[u16; CHANNELS]; 3] = [[1; CHANNELS], [2; CHANNELS], [3; CHANNELS]];
+        let mut block = RawBlock::new(&codes, &[10, 20]);
+        let seen: Vec<_> = block
+            .instants()
+            .map(|(codes, count)| (codes[0], count))
+            .collect();
+        assert_eq!(seen, [(1, 10), (2, 20)]);
+        assert!(!block.is_empty());
+        assert_eq!(block.take(1), &codes[..1]);
+        let left: Vec<_> = block
+            .instants()
+            .map(|(codes, count)| (codes[0], count))
+            .collect();
+        assert_eq!(left, [(2, 20)]);
+        assert_eq!(block.take(5), &codes[1..2], "no more than there are");
+        assert!(block.is_empty());
+    }
+
+    #[test]
+    fn codes_alternate_between_voltage_and_current() {
+        let raw = RawSample {
+            voltage_codes: [1, 2, 3],
+            current_codes: [4, 5, 6],
+            encoder_count: 7,
+        };
+        assert_eq!(raw.interleaved(), [1, 4, 2, 5, 3, 6]);
+    }
+}

@@ -57,3 +57,64 @@ impl SupplyConfig {
         at_rated_frequency && !(least * rated..=greatest * rated).contains(&amplitude)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use num_complex::Complex32;
+
+    use super::*;
+    use crate::frames::Sequence;
+
+    const CONFIG: SupplyConfig = SupplyConfig {
+        rated_voltage: 300.0,
+        rated_omega: 314.0,
+        voltage_range: [0.75, 1.2],
+        max_unbalance: 0.03,
+    };
+
+    /// Finding for amplitudes of positive and negative sequence, V, and a frequency, rad/s.
+    fn found(positive: f32, negative: f32, omega_sync: f32) -> Option<SupplyFinding> {
+        let u_s = Sequence {
+            positive: Complex32::from_polar(positive, 0.3),
+            negative: Complex32::from_polar(negative, -1.2),
+            zero: Complex32::ZERO,
+        };
+        CONFIG.check(&Window {
+            u_s,
+            omega_sync,
+            ..Window::default()
+        })
+    }
+
+    #[test]
+    fn a_supply_within_its_limits_is_no_finding() {
+        for positive in [226.0, 300.0, 359.0] {
+            assert_eq!(found(positive, 0.029 * positive, 314.0), None);
+        }
+    }
+
+    #[test]
+    fn voltage_beyond_either_limit_is_found_at_rated_frequency() {
+        for positive in [224.0, 361.0] {
+            for omega in [314.0, 0.91 * 314.0, 1.09 * 314.0] {
+                assert_eq!(found(positive, 0.0, omega), Some(SupplyFinding::Voltage));
+            }
+        }
+    }
+
+    /// An inverter lowers voltage and frequency together.
+    #[test]
+    fn voltage_is_no_finding_far_from_rated_frequency() {
+        for omega in [0.89 * 314.0, 1.11 * 314.0, 31.4] {
+            assert_eq!(found(100.0, 0.0, omega), None);
+        }
+    }
+
+    #[test]
+    fn unbalance_and_wrong_order_are_told_apart() {
+        assert_eq!(found(300.0, 9.1, 314.0), Some(SupplyFinding::Unbalance));
+        assert_eq!(found(9.1, 300.0, 314.0), Some(SupplyFinding::NegativeOrder));
+        // Half a voltage is first of all too little of it.
+        assert_eq!(found(150.0, 149.0, 314.0), Some(SupplyFinding::Voltage));
+    }
+}
