@@ -68,9 +68,10 @@ const SPEED_CONTRADICTION: f32 = 0.4;
 const HOT_ROTOR: f32 = 1.5;
 
 impl HealthConfig {
-    /// Whether the supply is there at all.
+    /// Whether the supply is there at all, in either order of its phases.
     pub fn has_supply(&self, window: &Window) -> bool {
-        magnitude(window.u_s.positive) > SILENT_SHARE * self.rated_voltage
+        let least = SILENT_SHARE * self.rated_voltage;
+        magnitude(window.u_s.positive) > least || magnitude(window.u_s.negative) > least
     }
 
     /// Whether the motor draws current at all.

@@ -28,6 +28,8 @@ mod sample;
 mod signature;
 mod supply;
 mod sync;
+#[cfg(test)]
+mod tests;
 mod threshold;
 mod window;
 

@@ -220,11 +220,7 @@ impl Monitor {
             .window
             .measure(self.config.window_cycles, self.config.t_sample)
             .filter(|_| state.sync.is_locked());
-        let mut report = self.report(state, window);
-        if window.is_none() && cycle.clipped.any() {
-            report.not_judged = Some(NotJudged::Clipped);
-        }
-        report
+        self.report(state, window, cycle.clipped.any())
     }
 
     fn idle_report(&self, state: &mut MonitorState) -> Option<Report> {
@@ -234,10 +230,10 @@ impl Monitor {
         state.window.clear();
         self.encoder.close_window(&mut state.encoder);
         state.measured = state.intake.close_cycle().measured();
-        Some(self.report(state, None))
+        Some(self.report(state, None, false))
     }
 
-    fn report(&self, state: &mut MonitorState, window: Option<Window>) -> Report {
+    fn report(&self, state: &mut MonitorState, window: Option<Window>, clipped: bool) -> Report {
         self.let_winding_warm(state, window.as_ref());
         state.since_report = 0;
         let mut report = Report {
@@ -247,6 +243,7 @@ impl Monitor {
         };
         match &window {
             Some(window) => self.examine(state, window, &mut report),
+            None if clipped => report.not_judged = Some(NotJudged::Clipped),
             None => self.explain_silence(state, &mut report),
         }
         self.panel.show(&mut state.panel, &mut report);

@@ -1,0 +1,223 @@
+//! The covariance of the healthy motor, and what is known of it, against sums in double precision.
+
+use nalgebra::{SMatrix, SVector};
+use num_complex::Complex32;
+
+use super::plant::{Plant, evidence, monitor, statistics};
+use crate::Evidence;
+use crate::frames::Sequence;
+use crate::health::Phase;
+use crate::isolation::{Cause, Healthy, Heating, Isolation, ROWS, Row};
+use crate::window::Window;
+
+type Matrix = SMatrix<f64, ROWS, ROWS>;
+
+fn wide(rows: [f32; ROWS]) -> SVector<f64, ROWS> {
+    SVector::from(rows.map(f64::from))
+}
+
+/// Squared length in units of the covariance that the documentation promises: scatter, every uncertainty along its own
+/// direction, channel by channel.
+fn mahalanobis(evidence: &Evidence, healthy: &Healthy, heating: f64) -> f64 {
+    let scatter = wide(healthy.scatter);
+    let mut sum = Matrix::from_diagonal(&scatter.component_mul(&scatter));
+    let mut add = |rows: [f32; ROWS], deviation: f32| {
+        let direction = wide(rows) * f64::from(deviation);
+        sum += direction * direction.transpose();
+    };
+    let u = healthy.uncertainty;
+    add(
+        evidence.direction(Cause::StatorResistance),
+        u.stator_resistance,
+    );
+    add(
+        evidence.direction(Cause::RotorResistance),
+        u.rotor_resistance,
+    );
+    add(
+        evidence.direction(Cause::MagnetizingInductance),
+        u.magnetizing_inductance,
+    );
+    add(evidence.direction(Cause::Leakage), u.leakage);
+    add(evidence.direction(Cause::Friction), u.friction);
+    add(evidence.direction(Cause::SpeedGain), u.speed);
+    for phase in Phase::ALL {
+        add(
+            evidence.direction(Cause::CurrentChannel(phase)),
+            u.current_gain,
+        );
+        add(
+            evidence.direction(Cause::VoltageChannel(phase)),
+            u.voltage_gain,
+        );
+    }
+    let warm = wide(evidence.direction(Cause::StatorResistance))
+        + wide(evidence.direction(Cause::RotorResistance));
+    sum += warm * warm.transpose() * heating * heating;
+    let x = wide(evidence.departure);
+    x.dot(&(sum.try_inverse().expect("scatter in every row") * x))
+}
+
+/// Only one uncertainty at a time is more than a trace, so that none hides behind another.
+#[test]
+fn every_uncertainty_widens_its_own_direction() {
+    let mut plant = Plant::healthy();
+    plant.gains = [1.002, 1.0, 0.999, 1.0, 1.003, 1.0];
+    plant.params.r_r *= 1.03;
+    plant.friction *= 1.02;
+    let large: [fn(&mut Healthy); 9] = [
+        |h| h.uncertainty.stator_resistance = 0.2,
+        |h| h.uncertainty.rotor_resistance = 0.2,
+        |h| h.uncertainty.magnetizing_inductance = 0.02,
+        |h| h.uncertainty.leakage = 0.1,
+        |h| h.uncertainty.friction = 0.2,
+        |h| h.uncertainty.current_gain = 0.01,
+        |h| h.uncertainty.voltage_gain = 0.01,
+        |h| h.uncertainty.speed = 0.01,
+        |_| (),
+    ];
+    for (k, make_large) in large.into_iter().enumerate() {
+        let mut healthy = statistics();
+        healthy.scatter = [2e-3; ROWS];
+        healthy.uncertainty.negative_impedance = 0.0;
+        make_large(&mut healthy);
+        let evidence = monitor()
+            .evidence(&healthy, &plant.window())
+            .expect("all is measured");
+        for heating in [0.0, 0.05] {
+            let white = evidence
+                .covariance(&healthy, heating)
+                .factorise()
+                .whiten(&evidence.departure);
+            let got: f64 = white.iter().map(|x| f64::from(*x).powi(2)).sum();
+            let expected = mahalanobis(&evidence, &healthy, f64::from(heating));
+            assert!(
+                (got / expected - 1.0).abs() < 0.01,
+                "{k}: {got} instead of {expected}"
+            );
+        }
+    }
+}
+
+/// The drop over the negative sequence's impedance, uncertain in size and angle, matters as much as the motor carries
+/// negative sequence: a series resistance makes some, a balanced motor none.
+#[test]
+fn an_uncertain_negative_impedance_excuses_only_currents_of_negative_sequence() {
+    let with = |plant: &Plant, uncertain: f32| {
+        let mut healthy = statistics();
+        healthy.uncertainty.negative_impedance = uncertain;
+        Isolation::of(&evidence(plant), &healthy, Heating::any(&healthy)).unknown
+    };
+    let mut unbalanced = Plant::healthy();
+    unbalanced.series[1] = 0.5;
+    assert!(with(&unbalanced, 0.5) < 0.9 * with(&unbalanced, 0.0));
+    let mut warm = Plant::healthy();
+    warm.params.r_r *= 1.3;
+    assert!((with(&warm, 0.5) - with(&warm, 0.0)).abs() < 1e-2);
+}
+
+/// A row without statistics, or a torque balance without a known load, is neither evidence nor excuse.
+#[test]
+fn unknown_rows_say_nothing() {
+    let mut healthy = statistics();
+    healthy.scatter[Row::ZeroVoltage as usize] = 0.0;
+    healthy.scatter[Row::ZeroVoltage as usize + 1] = 0.0;
+    let mut plant = Plant::healthy();
+    plant.gains[0] = 1.05;
+    let evidence = monitor()
+        .evidence(&healthy, &plant.window())
+        .expect("all is measured");
+    assert_eq!(evidence.known_rows(), ROWS - 2);
+    assert_eq!(
+        evidence.known()[Row::ZeroVoltage as usize..],
+        [false, false]
+    );
+    assert_eq!(evidence.departure[Row::ZeroVoltage as usize..], [0.0, 0.0]);
+    let direction = evidence.direction(Cause::VoltageChannel(Phase::A));
+    assert_eq!(direction[Row::ZeroVoltage as usize..], [0.0, 0.0]);
+    assert!(direction[Row::Negative as usize] != 0.0);
+}
+
+/// What the healthy motor shows anyway is no departure.
+#[test]
+fn the_mean_of_the_healthy_motor_is_taken_off() {
+    let mut healthy = statistics();
+    for (row, mean) in healthy.mean.iter_mut().enumerate() {
+        *mean = 0.01 * (row + 1) as f32;
+    }
+    let evidence = monitor()
+        .evidence(&healthy, &Plant::healthy().window())
+        .expect("all is measured");
+    for (row, x) in evidence.departure.iter().enumerate() {
+        assert!((x + 0.01 * (row + 1) as f32).abs() < 1e-5, "row {row}: {x}");
+    }
+}
+
+/// A window that shows currents only; `i_2` and `i_0` over the positive sequence of 5 A.
+fn currents(i_2: Complex32, i_0: Complex32) -> Window {
+    let positive = Complex32::from_polar(5.0, 0.8);
+    Window {
+        i_s: Sequence {
+            positive,
+            negative: positive * i_2,
+            zero: positive * i_0,
+        },
+        omega_sync: 314.0,
+        span: 0.08,
+        ..Window::default()
+    }
+}
+
+/// With three currents alone two rows speak of the motor, two of the instrument.
+#[test]
+fn currents_alone_show_their_unbalance() {
+    let mut healthy = statistics();
+    healthy.current_unbalance = [0.01, -0.02];
+    let window = currents(Complex32::new(0.05, 0.03), Complex32::new(0.004, -0.006));
+    let evidence = monitor().evidence(&healthy, &window).expect("currents");
+    let close = |row: usize, expected: f32| {
+        let got = evidence.departure[row];
+        assert!((got - expected).abs() < 1e-6, "row {row}: {got}");
+    };
+    close(Row::Negative as usize, 0.04);
+    close(Row::Negative as usize + 1, 0.05);
+    close(Row::ZeroCurrent as usize, 0.004);
+    close(Row::ZeroCurrent as usize + 1, -0.006);
+    let known = [false, false, false, true, true, true, true, false, false];
+    assert_eq!(evidence.known(), &known);
+    healthy.current_unbalance_scatter = 0.0;
+    healthy.scatter = [0.0; ROWS];
+    let nothing = Evidence::of_currents(&healthy, &window);
+    assert_eq!(nothing.known_rows(), 0);
+}
+
+/// Turns shorted in one phase add a current in phase with that phase's voltage, which leads its current by the load's
+/// angle; without a zero sequence it is no channel.
+#[test]
+fn currents_alone_name_the_phase_of_shorted_turns() {
+    let healthy = statistics();
+    let [re, im] = healthy.turns_axis;
+    let third = core::f32::consts::TAU / 3.0;
+    for (k, phase) in Phase::ALL.into_iter().enumerate() {
+        // The negative sequence sees phase b a third of a turn ahead, phase c a third behind.
+        let axis = Complex32::from_polar(1.0, third * k as f32);
+        let window = currents(Complex32::new(re, im) * axis * (0.1 / 3.0), Complex32::ZERO);
+        let evidence = Evidence::of_currents(&healthy, &window);
+        let isolation = Isolation::of(&evidence, &healthy, Heating::any(&healthy));
+        let place = |cause| {
+            crate::ALL_CAUSES
+                .iter()
+                .position(|c| *c == cause)
+                .expect("listed")
+        };
+        let own = place(Cause::Turns(phase));
+        let (shares, _) = isolation.probabilities();
+        assert!(shares[own] > 0.5, "{phase:?}: {shares:?}");
+        assert!(
+            (isolation.sizes[own] - 0.1).abs() < 0.005,
+            "{}",
+            isolation.sizes[own]
+        );
+        assert!(!isolation.points_to_sensor());
+    }
+}

@@ -1,0 +1,402 @@
+//! What is judged, what is not, and which reason is told.
+
+use num_complex::Complex64;
+
+use super::drive::{AMPLITUDE, Bench, Drive, PARAMS, T_SAMPLE, config, last, point_of};
+use crate::{
+    Lamp, LoadKind, MonitorConfig, NotJudged, Phase, Rehearsal, Report, Sample, SensorFinding,
+    SpeedSample, SupplyFinding,
+};
+
+/// The last report when every sample of the healthy motor is changed.
+fn changed(change: impl Fn(f64, &mut Sample)) -> Report {
+    last(config(), |t| {
+        let mut sample = Drive::healthy().sample(t);
+        change(t, &mut sample);
+        sample
+    })
+}
+
+#[test]
+fn a_healthy_motor_is_judged_once_per_cycle_and_lights_nothing() {
+    let mut bench = Bench::new(config());
+    let reports = bench.run(1.0, |t| Drive::healthy().sample(t));
+    let judged: Vec<_> = reports.iter().filter(|r| r.is_judged()).collect();
+    assert!(judged.len() > 35, "{} of 50 cycles", judged.len());
+    for pair in judged.windows(2) {
+        assert!(pair[1].sample_index.abs_diff(pair[0].sample_index + 200) <= 1);
+    }
+    for report in judged {
+        assert!(
+            report.lamps.is_quiet() && report.lamps.run == Lamp::On,
+            "{report:?}"
+        );
+        assert_eq!((report.sensor, report.supply), (None, None));
+        let worst = report
+            .normalised
+            .into_iter()
+            .flatten()
+            .fold(0.0, |a: f32, b| a.max(b.abs()));
+        assert!(worst < 0.1, "{worst} thresholds");
+    }
+    assert_eq!(bench.monitor.config(), &config());
+}
+
+/// Between the lock and the first full window the reason is that the window fills.
+#[test]
+fn a_window_settles_before_it_is_judged() {
+    let reports = Bench::new(config()).run(1.0, |t| Drive::healthy().sample(t));
+    let settling = reports
+        .iter()
+        .filter(|r| r.not_judged == Some(NotJudged::Settling));
+    // The first cycle closes a turn after the oscillator was set; the fifth fills the window.
+    assert_eq!(settling.count(), 4);
+    let first = reports.iter().position(Report::is_judged).expect("judged");
+    assert!(reports[first..].iter().all(Report::is_judged));
+}
+
+#[test]
+fn what_is_not_measured_is_told() {
+    assert_eq!(
+        changed(|_, s| s.u_s_abc = None).not_judged,
+        Some(NotJudged::NoVoltages)
+    );
+    assert_eq!(
+        changed(|_, s| s.i_s_abc = None).not_judged,
+        Some(NotJudged::NoCurrents)
+    );
+    let no_speed = changed(|_, s| s.speed = SpeedSample::None);
+    assert_eq!(no_speed.not_judged, Some(NotJudged::NoSpeed));
+    assert_eq!((no_speed.residuals, no_speed.point), (None, None));
+    let nothing = changed(|_, s| *s = Sample::default());
+    assert_eq!(nothing.not_judged, Some(NotJudged::NotLocked));
+    assert_eq!(nothing.supply, None, "no channel could have seen a supply");
+}
+
+#[test]
+fn a_channel_at_its_rail_is_told_even_before_the_window_is_full() {
+    let clipped = |config: MonitorConfig| {
+        Bench::new(config).run(1.0, |t| {
+            let mut sample = Drive::healthy().sample(t);
+            sample.clipped.mark_current(1);
+            sample
+        })
+    };
+    let reports = clipped(config());
+    let of_cycles: Vec<_> = reports
+        .iter()
+        .filter(|r| r.not_judged != Some(NotJudged::NotLocked))
+        .collect();
+    assert!(of_cycles.len() > 40);
+    for report in of_cycles {
+        assert_eq!(report.not_judged, Some(NotJudged::Clipped));
+        assert_eq!(report.lamps.sensor, Lamp::Blink);
+    }
+}
+
+/// Every 0.1 s, and then a supply that was there is called lost.
+#[test]
+fn silence_is_reported_ten_times_a_second() {
+    let mut bench = Bench::new(config());
+    bench.run(0.5, |t| Drive::healthy().sample(t));
+    let silent = Sample {
+        u_s_abc: Some(Default::default()),
+        i_s_abc: Some(Default::default()),
+        ..Sample::default()
+    };
+    // Peaks are forgotten at 5 per second: ln(1/0.05)/5 = 0.6 s after the last cycle.
+    bench.run(0.7, |_| silent);
+    let reports = bench.run(1.0, |_| silent);
+    assert_eq!(reports.len(), 10);
+    for report in &reports {
+        assert_eq!(
+            report.not_judged,
+            Some(NotJudged::Supply(SupplyFinding::Lost))
+        );
+        assert_eq!((report.window, report.lamps.run), (None, Lamp::Off));
+    }
+    assert_eq!(reports[1].sample_index - reports[0].sample_index, 1000);
+    assert_eq!(reports[9].lamps.line, Lamp::On);
+}
+
+/// Direct voltage is a voltage: not lost, but there is nothing to lock to.
+#[test]
+fn direct_voltage_is_no_lost_supply() {
+    let report = changed(|_, s| {
+        s.u_s_abc = Some(crate::Abc {
+            a: 300.0,
+            b: -150.0,
+            c: -150.0,
+        });
+    });
+    assert_eq!(
+        (report.not_judged, report.supply),
+        (Some(NotJudged::NotLocked), None)
+    );
+    assert_eq!(report.lamps.line, Lamp::Blink);
+}
+
+#[test]
+fn a_supply_that_turns_the_other_way_is_not_judged() {
+    let report = changed(|_, s| {
+        for x in [&mut s.u_s_abc, &mut s.i_s_abc].into_iter().flatten() {
+            std::mem::swap(&mut x.b, &mut x.c);
+        }
+    });
+    let wrong = SupplyFinding::NegativeOrder;
+    assert_eq!(report.not_judged, Some(NotJudged::Supply(wrong)));
+    assert_eq!((report.supply, report.lamps.line), (Some(wrong), Lamp::On));
+}
+
+/// An unbalanced supply is told by LINE; the motor is judged nevertheless.
+#[test]
+fn an_unbalanced_supply_is_told_and_judged() {
+    let report = last(config(), |t| {
+        let mut drive = Drive::healthy();
+        drive.u[0] *= 1.15; // 5 % negative sequence
+        drive.sample(t)
+    });
+    assert_eq!(report.supply, Some(SupplyFinding::Unbalance));
+    assert_eq!(report.lamps.line, Lamp::On);
+    assert!(report.is_judged(), "{:?}", report.not_judged);
+}
+
+#[test]
+fn a_motor_without_current_is_not_judged() {
+    let report = changed(|_, s| s.i_s_abc = Some(Default::default()));
+    assert_eq!(report.not_judged, Some(NotJudged::NoLoadCurrent));
+    assert_eq!(report.sensor, None);
+}
+
+#[test]
+fn a_dead_channel_and_a_false_speed_are_sensors() {
+    let report = last(config(), |t| {
+        let mut drive = Drive::healthy();
+        drive.i[1] *= 0.0;
+        drive.sample(t)
+    });
+    let dead = SensorFinding::DeadCurrent(Phase::B);
+    assert_eq!(report.not_judged, Some(NotJudged::Sensor(dead)));
+    assert_eq!(
+        (report.lamps.sensor, report.lamps.fault),
+        (Lamp::On, Lamp::On)
+    );
+    let report = changed(|_, s| s.speed = SpeedSample::RadPerSecond(0.0));
+    assert_eq!(report.sensor, Some(SensorFinding::SpeedImplausible));
+    let report = changed(|_, s| s.u_s_abc = Some(Default::default()));
+    assert_eq!(report.sensor, Some(SensorFinding::VoltagesMissing));
+}
+
+/// (36) row 2: with 0.015 kg m2 on a scale of 0.065 N m s * 314/2 rad/s a quarter of 5 % is 8.5 rad/s2.
+#[test]
+fn a_speeding_shaft_is_a_transient_from_a_quarter_of_the_threshold_on() {
+    for (rate, judged) in [(7.5_f32, true), (9.5, false), (-9.5, false)] {
+        let report = changed(|t, s| {
+            if let SpeedSample::RadPerSecond(omega) = &mut s.speed {
+                *omega += rate * (t as f32 - 1.0);
+            }
+        });
+        let expected = (!judged).then_some(NotJudged::Transient);
+        assert_eq!(report.not_judged, expected, "{rate} rad/s2");
+        assert!(report.residuals.is_some(), "evaluated even so");
+    }
+}
+
+/// (36) row 1: `L_s di/dt` of a quarter of 0.6 % of 326.6 V is 2 A/s.
+#[test]
+fn a_changing_current_is_a_transient_from_a_quarter_of_the_threshold_on() {
+    let i = point_of(&PARAMS).i_s;
+    for (rate, judged) in [(1.8, true), (2.2, false), (-2.2, false)] {
+        let report = last(config(), |t| {
+            let mut drive = Drive::healthy();
+            let factor = 1.0 + rate * (t - 1.0) / i.norm();
+            drive.i = drive.i.map(|x| x * factor);
+            drive.sample(t)
+        });
+        let expected = (!judged).then_some(NotJudged::Transient);
+        assert_eq!(report.not_judged, expected, "{rate} A/s");
+    }
+}
+
+/// What is not declared about the load says nothing about the motor: `r1` alone is left.
+#[test]
+fn residuals_with_a_torque_in_them_need_a_declared_load() {
+    let known = |load, tau_load| {
+        let loaded = MonitorConfig { load, ..config() };
+        let report = last(loaded, |t| Sample {
+            tau_load,
+            ..Drive::healthy().sample(t)
+        });
+        let [r1, rest @ ..] = report.normalised.expect("evaluated");
+        assert!(r1.is_finite());
+        rest.map(f32::is_finite)
+    };
+    let torque = Some(point_of(&PARAMS).tau_em as f32);
+    assert_eq!(known(LoadKind::Friction, None), [true; 3]);
+    assert_eq!(known(LoadKind::Free, None), [false; 3]);
+    assert_eq!(known(LoadKind::Free, torque), [false; 3]);
+    assert_eq!(known(LoadKind::Measured, None), [false; 3]);
+    assert_eq!(known(LoadKind::Measured, torque), [true; 3]);
+}
+
+/// A measured torque replaces the declared friction of the load, here wrong by a factor of two.
+#[test]
+fn a_measured_torque_replaces_the_declared_load() {
+    let mut measured = config();
+    measured.load = LoadKind::Measured;
+    measured.mechanics.load_friction *= 2.0;
+    let tau = point_of(&PARAMS).tau_em as f32;
+    let r2 = |config, tau_load| {
+        let report = last(config, |t| Sample {
+            tau_load,
+            ..Drive::healthy().sample(t)
+        });
+        report.residuals.expect("evaluated").r[1]
+    };
+    assert!(r2(measured, Some(tau)).abs() < 1e-3);
+    // Twice the friction asks for twice the torque: half of the scale is missing.
+    let wrong = MonitorConfig {
+        load: LoadKind::Friction,
+        ..measured
+    };
+    let omega_share = point_of(&PARAMS).omega_el / super::drive::OMEGA_SYNC;
+    assert!((f64::from(r2(wrong, None)) - 0.5 * omega_share).abs() < 1e-3);
+}
+
+/// The paper's bench on the running motor: a rehearsed voltage sensor leaves `r2` dark, a speed sensor `r3`.
+#[test]
+fn rehearsed_sensor_faults_light_their_rows_until_they_end() {
+    let rows = [
+        (
+            Rehearsal {
+                voltage_gain: 1.2,
+                ..Rehearsal::default()
+            },
+            [true, false, true, true],
+        ),
+        (
+            Rehearsal {
+                current_q_gain: 1.5,
+                ..Rehearsal::default()
+            },
+            [true, true, true, false],
+        ),
+        (
+            Rehearsal {
+                speed_gain: 0.8,
+                ..Rehearsal::default()
+            },
+            [true, true, false, true],
+        ),
+    ];
+    for (gains, pattern) in rows {
+        let mut bench = Bench::new(config());
+        bench.run(0.5, |t| Drive::healthy().sample(t));
+        bench.state.rehearse(gains);
+        let reports = bench.run(0.2, |t| Drive::healthy().sample(t));
+        assert_eq!(
+            reports.last().map(|r| r.lamps.pattern()),
+            Some(pattern),
+            "{gains:?}"
+        );
+        bench.state.rehearse(Rehearsal::default());
+        let reports = bench.run(0.2, |t| Drive::healthy().sample(t));
+        assert!(
+            reports.last().is_some_and(|r| r.lamps.is_quiet()),
+            "{gains:?}"
+        );
+    }
+}
+
+/// After missing samples the supply is found anew; lamps, count and a rehearsal stay.
+#[test]
+fn a_gap_costs_the_lock_and_nothing_else() {
+    let mut bench = Bench::new(config());
+    bench.run(0.5, |t| Drive::healthy().sample(t));
+    bench.state.rehearse(Rehearsal {
+        voltage_gain: 1.2,
+        ..Rehearsal::default()
+    });
+    let before = *bench
+        .run(0.2, |t| Drive::healthy().sample(t))
+        .last()
+        .expect("a report");
+    assert_eq!(before.lamps.fault, Lamp::On);
+    bench.state.resume_after_gap();
+    let reports = bench.run(1.0, |t| Drive::healthy().sample(t + 0.0123));
+    let first = reports.first().expect("a report");
+    assert!(!first.is_judged());
+    assert!(first.sample_index > before.sample_index);
+    assert!(
+        reports.iter().all(|r| r.lamps.fault == Lamp::On),
+        "the lamp stays lit"
+    );
+    assert!(reports.last().is_some_and(Report::is_judged));
+}
+
+/// A channel known to show 1.25 times the truth is corrected before anything is concluded from it.
+#[test]
+fn a_channel_gain_of_the_motor_file_is_undone() {
+    let mut corrected = config();
+    corrected.channel_gain[4] = 0.8;
+    let seen = |t| {
+        let mut drive = Drive::healthy();
+        drive.i[1] *= 1.25;
+        drive.sample(t)
+    };
+    let report = last(corrected, seen);
+    assert!(report.is_judged() && report.lamps.is_quiet(), "{report:?}");
+    assert!(!last(config(), seen).lamps.is_quiet());
+}
+
+/// The supply is followed by its voltage, or by the current where voltages are not measured.
+#[test]
+fn the_frequency_is_that_of_the_supply() {
+    for without_voltages in [false, true] {
+        let report = changed(|_, s| {
+            if without_voltages {
+                s.u_s_abc = None;
+            }
+        });
+        let omega = report.window.expect("locked").omega_sync;
+        assert!(
+            (f64::from(omega) / super::drive::OMEGA_SYNC - 1.0).abs() < 1e-5,
+            "{omega}"
+        );
+    }
+}
+
+/// A third of a turn of the reference is not taken for a new frequency: what is seen are amplitudes per phase.
+#[test]
+fn the_window_holds_amplitudes_and_sequences_of_the_samples() {
+    let report = changed(|_, _| ());
+    let window = report.window.expect("a full window");
+    for channel in &window.channels[..3] {
+        assert!((channel.phasor.norm() - AMPLITUDE as f32).abs() < 0.02);
+        assert!((channel.mean_square - 0.5 * (AMPLITUDE * AMPLITUDE) as f32).abs() < 5.0);
+    }
+    let i: Complex64 = point_of(&PARAMS).i_s;
+    assert!((f64::from(window.i_s.positive.norm()) - i.norm()).abs() < 1e-3);
+    assert!((f64::from(window.span) - 4.0 * 200.0 * T_SAMPLE).abs() < 2e-6);
+}
+
+#[test]
+fn a_configuration_outside_its_ranges_makes_no_monitor() {
+    let wrong: [fn(&mut MonitorConfig); 6] = [
+        |c| c.params.r_s = 0.0,
+        |c| c.params.l_m = f32::NAN,
+        |c| c.window_cycles = 11,
+        |c| c.comparator.persistence = 0,
+        |c| c.thresholds[2] = 0.0,
+        |c| c.channel_gain[5] = 0.0,
+    ];
+    for (k, spoil) in wrong.into_iter().enumerate() {
+        let mut config = config();
+        spoil(&mut config);
+        assert!(crate::Monitor::new(config).is_err(), "{k}");
+    }
+    let mut no_leakage = config();
+    (no_leakage.params.l_ls, no_leakage.params.l_lr) = (0.0, 0.0);
+    let error = crate::Monitor::new(no_leakage).expect_err("the sum must not be zero");
+    assert_eq!(error.parameter, "l_ls + l_lr");
+}
