@@ -56,5 +56,8 @@ fn a_drive_engineer_uses_the_workbench() {
 #[test]
 #[ignore = "prints measurements: cargo test --release -p sim-host --test panel -- --ignored --nocapture"]
 fn measure_page_and_server() {
-    visit(|page| async move { measure::rates(&page).await });
+    visit(|page| async move {
+        measure::rates(&page).await;
+        measure::workbench(&page).await;
+    });
 }
