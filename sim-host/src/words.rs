@@ -1,5 +1,6 @@
 //! What the core's findings are called in front of people.
 
+use crate::replay::RotorSummary;
 use monitor::{Fault, NotJudged, Phase, SensorFinding, SupplyFinding};
 
 /// Why a window was not judged, with what to do about it.
@@ -79,6 +80,21 @@ pub fn sensor_phase(finding: SensorFinding) -> Option<&'static str> {
     }
 }
 
+/// What the sidebands of the current say about the rotor's bars.
+pub fn rotor(summary: &RotorSummary) -> String {
+    match (summary.lower_sideband_percent, summary.upper_sideband_percent) {
+        (Some(lower), Some(upper)) => format!(
+            "rotor bars {}: sidebands at twice the slip frequency {lower:.2} and {upper:.2} % of the active current in {} blocks \
+             (broken from {} %)",
+            if summary.broken { "broken" } else { "whole" },
+            summary.blocks,
+            summary.broken_from_percent
+        ),
+        _ => "rotor bars not tested: that takes speed, a fifth of the rated current as active current, and two turns of the slip"
+            .to_owned(),
+    }
+}
+
 /// A row of Table 1, or a cause that only a calibrated motor shows, in plain words.
 pub fn fault(name: &str) -> &'static str {
     match name {
@@ -94,6 +110,7 @@ pub fn fault(name: &str) -> &'static str {
         "Lm" => "magnetizing inductance",
         "leakage" => "leakage inductance",
         "turns" => "shorted turns",
+        "bars" => "broken rotor bars",
         _ => "none of the faults in the table",
     }
 }
@@ -116,6 +133,9 @@ pub fn proof(name: &str) -> Option<&'static str> {
         "Iq" => "clamp a second ammeter around each lead",
         "Vq" => "hold a second voltmeter to the terminals",
         "turns" => "compare the windings' resistances and inductances phase by phase, at rest",
+        "bars" => {
+            "record at another load: the sidebands of broken bars move with the slip, those of a swinging load do not"
+        }
         _ => return None,
     })
 }

@@ -2,6 +2,7 @@
 
 use motor::TParams;
 use motor::effects::Rated;
+use num_complex::Complex32;
 
 use crate::block::{Axes, Codes};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
@@ -17,6 +18,7 @@ use crate::panel::{PanelConfig, PanelState};
 use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
 use crate::report::{NotJudged, Report};
 use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
+use crate::rotor::{RotorState, Sidebands};
 use crate::sample::Sample;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
@@ -51,6 +53,7 @@ pub struct MonitorState {
     pub(crate) encoder: EncoderState,
     window: WindowState,
     panel: PanelState,
+    rotor: RotorState,
     pub(crate) temperature: Temperature,
     measured: [bool; 2],
     samples: u64,
@@ -273,6 +276,7 @@ impl Monitor {
             report.supply = self.supply.check(window);
         }
         report.not_judged = self.obstacle(measured, window, report);
+        report.rotor.sidebands = self.follow_rotor(state, window, report.not_judged);
         if voltages && currents {
             self.evaluate(&state.rehearsal, window, report);
         }
@@ -290,6 +294,27 @@ impl Monitor {
                 state.temperature.follow(isolation, healthy, fault);
             }
         }
+    }
+
+    /// Adds the latest cycle to the block of whole turns of twice the slip angle. What hinders judging begins a new one.
+    fn follow_rotor(
+        &self,
+        state: &mut MonitorState,
+        window: &Window,
+        obstacle: Option<NotJudged>,
+    ) -> Option<Sidebands> {
+        let seen = state.window.newest_current().zip(window.omega_mech);
+        let loaded =
+            |i: Complex32| i.re.abs() > Sidebands::LEAST_ACTIVE * self.config.rated_current;
+        let sound = seen.filter(|((i, _), _)| obstacle.is_none() && loaded(*i));
+        let Some(((i, samples), omega_mech)) = sound else {
+            state.rotor = RotorState::default();
+            return None;
+        };
+        let slip = window.omega_sync - self.config.mechanics.n_p * omega_mech;
+        state
+            .rotor
+            .follow(i, 2.0 * slip * samples * self.config.t_sample)
     }
 
     fn check_channels(

@@ -26,6 +26,7 @@ pub struct PanelState {
     line: ComparatorState,
     overload: ComparatorState,
     isolated: ComparatorState,
+    rotor: ComparatorState,
 }
 
 impl PanelState {
@@ -60,6 +61,7 @@ impl PanelConfig {
         self.confirm(&mut state.line, report.supply.is_some());
         self.confirm(&mut state.overload, self.is_overloaded(report));
         self.follow_isolation(state, report);
+        self.follow_rotor(state, report);
         report.candidates = self.candidates(state, report);
         report.lamps = self.lamps(state, report);
     }
@@ -69,6 +71,14 @@ impl PanelConfig {
             self.comparator
                 .update(&mut state.isolated, isolation.significance / limit);
         }
+    }
+
+    fn follow_rotor(&self, state: &mut PanelState, report: &mut Report) {
+        if let Some(sidebands) = &report.rotor.sidebands {
+            self.comparator
+                .update(&mut state.rotor, sidebands.normalised());
+        }
+        report.rotor.is_broken = state.rotor.is_lit();
     }
 
     fn compare(&self, state: &mut PanelState, normalised: &[f32; RESIDUALS]) {
@@ -106,7 +116,7 @@ impl PanelConfig {
             sensor: sensor_lamp(sensor, report.not_judged),
             line: line_lamp(state.line.is_lit(), report.not_judged),
             load: load_lamp(state.overload.is_lit(), report.not_judged),
-            fault: Lamp::lit(motor_fault || state.sensor.is_lit()),
+            fault: Lamp::lit(motor_fault || state.sensor.is_lit() || state.rotor.is_lit()),
         }
     }
 

@@ -5,6 +5,7 @@ use crate::isolation::Isolation;
 use crate::lamps::Lamps;
 use crate::operating_point::OperatingPoint;
 use crate::residuals::{RESIDUALS, Residuals};
+use crate::rotor::RotorReading;
 use crate::signature::Candidates;
 use crate::supply::SupplyFinding;
 use crate::window::Window;
@@ -57,6 +58,8 @@ pub struct Report {
     pub normalised: Option<[f32; RESIDUALS]>,
     /// Which cause explains the window, where the motor was calibrated.
     pub isolation: Option<Isolation>,
+    /// What the current's sidebands say about the rotor's bars.
+    pub rotor: RotorReading,
     /// Lamps after this window.
     pub lamps: Lamps,
     /// Probability of each row of Table 1 while r1..r4 light FAULT: without a calibration.

@@ -113,6 +113,12 @@ impl WindowState {
         (self.filled >= length).then_some(latest)
     }
 
+    /// Current of the latest cycle, seen from its voltage, A, and the cycle's length, samples.
+    pub fn newest_current(&self) -> Option<(Complex32, f32)> {
+        let newest = self.latest(1)?.next()?;
+        Some((seen_from_voltage(newest), newest.phasors.samples))
+    }
+
     /// The window over the latest `length` cycles; `None` until there are that many.
     pub fn measure(&self, length: usize, t_sample: f32) -> Option<Window> {
         let length = length.clamp(2, MAX_WINDOW_CYCLES);

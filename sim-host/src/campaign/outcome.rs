@@ -44,6 +44,7 @@ pub struct Outcome {
 /// What one window says about the cause.
 #[derive(Clone, Copy, Debug)]
 enum Evidence {
+    Bars,
     Sensor(SensorFinding),
     Residuals(Candidates),
     Isolation(Isolation),
@@ -157,9 +158,10 @@ impl Outcome {
 }
 
 fn evidence(report: &Report) -> Option<Evidence> {
+    let bars = report.rotor.is_broken.then_some(Evidence::Bars);
     let sensor = report.sensor.map(Evidence::Sensor);
     let isolation = report.isolation.map(Evidence::Isolation);
-    sensor
+    bars.or(sensor)
         .or(isolation)
         .or(report.candidates.map(Evidence::Residuals))
 }
@@ -170,6 +172,11 @@ fn causes(evidence: Evidence) -> Vec<Cause> {
         Evidence::Sensor(finding) => vec![Cause {
             name: words::sensor_row(finding).name(),
             phase: words::sensor_phase(finding),
+            probability: 1.0,
+        }],
+        Evidence::Bars => vec![Cause {
+            name: "bars",
+            phase: None,
             probability: 1.0,
         }],
         Evidence::Isolation(isolation) => isolated(&isolation),

@@ -16,8 +16,8 @@ use super::output::OutputArgs;
 use super::{paint, progress};
 use crate::operating_points::OperatingPoints;
 use crate::replay::{
-    self, LampState, NotJudgedShare, Samples, SequenceSummary, Timeline, Verdict, VerdictState,
-    WindowOperation, WindowResiduals,
+    self, LampState, NotJudgedShare, RotorSummary, Samples, SequenceSummary, Timeline, Verdict,
+    VerdictState, WindowOperation, WindowResiduals,
 };
 use crate::report::Subject;
 use crate::words;
@@ -66,6 +66,7 @@ struct MonitorJson<'a> {
     verdict: Verdict,
     first_alarm_s: Option<f64>,
     sequence: SequenceSummary,
+    rotor: RotorSummary,
     threshold_percent: Option<[f64; 4]>,
     residuals: &'a [WindowResiduals],
     operation: &'a [WindowOperation],
@@ -173,6 +174,7 @@ impl MonitorArgs {
             verdict,
             first_alarm_s: timeline.first_alarm_s,
             sequence: timeline.sequence(),
+            rotor: timeline.rotor(),
             threshold_percent: motor.map(|motor| motor.monitor.threshold_percent),
             residuals: &timeline.trace.residuals,
             operation: &timeline.trace.operation,
@@ -223,6 +225,7 @@ fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Ve
     print_lamps(timeline);
     print_windows(timeline);
     print_sequence(&timeline.sequence());
+    anstream::println!("{}", words::rotor(&timeline.rotor()));
     print_verdict(timeline, verdict);
 }
 

@@ -32,6 +32,7 @@ pub fn likely_causes(report: &Report, load_friction: bool) -> Vec<LikelyCause> {
     let fault = report.lamps.fault == Lamp::On;
     let mut causes = match (&report.isolation, &report.candidates) {
         _ if !fault => return Vec::new(),
+        _ if report.rotor.is_broken => vec![cause("bars", None, 1.0, None)],
         (Some(isolation), _) => isolated(isolation, load_friction),
         (None, Some(candidates)) => rows(candidates),
         (None, None) => Vec::new(),

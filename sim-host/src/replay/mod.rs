@@ -1,11 +1,13 @@
 //! Replaying a recording through the very core that the board runs.
 
 mod causes;
+mod rotor;
 mod samples;
 mod timeline;
 mod trace;
 
 pub use causes::TIE_RATIO;
+pub use rotor::RotorSummary;
 pub use samples::{Samples, Timed};
 pub use timeline::{
     Candidate, LampState, NotJudgedShare, SequenceSummary, Timeline, Verdict, VerdictState,

@@ -10,6 +10,7 @@ use num_complex::Complex64;
 use serde::Serialize;
 
 use super::causes::{Causes, TIE_RATIO};
+use super::rotor::{RotorHistory, RotorSummary};
 use super::trace::Trace;
 use crate::words;
 
@@ -64,6 +65,18 @@ pub struct Candidate {
     /// Change that explains the windows best, percent of the healthy value, on a calibrated motor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_percent: Option<f64>,
+}
+
+impl Candidate {
+    /// A cause that stands alone, without phase and size.
+    fn certain(fault: &'static str) -> Self {
+        Candidate {
+            fault,
+            phase: None,
+            probability: 1.0,
+            size_percent: None,
+        }
+    }
 }
 
 /// Verdict over the whole recording.
@@ -166,6 +179,7 @@ pub struct Timeline {
     windows_since_alarm: u64,
     sequences: Sequences,
     causes: Causes,
+    rotor: RotorHistory,
     rated_current: f32,
     load_friction: bool,
     /// Resistance rise of the judged windows of a calibrated motor.
@@ -202,6 +216,7 @@ impl Timeline {
         self.windows += 1;
         self.note_judgement(report);
         self.note_lamps(t, report);
+        self.rotor.add(&report.rotor);
         self.note_causes(t, report);
         self.sequences.add(t, report);
         self.trace.add(t, report);
@@ -274,7 +289,8 @@ impl Timeline {
         if let Some(candidates) = &report.candidates {
             self.add_candidates(candidates);
         }
-        if alarm && report.is_judged() {
+        // Bars shake every window: what a window says of other causes is then not asked.
+        if alarm && report.is_judged() && !report.rotor.is_broken {
             self.causes.add(report, self.rated_current);
         }
         if let Some(finding) = report.sensor {
@@ -309,7 +325,9 @@ impl Timeline {
             (None, _) => VerdictState::Healthy,
         };
         let mut candidates = self.sensor_candidates();
-        if self.causes.is_empty() {
+        if self.rotor.is_broken() {
+            candidates.push(Candidate::certain("bars"));
+        } else if self.causes.is_empty() {
             candidates.extend(self.table_candidates());
         } else {
             candidates.extend(self.isolated_candidates());
@@ -362,6 +380,11 @@ impl Timeline {
     /// Relative rise of the resistances since the calibration, the mean over the judged windows; `None` without one.
     pub fn resistance_rise(&self) -> Option<f64> {
         (self.heating_windows > 0).then(|| self.heating_sum / self.heating_windows as f64)
+    }
+
+    /// What the sidebands of the current say about the rotor's bars.
+    pub fn rotor(&self) -> RotorSummary {
+        self.rotor.summary()
     }
 
     /// Mean sequence components.

@@ -67,7 +67,20 @@ fn summary(result: &Place<'_>) -> Vec<(Markup, Markup)> {
             },
         ))
     });
-    cards.collect()
+    cards.chain(rotor(result)).collect()
+}
+
+/// The sidebands that broken bars would leave, where there was load enough to see them.
+fn rotor(result: &Place<'_>) -> Option<(Markup, Markup)> {
+    result.get("rotor/lower_sideband_percent")?;
+    let percent = |key: &str| shown(result, &format!("rotor/{key}_percent"), decimals(2));
+    Some((
+        html! { (percent("lower_sideband")) " %" },
+        html! {
+            "of the active current at (1 - 2 s) f, mean of " (shown(result, "rotor/blocks", decimals(0)))
+            " blocks; bars count as broken from " (percent("broken_from")) " %"
+        },
+    ))
 }
 
 fn candidates(result: &Place<'_>) -> Markup {
