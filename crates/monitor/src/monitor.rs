@@ -303,7 +303,7 @@ impl Monitor {
         window: &Window,
         obstacle: Option<NotJudged>,
     ) -> Option<Sidebands> {
-        let seen = state.window.newest_current().zip(window.omega_mech);
+        let seen = state.window.latest_current().zip(window.omega_mech);
         let loaded =
             |i: Complex32| i.re.abs() > Sidebands::LEAST_ACTIVE * self.config.rated_current;
         let sound = seen.filter(|((i, _), _)| obstacle.is_none() && loaded(*i));

@@ -113,10 +113,13 @@ impl WindowState {
         (self.filled >= length).then_some(latest)
     }
 
-    /// Current of the latest cycle, seen from its voltage, A, and the cycle's length, samples.
-    pub fn newest_current(&self) -> Option<(Complex32, f32)> {
-        let newest = self.latest(1)?.next()?;
-        Some((seen_from_voltage(newest), newest.phasors.samples))
+    /// Mean current of the two latest cycles, seen from their voltages, A, and the latest one's length, samples. Half the
+    /// supply's frequency cancels in it, where once a turn of four poles nearly lies.
+    pub fn latest_current(&self) -> Option<(Complex32, f32)> {
+        let mut latest = self.latest(2)?;
+        let (newest, before) = (latest.next()?, latest.next()?);
+        let mean = (seen_from_voltage(newest) + seen_from_voltage(before)) * 0.5;
+        Some((mean, newest.phasors.samples))
     }
 
     /// The window over the latest `length` cycles; `None` until there are that many.
