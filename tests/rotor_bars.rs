@@ -80,8 +80,7 @@ fn share_in_the_spectrum(samples: &[SimSample]) -> f64 {
     component(samples, current, (1.0 - 2.0 * slip) * HZ).norm() / active
 }
 
-/// Three parts in a hundred: the mean of two cycles of a turn at 4 Hz is four parts short, and the last step of a block,
-/// up to 0.5 of 25 rad too far, lets two parts of the other sideband in.
+/// Three parts in a hundred: the last step of a block, up to 0.6 of 25 rad too far, lets two parts of the other sideband in.
 #[test]
 fn the_sideband_is_that_of_the_spectrum_and_lights_fault() {
     for percent in [5.0, 10.0] {

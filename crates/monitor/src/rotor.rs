@@ -88,7 +88,7 @@ impl Default for RotorState {
 }
 
 impl RotorState {
-    /// Takes one cycle: its current `i` seen from the voltage, A, and the `step` of twice the slip angle since the cycle
+    /// Takes one cycle: the current `i` of it and the one before seen from the voltage, A, and the `step` of twice the slip angle since the cycle
     /// before, rad. The last cycle of a block gives its sidebands.
     #[inline(never)]
     pub fn follow(&mut self, i: Complex32, step: f32) -> Option<Sidebands> {
@@ -126,7 +126,9 @@ impl RotorState {
         let upper = (self.upper - mean * self.axes.conj()) * share;
         let unrest = self.square * share - mean.norm_sqr();
         let explained = lower.norm_sqr() + upper.norm_sqr();
-        let per_active = 1.0 / mean.re.abs();
+        // The mean of two cycles of a turn is short by `sin(x)/x cos(x)`, `x` half a step: to second order.
+        let step = self.turned * share;
+        let per_active = (1.0 + step * step / 6.0) / mean.re.abs();
         Sidebands {
             lower: libm::sqrtf(lower.norm_sqr()) * per_active,
             upper: libm::sqrtf(upper.norm_sqr()) * per_active,
@@ -143,7 +145,12 @@ mod tests {
     fn blocks(cycles: usize, shape: impl Fn(f32) -> Complex32) -> Vec<Sidebands> {
         const STEP: f32 = 0.25;
         let mut state = RotorState::default();
-        let currents = (0..cycles).map(|k| Complex32::new(5.0, -3.0) + shape(STEP * k as f32));
+        // The mean over two cycles, as the window gives it, by eight points of it.
+        let mean = |k: usize| {
+            let angles = (0..8).map(|n| STEP * (k as f32 + (n as f32 - 3.5) / 4.0));
+            angles.map(&shape).sum::<Complex32>() / 8.0
+        };
+        let currents = (0..cycles).map(|k| Complex32::new(5.0, -3.0) + mean(k));
         currents.filter_map(|i| state.follow(i, STEP)).collect()
     }
 
