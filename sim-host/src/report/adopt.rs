@@ -47,7 +47,7 @@ fn answer(result: &Place<'_>) -> Markup {
         ),
     };
     let more = html! {
-        p.subtle { (result.text("motor")) ". Errors on data that was not fitted. Written: " code { (result.text("motor_file")) } }
+        p.subtle { (result.text("motor")) ". Errors on data that was not fitted. Motor file: " code { (result.text("motor_file")) } }
     };
     verdict(mood, &text, &more)
 }
