@@ -84,13 +84,14 @@ pub fn sensor_phase(finding: SensorFinding) -> Option<&'static str> {
 pub fn rotor(summary: &RotorSummary) -> String {
     match (summary.lower_sideband_percent, summary.upper_sideband_percent) {
         (Some(lower), Some(upper)) => format!(
-            "rotor bars {}: sidebands at twice the slip frequency {lower:.2} and {upper:.2} % of the active current in {} blocks \
+            "rotor bars {}: sidebands at twice the slip frequency {lower:.2} and {upper:.2} % of the active current in {} {} \
              (broken from {} %)",
             if summary.broken { "broken" } else { "whole" },
             summary.blocks,
+            if summary.blocks == 1 { "block" } else { "blocks" },
             summary.broken_from_percent
         ),
-        _ => "rotor bars not tested: that takes speed, a fifth of the rated current as active current, and two turns of the slip"
+        _ => "rotor bars not tested: that takes speed, a fifth of the rated current as active current, and two turns of the slip without a load step"
             .to_owned(),
     }
 }

@@ -1,7 +1,7 @@
 //! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
 
+use crate::free_scale;
 use crate::signal::{Supply, denoise, estimated_sigma, smooth};
-use crate::speed_scale;
 use crate::table::{self, Point};
 use motor::dynamic::clarke;
 use motor::effects::{Between, Inputs, Plant, Rated, Timeline};
@@ -197,7 +197,7 @@ impl Case {
     /// The measured speeds that drive a simulation of `plant`: with a free scale they are what the plant's speed sensor
     /// would have to see to show the channel.
     pub fn speeds(&self, plant: &Plant) -> Speeds<'_> {
-        let gain = speed_scale::gain_of(&plant.effects);
+        let gain = free_scale::gain_of(&plant.effects);
         if !self.speed_scale_is_free || gain == 1.0 {
             return Speeds {
                 speed: Cow::Borrowed(&self.speed),
@@ -223,7 +223,7 @@ impl Case {
         case.speed = speeds.speed.into_owned();
         (case.running_at, case.timeline) = (speeds.running_at, speeds.timeline);
         if self.speed_scale_is_free {
-            let gain = speed_scale::gain_of(&plant.effects);
+            let gain = free_scale::gain_of(&plant.effects);
             for (y, w) in case.measured.iter_mut().zip(&mut case.weight) {
                 y[SPEED] /= gain;
                 w[SPEED] *= gain;

@@ -6,11 +6,11 @@
 use crate::accept::adequate;
 use crate::belief::{Belief, FRICTION, N_NOMINAL, NOMINALS};
 use crate::fit::{Fit, KAPPA};
+use crate::free_scale::EFFECT;
 use crate::gram;
 use crate::present::{RELEVANT, RELEVANT_FRICTION, SIGNIFICANT};
 use crate::report::{ErrorSource, Inconclusive};
 use crate::screen::Screened;
-use crate::speed_scale::EFFECT;
 use crate::study::{Study, Trial};
 use nalgebra::{DMatrix, DVector};
 

@@ -2,7 +2,7 @@
 
 use crate::belief::Belief;
 use crate::case::{Case, Unsupported};
-use crate::speed_scale::{EFFECT, SpeedScale};
+use crate::free_scale::{EFFECT, FreeScale};
 use crate::study::Study;
 use motor::MotorFile;
 use motor::effects::{Rated, from_motor_file};
@@ -75,7 +75,7 @@ impl Question {
         let scale = speed_scale_of(&ready, &belief)?.map(|start| start.map_err(refuse));
         let scale = scale.transpose()?;
         let rated = &belief.plant.rated;
-        let prepared = |scale: Option<SpeedScale>| {
+        let prepared = |scale: Option<FreeScale>| {
             let case = |source: &Source| case_of(source, scale, rated).map_err(refuse);
             ready.iter().map(case).collect::<Result<Vec<Case>, Error>>()
         };
@@ -118,7 +118,7 @@ fn sound(source: &Source, audit: &Audit) -> Source {
 
 fn case_of(
     source: &Source,
-    scale: Option<SpeedScale>,
+    scale: Option<FreeScale>,
     rated: &Rated<f64>,
 ) -> Result<Case, Unsupported> {
     match (source, scale) {
@@ -138,7 +138,7 @@ fn case_of(
 fn speed_scale_of(
     sources: &[Source],
     belief: &Belief,
-) -> Result<Option<Result<SpeedScale, Unsupported>>, Error> {
+) -> Result<Option<Result<FreeScale, Unsupported>>, Error> {
     let recordings: Vec<&Recording> = sources
         .iter()
         .filter_map(|source| match source {
@@ -162,7 +162,7 @@ fn speed_scale_of(
         );
         return Err(Error::Recordings(message));
     }
-    Ok(Some(SpeedScale::start(&recordings, &belief.plant.rated)))
+    Ok(Some(FreeScale::start(&recordings, &belief.plant.rated)))
 }
 
 /// Audit of a source; a load table has nothing to audit beyond its reading.

@@ -4,9 +4,9 @@ use crate::belief::{Belief, Hypothesis};
 use crate::case::Case;
 use crate::fit::{Effort, Fit, fit};
 use crate::floor::{Floor, floor};
+use crate::free_scale::{self, FreeScale};
 use crate::gram;
 use crate::predict::{Teacher, outputs, residual};
-use crate::speed_scale::{self, SpeedScale};
 
 /// Seed of the propagated noise: the same input gives the same bytes.
 const SEED: u64 = 20_220_913;
@@ -34,7 +34,7 @@ pub(crate) struct Study {
     /// Recordings that prove.
     pub proofs: Vec<Subject>,
     /// How the speed channel becomes a speed, where its scale is a free parameter.
-    pub speed_scale: Option<SpeedScale>,
+    pub speed_scale: Option<FreeScale>,
 }
 
 /// A hypothesis, fitted and measured on data that was not fitted.
@@ -68,7 +68,7 @@ impl Study {
         belief: Belief,
         fitted: Case,
         proofs: Vec<Case>,
-        speed_scale: Option<SpeedScale>,
+        speed_scale: Option<FreeScale>,
     ) -> Self {
         let subject = |case| Subject::new(case, &belief);
         Self {
@@ -86,7 +86,7 @@ impl Study {
             None => Hypothesis::beliefs(self.fitted.case.speed_is_input),
         };
         match self.speed_scale {
-            Some(_) => speed_scale::free(&beliefs, &self.belief),
+            Some(_) => free_scale::free(&beliefs, &self.belief),
             None => beliefs,
         }
     }

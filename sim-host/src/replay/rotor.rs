@@ -6,7 +6,8 @@ use serde::Serialize;
 /// Sidebands of the current at twice the slip frequency, over a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RotorSummary {
-    /// Blocks that were measured, each four turns of twice the slip angle; 0: not testable.
+    /// Blocks that were measured, each four turns of twice the slip angle, without those that a load step or something else
+    /// shook more; 0: not testable.
     pub blocks: u64,
     /// Mean amplitude at (1 - 2 s) times the supply's frequency, percent of the active current.
     pub lower_sideband_percent: Option<f64>,
@@ -31,7 +32,8 @@ impl RotorHistory {
     /// Adds one report's reading.
     pub fn add(&mut self, reading: &RotorReading) {
         self.broken |= reading.is_broken;
-        if let Some(sidebands) = &reading.sidebands {
+        let calm = |sidebands: &&Sidebands| !sidebands.normalised().is_nan();
+        if let Some(sidebands) = reading.sidebands.as_ref().filter(calm) {
             self.blocks += 1;
             self.lower += f64::from(sidebands.lower);
             self.upper += f64::from(sidebands.upper);

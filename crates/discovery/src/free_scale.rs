@@ -41,7 +41,7 @@ const SAME: f64 = 0.1;
 
 /// How the speed channel of the recordings becomes a speed: `factor (channel - at_rest)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SpeedScale {
+pub(crate) struct FreeScale {
     /// Factor on the channel.
     pub factor: f64,
     /// The channel at rest, rad/s of its own scale.
@@ -54,7 +54,7 @@ pub(crate) struct SpeedScale {
     unknown: UnknownScale,
 }
 
-impl SpeedScale {
+impl FreeScale {
     /// From the first recording; the others must have been made with the same instrument.
     ///
     /// # Errors
@@ -349,7 +349,7 @@ mod tests {
     fn the_least_slip_is_put_at_the_synchronous_speed_and_rest_at_zero() {
         for sense in [1.0, -1.0] {
             let rec = recording(sense, &|x| -0.3 * x - 2.0);
-            let found = SpeedScale::start(&[&rec], &RATED).expect("it runs");
+            let found = FreeScale::start(&[&rec], &RATED).expect("it runs");
             assert_eq!(found.source, AtRest::Measured);
             assert!((found.at_rest + 2.0).abs() < 1e-9, "{found:?}");
             // True factor -1/0.3; the slip of 1 % is not known yet.
@@ -364,7 +364,7 @@ mod tests {
     #[test]
     fn two_instruments_are_not_one_question() {
         let (a, b) = (recording(1.0, &|x| 0.3 * x), recording(1.0, &|x| 0.5 * x));
-        let refused = SpeedScale::start(&[&a, &b], &RATED).expect_err("two scales");
+        let refused = FreeScale::start(&[&a, &b], &RATED).expect_err("two scales");
         assert!(
             refused.reason.contains("scales of their own"),
             "{refused:?}"
@@ -375,7 +375,7 @@ mod tests {
     fn a_motor_that_never_runs_has_no_scale() {
         let rec = recording(1.0, &|x| 0.3 * x);
         let rest = rec.slice(0..2000).expect("inside");
-        let refused = SpeedScale::start(&[&rest], &RATED).expect_err("it stands");
+        let refused = FreeScale::start(&[&rest], &RATED).expect_err("it stands");
         assert!(refused.reason.contains("nowhere runs"), "{refused:?}");
     }
 }
