@@ -101,3 +101,115 @@ pub(crate) fn adequate(study: &Study, trial: &Trial) -> bool {
     let gate = ADEQUATE * (1.0 + 2.0 * study.allowance());
     study.proof_error(trial) < gate && study.fold_error(&trial.folds) < gate
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::specimen;
+    use motor::effects::{EffectConfig, find};
+
+    /// Squared errors of 12 blocks that scatter a little, `scale` times.
+    fn errors(scale: f64) -> Vec<f64> {
+        (0..12)
+            .map(|k| scale * (1.0 + 0.01 * f64::from(k)))
+            .collect()
+    }
+
+    fn trial(folds: f64, proof: Option<f64>) -> Trial {
+        let study = specimen::table_study(|_| ());
+        let mut trial = specimen::trial(&study);
+        trial.folds = errors(folds);
+        trial.proof = proof.map_or_else(Vec::new, errors);
+        trial
+    }
+
+    #[test]
+    fn a_gain_is_one_less_the_ratio_of_root_mean_squares_if_it_is_proven() {
+        assert!((gain(&errors(4.0), &errors(1.0)) - 0.5).abs() < 1e-12);
+        assert_eq!(gain(&errors(1.0), &errors(4.0)), 0.0);
+        let mut mixed = errors(1.0);
+        mixed.iter_mut().step_by(2).for_each(|x| *x *= 2.0);
+        mixed.iter_mut().skip(1).step_by(2).for_each(|x| *x *= 0.4);
+        assert_eq!(gain(&errors(1.0), &mixed), 0.0, "better and worse by turns");
+    }
+
+    /// Two per cent on one kind of evidence, four thousandths on the other; on folds alone two per cent.
+    #[test]
+    fn an_advantage_must_show_on_both_kinds_of_evidence() {
+        let relative = |gain: f64| (1.0 - gain) * (1.0 - gain);
+        let worse = trial(1.0, Some(1.0));
+        let better =
+            |folds: f64, proof: f64| beats(&trial(relative(folds), Some(relative(proof))), &worse);
+        assert!(better(0.021, 0.005) && better(0.005, 0.021));
+        assert!(!better(0.019, 0.005) && !better(0.005, 0.019));
+        assert!(!better(0.5, 0.003) && !better(0.003, 0.5));
+        let alone = |folds: f64| beats(&trial(relative(folds), None), &trial(1.0, None));
+        assert!(alone(0.021) && !alone(0.019));
+    }
+
+    /// From 3 to 2 times the noise: 9 - 4 of the excess 9 - 1.
+    #[test]
+    fn a_share_is_what_goes_of_the_excess_over_the_noise() {
+        assert!((share(3.0, 2.0) - 5.0 / 8.0).abs() < 1e-12);
+        assert_eq!(share(3.0, 3.0), 0.0);
+        assert!((share(3.0, 1.0) - 1.0).abs() < 1e-12);
+        assert!(share(3.0, 4.0) < 0.0);
+        assert_eq!(share(0.9, 0.8), 1.0, "no excess is left to explain");
+    }
+
+    #[test]
+    fn worse_means_by_more_than_the_lesser_gain() {
+        let before = trial(1.0, Some(1.0));
+        assert!(!worse_on_proof(&before, &trial(1.0, Some(1.003))));
+        assert!(worse_on_proof(&before, &trial(1.0, Some(1.005))));
+    }
+
+    /// A twentieth of a typical size is not worth naming; only sizes count, and only those of the last effect.
+    #[test]
+    fn an_effect_must_be_large_enough_to_be_named() {
+        let study = specimen::table_study(|_| ());
+        let rated = study.belief.plant.rated;
+        let with = |name: &str, size: f64| {
+            let mut config = EffectConfig::absent(find(name, "").expect("in the library"), &rated);
+            let p = &config.effect.descriptor().parameters[0];
+            config.values[0] = size * p.typical * p.scale.of(&rated);
+            config
+        };
+        let large = |sizes: &[(&str, f64)]| {
+            let mut trial = specimen::trial(&study);
+            for (name, size) in sizes {
+                trial.fit.hypothesis = trial.fit.hypothesis.with(with(name, *size), &rated);
+            }
+            large_enough(&trial)
+        };
+        assert!(large(&[("core-loss", 0.06)]) && !large(&[("core-loss", 0.04)]));
+        assert!(large(&[("current-gain", -0.06)]));
+        assert!(!large(&[("windage", 1.0), ("core-loss", 0.04)]));
+        assert!(large(&[("windage", 0.01), ("core-loss", 0.06)]));
+    }
+
+    #[test]
+    fn a_model_is_adequate_within_two_per_cent_of_the_noise() {
+        let study = specimen::table_study(|_| ());
+        let judged = study.fitted.case.judged();
+        let at = |error: f64| {
+            let mut trial = specimen::trial(&study);
+            trial.folds = vec![error * error * judged / 12.0; 12];
+            adequate(&study, &trial)
+        };
+        assert!(at(1.0) && at(1.019) && !at(1.021));
+    }
+
+    /// Of the excess from 3 to 1 times the noise five eighths go at 2.
+    #[test]
+    fn explained_is_the_share_by_folds_where_nothing_else_proves() {
+        let study = specimen::table_study(|_| ());
+        let judged = study.fitted.case.judged();
+        let at = |error: f64| {
+            let mut trial = specimen::trial(&study);
+            trial.folds = vec![error * error * judged / 12.0; 12];
+            trial
+        };
+        assert!((explained(&study, &at(3.0), &at(2.0)) - 5.0 / 8.0).abs() < 1e-9);
+    }
+}

@@ -102,3 +102,82 @@ fn disturbed(case: &Case, seed: u64) -> motor::effects::Inputs {
         .for_each(|x| *x += tau * normal.sample(&mut rng));
     inputs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::specimen;
+
+    fn prepared() -> (Case, Plant) {
+        let belief = specimen::belief("");
+        let case = Case::new(&specimen::recording(0.5, |_| 1.0), &belief.plant.rated);
+        (case.expect("judged"), belief.plant)
+    }
+
+    #[test]
+    fn without_input_noise_every_judged_value_counts_one() {
+        let (mut case, plant) = prepared();
+        case.input_noise = (0.0, 0.0);
+        case.weight[3] = [0.0; N_CHANNELS];
+        let floor = floor(&case, &plant, 1);
+        assert!((floor.mean - 1.0).abs() < 1e-12 && floor.sd < 1e-12);
+        let rows: Vec<usize> = case.blocks().iter().map(|r| r.len()).collect();
+        for (k, (block, rows)) in floor.block.iter().zip(rows).enumerate() {
+            let missing = if k == 0 { N_CHANNELS } else { 0 };
+            assert!((block - (rows * N_CHANNELS - missing) as f64).abs() < 1e-9);
+        }
+        assert_eq!(floor.allowance(), floor.sd / floor.mean);
+    }
+
+    /// Errors are root mean squares over the noise: four times the expected squares are twice the noise.
+    #[test]
+    fn an_error_is_a_root_mean_square_over_the_floor() {
+        let floor = Floor {
+            block: Vec::new(),
+            mean: 1.5,
+            sd: 0.03,
+        };
+        assert!((floor.error_over_noise(4.0 * 1.5 * 200.0, 200.0) - 2.0).abs() < 1e-12);
+        assert!((floor.allowance() - 0.02).abs() < 1e-12);
+    }
+
+    /// The same seed draws the same noise, of the declared size; torque as it is, voltage as the denoising leaves it.
+    #[test]
+    fn input_noise_is_drawn_with_its_declared_deviation() {
+        let (mut case, _) = prepared();
+        case.input_noise = (0.5, 0.02);
+        let noise = disturbed(&case, 7);
+        assert_eq!(disturbed(&case, 7), noise);
+        assert_ne!(disturbed(&case, 8), noise);
+        let torque = noise.tau_load.iter().zip(&case.inputs.tau_load);
+        let mean_square = torque.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / 2500.0;
+        // 2500 draws: their variance is known to 2.8 %.
+        assert!((mean_square / 4e-4 - 1.0).abs() < 0.12, "{mean_square}");
+        let volt = noise.u_s.iter().zip(&case.inputs.u_s);
+        let mean_square = volt.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>() / 2500.0;
+        // A quadratic over one period of 83 samples keeps 9/4 over 83 of the variance of two axes, more at the ends.
+        let kept = mean_square / (2.0 * 0.25);
+        assert!((0.015..0.08).contains(&kept), "{kept}");
+    }
+
+    /// Noise of the torque moves the speed: twice the noise adds four times the squares.
+    #[test]
+    fn propagated_noise_adds_to_the_floor_with_its_square() {
+        let (mut case, plant) = prepared();
+        let excess = |case: &Case| floor(case, &plant, 3).mean - 1.0;
+        case.input_noise = (0.0, 0.5);
+        let once = excess(&case);
+        case.input_noise = (0.0, 1.0);
+        let twice = excess(&case);
+        assert!(once > 1e-4, "{once}");
+        assert!((twice / once - 4.0).abs() < 0.4, "{once} {twice}");
+    }
+
+    #[test]
+    fn a_table_has_its_assumed_accuracy_as_its_floor() {
+        let study = specimen::table_study(|_| ());
+        let floor = &study.fitted.floor;
+        assert_eq!((floor.mean, floor.sd), (1.0, 0.0));
+        assert_eq!(floor.block.iter().sum::<f64>(), study.fitted.case.judged());
+    }
+}

@@ -205,3 +205,204 @@ pub(crate) fn covariance(
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    /// Blocks of unequal length over all rows.
+    const ROWS: [Range<usize>; 7] = [0..3, 3..7, 7..9, 9..14, 14..18, 18..21, 21..26];
+
+    struct Data {
+        r: Vec<f64>,
+        j: Vec<Vec<f64>>,
+    }
+
+    fn data(columns: usize) -> Data {
+        let mut rng = Pcg64::seed_from_u64(5);
+        let mut column = || {
+            (0..26 * N_CHANNELS)
+                .map(|_| rng.random_range(-1.0..1.0))
+                .collect()
+        };
+        Data {
+            r: column(),
+            j: (0..columns).map(|_| column()).collect(),
+        }
+    }
+
+    impl Data {
+        fn blocks(&self) -> Vec<Block> {
+            blocks(&ROWS, &self.r, &self.j)
+        }
+
+        /// The values of some blocks as a matrix and a residual.
+        fn only(&self, keep: impl Fn(usize) -> bool) -> (DMatrix<f64>, DVector<f64>) {
+            let kept = ROWS.iter().enumerate().filter(|(k, _)| keep(*k));
+            let at: Vec<usize> = kept
+                .flat_map(|(_, r)| r.start * N_CHANNELS..r.end * N_CHANNELS)
+                .collect();
+            let j = DMatrix::from_fn(at.len(), self.j.len(), |a, b| self.j[b][at[a]]);
+            (j, DVector::from_fn(at.len(), |a, _| self.r[at[a]]))
+        }
+    }
+
+    fn penalty(weight: &[f64], pull: &[f64]) -> Penalty {
+        Penalty {
+            weight: DVector::from_column_slice(weight),
+            pull: DVector::from_column_slice(pull),
+        }
+    }
+
+    /// Whole numbers add up without rounding, whatever the order.
+    #[test]
+    fn a_dot_product_of_any_length_leaves_nothing_out() {
+        for n in 0..40 {
+            let a: Vec<f64> = (0..n).map(|k| f64::from(k) + 1.0).collect();
+            let b: Vec<f64> = (0..n).map(|k| 3.0 - f64::from(k)).collect();
+            let expected: f64 = (0..n)
+                .map(|k| (f64::from(k) + 1.0) * (3.0 - f64::from(k)))
+                .sum();
+            assert_eq!(dot(&a, &b), expected, "{n}");
+        }
+    }
+
+    #[test]
+    fn blocks_hold_the_normal_equations_of_their_rows() {
+        let data = data(3);
+        for (k, block) in data.blocks().iter().enumerate() {
+            let (j, r) = data.only(|b| b == k);
+            assert!((&block.gram - j.transpose() * &j).norm() < 1e-12, "{k}");
+            assert!((&block.score - j.transpose() * &r).norm() < 1e-12, "{k}");
+            assert!((block.sse - r.norm_squared()).abs() < 1e-12, "{k}");
+        }
+        let (j, r) = data.only(|_| true);
+        let all = total(&data.blocks());
+        assert!((&all.gram - j.transpose() * &j).norm() < 1e-11);
+        assert!((&all.score - j.transpose() * &r).norm() < 1e-11);
+        assert!((all.sse - r.norm_squared()).abs() < 1e-11);
+    }
+
+    #[test]
+    fn columns_that_are_added_later_make_the_same_equations() {
+        let all = data(5);
+        let base = blocks(&ROWS, &all.r, &all.j[..3]);
+        let added = extended(&base, &ROWS, &all.r, &all.j[..3], &all.j[3..]);
+        for (a, b) in added.iter().zip(all.blocks()) {
+            assert!((&a.gram - b.gram).norm() < 1e-12);
+            assert!((&a.score - b.score).norm() < 1e-12);
+            assert_eq!(a.sse, b.sse);
+        }
+    }
+
+    /// The step is where the gradient of squared error and penalty vanishes: `(G + W) s = b + W p`.
+    #[test]
+    fn a_step_is_the_least_of_error_and_penalty() {
+        let all = total(&data(3).blocks());
+        let penalty = penalty(&[2.0, 30.0, 0.0], &[0.5, -1.0, 7.0]);
+        let step = penalty.solve(&all, 0.0).expect("positive definite");
+        let weight = DMatrix::from_diagonal(&penalty.weight);
+        let gradient = (&all.gram + &weight) * &step - &all.score - &weight * &penalty.pull;
+        assert!(gradient.norm() < 1e-10, "{gradient}");
+        // Levenberg and Marquardt: the diagonal grows by the damping.
+        let damped = penalty.solve(&all, 0.5).expect("positive definite");
+        let diagonal = DMatrix::from_diagonal(&(&all.gram + &weight).diagonal()) * 0.5;
+        let gradient =
+            (&all.gram + &weight + diagonal) * &damped - &all.score - &weight * &penalty.pull;
+        assert!(gradient.norm() < 1e-10, "{gradient}");
+    }
+
+    #[test]
+    fn a_coordinate_that_nothing_determines_stays() {
+        let mut data = data(2);
+        data.j[1].fill(0.0);
+        let all = total(&data.blocks());
+        let step = penalty(&[0.0; 2], &[0.0; 2])
+            .solve(&all, 0.0)
+            .expect("solvable");
+        assert_eq!(step[1], 0.0);
+        assert!((step[0] - all.score[0] / all.gram[(0, 0)]).abs() < 1e-12);
+    }
+
+    /// Every fifth block is left out, the rest is fitted, and the fold is judged with that fit.
+    #[test]
+    fn held_out_errors_are_those_of_fits_that_have_not_seen_the_block() {
+        let data = data(3);
+        let penalty = penalty(&[2.0, 30.0, 0.1], &[0.5, -1.0, 0.2]);
+        let errors = held_out(&data.blocks(), &penalty);
+        assert_eq!(errors.len(), ROWS.len());
+        for (k, error) in errors.into_iter().enumerate() {
+            let (j, r) = data.only(|b| b % FOLDS != k % FOLDS);
+            let weight = DMatrix::from_diagonal(&penalty.weight);
+            let left = j.transpose() * &j + &weight;
+            let right = j.transpose() * &r + &weight * &penalty.pull;
+            let step = left.lu().solve(&right).expect("regular");
+            let (j, r) = data.only(|b| b == k);
+            let expected = (r - j * step).norm_squared();
+            assert!((error - expected).abs() < 1e-10, "{k}: {error} {expected}");
+        }
+    }
+
+    fn scored(scores: &[f64], gram: f64) -> Vec<Block> {
+        let one = |s: &f64| Block {
+            gram: DMatrix::from_element(1, 1, gram),
+            score: DVector::from_element(1, *s),
+            sse: 0.0,
+        };
+        scores.iter().map(one).collect()
+    }
+
+    /// Scores 1, 2, 6 scatter by 14 about their mean; the naive variance is the sum of the grams, 3 x 2.
+    #[test]
+    fn inflation_is_the_scatter_of_scores_over_what_white_noise_gives() {
+        let blocks = scored(&[1.0, 2.0, 6.0], 2.0);
+        assert!((score_inflation(&blocks, 1) - 14.0 / 6.0).abs() < 1e-12);
+        assert_eq!(score_inflation(&blocks, 0), 1.0);
+    }
+
+    /// The median over the coordinates: one wild coordinate decides nothing.
+    #[test]
+    fn inflation_is_that_of_the_middle_coordinate() {
+        let block = |s: [f64; 3]| Block {
+            gram: DMatrix::identity(3, 3),
+            score: DVector::from_column_slice(&s),
+            sse: 0.0,
+        };
+        // Scatter 2 x 1, 2 x 4, 2 x 100 over grams of 2.
+        let blocks = [block([1.0, 2.0, 10.0]), block([-1.0, -2.0, -10.0])];
+        assert!((score_inflation(&blocks, 3) - 4.0).abs() < 1e-12);
+    }
+
+    /// `1/h` of white residuals; scatter of the scores over `h^2` where that is more; a prior counts `kappa` times.
+    #[test]
+    fn the_variance_is_the_largest_of_naive_sandwich_and_prior() {
+        let penalty = penalty(&[4.0], &[0.0]);
+        let quiet = scored(&[1.0, 1.0, 1.0], 2.0);
+        let variance = |blocks: &[Block], nominals, kappa| {
+            covariance(blocks, &penalty, nominals, kappa)[(0, 0)]
+        };
+        assert!((variance(&quiet, 0, 30.0) - 0.1).abs() < 1e-12);
+        assert!((variance(&quiet, 1, 30.0) - 3.0).abs() < 1e-12);
+        let wild = scored(&[1.0, 20.0, -30.0], 2.0);
+        // Mean -3: 16 + 529 + 729 over (6 + 4)^2.
+        assert!((variance(&wild, 0, 30.0) - 12.74).abs() < 1e-12);
+    }
+
+    #[test]
+    fn two_coordinates_share_their_sandwich() {
+        let block = |s: [f64; 2]| Block {
+            gram: DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 3.0]),
+            score: DVector::from_column_slice(&s),
+            sse: 0.0,
+        };
+        let blocks = [block([5.0, 0.0]), block([-5.0, 4.0])];
+        let got = covariance(&blocks, &penalty(&[0.0; 2], &[0.0; 2]), 0, 1.0);
+        // h = [4 2; 2 6], its inverse [6 -2; -2 4]/20; deviations +-(5, -2).
+        let h = DMatrix::from_row_slice(2, 2, &[0.3, -0.1, -0.1, 0.2]);
+        let d = DMatrix::from_row_slice(2, 1, &[5.0, -2.0]);
+        let expected = &h * (&d * d.transpose() * 2.0) * &h;
+        assert!((got - expected).norm() < 1e-12);
+    }
+}

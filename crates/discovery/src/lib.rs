@@ -7,6 +7,8 @@
 mod accept;
 mod api;
 mod belief;
+#[cfg(test)]
+mod beliefs_checked;
 mod case;
 mod compare;
 mod confirm;
@@ -26,6 +28,8 @@ mod refitted_folds;
 mod report;
 mod screen;
 mod signal;
+#[cfg(test)]
+mod specimen;
 mod study;
 mod table;
 mod unexplained;

@@ -112,3 +112,98 @@ pub(crate) fn jacobian(
     };
     free.par_iter().map(column).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::specimen;
+
+    #[test]
+    fn the_believed_table_leaves_nothing() {
+        let study = specimen::table_study(|_| ());
+        let (case, belief) = (&study.fitted.case, &study.belief);
+        let model = outputs(case, belief, &study.beliefs(), Teacher::Off);
+        assert_eq!(model.len(), 12 * N_CHANNELS);
+        assert!(residual(case, &model).iter().all(|r| r.abs() < 1e-4));
+        // In units of the accuracy: one revolution per minute is one.
+        let mut slower = study.fitted.case.clone();
+        slower
+            .measured
+            .iter_mut()
+            .for_each(|row| row[1] -= 2.0 * std::f64::consts::TAU / 60.0);
+        for row in residual(&slower, &model).chunks(N_CHANNELS) {
+            assert!((row[1] + 2.0).abs() < 1e-3 && row[0].abs() < 1e-3);
+        }
+    }
+
+    /// Central differences, which err by the square of the step.
+    #[test]
+    fn derivatives_are_those_of_the_outputs() {
+        let study = specimen::table_study(|_| ());
+        let (case, belief) = (&study.fitted.case, &study.belief);
+        let h = study.beliefs();
+        let base = outputs(case, belief, &h, Teacher::Off);
+        let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
+        let columns = jacobian(case, belief, &h, &base, Teacher::Off);
+        assert_eq!(columns.len(), free.len());
+        for (column, k) in columns.iter().zip(free) {
+            let at = |dz: f64| {
+                let mut moved = h.clone();
+                moved.z[k] += dz;
+                outputs(case, belief, &moved, Teacher::Off)
+            };
+            let (up, down) = (at(1e-3), at(-1e-3));
+            let size = column.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            for (n, got) in column.iter().enumerate() {
+                let expected = (up[n] - down[n]) / 2e-3;
+                assert!(
+                    (got - expected).abs() < 5e-3 * size,
+                    "{k}: {got} {expected}"
+                );
+            }
+        }
+    }
+
+    /// At the upper bound the derivative is taken downwards.
+    #[test]
+    fn derivatives_stay_inside_the_bounds() {
+        let study = specimen::table_study(|_| ());
+        let (case, belief) = (&study.fitted.case, &study.belief);
+        let mut h = study.beliefs();
+        h.z[0] = h.bounds(0, belief)[1];
+        let base = outputs(case, belief, &h, Teacher::Off);
+        let column = &jacobian(case, belief, &h, &base, Teacher::Off)[0];
+        let mut moved = h.clone();
+        moved.z[0] -= h.step(0);
+        let there = outputs(case, belief, &moved, Teacher::Off);
+        for ((got, b), t) in column.iter().zip(&base).zip(&there) {
+            assert!((got - (b - t) / h.step(0)).abs() < 1e-6 * (1.0 + got.abs()));
+        }
+    }
+
+    /// A free run settles at the operating point of the closed form; each row is weighed by its noise.
+    #[test]
+    fn a_recording_is_simulated_row_by_row() {
+        let study = specimen::study(1.0, |_| 1.0);
+        let (case, belief) = (&study.fitted.case, &study.belief);
+        let before = simulations();
+        let model = outputs(case, belief, &study.beliefs(), Teacher::Off);
+        assert!(simulations() > before);
+        let row = case.measured.len() - 1;
+        for k in 0..N_CHANNELS {
+            let got = model[row * N_CHANNELS + k] / case.weight[row][k];
+            let scale = case.measured[row][k].abs().max(0.1);
+            assert!(
+                (got - case.measured[row][k]).abs() < 0.02 * scale,
+                "{k}: {got}"
+            );
+        }
+        // Drawn to the measured speed the start is over sooner.
+        let speed_error = |teacher| {
+            let model = outputs(case, belief, &study.beliefs(), teacher);
+            let rows = residual(case, &model);
+            rows.chunks(N_CHANNELS).map(|r| r[3] * r[3]).sum::<f64>()
+        };
+        assert!(speed_error(Teacher::On(200.0)) < 0.5 * speed_error(Teacher::Off));
+    }
+}

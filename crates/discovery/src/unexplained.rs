@@ -96,3 +96,100 @@ fn worst_time(study: &Study, trial: &Trial) -> f64 {
     let start = worst.map_or(0, |(k, _)| k * study.fitted.case.block);
     start as f64 * study.fitted.case.t_row()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::specimen;
+
+    #[test]
+    fn correlation_is_one_for_a_line_and_zero_for_what_goes_its_own_way() {
+        let x = [1.0, 2.0, 3.0, 4.0];
+        assert!((correlation(&x, &[10.0, 12.0, 14.0, 16.0]) - 1.0).abs() < 1e-12);
+        assert!((correlation(&x, &[3.0, 2.0, 1.0, 0.0]) + 1.0).abs() < 1e-12);
+        assert!(correlation(&x, &[1.0, -1.0, -1.0, 1.0]).abs() < 1e-12);
+        assert_eq!(correlation(&x, &[5.0; 4]), 0.0);
+        // (-1 0 1) against (-2 1 1): 3 over the root of 2 x 6.
+        let got = correlation(&[0.0, 1.0, 2.0], &[0.0, 3.0, 3.0]);
+        assert!((got - 3.0 / 12f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_worst_channel_is_the_one_with_the_largest_mean_square() {
+        let rated = specimen::belief("").plant.rated;
+        let case = Case::new(&specimen::recording(0.5, |_| 1.0), &rated).expect("judged");
+        let mut residual = vec![0.5; case.measured.len() * N_CHANNELS];
+        for row in residual.chunks_exact_mut(N_CHANNELS) {
+            row[3] = 2.0;
+        }
+        assert_eq!(worst_channel(&case, &residual), ("speed", 2.0));
+    }
+
+    /// An error in a hundredth of the blocks is named with its time, and with the quantity that is large there.
+    #[test]
+    fn what_is_left_is_described_by_time_and_driver() {
+        let study = specimen::study(2.0, |t| if t < 1.2 { 0.3 } else { 1.5 });
+        let mut trial = specimen::trial(&study);
+        let blocks = study.fitted.case.blocks();
+        let t_row = study.fitted.case.t_row();
+        for (block, rows) in trial.fit.blocks.iter_mut().zip(&blocks) {
+            let t = rows.start as f64 * t_row;
+            block.sse = if t > 1.6 && t < 1.645 {
+                9e3
+            } else if t < 1.2 {
+                1.0
+            } else {
+                50.0
+            };
+        }
+        let told = describe(&study, &trial, Some("windage".to_owned()), 12.4);
+        assert_eq!(told.best_lead.as_deref(), Some("windage"));
+        assert_eq!(told.best_lead_explains_percent, 12.4);
+        let time = told
+            .description
+            .split("worst time ")
+            .nth(1)
+            .and_then(|s| s.split(' ').next());
+        let time: f64 = time.and_then(|s| s.parse().ok()).expect("a time");
+        assert!((1.6..1.65).contains(&time), "{}", told.description);
+        assert!(
+            told.description.contains("windage, explains 12 % of it"),
+            "{}",
+            told.description
+        );
+        let first: Vec<_> = told
+            .correlates_with
+            .iter()
+            .take(3)
+            .map(String::as_str)
+            .collect();
+        for driver in ["load", "slip"] {
+            assert!(first.contains(&driver), "{:?}", told.correlates_with);
+        }
+        assert!(
+            !told.correlates_with.iter().any(|x| x == "voltage"),
+            "it is constant"
+        );
+    }
+
+    /// One number per block for each quantity, in its unit.
+    #[test]
+    fn drivers_are_means_over_blocks() {
+        let study = specimen::study(1.0, |_| 1.0);
+        let point = specimen::point(1.0);
+        let all = drivers(&study);
+        let of = |name: &str| {
+            let found = all.iter().find(|(n, _)| *n == name).expect("listed");
+            assert_eq!(found.1.len(), study.fitted.case.blocks().len());
+            found.1[10]
+        };
+        assert!((of("voltage") / point.u_s.norm() - 1.0).abs() < 1e-3);
+        assert!((of("load") - 1.0).abs() < 1e-9);
+        assert!((of("frequency") / point.omega_sync - 1.0).abs() < 1e-4);
+        assert!((of("slip") / point.omega_slip - 1.0).abs() < 2e-2);
+        // The mean of a rectified sine is 2/pi of its amplitude; 40 ms are 2.4 periods.
+        let expected = point.i_s.norm() * 2.0 / std::f64::consts::PI;
+        assert!((of("current") / expected - 1.0).abs() < 0.1);
+        assert!((of("time") - 1049.5).abs() < 12.0, "{}", of("time"));
+    }
+}

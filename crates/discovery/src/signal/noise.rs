@@ -32,4 +32,14 @@ mod tests {
             .collect();
         assert!((estimated_sigma(&x) / 0.1 - 1.0).abs() < 0.05);
     }
+
+    #[test]
+    fn slow_signals_have_no_noise_and_short_ones_none_to_speak_of() {
+        let parabola: Vec<f64> = (0..100).map(|k| f64::from(k * k)).collect();
+        assert_eq!(estimated_sigma(&parabola), 0.0);
+        assert_eq!(estimated_sigma(&[1.0, 5.0, 2.0]), 0.0);
+        // The third difference of a single step of 4 samples: 1 - 0 + 0 - 0.
+        let expected = 1.0 / (0.6745 * 20f64.sqrt());
+        assert!((estimated_sigma(&[0.0, 0.0, 0.0, 1.0]) - expected).abs() < 1e-12);
+    }
 }

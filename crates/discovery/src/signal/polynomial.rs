@@ -102,4 +102,73 @@ mod tests {
             assert!((smoothed.slope[k].im - 0.1).abs() < 1e-9);
         }
     }
+
+    /// Straight lines between the points that are evaluated: with wide windows only every other sample is one.
+    #[test]
+    fn a_straight_line_passes_windows_of_any_width() {
+        for (n, window) in [(400, 100), (401, 100), (30, 100), (5, 5), (7, 4)] {
+            let f = |k: usize| Complex64::new(3.0 - 0.25 * k as f64, 0.5 * k as f64);
+            let x: Vec<_> = (0..n).map(f).collect();
+            let smoothed = smooth(&x, window);
+            assert_eq!((smoothed.value.len(), smoothed.slope.len()), (n, n));
+            for k in 0..n {
+                assert!((smoothed.value[k] - x[k]).norm() < 1e-8, "{k} of {n}");
+                assert!(
+                    (smoothed.slope[k] - Complex64::new(-0.25, 0.5)).norm() < 1e-8,
+                    "{k} of {n}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn fewer_than_five_samples_are_left_as_they_are() {
+        let x = [Complex64::new(1.0, 2.0); 4];
+        let smoothed = smooth(&x, 21);
+        assert_eq!(
+            (smoothed.value, smoothed.slope),
+            (x.to_vec(), vec![Complex64::ZERO; 4])
+        );
+    }
+
+    /// In the middle of a window of 2m + 1 a quadratic has the weights of Savitzky and Golay; for five points
+    /// (-3, 12, 17, 12, -3)/35, and (-2, -1, 0, 1, 2)/10 for the slope.
+    #[test]
+    fn weights_are_those_of_the_published_table() {
+        let (value, slope) = weights(5, 2.0);
+        for (k, expected) in [-3.0, 12.0, 17.0, 12.0, -3.0].into_iter().enumerate() {
+            assert!((value[k] - expected / 35.0).abs() < 1e-12);
+        }
+        for (k, expected) in [-2.0, -1.0, 0.0, 1.0, 2.0].into_iter().enumerate() {
+            assert!((slope[k] - expected / 10.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn joined_points_are_met_and_lie_on_lines_between() {
+        let at = |k: usize| {
+            (
+                Complex64::new((k * k) as f64, 0.0),
+                Complex64::new(0.0, k as f64),
+            )
+        };
+        let joined = joined(8, 3, at);
+        // Evaluated at 0, 3, 6 and 7.
+        let value: Vec<f64> = joined.value.iter().map(|x| x.re).collect();
+        let expected = [0.0, 3.0, 6.0, 9.0, 18.0, 27.0, 36.0, 49.0];
+        assert!(
+            value
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-12),
+            "{value:?}"
+        );
+        assert!(
+            joined
+                .slope
+                .iter()
+                .enumerate()
+                .all(|(k, s)| (s.im - k as f64).abs() < 1e-12)
+        );
+    }
 }

@@ -1,0 +1,158 @@
+//! A small motor for the tests of this crate: its motor file, and recordings of it in steady state in closed form.
+
+use crate::belief::Belief;
+use crate::case::Case;
+use crate::fit::Effort;
+use crate::study::{Study, Trial};
+use crate::table::table_values;
+use motor::MotorFile;
+use motor::effects::{Plant, from_motor_file};
+use motor::steady_state::{OperatingPoint, SteadyState};
+use num_complex::Complex64;
+use recording::{Channel, LoadTable, LoadTorque, Metadata, Recording, Sensors, StartsFrom};
+
+const MOTOR: &str = r#"
+name = "specimen"
+[nameplate]
+pole_pairs = 2
+power_watt = 300.0
+voltage_line_rms_volt = 220.0
+current_rms_amp = 1.3
+frequency_hz = 60.0
+torque_nm = 1.7
+connection = "star"
+[parameters]
+stator_resistance_ohm = 8.0
+rotor_resistance_ohm = 7.0
+stator_leakage_henry = 0.028
+rotor_leakage_henry = 0.035
+magnetizing_inductance_henry = 0.42
+inertia_kg_m2 = 0.002
+friction_nm_s = 0.0008
+load_friction_nm_s = 0.0
+[load]
+kind = "measured"
+"#;
+
+/// The motor with more lines in its file.
+pub(crate) fn motor(rest: &str) -> MotorFile {
+    MotorFile::parse(&format!("{MOTOR}{rest}"), "specimen.toml").expect("a valid motor file")
+}
+
+pub(crate) fn belief(rest: &str) -> Belief {
+    let file = motor(rest);
+    let effects = from_motor_file(&file, "specimen.toml").expect("valid effects");
+    Belief::new(&file, effects)
+}
+
+/// Sampling time, s.
+pub(crate) const T_SAMPLE: f64 = 2e-4;
+
+/// Noise that the instrument declares, but the samples do not have: standard deviations of V, A, rad/s, N m.
+pub(crate) const SIGMA: [f64; 4] = [0.4, 0.005, 0.2, 0.002];
+
+/// The motor's steady state at this brake torque, N m.
+pub(crate) fn point(torque: f64) -> OperatingPoint<f64> {
+    let plant = belief("").plant;
+    let u = Complex64::new(plant.rated.voltage, 0.0);
+    let curve = SteadyState::new(&plant.motor, plant.mechanics.n_p, u, plant.rated.omega_sync);
+    let friction = plant.mechanics.total_friction();
+    curve
+        .at_load(|omega| torque + friction * omega)
+        .expect("below breakdown")
+}
+
+fn metadata() -> Metadata {
+    Metadata {
+        load_torque: LoadTorque::Measured,
+        starts_from: StartsFrom::Running,
+        sensors: Sensors {
+            voltage_full_scale_volt: Some(400.0),
+            current_full_scale_amp: Some(5.0),
+            speed_full_scale_rad_s: Some(200.0),
+            torque_full_scale_nm: Some(2.0),
+            noise_sigma_fraction_of_full_scale: Some(0.001),
+            ..Sensors::default()
+        },
+        ..Metadata::default()
+    }
+}
+
+/// Phase quantities of a space vector that turns with the supply.
+fn phases(x: Complex64, t: f64, omega: f64) -> [f64; 3] {
+    let third = std::f64::consts::TAU / 3.0;
+    [0.0, -third, third].map(|shift| (x * Complex64::from_polar(1.0, omega * t + shift)).re)
+}
+
+/// A motor that runs at `torque(t)`, N m, each instant as if it had always been so.
+pub(crate) fn recording(seconds: f64, torque: impl Fn(f64) -> f64) -> Recording {
+    let n = (seconds / T_SAMPLE).round() as usize;
+    let t: Vec<f64> = (0..n).map(|k| k as f64 * T_SAMPLE).collect();
+    let mut columns = vec![Vec::with_capacity(n); 8];
+    let (mut last, mut at) = (f64::NAN, point(0.0));
+    for &t in &t {
+        let tau = torque(t);
+        if tau != last {
+            (last, at) = (tau, point(tau));
+        }
+        let u = phases(at.u_s, t, at.omega_sync);
+        let i = phases(at.i_s, t, at.omega_sync);
+        let all = u.into_iter().chain(i).chain([at.omega_mech, tau]);
+        for (column, x) in columns.iter_mut().zip(all) {
+            column.push(x);
+        }
+    }
+    let channels = Channel::VOLTAGES
+        .into_iter()
+        .chain(Channel::CURRENTS)
+        .chain([Channel::SPEED, Channel::TORQUE]);
+    let empty = Recording::new("specimen", t, metadata()).expect("an even clock");
+    channels.zip(columns).fold(empty, |rec, (channel, values)| {
+        rec.with_channel(channel, values)
+            .expect("as long as the clock")
+    })
+}
+
+/// A study of one such recording.
+pub(crate) fn study(seconds: f64, torque: impl Fn(f64) -> f64) -> Study {
+    let belief = belief("");
+    let case = Case::new(&recording(seconds, torque), &belief.plant.rated).expect("judged");
+    Study::new(belief, case, Vec::new())
+}
+
+/// The beliefs of a study as they are, hardly fitted.
+pub(crate) fn trial(study: &Study) -> Trial {
+    let effort = Effort {
+        iterations: 1,
+        ..Effort::FULL
+    };
+    study.trial(&study.beliefs(), effort)
+}
+
+/// A load table of the motor, its columns in closed form, as a study; `change` makes the machine another than believed.
+pub(crate) fn table_study(change: impl Fn(&mut Plant)) -> Study {
+    use recording::TableColumn::{Current, Efficiency, Power, PowerFactor, Speed};
+    let belief = belief("");
+    let mut plant = belief.plant.clone();
+    change(&mut plant);
+    let watts: Vec<f64> = (0..12).map(|k| 27.0 * f64::from(k)).collect();
+    let asked = [
+        (Power, watts.clone()),
+        (Current, vec![1.0; 12]),
+        (Speed, vec![1750.0; 12]),
+    ];
+    let asked = LoadTable::new("asked", asked.into_iter().collect()).expect("a valid table");
+    let values: Vec<[f64; 4]> = table_values(&asked, &plant).into_iter().flatten().collect();
+    let column = |k: usize| values.iter().map(|v| v[k]).collect::<Vec<f64>>();
+    let rpm = 60.0 / std::f64::consts::TAU;
+    let columns = [
+        (Power, watts),
+        (Current, column(0)),
+        (Speed, column(1).iter().map(|w| w * rpm).collect()),
+        (PowerFactor, column(2)),
+        (Efficiency, column(3).iter().map(|x| x.max(0.0)).collect()),
+    ];
+    let table = LoadTable::new("table", columns.into_iter().collect()).expect("a valid table");
+    let case = Case::of_table(&table, &belief.plant.rated).expect("twelve points");
+    Study::new(belief, case, Vec::new())
+}
