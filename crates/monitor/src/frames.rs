@@ -275,4 +275,14 @@ mod tests {
     fn magnitude_is_the_length() {
         assert_eq!(magnitude(Complex32::new(3.0, -4.0)), 5.0);
     }
+
+    #[test]
+    fn the_zero_sequence_is_the_mean() {
+        let x = Abc {
+            a: 1.0,
+            b: 2.0,
+            c: 5.5,
+        };
+        assert!((x.zero() - 8.5 / 3.0).abs() < 1e-6);
+    }
 }

@@ -296,7 +296,7 @@ mod tests {
     fn second_cycle(hertz: f64, signal: impl Fn(f64) -> f64) -> CyclePhasors {
         let mut state = PhasorState::default();
         let mut finished = 0;
-        for k in 0.. {
+        for k in 0..20_000 {
             let turn = hertz * f64::from(k) * 1e-4;
             let (now, next) = (turn.floor(), (turn + hertz * 1e-4).floor());
             let tick = SyncTick {

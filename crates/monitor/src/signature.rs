@@ -201,4 +201,60 @@ mod tests {
         // L_s and the voltage sensor tie: not pointed at the sensor alone.
         assert!(!Candidates::from_normalised(&[3.0, 0.0, 3.0, 3.0]).points_to_sensor());
     }
+
+    /// Table 1 as printed: the columns are r1 to r4, `I` is a lamp that is on.
+    #[test]
+    fn rows_and_names_are_those_of_the_paper() {
+        let printed = [
+            ("Rs", "I00I", false),
+            ("Rr", "I00I", false),
+            ("Ls", "I0II", false),
+            ("Lr", "IIII", false),
+            ("B", "0III", false),
+            ("Bl", "0III", false),
+            ("Iq", "III0", true),
+            ("Vq", "I0II", true),
+            ("wr", "II0I", true),
+        ];
+        for ((fault, pattern), (name, row, is_sensor)) in TABLE_1.into_iter().zip(printed) {
+            let lamps: String = pattern
+                .map(|on| if on { 'I' } else { '0' })
+                .into_iter()
+                .collect();
+            assert_eq!(
+                (fault.name(), lamps.as_str(), fault.is_sensor()),
+                (name, row, is_sensor)
+            );
+        }
+    }
+
+    /// One residual at its threshold, the others far from theirs: the rows that differ in it alone share half and half.
+    #[test]
+    fn a_residual_at_its_threshold_counts_half_for_either() {
+        // `R_s` and `R_r` (I00I) against `L_s` and `V_q` (I0II): each row has a likelihood of one half, "none" 1/16.
+        let candidates = Candidates::from_normalised(&[9.0, 0.0, 1.0, 9.0]);
+        let expected = 0.5 / (4.0 * 0.5 + 1.0 / 16.0);
+        for place in [0, 1, 2, 7] {
+            assert!(
+                (candidates.faults[place] - expected).abs() < 1e-4,
+                "{candidates:?}"
+            );
+        }
+        assert!((candidates.unknown - expected / 8.0).abs() < 1e-4);
+    }
+
+    /// `x^8/(1 + x^8)`: 96 per cent at one and a half thresholds, 4 at two thirds.
+    #[test]
+    fn the_chance_of_being_on_follows_the_size() {
+        for (x, chance) in [
+            (1.5, 0.9624),
+            (1.0 / 1.5, 0.0376),
+            (-1.5, 0.9624),
+            (0.0, 0.0),
+            (1e9, 1.0),
+        ] {
+            assert!((chance_on(x) - chance).abs() < 1e-4, "{x}");
+        }
+        assert_eq!(chance_on(f32::NAN), 0.5);
+    }
 }

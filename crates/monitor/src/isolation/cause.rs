@@ -137,4 +137,36 @@ mod tests {
             assert!(!ALL_CAUSES.iter().skip(k + 1).any(|other| other == cause));
         }
     }
+
+    /// Rows of Table 1 where there is one; phases where there are; the instrument apart from the motor.
+    #[test]
+    fn causes_say_what_and_where_they_are() {
+        for cause in ALL_CAUSES {
+            let (name, sensor, phased, adds) = match cause {
+                Cause::StatorResistance => ("Rs", false, None, false),
+                Cause::RotorResistance => ("Rr", false, None, false),
+                Cause::MagnetizingInductance => ("Lm", false, None, false),
+                Cause::Leakage => ("leakage", false, None, false),
+                Cause::Friction => ("B", false, None, false),
+                Cause::AllCurrents => ("Iq", true, None, false),
+                Cause::AllVoltages => ("Vq", true, None, false),
+                Cause::SpeedGain => ("wr", true, None, false),
+                Cause::SeriesResistance(p) => ("Rs", false, Some(p), true),
+                Cause::Turns(p) => ("turns", false, Some(p), true),
+                Cause::CurrentChannel(p) => ("Iq", true, Some(p), false),
+                Cause::VoltageChannel(p) => ("Vq", true, Some(p), false),
+            };
+            assert_eq!(
+                (cause.name(), cause.is_sensor()),
+                (name, sensor),
+                "{cause:?}"
+            );
+            assert_eq!(
+                (cause.phase(), cause.only_adds()),
+                (phased, adds),
+                "{cause:?}"
+            );
+            assert!(cause.looseness() > 0.0 && cause.looseness() < 1.0);
+        }
+    }
 }

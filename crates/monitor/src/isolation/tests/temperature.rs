@@ -127,3 +127,160 @@ fn what_any_temperature_would_leave_does_not_depend_on_what_was_expected() {
         }
     }
 }
+
+fn judged(rise: f32, deviation: f32, significance: f32, at_any_temperature: f32) -> Isolation {
+    Isolation {
+        scores: [0.0; crate::CAUSES],
+        unknown: 0.0,
+        sizes: [0.0; crate::CAUSES],
+        significance,
+        at_any_temperature,
+        heating: Heating { rise, deviation },
+    }
+}
+
+fn after(temperature: &mut Temperature, isolation: &Isolation, fault: bool) -> Heating {
+    temperature.follow(isolation, &statistics(), fault);
+    temperature.expected(&statistics())
+}
+
+fn assert_heating(got: Heating, rise: f32, deviation: f32) {
+    assert!((got.rise - rise).abs() < 1e-6, "{got:?}");
+    assert!((got.deviation - deviation).abs() < 1e-6, "{got:?}");
+}
+
+/// Before anything was seen the winding may have any temperature; then what the window told, and what time adds.
+#[test]
+fn doubt_grows_with_time_and_with_the_square_of_the_current() {
+    let mut temperature = Temperature::default();
+    assert_eq!(
+        temperature.expected(&statistics()),
+        Heating::any(&statistics())
+    );
+    assert_heating(
+        after(&mut temperature, &judged(0.1, 0.02, 1.0, 1.0), false),
+        0.1,
+        0.02,
+    );
+    // 0.2 % a second at rated current or less, four times as much at twice the current.
+    temperature.pass(2.0, 0.5);
+    assert_heating(
+        temperature.expected(&statistics()),
+        0.1,
+        0.02_f32.hypot(0.004),
+    );
+    temperature.pass(1.0, 2.0);
+    assert_heating(
+        temperature.expected(&statistics()),
+        0.1,
+        0.02_f32.hypot(0.012),
+    );
+    temperature.rest(5.0);
+    assert_heating(
+        temperature.expected(&statistics()),
+        0.1,
+        0.02_f32.hypot(0.022),
+    );
+    // Never more than the range that the calibration foresees.
+    temperature.pass(1000.0, 1.0);
+    assert_heating(temperature.expected(&statistics()), 0.1, 0.3);
+}
+
+/// A window that tells no better moves the temperature only as far as copper can have warmed.
+#[test]
+fn the_rise_moves_as_fast_as_copper_warms() {
+    let mut temperature = Temperature::default();
+    after(&mut temperature, &judged(0.1, 0.02, 1.0, 1.0), false);
+    temperature.pass(5.0, 1.0); // up to 0.01
+    assert_heating(
+        after(&mut temperature, &judged(0.15, 0.02, 1.0, 1.0), false),
+        0.11,
+        0.02,
+    );
+    temperature.pass(5.0, 1.0);
+    assert_heating(
+        after(&mut temperature, &judged(0.113, 0.03, 1.0, 1.0), false),
+        0.113,
+        0.02,
+    );
+    temperature.pass(5.0, 1.0);
+    assert_heating(
+        after(&mut temperature, &judged(0.0, 0.02, 1.0, 1.0), false),
+        0.103,
+        0.02,
+    );
+}
+
+/// One that tells it much better, to two thirds of the deviation, replaces what was known.
+#[test]
+fn a_better_window_replaces_what_was_known() {
+    let mut temperature = Temperature::default();
+    after(&mut temperature, &judged(0.1, 0.03, 1.0, 1.0), false);
+    assert_heating(
+        after(&mut temperature, &judged(0.2, 0.021, 1.0, 1.0), false),
+        0.1,
+        0.03,
+    );
+    assert_heating(
+        after(&mut temperature, &judged(0.2, 0.019, 1.0, 1.0), false),
+        0.2,
+        0.019,
+    );
+}
+
+/// Half of the lamp's limit is healthy enough to learn from; beyond twice the range nothing is heat.
+#[test]
+fn only_healthy_windows_teach() {
+    let mut temperature = Temperature::default();
+    after(&mut temperature, &judged(0.1, 0.02, 1.0, 1.0), false);
+    let half = 0.5 * statistics().significance;
+    assert_heating(
+        after(
+            &mut temperature,
+            &judged(0.2, 0.01, 1.01 * half, 1.0),
+            false,
+        ),
+        0.1,
+        0.02,
+    );
+    assert_eq!(
+        temperature.latest(),
+        0.2,
+        "but residuals are straightened there"
+    );
+    assert_heating(
+        after(
+            &mut temperature,
+            &judged(0.2, 0.01, 0.99 * half, 1.0),
+            false,
+        ),
+        0.2,
+        0.01,
+    );
+    after(&mut temperature, &judged(0.9, 0.01, 9.0, 9.0), false);
+    assert!((temperature.latest() - 0.6).abs() < 1e-6);
+    after(&mut temperature, &judged(-0.9, 0.005, 1.0, 1.0), false);
+    assert!((temperature.latest() + 0.6).abs() < 1e-6);
+    assert_heating(temperature.expected(&statistics()), -0.6, 0.005);
+}
+
+/// A fault that some temperature would explain stops the clock; one that none explains does not.
+#[test]
+fn time_does_not_excuse_a_fault_that_looks_like_heat() {
+    let limit = statistics().significance;
+    for (at_any, frozen) in [(0.9 * limit, true), (1.1 * limit, false)] {
+        let mut temperature = Temperature::default();
+        after(&mut temperature, &judged(0.1, 0.02, 1.0, 1.0), false);
+        after(
+            &mut temperature,
+            &judged(0.3, 0.02, 2.0 * limit, at_any),
+            true,
+        );
+        temperature.pass(10.0, 1.0);
+        let grown = temperature.expected(&statistics()).deviation > 0.0201;
+        assert_eq!(grown, !frozen, "{at_any}");
+        // Minutes at rest excuse it all the same.
+        temperature.rest(10.0);
+        assert!(temperature.expected(&statistics()).deviation > 0.0201);
+    }
+}
