@@ -518,4 +518,18 @@ mod tests {
             assert_eq!(seen, restarts, "jump of {jump} rad");
         }
     }
+
+    /// At 50 Hz and 10 kHz every hundredth sample may be exactly zero.
+    #[test]
+    fn a_sample_on_the_crossing_is_a_crossing() {
+        let x = |k: u64| match k % 200 {
+            0 | 100 => 0.0,
+            k => (325.0 * (core::f64::consts::TAU * k as f64 / 200.0).sin()) as f32,
+        };
+        let state = fed(&config(), 3000, x);
+        assert!(state.is_locked());
+        assert!((state.omega() / (TAU * 50.0) - 1.0).abs() < 1e-5);
+        // After sample 2999 the next one is the crossing.
+        assert!(state.theta().abs() < 1e-3, "{}", state.theta());
+    }
 }
