@@ -516,9 +516,9 @@ mod tests {
         let (i, omega) = (rec.currents().expect("three"), rec.speed().expect("one"));
         for row in [0, 1, 777, 2499] {
             let k = 2 * row;
-            for p in 0..3 {
-                assert_eq!(case.measured[row][p], i[p][k]);
-                let sigma = (ampere * ampere + (0.005 * i[p][k]).powi(2)).sqrt();
+            for (p, phase) in i.iter().enumerate() {
+                assert_eq!(case.measured[row][p], phase[k]);
+                let sigma = (ampere * ampere + (0.005 * phase[k]).powi(2)).sqrt();
                 assert!((case.weight[row][p] * sigma - 1.0).abs() < 1e-12);
             }
             assert_eq!(case.measured[row][3], omega[k]);

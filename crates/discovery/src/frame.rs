@@ -479,12 +479,9 @@ mod tests {
         let p = params();
         let mut window = window_of(&specimen::point(1.0));
         window.sigma = [1.0, 0.0, 0.0];
-        window.i *= 1.0;
         let normal = Normal::new(0.0, 3.0).expect("a deviation");
         let mut rng = rand_pcg::Pcg64::seed_from_u64(9);
-        let noise = RIGHT.weighted(&p, &window).abs().max(1.0);
-        assert!(noise < 2.0);
-        // One rad/s changes r1 by the flux L_s I_d: three of the unit of `weighted` per draw.
+        // A draw of the speed that moves `weighted` by three.
         let base = window;
         let per_rad = {
             let mut moved = base;

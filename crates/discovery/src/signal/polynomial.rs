@@ -111,10 +111,10 @@ mod tests {
             let x: Vec<_> = (0..n).map(f).collect();
             let smoothed = smooth(&x, window);
             assert_eq!((smoothed.value.len(), smoothed.slope.len()), (n, n));
-            for k in 0..n {
-                assert!((smoothed.value[k] - x[k]).norm() < 1e-8, "{k} of {n}");
+            for (k, (value, slope)) in smoothed.value.iter().zip(&smoothed.slope).enumerate() {
+                assert!((value - f(k)).norm() < 1e-8, "{k} of {n}");
                 assert!(
-                    (smoothed.slope[k] - Complex64::new(-0.25, 0.5)).norm() < 1e-8,
+                    (slope - Complex64::new(-0.25, 0.5)).norm() < 1e-8,
                     "{k} of {n}"
                 );
             }

@@ -452,11 +452,10 @@ mod tests {
             .map(|(k, x)| if k < 30 { *x } else { x + 7.0 })
             .collect();
         let (smooth, jumped) = (jumps(&line, 10), jumps(&step, 10));
-        for k in 0..60 {
-            let inside = (10..=50).contains(&k);
+        for (k, jump) in smooth.iter().enumerate() {
             // The line rises by a half from one sample to the next.
-            let expected = if inside { 0.5 } else { 0.0 };
-            assert!((smooth[k] - expected).abs() < 1e-9, "{k}: {}", smooth[k]);
+            let expected = if (10..=50).contains(&k) { 0.5 } else { 0.0 };
+            assert!((jump - expected).abs() < 1e-9, "{k}: {jump}");
         }
         assert!((jumped[30] - 7.5).abs() < 1e-9);
         assert!(jumped.iter().all(|x| *x < 7.6));
@@ -489,9 +488,9 @@ mod tests {
             .map(|k| Complex64::from_polar(5.0, 0.1 * f64::from(k)))
             .collect();
         let (theta, slope) = angle(&turning, &[0..2000], 20);
-        for k in 0..2000 {
-            assert!((theta[k] - 0.1 * k as f64).abs() < 1e-8);
-            assert!((slope[k] - 0.1).abs() < 1e-8);
+        for (k, (theta, slope)) in theta.iter().zip(slope).enumerate() {
+            assert!((theta - 0.1 * k as f64).abs() < 1e-8);
+            assert!((slope - 0.1).abs() < 1e-8);
         }
         let (theta, _) = angle(&[Complex64::ZERO; 50], &[0..50], 20);
         assert!(theta.iter().all(|x| x.abs() < 1e-12));
