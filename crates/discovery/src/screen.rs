@@ -337,6 +337,7 @@ mod tests {
             held_out: vec![0.25 * held_out; 4],
             possible: true,
             visible: 0.0,
+            visible_with_known_scale: None,
         }
     }
 

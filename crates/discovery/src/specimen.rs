@@ -88,7 +88,7 @@ fn phases(x: Complex64, t: f64, omega: f64) -> [f64; 3] {
 pub(crate) fn recording(seconds: f64, torque: impl Fn(f64) -> f64) -> Recording {
     let n = (seconds / T_SAMPLE).round() as usize;
     let t: Vec<f64> = (0..n).map(|k| k as f64 * T_SAMPLE).collect();
-    let mut columns = vec![Vec::with_capacity(n); 8];
+    let mut columns = vec![Vec::new(); 8];
     let (mut last, mut at) = (f64::NAN, point(0.0));
     for &t in &t {
         let tau = torque(t);
@@ -117,7 +117,7 @@ pub(crate) fn recording(seconds: f64, torque: impl Fn(f64) -> f64) -> Recording 
 pub(crate) fn study(seconds: f64, torque: impl Fn(f64) -> f64) -> Study {
     let belief = belief("");
     let case = Case::new(&recording(seconds, torque), &belief.plant.rated).expect("judged");
-    Study::new(belief, case, Vec::new())
+    Study::new(belief, case, Vec::new(), None)
 }
 
 /// The beliefs of a study as they are, hardly fitted.
@@ -154,5 +154,5 @@ pub(crate) fn table_study(change: impl Fn(&mut Plant)) -> Study {
     ];
     let table = LoadTable::new("table", columns.into_iter().collect()).expect("a valid table");
     let case = Case::of_table(&table, &belief.plant.rated).expect("twelve points");
-    Study::new(belief, case, Vec::new())
+    Study::new(belief, case, Vec::new(), None)
 }

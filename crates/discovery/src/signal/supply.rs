@@ -273,6 +273,10 @@ fn sharpest(amplitude: &[f64], jumps: &[f64], from: usize, to: usize) -> usize {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::single_range_in_vec_init,
+    reason = "a list of segments may hold one range"
+)]
 mod tests {
     use super::*;
     use rand::SeedableRng;
