@@ -58,12 +58,12 @@ fn a_gain_of_one_channel_is_a_sensors_fault() {
     }
 }
 
-/// Blocks of four turns of twice the slip angle, the third lights: two seconds at the rated load of this motor.
+/// Blocks of four turns of twice the slip angle, the third lights.
 #[test]
 fn broken_bars_light_fault() {
     let program = variant("calibrated");
     let mut scenario = faulty("bars", 10.0);
-    scenario.duration_s = 4.0;
+    scenario.duration_s = 8.0;
     let shown = lamps(&program, &scenario, "bars +10 %");
     assert!(shown[FAULT], "{shown:?}");
 }
