@@ -1,0 +1,305 @@
+use super::*;
+use crate::specimen::{self, SIGMA, T_SAMPLE};
+use recording::Metadata;
+
+fn rated() -> Rated<f64> {
+    specimen::belief("").plant.rated
+}
+
+fn case_of(rec: &Recording) -> Case {
+    Case::new(rec, &rated()).expect("judged")
+}
+
+fn reason(rec: &Recording) -> String {
+    Case::new(rec, &rated()).expect_err("refused").reason
+}
+
+/// The same recording with its channels changed, or without them.
+fn changed(rec: &Recording, change: impl Fn(Channel, Vec<f64>) -> Option<Vec<f64>>) -> Recording {
+    let empty = Recording::new("changed", rec.t().to_vec(), rec.metadata.clone());
+    rec.channels()
+        .fold(empty.expect("a clock"), |to, (channel, x)| {
+            match change(channel, x.to_vec()) {
+                Some(x) => to.with_channel(channel, x).expect("as long"),
+                None => to,
+            }
+        })
+}
+
+#[test]
+fn rows_hold_every_second_sample_and_weigh_it_by_its_noise() {
+    let rec = specimen::recording(1.0, |_| 1.0);
+    let case = case_of(&rec);
+    assert_eq!((case.between, case.decimation), (Between::Smooth, 1));
+    assert!((case.t_row() - 2.0 * T_SAMPLE).abs() < 1e-12);
+    assert_eq!(case.measured.len(), 2500);
+    let [volt, ampere, speed, _] = SIGMA;
+    let (i, omega) = (rec.currents().expect("three"), rec.speed().expect("one"));
+    for row in [0, 1, 777, 2499] {
+        let k = 2 * row;
+        for (p, phase) in i.iter().enumerate() {
+            assert_eq!(case.measured[row][p], phase[k]);
+            let sigma = (ampere * ampere + (0.005 * phase[k]).powi(2)).sqrt();
+            assert!((case.weight[row][p] * sigma - 1.0).abs() < 1e-12);
+        }
+        assert_eq!(case.measured[row][3], omega[k]);
+        assert!((case.weight[row][3] * speed - 1.0).abs() < 1e-12);
+        // The mean of three phases has a third of the variance of one.
+        assert!(case.measured[row][4].abs() < 1e-9);
+        assert!((case.weight[row][4] * volt / 3f64.sqrt() - 1.0).abs() < 1e-12);
+    }
+    assert_eq!(case.judged(), 5.0 * 2500.0);
+    assert!((case.input_noise.0 - (2.0f64 / 3.0).sqrt() * volt).abs() < 1e-12);
+    assert!((case.input_noise.1 - SIGMA[3]).abs() < 1e-12);
+    assert!(!case.inverter && case.open.is_empty() && !case.speed_is_input);
+}
+
+#[test]
+fn blocks_of_forty_milliseconds_cover_every_row_once() {
+    let case = case_of(&specimen::recording(1.03, |_| 1.0));
+    let blocks = case.blocks();
+    assert_eq!(blocks[0].start, 0);
+    assert!(blocks.windows(2).all(|w| w[0].end == w[1].start));
+    assert_eq!(blocks.last().map(|b| b.end), Some(case.measured.len()));
+    for block in &blocks[..blocks.len() - 1] {
+        let seconds = block.len() as f64 * case.t_row();
+        assert!((seconds - BLOCK).abs() < 1.01 * case.t_row(), "{seconds}");
+    }
+    let last = blocks[blocks.len() - 1].len();
+    assert!(
+        last >= blocks[0].len() && last < 2 * blocks[0].len(),
+        "the rest joins the last"
+    );
+}
+
+#[test]
+fn fast_samples_are_thinned_out() {
+    let mut rec = specimen::recording(1.0, |_| 1.0);
+    // The same columns read as a clock of 20 kHz.
+    let t = (0..rec.len()).map(|k| 5e-5 * k as f64).collect();
+    let fast = Recording::new("fast", t, rec.metadata.clone()).expect("a clock");
+    rec = rec.channels().fold(fast, |to, (c, x)| {
+        to.with_channel(c, x.to_vec()).expect("as long")
+    });
+    let case = case_of(&rec);
+    // 10 kHz of double steps to about 5.5 kHz.
+    assert_eq!(case.decimation, 2);
+    assert!((case.t_row() - 2e-4).abs() < 1e-12);
+}
+
+#[test]
+fn what_cannot_be_judged_is_told_with_a_remedy() {
+    let rec = specimen::recording(1.0, |_| 1.0);
+    let without = |channel| changed(&rec, |c, x| (c != channel).then_some(x));
+    assert!(reason(&without(Channel::VOLTAGES[1])).contains("voltages"));
+    assert!(reason(&without(Channel::CURRENTS[0])).contains("currents"));
+    assert!(reason(&specimen::recording(0.19, |_| 1.0)).contains("shorter"));
+    assert!(Case::new(&specimen::recording(0.21, |_| 1.0), &rated()).is_ok());
+    let mut t = rec.t().to_vec();
+    t[100..].iter_mut().for_each(|t| *t += 0.02 * T_SAMPLE);
+    let torn = Recording::new("torn", t, rec.metadata.clone()).expect("rising");
+    assert!(
+        check_clock(&torn)
+            .expect_err("uneven")
+            .reason
+            .contains("t = 0.0198")
+    );
+    assert_eq!(check_clock(&rec), Ok(()));
+}
+
+/// Declared noise; without a declaration what the samples show; never nothing.
+#[test]
+fn noise_is_declared_or_estimated_and_never_zero() {
+    let rec = specimen::recording(0.3, |_| 1.0);
+    let current = rec.currents().expect("three")[0];
+    assert_eq!(sigma(&rec, Channel::CURRENTS[0], current), 0.005);
+    let bare = Recording::new("bare", rec.t().to_vec(), Metadata::default()).expect("a clock");
+    let noisy: Vec<f64> = (0..1000).map(|k| f64::from(k * k % 1009)).collect();
+    assert_eq!(
+        sigma(&bare, Channel::SPEED, &noisy),
+        estimated_sigma(&noisy)
+    );
+    assert_eq!(sigma(&bare, Channel::SPEED, &[3.0; 100]), 3e-6);
+    assert_eq!(sigma(&bare, Channel::SPEED, &[0.0; 100]), 1e-9);
+}
+
+#[test]
+fn a_current_at_its_full_scale_is_not_judged() {
+    let rec = specimen::recording(0.3, |_| 1.0);
+    let clipped = changed(&rec, |c, x| {
+        Some(if c == Channel::CURRENTS[1] {
+            x.iter().map(|x| if *x > 1.0 { 5.0 } else { *x }).collect()
+        } else {
+            x
+        })
+    });
+    let case = case_of(&clipped);
+    for (measured, weight) in case.measured.iter().zip(&case.weight) {
+        assert_eq!(weight[1] == 0.0, measured[1] == 5.0);
+        assert!(weight[0] > 0.0);
+    }
+}
+
+/// Without a declared full scale a top that stands still is a clipped one.
+#[test]
+fn a_flat_top_is_the_end_of_the_scale() {
+    let bare = Recording::new("bare", vec![0.0, 1.0], Metadata::default()).expect("a clock");
+    let wave = |limit: f64| -> Vec<f64> {
+        (0..1000)
+            .map(|k| (0.05 * f64::from(k)).sin().clamp(-limit, limit))
+            .collect()
+    };
+    assert_eq!(clip_limit(&bare, 0, &wave(2.0)), f64::INFINITY);
+    assert!((clip_limit(&bare, 0, &wave(0.8)) - 0.99 * 0.8).abs() < 1e-12);
+    // A level that is held below the top is no clipping.
+    let mut held = wave(2.0);
+    held[300..320].fill(0.5);
+    assert_eq!(clip_limit(&bare, 0, &held), f64::INFINITY);
+}
+
+#[test]
+fn running_sums_give_power_and_variance_of_any_range() {
+    let x = [1.0, -3.0, 2.0, 4.0, 7.0];
+    let running = Running::new(&x, 2.0);
+    // In units of the noise: -1.5, 1, 2.
+    let (power, mean) = ((2.25 + 1.0 + 4.0) / 3.0, 0.5);
+    assert!((running.power(1..4) - power).abs() < 1e-12);
+    assert!((running.variance(1..4) - (power - mean * mean)).abs() < 1e-12);
+}
+
+/// A motor that is switched off at 0.5 s and on again at 0.8 s.
+#[test]
+fn an_open_switch_is_found_and_its_moments_are_not_judged() {
+    let rec = specimen::recording(1.2, |_| 1.0);
+    let off = |k: usize| (2500..4000).contains(&k);
+    let noise = |k: usize| 0.005 * ((k * 7_919 % 1000) as f64 / 500.0 - 1.0);
+    let rec = changed(&rec, |c, x| {
+        let current = Channel::CURRENTS.contains(&c);
+        let at = |(k, x): (usize, &f64)| if current && off(k) { noise(k) } else { *x };
+        Some(x.iter().enumerate().map(at).collect())
+    });
+    let case = case_of(&rec);
+    assert_eq!(case.open.len(), 1, "{:?}", case.open);
+    let open = case.open[0].clone();
+    assert!(
+        open.start.abs_diff(2500) <= 2 && open.end.abs_diff(4000) <= 4,
+        "{open:?}"
+    );
+    let judged = |k: usize| case.weight[k / 2][0] > 0.0;
+    // Just before the switch opens, and 30 ms after, nothing can be said about the current.
+    assert!(judged(open.start - 14) && !judged(open.start - 8));
+    assert!(!judged(open.start + 148) && judged(open.start + 154));
+    // Speed and voltage are judged all the time.
+    assert!(case.weight.iter().all(|w| w[3] > 0.0 && w[4] > 0.0));
+}
+
+#[test]
+fn a_motor_that_never_carried_current_is_not_switched_off() {
+    let quiet: Vec<f64> = (0..2000)
+        .map(|k| 0.005 * ((k * 7_919 % 1000) as f64 / 500.0 - 1.0))
+        .collect();
+    let all = [&quiet[..]; 3];
+    assert!(switched_off(all, [0.005; 3], T_SAMPLE).is_empty());
+}
+
+#[test]
+fn held_or_slow_voltages_are_not_interpolated() {
+    let mut rec = specimen::recording(0.3, |_| 1.0);
+    assert_eq!(between(&rec, 2.5e-4), Between::Smooth);
+    assert_eq!(between(&rec, 2.7e-4), Between::Held);
+    rec.metadata.voltage = VoltageKind::Hold;
+    assert_eq!(between(&rec, 1e-4), Between::Held);
+}
+
+#[test]
+fn the_load_is_what_is_declared_or_measured() {
+    let rec = specimen::recording(0.3, |_| 1.0);
+    let load = Load::new(&rec);
+    assert!(!load.unknown && load.torque.iter().all(|x| *x == 1.0));
+    assert!((load.noise - SIGMA[3]).abs() < 1e-12);
+    let mut friction = rec.clone();
+    friction.metadata.load_torque = LoadTorque::Friction;
+    let load = Load::new(&friction);
+    assert!(!load.unknown && load.noise == 0.0 && load.torque.iter().all(|x| *x == 0.0));
+    let free = changed(&rec, |c, x| (c != Channel::TORQUE).then_some(x));
+    assert!(
+        Load::new(&free).unknown,
+        "the measured speed takes the place of the load"
+    );
+    let nothing = changed(&free, |c, x| (c != Channel::SPEED).then_some(x));
+    assert!(!Load::new(&nothing).unknown);
+}
+
+#[test]
+fn a_free_load_makes_the_speed_an_input() {
+    let rec = specimen::recording(0.5, |_| 1.0);
+    let free = changed(&rec, |c, x| (c != Channel::TORQUE).then_some(x));
+    let case = case_of(&free);
+    assert!(case.speed_is_input);
+    assert!(
+        case.weight.iter().all(|w| w[3] == 0.0),
+        "an input is not judged"
+    );
+}
+
+#[test]
+fn angle_and_smoothed_speed_follow_the_measured_speed() {
+    let rec = specimen::recording(0.5, |_| 1.0);
+    let ramp: Vec<f64> = rec.t().iter().map(|t| 100.0 + 40.0 * t).collect();
+    let rec = changed(&rec, |c, x| {
+        Some(if c == Channel::SPEED { ramp.clone() } else { x })
+    });
+    let theta = measured_angle(&rec);
+    let speed = smoothed_speed(&rec, T_SAMPLE);
+    for (k, t) in rec.t().iter().enumerate() {
+        // Trapezoids of a straight line are exact.
+        assert!((theta[k] - (100.0 * t + 20.0 * t * t)).abs() < 1e-9);
+        assert!((speed[k] - (100.0 + 40.0 * t)).abs() < 1e-9);
+    }
+    let without = changed(&rec, |c, x| (c != Channel::SPEED).then_some(x));
+    assert!(measured_angle(&without).is_empty() && smoothed_speed(&without, T_SAMPLE).is_empty());
+}
+
+#[test]
+fn a_motor_runs_at_the_start_if_it_is_declared_or_seen() {
+    let rated = rated();
+    let omega = specimen::point(1.0).omega_mech;
+    let at = |starts_from, scale: f64, speed: bool| {
+        let mut rec = changed(&specimen::recording(0.3, |_| 1.0), |c, x| {
+            let gain = if c == Channel::TORQUE { 1.0 } else { scale };
+            (speed || c != Channel::SPEED).then(|| x.iter().map(|x| gain * x).collect())
+        });
+        rec.metadata.starts_from = starts_from;
+        let currents = rec.currents().expect("three");
+        running_at(&rec, currents, &rated)
+    };
+    assert_eq!(at(StartsFrom::Standstill, 1.0, true), None);
+    let close = |got: Option<f64>, expected: f64| {
+        assert!(
+            (got.expect("running") - expected).abs() < 1e-9,
+            "{got:?} {expected}"
+        );
+    };
+    close(at(StartsFrom::Running, 1.0, true), omega);
+    close(at(StartsFrom::Unknown, 1.0, true), omega);
+    assert_eq!(
+        at(StartsFrom::Unknown, 0.01, true),
+        None,
+        "neither current nor speed"
+    );
+    close(at(StartsFrom::Running, 1.0, false), rated.speed());
+}
+
+#[test]
+fn a_table_is_a_case_of_points() {
+    use recording::TableColumn::{Current, Speed, Torque};
+    let columns = [
+        (Torque, vec![0.0, 0.5, 1.0, 1.5, 1.7]),
+        (Current, vec![0.8, 0.9, 1.0, 1.2, 1.3]),
+        (Speed, vec![1795.0, 1770.0, 1740.0, 1700.0, 1680.0]),
+    ];
+    let table = LoadTable::new("table", columns.into_iter().collect()).expect("valid");
+    let case = Case::of_table(&table, &rated()).expect("five points");
+    assert_eq!(case.table.as_ref().map(Vec::len), Some(5));
+    assert_eq!((case.blocks().len(), case.judged()), (5, 10.0));
+}
