@@ -5,6 +5,7 @@
 
 use unicorn_engine::{Arch, Mode, Prot, RegisterARM as R, Unicorn, uc_error};
 
+use crate::block::{Block, Conditions};
 use crate::board::BoardError;
 use crate::bus::FACTORY_VALUES;
 use crate::flash::Step;
@@ -26,7 +27,6 @@ const FACTORY: u64 = 0x1FFF_7000;
 /// Where a return from an exception "jumps" to; a page of NOPs, so that the jump itself succeeds.
 const RETURNS: u64 = 0xFFFF_F000;
 const WFE: u16 = 0xBF20;
-const SEV: u16 = 0xBF40;
 const NOP: u16 = 0xBF00;
 /// xPSR: stack pointer was padded to 8 bytes.
 const PADDED: u32 = 1 << 9;
@@ -409,43 +409,31 @@ fn erase(core: &mut Unicorn<'_, Machine>, page: u32) {
     }
 }
 
-/// Instructions in a block of Thumb code, and whether SEV is among them.
-fn inspect(bytes: &[u8]) -> (u32, bool) {
-    let (halves, _) = bytes.as_chunks::<2>();
-    let mut halves = halves.iter().map(|half| u16::from_le_bytes(*half));
-    let (mut instructions, mut sends) = (0, false);
-    while let Some(half) = halves.next() {
-        instructions += 1;
-        sends |= half == SEV;
-        if half >= 0xE800 {
-            halves.next();
-        }
-    }
-    (instructions, sends)
-}
-
 /// Counts time, and leaves the emulation when something is due, before the block runs.
 fn hook_blocks(core: &mut Core) -> Result<(), uc_error> {
     let mut known = std::collections::HashMap::new();
+    let mut conditions = Conditions::default();
     let hook = move |core: &mut Unicorn<'_, Machine>, address: u64, size: u32| {
         let waiting = core.get_data().nvic.is_waiting();
         let masked = waiting && core.reg_read(R::PRIMASK).unwrap_or(0) & 1 == 1;
         let machine = core.get_data_mut();
         let due = machine.now >= machine.next_event || machine.stop;
-        if due || (waiting && !masked) || address >= RETURNS {
+        let interruptible = !conditions.reach_into(address);
+        if interruptible && (due || (waiting && !masked) || address >= RETURNS) {
             let _ = core.emu_stop();
             return;
         }
-        let (instructions, sends) = *known.entry((address, size)).or_insert_with(|| {
+        let block = known.entry((address, size)).or_insert_with(|| {
             let bytes = core.mem_read_as_vec(address, size as usize);
-            inspect(&bytes.unwrap_or_default())
+            Block::of(&bytes.unwrap_or_default())
         });
+        conditions.pass(block, address + u64::from(size));
         let machine = core.get_data_mut();
-        machine.now += u64::from(instructions);
-        machine.tally.instructions += u64::from(instructions);
-        machine.event_register |= sends;
+        machine.now += u64::from(block.instructions);
+        machine.tally.instructions += u64::from(block.instructions);
+        machine.event_register |= block.sends;
         if let Some(profile) = &mut machine.profile {
-            *profile.entry(address).or_default() += u64::from(instructions);
+            *profile.entry(address).or_default() += u64::from(block.instructions);
         }
     };
     core.add_block_hook(1, 0, hook).map(|_| ())

@@ -5,6 +5,7 @@
 //! Access to a register that is not modelled ends the run with an error. One instruction counts as one cycle.
 
 mod adc;
+mod block;
 mod board;
 mod bus;
 mod cpu;
