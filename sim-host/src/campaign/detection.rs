@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::fault::FaultKind;
 use super::file::{About, Results};
+use super::pair::Sides;
 use super::row::Row;
 use super::statistics::{Share, quantile};
 use super::table::{Named, counted, grouped};
@@ -42,18 +43,25 @@ pub struct Detection {
     pub isolation_percent: Option<f64>,
     /// The rival of the paper's Table 1 and how often it was told apart at the size at which isolation counts.
     pub rival: Option<Rival>,
+    /// What keeps the two from being told apart, in words.
+    pub pair_limit: String,
     /// What was named, of the detected runs from the smallest size on (of all sizes where none is reached).
     pub named: Vec<Named>,
 }
 
+/// A pair counts as told apart from this share of the detected runs on.
+pub const TOLD_APART: f64 = 0.95;
+
 /// A pair that shares a row of the paper's Table 1.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rival {
-    /// The other cause, as the monitor calls it.
+    /// The other side.
     pub cause: &'static str,
     /// Size at which it is counted, percent.
     pub change_percent: f64,
-    /// Detected runs in which the true cause is named and the rival is not.
+    /// Detected runs in which the true side is named and is likelier than the other.
+    pub right: Share,
+    /// Detected runs in which the true side is named and the other is not even tied with it.
     pub told_apart: Share,
 }
 
@@ -158,6 +166,7 @@ fn one_fault(about: &About, group: &[&Row]) -> Detection {
         target_percent,
         target_met: target_percent.map(met),
         limit: target.map_or(String::new(), |target| target.limit.clone()),
+        pair_limit: target.map_or(String::new(), |target| target.pair_limit.clone()),
         isolation_percent: isolation,
         rival: isolation.and_then(|percent| rival(group, percent)),
         named: named(group, smallest.map_or(0.0, f64::abs)),
@@ -221,13 +230,18 @@ fn at_least_twice(sizes: &[Size], smallest: f64) -> Option<f64> {
 }
 
 fn rival(group: &[&Row], percent: f64) -> Option<Rival> {
-    let rival = FaultKind::find(&group.first()?.fault)?.rival?;
+    let pair = FaultKind::find(&group.first()?.fault)?.pair?;
     let is_counted = |row: &&&Row| row.is_a_try() && row.detected && row.change_percent == percent;
-    let apart = |row: &&Row| row.truth_named && !row.named.split('|').any(|name| name == rival);
+    let sides: Vec<Sides> = group
+        .iter()
+        .filter(is_counted)
+        .map(|row| pair.sides(&row.named))
+        .collect();
     Some(Rival {
-        cause: rival,
+        cause: pair.rival,
         change_percent: percent,
-        told_apart: Share::count(group.iter().filter(is_counted).map(apart)),
+        right: Share::count(sides.iter().map(|sides| sides.right)),
+        told_apart: Share::count(sides.iter().map(|sides| sides.apart)),
     })
 }
 

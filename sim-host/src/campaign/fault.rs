@@ -1,5 +1,8 @@
 //! The faults that a campaign knows: what breaks in the plant, and which answers of the monitor are right.
 
+use super::pair::{
+    Pair, ROTOR_RESISTANCE, STATOR_INDUCTANCE, STATOR_RESISTANCE, VOLTAGE_SENSORS, against,
+};
 use crate::scenario::Fault;
 use motor::MotorFile;
 use motor::motor_file::Frame;
@@ -20,8 +23,8 @@ pub struct FaultKind {
     /// Causes by which the monitor may call it. Where several stand here physics makes them one (B and B_l are only ever
     /// seen as a sum), or the monitor's words are coarser than the plan's.
     answers: &'static [&'static str],
-    /// What Table 1 of the paper cannot tell it from, as the monitor calls it.
-    pub rival: Option<&'static str>,
+    /// What Table 1 of the paper cannot tell it from.
+    pub pair: Option<Pair>,
 }
 
 const fn motor(
@@ -37,7 +40,7 @@ const fn motor(
         has_phase: false,
         is_sensor: false,
         answers,
-        rival: None,
+        pair: None,
     }
 }
 
@@ -53,9 +56,9 @@ const fn sensor(
     }
 }
 
-const fn against(rival: &'static str, kind: FaultKind) -> FaultKind {
+const fn paired(pair: Pair, kind: FaultKind) -> FaultKind {
     FaultKind {
-        rival: Some(rival),
+        pair: Some(pair),
         ..kind
     }
 }
@@ -69,10 +72,16 @@ const fn in_one_phase(kind: FaultKind) -> FaultKind {
 
 /// Every fault of a campaign.
 pub const FAULTS: [FaultKind; 15] = [
-    against("Rr", motor("Rs", "stator resistance", &["Rs"], &["Rs"])),
-    against("Rs", motor("Rr", "rotor resistance", &["Rr"], &["Rr"])),
-    against(
-        "Vq",
+    paired(
+        against("Rr", [STATOR_RESISTANCE, ROTOR_RESISTANCE]),
+        motor("Rs", "stator resistance", &["Rs"], &["Rs"]),
+    ),
+    paired(
+        against("Rs", [ROTOR_RESISTANCE, STATOR_RESISTANCE]),
+        motor("Rr", "rotor resistance", &["Rr"], &["Rr"]),
+    ),
+    paired(
+        against("V", [STATOR_INDUCTANCE, VOLTAGE_SENSORS]),
         motor("Lm", "magnetizing inductance", &["Lm"], &["Lm", "Ls", "Lr"]),
     ),
     motor(
@@ -87,8 +96,8 @@ pub const FAULTS: [FaultKind; 15] = [
         &["Llr"],
         &["Llr", "leakage", "Ls", "Lr"],
     ),
-    against(
-        "Vq",
+    paired(
+        against("V", [STATOR_INDUCTANCE, VOLTAGE_SENSORS]),
         motor(
             "leakage",
             "both leakages",
@@ -123,8 +132,8 @@ pub const FAULTS: [FaultKind; 15] = [
         &["ia", "ib", "ic"],
         &["Iq", "i"],
     ),
-    against(
-        "Lm",
+    paired(
+        against("L_s", [VOLTAGE_SENSORS, STATOR_INDUCTANCE]),
         sensor(
             "v-all",
             "gain of all voltage sensors",

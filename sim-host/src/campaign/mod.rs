@@ -12,6 +12,7 @@ mod fault;
 mod file;
 mod markdown;
 mod outcome;
+mod pair;
 mod parts;
 mod plan;
 mod print;

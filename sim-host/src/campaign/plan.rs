@@ -87,6 +87,9 @@ pub struct Target {
     pub percent: Option<f64>,
     /// What limits the detection, in words.
     pub limit: String,
+    /// What keeps it from being told from its rival of the paper's Table 1, in words.
+    #[serde(default)]
+    pub pair_limit: String,
 }
 
 /// One run's place in the plan.

@@ -255,6 +255,7 @@ fn read_fault(section: &Section<'_>, block: &str) -> Option<(Vec<Case>, Target)>
     let sizes = section.list("change_percent", &PERCENT);
     let target = section.optional_number("target_percent", &TARGET);
     let limit = section.optional_text("limit");
+    let pair_limit = section.optional_text("pair_limit");
     let (kind, sizes) = (kind?, sizes?);
     check::sizes(section, kind, &sizes)?;
     let target = Target {
@@ -262,6 +263,7 @@ fn read_fault(section: &Section<'_>, block: &str) -> Option<(Vec<Case>, Target)>
         fault: kind.name.to_owned(),
         percent: target?,
         limit: limit?.unwrap_or_default(),
+        pair_limit: pair_limit?.unwrap_or_default(),
     };
     let case = |percent| Case { kind, percent };
     Some((sizes.into_iter().map(case).collect(), target))

@@ -28,6 +28,7 @@ fn results(rows: Vec<Row>) -> Results {
         fault: "i".to_owned(),
         percent: Some(5.0),
         limit: "noise".to_owned(),
+        ..Target::default()
     };
     let about = About {
         plan: "p".to_owned(),

@@ -32,6 +32,9 @@ pub struct Directions {
 
 /// Large enough against the rounding of a residual (1e-6), small enough against its curvature.
 const STEP: f32 = 0.01;
+/// Away from rated load leakage shows when it has doubled, and its departure bends on the way: the chord to three times the
+/// leakage instead of the tangent.
+const LEAKAGE_STEP: f32 = 2.0;
 
 /// The residuals as a function of everything that they depend on.
 #[derive(Clone, Copy)]
@@ -60,11 +63,12 @@ impl Bench<'_> {
     /// All directions at the measured point, whose residuals are `base`.
     #[inline(never)]
     pub fn directions(&self, base: &Positive) -> Option<Directions> {
-        let sensor = |changed: Corrected| self.quotient(base, &changed);
-        let parameter = |changed: TParams<f32>| {
+        let sensor = |changed: Corrected| self.quotient(base, &changed, STEP);
+        let by_step = |changed: TParams<f32>, step: f32| {
             let moved = self.with_parameters(changed);
-            self.quotient(base, &moved).map(|d| d.map(|x| -x))
+            self.quotient(base, &moved, -step)
         };
+        let parameter = |changed: TParams<f32>| by_step(changed, STEP);
         let (m, p) = (self.measured, self.measured.params);
         let more = 1.0 + STEP;
         let shunt = m.u_s * (magnitude(m.i_s) * STEP / magnitude(m.u_s));
@@ -81,11 +85,14 @@ impl Bench<'_> {
                 l_m: p.l_m * more,
                 ..p
             })?,
-            leakage: parameter(TParams {
-                l_ls: p.l_ls * more,
-                l_lr: p.l_lr * more,
-                ..p
-            })?,
+            leakage: by_step(
+                TParams {
+                    l_ls: p.l_ls * (1.0 + LEAKAGE_STEP),
+                    l_lr: p.l_lr * (1.0 + LEAKAGE_STEP),
+                    ..p
+                },
+                LEAKAGE_STEP,
+            )?,
             friction: [
                 -self
                     .model
@@ -120,10 +127,10 @@ impl Bench<'_> {
     }
 
     #[inline(never)]
-    fn quotient(&self, base: &Positive, changed: &Corrected) -> Option<Positive> {
+    fn quotient(&self, base: &Positive, changed: &Corrected, step: f32) -> Option<Positive> {
         let mut moved = self.at(changed)?;
         for (x, base) in moved.iter_mut().zip(base) {
-            *x = (*x - base) / STEP;
+            *x = (*x - base) / step;
         }
         Some(moved)
     }

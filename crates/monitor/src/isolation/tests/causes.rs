@@ -40,22 +40,38 @@ fn the_healthy_motor_shows_no_departure() {
     assert!(length(departure) < 1e-5, "{departure:?}");
 }
 
+/// What of a departure its cause's direction leaves over, as a share of what it explains.
+fn left_over(cause: Cause, by: f64) -> f32 {
+    let evidence = evidence(&changed(cause, by));
+    let expected = evidence.direction(cause).map(|x| x * by as f32);
+    let rest = evidence.departure.iter().zip(expected).map(|(x, y)| x - y);
+    length(rest) / length(expected)
+}
+
 /// A change of 2 % bends by some 2 % of itself, and the difference quotient by half its step of 1 %; a speed that is wrong
 /// by 2 % would be beyond synchronous speed, so 0.2 %.
 #[test]
 fn a_changed_motor_departs_along_its_direction() {
-    for cause in ALL_CAUSES {
+    for cause in ALL_CAUSES.into_iter().filter(|c| *c != Cause::Leakage) {
         let by = if cause == Cause::SpeedGain {
             0.002
         } else {
             0.02
         };
-        let evidence = evidence(&changed(cause, by));
-        let expected = evidence.direction(cause).map(|x| x * by as f32);
-        let rest = evidence.departure.iter().zip(expected).map(|(x, y)| x - y);
-        let share = length(rest) / length(expected);
-        println!("{cause:?}: {share:.4} of {:.5}", length(expected));
+        let share = left_over(cause, by);
         assert!(share < 0.05, "{cause:?}: {share:.4} off");
+    }
+}
+
+/// The chord's end is three times the leakage. On the way the departure bends by up to half of what the chord explains:
+/// the price of a direction that still holds where leakage can be seen away from rated load.
+#[test]
+fn leakage_departs_along_a_chord() {
+    let at_its_end = left_over(Cause::Leakage, 2.0);
+    assert!(at_its_end < 1e-4, "{at_its_end:e} off: single precision");
+    for by in [0.02, 0.15, 0.5, 1.0] {
+        let share = left_over(Cause::Leakage, by);
+        assert!(share < 0.5, "{by}: {share:.3} off");
     }
 }
 
