@@ -30,4 +30,4 @@ pub use recording::{Recording, UnknownScale};
 pub use sidecar::{Sidecar, sidecar_path};
 pub use source::Progress;
 pub use units::{UNITS, Unit};
-pub use write::{sidecar_text, write_csv, write_parquet, write_recording};
+pub use write::{sidecar_text, write_csv, write_parquet, write_recording, write_whole};

@@ -1,6 +1,7 @@
 //! Rows in Parquet files, with the campaign that they belong to.
 
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -77,19 +78,18 @@ impl About {
 }
 
 impl Results {
-    /// Writes beside the destination and renames: whoever looks sees the old file, none, or the whole new one. The
-    /// same rows give the same bytes.
+    /// Whoever looks sees the old file, none, or the whole new one. The same rows give the same bytes.
     ///
     /// # Errors
     /// A path that cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), StoreError> {
-        let unfinished = beside(path, "unfinished");
-        self.write_in_place(&unfinished)
-            .map_err(|error| StoreError::System(named(path), std::io::Error::other(error)))?;
-        std::fs::rename(&unfinished, path).map_err(|error| StoreError::System(named(path), error))
+        recording::write_whole(path, |file| {
+            self.write_rows(file).map_err(std::io::Error::other)
+        })
+        .map_err(|error| StoreError::System(named(path), error))
     }
 
-    fn write_in_place(&self, path: &Path) -> Result<(), ParquetError> {
+    fn write_rows(&self, file: &mut (impl Write + Send)) -> Result<(), ParquetError> {
         let about = serde_json::to_string(&self.about)
             .map_err(|error| ParquetError::External(Box::new(error)))?;
         let properties = WriterProperties::builder()
@@ -97,14 +97,13 @@ impl Results {
             .set_key_value_metadata(Some(vec![KeyValue::new(KEY.to_owned(), about)]))
             .build();
         let schema = self.rows.as_slice().schema()?;
-        let mut writer =
-            SerializedFileWriter::new(File::create(path)?, schema, Arc::new(properties))?;
+        let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
         for rows in self.rows.chunks(GROUP) {
             let mut group = writer.next_row_group()?;
             rows.write_to_row_group(&mut group)?;
             group.close()?;
         }
-        writer.into_inner()?.sync_all()?;
+        writer.close()?;
         Ok(())
     }
 

@@ -7,6 +7,7 @@ use discovery::AdoptReport;
 
 use super::explain::print_frame;
 use super::failure::{Failure, Finding};
+use super::output::write_text;
 use super::study::{
     StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain, with_progress,
 };
@@ -69,10 +70,7 @@ impl Adopt {
         let path: &Path = self.study.motor_path();
         let old = std::fs::read_to_string(path).unwrap_or_default();
         let text = motor_text::updated(&old, adopted);
-        std::fs::write(&self.out, text).map_err(|error| Failure::Write {
-            path: self.out.display().to_string(),
-            error,
-        })
+        write_text(&self.out, &text)
     }
 
     fn next(&self) -> String {

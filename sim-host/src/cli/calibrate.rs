@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::failure::{Failure, Finding};
 use super::input::{InputArgs, read_motor};
+use super::output::write_text;
 use super::{paint, progress};
 use crate::calibrate::{Calibrated, Kind, Refusal, Surroundings, calibrate};
 use crate::motor_text;
@@ -162,10 +163,7 @@ impl Calibrate {
     fn write_motor(&self, motor: &MotorFile) -> Result<(), Failure> {
         let old = std::fs::read_to_string(&self.motor).unwrap_or_default();
         let text = motor_text::updated(&old, motor);
-        std::fs::write(&self.out, text).map_err(|error| Failure::Write {
-            path: self.out.display().to_string(),
-            error,
-        })
+        write_text(&self.out, &text)
     }
 
     fn result(&self, believed: &MotorFile, calibrated: &Calibrated) -> CalibrateJson {

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::failure::{Failure, Finding};
-use super::output::OutputArgs;
+use super::output::{OutputArgs, write_text};
 use super::{monitor, paint, progress};
 use crate::campaign::{self, Plan, Results, Row, Run, Table};
 use crate::replay::Timeline;
@@ -169,7 +169,7 @@ impl TableArgs {
             }
         }
         if let Some(path) = &self.markdown {
-            write(path, &campaign::markdown(&result.campaigns))?;
+            write_text(path, &campaign::markdown(&result.campaigns))?;
         }
         self.output.write(Subject::Campaign, &result)?;
         let windows: u64 = result
@@ -245,17 +245,10 @@ fn record(run: &Run<'_>, path: &Path) -> Result<Finding, Failure> {
         .iter()
         .fold(&*name, |stem, end| stem.trim_end_matches(end));
     let motor = PathBuf::from(format!("{stem}.motor.toml"));
-    write(&motor, &run.monitor_file().to_toml())?;
+    write_text(&motor, &run.monitor_file().to_toml())?;
     let (path, motor) = (path.display(), motor.display());
     anstream::println!("{path}, {motor}: drivemon monitor {path} --motor {motor}");
     Ok(Finding::Nothing)
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| Failure::Write {
-        path: path.display().to_string(),
-        error,
-    })
 }
 
 fn tell(results: &Results, output: &Path) -> Finding {

@@ -34,10 +34,10 @@ impl OutputArgs {
         })?;
         text.push('\n');
         if path.as_os_str() == "-" {
-            return write_all(&mut std::io::stdout(), path, &text);
+            let written = std::io::stdout().write_all(text.as_bytes());
+            return written.map_err(|error| cannot_write(path, error));
         }
-        let mut file = std::fs::File::create(path).map_err(|error| cannot_write(path, error))?;
-        write_all(&mut file, path, &text)
+        write_text(path, &text)
     }
 
     /// Writes `value` as JSON and as a page, each where the user asked for it.
@@ -52,7 +52,7 @@ impl OutputArgs {
         let page = report::page(subject, value).map_err(|error| {
             Failure::Usage(format!("the result cannot be shown as a page: {error}"))
         })?;
-        std::fs::write(path, page).map_err(|error| cannot_write(path, error))
+        write_text(path, &page)
     }
 
     /// Whether the JSON takes standard output, so that nothing else may be printed there.
@@ -63,8 +63,9 @@ impl OutputArgs {
     }
 }
 
-fn write_all(sink: &mut impl Write, path: &Path, text: &str) -> Result<(), Failure> {
-    sink.write_all(text.as_bytes())
+/// Writes a text file, whole or not at all.
+pub(super) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
+    recording::write_whole(path, |file| file.write_all(text.as_bytes()))
         .map_err(|error| cannot_write(path, error))
 }
 

@@ -1,6 +1,7 @@
 //! Writing recordings: CSV, CSV.gz or Parquet with the sidecar beside it, whole or not at all.
 
 mod parquet;
+mod whole;
 
 use crate::channel::Channel;
 use crate::error::Error;
@@ -11,12 +12,14 @@ use flate2::{Compression, GzBuilder};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+pub use whole::write_whole;
 
 /// How the name of a recording ends, and what is written then.
 const FORMATS: [(&str, Writer); 3] = [(".csv", plain), (".csv.gz", packed), (".parquet", columnar)];
 
-type Writer = fn(&Recording, BufWriter<&File>) -> io::Result<()>;
+type Writer = fn(&Recording, &mut BufWriter<File>) -> io::Result<()>;
 
 /// Writes a recording to `path`, `.csv`, `.csv.gz` or `.parquet`, and its sidecar beside it.
 ///
@@ -34,20 +37,18 @@ pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), Error> 
     };
     whole(path, |file| write(recording, file))?;
     let text = sidecar_text(&recording.metadata) + &scale_text(recording);
-    whole(&sidecar_path(path), |mut file| {
-        file.write_all(text.as_bytes())
-    })
+    whole(&sidecar_path(path), |file| file.write_all(text.as_bytes()))
 }
 
-fn plain(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
+fn plain(recording: &Recording, file: &mut BufWriter<File>) -> io::Result<()> {
     write_csv(recording, file)
 }
 
-fn columnar(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
+fn columnar(recording: &Recording, file: &mut BufWriter<File>) -> io::Result<()> {
     write_parquet(recording, file)
 }
 
-fn packed(recording: &Recording, file: BufWriter<&File>) -> io::Result<()> {
+fn packed(recording: &Recording, file: &mut BufWriter<File>) -> io::Result<()> {
     let gzip = GzBuilder::new().mtime(0).write(file, Compression::new(6));
     table(recording, BufWriter::new(gzip))?
         .into_inner()?
@@ -71,31 +72,18 @@ pub fn write_parquet<W: Write + Send>(recording: &Recording, out: W) -> io::Resu
     parquet::write(recording, out)
 }
 
-/// Writes beside the file, then renames: a reader never sees half a file.
-fn whole(path: &Path, write: impl FnOnce(BufWriter<&File>) -> io::Result<()>) -> Result<(), Error> {
-    let part = part_of(path);
-    let written = File::create(&part).and_then(|file| {
-        write(BufWriter::new(&file))?;
-        file.sync_all()
-    });
-    written
-        .and_then(|()| std::fs::rename(&part, path))
-        .map_err(|error| {
-            // The error is the news; a leftover that cannot be removed is not.
-            let _ = std::fs::remove_file(&part);
-            let message = format!("cannot be written: {error}");
-            Error::bad(
-                &path.display().to_string(),
-                message,
-                "check the folder and the disk",
-            )
-        })
-}
-
-fn part_of(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    path.with_file_name(name)
+fn whole(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), Error> {
+    write_whole(path, write).map_err(|error| {
+        let message = format!("cannot be written: {error}");
+        Error::bad(
+            &path.display().to_string(),
+            message,
+            "check the folder and the disk",
+        )
+    })
 }
 
 /// The channels that are written: all but a third current that a reader computes again.
