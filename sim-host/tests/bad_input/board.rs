@@ -66,7 +66,7 @@ const SEEN: [(&str, &str); 20] = [
 ];
 
 /// What reaches the core or the wire besides.
-const OTHERS: [(&str, &str, &str); 10] = [
+const OTHERS: [(&str, &str, &str); 15] = [
     (
         "any sequence of samples: NaN, infinity, jumps, clipping, missing channels",
         "RUN and SENSOR blink, not judged; never FAULT from r1..r4, never a number that is none",
@@ -116,6 +116,31 @@ const OTHERS: [(&str, &str, &str); 10] = [
         "calibrating with a dead sensor",
         "refused with its phase",
         "sim-host/tests/calibrate.rs::a_dead_sensor_is_refused_by_its_phase",
+    ),
+    (
+        "a disk that is full while a recording is written",
+        "refused with the file's name, exit code 2; the old file stays, nothing is left behind",
+        "sim-host/tests/full_disk.rs::a_recording_is_written_whole_or_not_at_all",
+    ),
+    (
+        "a disk that is full while a motor file, JSON or a page is written",
+        "refused with the file's name, exit code 2; the old file stays, nothing is left behind",
+        "sim-host/tests/full_disk.rs::results_and_motor_files_are_written_whole_or_not_at_all",
+    ),
+    (
+        "a disk that is full amid a campaign",
+        "refused with the file's name, exit code 2; with room again the same command goes on to the same bytes",
+        "sim-host/tests/full_disk.rs::a_campaign_goes_on_when_there_is_room_again",
+    ),
+    (
+        "a folder that takes no file",
+        "refused with the file's name, exit code 2",
+        "sim-host/tests/full_disk.rs::a_folder_that_takes_nothing_is_named",
+    ),
+    (
+        "a day without a pause",
+        "the same lamps and the same numbers, a fault found as fast as in the first minute",
+        "crates/monitor/tests/long_run.rs::nothing_changes_in",
     ),
 ];
 
