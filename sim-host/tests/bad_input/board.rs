@@ -140,7 +140,7 @@ const OTHERS: [(&str, &str, &str); 15] = [
     (
         "a day without a pause",
         "the same lamps and the same numbers, a fault found as fast as in the first minute",
-        "crates/monitor/tests/long_run.rs::nothing_changes_in",
+        "crates/monitor/tests/long_run.rs::a_day_changes_nothing",
     ),
 ];
 
