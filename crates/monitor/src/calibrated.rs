@@ -52,7 +52,8 @@ impl Monitor {
         };
         let expected = temperature.expected(healthy);
         report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy, expected));
-        if let Some(isolation) = report.isolation {
+        // Without voltages there are no residuals, at any temperature.
+        if let (Some(isolation), true) = (report.isolation, voltages) {
             self.evaluate_warm(isolation.heating.rise, rehearsal, window, report);
         }
     }

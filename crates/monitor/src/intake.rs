@@ -69,10 +69,11 @@ impl IntakeState {
         for (count, quality) in tally.present.iter_mut().zip([voltages, currents]) {
             *count = count.saturating_add(u16::from(quality != Quality::Missing));
         }
-        let torque_bad = sample.tau_load.is_some_and(|tau| !tau.is_finite());
+        let torque = sample.tau_load.filter(|tau| tau.abs() < LARGEST);
+        let torque_bad = sample.tau_load.is_some() && torque.is_none();
         let bad = voltages == Quality::Invalid || currents == Quality::Invalid || torque_bad;
         tally.invalid = tally.invalid.saturating_add(u16::from(bad));
-        if let (Some(tau), false) = (sample.tau_load, torque_bad) {
+        if let Some(tau) = torque {
             tally.torque_sum += tau;
             tally.torque_samples = tally.torque_samples.saturating_add(1);
         }
@@ -153,7 +154,7 @@ fn hold_last(held: &mut Abc, value: Option<Abc>) -> (Abc, Quality) {
     (admitted, quality)
 }
 
-/// No motor that this monitor is for carries more than this, V or A; squares stay far from overflow.
+/// No motor that this monitor is for carries more than this, V, A or N m; squares and sums stay far from overflow.
 const LARGEST: f32 = 1e6;
 
 #[cfg(test)]
@@ -245,10 +246,13 @@ mod tests {
             tau_load: Some(tau),
             ..sample(1.0, 1.0)
         };
-        state.admit(&with(1.0));
-        state.admit(&with(f32::NAN));
-        let tally = state.close_cycle();
-        assert_eq!((tally.invalid, tally.tau_load()), (1, None));
+        // Two of the largest finite numbers have a sum that is none.
+        for bad in [f32::NAN, f32::NEG_INFINITY, f32::MAX] {
+            state.admit(&with(1.0));
+            state.admit(&with(bad));
+            let tally = state.close_cycle();
+            assert_eq!((tally.invalid, tally.tau_load()), (1, None), "{bad}");
+        }
     }
 
     #[test]

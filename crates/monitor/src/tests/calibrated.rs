@@ -157,12 +157,17 @@ fn currents_alone_are_judged_by_their_symmetry() {
             ..drive.sample(t)
         })
     };
-    let healthy = without_voltages(Drive::healthy());
-    assert!(
-        healthy.is_judged() && healthy.lamps.is_quiet(),
-        "{healthy:?}"
-    );
-    assert_eq!(healthy.residuals, None);
+    let with_speed = last(calibrated(), |t| crate::Sample {
+        u_s_abc: None,
+        ..Drive::healthy().sample(t)
+    });
+    for healthy in [without_voltages(Drive::healthy()), with_speed] {
+        assert!(
+            healthy.is_judged() && healthy.lamps.is_quiet(),
+            "{healthy:?}"
+        );
+        assert_eq!((healthy.residuals, healthy.normalised), (None, None));
+    }
     let mut unequal = Drive::healthy();
     unequal.i[0] *= 1.1;
     let report = without_voltages(unequal);
