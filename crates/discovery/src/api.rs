@@ -423,14 +423,13 @@ fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     let mut added = trial.fit.hypothesis.configs(&study.belief.plant.rated);
     // The scale of a sensor belongs to the recording, not to the motor.
     added.drain(..study.given_effects());
-    if added
-        .iter()
-        .any(|c| c.effect.descriptor().name == expression::NAME)
-    {
-        // The formula with its fitted parameters replaces the open one.
-        let open = |e: &EffectEntry| e.name == expression::NAME && is_open(e);
-        file.effects.retain(|e| !open(e));
-    }
+    // A formula with its fitted parameters replaces the open one.
+    let fitted = |e: &EffectEntry| {
+        added.iter().map(|c| c.effect.descriptor()).any(|d| {
+            d.name == expression::NAME && e.name == d.name && e.text("formula") == Some(d.form)
+        })
+    };
+    file.effects.retain(|e| !(fitted(e) && is_open(e)));
     file.effects.extend(added.iter().map(to_entry));
     file
 }

@@ -6,7 +6,7 @@ use crate::fit::Fit;
 use crate::free_scale::EFFECT;
 use crate::gram::{self, Block, Penalty};
 use crate::predict::outputs;
-use motor::effects::{ALL, Applies, Effect, EffectConfig, Parameter, Role};
+use motor::effects::{ALL, Applies, Effect, EffectConfig, Parameter, Role, expression};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -44,9 +44,14 @@ impl Screened {
 /// Effects that can be asked about in this case and are not part of the model yet.
 fn askable(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<&'static dyn Effect> {
     let present = |e: &&'static dyn Effect| {
-        let name = e.descriptor().name;
+        let asked = e.descriptor();
+        // Forms of one effect exclude each other; each formula is an effect of its own.
+        let same = |c: &EffectConfig| {
+            let held = c.effect.descriptor();
+            held.name == asked.name && (held.name != expression::NAME || held.form == asked.form)
+        };
         let mut known = fit.hypothesis.effects.iter().chain(&belief.plant.effects);
-        known.any(|c| c.effect.descriptor().name == name) || excluded.contains(&name)
+        known.any(same) || excluded.contains(&asked.name)
     };
     let applies = |e: &&'static dyn Effect| match e.descriptor().applies {
         Applies::Always => true,
@@ -325,6 +330,45 @@ mod tests {
             assert_eq!(seen.len(), grid(p).len(), "{}", p.name);
             assert!(p.role != Role::Size || seen == [0.0]);
         }
+    }
+
+    /// A formula in force does not keep another from being asked about; an effect in one form keeps its other forms.
+    #[test]
+    fn what_is_part_of_the_model_is_not_asked_about_again() {
+        let formula = |text: &str, k: &str| {
+            format!(
+                "[[effects]]\nname = \"expression\"\nformula = \"{text}\"\nadds_to = \"torque\"\n{k}\n"
+            )
+        };
+        let saturation = "[[effects]]\nname = \"magnetizing-saturation\"\nsaturation = 0.1\n";
+        let rest = formula("k * omega", "k = 1e-6")
+            + &formula("k * omega^2", "k = 0.0\nk_typical = 1e-6")
+            + saturation;
+        let belief = specimen::belief(&rest);
+        let study = specimen::table_study(|_| ());
+        let fit = specimen::trial(&study).fit;
+        let asked = askable(&study.fitted.case, &belief, &fit, &["windage"]);
+        let has = |name: &str| asked.iter().any(|e| e.descriptor().name == name);
+        let formulas = asked.iter().map(|e| e.descriptor());
+        let formulas: Vec<&str> = formulas
+            .filter(|d| d.name == expression::NAME)
+            .map(|d| d.form)
+            .collect();
+        assert_eq!(formulas, ["k * omega^2"]);
+        assert!(has("core-loss") && !has("windage") && !has("magnetizing-saturation"));
+        let with = Fit {
+            hypothesis: study.beliefs().with(
+                EffectConfig::absent(belief.formulas[0], &belief.plant.rated),
+                &belief.plant.rated,
+            ),
+            ..fit
+        };
+        let asked = askable(&study.fitted.case, &belief, &with, &[]);
+        assert!(
+            asked
+                .iter()
+                .all(|e| e.descriptor().name != expression::NAME)
+        );
     }
 
     fn absent(name: &str) -> EffectConfig {
