@@ -433,3 +433,6 @@ fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     file.effects.extend(added.iter().map(to_entry));
     file
 }
+
+#[cfg(test)]
+mod tests;

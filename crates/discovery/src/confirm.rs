@@ -2,6 +2,7 @@
 
 use crate::accept::{adequate, explained};
 use crate::belief::Hypothesis;
+use crate::case::Case;
 use crate::fit::{Effort, Fit, fit};
 use crate::gram;
 use crate::predict::Teacher;
@@ -100,12 +101,8 @@ pub(crate) fn round(
     let error = study.fold_error(&base.folds);
     let (likely, rest) = promising(study, &base.fit, &groups, error);
     let mut candidates = confirm(study, base, &likely);
-    let settled = |c: &Candidate| {
-        c.error < SOLVED
-            || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < WRONG_VALLEY
-    };
-    if !candidates.first().is_some_and(settled) {
-        if error > WRONG_VALLEY && !case.speed.is_empty() && !case.speed_is_input {
+    if !candidates.first().is_some_and(|c| settled(study, base, c)) {
+        if may_be_in_wrong_valley(case, error) {
             candidates.extend(retaught(study, base, nominal, excluded));
         }
         if candidates.iter().all(|c| c.error > SOLVED) {
@@ -120,6 +117,16 @@ pub(crate) fn round(
         candidates: best_of_each(candidates),
         screened: groups.into_iter().map(|g| g[0].clone()).collect(),
     }
+}
+
+/// Whether no better valley needs to be looked for.
+fn settled(study: &Study, base: &Trial, c: &Candidate) -> bool {
+    c.error < SOLVED || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < WRONG_VALLEY
+}
+
+/// Whether a fit with this error may have gone astray, and a measured speed can lead it.
+fn may_be_in_wrong_valley(case: &Case, error: f64) -> bool {
+    error > WRONG_VALLEY && !case.speed.is_empty() && !case.speed_is_input
 }
 
 /// Effects whose linear estimate has an impossible sign: from a base in a wrong valley that is no verdict.
@@ -252,8 +259,7 @@ pub(crate) fn only(study: &Study, base: &Trial, effect: &str) -> Vec<Candidate> 
         groups.into_iter().map(one).collect::<Vec<_>>()
     };
     let mut starts = start(&base.fit);
-    let wrong = study.fold_error(&base.folds) > WRONG_VALLEY;
-    if wrong && !case.speed.is_empty() && !case.speed_is_input {
+    if may_be_in_wrong_valley(case, study.fold_error(&base.folds)) {
         starts.extend(start(&fit(
             case,
             belief,
@@ -273,3 +279,6 @@ pub(crate) fn best_of(candidates: Vec<Candidate>) -> Option<Trial> {
 pub(crate) fn combined(study: &Study, trial: &Trial) -> f64 {
     (study.fold_error(&trial.folds) * study.proof_error(trial)).sqrt()
 }
+
+#[cfg(test)]
+mod tests;

@@ -211,3 +211,6 @@ pub(crate) fn stands_for(k: usize, candidate: &Candidate) -> bool {
 pub(crate) fn nominal_name(k: usize) -> &'static str {
     NOMINALS[k].name
 }
+
+#[cfg(test)]
+mod tests;

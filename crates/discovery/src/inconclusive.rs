@@ -249,3 +249,6 @@ fn effects(study: &Study, screened: &[Screened]) -> Vec<Inconclusive> {
     };
     hidden.map(say).collect()
 }
+
+#[cfg(test)]
+mod tests;

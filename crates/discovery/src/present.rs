@@ -145,3 +145,6 @@ pub(crate) fn loss_watt(study: &Study, trial: &Trial, index: usize) -> Option<f6
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests;

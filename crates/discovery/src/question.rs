@@ -181,3 +181,6 @@ fn refusal(audit: &Audit) -> Option<Unsupported> {
     let finding = audit.findings.iter().find(|f| f.refuses)?;
     Some(Unsupported::new(finding.detail.clone(), "see the audit"))
 }
+
+#[cfg(test)]
+mod tests;

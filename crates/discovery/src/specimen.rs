@@ -1,15 +1,21 @@
 //! A small motor for the tests of this crate: its motor file, and recordings of it in steady state in closed form.
 
-use crate::belief::Belief;
+use crate::belief::{Belief, Hypothesis};
 use crate::case::Case;
 use crate::fit::Effort;
-use crate::study::{Study, Trial};
+use crate::free_scale::FreeScale;
+use crate::gram::{Block, Penalty};
+use crate::study::{Study, Subject, Trial};
 use crate::table::table_values;
 use motor::MotorFile;
-use motor::effects::{Plant, from_motor_file};
+use motor::effects::{EffectConfig, Plant, find, from_motor_file};
 use motor::steady_state::{OperatingPoint, SteadyState};
+use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
-use recording::{Channel, LoadTable, LoadTorque, Metadata, Recording, Sensors, StartsFrom};
+use recording::{
+    Channel, LoadTable, LoadTorque, Metadata, Recording, Sensors, Source, StartsFrom, UNITS,
+    UnknownScale,
+};
 
 const MOTOR: &str = r#"
 name = "specimen"
@@ -129,17 +135,21 @@ pub(crate) fn trial(study: &Study) -> Trial {
     study.trial(&study.beliefs(), effort)
 }
 
-/// A load table of the motor, its columns in closed form, as a study; `change` makes the machine another than believed.
-pub(crate) fn table_study(change: impl Fn(&mut Plant)) -> Study {
+/// Shaft powers of a table, W: from idling to rated power.
+fn loads() -> Vec<f64> {
+    (0..12).map(|k| 27.0 * f64::from(k)).collect()
+}
+
+/// A load table of the motor at these shaft powers, W, its columns in closed form; `change` makes the machine another
+/// than believed.
+fn table_at(watts: Vec<f64>, change: impl Fn(&mut Plant)) -> LoadTable {
     use recording::TableColumn::{Current, Efficiency, Power, PowerFactor, Speed};
-    let belief = belief("");
-    let mut plant = belief.plant.clone();
+    let mut plant = belief("").plant;
     change(&mut plant);
-    let watts: Vec<f64> = (0..12).map(|k| 27.0 * f64::from(k)).collect();
     let asked = [
         (Power, watts.clone()),
-        (Current, vec![1.0; 12]),
-        (Speed, vec![1750.0; 12]),
+        (Current, vec![1.0; watts.len()]),
+        (Speed, vec![1750.0; watts.len()]),
     ];
     let asked = LoadTable::new("asked", asked.into_iter().collect()).expect("a valid table");
     let values: Vec<[f64; 4]> = table_values(&asked, &plant).into_iter().flatten().collect();
@@ -152,7 +162,109 @@ pub(crate) fn table_study(change: impl Fn(&mut Plant)) -> Study {
         (PowerFactor, column(2)),
         (Efficiency, column(3).iter().map(|x| x.max(0.0)).collect()),
     ];
-    let table = LoadTable::new("table", columns.into_iter().collect()).expect("a valid table");
-    let case = Case::of_table(&table, &belief.plant.rated).expect("twelve points");
-    Study::new(belief, case, Vec::new(), None)
+    LoadTable::new("table", columns.into_iter().collect()).expect("a valid table")
+}
+
+/// A load table of a machine other than believed, as a source.
+pub(crate) fn table_source(change: impl Fn(&mut Plant)) -> Source {
+    Source::LoadTable(table_at(loads(), change))
+}
+
+/// A load table of a machine other than believed, as a study.
+pub(crate) fn table_study(change: impl Fn(&mut Plant)) -> Study {
+    let belief = belief("");
+    let case = Case::of_table(&table_at(loads(), change), &belief.plant.rated);
+    Study::new(belief, case.expect("twelve points"), Vec::new(), None)
+}
+
+/// The same with a second table of the machine that proves.
+pub(crate) fn proven_table_study(change: impl Fn(&mut Plant)) -> Study {
+    let belief = belief("");
+    let between = loads().iter().map(|x| x + 11.0).collect();
+    let [fitted, proof] = [loads(), between].map(|watts| {
+        Case::of_table(&table_at(watts, &change), &belief.plant.rated).expect("twelve points")
+    });
+    Study::new(belief, fitted, vec![proof], None)
+}
+
+/// An effect with its first parameter so many typical sizes large.
+pub(crate) fn effect(name: &str, size: f64) -> EffectConfig {
+    let rated = belief("").plant.rated;
+    let mut config = EffectConfig::absent(find(name, "").expect("in the library"), &rated);
+    let p = &config.effect.descriptor().parameters[0];
+    config.values[0] = size * p.typical * p.scale.of(&rated);
+    config
+}
+
+/// A trial with these effects on top of the beliefs, nothing moved.
+pub(crate) fn trial_with(study: &Study, effects: &[(&str, f64)]) -> Trial {
+    let rated = &study.belief.plant.rated;
+    let add = |h: Hypothesis, (name, size): &(&str, f64)| h.with(effect(name, *size), rated);
+    let nothing_moved = Effort {
+        iterations: 0,
+        ..Effort::FULL
+    };
+    study.trial(&effects.iter().fold(study.beliefs(), add), nothing_moved)
+}
+
+/// Squared errors of so many blocks that make up an error over noise.
+fn squares(floor: f64, blocks: usize, error: f64) -> Vec<f64> {
+    vec![error * error * floor / blocks as f64; blocks]
+}
+
+/// The trial as if its errors over noise were these, on the folds and on what proves.
+pub(crate) fn with_errors(study: &Study, trial: &Trial, folds: f64, proof: f64) -> Trial {
+    let expected = |s: &Subject| s.floor.mean * s.case.judged();
+    let proofs: f64 = study.proofs.iter().map(expected).sum();
+    Trial {
+        folds: squares(expected(&study.fitted), trial.folds.len(), folds),
+        proof: squares(proofs, trial.proof.len(), proof),
+        ..trial.clone()
+    }
+}
+
+/// The trial as if its fitted coordinates had these standard errors, none of them correlated.
+pub(crate) fn known_to(trial: &Trial, errors: &[f64]) -> Trial {
+    let n = trial.fit.free.len();
+    assert_eq!(errors.len(), n, "one for each fitted coordinate");
+    let precision = DVector::from_iterator(n, errors.iter().map(|e| e.powi(-2)));
+    let mut known = trial.clone();
+    known.fit.kappa = 1.0;
+    known.fit.penalty = Penalty {
+        weight: DVector::zeros(n),
+        pull: DVector::zeros(n),
+    };
+    known.fit.blocks = vec![Block {
+        gram: DMatrix::from_diagonal(&precision),
+        score: DVector::zeros(n),
+        sse: 0.0,
+    }];
+    known
+}
+
+/// A study of steady running whose speed channel shows `gain` times the speed, in a unit that nobody knows.
+pub(crate) fn scaled_study(seconds: f64, gain: f64) -> Study {
+    let belief = belief("");
+    let rated = &belief.plant.rated;
+    let rec = unknown_speed(seconds, gain);
+    let scale = FreeScale::start(&[&rec], rated).expect("it runs");
+    let case = Case {
+        speed_scale_is_free: true,
+        ..Case::new(&scale.applied(&rec), rated).expect("judged")
+    };
+    Study::new(belief, case, Vec::new(), Some(scale))
+}
+
+/// The recording of such a study, at the torque of 1 N m.
+pub(crate) fn unknown_speed(seconds: f64, gain: f64) -> Recording {
+    let rec = recording(seconds, |_| 1.0);
+    let shown = rec.speed().expect("measured").iter().map(|w| gain * w);
+    let shown = shown.collect();
+    let mut rec = rec.with_channel(Channel::SPEED, shown).expect("as long");
+    let unit = UNITS.into_iter().find(|unit| unit.name == "rad/s");
+    rec.unknown_speed_scale = Some(Box::new(UnknownScale {
+        unit: unit.expect("a unit"),
+        offset: None,
+    }));
+    rec
 }

@@ -157,3 +157,6 @@ impl Study {
         all.map(|s| s.floor.allowance()).fold(0.0, f64::max)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -48,3 +48,6 @@ fn named(step: &crate::report::StepReport) -> String {
         format!("{} (or {})", step.effect, step.tied_with.join(" or "))
     }
 }
+
+#[cfg(test)]
+mod tests;

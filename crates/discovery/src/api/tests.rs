@@ -1,0 +1,583 @@
+use super::*;
+use crate::belief::{FRICTION, MAGNETIZING};
+use crate::confirm::{Candidate, Round, combined};
+use crate::explain::Step;
+use crate::screen::Screened;
+use crate::specimen;
+use motor::effects::Plant;
+use recording::Recording;
+
+fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
+    move |plant| plant.effects.push(specimen::effect(name, size))
+}
+
+fn question(sources: &[Source]) -> Question {
+    Question::new(sources, &specimen::motor(""), &mut |_, _| {}).expect("judged")
+}
+
+/// A question about two tables of the believed machine: one is fitted, one proves.
+fn tables() -> Question {
+    question(&[
+        specimen::table_source(|_| ()),
+        specimen::table_source(|_| ()),
+    ])
+}
+
+/// A trial with effects of a typical size, and these errors over noise.
+fn trial(study: &Study, effects: &[&str], folds: f64, proof: f64) -> Trial {
+    let effects: Vec<(&str, f64)> = effects.iter().map(|name| (*name, 1.0)).collect();
+    let trial = specimen::trial_with(study, &effects);
+    specimen::with_errors(study, &trial, folds, proof)
+}
+
+fn candidate(study: &Study, name: &'static str, error: f64) -> Candidate {
+    let trial = trial(study, &[name], error, error);
+    let error = combined(study, &trial);
+    Candidate { name, trial, error }
+}
+
+/// What was found: nothing beyond the parameters.
+fn nothing(study: &Study, error: f64) -> Explanation {
+    Explanation {
+        baseline: trial(study, &[], error, error),
+        first: Round::empty(),
+        steps: Vec::new(),
+        contests: Vec::new(),
+        nameable: true,
+    }
+}
+
+/// One effect after the other, from each error over noise to the next; each tied with `tied`.
+fn stepwise(study: &Study, effects: &[&str], errors: &[f64], tied: &[&str]) -> Explanation {
+    let one = |k: usize| Step {
+        before: trial(study, &effects[..k], errors[k], errors[k]),
+        trial: trial(study, &effects[..=k], errors[k + 1], errors[k + 1]),
+        tied: tied.iter().map(ToString::to_string).collect(),
+    };
+    Explanation {
+        steps: (0..effects.len()).map(one).collect(),
+        ..nothing(study, errors[0])
+    }
+}
+
+/// An effect as if a screen had left this error over noise, and had seen this share of it.
+fn screened(study: &Study, name: &str, error: f64, visibility: f64) -> Screened {
+    let expected = study.fitted.floor.mean * study.fitted.case.judged();
+    Screened {
+        config: specimen::effect(name, 1.0),
+        held_out: trial(study, &[], error, 1.0).folds,
+        possible: true,
+        visible: ((1.0 + visibility) * (1.0 + visibility) - 1.0) * expected,
+        visible_with_known_scale: None,
+    }
+}
+
+fn frame(proven: bool) -> FrameReport {
+    FrameReport {
+        windows: 12,
+        held_out_before: 3.0,
+        held_out_after: 1.5,
+        fitted_before: 4.0,
+        fitted_after: 2.0,
+        proven,
+        by_load: Vec::new(),
+    }
+}
+
+/// 220 V and 1.3 A: the power to which a core loss is related, W.
+fn apparent_power() -> f64 {
+    3f64.sqrt() * 220.0 * 1.3
+}
+
+/// A table of a machine whose core takes 4 % of the rated apparent power, beside the belief that it takes none.
+#[test]
+fn a_loss_that_the_model_misses_is_named_and_sized() {
+    let mut told = Vec::new();
+    let sources = [specimen::table_source(with("core-loss", 2.0))];
+    let report = explain(&sources, &specimen::motor(""), &mut |what, share| {
+        told.push((what.to_owned(), share));
+    });
+    let report = report.expect("judged");
+    assert_eq!(report.verdict, Verdict::Effect);
+    assert!(
+        report.summary.starts_with("Missing: core-loss."),
+        "{}",
+        report.summary
+    );
+    let [step] = &report.steps[..] else {
+        panic!("one step: {:?}", report.steps);
+    };
+    assert_eq!(
+        (step.effect.as_str(), step.kind.as_str()),
+        ("core-loss", "physics")
+    );
+    assert!(step.separating_test.contains("no-load") && step.symptom.contains("no load"));
+    let expected = 0.04 * apparent_power();
+    let watt = step.loss_watt.expect("a loss");
+    assert!((watt / expected - 1.0).abs() < 0.02, "{watt} {expected}");
+    // The same as a resistance: three phases at 220 V between lines.
+    let ohm = step.parameters[0].value;
+    assert!((ohm * watt / 220.0f64.powi(2) - 1.0).abs() < 1e-6, "{ohm}");
+    let [before, after] = [&report.baseline, &report.final_]
+        .map(|fit| fit.as_ref().expect("fitted").held_out_error_over_noise);
+    assert!(before > 2.0 && after < 0.1);
+    assert!(report.unexplained.is_none() && report.speed_scale.is_none());
+    assert_eq!(report.ranking[0].effect, "core-loss");
+    assert!(report.not_testable.contains(&"load-pulsation".to_owned()));
+    assert!(!report.not_testable.contains(&"windage".to_owned()));
+    let shares: Vec<f64> = told.iter().map(|t| t.1).collect();
+    assert!(shares[1..].is_sorted(), "{told:?}");
+    assert_eq!(told.last(), Some(&("done".to_owned(), 1.0)));
+    let nothing = explain_without(&sources, &specimen::motor(""), &[], &mut |_, _| {});
+    assert_eq!(nothing.expect("judged"), report);
+}
+
+/// Without the truth the library holds nothing that explains the table: nothing is named, no parameter is called off.
+#[test]
+fn without_the_truth_nothing_is_named() {
+    let sources = [specimen::table_source(with("core-loss", 4.0))];
+    let mut known = names();
+    known.retain(|name| !["current-gain", "voltage-gain", "magnetizing-saturation"].contains(name));
+    let report = explain_without(&sources, &specimen::motor(""), &known, &mut |_, _| {});
+    let report = report.expect("judged");
+    assert_eq!(report.verdict, Verdict::Unknown);
+    assert!(report.steps.is_empty() && report.unexplained.is_some());
+    assert!(report.summary.contains("the library does not hold"));
+    let fits = [report.baseline, report.final_].map(|fit| fit.expect("fitted"));
+    assert!(fits.iter().flat_map(|f| &f.parameters).all(|p| !p.off));
+    let mut moved = fits[0].parameters.iter().map(|p| p.change_percent.abs());
+    assert!(
+        moved.any(|percent| percent > 20.0),
+        "the fit bent the parameters"
+    );
+}
+
+#[test]
+fn what_cannot_be_judged_is_a_verdict_and_a_wrong_question_an_error() {
+    let short = [Source::Recording(specimen::recording(0.19, |_| 1.0))];
+    let report = explain(&short, &specimen::motor(""), &mut |_, _| {}).expect("a report");
+    assert_eq!(report.verdict, Verdict::Unsupported);
+    assert_eq!(
+        report.summary,
+        "the recording is shorter than five blocks of 40 ms; record at least one second"
+    );
+    assert!(report.baseline.is_none() && report.final_.is_none());
+    let error = explain(&[], &specimen::motor(""), &mut |_, _| {}).err();
+    assert!(matches!(error, Some(Error::Recordings(_))));
+}
+
+#[test]
+fn a_verdict_is_the_gravest_that_applies() {
+    let question = tables();
+    let study = &question.study;
+    let of = |found: &Explanation| verdict(found, &steps(study, found));
+    assert_eq!(of(&nothing(study, 1.0)), Verdict::Adequate);
+    let mut found = stepwise(study, &["core-loss"], &[3.0, 1.0], &[]);
+    assert_eq!(of(&found), Verdict::Effect);
+    found.steps[0].tied.push("windage".to_owned());
+    assert_eq!(of(&found), Verdict::Ambiguous);
+    found.steps[0].trial.fit.hypothesis.z[MAGNETIZING] = 1.0;
+    assert_eq!(of(&found), Verdict::Implausible);
+    found.nameable = false;
+    assert_eq!(of(&found), Verdict::Unknown);
+}
+
+/// From 3 to 2 times the noise five eighths of the excess go, from 2 to 1 all of it.
+#[test]
+fn steps_tell_what_each_effect_brought_and_what_ties_with_it() {
+    let question = tables();
+    let study = &question.study;
+    let effects = ["core-loss", "windage"];
+    let tied = ["windage", "current-gain", "core-loss"];
+    let found = stepwise(study, &effects, &[3.0, 2.0, 1.0], &tied);
+    let steps = steps(study, &found);
+    let names: Vec<&str> = steps.iter().map(|s| s.effect.as_str()).collect();
+    assert_eq!(names, effects);
+    for (step, [error, percent]) in steps.iter().zip([[2.0, 62.5], [1.0, 100.0]]) {
+        assert!((step.fold_error_over_noise - error).abs() < 1e-9);
+        assert!((step.held_out_error_over_noise - error).abs() < 1e-9);
+        assert!((step.explained_percent - percent).abs() < 1e-9);
+        // What was accepted beside it is no look-alike.
+        assert_eq!(step.tied_with, ["current-gain"]);
+        assert_eq!(step.parameters.len(), 1);
+    }
+    let watt = steps[0].loss_watt.expect("a loss");
+    assert!((watt / (0.02 * apparent_power()) - 1.0).abs() < 1e-9);
+    let windage = 0.1 * 1.7 * 60.0 * std::f64::consts::PI;
+    let watt = steps[1].loss_watt.expect("a loss");
+    assert!((watt / windage - 1.0).abs() < 1e-9);
+}
+
+/// A friction that moved may be any loss torque; a sensor it cannot be.
+#[test]
+fn a_moved_parameter_that_an_effect_explains_as_well_is_a_step_of_both() {
+    let question = tables();
+    let study = &question.study;
+    let all = ["current-gain", "windage", "coulomb-friction"];
+    let all = all.map(|name| candidate(study, name, 1.0));
+    let mut found = nothing(study, 1.0);
+    found.contests = vec![
+        (FRICTION, all.to_vec()),
+        (FRICTION, all[..1].to_vec()),
+        (0, all.to_vec()),
+    ];
+    let steps = steps(study, &found);
+    assert_eq!(steps.len(), 1);
+    assert_eq!(steps[0].effect, "windage");
+    let others = ["friction_nm_s", "current-gain", "coulomb-friction"];
+    assert_eq!(steps[0].tied_with, others);
+    assert_eq!(verdict(&found, &steps), Verdict::Ambiguous);
+}
+
+/// Folds at 4, proof at 2: what a screen leaves of the folds is taken as the same share of the proof.
+#[test]
+fn effects_are_ranked_by_their_held_out_error() {
+    let question = tables();
+    let study = &question.study;
+    let mut found = nothing(study, 1.0);
+    found.baseline = trial(study, &[], 4.0, 2.0);
+    found.first.screened = vec![
+        screened(study, "windage", 3.0, 0.3),
+        screened(study, "core-loss", 3.9, 0.1),
+        screened(study, "windage", 1.0, 0.9),
+        screened(study, "current-gain", 5.0, 0.2),
+    ];
+    found.first.candidates = vec![candidate(study, "core-loss", 0.5)];
+    let rows = ranking(study, &found);
+    let names: Vec<&str> = rows.iter().map(|r| r.effect.as_str()).collect();
+    assert_eq!(names, ["core-loss", "windage", "current-gain"]);
+    let expected = [[0.5, 75.0, 10.0], [1.5, 25.0, 30.0], [2.5, -25.0, 20.0]];
+    for (row, [error, gain, visibility]) in rows.iter().zip(expected) {
+        assert!(
+            (row.held_out_error_over_noise - error).abs() < 1e-9,
+            "{row:?}"
+        );
+        assert!((row.gain_percent - gain).abs() < 1e-9, "{row:?}");
+        assert!(
+            (row.visibility_percent - visibility).abs() < 1e-9,
+            "{row:?}"
+        );
+        assert_eq!(row.refitted, row.effect == "core-loss");
+    }
+}
+
+/// Two per cent of the noise can be seen; the best point of an effect's grid speaks for it.
+#[test]
+fn not_testable_is_what_no_point_of_its_grid_would_show() {
+    let question = tables();
+    let study = &question.study;
+    let mut found = nothing(study, 1.0);
+    found.first.screened = vec![
+        screened(study, "windage", 1.0, 0.021),
+        screened(study, "windage", 1.0, 0.001),
+        screened(study, "core-loss", 1.0, 0.001),
+        screened(study, "core-loss", 1.0, 0.019),
+    ];
+    assert_eq!(not_testable(study, &found), ["core-loss"]);
+}
+
+/// From 3 to 2 times the noise: five eighths.
+#[test]
+fn the_best_lead_is_named_if_it_explains_anything() {
+    let question = tables();
+    let study = &question.study;
+    let lead = |error: Option<f64>| {
+        let mut found = nothing(study, 3.0);
+        let candidates = error.map(|error| candidate(study, "windage", error));
+        found.first.candidates = candidates.into_iter().collect();
+        let told = unexplained(study, &found);
+        (told.best_lead, told.best_lead_explains_percent)
+    };
+    let (name, percent) = lead(Some(2.0));
+    assert_eq!(name.as_deref(), Some("windage"));
+    assert!((percent - 62.5).abs() < 1e-9);
+    assert_eq!(lead(Some(3.0)), (None, 0.0));
+    assert_eq!(lead(Some(3.5)), (None, 0.0));
+    assert_eq!(lead(None), (None, 0.0));
+}
+
+/// `r1` falls from 3 to 1.5 times its noise: of an excess of 8 remain 1.25.
+#[test]
+fn a_wrong_frame_comes_before_all_physics() {
+    let question = tables();
+    let study = &question.study;
+    let mut found = stepwise(study, &["core-loss"], &[3.0, 1.0], &[]);
+    found.steps[0].trial.fit.hypothesis.z[0] = 0.2;
+    found.steps[0].trial = specimen::known_to(&found.steps[0].trial, &[0.01; 5]);
+    let plain = report(&question, &found, None);
+    assert_eq!((plain.verdict, plain.steps.len()), (Verdict::Effect, 1));
+    assert!(plain.unexplained.is_none());
+    let off = |fit: &Option<crate::report::FitReport>| {
+        let parameters = &fit.as_ref().expect("fitted").parameters;
+        parameters.iter().filter(|p| p.off).count()
+    };
+    assert_eq!((off(&plain.baseline), off(&plain.final_)), (0, 1));
+    assert_eq!(
+        report(&question, &found, Some(frame(false))),
+        plain,
+        "not proven"
+    );
+    let framed = report(&question, &found, Some(frame(true)));
+    assert_eq!(framed.verdict, Verdict::Effect);
+    assert!(
+        framed
+            .summary
+            .starts_with("Missing: rotor-flux-frame; core-loss.")
+    );
+    assert_eq!(framed.steps[1..], plain.steps);
+    let step = &framed.steps[0];
+    assert_eq!(
+        (step.effect.as_str(), step.kind.as_str()),
+        ("rotor-flux-frame", "model")
+    );
+    assert!((step.explained_percent - 100.0 * (1.0 - 1.25 / 8.0)).abs() < 1e-9);
+    assert_eq!(
+        (step.held_out_error_over_noise, step.fold_error_over_noise),
+        (1.5, 1.5)
+    );
+    assert_eq!(step.frame, Some(frame(true)));
+    let below = FrameReport {
+        held_out_after: 0.9,
+        ..frame(true)
+    };
+    assert_eq!(
+        frame_step(below).explained_percent,
+        100.0,
+        "nothing is left over the noise"
+    );
+
+    let adequate = report(&question, &nothing(study, 1.0), Some(frame(true)));
+    assert_eq!(
+        adequate.verdict,
+        Verdict::Effect,
+        "the monitor's model is wrong"
+    );
+    found.nameable = false;
+    let unknown = report(&question, &found, Some(frame(true)));
+    assert_eq!(
+        (unknown.verdict, unknown.steps.len()),
+        (Verdict::Unknown, 1)
+    );
+    assert!(unknown.unexplained.is_some());
+    assert_eq!((off(&unknown.baseline), off(&unknown.final_)), (0, 0));
+}
+
+/// A typical core loss of the table's machine is adopted; the rest of the motor file stays as it is.
+#[test]
+fn an_adopted_effect_is_in_the_new_motor_file() {
+    let mut motor = specimen::motor("");
+    motor.mechanics.load_friction = 3e-4;
+    let sources = [specimen::table_source(|plant| {
+        plant.mechanics.load_friction = 3e-4;
+        with("core-loss", 2.0)(plant);
+    })];
+    let mut told = Vec::new();
+    let (report, file) = adopt("core-loss", &sources, &motor, &mut |what, share| {
+        told.push((what.to_owned(), share));
+    })
+    .expect("adopted");
+    assert!(report.proven);
+    assert_eq!(report.effect, "core-loss");
+    assert!(report.before.error_over_noise > 2.0 && report.after.error_over_noise < 0.1);
+    let held_out = [report.before, report.after].map(|e| e.held_out_error_over_noise);
+    assert!(held_out[0] > 2.0 && held_out[1] < 0.1);
+    let [parameter] = &report.parameters[..] else {
+        panic!("one parameter: {:?}", report.parameters);
+    };
+    assert_eq!(
+        (parameter.name.as_str(), report.nominals.len()),
+        ("core_loss_resistance_ohm", 6)
+    );
+    let expected = 220.0f64.powi(2) / (0.04 * apparent_power());
+    assert!(
+        (parameter.value / expected - 1.0).abs() < 0.02,
+        "{parameter:?}"
+    );
+    let [entry] = &file.effects[..] else {
+        panic!("one effect: {:?}", file.effects);
+    };
+    assert_eq!(
+        (entry.name.as_str(), entry.number(&parameter.name)),
+        ("core-loss", Some(parameter.value))
+    );
+    assert_eq!(
+        file.mechanics.load_friction, 3e-4,
+        "the load's friction is no finding"
+    );
+    assert_eq!(file.parameters.r_s, report.nominals[0].value);
+    assert_eq!(told.last(), Some(&("done".to_owned(), 1.0)));
+    assert!(told.iter().map(|t| t.1).collect::<Vec<_>>()[2..].is_sorted());
+    assert!(report.frame.is_none() && report.motor_file.is_empty());
+}
+
+/// A stator resistance that is 10 % higher: taken over without any effect, which proves nothing.
+#[test]
+fn parameters_alone_can_be_adopted() {
+    let sources = [specimen::table_source(|plant| plant.motor.r_s *= 1.1)];
+    let motor = specimen::motor("");
+    let (report, file) = adopt("parameters", &sources, &motor, &mut |_, _| {}).expect("adopted");
+    assert!(!report.proven && report.parameters.is_empty() && file.effects.is_empty());
+    assert_eq!(report.before, report.after);
+    assert!(
+        (file.parameters.r_s / 8.8 - 1.0).abs() < 0.02,
+        "{}",
+        file.parameters.r_s
+    );
+    assert_eq!(report.nominals[0].value, file.parameters.r_s);
+}
+
+#[test]
+fn an_effect_that_is_not_there_is_not_proven() {
+    let sources = [specimen::table_source(|_| ())];
+    let motor = specimen::motor("");
+    let (report, _) = adopt("windage", &sources, &motor, &mut |_, _| {}).expect("adopted");
+    assert!(!report.proven);
+    let error = adopt("series-inductance", &sources, &motor, &mut |_, _| {}).err();
+    let error = error.expect("a table does not show it").to_string();
+    assert_eq!(
+        error,
+        "`series-inductance` does not apply to this recording"
+    );
+}
+
+#[test]
+fn a_name_is_known_new_or_a_formula_in_the_file() {
+    let entry = |name: &str, line: &str| format!("[[effects]]\nname = \"{name}\"\n{line}\n");
+    let formula = entry(
+        "expression",
+        "formula = \"k * omega\"\nadds_to = \"torque\"\nk = 0.0\nk_typical = 1e-3",
+    );
+    let windage = entry("windage", "windage_nm_s2 = 1e-6");
+    let (plain, holding) = (specimen::motor(""), specimen::motor(&(formula + &windage)));
+    let complaint = |effect: &str, motor: &MotorFile| match check_name(effect, motor) {
+        Ok(()) => String::new(),
+        Err(Error::UnknownEffect(message)) => message,
+        Err(other) => panic!("another error: {other:?}"),
+    };
+    for known in ["windage", "core-loss", "parameters", "rotor-flux-frame"] {
+        assert_eq!(complaint(known, &plain), "");
+    }
+    assert_eq!(complaint("core-loss", &holding), "");
+    assert_eq!(complaint("expression", &holding), "");
+    assert!(
+        complaint("expression", &plain).contains("write the formula into the motor file first")
+    );
+    assert!(complaint("windage", &holding).contains("already holds `windage`"));
+    let unknown = complaint("phlogiston", &plain);
+    assert!(
+        unknown.starts_with("no effect is called `phlogiston`; use one of: "),
+        "{unknown}"
+    );
+    assert!(
+        unknown.ends_with("expression, rotor-flux-frame, parameters"),
+        "{unknown}"
+    );
+}
+
+#[test]
+fn a_formula_is_open_while_all_its_parameters_are_zero() {
+    let open = |numbers: &[(&'static str, f64)]| {
+        is_open(&EffectEntry::with_numbers(
+            "expression",
+            numbers.iter().copied(),
+        ))
+    };
+    assert!(open(&[("k", 0.0), ("k_typical", 1e-3)]) && open(&[("k", 0.0), ("c", 0.0)]));
+    assert!(!open(&[("k", 1e-9), ("k_typical", 1e-3)]) && !open(&[("k", 0.0), ("c", 1.0)]));
+}
+
+/// A torque `k w^2` is a windage: the formula finds its size; what is in force or still open stays as it is.
+#[test]
+fn an_open_formula_is_replaced_by_the_fitted_one() {
+    let formula = |text: &str, k: &str| {
+        format!(
+            "[[effects]]\nname = \"expression\"\nformula = \"{text}\"\nadds_to = \"torque\"\n{k}\n"
+        )
+    };
+    let rest = formula("k * omega^2", "k = 0.0\nk_typical = 4e-6")
+        + &formula("c * omega", "c = 1e-9")
+        + &formula("k * t", "k = 0.0\nk_typical = 1.0");
+    let motor = specimen::motor(&rest);
+    let sources = [specimen::table_source(with("windage", 1.0))];
+    let (_, file) = adopt("expression", &sources, &motor, &mut |_, _| {}).expect("adopted");
+    let formula = |e: &EffectEntry| e.text("formula").map(str::to_owned);
+    let formulas: Vec<_> = file.effects.iter().filter_map(formula).collect();
+    assert_eq!(formulas, ["c * omega", "k * t", "k * omega^2"]);
+    let numbers = [("c", 0), ("k", 1), ("k", 2)].map(|(key, at)| file.effects[at].number(key));
+    assert_eq!(numbers[..2], [Some(1e-9), Some(0.0)]);
+    let windage = 0.1 * 1.7 / (60.0 * std::f64::consts::PI).powi(2);
+    let k = numbers[2].expect("fitted");
+    assert!((k / windage - 1.0).abs() < 0.03, "{k} {windage}");
+    // Another effect leaves the formula open.
+    let (_, file) = adopt("windage", &sources, &motor, &mut |_, _| {}).expect("adopted");
+    let names: Vec<&str> = file.effects.iter().map(|e| e.name.as_str()).collect();
+    assert_eq!(names, ["expression", "expression", "expression", "windage"]);
+    assert!(is_open(&file.effects[0]));
+}
+
+/// Twelve windows of five periods at one load, the voltage on the q axis.
+fn steady() -> Recording {
+    specimen::recording(1.0, |_| 1.2)
+}
+
+#[test]
+fn the_frame_is_adopted_into_the_monitors_settings_only() {
+    let sources = [Source::Recording(steady())];
+    let published = specimen::motor("[monitor]\nframe = \"voltage\"\n");
+    let (report, file) =
+        adopt("rotor-flux-frame", &sources, &published, &mut |_, _| {}).expect("adopted");
+    let frame = report.frame.expect("judged");
+    assert_eq!(
+        (report.effect.as_str(), report.proven),
+        ("rotor-flux-frame", frame.proven)
+    );
+    assert_eq!(report.before.error_over_noise, frame.fitted_before);
+    assert_eq!(
+        report.before.held_out_error_over_noise,
+        frame.held_out_before
+    );
+    assert_eq!(report.after.error_over_noise, frame.fitted_after);
+    assert_eq!(report.after.held_out_error_over_noise, frame.held_out_after);
+    assert!(frame.fitted_before > 2.0 * frame.fitted_after, "{frame:?}");
+    let mut expected = published.clone();
+    (expected.monitor.frame, expected.monitor.field_current) =
+        (Frame::RotorFlux, FieldCurrent::Live);
+    assert_eq!(file, expected);
+    let error = adopt("rotor-flux-frame", &sources, &file, &mut |_, _| {}).err();
+    let error = error.expect("it is right already").to_string();
+    assert!(
+        error.contains("already asks for the rotor-flux frame"),
+        "{error}"
+    );
+}
+
+/// The scale belongs to the recording: it is reported, and the motor file does not get it.
+#[test]
+fn the_scale_of_a_sensor_is_reported_and_not_adopted() {
+    let study = specimen::scaled_study(0.4, 0.4);
+    let trial = specimen::trial_with(&study, &[("core-loss", 1.0)]);
+    let scale = speed_scale_report(&study, &trial).expect("free");
+    // The least slip counts as none until the fit tells.
+    let point = specimen::point(1.0);
+    let expected = point.omega_sync / point.omega_el / 0.4;
+    assert!(
+        (scale.factor / expected - 1.0).abs() < 1e-3,
+        "{scale:?} {expected}"
+    );
+    let file = updated(&study, &trial, &specimen::motor(""));
+    let names: Vec<&str> = file.effects.iter().map(|e| e.name.as_str()).collect();
+    assert_eq!(names, ["core-loss"]);
+    let known = specimen::table_study(|_| ());
+    assert!(speed_scale_report(&known, &specimen::trial_with(&known, &[])).is_none());
+}
+
+/// Residuals of two noises are an error of two, whatever the folds say.
+#[test]
+fn errors_are_those_of_the_fit_and_of_what_was_held_out() {
+    let study = specimen::proven_table_study(|_| ());
+    let mut trial = trial(&study, &[], 5.0, 3.0);
+    trial.fit.residual = vec![2.0; 47];
+    let got = errors(&study, &trial);
+    assert!((got.error_over_noise - 2.0).abs() < 1e-12);
+    assert!((got.held_out_error_over_noise - 3.0).abs() < 1e-12);
+}
