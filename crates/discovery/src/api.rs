@@ -424,11 +424,9 @@ fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     // The scale of a sensor belongs to the recording, not to the motor.
     added.drain(..study.given_effects());
     // A formula with its fitted parameters replaces the open one.
-    let fitted = |e: &EffectEntry| {
-        added.iter().map(|c| c.effect.descriptor()).any(|d| {
-            d.name == expression::NAME && e.name == d.name && e.text("formula") == Some(d.form)
-        })
-    };
+    let is_new = |text: &str| added.iter().any(|c| c.effect.descriptor().form == text);
+    let fitted =
+        |e: &EffectEntry| e.name == expression::NAME && e.text("formula").is_some_and(is_new);
     file.effects.retain(|e| !(fitted(e) && is_open(e)));
     file.effects.extend(added.iter().map(to_entry));
     file

@@ -91,6 +91,7 @@ fn a_candidate_is_settled_when_it_fits_or_explains_nearly_all() {
     // (100 - 1.96)/99, (100 - 2.56)/99 and (9 - 1.96)/8 of the excess.
     assert!(is_settled(10.0, 1.4) && !is_settled(10.0, 1.6) && !is_settled(3.0, 1.4));
     assert!(!is_settled(3.0, 1.6));
+    assert!(!is_settled(1.1, SOLVED) && !is_settled(10.0, WRONG_VALLEY));
 }
 
 #[test]
@@ -145,17 +146,17 @@ fn what_gains_nothing_is_tried_in_a_poor_model_only() {
     assert_eq!(tried(POOR, POOR), 0, "as poor is not poorer");
 }
 
-/// A fit of twice the noise has an excess of 3: likely is what leaves less than 1 + 0.6 x 3 of the squares.
+/// A fit of three times the noise has an excess of 8: likely is what leaves less than 1 + 0.6 x 8 of the squares.
 #[test]
 fn likely_is_the_first_and_what_leaves_little_of_the_excess() {
     let study = specimen::table_study(|_| ());
     let mut fit = specimen::trial_with(&study, &[]).fit;
-    fit.residual = vec![2.0; 47];
-    let limit = 2.8f64.sqrt();
-    let groups: Vec<Vec<Screened>> = [1.9, 0.99 * limit, 1.01 * limit, 1.0, 1.1, 1.8, 1.0, 1.0]
+    fit.residual = vec![3.0; 47];
+    let limit = 5.8f64.sqrt();
+    let groups: Vec<Vec<Screened>> = [2.9, 0.99 * limit, 1.01 * limit, 1.0, 1.1, 2.5, 1.0, 1.0]
         .map(|error| vec![screened(&study, "windage", error)])
         .into();
-    let (likely, rest) = promising(&study, &fit, &groups, 2.0);
+    let (likely, rest) = promising(&study, &fit, &groups, 3.0);
     let errors = |starts: &[Start]| -> Vec<f64> {
         let error = |s: &Start| study.fold_error(&s.group[0].held_out);
         starts.iter().map(error).collect()
@@ -165,8 +166,8 @@ fn likely_is_the_first_and_what_leaves_little_of_the_excess() {
         let mut pairs = got.iter().zip(expected);
         assert!(pairs.all(|(a, b)| (a - b).abs() < 1e-9), "{got:?}");
     };
-    close(errors(&likely), &[1.9, 0.99 * limit, 1.0, 1.1]);
-    close(errors(&rest), &[1.01 * limit, 1.8]);
+    close(errors(&likely), &[2.9, 0.99 * limit, 1.0, 1.1]);
+    close(errors(&rest), &[1.01 * limit, 2.5]);
     // Without an excess the limit is the noise itself.
     fit.residual = vec![0.5; 47];
     let groups = [1.5, 0.99, 1.01].map(|error| vec![screened(&study, "windage", error)]);
@@ -175,21 +176,32 @@ fn likely_is_the_first_and_what_leaves_little_of_the_excess() {
     close(errors(&rest), &[1.01]);
 }
 
-/// What a table of a machine with core loss shows: the likely effects are refitted and settle it.
+fn name(s: &Screened) -> &'static str {
+    s.config.effect.descriptor().name
+}
+
+/// Effects with a size whose sign looked impossible.
+fn impossible(round: &Round) -> BTreeSet<&'static str> {
+    let wrong = |s: &&Screened| !s.possible && !s.config.effect.descriptor().is_resonance();
+    round.screened.iter().filter(wrong).map(name).collect()
+}
+
+/// A tachometer that shows half a per cent too much: the likely effects are refitted and settle it; losses, which would
+/// have to be negative, get no second chance.
 #[test]
 fn a_round_that_settles_tries_no_further() {
-    let study = specimen::table_study(with("core-loss", 2.0));
+    let study = specimen::table_study(with("speed-scale", 1.0));
     let base = study.trial(&study.beliefs(), Effort::FULL);
     let mut told = Vec::new();
     let round = round(&study, &base, &study.beliefs(), &[], &mut |what| {
         told.push(what.to_owned());
     });
     assert_eq!(told, ["screening all effects", "refitting the likeliest"]);
-    assert_eq!(round.candidates[0].name, "core-loss");
+    assert_eq!(round.candidates[0].name, "speed-scale");
     assert!(round.candidates[0].error < 0.1);
+    assert!(impossible(&round).contains("windage"));
     let likely = likely(&study, &base, &[]);
     assert_eq!(found(&round.candidates), found(&likely.candidates));
-    assert!(round.candidates.len() < round.screened.len());
     assert_eq!(round.screened.len(), likely.screened.len());
     let totals: Vec<f64> = round.screened.iter().map(Screened::total).collect();
     assert!(totals.is_sorted());
@@ -198,27 +210,45 @@ fn a_round_that_settles_tries_no_further() {
 /// Without the truth the six likeliest are refitted, and every effect with a size whose sign looked impossible.
 #[test]
 fn a_round_without_the_truth_tries_all_that_can_matter() {
-    let study = specimen::table_study(with("core-loss", 4.0));
+    let study = specimen::table_study(with("speed-scale", 1.0));
     let base = study.trial(&study.beliefs(), Effort::FULL);
-    let excluded = ["core-loss", "voltage-gain", "current-gain", "deep-bar"];
+    let excluded = ["speed-scale", "sample-delay", "deep-bar"];
     let round = round(&study, &base, &study.beliefs(), &excluded, &mut |_| ());
-    let name = |s: &Screened| s.config.effect.descriptor().name;
     assert!(round.screened.iter().all(|s| !excluded.contains(&name(s))));
-    let first = round.screened.iter().take(CONFIRMED);
-    let impossible = round
-        .screened
-        .iter()
-        .filter(|s| !s.possible && !s.config.effect.descriptor().is_resonance());
-    let expected: BTreeSet<_> = first.chain(impossible).map(name).collect();
-    assert_eq!(found(&round.candidates), expected);
-    println!(
-        "{:?}",
-        round
-            .candidates
-            .iter()
-            .map(|c| (c.name, c.error))
-            .collect::<Vec<_>>()
-    );
+    let first: BTreeSet<_> = round.screened.iter().take(CONFIRMED).map(name).collect();
+    let second = impossible(&round);
+    assert!(!second.is_subset(&first), "{second:?} {first:?}");
+    assert_eq!(found(&round.candidates), &first | &second);
+}
+
+/// A model that already fits gives nothing a second chance.
+#[test]
+fn a_round_on_an_adequate_model_tries_only_what_gains() {
+    let study = specimen::table_study(|_| ());
+    let base = study.trial(&study.beliefs(), Effort::FULL);
+    let round = round(&study, &base, &study.beliefs(), &[], &mut |_| ());
+    assert!(round.screened.len() > CONFIRMED && round.candidates.len() <= CONFIRMED);
+}
+
+/// A current that jitters from row to row, which no motor does: what is asked about does not explain it, so that after
+/// the likely one the other is tried too.
+#[test]
+fn a_taught_fit_tries_the_rest_where_the_likely_do_not_suffice() {
+    let mut study = specimen::study(0.3, |_| 1.0);
+    let asked = ["coulomb-friction", "windage"];
+    let excluded: Vec<&str> = names().into_iter().filter(|n| !asked.contains(n)).collect();
+    let tried = |study: &Study| {
+        let base = study.trial(&study.beliefs(), short(Teacher::Off));
+        retaught(study, &base, &study.beliefs(), &excluded)
+    };
+    let healthy = tried(&study);
+    assert!(!healthy.is_empty() && healthy[0].error < SOLVED);
+    for (k, row) in study.fitted.case.measured.iter_mut().enumerate() {
+        row[0] += if k % 2 == 0 { 0.05 } else { -0.05 };
+    }
+    let lost = tried(&study);
+    assert!(lost.iter().all(|c| c.error > SOLVED));
+    assert_eq!(found(&lost), BTreeSet::from(asked));
 }
 
 /// Every form of the one effect, and nothing else.

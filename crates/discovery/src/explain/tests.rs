@@ -1,6 +1,7 @@
 use super::*;
 use crate::specimen;
 use motor::effects::{Plant, names};
+use std::collections::BTreeSet;
 
 fn candidate(study: &Study, name: &'static str, size: f64, error: f64) -> Candidate {
     let trial = specimen::trial_with(study, &[(name, size)]);
@@ -218,4 +219,78 @@ fn friction_stands_for_physics_and_leakage_for_an_inductance_in_series() {
         (nominal_name(0), nominal_name(FRICTION)),
         ("stator_resistance_ohm", "friction_nm_s")
     );
+}
+
+/// What was told when, each share of the way once.
+fn shares(told: &[f64]) -> Vec<f64> {
+    let mut shares = told.to_vec();
+    shares.dedup();
+    shares
+}
+
+/// Windage of a tenth of rated torque and a tachometer that shows one per cent too much: one after the other.
+#[test]
+fn two_effects_are_found_in_two_rounds() {
+    let study = specimen::table_study(|plant| {
+        with("windage", 1.0)(plant);
+        with("speed-scale", 2.0)(plant);
+    });
+    let mut told = Vec::new();
+    let excluded = all_but(&["windage", "speed-scale"]);
+    let found = explain(&study, &excluded, &mut |_, share| told.push(share));
+    let names: Vec<&str> = found
+        .last()
+        .fit
+        .hypothesis
+        .effects
+        .iter()
+        .map(|e| e.effect.descriptor().name)
+        .collect();
+    assert_eq!(
+        BTreeSet::from_iter(names),
+        BTreeSet::from(["speed-scale", "windage"])
+    );
+    assert_eq!(found.steps.len(), 2);
+    assert!(found.nameable && adequate(&study, found.last()));
+    assert!(!adequate(&study, &found.steps[0].trial));
+    let expected = [0.1, 0.15, 0.35, 0.8];
+    let got = shares(&told);
+    assert_eq!(got.len(), expected.len(), "{got:?}");
+    assert!(
+        got.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9),
+        "{got:?}"
+    );
+}
+
+/// The round before the last names nothing: one share of the way, and no contest of what may not be named.
+#[test]
+fn what_cannot_be_named_is_not_contested() {
+    let study = specimen::table_study(with("speed-scale", 2.0));
+    let mut told = Vec::new();
+    let found = explain(&study, &names(), &mut |_, share| told.push(share));
+    assert!(!found.nameable && found.steps.is_empty() && found.first.screened.is_empty());
+    let got = shares(&told);
+    assert!(
+        got.len() == 2 && got[0] == 0.1 && (got[1] - 0.15).abs() < 1e-12,
+        "{got:?}"
+    );
+}
+
+/// The accuracy of a table is assumed: an effect that explains most of what is missing is enough.
+#[test]
+fn what_little_a_table_leaves_over_is_no_evidence() {
+    let mut study = specimen::table_study(|plant| {
+        with("windage", 2.0)(plant);
+        with("speed-scale", 1.0)(plant);
+    });
+    let excluded = all_but(&["windage", "speed-scale", "core-loss"]);
+    let found = explain(&study, &excluded, &mut |_, _| ());
+    assert_eq!(found.steps.len(), 1);
+    let last = found.last();
+    assert!(!adequate(&study, last), "{}", study.fold_error(&last.folds));
+    assert!(explained(&study, &found.baseline, last) > NAMED_SHARE);
+    // A table measured ten times as badly shows only the larger of the two.
+    study.fitted.floor.mean = 100.0;
+    let found = explain(&study, &excluded, &mut |_, _| ());
+    assert!(found.steps.len() == 1 && adequate(&study, found.last()));
 }
