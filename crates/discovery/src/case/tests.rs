@@ -303,3 +303,42 @@ fn a_table_is_a_case_of_points() {
     assert_eq!(case.table.as_ref().map(Vec::len), Some(5));
     assert_eq!((case.blocks().len(), case.judged()), (5, 10.0));
 }
+
+/// A sensor that shows a quarter too much: what the simulation is given is what the shaft does.
+#[test]
+fn a_free_scale_is_taken_out_of_everything_that_holds_the_speed() {
+    let rec = specimen::recording(0.5, |_| 1.0);
+    let mut case = case_of(&rec);
+    let mut plant = specimen::belief("").plant;
+    let mut scale = specimen::effect("speed-scale", 1.0);
+    scale.values[0] = 0.25;
+    plant.effects.push(scale);
+    let same = case.as_seen_by(&plant);
+    assert_eq!(
+        (&same.speed, &same.measured),
+        (&case.speed, &case.measured),
+        "it is known"
+    );
+    assert_eq!(same.timeline.theta_mech, case.timeline.theta_mech);
+
+    case.speed_scale_is_free = true;
+    let seen = case.as_seen_by(&plant);
+    let running_at = case.running_at.expect("it runs");
+    assert_eq!(seen.running_at, Some(running_at / 1.25));
+    let timeline = (&seen.timeline, &case.timeline);
+    assert_eq!(timeline.0.t_sample, timeline.1.t_sample);
+    assert_eq!(timeline.0.omega_sync, timeline.1.omega_sync);
+    for k in [0, 1, 999, 2499] {
+        assert_eq!(seen.speed[k], case.speed[k] / 1.25);
+        assert_eq!(timeline.0.theta_mech[k], timeline.1.theta_mech[k] / 1.25);
+    }
+    for row in [0, 1, 777] {
+        for k in 0..N_CHANNELS {
+            let gain = if k == SPEED { 1.25 } else { 1.0 };
+            assert_eq!(seen.measured[row][k], case.measured[row][k] / gain);
+            assert_eq!(seen.weight[row][k], case.weight[row][k] * gain);
+        }
+    }
+    plant.effects.clear();
+    assert_eq!(case.as_seen_by(&plant).speed, case.speed);
+}

@@ -265,3 +265,97 @@ fn only_the_effect_that_is_asked_for_is_refitted() {
     let size = h.z.last().expect("a size");
     assert!((size - 2.0).abs() < 0.1, "{size}");
 }
+
+/// A recording of the motor on an elastic shaft, after a load step, as the simulator gives it.
+fn ringing(frequency_hz: f64) -> Study {
+    let mut study = specimen::study(0.4, |t| if t < 0.1 { 0.3 } else { 1.3 });
+    let shaft = vec![shaft(frequency_hz).config];
+    let mut plant = study.belief.plant.clone();
+    plant.effects = shaft;
+    let case = &mut study.fitted.case;
+    let out = crate::predict::run(case, &plant, &case.inputs, Teacher::Off);
+    for (row, measured) in case.measured.iter_mut().enumerate() {
+        let [a, b, c] = out.i_s_abc[row * case.decimation];
+        *measured = [a, b, c, out.omega_mech[row * case.decimation], 0.0];
+    }
+    study
+}
+
+/// An elastic shaft at a point of its grid.
+fn shaft(frequency_hz: f64) -> Screened {
+    let mut config = specimen::effect("shaft-compliance", 1.0);
+    config.values[1] = frequency_hz;
+    Screened {
+        config,
+        held_out: Vec::new(),
+        possible: true,
+        visible: 0.0,
+        visible_with_known_scale: None,
+    }
+}
+
+/// The frequency is found from the better of two starts, though the worse comes first.
+#[test]
+fn a_resonance_is_refitted_from_the_best_of_its_starts() {
+    let study = ringing(25.0);
+    let base = specimen::trial_with(&study, &[]);
+    let start = Start {
+        hypothesis: study.beliefs(),
+        group: vec![shaft(110.0), shaft(26.0)],
+        teacher: Teacher::Off,
+    };
+    let found = super::candidate(&study, &base, &start);
+    let configs = found
+        .trial
+        .fit
+        .hypothesis
+        .configs(&study.belief.plant.rated);
+    let frequency = configs[0].values[1];
+    assert!((frequency - 25.0).abs() < 0.1, "{frequency}");
+    assert!(found.error < 0.1, "{}", found.error);
+}
+
+/// A refit of a poor model is given up in its fifth step if four have not made the squares 3 % smaller than they are
+/// without the effect.
+#[test]
+fn a_hopeless_refit_of_a_poor_model_is_given_up() {
+    let study = specimen::table_study(with("core-loss", 3.0));
+    let start = Start {
+        hypothesis: study.beliefs(),
+        group: vec![Screened {
+            config: specimen::effect("leakage-saturation", 1.0),
+            ..screened(&study, "windage", 1.0)
+        }],
+        teacher: Teacher::Off,
+    };
+    let (case, rated) = (&study.fitted.case, &study.belief.plant.rated);
+    let from = study.beliefs().with(start.group[0].config.clone(), rated);
+    let after = |iterations: usize| {
+        let effort = Effort {
+            iterations,
+            ..Effort::FULL
+        };
+        let found = fit(case, &study.belief, &from, effort);
+        (
+            gram::dot(&found.residual, &found.residual),
+            found.hypothesis.z,
+        )
+    };
+    let squares = after(4).0;
+    let (given_up, finished) = (after(5).1, after(14).1);
+    assert_ne!(given_up, finished);
+    let refitted = |error: f64, without: f64| {
+        let trial = specimen::trial_with(&study, &[]);
+        let mut base = specimen::with_errors(&study, &trial, error, error);
+        base.fit.residual = vec![(without * squares / 8.0).sqrt(); 8];
+        let found = super::candidate(&study, &base, &start);
+        found.trial.fit.hypothesis.z
+    };
+    assert_eq!(refitted(3.0, 1.01), given_up);
+    assert_eq!(refitted(3.0, 1.05), finished);
+    assert_eq!(
+        refitted(1.05, 1.01),
+        finished,
+        "a good model is refined to the end"
+    );
+}
