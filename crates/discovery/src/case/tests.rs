@@ -85,6 +85,22 @@ fn fast_samples_are_thinned_out() {
     // 10 kHz of double steps to about 5.5 kHz.
     assert_eq!(case.decimation, 2);
     assert!((case.t_row() - 2e-4).abs() < 1e-12);
+    assert_eq!(case.measured.len(), 1250);
+}
+
+/// Three phases that share 3 V have a zero sequence of 3 V.
+#[test]
+fn the_zero_sequence_is_the_mean_of_the_phases() {
+    let rec = changed(&specimen::recording(0.3, |_| 1.0), |c, x| {
+        let shift = if Channel::VOLTAGES.contains(&c) {
+            3.0
+        } else {
+            0.0
+        };
+        Some(x.iter().map(|x| x + shift).collect())
+    });
+    let case = case_of(&rec);
+    assert!(case.measured.iter().all(|row| (row[4] - 3.0).abs() < 1e-9));
 }
 
 #[test]
@@ -125,17 +141,21 @@ fn noise_is_declared_or_estimated_and_never_zero() {
 
 #[test]
 fn a_current_at_its_full_scale_is_not_judged() {
+    const LIMIT: f64 = 0.999 * 5.0;
     let rec = specimen::recording(0.3, |_| 1.0);
     let clipped = changed(&rec, |c, x| {
         Some(if c == Channel::CURRENTS[1] {
-            x.iter().map(|x| if *x > 1.0 { 5.0 } else { *x }).collect()
+            // A thousandth below the end of the scale counts as the end.
+            x.iter()
+                .map(|x| if *x > 1.0 { LIMIT } else { *x })
+                .collect()
         } else {
             x
         })
     });
     let case = case_of(&clipped);
     for (measured, weight) in case.measured.iter().zip(&case.weight) {
-        assert_eq!(weight[1] == 0.0, measured[1] == 5.0);
+        assert_eq!(weight[1] == 0.0, measured[1] == LIMIT);
         assert!(weight[0] > 0.0);
     }
 }
@@ -186,9 +206,11 @@ fn an_open_switch_is_found_and_its_moments_are_not_judged() {
         "{open:?}"
     );
     let judged = |k: usize| case.weight[k / 2][0] > 0.0;
-    // Just before the switch opens, and 30 ms after, nothing can be said about the current.
-    assert!(judged(open.start - 14) && !judged(open.start - 8));
-    assert!(!judged(open.start + 148) && judged(open.start + 154));
+    // Two milliseconds before the switch opens, and until 30 ms after, nothing can be said about the current. Rows are
+    // even samples, and so is the first that is open.
+    assert_eq!(open.start % 2, 0);
+    assert!(judged(open.start - 12) && !judged(open.start - 10));
+    assert!(!judged(open.start + 150) && judged(open.start + 152));
     // Speed and voltage are judged all the time.
     assert!(case.weight.iter().all(|w| w[3] > 0.0 && w[4] > 0.0));
 }
@@ -200,6 +222,50 @@ fn a_motor_that_never_carried_current_is_not_switched_off() {
         .collect();
     let all = [&quiet[..]; 3];
     assert!(switched_off(all, [0.005; 3], T_SAMPLE).is_empty());
+}
+
+/// Three currents of an amplitude that may change, A, with a noise of which 5 mA is the largest.
+fn currents(n: usize, amplitude: impl Fn(usize) -> f64) -> [Vec<f64>; 3] {
+    let omega = 120.0 * std::f64::consts::PI * T_SAMPLE;
+    [0.0, 1.0, 2.0].map(|phase| {
+        let shift = phase * std::f64::consts::TAU / 3.0;
+        let at = |k: usize| {
+            let noise = 0.005 * ((k * 7_919 % 1000) as f64 / 500.0 - 1.0);
+            amplitude(k) * (omega * k as f64 - shift).cos() + noise
+        };
+        (0..n).map(at).collect()
+    })
+}
+
+fn open_of(x: &[Vec<f64>; 3]) -> Vec<Range<usize>> {
+    switched_off([&x[0], &x[1], &x[2]], [0.005; 3], T_SAMPLE)
+}
+
+#[test]
+fn a_motor_that_is_switched_off_for_good_stays_off_to_the_end() {
+    let x = currents(3000, |k| if k < 1500 { 1.0 } else { 0.0 });
+    let open = open_of(&x);
+    assert_eq!(open.len(), 1, "{open:?}");
+    assert!(
+        open[0].start.abs_diff(1500) <= 2 && open[0].end == 3000,
+        "{open:?}"
+    );
+}
+
+/// 20 ms must be silent: 12 ms are no open switch.
+#[test]
+fn a_short_silence_is_no_open_switch() {
+    let x = currents(3000, |k| if (1500..1560).contains(&k) { 0.0 } else { 1.0 });
+    assert!(open_of(&x).is_empty());
+}
+
+/// A current that fades away over a second carries nothing any more in the last 20 ms before the silence.
+#[test]
+fn what_fades_away_was_not_switched_off() {
+    let x = currents(8000, |k| {
+        (1.0 - k.saturating_sub(1000) as f64 / 5000.0).max(0.0)
+    });
+    assert!(open_of(&x).is_empty());
 }
 
 #[test]
