@@ -120,9 +120,9 @@ mod tests {
         let case = Case::new(&specimen::recording(0.5, |_| 1.0), &rated).expect("judged");
         let mut residual = vec![0.5; case.measured.len() * N_CHANNELS];
         for row in residual.chunks_exact_mut(N_CHANNELS) {
-            row[3] = 2.0;
+            row[3] = 3.0;
         }
-        assert_eq!(worst_channel(&case, &residual), ("speed", 2.0));
+        assert_eq!(worst_channel(&case, &residual), ("speed", 3.0));
     }
 
     /// An error in a hundredth of the blocks is named with its time, and with the quantity that is large there.
@@ -170,6 +170,40 @@ mod tests {
             !told.correlates_with.iter().any(|x| x == "voltage"),
             "it is constant"
         );
+    }
+
+    /// Rows are every second sample: what counts samples from zero is twice what counts rows.
+    #[test]
+    fn drivers_are_taken_where_the_rows_are() {
+        let mut study = specimen::study(0.5, |_| 1.0);
+        let case = &mut study.fitted.case;
+        let count = |n: usize| (0..n).map(|k| k as f64);
+        let n = case.inputs.u_s.len();
+        case.inputs.u_s = count(n).map(|k| (-k).into()).collect();
+        case.inputs.tau_load = count(n).collect();
+        let mut timeline = (*case.timeline).clone();
+        timeline.omega_sync = count(n).collect();
+        case.timeline = timeline.into();
+        case.measured.iter_mut().for_each(|row| row[3] = 7.0);
+        let all = drivers(&study);
+        let of = |name: &str| &all.iter().find(|(n, _)| *n == name).expect("listed").1;
+        let close = |name: &str, block: usize, expected: f64| {
+            let got = of(name)[block];
+            assert!((got - expected).abs() < 1e-9, "{name} {block}: {got}");
+        };
+        for block in [0, 5, 11] {
+            let rows = study.fitted.case.blocks()[block].clone();
+            let middle = 0.5 * (rows.start + rows.end - 1) as f64;
+            close("time", block, middle);
+            for name in ["voltage", "load", "frequency"] {
+                close(name, block, 2.0 * middle);
+            }
+            // Two pole pairs.
+            close("slip", block, 2.0 * middle - 14.0);
+        }
+        let table = drivers(&specimen::table_study(|_| ()));
+        let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["time", "current"]);
     }
 
     /// One number per block for each quantity, in its unit.

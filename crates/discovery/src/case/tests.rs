@@ -171,6 +171,14 @@ fn a_flat_top_is_the_end_of_the_scale() {
     };
     assert_eq!(clip_limit(&bare, 0, &wave(2.0)), f64::INFINITY);
     assert!((clip_limit(&bare, 0, &wave(0.8)) - 0.99 * 0.8).abs() < 1e-12);
+    // Three samples in a row that stand still, three times, are enough; fewer may be chance.
+    let plateau = |n: usize| {
+        let mut x = wave(2.0);
+        x[500..500 + n].fill(1.5);
+        x
+    };
+    assert_eq!(clip_limit(&bare, 0, &plateau(4)), f64::INFINITY);
+    assert!((clip_limit(&bare, 0, &plateau(5)) - 0.99 * 1.5).abs() < 1e-12);
     // A level that is held below the top is no clipping.
     let mut held = wave(2.0);
     held[300..320].fill(0.5);
@@ -271,7 +279,7 @@ fn what_fades_away_was_not_switched_off() {
 #[test]
 fn held_or_slow_voltages_are_not_interpolated() {
     let mut rec = specimen::recording(0.3, |_| 1.0);
-    assert_eq!(between(&rec, 2.5e-4), Between::Smooth);
+    assert_eq!(between(&rec, 2.6e-4), Between::Smooth);
     assert_eq!(between(&rec, 2.7e-4), Between::Held);
     rec.metadata.voltage = VoltageKind::Hold;
     assert_eq!(between(&rec, 1e-4), Between::Held);
@@ -354,6 +362,56 @@ fn a_motor_runs_at_the_start_if_it_is_declared_or_seen() {
         "neither current nor speed"
     );
     close(at(StartsFrom::Running, 1.0, false), rated.speed());
+}
+
+/// A jitter from sample to sample goes, over 10 ms; what is left of it is its share of some fifty samples.
+#[test]
+fn a_smoothed_speed_has_lost_its_jitter() {
+    let rec = changed(&specimen::recording(0.3, |_| 1.0), |c, x| {
+        let jitter = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let speed = (0..x.len()).map(|k| 100.0 + jitter(k)).collect();
+        Some(if c == Channel::SPEED { speed } else { x })
+    });
+    let smoothed = smoothed_speed(&rec, T_SAMPLE);
+    assert!(smoothed[100..1400].iter().all(|w| (w - 100.0).abs() < 0.1));
+}
+
+/// The mean of the first 20 ms: a hundred samples of a ramp.
+#[test]
+fn the_speed_at_the_start_is_a_mean_over_a_period() {
+    let mut rec = changed(&specimen::recording(0.3, |_| 1.0), |c, x| {
+        let ramp = (0..x.len()).map(|k| 100.0 + k as f64).collect();
+        Some(if c == Channel::SPEED { ramp } else { x })
+    });
+    rec.metadata.starts_from = StartsFrom::Running;
+    let start = running_at(&rec, rec.currents().expect("three"), &rated());
+    // One sample more or less is rounding.
+    assert!(
+        (start.expect("running") - (100.0 + 49.5)).abs() < 0.6,
+        "{start:?}"
+    );
+}
+
+/// A tenth of the rated current, a twentieth of the rated speed: below both it stands, above one it runs.
+#[test]
+fn an_undeclared_start_runs_with_current_or_speed() {
+    let rated = rated();
+    let runs = |currents: [f64; 2], speed: f64| {
+        let rec = changed(&specimen::recording(0.3, |_| 1.0), |c, x| {
+            let value = match Channel::CURRENTS.iter().position(|i| *i == c) {
+                Some(phase) => [currents[0], currents[1], 9.0][phase] * rated.current,
+                None if c == Channel::SPEED => speed * rated.speed(),
+                None => return Some(x),
+            };
+            Some(vec![value; x.len()])
+        });
+        let mut rec = rec;
+        rec.metadata.starts_from = StartsFrom::Unknown;
+        running_at(&rec, rec.currents().expect("three"), &rated).is_some()
+    };
+    assert!(!runs([0.09, -0.09], 0.04) && !runs([-0.09, 0.0], -0.04));
+    assert!(runs([0.11, 0.0], 0.0) && runs([0.0, -0.11], 0.0));
+    assert!(runs([0.0, 0.0], 0.06) && runs([0.0, 0.0], -0.06));
 }
 
 #[test]

@@ -67,6 +67,27 @@ fn precision_is_what_the_rows_tell_and_the_weak_priors() {
     }
 }
 
+/// Scores of two blocks that differ by `2 s` spread by `2 s^2`; over the precision that is how many rows count as one.
+/// The median of the six nominals decides, not the scale's own.
+#[test]
+fn rows_count_less_where_blocks_disagree() {
+    let study = specimen::scaled_study(0.4, 1.0);
+    let mut trial = trial_of(&study, &[], correlated(600.0, 600.0, 0.0), 1.0);
+    let inflation = [35.0, 70.0, 40.0, 65.0, 45.0, 60.0, 0.0];
+    let scores = inflation.map(|ratio| f64::sqrt(ratio * 600.0 / 2.0));
+    let half = |sign: f64| gram::Block {
+        gram: correlated(300.0, 300.0, 0.0),
+        score: DVector::from_iterator(7, scores.iter().map(|s| sign * s)),
+        sse: 0.0,
+    };
+    trial.fit.blocks = vec![half(1.0), half(-1.0)];
+    // Of 35, 40, 45, 60, 65 and 70 the fourth.
+    close(
+        precision(&study, &trial.fit, 1.0)[(0, 0)],
+        600.0 / 60.0 + 1.0,
+    );
+}
+
 /// Two coordinates by hand: with a precision of `[[a, c], [c, s]]` the scale keeps `s - c^2/a`, and the resistance moves
 /// by `-c/a` with it.
 #[test]
