@@ -253,7 +253,7 @@ fn a_taught_fit_tries_the_rest_where_the_likely_do_not_suffice() {
 
 /// Every form of the one effect, and nothing else.
 #[test]
-fn only_the_effect_that_is_asked_for_is_refitted() {
+fn only_the_effect_that_is_asked_for_is_fitted() {
     let study = specimen::table_study(with("core-loss", 2.0));
     let base = study.trial(&study.beliefs(), Effort::FULL);
     let only = only(&study, &base, "core-loss");
@@ -296,7 +296,7 @@ fn shaft(frequency_hz: f64) -> Screened {
 
 /// The frequency is found from the better of two starts, though the worse comes first.
 #[test]
-fn a_resonance_is_refitted_from_the_best_of_its_starts() {
+fn a_resonance_starts_from_the_best_of_its_points() {
     let study = ringing(25.0);
     let base = specimen::trial_with(&study, &[]);
     let start = Start {
