@@ -102,10 +102,9 @@ fn a_proof_is_silent_below_a_hundredth_of_its_floor() {
             Teacher::Off,
         )
     });
-    let mut squares = 0.0;
-    for k in 0..12 * N_CHANNELS {
-        squares += (predicted[0][k] - predicted[1][k]) * (predicted[0][k] - predicted[1][k]);
-    }
+    let [without, with] = &predicted;
+    let differences = without.iter().zip(with).take(12 * N_CHANNELS);
+    let squares: f64 = differences.map(|(a, b)| (a - b) * (a - b)).sum();
     let mut silent = |share: f64| {
         study.proofs[0].floor.mean = squares / 48.0 / share;
         study.proof_is_silent(&trials[0], &trials[1])
