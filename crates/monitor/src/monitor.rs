@@ -370,10 +370,10 @@ impl Monitor {
         report.point = Some(point);
         report.residuals = Some(residuals);
         report.normalised = Some(self.normalise(&residuals, tau_load.is_some()));
-        if self.is_steady(window, &point) {
+        if !self.is_steady(window, &point) {
+            report.not_judged = report.not_judged.or(Some(NotJudged::Transient));
+        } else if window.invalid_samples == 0 {
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
-        } else if report.not_judged.is_none() {
-            report.not_judged = Some(NotJudged::Transient);
         }
     }
 

@@ -114,3 +114,16 @@ fn a_channel_that_stays_no_number_is_not_judged() {
         assert_not_judged(&current, "current c");
     }
 }
+
+/// A stopped encoder is a finding, but not while another channel shows no numbers.
+#[test]
+fn speed_is_not_doubted_in_a_window_without_numbers() {
+    let stopped = |sample: &mut Sample| sample.speed = SpeedSample::RadPerSecond(0.0);
+    let doubted = reports(stopped);
+    assert!(doubted.iter().any(|r| r.lamps.sensor == Lamp::On));
+    let silent = reports(|sample| {
+        stopped(sample);
+        sample.tau_load = Some(f32::MAX);
+    });
+    assert_not_judged(&silent, "torque");
+}
