@@ -182,7 +182,7 @@ fn friction_and_more_leakage_are_contested() {
     assert!(contested(&[(FRICTION, 1.0)]).is_empty(), "it is not off");
 }
 
-/// Windage in a table, whose speed hardly changes: viscous friction, were it free, would do as well.
+/// A fan in a table, whose speed hardly changes: viscous friction, were it free, would do as well.
 #[test]
 fn a_contest_is_won_by_what_is_proven_and_not_beaten() {
     let excluded = all_but(&["windage"]);
@@ -228,7 +228,7 @@ fn shares(told: &[f64]) -> Vec<f64> {
     shares
 }
 
-/// Windage of a tenth of rated torque and a tachometer that shows one per cent too much: one after the other.
+/// A fan that takes a tenth of rated torque and a tachometer that shows one per cent too much: one after the other.
 #[test]
 fn two_effects_are_found_in_two_rounds() {
     let study = specimen::table_study(|plant| {
