@@ -19,6 +19,9 @@ pub struct EncoderConfig {
     pub max_counts_per_sample: u32,
 }
 
+/// No shaft turns as fast, rad/s; squares and sums stay far from overflow.
+const FASTEST: f32 = 1e6;
+
 /// Counting since the last window end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EncoderState {
@@ -62,7 +65,8 @@ impl EncoderConfig {
     pub fn update(&self, state: &mut EncoderState, speed: SpeedSample) {
         match speed {
             SpeedSample::None => state.missing = state.missing.saturating_add(1),
-            SpeedSample::RadPerSecond(omega) if omega.is_finite() => {
+            // NaN and infinity fail the comparison too.
+            SpeedSample::RadPerSecond(omega) if omega.abs() < FASTEST => {
                 state.sum += omega;
                 state.measured = state.measured.saturating_add(1);
             }

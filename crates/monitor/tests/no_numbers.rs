@@ -127,3 +127,14 @@ fn speed_is_not_doubted_in_a_window_without_numbers() {
     });
     assert_not_judged(&silent, "torque");
 }
+
+#[test]
+fn a_speed_beyond_every_shaft_is_no_speed() {
+    for beyond in [7e28, 1e6, -1e6, f32::INFINITY, f32::NAN] {
+        let reports = reports(|sample| sample.speed = SpeedSample::RadPerSecond(beyond));
+        for report in &reports {
+            assert_eq!(report.not_judged, Some(NotJudged::NoSpeed), "{beyond}");
+            assert_eq!(report.residuals, None, "{beyond}");
+        }
+    }
+}
