@@ -71,15 +71,23 @@ fn remedy(error: &serialport::Error) -> String {
         Io(PermissionDenied) => {
             "your user may not read it; on Linux join the group `dialout` and log in again".into()
         }
-        NoDevice | Io(NotFound) => match serialport::available_ports() {
-            Ok(ports) if !ports.is_empty() => {
-                let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
-                format!("there are: {}", names.join(", "))
+        NoDevice | Io(NotFound) => match port_names() {
+            names if names.is_empty() => {
+                "there is no serial port at all; is the board plugged in?".into()
             }
-            _ => "there is no serial port at all; is the board plugged in?".into(),
+            names => format!("there are: {}", names.join(", ")),
         },
         _ => "is another program using it?".into(),
     }
+}
+
+fn port_names() -> Vec<String> {
+    // Without it, as in a small container, the library panics.
+    if cfg!(target_os = "linux") && !std::path::Path::new("/sys/class/tty").exists() {
+        return Vec::new();
+    }
+    let ports = serialport::available_ports().unwrap_or_default();
+    ports.into_iter().map(|port| port.port_name).collect()
 }
 
 /// Opens the first debug probe.
