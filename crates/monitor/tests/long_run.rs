@@ -3,76 +3,26 @@
 //! Two minutes here; the whole day with
 //! `cargo test --release -p monitor --test long_run -- --ignored --nocapture`.
 
+mod motor_2200_watt;
+
 use std::f64::consts::TAU;
 
-use monitor::{
-    CHANNELS, ComparatorConfig, Converter, FieldCurrent, Frame, Lamp, LoadKind, MAX_EFFECTS,
-    Monitor, MonitorConfig, MonitorState, RawBlock, Report,
-};
+use monitor::{self, CHANNELS, Lamp, Monitor, MonitorState, RawBlock, Report};
 use motor::steady_state::{OperatingPoint, SteadyState};
-use motor::{Mechanics, TParams};
+use motor_2200_watt::{AMPLITUDE, COUNTS_PER_REVOLUTION, FRICTION, FULL_SCALE, PARAMS, config};
 use num_complex::Complex64;
 
 const RATE_HZ: usize = 10_000;
 /// Not a whole number of samples a turn; repeats after 999 turns.
 const SUPPLY_HZ: f64 = 49.95;
 const TABLE_S: usize = 20;
-const AMPLITUDE_VOLT: f64 = 326.6;
-const FRICTION_NM_S: f64 = 0.065;
-const COUNTS_PER_REVOLUTION: f64 = 4096.0;
-const FULL_SCALE: [f64; 2] = [600.0, 60.0];
-const PARAMS: TParams<f64> = TParams {
-    r_s: 3.7,
-    r_r: 2.3,
-    l_ls: 0.0107,
-    l_lr: 0.0107,
-    l_m: 0.234,
-};
 /// As the board takes them.
 const BLOCK: usize = 64;
 const FAULT_GAIN: f64 = 1.1;
 
-fn config() -> MonitorConfig {
-    let [volt, ampere] = FULL_SCALE.map(|x| x as f32);
-    MonitorConfig {
-        t_sample: 1.0 / RATE_HZ as f32,
-        converter: Converter::bipolar(volt, ampere, 12),
-        encoder_counts_per_revolution: COUNTS_PER_REVOLUTION as f32,
-        params: TParams {
-            r_s: PARAMS.r_s as f32,
-            r_r: PARAMS.r_r as f32,
-            l_ls: PARAMS.l_ls as f32,
-            l_lr: PARAMS.l_lr as f32,
-            l_m: PARAMS.l_m as f32,
-        },
-        effects: [None; MAX_EFFECTS],
-        channel_gain: [1.0; CHANNELS],
-        mechanics: Mechanics {
-            n_p: 2.0,
-            inertia: 0.015,
-            friction: 0.0,
-            load_friction: FRICTION_NM_S as f32,
-        },
-        rated_voltage: AMPLITUDE_VOLT as f32,
-        rated_current: 7.07,
-        rated_omega: (TAU * 50.0) as f32,
-        rated_torque: 14.6,
-        frame: Frame::RotorFlux,
-        field: FieldCurrent::Live,
-        load: LoadKind::Friction,
-        thresholds: [0.006, 0.05, 0.04, 0.003],
-        window_cycles: 5,
-        comparator: ComparatorConfig {
-            persistence: 3,
-            hysteresis: 0.8,
-        },
-        healthy: None,
-    }
-}
-
 fn steady_state() -> OperatingPoint<f64> {
-    let supply = Complex64::new(AMPLITUDE_VOLT, 0.0);
-    SteadyState::new(&PARAMS, 2.0, supply, TAU * SUPPLY_HZ).at_friction(FRICTION_NM_S)
+    let supply = Complex64::new(AMPLITUDE, 0.0);
+    SteadyState::new(&PARAMS, 2.0, supply, TAU * SUPPLY_HZ).at_friction(FRICTION)
 }
 
 /// The codes of 20 s in closed form, which then come again; `gain_a` is that of the first current sensor.
@@ -190,7 +140,7 @@ impl Mean {
         let speed = window.omega_mech.unwrap_or(f32::NAN);
         let (u, i) = (window.u_s.positive, window.i_s.positive);
         let shares = [
-            u.norm() / AMPLITUDE_VOLT as f32,
+            u.norm() / AMPLITUDE as f32,
             i.norm() / 7.07,
             speed / 157.0,
             window.omega_sync / 314.0,

@@ -1,52 +1,14 @@
 //! Samples that are no numbers, for as long as they come, are not judged: they are no dead sensor and no fault.
 
+mod motor_2200_watt;
+
 use std::f32::consts::TAU;
 
-use monitor::{
-    Abc, ComparatorConfig, Converter, FieldCurrent, Frame, Lamp, LoadKind, Monitor, MonitorConfig,
-    MonitorState, NotJudged, Report, Sample, SpeedSample,
-};
-use motor::{Mechanics, TParams};
+use monitor::{self, Abc, Lamp, Monitor, MonitorState, NotJudged, Report, Sample, SpeedSample};
+use motor_2200_watt::{AMPLITUDE, OMEGA_SYNC, config};
 
 const T_SAMPLE: f32 = 1e-4;
-const OMEGA: f32 = TAU * 50.0;
-
-fn config() -> MonitorConfig {
-    MonitorConfig {
-        t_sample: T_SAMPLE,
-        converter: Converter::bipolar(600.0, 20.0, 12),
-        encoder_counts_per_revolution: 4096.0,
-        params: TParams {
-            r_s: 3.7,
-            r_r: 2.3,
-            l_ls: 0.0107,
-            l_lr: 0.0107,
-            l_m: 0.234,
-        },
-        effects: Default::default(),
-        channel_gain: [1.0; 6],
-        mechanics: Mechanics {
-            n_p: 2.0,
-            inertia: 0.015,
-            friction: 0.0,
-            load_friction: 0.065,
-        },
-        rated_voltage: 326.6,
-        rated_current: 7.07,
-        rated_omega: OMEGA,
-        rated_torque: 14.6,
-        frame: Frame::RotorFlux,
-        field: FieldCurrent::Live,
-        load: LoadKind::Friction,
-        thresholds: [0.006, 0.05, 0.04, 0.003],
-        window_cycles: 5,
-        comparator: ComparatorConfig {
-            persistence: 3,
-            hysteresis: 0.8,
-        },
-        healthy: None,
-    }
-}
+const OMEGA: f32 = OMEGA_SYNC as f32;
 
 fn sine(amplitude: f32, angle: f32) -> Abc {
     let phase = |turn: f32| amplitude * (angle - turn * TAU / 3.0).sin();
@@ -60,7 +22,7 @@ fn sine(amplitude: f32, angle: f32) -> Abc {
 fn sound(k: usize) -> Sample {
     let angle = (OMEGA * T_SAMPLE * k as f32) % TAU;
     Sample {
-        u_s_abc: Some(sine(326.6, angle)),
+        u_s_abc: Some(sine(AMPLITUDE as f32, angle)),
         i_s_abc: Some(sine(5.0, angle - 0.7)),
         speed: SpeedSample::RadPerSecond(152.0),
         tau_load: None,

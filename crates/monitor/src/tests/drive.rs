@@ -2,65 +2,15 @@
 
 use std::f64::consts::TAU;
 
+use motor::TParams;
 use motor::steady_state::{OperatingPoint, SteadyState};
-use motor::{Mechanics, TParams};
 use num_complex::Complex64;
 
-use crate::{
-    Abc, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor, MonitorConfig,
-    MonitorState, Report, Sample, SpeedSample,
-};
+use super::motor_2200_watt::FRICTION;
+pub use super::motor_2200_watt::{AMPLITUDE, OMEGA_SYNC, PARAMS, config};
+use crate::{Abc, Monitor, MonitorConfig, MonitorState, Report, Sample, SpeedSample};
 
 pub const T_SAMPLE: f64 = 1e-4;
-pub const OMEGA_SYNC: f64 = TAU * 50.0;
-pub const AMPLITUDE: f64 = 326.6;
-const FRICTION: f64 = 0.065;
-
-pub const PARAMS: TParams<f64> = TParams {
-    r_s: 3.7,
-    r_r: 2.3,
-    l_ls: 0.0107,
-    l_lr: 0.0107,
-    l_m: 0.234,
-};
-
-pub fn config() -> MonitorConfig {
-    MonitorConfig {
-        t_sample: T_SAMPLE as f32,
-        converter: Converter::bipolar(600.0, 60.0, 12),
-        encoder_counts_per_revolution: 4096.0,
-        params: TParams {
-            r_s: 3.7,
-            r_r: 2.3,
-            l_ls: 0.0107,
-            l_lr: 0.0107,
-            l_m: 0.234,
-        },
-        effects: Default::default(),
-        channel_gain: [1.0; 6],
-        mechanics: Mechanics {
-            n_p: 2.0,
-            inertia: 0.015,
-            friction: 0.0,
-            load_friction: FRICTION as f32,
-        },
-        rated_voltage: AMPLITUDE as f32,
-        rated_current: 7.07,
-        rated_omega: OMEGA_SYNC as f32,
-        rated_torque: 14.6,
-        frame: Frame::RotorFlux,
-        field: FieldCurrent::Live,
-        load: LoadKind::Friction,
-        thresholds: [0.006, 0.05, 0.04, 0.003],
-        window_cycles: 5,
-        comparator: ComparatorConfig {
-            persistence: 3,
-            hysteresis: 0.8,
-        },
-        healthy: None,
-    }
-}
-
 /// Steady state at the declared friction.
 pub fn point_of(params: &TParams<f64>) -> OperatingPoint<f64> {
     let supply = Complex64::new(AMPLITUDE, 0.0);

@@ -4,3 +4,7 @@ mod calibrated;
 mod codes;
 mod drive;
 mod judgement;
+#[path = "../../tests/motor_2200_watt/mod.rs"]
+pub mod motor_2200_watt;
+
+use crate as monitor;

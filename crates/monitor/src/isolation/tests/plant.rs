@@ -1,23 +1,18 @@
 //! A motor in steady state seen through six channels, and a monitor that believes in the healthy one.
 
+use motor::TParams;
 use motor::steady_state::{OperatingPoint, SteadyState};
-use motor::{Mechanics, TParams};
 use num_complex::{Complex32, Complex64};
 
-use crate::config::{LoadKind, MonitorConfig};
-use crate::convert::Converter;
+use crate::config::MonitorConfig;
 use crate::frames::Sequence;
 use crate::health::Phase;
 use crate::isolation::{Healthy, ROWS, Uncertainty};
-use crate::operating_point::Frame;
 use crate::phasor::CHANNELS;
-use crate::residuals::FieldCurrent;
-use crate::threshold::ComparatorConfig;
+pub use crate::tests::motor_2200_watt::OMEGA_SYNC;
+use crate::tests::motor_2200_watt::{self, AMPLITUDE, FRICTION, PARAMS};
 use crate::window::Window;
 use crate::{Evidence, Monitor};
-
-pub const OMEGA_SYNC: f64 = std::f64::consts::TAU * 50.0;
-const AMPLITUDE: f64 = 326.6;
 
 /// What stands between two perfect descriptions of one motor.
 #[derive(Clone, Copy, Debug)]
@@ -38,14 +33,8 @@ impl Plant {
     /// A 2.2 kW motor at two thirds of its torque.
     pub fn healthy() -> Self {
         Plant {
-            params: TParams {
-                r_s: 3.7,
-                r_r: 2.3,
-                l_ls: 0.0107,
-                l_lr: 0.0107,
-                l_m: 0.234,
-            },
-            friction: 0.065,
+            params: PARAMS,
+            friction: FRICTION,
             gains: [1.0; CHANNELS],
             speed_gain: 1.0,
             series: [0.0; 3],
@@ -152,51 +141,9 @@ pub fn monitor() -> Monitor {
 }
 
 fn config() -> MonitorConfig {
-    let plant = Plant::healthy();
-    let p = plant.params.into_single();
     MonitorConfig {
-        t_sample: 1e-4,
-        converter: Converter::bipolar(600.0, 60.0, 12),
-        encoder_counts_per_revolution: 4096.0,
-        params: p,
-        effects: Default::default(),
-        channel_gain: [1.0; CHANNELS],
-        mechanics: Mechanics {
-            n_p: 2.0,
-            inertia: 0.015,
-            friction: plant.friction as f32,
-            load_friction: 0.0,
-        },
-        rated_voltage: AMPLITUDE as f32,
-        rated_current: 7.07,
-        rated_omega: OMEGA_SYNC as f32,
-        rated_torque: 14.6,
-        frame: Frame::RotorFlux,
-        field: FieldCurrent::Live,
-        load: LoadKind::Friction,
-        thresholds: [0.006, 0.05, 0.04, 0.003],
-        window_cycles: 5,
-        comparator: ComparatorConfig {
-            persistence: 3,
-            hysteresis: 0.8,
-        },
         healthy: Some(statistics()),
-    }
-}
-
-trait IntoSingle {
-    fn into_single(self) -> TParams<f32>;
-}
-
-impl IntoSingle for TParams<f64> {
-    fn into_single(self) -> TParams<f32> {
-        TParams {
-            r_s: self.r_s as f32,
-            r_r: self.r_r as f32,
-            l_ls: self.l_ls as f32,
-            l_lr: self.l_lr as f32,
-            l_m: self.l_m as f32,
-        }
+        ..motor_2200_watt::config()
     }
 }
 
