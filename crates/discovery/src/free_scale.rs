@@ -301,6 +301,7 @@ impl<'a> Readings<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::specimen;
     use recording::{Channel, Metadata, UNITS};
     use std::f64::consts::TAU;
 
@@ -377,5 +378,40 @@ mod tests {
         let rest = rec.slice(0..2000).expect("inside");
         let refused = FreeScale::start(&[&rest], &RATED).expect_err("it stands");
         assert!(refused.reason.contains("nowhere runs"), "{refused:?}");
+    }
+
+    /// A reading that falls while nothing is supplied is a shaft that coasts, and no offset.
+    #[test]
+    fn a_coasting_shaft_is_not_at_rest() {
+        let rec = recording(1.0, &|x| 0.3 * x);
+        let coasting = |k: usize, x: f64| if k < 2500 { 20.0 - k as f64 / 500.0 } else { x };
+        let speed = rec.speed().expect("a speed").iter().enumerate();
+        let shown = speed.map(|(k, x)| coasting(k, *x)).collect();
+        let rec = rec.with_channel(Channel::SPEED, shown).expect("as long");
+        let found = FreeScale::start(&[&rec], &RATED).expect("it runs");
+        assert_eq!((found.source, found.at_rest), (AtRest::Assumed, 0.0));
+    }
+
+    /// Counts of 0.1 rad/s each, 10 of them at zero speed by the data sheet; at rest 2 rad/s less than that.
+    #[test]
+    fn offset_and_error_are_reported_in_the_unit_of_the_column() {
+        let study = specimen::scaled_study(0.4, 0.4);
+        let trial = specimen::trial_with(&study, &[]);
+        let mut unit = UNITS[0];
+        unit.factor = 0.1;
+        let scale = FreeScale {
+            at_rest: -2.0,
+            at_rest_error: 0.3,
+            unknown: UnknownScale {
+                unit,
+                offset: Some(10.0),
+            },
+            ..study.speed_scale.expect("free")
+        };
+        let uncertainty = Uncertainty::of(&study, &trial);
+        let report = scale.report(&trial.fit.hypothesis, &study.belief, &uncertainty);
+        assert!((report.offset - -10.0).abs() < 1e-12, "{report:?}");
+        assert!((report.offset_std_error - 3.0).abs() < 1e-12, "{report:?}");
+        assert_eq!(report.at_rest_rad_s, -2.0);
     }
 }
