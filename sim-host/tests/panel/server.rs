@@ -84,9 +84,9 @@ impl Server {
 
     /// Presses Ctrl-C; its exit code.
     pub fn interrupt(mut self) -> Option<i32> {
-        let pid = self.child.id().to_string();
-        Command::new("kill")
-            .args(["-INT", &pid])
+        // The shell's own `kill`: a minimal Debian has no program of that name.
+        Command::new("sh")
+            .args(["-c", &format!("kill -INT {}", self.child.id())])
             .status()
             .expect("a signal");
         self.child.wait().expect("it ends").code()
