@@ -11,6 +11,7 @@ pub use super::motor_2200_watt::{AMPLITUDE, OMEGA_SYNC, PARAMS, config};
 use crate::{Abc, Monitor, MonitorConfig, MonitorState, Report, Sample, SpeedSample};
 
 pub const T_SAMPLE: f64 = 1e-4;
+
 /// Steady state at the declared friction.
 pub fn point_of(params: &TParams<f64>) -> OperatingPoint<f64> {
     let supply = Complex64::new(AMPLITUDE, 0.0);
