@@ -1,12 +1,12 @@
 //! One column of a Parquet file as numbers.
 
+use super::ending::EndingFile;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
-use std::fs::File;
 
 /// How the stored values of a column become numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +79,7 @@ fn seconds(unit: TimeUnit) -> f64 {
 /// # Errors
 /// A damaged file, or one that holds another number of values than it declares.
 pub(super) fn read(
-    reader: &SerializedFileReader<File>,
+    reader: &SerializedFileReader<EndingFile>,
     index: usize,
     kind: Kind,
     rows: u64,

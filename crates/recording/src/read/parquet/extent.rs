@@ -1,15 +1,18 @@
 //! Where the columns of a Parquet file stand: the library takes the numbers of the footer for granted.
 
+use super::ending::EndingFile;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
-use std::fs::File;
 
 /// Refuses columns that reach beyond the file.
 ///
 /// # Errors
 /// A place or a length that is negative or beyond the end.
-pub(super) fn check(reader: &SerializedFileReader<File>, bytes: u64) -> Result<(), ParquetError> {
+pub(super) fn check(
+    reader: &SerializedFileReader<EndingFile>,
+    bytes: u64,
+) -> Result<(), ParquetError> {
     let groups = reader.metadata().row_groups();
     let chunks = groups.iter().flat_map(|group| group.columns());
     match chunks.into_iter().find(|chunk| !is_inside(chunk, bytes)) {

@@ -1,6 +1,7 @@
 //! Parquet files: flat columns of numbers, in every encoding and compression of the format but brotli.
 
 mod column;
+mod ending;
 mod extent;
 
 use super::columns::{Columns, check_size};
@@ -9,6 +10,7 @@ use super::table_file::TableFile;
 use crate::contained::contained;
 use crate::error::Error;
 use column::Kind;
+use ending::EndingFile;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use std::fs::File;
@@ -31,7 +33,8 @@ pub(super) fn open(path: &Path) -> Result<Box<dyn TableFile>, Error> {
 fn read(path: &Path, name: &str) -> Result<Box<dyn TableFile>, Error> {
     let file = File::open(path).map_err(|error| Error::io(path, &error))?;
     let bytes = file.metadata().map_or(0, |metadata| metadata.len());
-    let reader = SerializedFileReader::new(file).map_err(|error| damaged(name, &error))?;
+    let reader =
+        SerializedFileReader::new(EndingFile(file)).map_err(|error| damaged(name, &error))?;
     let (used, header) = header(name, &reader)?;
     let rows = reader.metadata().file_metadata().num_rows();
     let rows = u64::try_from(rows).map_err(|_| {
@@ -50,7 +53,7 @@ fn read(path: &Path, name: &str) -> Result<Box<dyn TableFile>, Error> {
 
 type Used = Vec<(usize, Kind)>;
 
-fn header(name: &str, reader: &SerializedFileReader<File>) -> Result<(Used, Header), Error> {
+fn header(name: &str, reader: &SerializedFileReader<EndingFile>) -> Result<(Used, Header), Error> {
     let schema = reader.metadata().file_metadata().schema_descr();
     let (mut used, mut names, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     for (index, column) in schema.columns().iter().enumerate() {
