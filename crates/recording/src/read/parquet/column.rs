@@ -1,12 +1,14 @@
 //! One column of a Parquet file as numbers.
 
-use super::ending::EndingFile;
+use super::paged_file::PagedFile;
+use super::pages::Pages;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::metadata::ParquetMetaData;
 use parquet::schema::types::ColumnDescriptor;
+use std::sync::Arc;
 
 /// How the stored values of a column become numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,22 +76,24 @@ fn seconds(unit: TimeUnit) -> f64 {
     }
 }
 
-/// Reads `rows` values of a column; NaN where there is none.
+/// Reads the values of a column, one a row; NaN where there is none.
 ///
 /// # Errors
 /// A damaged file, or one that holds another number of values than it declares.
 pub(super) fn read(
-    reader: &SerializedFileReader<EndingFile>,
+    file: &Arc<PagedFile>,
+    metadata: &ParquetMetaData,
     index: usize,
     kind: Kind,
-    rows: u64,
 ) -> Result<Vec<f64>, ParquetError> {
+    let rows = metadata.file_metadata().num_rows().unsigned_abs();
     let mut target = Target::new(kind);
-    for group in 0..reader.num_row_groups() {
-        let group = reader.get_row_group(group)?;
-        let column = group.metadata().column(index).column_descr_ptr();
-        target.level = column.max_def_level();
-        target.take(group.get_column_reader(index)?, rows)?;
+    for group in metadata.row_groups() {
+        let column = group.column(index);
+        target.level = column.column_descr().max_def_level();
+        let pages = Pages::new(file, column, rows)?;
+        let reader = get_column_reader(column.column_descr_ptr(), Box::new(pages));
+        target.take(reader, rows)?;
     }
     if target.values.len() as u64 == rows {
         return Ok(target.values);

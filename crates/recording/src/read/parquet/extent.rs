@@ -1,19 +1,14 @@
 //! Where the columns of a Parquet file stand: the library takes the numbers of the footer for granted.
 
-use super::ending::EndingFile;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::ColumnChunkMetaData;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 
 /// Refuses columns that reach beyond the file.
 ///
 /// # Errors
 /// A place or a length that is negative or beyond the end.
-pub(super) fn check(
-    reader: &SerializedFileReader<EndingFile>,
-    bytes: u64,
-) -> Result<(), ParquetError> {
-    let groups = reader.metadata().row_groups();
+pub(super) fn check(metadata: &ParquetMetaData, bytes: u64) -> Result<(), ParquetError> {
+    let groups = metadata.row_groups();
     let chunks = groups.iter().flat_map(|group| group.columns());
     match chunks.into_iter().find(|chunk| !is_inside(chunk, bytes)) {
         None => Ok(()),

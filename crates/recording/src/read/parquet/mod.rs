@@ -1,8 +1,9 @@
 //! Parquet files: flat columns of numbers, in every encoding and compression of the format but brotli.
 
 mod column;
-mod ending;
 mod extent;
+mod paged_file;
+mod pages;
 
 use super::columns::{Columns, check_size};
 use super::header::{Header, shown};
@@ -10,11 +11,12 @@ use super::table_file::TableFile;
 use crate::contained::contained;
 use crate::error::Error;
 use column::Kind;
-use ending::EndingFile;
+use paged_file::PagedFile;
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use std::fs::File;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Whether a file begins as Parquet files do.
 pub(super) fn is(head: &[u8]) -> bool {
@@ -33,18 +35,19 @@ pub(super) fn open(path: &Path) -> Result<Box<dyn TableFile>, Error> {
 fn read(path: &Path, name: &str) -> Result<Box<dyn TableFile>, Error> {
     let file = File::open(path).map_err(|error| Error::io(path, &error))?;
     let bytes = file.metadata().map_or(0, |metadata| metadata.len());
-    let reader =
-        SerializedFileReader::new(EndingFile(file)).map_err(|error| damaged(name, &error))?;
-    let (used, header) = header(name, &reader)?;
-    let rows = reader.metadata().file_metadata().num_rows();
+    let metadata = ParquetMetaDataReader::new().parse_and_finish(&file);
+    let metadata = metadata.map_err(|error| damaged(name, &error))?;
+    let (used, header) = header(name, &metadata)?;
+    let rows = metadata.file_metadata().num_rows();
     let rows = u64::try_from(rows).map_err(|_| {
         let error = ParquetError::General(format!("it declares {rows} rows"));
         damaged(name, &error)
     })?;
     check_size(name, rows, used.len())?;
-    extent::check(&reader, bytes).map_err(|error| damaged(name, &error))?;
+    extent::check(&metadata, bytes).map_err(|error| damaged(name, &error))?;
+    let file = Arc::new(PagedFile::new(file, rows));
     let columns = used.iter().map(|(index, kind)| {
-        let column = column::read(&reader, *index, *kind, rows);
+        let column = column::read(&file, &metadata, *index, *kind);
         column.map_err(|error| damaged(name, &error))
     });
     let columns = columns.collect::<Result<_, _>>()?;
@@ -53,8 +56,8 @@ fn read(path: &Path, name: &str) -> Result<Box<dyn TableFile>, Error> {
 
 type Used = Vec<(usize, Kind)>;
 
-fn header(name: &str, reader: &SerializedFileReader<EndingFile>) -> Result<(Used, Header), Error> {
-    let schema = reader.metadata().file_metadata().schema_descr();
+fn header(name: &str, metadata: &ParquetMetaData) -> Result<(Used, Header), Error> {
+    let schema = metadata.file_metadata().schema_descr();
     let (mut used, mut names, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     for (index, column) in schema.columns().iter().enumerate() {
         let path = column.path().string();

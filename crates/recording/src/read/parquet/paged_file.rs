@@ -1,0 +1,124 @@
+//! A file that is read by pages: its end is an error, and so is a page that declares more than its file's rows can fill.
+//!
+//! The library skips what is not there as often as the file says so, and makes room for what a page declares before it looks.
+
+use bytes::Bytes;
+use parquet::errors::Result;
+use parquet::file::reader::{ChunkReader, Length};
+use std::fs::File;
+use std::io::{BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
+
+/// A Parquet file whose readers fail at its end instead of reading nothing, without end.
+pub(super) struct PagedFile {
+    file: File,
+    most_page_bytes: u64,
+}
+
+/// What reads the header of a page.
+pub(super) struct PageHeader {
+    input: BufReader<File>,
+    most_page_bytes: u64,
+    is_checked: bool,
+}
+
+/// Room of a page for headers, levels and padding, and for each row; numbers take 8 bytes, their levels and encodings little beside them.
+const PAGE_BYTES: (u64, u64) = (1 << 16, 32);
+
+impl PagedFile {
+    /// `rows`: of the whole file.
+    pub fn new(file: File, rows: u64) -> PagedFile {
+        let (room, row) = PAGE_BYTES;
+        PagedFile {
+            file,
+            most_page_bytes: rows.saturating_mul(row).saturating_add(room),
+        }
+    }
+}
+
+impl Length for PagedFile {
+    fn len(&self) -> u64 {
+        self.file.len()
+    }
+}
+
+impl ChunkReader for PagedFile {
+    type T = PageHeader;
+
+    fn get_read(&self, start: u64) -> Result<PageHeader> {
+        let mut file = self.file.try_clone()?;
+        file.seek(SeekFrom::Start(start))?;
+        Ok(PageHeader {
+            input: BufReader::new(file),
+            most_page_bytes: self.most_page_bytes,
+            is_checked: false,
+        })
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
+        self.file.get_bytes(start, length)
+    }
+}
+
+impl Read for PageHeader {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if !self.is_checked {
+            self.is_checked = true;
+            check(
+                std::io::BufRead::fill_buf(&mut self.input)?,
+                self.most_page_bytes,
+            )?;
+        }
+        match self.input.read(buffer)? {
+            0 if !buffer.is_empty() => Err(ErrorKind::UnexpectedEof.into()),
+            read => Ok(read),
+        }
+    }
+}
+
+/// Refuses a page of more than `most` bytes; what is no header is left to the library.
+fn check(header: &[u8], most: u64) -> std::io::Result<()> {
+    match uncompressed_page_size(header) {
+        Some(bytes) if bytes > most => {
+            let message = format!("a page declares {bytes} bytes, its rows fill {most} at most");
+            Err(Error::new(ErrorKind::InvalidData, message))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The second of a header's fields (`PageHeader` in parquet.thrift), in Thrift's compact protocol.
+fn uncompressed_page_size(header: &[u8]) -> Option<u64> {
+    let kind_of_page = header.get(1..)?;
+    let size = after_varint(kind_of_page)?.1.get(1..)?;
+    Some(after_varint(size)?.0 >> 1)
+}
+
+/// A number of seven bits a byte, and what follows it.
+fn after_varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
+    let last = bytes.iter().take(10).position(|byte| byte & 0x80 == 0)?;
+    let (number, rest) = bytes.split_at(last + 1);
+    let digits = number.iter().rev();
+    let number = digits.fold(0u64, |sum, byte| sum << 7 | u64::from(byte & 0x7F));
+    Some((number, rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{check, uncompressed_page_size};
+
+    /// A dictionary page of 300 bytes: fields 1 and 2, zigzag varints.
+    const HEADER: [u8; 6] = [0x15, 0x04, 0x15, 0xD8, 0x04, 0x15];
+
+    #[test]
+    fn a_header_tells_the_size_of_its_page() {
+        assert_eq!(uncompressed_page_size(&HEADER), Some(300));
+        assert_eq!(uncompressed_page_size(&HEADER[..4]), None);
+    }
+
+    #[test]
+    fn a_page_larger_than_its_rows_is_refused() {
+        assert!(check(&HEADER, 300).is_ok());
+        assert!(check(&HEADER, 299).is_err());
+        assert!(check(&[], 0).is_ok());
+    }
+}
