@@ -93,6 +93,20 @@ fn damaged_files_are_refused() {
     assert_refused("x.parquet", &zeroed, 2, &damaged);
 }
 
+/// The library believes them: half a minute, and gigabytes of memory.
+#[test]
+fn what_a_page_declares_is_checked_before_it_is_believed() {
+    let findings = [
+        ("a-list-longer-than-the-file", "unexpected end of file"),
+        ("a-dictionary-larger-than-its-page", "and can hold 20"),
+    ];
+    for (finding, why) in findings {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/findings/parquet");
+        let damaged = std::fs::read(format!("{folder}/{finding}")).unwrap();
+        assert_refused("x.parquet", &damaged, 2, &["truncated or damaged", why]);
+    }
+}
+
 /// The library panics on the first, and on what `fuzz/findings/parquet` holds.
 #[test]
 fn lengths_that_lie_are_a_damaged_file() {
