@@ -6,7 +6,7 @@ use bytes::Bytes;
 use parquet::errors::Result;
 use parquet::file::reader::{ChunkReader, Length};
 use std::fs::File;
-use std::io::{BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 
 /// A Parquet file whose readers fail at its end instead of reading nothing, without end.
 pub(super) struct PagedFile {
@@ -21,16 +21,19 @@ pub(super) struct PageHeader {
     is_checked: bool,
 }
 
-/// Room of a page for headers, levels and padding, and for each row; numbers take 8 bytes, their levels and encodings little beside them.
-const PAGE_BYTES: (u64, u64) = (1 << 16, 32);
+/// Bytes that a page may take for each row: a number takes 8, its level and the worst encoding less than as much again each.
+const MOST_ROW_BYTES: u64 = 32;
+
+/// Bytes that a page of few rows may take: encodings fill up their last block.
+const MOST_SMALL_PAGE_BYTES: u64 = 1 << 16;
 
 impl PagedFile {
     /// `rows`: of the whole file.
     pub fn new(file: File, rows: u64) -> PagedFile {
-        let (room, row) = PAGE_BYTES;
+        let most_page_bytes = rows.saturating_mul(MOST_ROW_BYTES);
         PagedFile {
             file,
-            most_page_bytes: rows.saturating_mul(row).saturating_add(room),
+            most_page_bytes: most_page_bytes.saturating_add(MOST_SMALL_PAGE_BYTES),
         }
     }
 }
@@ -63,10 +66,7 @@ impl Read for PageHeader {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         if !self.is_checked {
             self.is_checked = true;
-            check(
-                std::io::BufRead::fill_buf(&mut self.input)?,
-                self.most_page_bytes,
-            )?;
+            check(self.input.fill_buf()?, self.most_page_bytes)?;
         }
         match self.input.read(buffer)? {
             0 if !buffer.is_empty() => Err(ErrorKind::UnexpectedEof.into()),
