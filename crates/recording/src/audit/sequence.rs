@@ -8,6 +8,9 @@ pub(super) fn a() -> Complex64 {
     Complex64::cis(TAU / 3.0)
 }
 
+/// Counter over main sequence below which the order of the phases is certain: one phase lost leaves 0.3 to 1.
+const CLEAR: f64 = 0.5;
+
 /// Zero, positive and negative sequence, amplitude-invariant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sequence {
@@ -30,6 +33,12 @@ impl Sequence {
     /// Whether the phases follow each other as a, b, c.
     pub fn is_positive(&self) -> bool {
         self.positive.norm() >= self.negative.norm()
+    }
+
+    /// The same, where one sequence certainly dominates: with an open phase both are alike, and neither order is meant.
+    pub fn clear_order(&self) -> Option<bool> {
+        let clear = self.counter().norm() < CLEAR * self.main().norm();
+        clear.then(|| self.is_positive())
     }
 
     /// The greater one of positive and negative sequence.
@@ -68,6 +77,16 @@ mod tests {
         assert!(abc.imbalance() < 1e-12 && abc.is_positive());
         let acb = Sequence::of([x, x * a(), x * a().conj()]);
         assert!((acb.negative - x).norm() < 1e-12 * 325.0 && !acb.is_positive());
+    }
+
+    /// Two phases in series between two lines, the third open: both sequences are alike.
+    #[test]
+    fn an_open_phase_has_no_order() {
+        let x = Complex64::from_polar(5.0, 0.4);
+        let open = Sequence::of([x, Complex64::new(0.0, 0.0), -x]);
+        assert_eq!(open.clear_order(), None);
+        let balanced = Sequence::of([x, x * a(), x * a().conj()]);
+        assert_eq!(balanced.clear_order(), Some(false));
     }
 
     /// One inverted channel: V1 = 1/3, V2 = V0 = 2/3 of the amplitude.

@@ -1,6 +1,6 @@
 //! Polarity, phase order, and channels of one phase taken for another.
 
-use super::blocks::Three;
+use super::blocks::{Block, Three};
 use super::context::Context;
 use super::finding::{Code, Finding, names};
 use super::sequence::Sequence;
@@ -27,7 +27,38 @@ pub(super) fn check(context: &mut Context<'_>) -> Vec<Finding> {
     if findings.is_empty() {
         findings.extend(order(context));
     }
+    if findings.is_empty() {
+        findings.extend(inverted_torque(context));
+    }
     findings
+}
+
+/// Active over apparent power from which on a motor certainly drives its load.
+const MOTORING_POWER: f64 = 0.3;
+
+/// A torque that would drive the shaft while the motor takes the power of a load: most steady blocks say so.
+fn inverted_torque(context: &Context<'_>) -> Option<Finding> {
+    let sound = [Channel::VOLTAGES, Channel::CURRENTS].map(|three| context.sound(three));
+    let torque = context.recording.torque().filter(|_| sound == [true; 2])?;
+    let drives = |block: &Block| {
+        let power = block.power()?;
+        let torque = super::blocks::mean(&torque[block.range.clone()]);
+        let loaded = power.re > MOTORING_POWER * power.norm();
+        (loaded && torque != 0.0).then_some(torque * block.speed? < 0.0)
+    };
+    let settled = context.settled(Channel::CURRENTS);
+    let votes: Vec<bool> = settled
+        .iter()
+        .filter_map(|(block, _)| drives(block))
+        .collect();
+    most(&votes).then(|| {
+        Finding::new(Code::Polarity, Channel::TORQUE, 180.0, "degrees")
+            .detail(
+                "torque has the other sign than speed while the motor takes active power: a load's torque has the sign of the \
+                 speed that it brakes. Add --scale torque=-1.",
+            )
+            .refusing()
+    })
 }
 
 /// One of three channels inverted: inverting it back balances the set.
@@ -92,8 +123,8 @@ fn order(context: &mut Context<'_>) -> Vec<Finding> {
 fn opposed(context: &Context<'_>) -> bool {
     let alive = context.alive(Channel::CURRENTS);
     let differ = alive.iter().filter_map(|(block, currents)| {
-        let voltages = block.voltages.as_ref()?.sequence();
-        Some(voltages.is_positive() != currents.sequence().is_positive())
+        let voltages = block.voltages.as_ref()?.sequence().clear_order()?;
+        Some(voltages != currents.sequence().clear_order()?)
     });
     most(&differ.collect::<Vec<bool>>())
 }
@@ -163,7 +194,7 @@ fn lag(voltages: &Three, currents: [Complex64; 3]) -> Option<f64> {
 }
 
 /// Faster than its field: a load that drives the motor may turn the angle beyond 90 degrees.
-fn is_driven(context: &Context<'_>, block: &super::blocks::Block) -> bool {
+fn is_driven(context: &Context<'_>, block: &Block) -> bool {
     let pole_pairs = context.expectation.pole_pairs.map_or(1.0, f64::from);
     block
         .speed
@@ -245,17 +276,14 @@ fn rotation(context: &Context<'_>) -> Option<Finding> {
     let sets = [Channel::VOLTAGES, Channel::CURRENTS];
     let three = sets.into_iter().find(|three| context.sound(*three))?;
     let settled = context.settled(three);
-    let positive: Vec<bool> = settled
+    let ordered: Vec<(&Block, bool)> = settled
         .iter()
-        .map(|(_, three)| three.sequence().is_positive())
+        .filter_map(|(block, three)| Some((*block, three.sequence().clear_order()?)))
         .collect();
-    let forward = settled.iter().map(|(block, _)| {
-        let turning = block.speed? / block.omega;
-        (turning.abs() > TURNING).then_some(turning > 0.0)
-    });
-    let against: Vec<bool> = forward
-        .zip(&positive)
-        .filter_map(|(forward, positive)| Some(forward? != *positive))
+    let positive: Vec<bool> = ordered.iter().map(|(_, positive)| *positive).collect();
+    let against: Vec<bool> = ordered
+        .iter()
+        .filter_map(|(block, positive)| Some(forward(block)? != *positive))
         .collect();
     match (against.is_empty(), most(&positive)) {
         (false, true) => most(&against).then(inverted_speed),
@@ -265,6 +293,12 @@ fn rotation(context: &Context<'_>) -> Option<Finding> {
             (!positive.is_empty() && !positive.contains(&true)).then(|| phase_order(context, false))
         }
     }
+}
+
+/// Whether the shaft turns forwards; `None` at rest.
+fn forward(block: &Block) -> Option<bool> {
+    let turning = block.speed? / block.omega;
+    (turning.abs() > TURNING).then_some(turning > 0.0)
 }
 
 fn inverted_speed() -> Finding {
