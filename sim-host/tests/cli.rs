@@ -168,12 +168,54 @@ fn peer_recording_without_a_fault_is_healthy() {
 #[test]
 fn three_currents_need_no_motor_file() {
     let output = drivemon(&["monitor", "tests/data/itsc_075hp/sc_a2_b0_c0_002.csv.gz"]);
-    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.status.code(), Some(3), "no motor was judged");
     let said = stdout(&output);
     assert!(
         said.contains("voltages are not recorded") && said.contains("negative over positive"),
         "{said}"
     );
+}
+
+/// Where no window can be judged nothing is known of the motor: neither healthy (0) nor faulty (1).
+#[test]
+fn nothing_judged_is_no_answer() {
+    let folder = scratch("nothing-judged");
+    let motor = Path::new(PROJECT).join("motors/peer-2k2.toml");
+    let shipped = std::fs::read_to_string(&motor).expect("it ships");
+    let other_poles = folder.join("six-poles.toml");
+    let six = shipped.replace("pole_pairs = 2", "pole_pairs = 3");
+    assert_ne!(six, shipped);
+    std::fs::write(&other_poles, six).expect("written");
+    let fast = "[supply]\nfrequency_hz = 400.0\n";
+    let cases = [
+        ("short", 0.1, "", &motor),
+        ("six-poles", 1.0, "", &other_poles),
+        ("speedless", 1.0, "[sensors]\nspeed = \"none\"\n", &motor),
+        ("fast", 0.5, fast, &motor),
+    ];
+    for (name, duration_s, more, motor_of_monitor) in cases {
+        let scenario = folder.join(format!("{name}.scenario.toml"));
+        let text_of_scenario = format!(
+            "motor = \"{}\"\nduration_s = {duration_s}\nstart = \"running\"\n{more}",
+            motor.display()
+        );
+        std::fs::write(&scenario, text_of_scenario).expect("written");
+        let recording = folder.join(format!("{name}.csv"));
+        let simulated = drivemon(&["simulate", text(&scenario), "-o", text(&recording)]);
+        assert!(simulated.status.success(), "{}", stderr(&simulated));
+        let output = drivemon(&[
+            "monitor",
+            text(&recording),
+            "--motor",
+            text(motor_of_monitor),
+            "--json",
+            "-",
+        ]);
+        assert_eq!(output.status.code(), Some(3), "{name}: {}", stdout(&output));
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("only JSON");
+        assert_eq!(json["verdict"]["state"], "not-judged", "{name}");
+        assert_eq!(json["judged"], 0, "{name}");
+    }
 }
 
 #[test]

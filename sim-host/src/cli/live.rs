@@ -183,9 +183,10 @@ impl Watch<'_> {
         if !self.quiet {
             print_end(&self.watched);
         }
-        let finding = match self.watched.fault {
-            true => Finding::Something,
-            false => Finding::Nothing,
+        let finding = match (self.watched.fault, self.watched.judged) {
+            (true, _) => Finding::Something,
+            (false, 0) => Finding::Unsupported,
+            (false, _) => Finding::Nothing,
         };
         Ok((self.watched, finding))
     }
@@ -210,8 +211,9 @@ fn print_end(watched: &Watched) {
             paint::caution("line:")
         );
     }
-    match watched.fault {
-        true => anstream::println!("{}", paint::error("FAULT was lit")),
-        false => anstream::println!("{}", paint::good("no fault was lit")),
+    match (watched.fault, watched.judged) {
+        (true, _) => anstream::println!("{}", paint::error("FAULT was lit")),
+        (false, 0) => anstream::println!("{}", paint::caution("not judged")),
+        (false, _) => anstream::println!("{}", paint::good("no fault was lit")),
     }
 }
