@@ -17,6 +17,22 @@ pub fn not_judged(reason: NotJudged) -> String {
         NotJudged::Sensor(finding) => sensor(finding),
         NotJudged::Transient => "transient: current or speed are changing".to_owned(),
         NotJudged::NoLoadCurrent => "the motor draws no current".to_owned(),
+        NotJudged::Reversing => {
+            "the shaft turns against the field: braking or reversing".to_owned()
+        }
+    }
+}
+
+/// How a field that does not only turn forwards is told.
+pub fn direction(name: &str) -> &'static str {
+    match name {
+        "backwards" => {
+            "the field turns backwards, phases a, c, b: the motor was judged as its mirror image"
+        }
+        "both" => {
+            "the field turns in both directions: where it turns backwards the motor was judged as its mirror image"
+        }
+        _ => "the field turns forwards",
     }
 }
 
@@ -31,10 +47,11 @@ pub fn reason(number: u8) -> Option<String> {
         5 => not_judged(NotJudged::NoVoltages),
         6 => not_judged(NotJudged::NoCurrents),
         7 => not_judged(NotJudged::NoSpeed),
-        8 => "the supply is missing or turns the wrong way".to_owned(),
+        8 => "the supply is missing".to_owned(),
         9 => "a sensor is dead or contradicts the others".to_owned(),
         10 => not_judged(NotJudged::Transient),
         11 => not_judged(NotJudged::NoLoadCurrent),
+        12 => not_judged(NotJudged::Reversing),
         _ => "a reason that this version does not know".to_owned(),
     };
     Some(words)
@@ -44,7 +61,6 @@ pub fn reason(number: u8) -> Option<String> {
 pub fn supply(finding: SupplyFinding) -> &'static str {
     match finding {
         SupplyFinding::Lost => "no supply",
-        SupplyFinding::NegativeOrder => "phases turn backwards: swap two phases",
         SupplyFinding::Voltage => "supply voltage outside 75..120 % of rated",
         SupplyFinding::Unbalance => "supply unbalance above 3 %",
     }

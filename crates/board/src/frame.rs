@@ -26,9 +26,9 @@ pub struct Frame {
     pub u_s_volt: f32,
     /// Positive-sequence phase current, amplitude, A.
     pub i_s_amp: f32,
-    /// Supply frequency, rad/s.
+    /// Supply frequency, rad/s; negative where the phases follow each other as a, c, b: the field turns backwards.
     pub omega_sync_rad_s: f32,
-    /// Mechanical speed, rad/s; `None` without a sensor.
+    /// Mechanical speed, rad/s, negative backwards; `None` without a sensor.
     pub omega_mech_rad_s: Option<f32>,
     /// Why the window was not judged; 0 when it was. Order of [`NotJudged`], from 1.
     pub not_judged: u8,
@@ -78,8 +78,11 @@ impl Frame {
             residuals: report.residuals.map(|residuals| residuals.r),
             u_s_volt: monitor::magnitude(window.u_s.positive),
             i_s_amp: monitor::magnitude(window.i_s.positive),
-            omega_sync_rad_s: window.omega_sync,
-            omega_mech_rad_s: window.omega_mech,
+            omega_sync_rad_s: match window.backwards {
+                true => -window.omega_sync,
+                false => window.omega_sync,
+            },
+            omega_mech_rad_s: window.shaft_speed(),
             not_judged: report.not_judged.map_or(0, reason),
             vdda_millivolt,
         }
@@ -135,6 +138,7 @@ pub(crate) fn reason(not_judged: NotJudged) -> u8 {
         NotJudged::Sensor(_) => 9,
         NotJudged::Transient => 10,
         NotJudged::NoLoadCurrent => 11,
+        NotJudged::Reversing => 12,
     }
 }
 

@@ -136,6 +136,17 @@ impl Sequence {
         (a + TURN * b + TURN.conj() * c) / 3.0
     }
 
+    /// Whether the phases follow each other as a, c, b: the field turns backwards.
+    pub fn is_backwards(phases: [Complex32; 3]) -> bool {
+        let forwards = Sequence::positive_of(phases).norm_sqr();
+        Sequence::positive_of(Sequence::mirrored(phases)).norm_sqr() > forwards
+    }
+
+    /// Phases b and c exchanged: a motor that runs backwards, seen in the mirror, runs forwards.
+    pub const fn mirrored([a, b, c]: [Complex32; 3]) -> [Complex32; 3] {
+        [a, c, b]
+    }
+
     /// Splits the phasors of phases a, b and c.
     pub fn from_phases(phases: [Complex32; 3]) -> Self {
         let [a, b, c] = phases;
@@ -233,6 +244,27 @@ mod tests {
         assert!((sequence.negative - n).norm() < 1e-5);
         assert!((sequence.zero - z).norm() < 1e-5);
         assert!((sequence.unbalance() - n / p).norm() < 1e-6);
+    }
+
+    /// Exchanging two phases exchanges positive and negative sequence and keeps the zero sequence.
+    #[test]
+    fn the_mirror_exchanges_the_sequences() {
+        let turn = Complex32::from_polar(1.0, core::f32::consts::TAU / 3.0);
+        let (x, y) = (Complex32::new(10.0, 2.0), Complex32::new(0.5, -0.3));
+        let phases = [
+            x + y,
+            x * turn.conj() + y * turn,
+            x * turn + y * turn.conj(),
+        ];
+        let (seen, mirrored) = (
+            Sequence::from_phases(phases),
+            Sequence::from_phases(Sequence::mirrored(phases)),
+        );
+        assert!((seen.positive - mirrored.negative).norm() < 1e-5);
+        assert!((seen.negative - mirrored.positive).norm() < 1e-5);
+        assert!((seen.zero - mirrored.zero).norm() < 1e-6);
+        assert!(!Sequence::is_backwards(phases));
+        assert!(Sequence::is_backwards(Sequence::mirrored(phases)));
     }
 
     #[test]

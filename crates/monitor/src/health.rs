@@ -43,6 +43,18 @@ pub enum SensorFinding {
     SpeedImplausible,
 }
 
+impl SensorFinding {
+    /// Whether a channel shows nothing at all, rather than something that contradicts the others.
+    pub const fn is_dead(self) -> bool {
+        matches!(
+            self,
+            SensorFinding::DeadVoltage(_)
+                | SensorFinding::DeadCurrent(_)
+                | SensorFinding::VoltagesMissing
+        )
+    }
+}
+
 /// Limits of the plausibility checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HealthConfig {
@@ -57,7 +69,7 @@ pub struct HealthConfig {
 const DEAD_SHARE: f32 = 0.1;
 /// Voltages and currents below this share of rated cannot be told from nothing.
 const SILENT_SHARE: f32 = 0.05;
-/// Zero over positive sequence of the currents that uncalibrated current transformers do not reach: a dead
+/// Zero sequence over the one that carries the motor that uncalibrated current transformers do not reach: a dead
 /// channel gives 0.5, a gain of one half 0.2; a real set of unequal transformers in a laboratory gave 0.11.
 const CURRENT_SUM_SHARE: f32 = 0.18;
 /// Contradiction between measured and implied speed, as a share of synchronous speed. The implied
@@ -68,10 +80,10 @@ const SPEED_CONTRADICTION: f32 = 0.4;
 const HOT_ROTOR: f32 = 1.5;
 
 impl HealthConfig {
-    /// Whether the supply is there at all, in either order of its phases.
+    /// Whether the supply is there at all.
     pub fn has_supply(&self, window: &Window) -> bool {
         let least = SILENT_SHARE * self.rated_voltage;
-        magnitude(window.u_s.positive) > least || magnitude(window.u_s.negative) > least
+        magnitude(window.u_s.positive) > least
     }
 
     /// Whether the motor draws current at all.
@@ -99,8 +111,9 @@ impl HealthConfig {
         if !self.has_current(window) {
             return None;
         }
-        let zero = magnitude(window.i_s.zero);
-        if zero < CURRENT_SUM_SHARE * magnitude(window.i_s.positive) {
+        let i = &window.i_s;
+        let carrying = magnitude(i.positive).max(magnitude(i.negative));
+        if magnitude(i.zero) < CURRENT_SUM_SHARE * carrying {
             return None;
         }
         let dead = dead_channel(&amplitudes(window, 3)).map(SensorFinding::DeadCurrent);

@@ -39,7 +39,7 @@ pub struct Lamps {
     pub r: [Lamp; RESIDUALS],
     /// On: a sensor is dead, contradicts the others, or is the likeliest cause. Blink: a channel clips or is invalid.
     pub sensor: Lamp,
-    /// On: supply lost, wrong order, out of range or unbalanced. Blink: searching for the supply's frequency.
+    /// On: supply lost, out of range or unbalanced. Blink: searching for the supply's frequency.
     pub line: Lamp,
     /// On: the load differs from the one declared (load kind `free`). Blink: transient, not judged.
     pub load: Lamp,

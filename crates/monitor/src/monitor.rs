@@ -106,6 +106,8 @@ const IDLE_REPORT_S: f32 = 0.1;
 const VOLTAGE_RANGE: [f32; 2] = [0.75, 1.2];
 /// Negative-sequence voltage beyond which IEC 60034-26 and NEMA MG 1 14.36 derate heavily.
 const MAX_UNBALANCE: f32 = 0.03;
+/// Share of synchronous speed that voltages and currents of a running motor imply at the least: a braked one's imply none.
+const LEAST_RUNNING: f32 = 0.5;
 /// A window counts as steady when the neglected derivative terms stay below this share of the threshold.
 const STEADY_SHARE: f32 = 0.25;
 
@@ -345,11 +347,9 @@ impl Monitor {
             .into_iter()
             .find(|(holds, _)| *holds)
             .map(|(_, reason)| reason);
-        let wrong_order = Some(SupplyFinding::NegativeOrder);
         plain
             .or(report.sensor.map(NotJudged::Sensor))
-            .or((report.supply == wrong_order)
-                .then_some(NotJudged::Supply(SupplyFinding::NegativeOrder)))
+            .or(window.reverses.then_some(NotJudged::Reversing))
             .or((!self.health.has_current(window)).then_some(NotJudged::NoLoadCurrent))
             .or((window.omega_mech.is_none() && !by_currents).then_some(NotJudged::NoSpeed))
     }
@@ -370,7 +370,9 @@ impl Monitor {
         report.point = Some(point);
         report.residuals = Some(residuals);
         report.normalised = Some(self.normalise(&residuals, tau_load.is_some()));
-        if !self.is_steady(window, &point) {
+        if self.is_plugged(rehearsal, window) {
+            report.not_judged = report.not_judged.or(Some(NotJudged::Reversing));
+        } else if !self.is_steady(window, &point) {
             report.not_judged = report.not_judged.or(Some(NotJudged::Transient));
         } else if window.invalid_samples == 0 {
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
@@ -439,6 +441,18 @@ impl Monitor {
         let implied = self.model.implied_speed(&point);
         self.health
             .check_speed(point.omega_sync, point.omega_el, implied)
+    }
+
+    /// Whether the shaft turns against the field and voltages and currents agree that it does: where they show the small
+    /// slip of a running motor, it is the sign of the speed that is wrong.
+    fn is_plugged(&self, rehearsal: &Rehearsal, window: &Window) -> bool {
+        let against = window.omega_mech.is_some_and(|omega| omega < 0.0);
+        let point = || self.operating_point(Frame::RotorFlux, rehearsal, window);
+        against
+            && point().is_some_and(|point| {
+                let implied = self.model.implied_speed(&point);
+                implied < LEAST_RUNNING * point.omega_sync
+            })
     }
 
     fn is_steady(&self, window: &Window, point: &OperatingPoint) -> bool {

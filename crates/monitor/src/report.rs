@@ -27,7 +27,7 @@ pub enum NotJudged {
     NoCurrents,
     /// The speed is not measured.
     NoSpeed,
-    /// The supply is missing or turns the wrong way.
+    /// The supply is missing.
     Supply(SupplyFinding),
     /// A sensor is dead or contradicts the others.
     Sensor(SensorFinding),
@@ -35,6 +35,8 @@ pub enum NotJudged {
     Transient,
     /// The motor is supplied but draws no current.
     NoLoadCurrent,
+    /// The shaft turns against the field, which brakes or reverses it (slip above 1), or the field changes its direction.
+    Reversing,
 }
 
 /// One window's result.

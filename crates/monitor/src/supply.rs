@@ -21,8 +21,6 @@ pub struct SupplyConfig {
 pub enum SupplyFinding {
     /// No voltage and no current.
     Lost,
-    /// The phases turn the other way round.
-    NegativeOrder,
     /// Voltage outside its range.
     Voltage,
     /// Negative sequence beyond its limit.
@@ -40,9 +38,6 @@ impl SupplyConfig {
             magnitude(window.u_s.positive),
             magnitude(window.u_s.negative),
         );
-        if negative > positive {
-            return Some(SupplyFinding::NegativeOrder);
-        }
         if self.voltage_out_of_range(positive, window.omega_sync) {
             return Some(SupplyFinding::Voltage);
         }
@@ -111,9 +106,8 @@ mod tests {
     }
 
     #[test]
-    fn unbalance_and_wrong_order_are_told_apart() {
+    fn unbalance_is_found_within_the_voltage_range() {
         assert_eq!(found(300.0, 9.1, 314.0), Some(SupplyFinding::Unbalance));
-        assert_eq!(found(9.1, 300.0, 314.0), Some(SupplyFinding::NegativeOrder));
         // Half a voltage is first of all too little of it.
         assert_eq!(found(150.0, 149.0, 314.0), Some(SupplyFinding::Voltage));
     }

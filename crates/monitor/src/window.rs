@@ -28,6 +28,16 @@ pub struct Cycle {
 }
 
 impl Cycle {
+    /// Whether the field turns backwards.
+    fn is_backwards(&self) -> bool {
+        turn_backwards(&self.phases())
+    }
+
+    /// Phasors of the voltages and of the currents.
+    fn phases(&self) -> [[Complex32; 3]; 2] {
+        phases_of(&self.phasors.channels)
+    }
+
     /// The cycle with a gain on each channel: voltages a, b, c, then currents a, b, c.
     #[must_use]
     pub fn corrected(mut self, gains: &[f32; CHANNELS]) -> Self {
@@ -60,24 +70,32 @@ impl Default for WindowState {
 }
 
 /// Mean of the cycles of a window. Voltages and currents are space vectors seen from the oscillator.
+///
+/// A motor whose field turns backwards is its own mirror image with phases b and c exchanged and shaft and load turning the
+/// other way. So everything but `channels` stands here as the mirror shows it: the sequence that carries the motor is the
+/// positive one, and a speed is positive that follows the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Window {
     /// Phasors, offsets and mean squares: voltages a, b, c, then currents a, b, c.
     pub channels: [ChannelCycle; CHANNELS],
+    /// The field turns backwards, phases a, c, b: see [`Window`].
+    pub backwards: bool,
+    /// The field changed its direction within the window.
+    pub reverses: bool,
     /// Symmetrical components of the voltages, V.
     pub u_s: Sequence,
     /// Symmetrical components of the currents, A.
     pub i_s: Sequence,
     /// Supply frequency, rad/s.
     pub omega_sync: f32,
-    /// Mean mechanical speed, rad/s.
+    /// Mean mechanical speed with the field, rad/s; see [`Window::shaft_speed`].
     pub omega_mech: Option<f32>,
-    /// Mean brake torque, N m.
+    /// Mean brake torque against the field, N m.
     pub tau_load: Option<f32>,
     /// Change of the current, seen from the voltage, from the first to the last cycle, A; an excursion in between
     /// counts with its share of the window.
     pub current_change: f32,
-    /// Change of the mechanical speed from the first to the last cycle, rad/s.
+    /// Change of the mechanical speed with the field from the first to the last cycle, rad/s.
     pub speed_change: f32,
     /// Time between the middles of the first and the last cycle, s.
     pub span: f32,
@@ -89,6 +107,42 @@ pub struct Window {
     pub glitches: u16,
     /// The speed sensor gave no edge in any cycle.
     pub encoder_silent: bool,
+}
+
+impl Window {
+    /// Mean mechanical speed as the sensor shows it, rad/s: negative backwards, whatever the field does.
+    pub fn shaft_speed(&self) -> Option<f32> {
+        self.omega_mech.map(|omega| self.as_turned(omega))
+    }
+
+    /// Mean brake torque as the sensor shows it, N m: it has the sign of the speed that it brakes.
+    pub fn shaft_torque(&self) -> Option<f32> {
+        self.tau_load.map(|tau| self.as_turned(tau))
+    }
+
+    fn as_turned(&self, with_field: f32) -> f32 {
+        if self.backwards {
+            -with_field
+        } else {
+            with_field
+        }
+    }
+
+    /// A ratio of negative or zero over positive sequence as the channels a, b, c show it: in the mirror the unbalance
+    /// that a real change of one channel makes is the conjugate of what it is forwards.
+    pub fn in_channels(&self, ratio: Complex32) -> Complex32 {
+        if self.backwards { ratio.conj() } else { ratio }
+    }
+
+    /// The mirror image of a motor whose field turns backwards, in everything but the channels.
+    fn mirrored(mut self) -> Self {
+        if self.backwards {
+            self.omega_mech = self.omega_mech.map(|omega| -omega);
+            self.tau_load = self.tau_load.map(|tau| -tau);
+            self.speed_change = -self.speed_change;
+        }
+        self
+    }
 }
 
 impl WindowState {
@@ -137,7 +191,7 @@ impl WindowState {
         if let (Some(first), Some(last)) = (oldest.speed.omega_mech, newest.speed.omega_mech) {
             window.speed_change = last - first;
         }
-        Some(window)
+        Some(window.mirrored())
     }
 }
 
@@ -159,6 +213,7 @@ fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> W
         encoder_silent: cycles.clone().all(|cycle| cycle.speed.silent),
         omega_mech: mean_of(cycles.clone(), |cycle| cycle.speed.omega_mech),
         tau_load: mean_of(cycles.clone(), |cycle| cycle.tau_load),
+        reverses: reverses(cycles.clone()),
         ..Window::default()
     };
     let share = 1.0 / length as f32;
@@ -172,8 +227,15 @@ fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> W
         window.invalid_samples = window.invalid_samples.saturating_add(cycle.invalid_samples);
         window.glitches = window.glitches.saturating_add(cycle.speed.glitches);
     }
-    (window.u_s, window.i_s) = sequences(&window.channels);
+    let phases = phases_of(&window.channels);
+    window.backwards = turn_backwards(&phases);
+    [window.u_s, window.i_s] = phases.map(|phases| components(phases, window.backwards));
     window
+}
+
+fn reverses<'a>(mut cycles: impl Iterator<Item = &'a Cycle>) -> bool {
+    let newest = cycles.next().is_some_and(Cycle::is_backwards);
+    cycles.any(|cycle| cycle.is_backwards() != newest)
 }
 
 /// Mean weighted by cycle length; `None` as soon as one cycle has no value.
@@ -189,12 +251,27 @@ fn mean_of<'a>(
     (weight > 0.0).then(|| sum / weight)
 }
 
-fn sequences(channels: &[ChannelCycle; CHANNELS]) -> (Sequence, Sequence) {
+fn phases_of(channels: &[ChannelCycle; CHANNELS]) -> [[Complex32; 3]; 2] {
     let [ua, ub, uc, ia, ib, ic] = channels;
-    (
-        Sequence::from_phases([ua.phasor, ub.phasor, uc.phasor]),
-        Sequence::from_phases([ia.phasor, ib.phasor, ic.phasor]),
-    )
+    [
+        [ua.phasor, ub.phasor, uc.phasor],
+        [ia.phasor, ib.phasor, ic.phasor],
+    ]
+}
+
+/// Whether the field turns backwards: by the voltages or, where they are not measured, by the currents.
+fn turn_backwards([u, i]: &[[Complex32; 3]; 2]) -> bool {
+    let measured = u.iter().any(|x| x.norm_sqr() > 0.0);
+    Sequence::is_backwards(if measured { *u } else { *i })
+}
+
+/// Symmetrical components as the mirror shows them where the field turns backwards.
+fn components(phases: [Complex32; 3], backwards: bool) -> Sequence {
+    Sequence::from_phases(if backwards {
+        Sequence::mirrored(phases)
+    } else {
+        phases
+    })
 }
 
 /// How far the supply turned beyond the oscillator from one cycle to a later one, rad.
@@ -209,13 +286,12 @@ fn phase_advance(from: &Cycle, to: &Cycle) -> f32 {
     sine * (1.0 + sine * sine * (1.0 / 6.0 + sine * sine * 3.0 / 40.0))
 }
 
-/// Positive sequences of voltages and currents.
+/// The sequences of voltages and currents that carry the motor.
 fn positive(cycle: &Cycle) -> (Complex32, Complex32) {
-    let [ua, ub, uc, ia, ib, ic] = &cycle.phasors.channels;
-    (
-        Sequence::positive_of([ua.phasor, ub.phasor, uc.phasor]),
-        Sequence::positive_of([ia.phasor, ib.phasor, ic.phasor]),
-    )
+    let phases = cycle.phases();
+    let backwards = turn_backwards(&phases);
+    let [u, i] = phases.map(|phases| components(phases, backwards).positive);
+    (u, i)
 }
 
 /// Positive-sequence voltage, or the current where voltages are not measured.

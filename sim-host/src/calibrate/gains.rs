@@ -51,7 +51,7 @@ pub fn zero_ratio(observed: &[Observed], kind: Kind) -> Complex64 {
             Kind::Voltage => &o.window.u_s,
             Kind::Current => &o.window.i_s,
         };
-        let ratio = sequence.zero_ratio();
+        let ratio = o.window.in_channels(sequence.zero_ratio());
         sum += Complex64::new(f64::from(ratio.re), f64::from(ratio.im)) * o.weight;
         votes += o.weight;
     }

@@ -123,7 +123,7 @@ fn changing_unbalance(sources: &[Healthily<'_>], observed: &[Observed]) -> Resul
 }
 
 fn unbalance(o: &Observed) -> Complex32 {
-    o.window.i_s.unbalance()
+    o.window.in_channels(o.window.i_s.unbalance())
 }
 
 /// Median of the real and of the imaginary parts.

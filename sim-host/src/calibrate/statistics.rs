@@ -93,7 +93,7 @@ fn moments(evidence: &[(Evidence, f64)]) -> ([f64; ROWS], [f64; ROWS]) {
         if !evidence.iter().all(|(e, _)| e.known()[row]) {
             continue;
         }
-        let value = |e: &Evidence| 100.0 * f64::from(e.departure[row]);
+        let value = |e: &Evidence| 100.0 * f64::from(e.in_channels()[row]);
         if row >= POSITIVE_ROWS {
             mean[row] = evidence.iter().map(|(e, w)| w * value(e)).sum::<f64>() / votes;
         }
@@ -124,7 +124,7 @@ fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
 
 fn set_current_unbalance(settings: &mut HealthySettings, observed: &[Observed]) {
     let ratio = |o: &Observed| {
-        let ratio = o.window.i_s.unbalance();
+        let ratio = o.window.in_channels(o.window.i_s.unbalance());
         Complex64::new(f64::from(ratio.re), f64::from(ratio.im)) * 100.0
     };
     let votes: f64 = observed.iter().map(|o| o.weight).sum();

@@ -24,8 +24,8 @@ use crate::words;
 
 /// Replay a recording through the very core that the board runs: lamps, verdict, probabilities.
 ///
-/// Missing channels are no error: without voltages or speed the residuals are "not judged", and the sequence
-/// components of the currents are still reported. A load-test table is printed as its operating points.
+/// Missing channels are no error in the file: without voltages or speed the motor is "not judged" (exit code 3), and the
+/// sequence components of the currents are still reported. A load-test table is printed as its operating points.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct MonitorArgs {
@@ -64,6 +64,7 @@ struct MonitorJson<'a> {
     residual_percent: Option<ResidualPercent>,
     lamps: &'a [LampState],
     verdict: Verdict,
+    direction: Option<&'static str>,
     first_alarm_s: Option<f64>,
     sequence: SequenceSummary,
     rotor: RotorSummary,
@@ -160,7 +161,8 @@ impl MonitorArgs {
         let finding = match (audit.supported, verdict.state) {
             (false, _) => Finding::Unsupported,
             (true, VerdictState::Fault) => Finding::Something,
-            (true, VerdictState::Healthy | VerdictState::NotJudged) => Finding::Nothing,
+            (true, VerdictState::Healthy) => Finding::Nothing,
+            (true, VerdictState::NotJudged) => Finding::Unsupported,
         };
         let result = MonitorJson {
             recording: recording.name(),
@@ -172,6 +174,7 @@ impl MonitorArgs {
             residual_percent: residual_percent(timeline),
             lamps: &timeline.lamps,
             verdict,
+            direction: timeline.direction(),
             first_alarm_s: timeline.first_alarm_s,
             sequence: timeline.sequence(),
             rotor: timeline.rotor(),
@@ -270,6 +273,9 @@ pub(super) fn print_windows(timeline: &Timeline) {
         timeline.judged,
         timeline.windows
     );
+    if let Some(direction @ ("backwards" | "both")) = timeline.direction() {
+        anstream::println!("  {}", words::direction(direction));
+    }
     for share in &timeline.not_judged {
         anstream::println!("  {} not judged: {}", share.windows, share.reason);
     }

@@ -69,7 +69,7 @@ pub struct Operation {
     pub current_rms_amp: Option<f32>,
     /// Supply frequency, Hz.
     pub frequency_hz: Option<f32>,
-    /// Shaft speed, rad/s.
+    /// Shaft speed, rad/s, negative backwards.
     pub speed_rad_s: Option<f32>,
     /// Slip, percent of the synchronous speed.
     pub slip_percent: Option<f32>,
@@ -232,7 +232,7 @@ impl Operation {
             voltage_rms_volt: voltage,
             current_rms_amp: current,
             frequency_hz: Some(window.omega_sync / std::f32::consts::TAU),
-            speed_rad_s: window.omega_mech,
+            speed_rad_s: window.shaft_speed(),
             slip_percent: window
                 .omega_mech
                 .filter(|_| plate.known)

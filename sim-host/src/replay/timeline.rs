@@ -178,6 +178,8 @@ pub struct Timeline {
     sensor_findings: Vec<(SensorFinding, u64)>,
     windows_since_alarm: u64,
     sequences: Sequences,
+    /// Windows in which the field turned forwards and backwards.
+    turned: [u64; 2],
     causes: Causes,
     rotor: RotorHistory,
     rated_current: f32,
@@ -214,6 +216,9 @@ impl Timeline {
     /// Adds one report; `t` is the time of the window's end, s.
     pub fn add(&mut self, t: f64, report: &Report) {
         self.windows += 1;
+        if let Some(window) = &report.window {
+            self.turned[usize::from(window.backwards)] += 1;
+        }
         self.note_judgement(report);
         self.note_lamps(t, report);
         self.rotor.add(&report.rotor);
@@ -320,6 +325,7 @@ impl Timeline {
     /// The verdict over everything added so far.
     pub fn verdict(&self) -> Verdict {
         let state = match (self.first_alarm_s, self.judged) {
+            (Some(_), 0) if !self.names_a_dead_sensor() => VerdictState::NotJudged,
             (Some(_), _) => VerdictState::Fault,
             (None, 0) => VerdictState::NotJudged,
             (None, _) => VerdictState::Healthy,
@@ -333,6 +339,14 @@ impl Timeline {
             candidates.extend(self.isolated_candidates());
         }
         Verdict::new(state, candidates)
+    }
+
+    /// A dead sensor is a finding of its own; signals that merely contradict each other, of which no window could be
+    /// judged, are none.
+    fn names_a_dead_sensor(&self) -> bool {
+        self.sensor_findings
+            .iter()
+            .any(|(finding, _)| finding.is_dead())
     }
 
     fn sensor_candidates(&self) -> Vec<Candidate> {
@@ -385,6 +399,16 @@ impl Timeline {
     /// What the sidebands of the current say about the rotor's bars.
     pub fn rotor(&self) -> RotorSummary {
         self.rotor.summary()
+    }
+
+    /// How the field turned: `forwards`, `backwards` or `both`; `None` without a complete window.
+    pub fn direction(&self) -> Option<&'static str> {
+        match self.turned {
+            [0, 0] => None,
+            [_, 0] => Some("forwards"),
+            [0, _] => Some("backwards"),
+            _ => Some("both"),
+        }
     }
 
     /// Mean sequence components.

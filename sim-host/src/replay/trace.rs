@@ -70,8 +70,8 @@ impl WindowOperation {
             voltage_rms_volt: voltage.map(|peak| peak * std::f64::consts::FRAC_1_SQRT_2),
             current_rms_amp: current.map(|peak| peak * std::f64::consts::FRAC_1_SQRT_2),
             frequency_hz: f64::from(window.omega_sync) / std::f64::consts::TAU,
-            speed_rad_s: window.omega_mech.map(f64::from),
-            torque_nm: window.tau_load.map(f64::from),
+            speed_rad_s: window.shaft_speed().map(f64::from),
+            torque_nm: window.shaft_torque().map(f64::from),
             i2_over_i1: current.map(|_| f64::from(window.i_s.unbalance().norm())),
             v2_over_v1: voltage.map(|_| f64::from(window.u_s.unbalance().norm())),
         }

@@ -131,7 +131,7 @@ fn likeliest(candidates: Candidates) -> (u16, f32) {
 }
 
 fn put_window(image: &mut Image, window: Option<&Window>) {
-    let speed = window.and_then(|window| window.omega_mech);
+    let speed = window.and_then(Window::shaft_speed);
     let value = |of: fn(&Window) -> f32| window.map_or(f32::NAN, of);
     image.set_float(Field::Speed, speed.map_or(f32::NAN, |x| x / RAD_S_PER_RPM));
     image.set_float(

@@ -25,6 +25,8 @@ pub struct Evidence {
     negative: Negative,
     /// Rise of the resistances at which all this was computed.
     rise: f32,
+    /// The rows are those of the mirror image: see [`Window`].
+    backwards: bool,
 }
 
 /// How the row of the negative sequence moves, per relative change in all three phases; one phase gives a third of it,
@@ -80,6 +82,7 @@ impl Evidence {
             positive: positive.directions,
             negative,
             rise: positive.rise,
+            backwards: window.backwards,
         };
         evidence.less(&healthy.mean)
     }
@@ -117,16 +120,46 @@ impl Evidence {
             positive: Directions::default(),
             negative,
             rise: 0.0,
+            backwards: window.backwards,
         };
         evidence.less(&mean)
     }
 
+    /// Takes off what the healthy motor shows, as its channels a, b, c showed it when it was calibrated.
     fn less(mut self, mean: &Rows) -> Self {
-        let departure = self.departure.iter_mut().zip(mean).zip(&self.known);
+        let mean = if self.backwards {
+            self.widen_negative(mean);
+            mirrored(*mean)
+        } else {
+            *mean
+        };
+        let departure = self.departure.iter_mut().zip(&mean).zip(&self.known);
         for ((x, mean), known) in departure {
             *x = if *known { *x - mean } else { 0.0 };
         }
         self
+    }
+
+    /// What turns in the mirror is known in size only: the impedance of the negative sequence stands between a channel's
+    /// gain and its row.
+    fn widen_negative(&mut self, mean: &Rows) {
+        let row = Row::Negative as usize;
+        let Some([re, im]) = mean.get(row..row + 2) else {
+            return;
+        };
+        let square = re * re + im * im;
+        for scatter in self.scatter.iter_mut().skip(row).take(2) {
+            *scatter = libm::sqrtf(*scatter * *scatter + square);
+        }
+    }
+
+    /// The departure as the channels a, b, c show it: what a calibration keeps, in whichever direction the motor ran.
+    pub fn in_channels(&self) -> Rows {
+        if self.backwards {
+            mirrored(self.departure)
+        } else {
+            self.departure
+        }
     }
 
     /// Whether each row is known.
@@ -188,7 +221,7 @@ impl Evidence {
         zero: [Complex32; 2],
     ) -> Rows {
         let third = 1.0 / 3.0;
-        let (axis, zero_axis) = axes(phase);
+        let (axis, zero_axis) = axes(phase, self.backwards);
         let rows = assemble(
             &positive.map(|x| x * third),
             negative * axis * third,
@@ -280,14 +313,25 @@ impl Negative {
     }
 }
 
-/// Axes on which a change in one phase enters the negative and the zero sequence.
-fn axes(phase: Phase) -> (Complex32, Complex32) {
-    let turn = Complex32::new(-0.5, 0.866_025_4);
+/// Axes on which a change in one phase enters the negative and the zero sequence; backwards phases b and c change places.
+fn axes(phase: Phase, backwards: bool) -> (Complex32, Complex32) {
+    let third = Complex32::new(-0.5, 0.866_025_4);
+    let turn = if backwards { third.conj() } else { third };
     match phase {
         Phase::A => (Complex32::ONE, Complex32::ONE),
         Phase::B => (turn, turn.conj()),
         Phase::C => (turn.conj(), turn),
     }
+}
+
+/// Rows of the mirror image: negative and zero sequences are conjugate.
+fn mirrored(mut rows: Rows) -> Rows {
+    for row in [Row::Negative, Row::ZeroCurrent, Row::ZeroVoltage] {
+        if let Some(imaginary) = rows.get_mut(row as usize + 1) {
+            *imaginary = -*imaginary;
+        }
+    }
+    rows
 }
 
 fn assemble(

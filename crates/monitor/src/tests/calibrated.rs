@@ -30,7 +30,7 @@ fn statistics() -> Healthy {
     }
 }
 
-fn calibrated() -> MonitorConfig {
+pub fn calibrated() -> MonitorConfig {
     MonitorConfig {
         healthy: Some(statistics()),
         ..config()

@@ -136,18 +136,6 @@ fn direct_voltage_is_no_lost_supply() {
     assert_eq!(report.lamps.line, Lamp::Blink);
 }
 
-#[test]
-fn a_supply_that_turns_the_other_way_is_not_judged() {
-    let report = changed(|_, s| {
-        for x in [&mut s.u_s_abc, &mut s.i_s_abc].into_iter().flatten() {
-            std::mem::swap(&mut x.b, &mut x.c);
-        }
-    });
-    let wrong = SupplyFinding::NegativeOrder;
-    assert_eq!(report.not_judged, Some(NotJudged::Supply(wrong)));
-    assert_eq!((report.supply, report.lamps.line), (Some(wrong), Lamp::On));
-}
-
 /// An unbalanced supply is told by LINE; the motor is judged nevertheless.
 #[test]
 fn an_unbalanced_supply_is_told_and_judged() {

@@ -1,5 +1,6 @@
 //! The whole core on a motor in steady state, from samples to reports.
 
+mod backwards;
 mod calibrated;
 mod codes;
 mod drive;

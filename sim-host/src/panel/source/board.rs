@@ -61,11 +61,12 @@ impl BoardSource {
 
 fn operation(frame: &Frame, pole_pairs: Option<f32>) -> Operation {
     let omega = frame.omega_sync_rad_s;
-    let turning = (omega > 0.0).then_some(omega);
+    // Negative where the field turns backwards; then so is the speed, and the slip is what it is forwards.
+    let turning = (omega != 0.0).then_some(omega);
     Operation {
         voltage_rms_volt: rms(frame.u_s_volt),
         current_rms_amp: rms(frame.i_s_amp),
-        frequency_hz: turning.map(|omega| omega / std::f32::consts::TAU),
+        frequency_hz: turning.map(|omega| omega.abs() / std::f32::consts::TAU),
         speed_rad_s: frame.omega_mech_rad_s,
         slip_percent: turning
             .zip(frame.omega_mech_rad_s.zip(pole_pairs))
