@@ -1,7 +1,7 @@
 //! What the core's findings are called in front of people.
 
 use crate::replay::RotorSummary;
-use monitor::{Fault, NotJudged, Phase, SensorFinding, SupplyFinding};
+use monitor::{Fault, NotJudged, Phase, SensorFinding, Sidebands, SupplyFinding};
 
 /// Why a window was not judged, with what to do about it.
 pub fn not_judged(reason: NotJudged) -> String {
@@ -98,17 +98,27 @@ pub fn sensor_phase(finding: SensorFinding) -> Option<&'static str> {
 
 /// What the sidebands of the current say about the rotor's bars.
 pub fn rotor(summary: &RotorSummary) -> String {
-    match (summary.lower_sideband_percent, summary.upper_sideband_percent) {
+    match (
+        summary.lower_sideband_percent,
+        summary.upper_sideband_percent,
+    ) {
         (Some(lower), Some(upper)) => format!(
             "rotor bars {}: sidebands at twice the slip frequency {lower:.2} and {upper:.2} % of the active current in {} {} \
              (broken from {} %)",
             if summary.broken { "broken" } else { "whole" },
             summary.blocks,
-            if summary.blocks == 1 { "block" } else { "blocks" },
+            if summary.blocks == 1 {
+                "block"
+            } else {
+                "blocks"
+            },
             summary.broken_from_percent
         ),
-        _ => "rotor bars not tested: that takes speed, a fifth of the rated current as active current, and two turns of the slip without a load step"
-            .to_owned(),
+        _ => format!(
+            "rotor bars not tested: that takes speed, a fifth of the rated current as active current, a slip below {:.0} %, and \
+             two turns of the slip without a load step",
+            100.0 * Sidebands::LARGEST_SLIP
+        ),
     }
 }
 

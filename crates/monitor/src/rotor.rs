@@ -14,8 +14,8 @@ use crate::rotation::{renormalise, small_rotation};
 
 /// Turns of twice the slip angle in one block: load steps and other pulsations cancel the better, the more there are.
 const TURNS: f32 = 4.0;
-/// Largest step of the angle from one cycle to the next, rad: 13 % slip; beyond it the motor is starting.
-const LARGEST_STEP: f32 = 1.6;
+/// Largest step of twice the slip angle from one cycle to the next, rad.
+const LARGEST_STEP: f32 = 2.0 * TAU * Sidebands::LARGEST_SLIP;
 /// Share of the current's unrest that both sidebands must explain: a load step explains 12 % at most.
 const EXPLAINED: f32 = 0.5;
 
@@ -37,6 +37,8 @@ impl Sidebands {
     pub const BROKEN: f32 = 0.0125;
     /// Least active current, as a share of the rated current: below it the cage carries too little to show anything.
     pub const LEAST_ACTIVE: f32 = 0.2;
+    /// Slip beyond which nothing is tested: the motor is starting, and the sidebands lie too far from the supply's frequency.
+    pub const LARGEST_SLIP: f32 = 0.13;
 
     /// Over what counts as broken; NaN where something else shook the current.
     pub fn normalised(&self) -> f32 {

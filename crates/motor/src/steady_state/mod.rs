@@ -89,14 +89,21 @@ impl<F: Float> SteadyState<F> {
         self.at_slip_speed(slip)
     }
 
-    /// The motoring operating point on the stable branch at which the torque equals `load(omega_mech)`,
-    /// N m, all frictions included; the load must not fall as speed rises.
+    /// The operating point on the stable branch at which the torque equals `load(omega_mech)`, N m, all frictions
+    /// included; the load must not fall as speed rises. A load that drives the shaft at synchronous speed is met above
+    /// it, where the motor generates.
     ///
     /// # Errors
-    /// A load that the breakdown torque does not carry, or that drives the motor above synchronous speed.
+    /// A load beyond the breakdown torque of its direction, which is then named.
     pub fn at_load(&self, load: impl Fn(F) -> F) -> Result<OperatingPoint<F>, NoOperatingPoint> {
-        let last = self.curve.breakdown_slip().min(self.omega_sync);
-        match self.balance(F::zero(), last, &load) {
+        let breakdown = self.curve.breakdown_slip();
+        let drives = load(self.mech_speed(F::zero())) < F::zero();
+        let last = if drives {
+            -breakdown
+        } else {
+            breakdown.min(self.omega_sync)
+        };
+        match self.balance(last.min(F::zero()), last.max(F::zero()), &load) {
             Some(slip) => Ok(self.at_slip_speed(slip)),
             None => Err(self.curve.refused(load(self.mech_speed(last)))),
         }

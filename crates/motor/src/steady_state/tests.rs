@@ -197,3 +197,27 @@ fn single_precision_gives_the_same_point() {
         (f64::from(point.i_s.re) - wide.i_s.re).hypot(f64::from(point.i_s.im) - wide.i_s.im);
     assert!(error < 2e-5 * wide.i_s.norm(), "{error}");
 }
+
+/// The torque curve is the textbook circuit's on both sides of synchronous speed; what is asked is found on the stable side.
+#[test]
+fn a_load_that_drives_the_motor_is_met_above_synchronous_speed() {
+    let motor = SteadyState::new(&example(), 2.0, volt(326.6), TAU * 50.0);
+    let (_, breakdown_slip) = motor.breakdown();
+    let generating = motor.at_slip_speed(-breakdown_slip).tau_em;
+    let friction = 0.001;
+    for share in [1e-6, 0.05, 0.5, 0.95] {
+        let load = |w: f64| share * generating + friction * w;
+        let point = motor.at_load(load).expect("below the breakdown torque");
+        let (_, tau) = textbook(&example(), 2.0, 326.6, TAU * 50.0, point.slip());
+        let off = tau - load(point.omega_mech);
+        assert!(off.abs() < 1e-9 * generating.abs(), "{share}: {off}");
+        assert!(point.omega_slip.abs() < breakdown_slip, "{share}");
+    }
+    assert!(motor.at_load(|_| 0.05 * generating).unwrap().omega_slip < 0.0);
+    // Driven, but less than its friction takes: still a motor.
+    let held = motor.at_load(|w| -0.1 + 0.001 * w).expect("a motor");
+    assert!(held.omega_slip > 0.0);
+    let error = motor.at_load(|_| 1.001 * generating).expect_err("beyond");
+    assert!((error.breakdown_nm - generating).abs() < 1e-9 * generating.abs());
+    assert!((error.asked_nm - 1.001 * generating).abs() < 1e-9 * generating.abs());
+}
