@@ -69,6 +69,8 @@ pub struct ColumnMap {
     pub scale: Option<Factor>,
     /// Raw reading at zero, in the column's own unit; 0 when absent.
     pub offset: Option<f64>,
+    /// How much later than the row's time the channel was sampled, s; negative where a filter lets it show what was before.
+    pub delay: Option<f64>,
     /// Who said so.
     pub origin: Origin,
 }
@@ -98,7 +100,12 @@ impl ColumnMap {
 
     /// The conversion in words: `speed = 1.0144 x (speed_raw + 2.11) rad/s`.
     pub(crate) fn sentence(&self, target: Target, column: &str) -> Option<String> {
-        if (&self.name, self.unit, self.scale, self.offset) == (&None, None, None, None) {
+        if *self
+            == (ColumnMap {
+                origin: self.origin,
+                ..ColumnMap::default()
+            })
+        {
             return None;
         }
         let who = match self.origin {
@@ -117,7 +124,10 @@ impl ColumnMap {
             Some(Factor::Unknown) => format!("an unknown factor x {shifted}"),
             None => shifted,
         };
-        Some(format!("{target} = {scaled} in {}, {who}", unit.name))
+        let late = self.delay.map_or(String::new(), |delay| {
+            format!(", sampled {} us after the row's time", in_micro(delay))
+        });
+        Some(format!("{target} = {scaled} in {}{late}, {who}", unit.name))
     }
 
     fn over(self, below: ColumnMap) -> ColumnMap {
@@ -126,6 +136,7 @@ impl ColumnMap {
             unit: self.unit.or(below.unit),
             scale: self.scale.or(below.scale),
             offset: self.offset.or(below.offset),
+            delay: self.delay.or(below.delay),
             origin: self.origin,
         }
     }
@@ -226,6 +237,21 @@ impl Mapping {
         Ok(())
     }
 
+    /// `--delay TARGET=TIME`, the time with its unit, s, ms or us: how much later than its row the channel was sampled.
+    ///
+    /// # Errors
+    /// Text that is not `TARGET=TIME`, an unknown target, the clock itself, or more than 0.1 s.
+    pub fn set_delay(&mut self, flag: &str) -> Result<(), Error> {
+        let (target, text) = split("--delay", flag)?;
+        if target == Target::Time {
+            let message = "the clock cannot be late against itself";
+            let remedy = "name the channels that were sampled at other instants";
+            return Err(Error::at(COMMAND_LINE, 0, "--delay", message, remedy));
+        }
+        self.entry(target).delay = Some(delay(text)?);
+        Ok(())
+    }
+
     /// `--sample-rate HZ`.
     ///
     /// # Errors
@@ -302,6 +328,36 @@ pub(crate) fn delimiter(text: &str) -> Option<u8> {
     }
 }
 
+/// Largest delay either way, s: more is another recording.
+pub(crate) const LARGEST_DELAY_S: f64 = 0.1;
+
+/// Units of a delay, the longest ending first.
+const DELAY_UNITS: [(&str, f64); 3] = [("us", 1e-6), ("ms", 1e-3), ("s", 1.0)];
+
+/// A time such as `11.55us`, in s.
+fn delay(text: &str) -> Result<f64, Error> {
+    let wrong = |message: String| {
+        let remedy = "write it with its unit, s, ms or us, for example 11.55us";
+        Error::at(COMMAND_LINE, 0, "--delay", message, remedy)
+    };
+    let found = DELAY_UNITS
+        .iter()
+        .find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor)));
+    let Some((digits, factor)) = found else {
+        return Err(wrong(format!("`{text}` has no unit of time")));
+    };
+    let seconds = factor * number("--delay", digits)?;
+    if seconds.abs() > LARGEST_DELAY_S {
+        return Err(wrong(format!("{text} is more than 100 ms")));
+    }
+    Ok(seconds)
+}
+
+/// A time in microseconds with at most three decimals.
+fn in_micro(seconds: f64) -> f64 {
+    (seconds * 1e9).round() / 1e3
+}
+
 fn split<'f>(flag: &str, text: &'f str) -> Result<(Target, &'f str), Error> {
     let Some((target, value)) = text.split_once('=').filter(|(_, value)| !value.is_empty()) else {
         let message = format!("`{text}` is not of the form CHANNEL=VALUE");
@@ -322,6 +378,7 @@ fn example(flag: &str) -> &'static str {
         "--column" => "speed_raw",
         "--unit" => "rpm",
         "--scale" => "1.02",
+        "--delay" => "11.55us",
         _ => "-2.11",
     }
 }
@@ -385,6 +442,24 @@ mod tests {
     }
 
     #[test]
+    fn a_delay_is_a_time_with_its_unit_and_part_of_the_assumption() {
+        let ia = Target::Channel(Channel::CURRENTS[0]);
+        for (text, seconds) in [("11.55us", 11.55e-6), ("-0.3ms", -3e-4), ("0.002s", 0.002)] {
+            let mut mapping = Mapping::default();
+            mapping.set_delay(&format!("ia={text}")).unwrap();
+            let found = mapping.columns[&ia].delay.unwrap();
+            assert!((found - seconds).abs() < 1e-15, "{text}: {found}");
+        }
+        let mut mapping = Mapping::default();
+        mapping.set_delay("ia=11.55us").unwrap();
+        let expected = "ia = i1 in A, sampled 11.55 us after the row's time, user's assumption";
+        assert_eq!(
+            mapping.columns[&ia].sentence(ia, "i1").as_deref(),
+            Some(expected)
+        );
+    }
+
+    #[test]
     fn flags_win_over_the_sidecar_field_by_field() {
         let mut flags = Mapping::default();
         flags.set_scale("speed=2").unwrap();
@@ -424,6 +499,10 @@ mod tests {
             (m.set_scale("ia=unknown"), "only that of the speed"),
             (m.set_scale("speed=1,02"), "decimal point"),
             (m.set_offset("speed=nan"), "finite"),
+            (m.set_delay("ia=11.55"), "with its unit"),
+            (m.set_delay("ia=us"), "finite"),
+            (m.set_delay("ia=0.2s"), "more than 100 ms"),
+            (m.set_delay("t=1us"), "late against itself"),
             (m.set_sample_rate(-1.0), "samples per second"),
             (m.set_delimiter("comma"), "use one of"),
         ];

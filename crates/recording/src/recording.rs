@@ -16,6 +16,17 @@ pub struct UnknownScale {
     pub offset: Option<f64>,
 }
 
+/// Samples of a channel that lay far off their neighbours and were replaced by straight lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bridged {
+    /// How many.
+    pub samples: usize,
+    /// The one farthest from 0, in the channel's SI unit.
+    pub farthest: f64,
+    /// When that one was, s.
+    pub at_s: f64,
+}
+
 /// Samples of one motor over one clock, in SI units, with what is known about them.
 ///
 /// The clock rises strictly, every channel is as long as the clock, and every number is finite.
@@ -26,6 +37,7 @@ pub struct Recording {
     t_sample: f64,
     channels: BTreeMap<Channel, Vec<f64>>,
     derived: BTreeSet<Channel>,
+    bridged: BTreeMap<Channel, Bridged>,
     /// What is known beside the samples.
     pub metadata: Metadata,
     /// Set when nobody knows the factor of the speed: the channel then holds `unit(raw - offset)`.
@@ -47,6 +59,7 @@ impl Recording {
             t,
             channels: BTreeMap::new(),
             derived: BTreeSet::new(),
+            bridged: BTreeMap::new(),
             metadata,
             unknown_speed_scale: None,
             assumptions: Vec::new(),
@@ -83,6 +96,18 @@ impl Recording {
         self.set(channel, values)?;
         self.derived.insert(channel);
         Ok(())
+    }
+
+    /// Notes that spikes of a channel were bridged.
+    pub(crate) fn note_bridged(&mut self, channel: Channel, bridged: Bridged) {
+        self.bridged.insert(channel, bridged);
+    }
+
+    /// The channels of which spikes were bridged when they were read.
+    pub fn bridged(&self) -> impl Iterator<Item = (Channel, Bridged)> {
+        self.bridged
+            .iter()
+            .map(|(channel, bridged)| (*channel, *bridged))
     }
 
     /// The file, as the user named it.
@@ -182,6 +207,7 @@ impl Recording {
             cut.set(channel, values[range.clone()].to_vec())?;
         }
         cut.derived.clone_from(&self.derived);
+        cut.bridged.clone_from(&self.bridged);
         cut.unknown_speed_scale
             .clone_from(&self.unknown_speed_scale);
         cut.assumptions.clone_from(&self.assumptions);

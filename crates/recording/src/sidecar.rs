@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Problem};
 use crate::mapping::{
-    ColumnMap, DELIMITERS, Factor, Mapping, Origin, Target, UNKNOWN, delimiter, refused_unknown,
+    ColumnMap, DELIMITERS, Factor, LARGEST_DELAY_S, Mapping, Origin, Target, UNKNOWN, delimiter,
+    refused_unknown,
 };
 use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 use crate::units::Unit;
@@ -147,6 +148,7 @@ const NM: Bounds = Bounds::above(0.0, 1e7, "N m");
 const NOISE: Bounds = Bounds::between(0.0, 0.5, "of full scale").hint("0.2 % is 0.002");
 const BITS: Bounds = Bounds::between(4.0, 32.0, "bits");
 const PULSES: Bounds = Bounds::between(1.0, 1e6, "per revolution");
+const DELAY_US: Bounds = Bounds::between(-1e6 * LARGEST_DELAY_S, 1e6 * LARGEST_DELAY_S, "us");
 const EDGES: [(f64, u32); 3] = [(1.0, 1), (2.0, 2), (4.0, 4)];
 const RATE: Bounds = Bounds::between(0.1, 1e8, "Hz");
 
@@ -264,6 +266,11 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
     let unit = unit(&table, target);
     let scale = scale(&table, target);
     let offset = table.optional_number("offset", &Bounds::between(-1e12, 1e12, ""));
+    // The clock cannot be late against itself: there the key is an unknown one.
+    let delay_us = match target {
+        Target::Time => Some(None),
+        Target::Channel(_) => table.optional_number("delay_us", &DELAY_US),
+    };
     table.finish();
     Some(Some(ColumnMap {
         origin: Origin::Sidecar,
@@ -271,6 +278,7 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
         unit: unit?,
         scale: scale?,
         offset: offset?,
+        delay: delay_us?.map(|delay_us| 1e-6 * delay_us),
     }))
 }
 
@@ -349,6 +357,7 @@ mod tests {
             encoder_counter_bits = 16
             [columns]
             ic = "ic2"
+            ia = { delay_us = 11.55 }
             speed = { name = "n", unit = "rpm", scale = 1.02, offset = -2.1 }
         "#;
         let Sidecar { metadata, mapping } = Sidecar::parse(text, "x.toml").unwrap();
@@ -369,6 +378,8 @@ mod tests {
         );
         let ic = &mapping.columns[&Target::Channel(Channel::CURRENTS[2])];
         assert_eq!(ic.name.as_deref(), Some("ic2"));
+        let ia = &mapping.columns[&Target::Channel(Channel::CURRENTS[0])];
+        assert!((ia.delay.unwrap() - 11.55e-6).abs() < 1e-18);
     }
 
     #[test]

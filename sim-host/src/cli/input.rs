@@ -28,6 +28,10 @@ pub struct InputArgs {
     /// Raw reading of a channel at zero
     #[arg(long, value_name = "CHANNEL=VALUE", allow_hyphen_values = true)]
     offset: Vec<String>,
+    /// How much later than its row a channel was sampled, e.g. `ia=11.55us` of a recorder that samples one channel after the
+    /// other; negative where a filter delays it
+    #[arg(long, value_name = "CHANNEL=TIME", allow_hyphen_values = true)]
+    delay: Vec<String>,
     /// Sampling rate of a file without a time column, Hz
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
@@ -66,6 +70,7 @@ impl InputArgs {
             ("--unit", &self.unit),
             ("--scale", &self.scale),
             ("--offset", &self.offset),
+            ("--delay", &self.delay),
         ];
         for (flag, values) in lists {
             values.iter().for_each(|value| add(flag, value));
@@ -115,6 +120,9 @@ impl InputArgs {
         self.offset
             .iter()
             .try_for_each(|flag| mapping.set_offset(flag))?;
+        self.delay
+            .iter()
+            .try_for_each(|flag| mapping.set_delay(flag))?;
         if let Some(rate) = self.sample_rate {
             mapping.set_sample_rate(rate)?;
         }
@@ -160,7 +168,7 @@ mod tests {
     #[test]
     fn the_flags_are_repeated_as_they_were_typed() {
         let line = "x --column ic=ic2 --column speed=n --unit speed=rpm --scale speed=unknown --offset va=-4.1 \
-                    --sample-rate 5000 --delimiter \";\" --pulses-per-revolution 1024 --sidecar a.toml --line-voltages \
+                    --delay ia=11.55us --sample-rate 5000 --delimiter \";\" --pulses-per-revolution 1024 --sidecar a.toml --line-voltages \
                     --skip-missing --decimal-comma";
         let words = line.split(' ').map(|word| word.trim_matches('"'));
         let typed = Reading::parse_from(words).input.typed();

@@ -1,7 +1,7 @@
 //! From raw columns to a recording in SI: units, line voltages, the third current, encoder counts.
 
 use super::plan::Plan;
-use super::{Raw, clock, encoder};
+use super::{Raw, clock, delay, encoder, spikes};
 use crate::channel::Channel;
 use crate::error::Error;
 use crate::mapping::{Factor, Mapping, Target};
@@ -24,6 +24,7 @@ pub(super) fn recording(
     for (target, values) in raw.columns {
         if let Target::Channel(channel) = target {
             let values = converted(&recording, channel, values, mapping)?;
+            let values = sound(&mut recording, channel, values, mapping);
             recording.set(channel, values)?;
         }
     }
@@ -89,6 +90,23 @@ fn converted(
     sensors.encoder_pulses_per_revolution = pulses.or(sensors.encoder_pulses_per_revolution);
     let scaled: Vec<f64> = values.into_iter().map(|x| map.to_si(quantity, x)).collect();
     encoder::speed(recording.name(), recording.t(), &scaled, &sensors)
+}
+
+/// The values at the rows' times, free of spikes.
+fn sound(
+    recording: &mut Recording,
+    channel: Channel,
+    mut values: Vec<f64>,
+    mapping: &Mapping,
+) -> Vec<f64> {
+    if let Some(bridged) = spikes::bridge(recording.t(), &mut values, channel.quantity()) {
+        recording.note_bridged(channel, bridged);
+    }
+    let map = mapping.columns.get(&Target::Channel(channel));
+    match map.and_then(|map| map.delay) {
+        Some(delay) => delay::at_row_times(recording.t(), &values, delay, recording.t_sample()),
+        None => values,
+    }
 }
 
 /// Phase voltages from line voltages, zero sequence taken as 0: `va = (vab - vca)/3`, cyclically.

@@ -4,6 +4,7 @@ mod clock;
 mod columns;
 mod comtrade;
 mod csv_file;
+mod delay;
 mod encoder;
 mod finish;
 mod format;
@@ -12,6 +13,7 @@ mod mat;
 mod parquet;
 mod plan;
 mod preview;
+mod spikes;
 mod table;
 mod table_file;
 

@@ -29,12 +29,12 @@ export function columnsOf(form) {
   };
   /** @type {Columns} */
   const columns = {
-    column: {}, unit: {}, scale: {}, offset: {}, sample_rate_hz: number("sample_rate_hz"), delimiter: text("delimiter"),
+    column: {}, unit: {}, scale: {}, offset: {}, delay: {}, sample_rate_hz: number("sample_rate_hz"), delimiter: text("delimiter"),
     decimal_comma: form.has("decimal_comma"), line_voltages: form.has("line_voltages"), skip_missing: form.has("skip_missing"),
     pulses_per_revolution: number("pulses_per_revolution"),
   };
   for (const [channel] of CHANNELS) {
-    for (const what of /** @type {const} */ (["column", "unit", "scale", "offset"])) {
+    for (const what of /** @type {const} */ (["column", "unit", "scale", "offset", "delay"])) {
       const said = text(`${what}-${channel}`);
       if (said !== "") columns[what][channel] = said;
     }
@@ -61,6 +61,8 @@ function select(id, name, label, options, chosen) {
   return made;
 }
 
+const PLACEHOLDERS = { scale: "1", offset: "0", delay: "0us" };
+
 /**
  * @param {string} id
  * @param {RecordingView} recording
@@ -74,12 +76,12 @@ function row(id, recording, [channel, words, units]) {
   const own = names.includes(channel) ? channel : "–";
   const column = select(`${id}-column-${channel}`, `column-${channel}`, `Column of ${words}`, [["", own], ...offered.filter((name) => name !== "" && name !== channel).map((name) => /** @type {[string, string]} */ ([name, name]))], said);
   const unit = select(`${id}-unit-${channel}`, `unit-${channel}`, `Unit of ${words}`, [["", "default"], ...units.map((name) => /** @type {[string, string]} */ ([name, name]))], columns.unit[channel] ?? "");
-  const number = (/** @type {"scale" | "offset"} */ what, /** @type {string} */ label) => {
-    const input = make("input", { name: `${what}-${channel}`, inputmode: "decimal", size: 5, "aria-label": `${label} of ${words}`, placeholder: what === "scale" ? "1" : "0", autocomplete: "off" });
+  const number = (/** @type {"scale" | "offset" | "delay"} */ what, /** @type {string} */ label) => {
+    const input = make("input", { name: `${what}-${channel}`, inputmode: "decimal", size: 5, "aria-label": `${label} of ${words}`, placeholder: PLACEHOLDERS[what], autocomplete: "off" });
     input.value = columns[what][channel] ?? "";
     return input;
   };
-  return make("tr", {}, make("th", { scope: "row" }, words, " ", make("abbr", {}, channel)), make("td", {}, column), make("td", {}, unit), make("td", {}, number("scale", "Factor")), make("td", {}, number("offset", "Reading at zero")));
+  return make("tr", {}, make("th", { scope: "row" }, words, " ", make("abbr", {}, channel)), make("td", {}, column), make("td", {}, unit), make("td", {}, number("scale", "Factor")), make("td", {}, number("offset", "Reading at zero")), make("td", {}, number("delay", "Sampled later by")));
 }
 
 /**
@@ -110,13 +112,13 @@ function field(name, words, value) {
  */
 export function columnForm(id, recording, apply) {
   const { columns } = recording;
-  const head = make("tr", {}, ...["signal", "column", "unit", "factor", "zero"].map((words) => make("th", { scope: "col", class: "word" }, words)));
+  const head = make("tr", {}, ...["signal", "column", "unit", "factor", "zero", "later by"].map((words) => make("th", { scope: "col", class: "word" }, words)));
   const separators = /** @type {[string, string][]} */ ([["", "comma"], [";", "semicolon ;"], ["tab", "tab"], ["|", "bar |"]]);
   const form = make("form", { class: "columns", novalidate: true },
     ...(recording.preview ? [table(recording.preview)] : []),
     make("p", { class: "options" }, make("label", {}, "Columns are separated by ", select(`${id}-delimiter`, "delimiter", "Separator", separators, columns.delimiter)), box("decimal_comma", "numbers are written 3,7", columns.decimal_comma), box("line_voltages", "va vb vc hold line voltages", columns.line_voltages), box("skip_missing", "leave out rows with empty cells", columns.skip_missing), field("sample_rate_hz", "Sampling rate without a time column, Hz", columns.sample_rate_hz), field("pulses_per_revolution", "Encoder pulses per turn", columns.pulses_per_revolution)),
     make("div", { class: "wide", tabindex: "0" }, make("table", { "aria-label": "Columns and signals" }, make("thead", {}, head), make("tbody", {}, ...CHANNELS.map((channel) => row(id, recording, channel))))),
-    make("p", { class: "subtle" }, "A column of a signal’s own name needs no choice. Units are those that the file or its sidecar declares, or SI. Signal = factor × (column − zero). The factor of the speed may be the word unknown: compare, explain and adopt then fit it."),
+    make("p", { class: "subtle" }, "A column of a signal’s own name needs no choice. Units are those that the file or its sidecar declares, or SI. Signal = factor × (column − zero). The factor of the speed may be the word unknown: compare, explain and adopt then fit it. A channel that was sampled later than its row says by how much, with its unit: 11.55us."),
     make("p", { class: "actions" }, make("button", { type: "submit", class: "main" }, "Read again")));
   form.addEventListener("submit", (event) => {
     event.preventDefault();

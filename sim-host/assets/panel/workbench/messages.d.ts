@@ -8,6 +8,7 @@ export interface Columns {
   unit: Record<string, string>;
   scale: Record<string, string>;
   offset: Record<string, string>;
+  delay: Record<string, string>;
   sample_rate_hz: number | null;
   delimiter: string;
   decimal_comma: boolean;

@@ -117,7 +117,7 @@ impl Bench {
             return None;
         };
         let expectation = self.motor().map_or_else(Expectation::default, |motor| {
-            Expectation::from(&motor.motor.nameplate)
+            Expectation::from(&motor.motor)
         });
         Some(audit(recording, &expectation))
     }

@@ -17,6 +17,8 @@ pub(super) struct Columns {
     pub scale: BTreeMap<String, String>,
     /// By channel: the reading at zero, as `--offset`.
     pub offset: BTreeMap<String, String>,
+    /// By channel: how much later than its row it was sampled, with a unit of time, as `--delay`.
+    pub delay: BTreeMap<String, String>,
     /// As `--sample-rate`, Hz.
     pub sample_rate_hz: Option<f64>,
     /// As `--delimiter`.
@@ -46,11 +48,12 @@ impl Columns {
             encoder_pulses_per_revolution: self.pulses_per_revolution,
             ..Mapping::default()
         };
-        let settings: [(&BTreeMap<String, String>, Set); 4] = [
+        let settings: [(&BTreeMap<String, String>, Set); 5] = [
             (&self.column, Mapping::set_column),
             (&self.unit, Mapping::set_unit),
             (&self.scale, Mapping::set_scale),
             (&self.offset, Mapping::set_offset),
+            (&self.delay, Mapping::set_delay),
         ];
         for (by_channel, set) in settings {
             for (channel, value) in by_channel.iter().filter(|(_, value)| !value.is_empty()) {
@@ -73,7 +76,7 @@ mod tests {
 
     #[test]
     fn the_form_says_what_the_flags_say() {
-        let text = r#"{"column": {"ia": "I1", "ib": ""}, "unit": {"ia": "mA"}, "scale": {"ia": "2"}, "offset": {"ia": "-0.5"},
+        let text = r#"{"column": {"ia": "I1", "ib": ""}, "unit": {"ia": "mA"}, "scale": {"ia": "2"}, "offset": {"ia": "-0.5"}, "delay": {"ib": "11.55us"},
             "sample_rate_hz": 5000, "delimiter": ";", "decimal_comma": true}"#;
         let columns: Columns = serde_json::from_str(text).expect("JSON");
         let mut expected = Mapping {
@@ -84,6 +87,7 @@ mod tests {
         expected.set_unit("ia=mA").expect("sound");
         expected.set_scale("ia=2").expect("sound");
         expected.set_offset("ia=-0.5").expect("sound");
+        expected.set_delay("ib=11.55us").expect("sound");
         expected.set_sample_rate(5000.0).expect("sound");
         expected.set_delimiter(";").expect("sound");
         assert_eq!(columns.mapping(), Ok(expected));
@@ -105,6 +109,7 @@ mod tests {
             r#"{"column": {"x": "I1"}}"#,
             r#"{"unit": {"ia": "parsec"}}"#,
             r#"{"scale": {"ia": "much"}}"#,
+            r#"{"delay": {"ia": "11.55"}}"#,
             r#"{"sample_rate_hz": -1}"#,
             r#"{"delimiter": "x"}"#,
         ] {
