@@ -44,7 +44,7 @@ fn bench(criterion: &mut Criterion) {
     let path = std::env::temp_dir().join(format!("replay-{}.csv.gz", std::process::id()));
     write_recording(&path, &recorded()).expect("a folder for temporary files");
     let recording = read(&path);
-    let expectation = Expectation::from(&motor.nameplate);
+    let expectation = Expectation::from(&motor);
     let findings = audit(&recording, &expectation);
     assert!(findings.supported);
     let monitor = Monitor::new(config_for(&motor, &recording)).expect("shipped");

@@ -168,7 +168,7 @@ fn speed_scale_of(
 /// Audit of a source; a load table has nothing to audit beyond its reading.
 pub(crate) fn audit_of(source: &Source, motor: &MotorFile) -> Audit {
     match source {
-        Source::Recording(recording) => audit(recording, &Expectation::from(&motor.nameplate)),
+        Source::Recording(recording) => audit(recording, &Expectation::from(motor)),
         Source::LoadTable(_) => Audit {
             supported: true,
             findings: Vec::new(),

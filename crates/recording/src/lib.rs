@@ -19,14 +19,14 @@ mod suggest;
 mod units;
 mod write;
 
-pub use audit::{Audit, Code, Expectation, Finding, audit, with_sound_probes};
+pub use audit::{Audit, Circuit, Code, Expectation, Finding, audit, with_sound_probes};
 pub use channel::{Channel, Quantity, Signal};
 pub use error::{Class, Error, Problem};
 pub use load_table::{LoadPoint, LoadTable, TableColumn};
 pub use mapping::{ColumnMap, Factor, Mapping, Origin, Target};
 pub use metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use read::{Preview, Source, preview, read_any, read_load_table, read_recording};
-pub use recording::{Recording, UnknownScale};
+pub use recording::{Bridged, Recording, UnknownScale};
 pub use sidecar::{Sidecar, sidecar_path};
 pub use source::Progress;
 pub use units::{UNITS, Unit};

@@ -311,6 +311,11 @@ fn the_json_is_stable() {
         (Code::SpeedImplausible, "speed-implausible"),
         (Code::ScaleUnknown, "scale-unknown"),
         (Code::ChannelMissing, "channel-missing"),
+        (Code::Spikes, "spikes"),
+        (Code::Frozen, "frozen"),
+        (Code::Held, "held"),
+        (Code::Skew, "skew"),
+        (Code::ClockDrift, "clock-drift"),
     ];
     for (code, name) in codes {
         assert_eq!(serde_json::to_value(code).unwrap(), name);

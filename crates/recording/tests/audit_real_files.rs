@@ -14,6 +14,7 @@ const MOTOR_A: Expectation = Expectation {
     voltage_line_rms_volt: Some(400.0),
     current_rms_amp: Some(5.0),
     torque_nm: Some(14.6),
+    circuit: None,
 };
 /// 1.5 kW at its 25 Hz point, 4 poles: `motor.toml` of the inverter set.
 const MOTOR_C: Expectation = Expectation {
@@ -22,6 +23,7 @@ const MOTOR_C: Expectation = Expectation {
     voltage_line_rms_volt: Some(422.536_980_630_098_2),
     current_rms_amp: Some(5.5),
     torque_nm: Some(20.0),
+    circuit: None,
 };
 
 fn audited(path: &Path, expectation: &Expectation, flags: &Mapping) -> Audit {
@@ -135,6 +137,7 @@ const LABORATORY: Expectation = Expectation {
     voltage_line_rms_volt: Some(400.0),
     current_rms_amp: Some(8.4),
     torque_nm: None,
+    circuit: None,
 };
 
 #[test]

@@ -42,7 +42,7 @@ pub fn audited<'r>(
     recordings: &'r [Recording],
     motor: &MotorFile,
 ) -> Result<Vec<Healthily<'r>>, Refusal> {
-    let expectation = Expectation::from(&motor.nameplate);
+    let expectation = Expectation::from(motor);
     let one = |recording: &'r Recording| {
         let audit = audit(recording, &expectation);
         if audit.supported {

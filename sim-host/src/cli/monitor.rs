@@ -104,9 +104,9 @@ impl MonitorArgs {
 
     fn monitor(&self, recording: &Recording) -> Result<Finding, Failure> {
         let motor = self.motor.as_deref().map(read_motor).transpose()?;
-        let expectation = motor.as_ref().map_or_else(Expectation::default, |motor| {
-            Expectation::from(&motor.nameplate)
-        });
+        let expectation = motor
+            .as_ref()
+            .map_or_else(Expectation::default, |motor| Expectation::from(motor));
         let audit = audit(recording, &expectation);
         let config = match &motor {
             Some(motor) => replay::config_for(motor, recording),

@@ -176,9 +176,9 @@ impl Panel {
             );
             return Err(Failure::Usage(why));
         };
-        let expectation = motor.as_ref().map_or_else(Expectation::default, |motor| {
-            Expectation::from(&motor.nameplate)
-        });
+        let expectation = motor
+            .as_ref()
+            .map_or_else(Expectation::default, |motor| Expectation::from(motor));
         let audit = audit(&recording, &expectation);
         if !audit.supported {
             return Err(Failure::Unsupported(why_not(path, &audit)));

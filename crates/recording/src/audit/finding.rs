@@ -43,6 +43,16 @@ pub enum Code {
     ScaleUnknown,
     /// A channel that judging needs is absent.
     ChannelMissing,
+    /// Samples far off their neighbours were bridged; value: how many.
+    Spikes,
+    /// All channels hold their values; value: the longest stretch, s.
+    Frozen,
+    /// A channel is refreshed more slowly than rows are written; value: rows per refresh.
+    Held,
+    /// Channels were sampled one after the other; value: the step within three of a kind, us.
+    Skew,
+    /// Voltages and currents were sampled by two clocks; value: how much faster the currents' runs, ppm.
+    ClockDrift,
 }
 
 /// One finding.

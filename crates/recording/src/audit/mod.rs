@@ -8,10 +8,13 @@ mod clipping;
 mod clock;
 mod context;
 mod dead;
+mod drift;
 mod expectation;
 mod finding;
 mod fit;
+mod frozen;
 mod gap;
+mod held;
 mod missing;
 mod not_locked;
 mod offset;
@@ -19,7 +22,9 @@ mod probes;
 mod rms_values;
 mod scale;
 mod sequence;
+mod skew;
 mod speed;
+mod spikes;
 mod statistics;
 mod stuck;
 mod supply;
@@ -28,7 +33,7 @@ mod unit;
 mod wiring;
 mod zero_sequence;
 
-pub use expectation::Expectation;
+pub use expectation::{Circuit, Expectation};
 pub use finding::{Audit, Code, Finding};
 pub use probes::with_sound_probes;
 
@@ -43,6 +48,7 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
     let mut context = Context::new(recording, expectation);
     let mut findings = clock::check(&context);
     findings.extend(gap::check(&context));
+    findings.extend(spikes::check(&context));
     findings.extend(clipping::check(&context));
     findings.extend(rms_values::check(&mut context));
     if findings
@@ -51,12 +57,28 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
     {
         findings.extend(not_locked::check(&context));
     }
+    if findings.iter().all(|f| f.code != Code::RmsValues) {
+        let held = held::check(&mut context);
+        // Between two values of a display nothing stands still.
+        if held.iter().all(|f| !f.refuses) {
+            findings.extend(frozen::check(&context));
+        }
+        findings.extend(held);
+    }
     findings.extend(stuck::check(&mut context));
     findings.extend(scale::check(&mut context));
-    findings.extend(wiring::check(&mut context));
+    let drift = drift::check(&mut context);
+    if drift.is_none() {
+        findings.extend(wiring::check(&mut context));
+    }
+    findings.extend(drift);
     findings.extend(unit::check(&mut context));
     findings.extend(offset::check(&context));
-    findings.extend(zero_sequence::check(&context));
+    let skew = skew::check(&context);
+    if skew.is_none() {
+        findings.extend(zero_sequence::check(&context));
+    }
+    findings.extend(skew);
     findings.extend(supply::check(&context));
     if findings.iter().all(|finding| finding.code != Code::Unit) {
         findings.extend(speed::check(&mut context));

@@ -10,6 +10,9 @@ const NEGATIVE: f64 = 0.03;
 /// Mean over largest value: an inrush that decays leaves a few percent.
 const MEAN: f64 = 0.03;
 
+/// Standard deviation over mean of a meter's reading of one operating point.
+const CALM: f64 = 0.03;
+
 pub(super) fn check(context: &mut Context<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     for three in [Channel::VOLTAGES, Channel::CURRENTS] {
@@ -45,9 +48,24 @@ fn all_effective(context: &Context<'_>, three: [Channel; 3]) -> bool {
     let columns: Vec<&[f64]> = measured
         .filter_map(|channel| context.recording.channel(channel))
         .collect();
-    columns.len() >= 2
-        && columns.iter().all(|x| never_negative(x))
-        && tracked(context.recording, &columns).spans().is_empty()
+    columns.len() >= 2 && columns.iter().all(|x| never_negative(x)) && !alternate(context, &columns)
+}
+
+/// Whether a fundamental goes through most of the recording: some stretches of a wavering meter look like one, and what
+/// wavers by less than a few percent is a meter in any case.
+fn alternate<'r>(context: &Context<'r>, columns: &[&'r [f64]]) -> bool {
+    if columns.iter().all(|x| is_calm(x)) {
+        return false;
+    }
+    let spans = tracked(context.recording, columns).spans();
+    let covered: usize = spans.iter().map(|span| span.range.len()).sum();
+    2 * covered > context.recording.len()
+}
+
+fn is_calm(x: &[f64]) -> bool {
+    let mean = mean(x);
+    let square = x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64;
+    square.sqrt() < CALM * mean
 }
 
 fn never_negative(x: &[f64]) -> bool {

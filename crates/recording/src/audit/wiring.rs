@@ -16,6 +16,8 @@ const BALANCED: f64 = 0.25;
 /// Angle of the current behind the voltage: a motor draws reactive power and, unless it is driven,
 /// active power. 10 degrees each way for sensor delays.
 const MOTOR_DEGREES: RangeInclusive<f64> = -10.0..=100.0;
+/// A motor that is driven gives active power back and still draws reactive power.
+const DRIVEN_DEGREES: RangeInclusive<f64> = -10.0..=190.0;
 /// Share of the blocks whose angle must be a motor's.
 const MOST: f64 = 0.5;
 
@@ -165,20 +167,21 @@ fn swapped(context: &mut Context<'_>) -> Finding {
 
 /// The share of settled blocks whose current, rearranged, lags the voltage like a motor's.
 fn motor_share(context: &Context<'_>, arrange: impl Fn([Complex64; 3]) -> [Complex64; 3]) -> f64 {
-    let angles: Vec<f64> = context
-        .settled(Channel::CURRENTS)
-        .iter()
-        .filter(|(block, _)| !is_driven(context, block))
-        .filter_map(|(block, three)| lag(block.voltages.as_ref()?, arrange(three.phasors())))
-        .collect();
-    let inside = angles
-        .iter()
-        .filter(|angle| MOTOR_DEGREES.contains(angle))
-        .count();
-    if angles.is_empty() {
+    let settled = context.settled(Channel::CURRENTS);
+    let votes = settled.iter().filter_map(|(block, three)| {
+        let lag = lag(block.voltages.as_ref()?, arrange(three.phasors()))?;
+        Some(if is_driven(context, block) {
+            DRIVEN_DEGREES.contains(&lag) || DRIVEN_DEGREES.contains(&(lag + 360.0))
+        } else {
+            MOTOR_DEGREES.contains(&lag)
+        })
+    });
+    let votes: Vec<bool> = votes.collect();
+    let inside = votes.iter().filter(|inside| **inside).count();
+    if votes.is_empty() {
         1.0
     } else {
-        inside as f64 / angles.len() as f64
+        inside as f64 / votes.len() as f64
     }
 }
 
@@ -193,12 +196,12 @@ fn lag(voltages: &Three, currents: [Complex64; 3]) -> Option<f64> {
     (power.norm() > 0.0).then(|| power.arg().to_degrees())
 }
 
-/// Faster than its field: a load that drives the motor may turn the angle beyond 90 degrees.
+/// Faster than its field: a load that drives the motor turns the angle beyond 90 degrees.
 fn is_driven(context: &Context<'_>, block: &Block) -> bool {
     let pole_pairs = context.expectation.pole_pairs.map_or(1.0, f64::from);
     block
         .speed
-        .is_some_and(|speed| speed.abs() * pole_pairs > 1.001 * block.omega)
+        .is_some_and(|speed| speed.abs() * pole_pairs > block.omega)
 }
 
 /// A way in which currents may have been taken for those of other phases.
@@ -245,7 +248,10 @@ fn angle(context: &mut Context<'_>) -> Option<Finding> {
     let fits = |mistake: &&Mistake| motor_share(context, |i| mistake.undone(i)) > MOST;
     let fits: Vec<&Mistake> = MISTAKES.iter().filter(fits).collect();
     let code = fits.first()?.code;
-    let remedies: Vec<&str> = fits.iter().map(|mistake| mistake.remedy).collect();
+    let mut remedies: Vec<&str> = fits.iter().map(|mistake| mistake.remedy).collect();
+    if context.recording.speed().is_none() {
+        remedies.push("or a load drives it: a motor gives power back only above synchronous speed, which a speed would show");
+    }
     let lag = usual_lag(context);
     context
         .unsound

@@ -27,6 +27,7 @@ pub fn expectation() -> Expectation {
         voltage_line_rms_volt: Some(400.0),
         current_rms_amp: Some(5.0),
         torque_nm: Some(14.6),
+        circuit: None,
     }
 }
 
@@ -43,7 +44,7 @@ impl Noise {
     }
 
     // splitmix64
-    fn uniform(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

@@ -1,0 +1,113 @@
+//! Channels that are refreshed more slowly than the rows are written: values of a display, of a bus, of another converter.
+
+use super::context::Context;
+use super::finding::{Code, Finding, names};
+use super::statistics::quantile;
+use crate::channel::{Channel, Quantity};
+use std::f64::consts::TAU;
+
+/// Rows from which on a value counts as held; a few may be a converter's resolution.
+const FEWEST_ROWS: f64 = 10.0;
+/// Refreshes that must be seen.
+const FEWEST_REFRESHES: usize = 20;
+/// Share of the refreshes that must come after whole multiples of the same number of rows.
+const REGULAR: f64 = 0.9;
+/// Deviation from a whole multiple that still counts, as a share of it, and in rows.
+const OFF_SHARE: f64 = 0.1;
+const OFF_ROWS: f64 = 1.0;
+/// Share of the refreshes that must be larger than the smallest change: a slow drift goes on step by step.
+const LARGER: f64 = 0.2;
+/// Refreshes per period of the supply below which a phasor is no longer one.
+const FEWEST_PER_PERIOD: f64 = 3.0;
+
+pub(super) fn check(context: &mut Context<'_>) -> Vec<Finding> {
+    let recording = context.recording;
+    let measured: Vec<(Channel, &[f64])> = recording
+        .channels()
+        .filter(|(channel, _)| !recording.is_derived(*channel))
+        .collect();
+    let held: Vec<(Channel, f64)> = measured
+        .iter()
+        .filter_map(|(channel, x)| Some((*channel, rows(x)?)))
+        .collect();
+    let electrical = |channel: &Channel| channel.is_electrical();
+    let (signals, others): (Vec<_>, Vec<_>) = held.into_iter().partition(|(c, _)| electrical(c));
+    let all = measured.iter().filter(|(c, _)| electrical(c)).count();
+    let mut findings: Vec<Finding> = alternating(context, &signals, all).into_iter().collect();
+    findings.extend(
+        others
+            .into_iter()
+            .filter_map(|(channel, rows)| slow(context, channel, rows)),
+    );
+    findings
+}
+
+/// The number of rows for which a channel keeps its value, where it is refreshed regularly.
+pub(super) fn rows(x: &[f64]) -> Option<f64> {
+    let changes: Vec<usize> = (1..x.len()).filter(|k| x[*k] != x[k - 1]).collect();
+    if changes.len() < FEWEST_REFRESHES {
+        return None;
+    }
+    let waits = || changes.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
+    let rows = quantile(waits(), 0.1)?;
+    let whole = |wait: &f64| {
+        let multiple = (wait / rows).round().max(1.0);
+        (wait - multiple * rows).abs() <= (OFF_SHARE * rows).max(OFF_ROWS * multiple.min(4.0))
+    };
+    let regular = waits().filter(whole).count() as f64;
+    let sizes = || changes.iter().map(|k| (x[*k] - x[k - 1]).abs());
+    let smallest = sizes().fold(f64::INFINITY, f64::min);
+    let larger = sizes().filter(|size| *size > 1.5 * smallest).count() as f64;
+    let count = changes.len() as f64;
+    (rows >= FEWEST_ROWS && regular >= REGULAR * (count - 1.0) && larger >= LARGER * count)
+        .then_some(rows)
+}
+
+/// Voltages and currents: held by half their refresh on average, some later than others.
+fn alternating(context: &mut Context<'_>, held: &[(Channel, f64)], all: usize) -> Option<Finding> {
+    let longest = held.iter().map(|(_, rows)| *rows).fold(0.0, f64::max);
+    let shortest = held
+        .iter()
+        .map(|(_, rows)| *rows)
+        .fold(f64::INFINITY, f64::min);
+    let channels: Vec<Channel> = held.iter().map(|(channel, _)| *channel).collect();
+    if held.is_empty() {
+        return None;
+    }
+    let together = held.len() == all && longest < 1.1 * shortest;
+    let omega = context.omega().or(context.expectation.omega());
+    let per_period = omega.map_or(0.0, |omega| {
+        TAU / (omega * context.recording.t_sample() * longest)
+    });
+    let finding = Finding::new(Code::Held, names(&channels), longest, "rows");
+    if together && per_period > FEWEST_PER_PERIOD {
+        return Some(finding.detail(format!(
+            "{} are refreshed only every {longest:.0} rows ({per_period:.1} times per period): the file has more rows than the \
+             recorder has measured. Write only the rows that were measured, or record faster.",
+            names(&channels)
+        )));
+    }
+    context.unsound.extend(&channels);
+    Some(
+        finding
+            .detail(format!(
+                "{} keep their values for {longest:.0} rows while other channels go on: these are values of a display or of a \
+                 slower converter, late against the others. Record instantaneous values of all channels at one rate.",
+                names(&channels)
+            ))
+            .refusing(),
+    )
+}
+
+/// A speed, torque or temperature may be slow; that it is matters to starts and steps.
+fn slow(context: &Context<'_>, channel: Channel, rows: f64) -> Option<Finding> {
+    if channel.quantity() == Quantity::Temperature {
+        return None;
+    }
+    let seconds = rows * context.recording.t_sample();
+    Some(Finding::new(Code::Held, channel, rows, "rows").detail(format!(
+        "{channel} is refreshed only every {rows:.0} rows ({:.3} s): the value of a display or of a bus. Steady running is judged; \
+         starts and load steps are shown late in it.",
+        seconds
+    )))
+}
