@@ -31,6 +31,7 @@ impl Document {
     /// # Errors
     /// Text that is empty or not TOML, each problem with its line and the remedy.
     pub fn parse(text: &str, file: &str) -> Result<Document, FileError> {
+        text::check_size(text.len() as u64).map_err(|message| FileError::whole(file, message))?;
         let root = value::parse(text, file)?;
         Ok(Document {
             file: file.to_owned(),
@@ -82,3 +83,6 @@ fn sorted(mut problems: Vec<Problem>) -> FileError {
     problems.sort_by_key(|problem| problem.line);
     FileError::new(problems)
 }
+
+#[cfg(test)]
+mod tests;

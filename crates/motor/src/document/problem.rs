@@ -25,7 +25,10 @@ impl fmt::Display for Problem {
     }
 }
 
-/// All problems of one file; printed one per line.
+/// Problems that are printed; a file with more is not the one that was meant.
+const MOST_SHOWN: usize = 50;
+
+/// All problems of one file; printed one per line, the first fifty.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct FileError {
     problems: Vec<Problem>,
@@ -55,12 +58,15 @@ impl FileError {
 
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, problem) in self.problems.iter().enumerate() {
+        for (i, problem) in self.problems.iter().take(MOST_SHOWN).enumerate() {
             if i > 0 {
                 writeln!(f)?;
             }
             write!(f, "{problem}")?;
         }
-        Ok(())
+        match self.problems.len().saturating_sub(MOST_SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n... and {more} more problems"),
+        }
     }
 }

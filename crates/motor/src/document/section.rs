@@ -291,11 +291,11 @@ impl<'d> Section<'d> {
     pub fn finish(self) {
         let known = self.known.borrow();
         let mut missing = self.missing.borrow().clone();
+        let absent: Vec<_> = known.iter().filter(|key| !self.has(key)).cloned().collect();
         for entry in &self.table.entries {
             if known.contains(&entry.key) {
                 continue;
             }
-            let absent: Vec<_> = known.iter().filter(|key| !self.has(key)).cloned().collect();
             let meant = closest(&entry.key, &absent);
             missing.retain(|(key, _)| Some(key) != meant);
             let message = unknown(meant, &known);

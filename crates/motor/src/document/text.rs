@@ -1,6 +1,8 @@
 //! Bytes of a configuration file to text, naming what the file is when it is not text.
 
 use super::FileError;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// A configuration is a page or two; anything larger is some other file.
@@ -21,17 +23,27 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
             "is a folder: name a .toml file in it",
         ));
     }
-    if metadata.len() > LARGEST_BYTES {
-        return Err(FileError::whole(&file, too_large(metadata.len())));
-    }
-    let bytes = std::fs::read(path).map_err(unreadable)?;
+    check_size(metadata.len()).map_err(|message| FileError::whole(&file, message))?;
+    // A pipe does not say how much it holds.
+    let mut bytes = Vec::new();
+    let opened = File::open(path).map_err(unreadable)?;
+    let read = opened.take(LARGEST_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(unreadable)?;
+    check_size(bytes.len() as u64).map_err(|message| FileError::whole(&file, message))?;
     decode(&bytes).map_err(|message| FileError::whole(&file, message))
 }
 
-fn too_large(bytes: u64) -> String {
-    format!(
-        "has {bytes} bytes; a configuration has at most {LARGEST_BYTES}: is this a recording? Name the .toml file"
-    )
+/// Refuses what is larger than any configuration.
+///
+/// # Errors
+/// The limit, and what the file may be instead.
+pub(super) fn check_size(bytes: u64) -> Result<(), String> {
+    match bytes > LARGEST_BYTES {
+        false => Ok(()),
+        true => Err(format!(
+            "has more than {LARGEST_BYTES} bytes, which no configuration has: is this a recording? Name the .toml file"
+        )),
+    }
 }
 
 fn decode(bytes: &[u8]) -> Result<String, String> {

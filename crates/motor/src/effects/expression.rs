@@ -29,7 +29,7 @@ const ADDS_TO: &str = "adds_to";
 /// Keys whose values are text.
 pub const TEXTS: [&str; 2] = [FORMULA, ADDS_TO];
 const TYPICAL: &str = "_typical";
-const VARIABLES: [&str; 9] = [
+pub(super) const VARIABLES: [&str; 9] = [
     "i_d", "i_q", "u_d", "u_q", "psi", "omega", "slip", "theta", "t",
 ];
 
@@ -215,7 +215,8 @@ fn descriptor(formula: &'static str, parameters: &[(&str, f64)], typical: &[f64]
 }
 
 impl Expression {
-    /// Value of the formula; a formula that leaves the numbers counts as absent there.
+    /// Value of the formula. It is a number at every motion of the motor with the values of its file, which is checked when
+    /// that is read; where the values of a trial fit make it none, it adds nothing.
     fn value(&self, p: &[f64], variables: &[f64; 9]) -> f64 {
         let argument = |slot: &Slot| match *slot {
             Slot::Variable(k) => variables[k],

@@ -1,8 +1,8 @@
 //! Effects in the motor file: from its entries and back.
 
 use super::config::known_effect;
-use super::expression;
 use super::{Descriptor, EffectConfig, EffectError, Rated};
+use super::{expression, motions};
 use crate::MotorFile;
 use crate::document::{Document, FileError};
 use crate::motor_file::{EffectEntry, EffectParameter, EffectValue, Nameplate};
@@ -69,7 +69,10 @@ pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfi
         .collect();
     if entry.name == expression::NAME {
         check_formula_texts(entry)?;
-        return expression::expression(entry.text("formula"), entry.text("adds_to"), &numbers);
+        let formula = entry.text("formula");
+        let config = expression::expression(formula, entry.text("adds_to"), &numbers)?;
+        motions::check(formula.unwrap_or_default(), &numbers, rated)?;
+        return Ok(config);
     }
     let effect = known_effect(&entry.name, entry.text(FORM).unwrap_or(""))?;
     check_types(entry, effect.descriptor())?;

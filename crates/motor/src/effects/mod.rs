@@ -13,6 +13,8 @@ mod effect;
 pub mod expression;
 #[cfg(feature = "file")]
 mod file;
+#[cfg(feature = "file")]
+mod motions;
 #[cfg(feature = "std")]
 mod signals;
 #[cfg(feature = "std")]

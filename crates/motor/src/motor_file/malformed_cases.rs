@@ -36,7 +36,7 @@ const LAST: &str = "load_friction_nm_s = 0.0\n";
 
 /// Each of them is refused.
 #[rustfmt::skip]
-pub const CASES: [Case; 58] = [
+pub const CASES: [Case; 60] = [
     case("negative resistance", (R_S, "stator_resistance_ohm = -3.7"), 11, "parameters.stator_resistance_ohm", "above 0 and at most 100000 ohm"),
     case("zero resistance", (R_S, "stator_resistance_ohm = 0"), 11, "parameters.stator_resistance_ohm", "0 is out of range: write above 0"),
     case("not a number", (R_S, "stator_resistance_ohm = nan"), 11, "parameters.stator_resistance_ohm", "not a finite number: write above 0"),
@@ -94,5 +94,7 @@ pub const CASES: [Case; 58] = [
     case("form of an effect as a number", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"deep-bar\"\nform = 2\nresistance_rise = 0.5\nleakage_drop = 0.2"), 21, "effects.deep-bar.form", "in double quotes"),
     case("unknown text of a formula", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k * omega\"\nadds_to = \"torque\"\nk = 1.0\nunit = \"N m\""), 24, "effects.expression.unit", "formula, adds_to"),
     case("formula that hides a variable", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"omega\"\nadds_to = \"torque\"\nomega = 1.0"), 21, "effects.expression.formula", "is a variable"),
+    case("formula that is no number", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k/(omega-omega)\"\nadds_to = \"torque\"\nk = 1.0"), 21, "effects.expression.formula", "it is no finite number at omega = "),
+    case("formula that is no number at rest", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k/omega\"\nadds_to = \"torque\"\nk = 1.0"), 21, "effects.expression.formula", "it is no finite number at omega = 0"),
     case("size of no parameter", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k * omega\"\nadds_to = \"torque\"\nk = 1.0\nj_typical = 1.0"), 21, "effects.expression.formula", "add `j = 0.0`"),
 ];
