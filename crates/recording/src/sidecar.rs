@@ -6,9 +6,10 @@ use crate::mapping::{
     refused_unknown,
 };
 use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
+use crate::names::sidecar_path;
 use crate::units::Unit;
 use motor::document::{Bounds, Document, FileError, Section, Value, read_text};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What a sidecar says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,19 +18,6 @@ pub struct Sidecar {
     pub metadata: Metadata,
     /// How the columns are to be read.
     pub mapping: Mapping,
-}
-
-/// The sidecar that belongs to a recording: `a/x.csv.gz` and `a/x.csv` have `a/x.toml`.
-pub fn sidecar_path(recording: &Path) -> PathBuf {
-    let is_gz = recording
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
-    let unpacked = if is_gz {
-        recording.with_extension("")
-    } else {
-        recording.to_owned()
-    };
-    unpacked.with_extension("toml")
 }
 
 impl Sidecar {
@@ -323,18 +311,6 @@ fn unit(table: &Section<'_>, target: Target) -> Option<Option<Unit>> {
 mod tests {
     use super::*;
     use crate::channel::Channel;
-
-    #[test]
-    fn the_sidecar_stands_beside_its_recording() {
-        for (recording, sidecar) in [
-            ("a/x.csv.gz", "a/x.toml"),
-            ("x.csv", "x.toml"),
-            ("a.b/x.1.csv.gz", "a.b/x.1.toml"),
-            ("x", "x.toml"),
-        ] {
-            assert_eq!(sidecar_path(Path::new(recording)), Path::new(sidecar));
-        }
-    }
 
     #[test]
     fn every_key_is_read() {

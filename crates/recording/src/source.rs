@@ -1,6 +1,7 @@
 //! A file's bytes as text, unpacked, with everything that is not a table named for what it is.
 
 use crate::error::Error;
+use crate::names::ends_in;
 use flate2::read::MultiGzDecoder;
 use std::cell::Cell;
 use std::fs::File;
@@ -40,13 +41,10 @@ pub(crate) fn open(path: &Path) -> Result<Source, Error> {
             "name a .csv, .csv.gz, .parquet, .mat, .cfg or .cff file in it",
         ));
     }
-    let bytes_read = Rc::new(Cell::new(0));
-    let counted = Counted {
-        file: File::open(path).map_err(|error| Error::io(path, &error))?,
-        bytes_read: Rc::clone(&bytes_read),
-    };
+    let file = File::open(path).map_err(|error| Error::io(path, &error))?;
+    let (packed, bytes_read) = counted(file);
     Ok(Source {
-        reader: text(counted, &name)?,
+        reader: text(packed, &name, Some(ends_in(path, ".gz")))?,
         bytes_read,
         bytes_total: if metadata.is_file() {
             metadata.len()
@@ -56,11 +54,34 @@ pub(crate) fn open(path: &Path) -> Result<Source, Error> {
     })
 }
 
-fn text(counted: Counted, name: &str) -> Result<Box<dyn Read>, Error> {
-    let mut packed = BufReader::with_capacity(BUFFER, counted);
+/// The same of a stream, which is unpacked if it is gzip, whatever it is called.
+pub(crate) fn stream(name: &str, stream: impl Read + 'static) -> Result<Source, Error> {
+    let (packed, bytes_read) = counted(stream);
+    Ok(Source {
+        reader: text(packed, name, None)?,
+        bytes_read,
+        bytes_total: 0,
+    })
+}
+
+fn counted<R: Read>(input: R) -> (BufReader<Counted<R>>, Rc<Cell<u64>>) {
+    let bytes_read = Rc::new(Cell::new(0));
+    let counted = Counted {
+        input,
+        bytes_read: Rc::clone(&bytes_read),
+    };
+    (BufReader::with_capacity(BUFFER, counted), bytes_read)
+}
+
+/// Text, unpacked; `is_named_gzip` is `None` where the name says nothing.
+fn text<R: Read + 'static>(
+    mut packed: BufReader<R>,
+    name: &str,
+    is_named_gzip: Option<bool>,
+) -> Result<Box<dyn Read>, Error> {
     let head = packed.fill_buf().map_err(|error| broken(name, 0, &error))?;
-    let (is_gzip, is_named_gzip) = (head.starts_with(&GZIP), name.ends_with(".gz"));
-    match (is_gzip, is_named_gzip) {
+    let is_gzip = head.starts_with(&GZIP);
+    match (is_gzip, is_named_gzip.unwrap_or(is_gzip)) {
         (true, true) => plain(
             BufReader::with_capacity(BUFFER, MultiGzDecoder::new(packed)),
             name,
@@ -149,14 +170,14 @@ fn refuse_foreign(head: &[u8], name: &str) -> Result<(), Error> {
 }
 
 /// Counts the bytes that come off the disk.
-struct Counted {
-    file: File,
+struct Counted<R> {
+    input: R,
     bytes_read: Rc<Cell<u64>>,
 }
 
-impl Read for Counted {
+impl<R: Read> Read for Counted<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let n = self.file.read(buffer)?;
+        let n = self.input.read(buffer)?;
         self.bytes_read.set(self.bytes_read.get() + n as u64);
         Ok(n)
     }

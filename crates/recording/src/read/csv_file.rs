@@ -7,6 +7,7 @@ use crate::mapping::Mapping;
 use crate::source::{self, Progress, Source};
 use csv::ByteRecord;
 use std::cell::Cell;
+use std::io::Read;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -25,12 +26,24 @@ const ROWS_PER_CALL: u64 = 8192;
 impl CsvFile {
     /// Opens a file and reads its header.
     pub fn open(path: &Path, mapping: &Mapping) -> Result<CsvFile, Error> {
-        let name = path.display().to_string();
+        CsvFile::of(path.display().to_string(), source::open(path)?, mapping)
+    }
+
+    /// Reads the header of a stream.
+    pub fn of_stream(
+        name: &str,
+        stream: impl Read + 'static,
+        mapping: &Mapping,
+    ) -> Result<CsvFile, Error> {
+        CsvFile::of(name.to_owned(), source::stream(name, stream)?, mapping)
+    }
+
+    fn of(name: String, source: Source, mapping: &Mapping) -> Result<CsvFile, Error> {
         let Source {
             reader,
             bytes_read,
             bytes_total,
-        } = source::open(path)?;
+        } = source;
         let delimiter = mapping.delimiter.unwrap_or(b',');
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)

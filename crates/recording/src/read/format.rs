@@ -1,10 +1,12 @@
 //! The formats that are read; one entry registers one.
 
 use super::csv_file::CsvFile;
-use super::table_file::TableFile;
+use super::table_file::{MOST_NUMBERS, TableFile, too_large};
 use super::{comtrade, mat, parquet};
 use crate::error::Error;
 use crate::mapping::Mapping;
+use crate::names::extension;
+use crate::source;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -19,6 +21,8 @@ struct Format {
     is: fn(&[u8]) -> bool,
     /// Reads a file of this name.
     open: fn(&Path) -> Result<Box<dyn TableFile>, Error>,
+    /// Reads what was in a stream of this name.
+    of_bytes: fn(&str, Vec<u8>) -> Result<Box<dyn TableFile>, Error>,
 }
 
 /// Every format but CSV, which is what remains.
@@ -28,21 +32,26 @@ const FORMATS: [Format; 3] = [
         extensions: &["parquet"],
         is: parquet::is,
         open: parquet::open,
+        of_bytes: parquet::of_bytes,
     },
     Format {
         name: "a MAT-file",
         extensions: &["mat"],
         is: mat::is,
         open: mat::open,
+        of_bytes: mat::of_bytes,
     },
     Format {
         name: "a COMTRADE recording",
         extensions: &["cff", "cfg", "dat"],
         is: comtrade::is,
         open: comtrade::open,
+        of_bytes: comtrade::of_bytes,
     },
 ];
 
+/// Bytes of a stream that are kept at once: [`MOST_NUMBERS`] doubles.
+const MOST_BYTES: u64 = 8 * MOST_NUMBERS;
 /// Bytes that tell a format.
 const HEAD: u64 = 512;
 
@@ -92,6 +101,31 @@ pub(super) fn open(path: &Path, mapping: &Mapping) -> Result<Box<dyn TableFile>,
     }
 }
 
+/// Opens a stream, of which nothing but the content tells the format, and reads its header.
+///
+/// # Errors
+/// A stream that ends or is damaged, or holds more than any recording.
+pub(super) fn open_stream(
+    name: &str,
+    mut stream: impl Read + 'static,
+    mapping: &Mapping,
+) -> Result<Box<dyn TableFile>, Error> {
+    let broken = |error: std::io::Error| source::broken(name, 0, &error);
+    let mut bytes = Vec::new();
+    let mut head = stream.by_ref().take(HEAD);
+    head.read_to_end(&mut bytes).map_err(broken)?;
+    let Some(format) = FORMATS.iter().find(|format| (format.is)(&bytes)) else {
+        let whole = std::io::Cursor::new(bytes).chain(stream);
+        return Ok(Box::new(CsvFile::of_stream(name, whole, mapping)?));
+    };
+    let mut rest = stream.take(MOST_BYTES);
+    rest.read_to_end(&mut bytes).map_err(broken)?;
+    match bytes.len() as u64 > MOST_BYTES {
+        true => Err(too_large(name)),
+        false => (format.of_bytes)(name, bytes),
+    }
+}
+
 /// The first bytes; none of a folder or a pipe, whose bytes cannot be read twice.
 fn head(path: &Path) -> Result<Vec<u8>, Error> {
     let mut head = Vec::new();
@@ -101,11 +135,6 @@ fn head(path: &Path) -> Result<Vec<u8>, Error> {
         read.map_err(|error| Error::io(path, &error))?;
     }
     Ok(head)
-}
-
-fn extension(path: &Path) -> String {
-    let extension = path.extension().unwrap_or_default();
-    extension.to_string_lossy().to_lowercase()
 }
 
 fn empty(path: &Path, format: &Format) -> Error {

@@ -14,6 +14,34 @@ pub(super) struct Header {
     pub units: Vec<Option<String>>,
     /// What had to be assumed to read the file, one sentence each.
     pub notes: Vec<String>,
+    /// What the file holds and nobody can use: refused where it is asked for, named where it is not.
+    pub unreadable: Vec<Unreadable>,
+}
+
+/// A column that is there and cannot be read.
+pub(super) struct Unreadable {
+    /// Its name.
+    pub name: String,
+    /// Why, as a sentence about it.
+    pub why: String,
+    /// What the user can do about it.
+    pub remedy: &'static str,
+}
+
+impl Unreadable {
+    /// A column of something else than numbers: `what` says of what.
+    pub fn holds(name: &str, what: &str) -> Unreadable {
+        Unreadable {
+            name: name.to_owned(),
+            why: format!("it holds {what}"),
+            remedy: "export it as a column of real numbers, one per sample, or map another column with --column",
+        }
+    }
+
+    /// The sentence where nobody asked for it.
+    pub fn note(&self) -> String {
+        format!("column {} is not used: {}", shown(&self.name), self.why)
+    }
 }
 
 impl Header {
@@ -29,6 +57,7 @@ impl Header {
             names,
             units: Vec::new(),
             notes: Vec::new(),
+            unreadable: Vec::new(),
         })
     }
 

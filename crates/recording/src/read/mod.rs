@@ -28,6 +28,8 @@ use header::Header;
 use plan::Plan;
 pub use preview::{Preview, preview};
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 use table::Kind;
 use table_file::{Row, TableFile};
@@ -90,13 +92,48 @@ pub fn read_any(
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Source, Error> {
     // A file that cannot be opened is the first thing to say, before anything about its sidecar.
-    std::fs::metadata(path).map_err(|error| Error::io(path, &error))?;
+    let metadata = std::fs::metadata(path).map_err(|error| Error::io(path, &error))?;
+    if !metadata.is_file() && !metadata.is_dir() {
+        let stream = File::open(path).map_err(|error| Error::io(path, &error))?;
+        return read_stream(&path.display().to_string(), stream, flags, progress);
+    }
     let sidecar = match &flags.sidecar {
         Some(path) => Sidecar::read(path)?,
         None => Sidecar::beside(path)?,
     };
+    read_as(sidecar, flags, progress, |mapping| {
+        format::open(path, mapping)
+    })
+}
+
+/// Reads whatever a stream holds: standard input, a pipe. Its content tells the format, compressed or not; it has a sidecar
+/// where `flags` name one.
+///
+/// # Errors
+/// Whatever is wrong with the content or the sidecar; `name` is what they call the stream.
+pub fn read_stream(
+    name: &str,
+    stream: impl Read + 'static,
+    flags: &Mapping,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Source, Error> {
+    let sidecar = match &flags.sidecar {
+        Some(path) => Sidecar::read(path)?,
+        None => Sidecar::default(),
+    };
+    read_as(sidecar, flags, progress, |mapping| {
+        format::open_stream(name, stream, mapping)
+    })
+}
+
+fn read_as(
+    sidecar: Sidecar,
+    flags: &Mapping,
+    progress: &mut dyn FnMut(Progress),
+    open: impl FnOnce(&Mapping) -> Result<Box<dyn TableFile>, Error>,
+) -> Result<Source, Error> {
     let mapping = flags.clone().over(sidecar.mapping);
-    let mut file = format::open(path, &mapping)?;
+    let mut file = open(&mapping)?;
     match table::kind(file.header(), &mapping)? {
         Kind::LoadTable => table::load_table(&mut *file, progress).map(Source::LoadTable),
         Kind::Recording => {

@@ -1,6 +1,6 @@
 //! Which column of a file becomes which channel.
 
-use super::header::{Header, shown};
+use super::header::{Header, Unreadable, shown};
 use crate::channel::{Channel, Signal};
 use crate::error::{Error, Problem};
 use crate::mapping::{Mapping, Origin, Target};
@@ -31,8 +31,10 @@ const LINE: [(&str, Signal); 3] = [
 impl Plan {
     /// Assigns columns to targets: the mapping first, then the columns of known names.
     pub fn new(header: &Header, mapping: &Mapping) -> Result<Plan, Error> {
+        refuse_unreadable(header, mapping)?;
         let (file, line, units) = (&header.file, header.line, &header.units);
-        let notes = header.notes.clone();
+        let mut notes = header.notes.clone();
+        notes.extend(header.unreadable.iter().map(Unreadable::note));
         let header = &header.names;
         let mut plan = Plan {
             columns: BTreeMap::new(),
@@ -209,6 +211,45 @@ impl Plan {
 
     fn is_taken(&self, column: usize) -> bool {
         self.columns.values().any(|&taken| taken == column)
+    }
+}
+
+/// A channel whose column is there and cannot be read is not an absent one.
+fn refuse_unreadable(header: &Header, mapping: &Mapping) -> Result<(), Error> {
+    let wanted = |one: &&Unreadable| is_wanted(&one.name, header, mapping);
+    match header.unreadable.iter().find(wanted) {
+        None => Ok(()),
+        Some(one) => {
+            let message = format!("cannot be read: {}", one.why);
+            Err(header.error(&shown(&one.name), message, one.remedy))
+        }
+    }
+}
+
+/// Whether a channel, the clock or a line voltage is to be read from the column of this name.
+fn is_wanted(name: &str, header: &Header, mapping: &Mapping) -> bool {
+    let has = |name: &str| header.names.iter().any(|other| other == name);
+    let named = |target: &Target| {
+        mapping
+            .columns
+            .get(target)
+            .and_then(|map| map.name.as_ref())
+    };
+    if mapping
+        .columns
+        .values()
+        .any(|map| map.name.as_deref() == Some(name))
+    {
+        return true;
+    }
+    match Target::parse(name) {
+        Some(Target::Time) if mapping.sample_rate_hz.is_some() => false,
+        Some(target) => named(&target).is_none(),
+        None => {
+            let phases = Channel::VOLTAGES.map(Target::Channel);
+            let phase = |target: &Target| has(&target.to_string()) || named(target).is_some();
+            LINE.iter().any(|(line, _)| *line == name) && !phases.iter().any(phase)
+        }
     }
 }
 

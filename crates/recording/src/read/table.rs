@@ -1,6 +1,6 @@
 //! Load tables from files, and telling them from recordings.
 
-use super::header::{Header, shown};
+use super::header::{Header, Unreadable, shown};
 use super::plan::list;
 use super::table_file::TableFile;
 use crate::error::Error;
@@ -94,7 +94,16 @@ fn columns_or_empty(
 type Used = Vec<(TableColumn, usize)>;
 
 fn assign(header: &Header) -> Result<(Used, Vec<String>), Error> {
+    let unreadable = header.unreadable.iter();
+    if let Some(one) = unreadable
+        .clone()
+        .find(|one| TableColumn::parse(&one.name).is_some())
+    {
+        let message = format!("cannot be read: {}", one.why);
+        return Err(header.error(&shown(&one.name), message, one.remedy));
+    }
     let (mut used, mut notes) = (Vec::new(), header.notes.clone());
+    notes.extend(unreadable.map(Unreadable::note));
     for (k, name) in header.names.iter().enumerate() {
         match TableColumn::parse(name) {
             Some(column) => used.push((column, k)),

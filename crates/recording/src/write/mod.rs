@@ -1,13 +1,14 @@
 //! Writing recordings: CSV, CSV.gz or Parquet with the sidecar beside it, whole or not at all.
 
+mod pages;
 mod parquet;
 mod whole;
 
 use crate::channel::Channel;
 use crate::error::Error;
 use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
+use crate::names::{ends_in, sidecar_path};
 use crate::recording::{Recording, UnknownScale};
-use crate::sidecar::sidecar_path;
 use flate2::{Compression, GzBuilder};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -31,7 +32,7 @@ type Writer = fn(&Recording, &mut BufWriter<File>) -> io::Result<()>;
 /// Another file name, or a file that cannot be written.
 pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), Error> {
     let name = path.display().to_string();
-    let Some((_, write)) = FORMATS.iter().find(|(end, _)| name.ends_with(end)) else {
+    let Some((_, write)) = FORMATS.iter().find(|(end, _)| ends_in(path, end)) else {
         let remedy = "choose a name that ends in .csv, .csv.gz or .parquet";
         return Err(Error::bad(&name, "is not the name of a recording", remedy));
     };

@@ -1,11 +1,16 @@
-//! A recording as a Parquet file: one group of rows, doubles, compressed with zstd.
+//! A recording as a Parquet file: one group of rows, doubles, compressed with zstd, each page with its checksum.
 
 use super::columns;
+use super::pages::Pages;
 use crate::recording::Recording;
+use crate::seal;
+use bytes::Bytes;
 use parquet::basic::{Compression, Repetition, Type as Physical, ZstdLevel};
+use parquet::column::writer::{get_column_writer, get_typed_column_writer};
 use parquet::data_type::DoubleType;
 use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::io::{self, Write};
@@ -23,20 +28,28 @@ fn write_columns<W: Write + Send>(recording: &Recording, out: W) -> Result<(), P
         .iter()
         .map(|(channel, x)| (channel.to_string(), *x));
     let all: Vec<(String, &[f64])> = std::iter::once(clock).chain(named).collect();
+    let sum = seal::of(all.iter().map(|(name, x)| (name.as_str(), *x)));
     let properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::default()))
         .set_dictionary_enabled(false)
-        .set_created_by("drive-monitor".to_owned())
+        .set_created_by(seal::CREATED_BY.to_owned())
+        .set_key_value_metadata(Some(vec![KeyValue::new(seal::KEY.to_owned(), sum)]))
+        .set_statistics_enabled(EnabledStatistics::Chunk)
         .build();
-    let mut writer = SerializedFileWriter::new(out, schema(&all)?, Arc::new(properties))?;
+    let properties = Arc::new(properties);
+    let mut writer = SerializedFileWriter::new(out, schema(&all)?, Arc::clone(&properties))?;
+    let columns = writer.schema_descr().columns().to_vec();
     let mut group = writer.next_row_group()?;
-    for (_, values) in &all {
-        if let Some(mut column) = group.next_column()? {
-            column
-                .typed::<DoubleType>()
-                .write_batch(values, None, None)?;
-            column.close()?;
-        }
+    for (column, (_, values)) in columns.into_iter().zip(&all) {
+        let mut pages = Vec::new();
+        let written = {
+            let pages = Box::new(Pages::new(&mut pages));
+            let column = get_column_writer(column, Arc::clone(&properties), pages);
+            let mut column = get_typed_column_writer::<DoubleType>(column);
+            column.write_batch(values, None, None)?;
+            column.close()?
+        };
+        group.append_column(&Bytes::from(pages), written)?;
     }
     group.close()?;
     writer.into_inner()?.flush()?;

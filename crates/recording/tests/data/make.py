@@ -15,6 +15,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from scipy.io import savemat
+from scipy.sparse import csc_matrix
 
 N = 100
 RATE = 5000.0
@@ -44,6 +45,26 @@ def parquet():
     odd = pa.table({**columns, "t": pa.array(stamps, pa.timestamp("us")), "torque": pa.array(torque, pa.decimal128(9, 3)),
                     "speed": pa.array([1500] * N, pa.uint32())})
     pq.write_table(odd, "pyarrow-zstd.parquet", compression="zstd", store_decimal_as_integer=True)
+    # Clocks of other kinds, and currents that are no numbers.
+    short = {name: x[:20] for name, x in columns.items()}
+    micro = (np.arange(20) * 200).astype("int64")
+    clocks = {
+        "int96": pa.array(stamps[:20], pa.timestamp("ns")),
+        "time64": pa.array(np.int64(12 * 3600e6) + micro, pa.int64()).cast(pa.time64("us")),
+        "duration": pa.array(micro * 1000, pa.duration("ns")),
+    }
+    for name, clock in clocks.items():
+        pq.write_table(pa.table({**short, "t": clock}), f"pyarrow-{name}.parquet",
+                       use_deprecated_int96_timestamps=name == "int96")
+    phases = {
+        "decimal": pa.array([decimal.Decimal(f"{x:.6f}") for x in ic[:20]], pa.decimal128(20, 6)),
+        "text": pa.array([str(x) for x in ic[:20]]),
+        "bool": pa.array([bool(x > 0) for x in ic[:20]]),
+        "list": pa.array([[float(x)] for x in ic[:20]]),
+    }
+    for name, phase in phases.items():
+        pq.write_table(pa.table({**short, "ic": phase}), f"pyarrow-{name}.parquet")
+    pq.write_table(pa.table(short), "pyarrow-checked.parquet", write_page_checksum=True, use_dictionary=False)
     plain = pa.table(columns)
     for codec in ["gzip", "lz4", "brotli"]:
         pq.write_table(plain.slice(0, 20), f"pyarrow-{codec}.parquet", compression=codec)
@@ -57,6 +78,11 @@ def mat():
                                  "drive": {"va": va, "vb": vb, "vc": vc, "label": "x", "deep": {"n": speed}},
                                  "cells": np.array([1, "two"], dtype=object)},
             do_compression=True, oned_as="column")
+    short = {name: x[:20] for name, x in columns.items()}
+    phases = {"complex": short["ic"] + 1j, "cell": np.array(list(short["ic"]), dtype=object),
+              "sparse": csc_matrix(short["ic"].reshape(-1, 1))}
+    for name, phase in phases.items():
+        savemat(f"scipy-{name}-phase.mat", {**short, "ic": phase}, oned_as="column")
     savemat("scipy-complex.mat", {"t": t, "ia": ia + 1j * ib}, oned_as="column")
 
 

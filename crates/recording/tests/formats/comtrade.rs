@@ -208,3 +208,53 @@ fn a_unit_flag_wins_over_the_file() {
     let recording = read(&data("binary-1999.cfg"), &flags).unwrap();
     assert!((recording.channel(Channel::VOLTAGES[0]).unwrap()[0] - 0.325).abs() < 1e-4);
 }
+
+#[test]
+fn where_rate_and_stamps_differ_the_user_says_which_it_is() {
+    let folder = Folder::new("rate");
+    folder.file("x.dat", &bytes("binary-1999.dat"));
+    let wrong = changed("binary-1999.cfg", "5000,100", "10000,100");
+    let path = folder.file("x.cfg", wrong.as_bytes());
+    let mut flags = names();
+    flags.set_sample_rate(5000.0).unwrap();
+    let recording = read(&path, &flags).unwrap();
+    assert_signals(&recording, 0.0101, 0.000_251);
+    assert_notes(
+        &recording,
+        &[
+            "column t is not used: the .cfg declares 10000 Hz",
+            "1/5000 s",
+        ],
+    );
+    // Rates are rounded, and stamps that never change say nothing.
+    folder.file(
+        "x.cfg",
+        changed("binary-1999.cfg", "5000,100", "5004,100").as_bytes(),
+    );
+    assert_eq!(read(&path, &names()).unwrap().len(), N);
+    let mut dat = bytes("binary-1999.dat");
+    dat.chunks_exact_mut(22)
+        .for_each(|record| record[4..8].fill(0));
+    folder.file("x.dat", &dat);
+    folder.file("x.cfg", wrong.as_bytes());
+    assert_eq!(read(&path, &names()).unwrap().len(), N);
+}
+
+/// A record of more than 71 minutes: stamps of 32 bits, in steps of a microsecond, begin again.
+#[test]
+fn stamps_that_begin_again_go_on() {
+    let folder = Folder::new("wrap");
+    let mut dat = bytes("binary-1999.dat");
+    for (k, record) in dat.chunks_exact_mut(22).enumerate() {
+        let stamp = (u32::MAX - 9_950).wrapping_add(200 * k as u32);
+        record[4..8].copy_from_slice(&stamp.to_le_bytes());
+    }
+    folder.file("x.dat", &dat);
+    for cfg in [
+        text("binary-1999.cfg"),
+        changed("binary-1999.cfg", "5000,100", "0,100"),
+    ] {
+        let path = folder.file("x.cfg", cfg.as_bytes());
+        assert_signals(&read(&path, &names()).unwrap(), 0.0101, 0.000_251);
+    }
+}

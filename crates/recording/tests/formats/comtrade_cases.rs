@@ -4,7 +4,37 @@
 pub type Row = (&'static str, &'static str, u8, &'static [&'static str]);
 
 /// Slips in a configuration.
-pub const CONFIGURATIONS: [Row; 17] = [
+pub const CONFIGURATIONS: [Row; 20] = [
+    (
+        "1,1,P",
+        "0,0,S",
+        2,
+        &[
+            "x.cfg: VA: cannot be read",
+            "primary/secondary is 0/0",
+            "or P",
+        ],
+    ),
+    (
+        "5000,100",
+        "10000,100",
+        2,
+        &[
+            "x.cfg: t: cannot be read",
+            "declares 10000 Hz",
+            "--sample-rate",
+        ],
+    ),
+    (
+        "BINARY\r\n1\r\n",
+        "BINARY\r\n2\r\n",
+        2,
+        &[
+            "x.cfg: t: cannot be read",
+            "its time stamp says",
+            "timemult",
+        ],
+    ),
     (
         "7,6A,1D",
         "7,6,1D",

@@ -16,8 +16,8 @@ fn plain_and_compressed_files_are_read() {
     }
     let recording = read(&data("scipy-v7.mat"), &Mapping::default()).unwrap();
     let notes = [
-        "variable fs is not used: it holds one number",
-        "variable note is not used: it holds text",
+        "column fs is not used: it holds one number",
+        "column note is not used: it holds text",
     ];
     assert_notes(&recording, &notes);
 }
@@ -47,11 +47,44 @@ fn matrices_and_structures_become_columns() {
 
 #[test]
 fn complex_numbers_are_no_signal() {
-    let words = [
-        "has neither currents nor voltages among t",
-        "--column ia=NAME",
-    ];
+    let words = ["ia: cannot be read: it holds complex numbers", "--column"];
     assert_error(&data("scipy-complex.mat"), &Mapping::default(), 2, &words);
+}
+
+#[test]
+fn a_phase_that_cannot_be_read_is_no_absent_one() {
+    for (kind, what) in [
+        ("complex", "complex numbers"),
+        ("cell", "cells"),
+        ("sparse", "a sparse matrix"),
+    ] {
+        let name = format!("scipy-{kind}-phase.mat");
+        let why = format!("ic: cannot be read: it holds {what}");
+        assert_error(&data(&name), &Mapping::default(), 2, &[&name, &why]);
+        let recording = read(&data(&name), &mapping(&["ic=speed"])).unwrap();
+        let note = format!("column ic is not used: it holds {what}");
+        assert_notes(&recording, &[&note]);
+    }
+}
+
+/// Behind the header of 128 bytes and the tags; zlib ends each variable with a checksum.
+#[test]
+fn the_checksums_of_compressed_variables_are_verified() {
+    let folder = Folder::new("mat-flips");
+    let whole = bytes("scipy-v7.mat");
+    let read = |bytes: &[u8]| read(&folder.file("x.mat", bytes), &Mapping::default()).ok();
+    let right = read(&whole).expect("it is whole");
+    let values = |of: &recording::Recording| -> Vec<Vec<f64>> {
+        let channels = of.channels().map(|(_, x)| x.to_vec());
+        std::iter::once(of.t().to_vec()).chain(channels).collect()
+    };
+    for at in 128..whole.len() {
+        let mut wrong = whole.clone();
+        wrong[at] ^= 1 << (at % 8);
+        if let Some(other) = read(&wrong) {
+            assert!(values(&other) == values(&right), "byte {at}");
+        }
+    }
 }
 
 #[test]

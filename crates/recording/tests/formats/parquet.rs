@@ -1,8 +1,8 @@
 //! Parquet files of pyarrow, our own, and damaged ones.
 
-use super::{N, assert_notes, assert_refused, assert_signals, bytes, data, read};
+use super::{N, assert_notes, assert_refused, assert_signals, bytes, data, mapping, read};
 use crate::common::Folder;
-use recording::{Channel, Mapping, Recording, read_any, write_recording};
+use recording::{Channel, Mapping, Recording, Source, read_any, write_recording};
 
 #[test]
 fn every_compression_but_brotli_is_read() {
@@ -36,7 +36,7 @@ fn a_missing_sample_is_a_gap_on_request_only() {
     assert_eq!(recording.speed().unwrap()[60], 150.0);
     assert_notes(
         &recording,
-        &["column note is not used: it holds no numbers", "1 rows"],
+        &["column note is not used: it holds text", "1 rows"],
     );
 }
 
@@ -133,4 +133,95 @@ fn no_wrong_byte_panics() {
         let path = folder.file("x.parquet", &wrong);
         let _ = read_any(&path, &Mapping::default(), &mut crate::common::quiet());
     }
+}
+
+#[test]
+fn clocks_of_every_kind_are_read_in_their_units() {
+    for clock in ["int96", "time64", "duration"] {
+        let recording = read(
+            &data(&format!("pyarrow-{clock}.parquet")),
+            &Mapping::default(),
+        );
+        let recording = recording.unwrap_or_else(|error| panic!("{clock}: {error}"));
+        assert_eq!(recording.len(), 20);
+        assert_signals(&recording, 1e-10, 1e-11);
+    }
+}
+
+#[test]
+fn a_phase_that_cannot_be_read_is_no_absent_one() {
+    for (kind, what) in [
+        ("decimal", "decimals in bytes"),
+        ("text", "text"),
+        ("bool", "truth values"),
+        ("list", "lists"),
+    ] {
+        let name = format!("pyarrow-{kind}.parquet");
+        let why = format!("ic: cannot be read: it holds {what}");
+        let words = [&name[..], &why, "--column"];
+        assert_refused(&name, &bytes(&name), 2, &words);
+        // Not asked for, it is named and left out.
+        let flags = mapping(&["ic=ia", "ia=speed"]);
+        let recording = read(&data(&name), &flags).unwrap();
+        let note = format!("column ic is not used: it holds {what}");
+        assert_notes(&recording, &[&note]);
+    }
+}
+
+/// The channels of a recording with their bits, the clock first.
+fn bits(recording: &Recording) -> Vec<(String, Vec<u64>)> {
+    let clock = ("t".to_owned(), recording.t());
+    let channels = recording
+        .channels()
+        .map(|(channel, x)| (channel.to_string(), x));
+    let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect();
+    std::iter::once(clock)
+        .chain(channels)
+        .map(|(name, x)| (name, bits(x)))
+        .collect()
+}
+
+/// Bytes of a file that change what is read from it, unnoticed, when one bit of them is wrong.
+fn unnoticed(whole: &[u8]) -> Vec<usize> {
+    let folder = Folder::new("parquet-flips");
+    let read = |bytes: &[u8]| {
+        let path = folder.file("x.parquet", bytes);
+        let read = read_any(&path, &Mapping::default(), &mut crate::common::quiet());
+        read.ok().map(|source| match source {
+            Source::Recording(recording) => bits(&recording),
+            Source::LoadTable(table) => panic!("{table:?}"),
+        })
+    };
+    let right = read(whole).expect("it is whole");
+    let changes = |at: &usize| {
+        let mut wrong = whole.to_vec();
+        wrong[*at] ^= 1 << (at % 8);
+        read(&wrong).is_some_and(|other| other != right)
+    };
+    (0..whole.len()).filter(changes).collect()
+}
+
+/// Of the 3.2 kB of pyarrow's file the pages, which carry checksums, take the first 1.6; the rest is the footer.
+#[test]
+fn the_checksums_of_pages_are_verified() {
+    let whole = bytes("pyarrow-checked.parquet");
+    let pages = whole.len() - 8 - footer_length(&whole);
+    let found = unnoticed(&whole);
+    assert!(found.iter().all(|at| *at >= pages), "{found:?} of {pages}");
+}
+
+/// The length that stands before the last mark.
+fn footer_length(whole: &[u8]) -> usize {
+    let at = whole.len() - 8;
+    u32::from_le_bytes(whole[at..at + 4].try_into().unwrap()) as usize
+}
+
+#[test]
+fn a_wrong_byte_in_a_file_of_ours_is_noticed_wherever_it_is() {
+    let folder = Folder::new("parquet-own");
+    let source = read(&data("pyarrow-gzip.parquet"), &Mapping::default()).unwrap();
+    let path = folder.path("own.parquet");
+    write_recording(&path, &source).unwrap();
+    let found = unnoticed(&std::fs::read(&path).unwrap());
+    assert_eq!(found, []);
 }

@@ -1,6 +1,6 @@
 //! The configuration: which channels, which rates, which kind of data.
 
-use super::lines::{Lines, text};
+use super::lines::{Line, Lines, text};
 use crate::error::Error;
 
 /// What a `.cfg` says, as far as it matters here.
@@ -42,8 +42,19 @@ pub(super) struct Analog {
     offset: f64,
     /// `max`, the largest code that the recorder writes, if it says so.
     pub largest: Option<f64>,
-    /// Primary over secondary, where the values are secondary.
-    pub ratio: Option<f64>,
+    /// What leads from the values to the primary side.
+    pub side: Side,
+}
+
+/// Which side of a transformer the values belong to.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Side {
+    /// The primary one, or there is no transformer.
+    Primary,
+    /// The secondary one; primary over secondary.
+    Secondary(f64),
+    /// The secondary one, and the ratio, as it stands there, is none.
+    Unknown(String),
 }
 
 /// More channels than any recorder has.
@@ -131,24 +142,28 @@ fn analog(lines: &mut Lines<'_>) -> Result<Analog, Error> {
         "" => 0.0,
         _ => line.number(6, "b")?,
     };
-    let positive = |field: usize| {
-        line.text(field)
-            .parse()
-            .ok()
-            .filter(|x: &f64| *x > 0.0 && x.is_finite())
-    };
-    let is_secondary = line.text(12).eq_ignore_ascii_case("S");
-    let ratio = positive(10)
-        .zip(positive(11))
-        .map(|(primary, secondary)| primary / secondary);
     Ok(Analog {
         name: line.text(1).to_owned(),
         unit: line.text(4).to_owned(),
         factor: line.number(5, "a")?,
         offset,
         largest: line.text(9).parse().ok(),
-        ratio: ratio.filter(|_| is_secondary),
+        side: side(&line),
     })
+}
+
+fn side(line: &Line<'_>) -> Side {
+    if !line.text(12).eq_ignore_ascii_case("S") {
+        return Side::Primary;
+    }
+    let (primary, secondary) = (line.text(10), line.text(11));
+    let positive = |text: &str| text.parse().ok().filter(|x: &f64| *x > 0.0);
+    let ratio = positive(primary).zip(positive(secondary));
+    let ratio = ratio.map(|(primary, secondary): (f64, f64)| primary / secondary);
+    match ratio.filter(|ratio| ratio.is_normal()) {
+        Some(ratio) => Side::Secondary(ratio),
+        None => Side::Unknown(format!("{primary}/{secondary}")),
+    }
 }
 
 fn rates(lines: &mut Lines<'_>) -> Result<Vec<(f64, u64)>, Error> {
@@ -198,6 +213,10 @@ fn time_factor(lines: &mut Lines<'_>) -> Result<f64, Error> {
 impl Analog {
     /// The primary value of a raw one, in the channel's unit; NaN stays NaN.
     pub fn value(&self, raw: f64) -> f64 {
-        (self.factor * raw + self.offset) * self.ratio.unwrap_or(1.0)
+        let ratio = match self.side {
+            Side::Secondary(ratio) => ratio,
+            Side::Primary | Side::Unknown(_) => 1.0,
+        };
+        (self.factor * raw + self.offset) * ratio
     }
 }

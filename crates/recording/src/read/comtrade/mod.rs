@@ -9,10 +9,10 @@ mod lines;
 mod pair;
 
 use super::columns::{Columns, check_size};
-use super::header::{Header, shown};
+use super::header::{Header, Unreadable, shown};
 use super::table_file::TableFile;
 use crate::error::Error;
-use configuration::{Analog, Configuration};
+use configuration::{Analog, Configuration, Side};
 use data::Samples;
 use std::path::Path;
 
@@ -27,33 +27,52 @@ pub(super) fn is(head: &[u8]) -> bool {
 
 /// Reads the analogue channels of a `.cfg`, a `.dat` beside its `.cfg`, or a `.cff`.
 pub(super) fn open(path: &Path) -> Result<Box<dyn TableFile>, Error> {
-    let pair = pair::Pair::open(path)?;
+    table(&path.display().to_string(), &pair::Pair::open(path)?)
+}
+
+/// Reads the analogue channels of a `.cff` that is in memory.
+pub(super) fn of_bytes(name: &str, bytes: Vec<u8>) -> Result<Box<dyn TableFile>, Error> {
+    table(name, &pair::Pair::of_one(name, &bytes)?)
+}
+
+fn table(name: &str, pair: &pair::Pair) -> Result<Box<dyn TableFile>, Error> {
     let configuration = Configuration::parse(&pair.configuration_name, &pair.configuration)?;
     let channels = configuration.analogs.len();
     let rows = pair.data.len() / configuration.fewest_bytes();
     check_size(&pair.data_name, rows as u64, channels + 1)?;
     let samples = data::read(&pair.data_name, &pair.data, &configuration)?;
     let mut notes = samples.notes(&configuration);
-    let t = clock::seconds(
+    let clock = clock::seconds(
         &pair.configuration_name,
         &configuration,
         &samples,
         &mut notes,
     )?;
-    let mut values = vec![t];
-    for (analog, raw) in configuration.analogs.iter().zip(&samples.values) {
-        values.push(raw.iter().map(|x| analog.value(*x)).collect());
+    let mut columns = vec![("t".to_owned(), None, clock.seconds)];
+    let mut unreadable: Vec<Unreadable> = clock.contradiction.into_iter().collect();
+    let channels = configuration.analogs.iter().zip(names(&configuration));
+    for ((analog, column), raw) in channels.zip(&samples.values) {
+        if let Some(obstacle) = analog.obstacle(&column) {
+            unreadable.push(obstacle);
+            continue;
+        }
+        let unit = Some(analog.unit.clone()).filter(|unit| !unit.is_empty());
+        columns.push((column, unit, raw.iter().map(|x| analog.value(*x)).collect()));
         notes.extend(analog.note());
     }
-    let mut header = Header::new(path.display().to_string(), 0, names(&configuration))?;
-    header.units = units(&configuration);
+    columns.retain(|(column, ..)| !unreadable.iter().any(|one| one.name == *column));
+    let names = columns.iter().map(|(column, ..)| column.clone()).collect();
+    let mut header = Header::new(name.to_owned(), 0, names)?;
+    header.units = columns.iter().map(|(_, unit, _)| unit.clone()).collect();
     header.notes = notes;
+    header.unreadable = unreadable;
+    let values = columns.into_iter().map(|(.., values)| values).collect();
     Ok(Box::new(Columns::new(header, values, pair.bytes)?))
 }
 
-/// `t` and the channels' names; one that stands there twice gets its number.
+/// The channels' names; one that stands there twice, or is the clock's, gets its number.
 fn names(configuration: &Configuration) -> Vec<String> {
-    let mut names = vec!["t".to_owned()];
+    let mut names: Vec<String> = Vec::new();
     for (k, analog) in configuration.analogs.iter().enumerate() {
         let usable = !analog.name.is_empty() && analog.name.parse::<f64>().is_err();
         let mut name = if usable {
@@ -61,18 +80,12 @@ fn names(configuration: &Configuration) -> Vec<String> {
         } else {
             format!("channel_{}", k + 1)
         };
-        while names.contains(&name) {
+        while name == "t" || names.contains(&name) {
             name.push_str(&format!("_{}", k + 1));
         }
         names.push(name);
     }
     names
-}
-
-fn units(configuration: &Configuration) -> Vec<Option<String>> {
-    let declared = |analog: &Analog| Some(analog.unit.clone()).filter(|unit| !unit.is_empty());
-    let channels = configuration.analogs.iter().map(declared);
-    std::iter::once(None).chain(channels).collect()
 }
 
 impl Samples {
@@ -96,14 +109,29 @@ impl Samples {
 impl Analog {
     fn note(&self) -> Option<String> {
         let name = shown(&self.name);
-        match self.ratio {
-            Some(ratio) => Some(format!(
+        match self.side {
+            Side::Secondary(ratio) => Some(format!(
                 "{name} holds secondary values: times {ratio} to the primary side, as the file declares"
             )),
-            None if self.unit.is_empty() => {
+            _ if self.unit.is_empty() => {
                 Some(format!("the file declares no unit for {name}; SI, assumed"))
             }
-            None => None,
+            _ => None,
         }
+    }
+
+    /// Why nobody can use the values.
+    fn obstacle(&self, column: &str) -> Option<Unreadable> {
+        let Side::Unknown(ratio) = &self.side else {
+            return None;
+        };
+        Some(Unreadable {
+            name: column.to_owned(),
+            why: format!(
+                "its values are secondary (S), but its ratio primary/secondary is {}",
+                shown(ratio)
+            ),
+            remedy: "write the transformer's ratio into the .cfg, or P where the values are primary",
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! The two parts of a recording: two files of one name, or two sections of a `.cff`.
 
 use crate::error::Error;
+use crate::names::{beside, extension};
 use std::path::{Path, PathBuf};
 
 /// Configuration and data.
@@ -28,9 +29,8 @@ impl Pair {
     /// # Errors
     /// A part that is absent or cannot be read.
     pub fn open(path: &Path) -> Result<Pair, Error> {
-        let extension = path.extension().unwrap_or_default();
-        if extension.eq_ignore_ascii_case("cff") {
-            return Pair::of_one(path);
+        if extension(path) == "cff" {
+            return Pair::of_one(&path.display().to_string(), &bytes(path)?);
         }
         let configuration = partner(path, "cfg")?;
         let data = partner(path, "dat")?;
@@ -44,20 +44,22 @@ impl Pair {
         })
     }
 
-    fn of_one(path: &Path) -> Result<Pair, Error> {
-        let name = path.display().to_string();
-        let all = bytes(path)?;
-        let find = |word: &str| part(&all, word);
+    /// Finds both parts in the bytes of a `.cff`; `name` is the file that errors name.
+    ///
+    /// # Errors
+    /// A part that is absent.
+    pub fn of_one(name: &str, all: &[u8]) -> Result<Pair, Error> {
+        let find = |word: &str| part(all, word);
         let missing = |what: &str| {
             let message = format!("has no section `--- file type: {what} ---`");
-            Error::bad(&name, message, "copy the file from the recorder again")
+            Error::bad(name, message, "copy the file from the recorder again")
         };
         Ok(Pair {
             configuration: find("CFG").ok_or_else(|| missing("CFG"))?.to_vec(),
             data: find("DAT").ok_or_else(|| missing("DAT ASCII"))?.to_vec(),
             bytes: all.len() as u64,
-            data_name: name.clone(),
-            configuration_name: name,
+            data_name: name.to_owned(),
+            configuration_name: name.to_owned(),
         })
     }
 }
@@ -66,26 +68,16 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     std::fs::read(path).map_err(|error| Error::io(path, &error))
 }
 
-fn partner(path: &Path, extension: &str) -> Result<PathBuf, Error> {
-    beside(path, extension).ok_or_else(|| {
-        let message = format!("has no .{extension} of the same name beside it");
+/// The part of this extension: the file itself, or the one beside it.
+fn partner(path: &Path, end: &str) -> Result<PathBuf, Error> {
+    if extension(path) == end {
+        return Ok(path.to_owned());
+    }
+    beside(path, end).ok_or_else(|| {
+        let message = format!("has no .{end} of the same name beside it");
         let remedy = "a COMTRADE recording is two files; copy both from the recorder";
         Error::bad(&path.display().to_string(), message, remedy)
     })
-}
-
-/// The file of the same name with another extension, in the case that is there.
-fn beside(path: &Path, extension: &str) -> Option<PathBuf> {
-    let own = path.extension().unwrap_or_default();
-    if own.eq_ignore_ascii_case(extension) {
-        return Some(path.to_owned());
-    }
-    let first: String = extension[..1].to_uppercase() + &extension[1..];
-    let spellings = [extension.to_owned(), extension.to_uppercase(), first];
-    let paths = spellings
-        .iter()
-        .map(|extension| path.with_extension(extension));
-    paths.into_iter().find(|path| path.is_file())
 }
 
 /// What a line such as `--- file type: DAT BINARY: 702 ---` says: `DAT BINARY: 702`.

@@ -10,7 +10,7 @@ use super::columns::Columns;
 use super::header::Header;
 use super::table_file::TableFile;
 use crate::error::Error;
-use element::{COMPRESSED, Elements, MATRIX};
+use element::{COMPRESSED, Elements, MATRIX, truncated};
 use std::path::Path;
 
 /// Bytes of the header: text, an offset of no interest here, version, byte order.
@@ -26,16 +26,21 @@ pub(super) fn is(head: &[u8]) -> bool {
 pub(super) fn open(path: &Path) -> Result<Box<dyn TableFile>, Error> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|error| Error::io(path, &error))?;
+    of_bytes(&name, bytes)
+}
+
+/// The same of a file that is in memory.
+pub(super) fn of_bytes(name: &str, bytes: Vec<u8>) -> Result<Box<dyn TableFile>, Error> {
     if bytes.starts_with(b"MATLAB 7.3") || bytes.starts_with(HDF5) {
         let remedy = "save it again in MATLAB: save('x.mat', '-v7')";
         let message = "is a MAT-file of version 7.3 (HDF5), which is not read";
-        return Err(Error::unsupported(&name, message, remedy));
+        return Err(Error::unsupported(name, message, remedy));
     }
-    let arrays = arrays(&name, &bytes)?;
-    let signals = signals::of(&name, arrays)?;
+    let arrays = arrays(name, &bytes)?;
+    let signals = signals::of(name, arrays)?;
     let (names, values): (Vec<String>, Vec<Vec<f64>>) = signals.columns.into_iter().unzip();
-    let mut header = Header::new(name, 0, names)?;
-    header.notes = signals.notes;
+    let mut header = Header::new(name.to_owned(), 0, names)?;
+    header.unreadable = signals.unreadable;
     Ok(Box::new(Columns::new(header, values, bytes.len() as u64)?))
 }
 
@@ -59,11 +64,12 @@ fn arrays(name: &str, bytes: &[u8]) -> Result<Vec<array::Array>, Error> {
             COMPRESSED => {
                 let inflated = element::inflate(name, &element, &mut budget)?;
                 let mut inner = Elements::new(&inflated, big_endian, element.offset);
-                if let Some(matrix) = inner.next(name)?.filter(|inner| inner.kind == MATRIX) {
-                    found.push(array::read(name, &matrix.inside(big_endian), 0)?);
-                }
+                let matrix = inner.next(name)?.filter(|inner| inner.kind == MATRIX);
+                let matrix = matrix.ok_or_else(|| truncated(name, element.offset))?;
+                found.push(array::read(name, &matrix.inside(big_endian), 0)?);
             }
-            _ => {}
+            // A file consists of nothing else: to pass it over would lose a variable without a word.
+            _ => return Err(truncated(name, element.offset)),
         }
     }
     Ok(found)

@@ -1,7 +1,7 @@
 //! Which variables of a MAT-file are signals, and what their columns are called.
 
 use super::super::columns::check_size;
-use super::super::header::shown;
+use super::super::header::Unreadable;
 use super::array::{Array, Content};
 use crate::error::Error;
 use crate::mapping::Target;
@@ -11,8 +11,8 @@ use crate::mapping::Target;
 pub(super) struct Signals {
     /// Name and values of each.
     pub columns: Vec<(String, Vec<f64>)>,
-    /// Why a variable is no column, one sentence each.
-    pub notes: Vec<String>,
+    /// The variables that are no column.
+    pub unreadable: Vec<Unreadable>,
 }
 
 /// The columns of variables: a vector gives one, a matrix one per signal (`i_1 i_2 i_3`), a structure
@@ -49,9 +49,7 @@ impl Signals {
     }
 
     fn leave_out(&mut self, name: &str, what: &str) {
-        let name = shown(name);
-        let note = format!("variable {name} is not used: it holds {what}");
-        self.notes.push(note);
+        self.unreadable.push(Unreadable::holds(name, what));
     }
 
     /// Signals run along the longer direction of a matrix.

@@ -4,7 +4,7 @@ use super::paged_file::PagedFile;
 use super::pages::Pages;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
-use parquet::data_type::DataType;
+use parquet::data_type::{DataType, Int96};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::schema::types::ColumnDescriptor;
@@ -17,7 +17,7 @@ pub(super) enum Kind {
     Number,
     /// The bits of an unsigned integer.
     Unsigned,
-    /// An integer with this factor: a decimal.
+    /// An integer with this factor: a decimal, or a duration in units of this many seconds.
     Decimal(f64),
     /// An instant in units of this many seconds; counts from the first sample, because the instant
     /// itself would cost a double the microseconds.
@@ -28,29 +28,21 @@ pub(super) enum Kind {
 const BATCH: usize = 1 << 14;
 
 impl Kind {
-    /// The kind of a column; `None` for text, lists and whatever else is no number.
-    pub fn of(column: &ColumnDescriptor) -> Option<Kind> {
-        let numeric = matches!(
-            column.physical_type(),
-            Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE
-        );
-        if !numeric || column.max_rep_level() > 0 {
-            return None;
+    /// The kind of a column whose integers last as long as `duration_s` says, where it says anything.
+    ///
+    /// # Errors
+    /// What it holds instead of numbers, in words.
+    pub fn of(column: &ColumnDescriptor, duration_s: Option<f64>) -> Result<Kind, &'static str> {
+        if column.max_rep_level() > 0 {
+            return Err("lists");
         }
-        match column.logical_type_ref() {
-            Some(LogicalType::Timestamp(stamp)) => return Some(Kind::Instant(seconds(stamp.unit))),
-            Some(LogicalType::Integer(int)) if !int.is_signed => return Some(Kind::Unsigned),
-            Some(LogicalType::Decimal(decimal)) => return Some(scaled(decimal.scale)),
-            _ => {}
+        match column.physical_type() {
+            Type::INT32 | Type::INT64 => of_integers(column, duration_s),
+            Type::FLOAT | Type::DOUBLE => Ok(Kind::Number),
+            Type::INT96 => Ok(Kind::Instant(1e-9)),
+            Type::BOOLEAN => Err("truth values"),
+            Type::BYTE_ARRAY | Type::FIXED_LEN_BYTE_ARRAY => Err(of_bytes(column)),
         }
-        Some(match column.converted_type() {
-            ConvertedType::TIMESTAMP_MILLIS => Kind::Instant(1e-3),
-            ConvertedType::TIMESTAMP_MICROS => Kind::Instant(1e-6),
-            ConvertedType::UINT_8 | ConvertedType::UINT_16 => Kind::Unsigned,
-            ConvertedType::UINT_32 | ConvertedType::UINT_64 => Kind::Unsigned,
-            ConvertedType::DECIMAL => scaled(column.type_scale()),
-            _ => Kind::Number,
-        })
     }
 
     #[allow(clippy::cast_precision_loss, clippy::cast_sign_loss)]
@@ -64,6 +56,38 @@ impl Kind {
     }
 }
 
+fn of_integers(column: &ColumnDescriptor, duration_s: Option<f64>) -> Result<Kind, &'static str> {
+    match column.logical_type_ref() {
+        Some(LogicalType::Timestamp(stamp)) => return Ok(Kind::Instant(seconds(stamp.unit))),
+        Some(LogicalType::Time(time)) => return Ok(Kind::Instant(seconds(time.unit))),
+        Some(LogicalType::Integer(int)) if !int.is_signed => return Ok(Kind::Unsigned),
+        Some(LogicalType::Decimal(decimal)) => return Ok(scaled(decimal.scale)),
+        _ => {}
+    }
+    Ok(match column.converted_type() {
+        ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS => Kind::Instant(1e-3),
+        ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS => Kind::Instant(1e-6),
+        ConvertedType::DATE => Kind::Instant(86_400.0),
+        ConvertedType::UINT_8 | ConvertedType::UINT_16 => Kind::Unsigned,
+        ConvertedType::UINT_32 | ConvertedType::UINT_64 => Kind::Unsigned,
+        ConvertedType::DECIMAL => scaled(column.type_scale()),
+        _ => duration_s.map_or(Kind::Number, Kind::Decimal),
+    })
+}
+
+/// What bytes stand for.
+fn of_bytes(column: &ColumnDescriptor) -> &'static str {
+    match (column.logical_type_ref(), column.converted_type()) {
+        (Some(LogicalType::Decimal(_)), _) | (_, ConvertedType::DECIMAL) => {
+            "decimals in bytes, of which only those in 32 and 64 bits are read"
+        }
+        (Some(LogicalType::Float16), _) => "numbers of 16 bits, which are not read",
+        (_, ConvertedType::INTERVAL) => "intervals of months and days",
+        (Some(LogicalType::String), _) | (_, ConvertedType::UTF8) => "text",
+        _ => "bytes or text",
+    }
+}
+
 fn scaled(scale: i32) -> Kind {
     Kind::Decimal(10f64.powi(scale.saturating_neg()))
 }
@@ -74,6 +98,18 @@ fn seconds(unit: TimeUnit) -> f64 {
         TimeUnit::MICROS => 1e-6,
         TimeUnit::NANOS => 1e-9,
     }
+}
+
+/// An old instant, nanoseconds of a Julian day and that day, as a count of nanoseconds.
+fn nanoseconds(instant: Int96) -> i64 {
+    const NANOSECONDS_IN_DAY: i64 = 86_400_000_000_000;
+    let &[low, high, day] = instant.data() else {
+        return 0;
+    };
+    let of_day = i64::from(low) | i64::from(high) << 32;
+    i64::from(day)
+        .wrapping_mul(NANOSECONDS_IN_DAY)
+        .wrapping_add(of_day)
 }
 
 /// Reads the values of a column, one a row; NaN where there is none.
@@ -136,6 +172,9 @@ impl Target {
                     let wide = i64::from(x);
                     target.integer(if unsigned { wide & 0xFFFF_FFFF } else { wide })
                 })
+            }
+            ColumnReader::Int96ColumnReader(reader) => {
+                self.batches(reader, rows, |target, x| target.integer(nanoseconds(x)))
             }
             _ => Err(ParquetError::General(
                 "another type than declared".to_owned(),

@@ -1,19 +1,24 @@
 //! Parquet files: flat columns of numbers, in every encoding and compression of the format but brotli.
 
+mod arrow_schema;
 mod column;
+mod content;
 mod extent;
 mod paged_file;
 mod pages;
 
 use super::columns::{Columns, check_size};
-use super::header::{Header, shown};
+use super::header::{Header, Unreadable};
 use super::table_file::TableFile;
 use crate::contained::contained;
 use crate::error::Error;
+use crate::seal;
 use column::Kind;
+use content::Content;
 use paged_file::PagedFile;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::reader::Length;
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,17 +30,25 @@ pub(super) fn is(head: &[u8]) -> bool {
 
 /// Reads the columns of numbers; other columns are named in the notes.
 pub(super) fn open(path: &Path) -> Result<Box<dyn TableFile>, Error> {
-    let name = path.display().to_string();
-    contained(|| read(path, &name)).unwrap_or_else(|| {
+    let file = File::open(path).map_err(|error| Error::io(path, &error))?;
+    of_content(&path.display().to_string(), Content::File(file))
+}
+
+/// The same of a file that is in memory.
+pub(super) fn of_bytes(name: &str, bytes: Vec<u8>) -> Result<Box<dyn TableFile>, Error> {
+    of_content(name, Content::Memory(bytes.into()))
+}
+
+fn of_content(name: &str, content: Content) -> Result<Box<dyn TableFile>, Error> {
+    contained(|| read(name, content)).unwrap_or_else(|| {
         let error = "a page does not hold what it declares".to_owned();
-        Err(damaged(&name, &ParquetError::General(error)))
+        Err(damaged(name, &ParquetError::General(error)))
     })
 }
 
-fn read(path: &Path, name: &str) -> Result<Box<dyn TableFile>, Error> {
-    let file = File::open(path).map_err(|error| Error::io(path, &error))?;
-    let bytes = file.metadata().map_or(0, |metadata| metadata.len());
-    let metadata = ParquetMetaDataReader::new().parse_and_finish(&file);
+fn read(name: &str, content: Content) -> Result<Box<dyn TableFile>, Error> {
+    let bytes = content.len();
+    let metadata = ParquetMetaDataReader::new().parse_and_finish(&content);
     let metadata = metadata.map_err(|error| damaged(name, &error))?;
     let (used, header) = header(name, &metadata)?;
     let rows = metadata.file_metadata().num_rows();
@@ -45,31 +58,53 @@ fn read(path: &Path, name: &str) -> Result<Box<dyn TableFile>, Error> {
     })?;
     check_size(name, rows, used.len())?;
     extent::check(&metadata, bytes).map_err(|error| damaged(name, &error))?;
-    let file = Arc::new(PagedFile::new(file, rows));
+    let file = Arc::new(PagedFile::new(content, rows));
     let columns = used.iter().map(|(index, kind)| {
         let column = column::read(&file, &metadata, *index, *kind);
         column.map_err(|error| damaged(name, &error))
     });
-    let columns = columns.collect::<Result<_, _>>()?;
+    let columns = columns.collect::<Result<Vec<Vec<f64>>, _>>()?;
+    check_seal(&metadata, &header, &columns).map_err(|error| damaged(name, &error))?;
     Ok(Box::new(Columns::new(header, columns, bytes)?))
+}
+
+/// Refuses a file of ours that does not say what it was made to say.
+fn check_seal(
+    metadata: &ParquetMetaData,
+    header: &Header,
+    columns: &[Vec<f64>],
+) -> Result<(), ParquetError> {
+    let file = metadata.file_metadata();
+    let pairs = file.key_value_metadata().into_iter().flatten();
+    let sum = pairs
+        .filter(|pair| pair.key == seal::KEY)
+        .find_map(|pair| pair.value.as_ref());
+    let ours = file.created_by() == Some(seal::CREATED_BY);
+    let named = header.names.iter().map(String::as_str);
+    let held = named.zip(columns.iter().map(Vec::as_slice));
+    match sum.filter(|_| ours) {
+        Some(sum) if *sum != seal::of(held) => Err(ParquetError::General(
+            "its checksum does not fit".to_owned(),
+        )),
+        _ => Ok(()),
+    }
 }
 
 type Used = Vec<(usize, Kind)>;
 
 fn header(name: &str, metadata: &ParquetMetaData) -> Result<(Used, Header), Error> {
     let schema = metadata.file_metadata().schema_descr();
-    let (mut used, mut names, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+    let durations = arrow_schema::durations(metadata.file_metadata().key_value_metadata());
+    let (mut used, mut names, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
     for (index, column) in schema.columns().iter().enumerate() {
         let path = column.path().string();
-        match Kind::of(column) {
-            Some(kind) => {
+        match Kind::of(column, durations.get(&path).copied()) {
+            Ok(kind) => {
                 used.push((index, kind));
                 names.push(path);
             }
-            None => notes.push(format!(
-                "column {} is not used: it holds no numbers",
-                shown(&path)
-            )),
+            // A list has its own names inside; what the user knows is the name of the whole.
+            Err(what) => unreadable.push(Unreadable::holds(&column.path().parts()[0], what)),
         }
     }
     if names.is_empty() {
@@ -77,7 +112,7 @@ fn header(name: &str, metadata: &ParquetMetaData) -> Result<(Used, Header), Erro
         return Err(Error::bad(name, "holds no column of numbers", remedy));
     }
     let mut header = Header::new(name.to_owned(), 0, names)?;
-    header.notes = notes;
+    header.unreadable = unreadable;
     Ok((used, header))
 }
 

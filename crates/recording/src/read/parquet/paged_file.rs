@@ -2,21 +2,21 @@
 //!
 //! The library skips what is not there as often as the file says so, and makes room for what a page declares before it looks.
 
+use super::content::Content;
 use bytes::Bytes;
 use parquet::errors::Result;
 use parquet::file::reader::{ChunkReader, Length};
-use std::fs::File;
-use std::io::{BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufRead, Error, ErrorKind, Read};
 
 /// A Parquet file whose readers fail at its end instead of reading nothing, without end.
 pub(super) struct PagedFile {
-    file: File,
+    content: Content,
     most_page_bytes: u64,
 }
 
 /// What reads the header of a page.
 pub(super) struct PageHeader {
-    input: BufReader<File>,
+    input: <Content as ChunkReader>::T,
     most_page_bytes: u64,
     is_checked: bool,
 }
@@ -29,10 +29,10 @@ const MOST_SMALL_PAGE_BYTES: u64 = 1 << 16;
 
 impl PagedFile {
     /// `rows`: of the whole file.
-    pub fn new(file: File, rows: u64) -> PagedFile {
+    pub fn new(content: Content, rows: u64) -> PagedFile {
         let most_page_bytes = rows.saturating_mul(MOST_ROW_BYTES);
         PagedFile {
-            file,
+            content,
             most_page_bytes: most_page_bytes.saturating_add(MOST_SMALL_PAGE_BYTES),
         }
     }
@@ -40,7 +40,7 @@ impl PagedFile {
 
 impl Length for PagedFile {
     fn len(&self) -> u64 {
-        self.file.len()
+        self.content.len()
     }
 }
 
@@ -48,17 +48,15 @@ impl ChunkReader for PagedFile {
     type T = PageHeader;
 
     fn get_read(&self, start: u64) -> Result<PageHeader> {
-        let mut file = self.file.try_clone()?;
-        file.seek(SeekFrom::Start(start))?;
         Ok(PageHeader {
-            input: BufReader::new(file),
+            input: self.content.get_read(start)?,
             most_page_bytes: self.most_page_bytes,
             is_checked: false,
         })
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
-        self.file.get_bytes(start, length)
+        self.content.get_bytes(start, length)
     }
 }
 
