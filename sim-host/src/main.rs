@@ -6,5 +6,8 @@ use clap::Parser;
 use sim_host::cli::Cli;
 
 fn main() -> ExitCode {
-    Cli::parse().run()
+    match Cli::try_parse() {
+        Ok(cli) => cli.run(),
+        Err(error) => Cli::answer(&error),
+    }
 }

@@ -1,5 +1,7 @@
 //! What a campaign consists of: motors, blocks of conditions, faults and sizes; every run follows from its index.
 
+use std::path::PathBuf;
+
 use motor::MotorFile;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +33,8 @@ pub struct MotorPair {
     pub monitor: MotorFile,
     /// The motor file that is simulated.
     pub plant: MotorFile,
+    /// Where the two were read.
+    pub files: [PathBuf; 2],
 }
 
 /// How the load is known to the monitor.

@@ -125,7 +125,7 @@ fn motor_pair(
     let Some(file) = file else {
         return Ok(None);
     };
-    let plant = plant.unwrap_or_else(|| file.clone());
+    let plant_file = plant.unwrap_or_else(|| file.clone());
     let read = |key: &str, name: &str| {
         let path = folder.join(name);
         if path.is_file() {
@@ -135,7 +135,7 @@ fn motor_pair(
         section.report(key, message);
         Ok(None)
     };
-    let (Some(monitor), Some(plant)) = (read("file", &file)?, read("plant", &plant)?) else {
+    let (Some(monitor), Some(plant)) = (read("file", &file)?, read("plant", &plant_file)?) else {
         return Ok(None);
     };
     let stem = Path::new(&file).file_stem().unwrap_or_default();
@@ -143,6 +143,7 @@ fn motor_pair(
         name: stem.to_string_lossy().into_owned(),
         monitor,
         plant,
+        files: [&file, &plant_file].map(|name| folder.join(name)),
     };
     check::motor(section, &pair);
     Ok(document.is_clean().then_some(pair))

@@ -11,6 +11,7 @@ use super::output::write_text;
 use super::study::{
     StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain, with_progress,
 };
+use super::terminal::say;
 use super::{paint, scale};
 use crate::motor_text;
 use crate::report::Subject;
@@ -45,6 +46,7 @@ const WIDTH: usize = 36;
 impl Adopt {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
+        self.study.files().writes("-o", &self.out).check()?;
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
         let names = self.study.names();
@@ -54,10 +56,9 @@ impl Adopt {
         self.write_motor(&adopted)?;
         result.report.motor_file = self.out.display().to_string();
         result.next_command = self.next();
-        if !self.study.output.takes_stdout() {
-            print(&result);
-        }
-        self.study.output.write(Subject::Adopt, &result)?;
+        self.study
+            .output
+            .give(Subject::Adopt, &result, || print(&result))?;
         let good = result.report.proven || self.effect == PARAMETERS;
         Ok(if good {
             Finding::Nothing
@@ -80,7 +81,7 @@ impl Adopt {
 
 fn print(result: &Adopted) {
     let report = &result.report;
-    anstream::println!(
+    say!(
         "{} with {} on {}",
         paint::strong(&result.motor),
         paint::strong(&report.effect),
@@ -92,18 +93,18 @@ fn print(result: &Adopted) {
         .held_out_error_over_noise
         .max(report.before.error_over_noise);
     let line = |name: &str, error: f64| {
-        anstream::println!(
+        say!(
             "  {name:<34} {error:8.3} x noise  {}",
             bar(error, full, WIDTH)
         );
     };
-    anstream::println!("\nError on data that was not fitted:");
+    say!("\nError on data that was not fitted:");
     line(
         "before, all parameters refitted",
         report.before.held_out_error_over_noise,
     );
     line("after", report.after.held_out_error_over_noise);
-    anstream::println!("Error on the fitted data:");
+    say!("Error on the fitted data:");
     line(
         "before, all parameters refitted",
         report.before.error_over_noise,
@@ -127,12 +128,12 @@ fn print(result: &Adopted) {
 
 fn print_verdict(report: &AdoptReport) {
     if report.proven {
-        anstream::println!(
+        say!(
             "{}",
             paint::good("The gain is proven on data that was not fitted.")
         );
     } else if report.effect != PARAMETERS {
-        anstream::println!(
+        say!(
             "{}",
             paint::caution(
                 "The gain is not proven on data that was not fitted: do not trust this effect yet."
@@ -142,13 +143,13 @@ fn print_verdict(report: &AdoptReport) {
 }
 
 fn print_values(report: &AdoptReport) {
-    anstream::println!("\nIn the new motor file:");
+    say!("\nIn the new motor file:");
     for p in &report.parameters {
         let value = uncertain(p.value, p.std_error);
-        anstream::println!("  {:<34} {value} {}", p.name, p.unit);
+        say!("  {:<34} {value} {}", p.name, p.unit);
     }
     for p in &report.nominals {
-        anstream::println!(
+        say!(
             "  {:<34} {} {:<7} believed {} ({} %)",
             p.name,
             uncertain(p.value, p.std_error),

@@ -10,8 +10,10 @@ use recording::{Audit, Recording, Source};
 use serde::Serialize;
 
 use super::failure::{Failure, Finding};
+use super::files::Files;
 use super::input::{InputArgs, read_motor};
-use super::output::write_text;
+use super::output::{JsonArgs, write_text};
+use super::terminal::say;
 use super::{paint, progress};
 use crate::calibrate::{Calibrated, Kind, Refusal, Surroundings, calibrate};
 use crate::motor_text;
@@ -40,9 +42,8 @@ pub struct Calibrate {
     /// FAULT lamps per judged window that are accepted on a healthy motor
     #[arg(long, value_name = "RATE", default_value_t = 1e-6)]
     false_alarm_rate: f64,
-    /// Write the whole result as JSON to FILE (`-` for standard output)
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgs,
     #[command(flatten)]
     input: InputArgs,
 }
@@ -107,6 +108,7 @@ impl Calibrate {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         self.check()?;
+        self.files().check()?;
         let motor = read_motor(&self.motor)?;
         let recordings = self.read()?;
         let surroundings = Surroundings {
@@ -119,19 +121,16 @@ impl Calibrate {
         let calibrated = calibrated.map_err(refused)?;
         self.write_motor(&calibrated.motor)?;
         let result = self.result(&motor, &calibrated);
-        if self
-            .json
-            .as_ref()
-            .is_none_or(|path| path.as_os_str() != "-")
-        {
-            print(&result);
-        }
-        super::output::OutputArgs {
-            json: self.json.clone(),
-            report: None,
-        }
-        .write_json(&result)?;
+        self.json.give(&result, || print(&result))?;
         Ok(Finding::Nothing)
+    }
+
+    fn files(&self) -> Files {
+        Files::default()
+            .reads_recordings(&self.recordings, &self.input)
+            .reads("the motor file", &self.motor)
+            .writes("-o", &self.out)
+            .may_write("--json", self.json.file())
     }
 
     fn check(&self) -> Result<(), Failure> {
@@ -230,7 +229,7 @@ fn parameters(believed: &MotorFile, calibrated: &Calibrated) -> Vec<ParameterJso
 }
 
 fn print(result: &CalibrateJson) {
-    anstream::println!(
+    say!(
         "{}: {} steady windows of {}",
         paint::strong(&result.motor),
         result.windows,
@@ -240,11 +239,11 @@ fn print(result: &CalibrateJson) {
     print_parameters(result);
     for gain in &result.gains {
         let [a, b, c] = gain.gain;
-        anstream::println!("  {:<30} a {a:.4}  b {b:.4}  c {c:.4}", gain.effect);
+        say!("  {:<30} a {a:.4}  b {b:.4}  c {c:.4}", gain.effect);
     }
     print_statistics(result);
-    anstream::println!("\n{} is written.", result.motor_file);
-    anstream::println!("  drivemon monitor REC --motor {}", result.motor_file);
+    say!("\n{} is written.", result.motor_file);
+    say!("  drivemon monitor REC --motor {}", result.motor_file);
 }
 
 /// What the audits found: once for all recordings where it is the same, else with the recording's name.
@@ -259,9 +258,9 @@ fn print_findings(result: &CalibrateJson) {
     for (k, (name, audit)) in result.recordings.iter().zip(&result.audits).enumerate() {
         for finding in &audit.findings {
             match (of_all(&finding.detail), k) {
-                (true, 0) => anstream::println!("  {word} {}", finding.detail),
+                (true, 0) => say!("  {word} {}", finding.detail),
                 (true, _) => {}
-                (false, _) => anstream::println!("  {word} {name}: {}", finding.detail),
+                (false, _) => say!("  {word} {name}: {}", finding.detail),
             }
         }
     }
@@ -269,17 +268,17 @@ fn print_findings(result: &CalibrateJson) {
 
 fn print_parameters(result: &CalibrateJson) {
     if result.parameters.is_empty() {
-        anstream::println!("  currents alone: parameters stay as believed");
+        say!("  currents alone: parameters stay as believed");
         return;
     }
-    anstream::println!(
+    say!(
         "\n  {:<30} {:>12} {:>12}  change",
         "parameter",
         "believed",
         "calibrated"
     );
     for row in &result.parameters {
-        anstream::println!(
+        say!(
             "  {:<30} {:>12.5} {:>12.5}  {:+.1} % +- {:.1} % {}",
             row.name,
             row.believed,
@@ -290,7 +289,7 @@ fn print_parameters(result: &CalibrateJson) {
         );
     }
     let m = &result.misfit_percent;
-    anstream::println!(
+    say!(
         "  what remains: torque balance {:.2} %, e_d {:.3} %, e_q {:.3} % of their scales",
         m.torque,
         m.e_d,
@@ -301,17 +300,17 @@ fn print_parameters(result: &CalibrateJson) {
 fn print_statistics(result: &CalibrateJson) {
     let healthy = &result.healthy;
     let [re, im] = healthy.i2_over_i1_percent;
-    anstream::println!(
+    say!(
         "\n  healthy I2/I1 {:.2} % at {:.0} deg, scatter {:.2} %",
         re.hypot(im),
         im.atan2(re).to_degrees(),
         healthy.i2_over_i1_scatter_percent
     );
-    anstream::println!(
+    say!(
         "  FAULT lights beyond {:.2} standard deviations: {:.0e} false alarms a window",
         healthy.significance,
         result.false_alarm_rate
     );
     let [r1, r2, r3, r4] = result.threshold_percent;
-    anstream::println!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
+    say!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
 }

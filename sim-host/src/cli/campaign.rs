@@ -7,7 +7,9 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::failure::{Failure, Finding};
+use super::files::{Files, spare_what_is_no_sidecar};
 use super::output::{OutputArgs, write_text};
+use super::terminal::say;
 use super::{monitor, paint, progress};
 use crate::campaign::{self, Plan, Results, Row, Run, Table};
 use crate::replay::Timeline;
@@ -118,12 +120,13 @@ impl Campaign {
 impl RunArgs {
     fn run(&self) -> Result<Finding, Failure> {
         let plan = Plan::read(&self.plan)?;
+        read(&self.plan, &plan).writes("-o", &self.output).check()?;
         let range = self.range(plan.runs())?;
         let bar = progress::bar("campaign", range.end - range.start);
         let done = campaign::run_range(&plan, range, &self.output, &|runs| bar.inc(runs))?;
         bar.finish_and_clear();
         if done.there_already > 0 {
-            anstream::println!("{} runs were there already", done.there_already);
+            say!("{} runs were there already", done.there_already);
         }
         Ok(tell(&done.results, &self.output))
     }
@@ -142,6 +145,8 @@ impl RunArgs {
 
 impl Merge {
     fn run(&self) -> Result<Finding, Failure> {
+        let files = Files::default().writes("-o", &self.output);
+        results_of(files, &self.results).check()?;
         let read = |path: &PathBuf| Ok((path.clone(), Results::read(path)?));
         let parts = self
             .results
@@ -156,6 +161,10 @@ impl Merge {
 
 impl TableArgs {
     fn run(&self) -> Result<Finding, Failure> {
+        let files = Files::default()
+            .may_write("--markdown", self.markdown.as_ref())
+            .writes_results(&self.output);
+        results_of(files, &self.results).check()?;
         let read = |path: &PathBuf| Ok(Table::of(&Results::read(path)?));
         let tables = self
             .results
@@ -163,15 +172,11 @@ impl TableArgs {
             .map(read)
             .collect::<Result<_, Failure>>()?;
         let result = TableJson { campaigns: tables };
-        if !self.output.takes_stdout() {
-            for table in &result.campaigns {
-                anstream::println!("{table}");
-            }
-        }
-        if let Some(path) = &self.markdown {
-            write_text(path, &campaign::markdown(&result.campaigns))?;
-        }
-        self.output.write(Subject::Campaign, &result)?;
+        let markdown = self.write_markdown(&result.campaigns);
+        let tables = result.campaigns.iter();
+        let show = || tables.for_each(|table| say!("{table}"));
+        self.output.give(Subject::Campaign, &result, show)?;
+        markdown?;
         let windows: u64 = result
             .campaigns
             .iter()
@@ -185,6 +190,15 @@ impl TableArgs {
     }
 }
 
+impl TableArgs {
+    fn write_markdown(&self, tables: &[Table]) -> Result<(), Failure> {
+        match &self.markdown {
+            Some(path) => write_text(path, &campaign::markdown(tables)),
+            None => Ok(()),
+        }
+    }
+}
+
 impl Replay {
     fn run(&self) -> Result<Finding, Failure> {
         let plan = Plan::read(&self.plan)?;
@@ -195,11 +209,23 @@ impl Replay {
                 self.index
             ))
         })?;
+        self.check(&plan)?;
         self.show(&run)?;
         match &self.output {
             Some(path) => record(&run, path),
             None => Ok(Finding::Nothing),
         }
+    }
+
+    fn check(&self, plan: &Plan) -> Result<(), Failure> {
+        let Some(path) = &self.output else {
+            return Ok(());
+        };
+        read(&self.plan, plan)
+            .writes_recording("-o", path)
+            .writes("the motor file of the run", &motor_of(path))
+            .check()?;
+        spare_what_is_no_sidecar(path)
     }
 
     fn show(&self, run: &Run<'_>) -> Result<(), Failure> {
@@ -219,15 +245,15 @@ impl Replay {
 fn print_run(run: &Run<'_>) {
     let (motor, block) = (&run.place.motor.name, &run.place.block.name);
     let row = Row::of(run);
-    anstream::println!("run {} of {motor}, {block}", paint::strong(run.index));
-    anstream::println!("  {}", campaign::conditions(&row));
+    say!("run {} of {motor}, {block}", paint::strong(run.index));
+    say!("  {}", campaign::conditions(&row));
     if let Some(case) = run.place.case {
         let phase = if row.phase.is_empty() {
             String::new()
         } else {
             format!(", phase {}", row.phase)
         };
-        anstream::println!(
+        say!(
             "  {} {:+} %{phase}, from {:.4} s on",
             case.kind.words,
             case.percent,
@@ -240,15 +266,29 @@ fn record(run: &Run<'_>, path: &Path) -> Result<Finding, Failure> {
     let refused = |error| Failure::Usage(format!("run {}: {error}", run.index));
     let recording = simulate::record(&run.scenario(), |_| {}).map_err(refused)?;
     recording::write_recording(path, &recording)?;
-    let name = path.to_string_lossy();
-    let stem = [".gz", ".csv", ".parquet"]
-        .iter()
-        .fold(&*name, |stem, end| stem.trim_end_matches(end));
-    let motor = PathBuf::from(format!("{stem}.motor.toml"));
+    let motor = motor_of(path);
     write_text(&motor, &run.monitor_file().to_toml())?;
     let (path, motor) = (path.display(), motor.display());
-    anstream::println!("{path}, {motor}: drivemon monitor {path} --motor {motor}");
+    say!("{path}, {motor}: drivemon monitor {path} --motor {motor}");
     Ok(Finding::Nothing)
+}
+
+/// The motor file beside a run's recording.
+fn motor_of(recording: &Path) -> PathBuf {
+    recording::sidecar_path(recording).with_extension("motor.toml")
+}
+
+/// The files behind a plan.
+fn read(path: &Path, plan: &Plan) -> Files {
+    let motors = plan.motors.iter().flat_map(|pair| &pair.files);
+    motors.fold(Files::default().reads("the plan", path), |files, motor| {
+        files.reads("the motor file", motor)
+    })
+}
+
+fn results_of(files: Files, results: &[PathBuf]) -> Files {
+    let add = |files: Files, path: &PathBuf| files.reads("the results", path);
+    results.iter().fold(files, add)
 }
 
 fn tell(results: &Results, output: &Path) -> Finding {
@@ -261,7 +301,7 @@ fn tell(results: &Results, output: &Path) -> Finding {
         .iter()
         .filter(|row| row.healthy_fault_windows > 0)
         .count();
-    anstream::println!(
+    say!(
         "{}: {} of {} runs of \"{}\"; {windows} healthy windows judged, FAULT among them in {alarms} runs",
         output.display(),
         rows.len(),

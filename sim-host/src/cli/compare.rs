@@ -5,6 +5,7 @@ use discovery::{CompareReport, SignalReport};
 
 use super::failure::{Failure, Finding};
 use super::study::{StudyArgs, bar, print_audit, print_next, with_progress};
+use super::terminal::say;
 use super::{paint, places, scale};
 use crate::report::{AGREES, Subject};
 use crate::study::{Compared, worst};
@@ -29,16 +30,16 @@ Exit codes: 0 the model agrees within 10 % of the noise, 1 it does not, 2 bad in
 impl Compare {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
+        self.study.files().check()?;
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
         let names = self.study.names();
         let inputs = self.study.inputs(&names, &sources, &motor);
         let next = format!("drivemon explain {}", self.study.typed());
         let result = with_progress(|progress| Compared::new(inputs, next, progress))?;
-        if !self.study.output.takes_stdout() {
-            print(&result);
-        }
-        self.study.output.write(Subject::Compare, &result)?;
+        self.study
+            .output
+            .give(Subject::Compare, &result, || print(&result))?;
         Ok(finding(&result.report))
     }
 }
@@ -53,7 +54,7 @@ fn finding(report: &CompareReport) -> Finding {
 
 fn print(result: &Compared) {
     let report = &result.report;
-    anstream::println!(
+    say!(
         "{} against {}, {}",
         paint::strong(&result.motor),
         result.recording,
@@ -64,19 +65,19 @@ fn print(result: &Compared) {
     );
     print_audit(&report.audit);
     let Some(overall) = report.overall else {
-        anstream::println!("{}", paint::caution("not compared: the audit refused"));
+        say!("{}", paint::caution("not compared: the audit refused"));
         return;
     };
     let error = overall.error_over_noise;
     if error > AGREES {
         let answer = format!("The model misses the measurement by {error:.2} times the noise.");
-        anstream::println!("\n{}", paint::error(answer));
+        say!("\n{}", paint::error(answer));
     } else {
         let answer = format!("The model agrees with the measurement ({error:.2} times the noise).");
-        anstream::println!("\n{}", paint::good(answer));
+        say!("\n{}", paint::good(answer));
     }
     if !report.regions.is_empty() {
-        anstream::println!("It is furthest off:");
+        say!("It is furthest off:");
         places::print(&worst(report));
     }
     print_signals(&report.signals);
@@ -89,9 +90,9 @@ fn print(result: &Compared) {
 fn print_signals(signals: &[SignalReport]) {
     let worst = signals.iter().map(|signal| signal.error_over_noise);
     let worst = worst.fold(0.0, f64::max);
-    anstream::println!("By signal:");
+    say!("By signal:");
     for signal in signals {
-        anstream::println!(
+        say!(
             "  {:<13} error {:9.4} of {:9.3} {:<6} noise {:8.4} {:7.2} x noise  {}",
             signal.name,
             signal.error_rms,

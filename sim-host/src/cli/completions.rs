@@ -1,13 +1,13 @@
 //! `drivemon completions` and `drivemon man`: what a shell and `man` want to know, made from the same definitions as `--help`.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
 use super::failure::{Failure, Finding};
-use super::{Cli, paint};
+use super::terminal::say;
+use super::{Cli, paint, terminal};
 
 /// Print what a shell needs to complete drivemon's commands, flags and files
 #[derive(Debug, Args)]
@@ -38,16 +38,12 @@ impl Completions {
     /// Prints the script.
     ///
     /// # Errors
-    /// Standard output cannot be written.
+    /// None.
     pub fn run(self) -> Result<Finding, Failure> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), "drivemon", &mut script);
-        match io::stdout().write_all(&script) {
-            // A reader that has seen enough, such as `head`.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(Finding::Nothing),
-            Err(error) => Err(Failure::Usage(format!("standard output: {error}"))),
-            Ok(()) => Ok(Finding::Nothing),
-        }
+        terminal::bytes(&script);
+        Ok(Finding::Nothing)
     }
 }
 
@@ -63,7 +59,7 @@ impl Man {
                 "{folder}: {error}; make the folder, or name another"
             ))
         })?;
-        anstream::println!(
+        say!(
             "{folder}: {}",
             paint::strong("drivemon.1 and one page for each command")
         );

@@ -6,9 +6,11 @@ use clap::Args;
 use motor::MotorFile;
 
 use super::failure::{Failure, Finding};
+use super::files::Files;
 use super::input::read_motor;
 use super::output::OutputArgs;
 use super::progress;
+use super::terminal::say;
 use crate::demo;
 use crate::report::Subject;
 
@@ -36,6 +38,10 @@ const ASSUMED_MOTOR: &str = include_str!("../../../motors/assumed-300w.toml");
 impl Demo {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
+        Files::default()
+            .may_read("the motor file", self.motor.as_ref())
+            .writes_results(&self.output)
+            .check()?;
         let motor = self
             .motor
             .as_deref()
@@ -44,10 +50,7 @@ impl Demo {
         let result = demo::run(&motor, self.seed, || bar.inc(1));
         bar.finish_and_clear();
         let demo = result.map_err(|error| Failure::Usage(error.to_string()))?;
-        if !self.output.takes_stdout() {
-            anstream::println!("{demo}");
-        }
-        self.output.write(Subject::Demo, &demo)?;
+        self.output.give(Subject::Demo, &demo, || say!("{demo}"))?;
         Ok(Finding::Nothing)
     }
 }

@@ -8,6 +8,7 @@ use super::study::{
     StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain, with_progress,
     wrapped,
 };
+use super::terminal::say;
 use super::{paint, places, scale};
 use crate::report::Subject;
 use crate::study::{Explained, anything_off};
@@ -41,16 +42,16 @@ const WIDTH: usize = 36;
 impl Explain {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
+        self.study.files().check()?;
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
         let names = self.study.names();
         let inputs = self.study.inputs(&names, &sources, &motor);
         let adopt = |name: &str| Some(self.adopt(name));
         let result = with_progress(|progress| Explained::new(inputs, &adopt, progress))?;
-        if !self.study.output.takes_stdout() {
-            print(&result);
-        }
-        self.study.output.write(Subject::Explain, &result)?;
+        self.study
+            .output
+            .give(Subject::Explain, &result, || print(&result))?;
         Ok(finding(&result.report))
     }
 
@@ -70,7 +71,7 @@ fn finding(report: &ExplainReport) -> Finding {
 
 fn print(result: &Explained) {
     let report = &result.report;
-    anstream::println!(
+    say!(
         "{} against {}",
         paint::strong(&result.motor),
         result.recordings.join(" and ")
@@ -78,7 +79,7 @@ fn print(result: &Explained) {
     print_audit(&report.audit);
     print_answer(report);
     if !result.where_it_fails.is_empty() {
-        anstream::println!("\nThe model of the motor file is furthest off:");
+        say!("\nThe model of the motor file is furthest off:");
         places::print(&result.where_it_fails);
     }
     print_errors(report);
@@ -92,7 +93,7 @@ fn print(result: &Explained) {
     if !report.not_testable.is_empty() {
         let names = report.not_testable.join(", ");
         let text = format!("This recording cannot show, present or not: {names}.");
-        anstream::println!("\n{}", wrapped(&text));
+        say!("\n{}", wrapped(&text));
     }
     print_next(&result.next.why, result.next.command.as_deref());
 }
@@ -100,9 +101,9 @@ fn print(result: &Explained) {
 fn print_answer(report: &ExplainReport) {
     let summary = wrapped(&report.summary);
     match report.verdict {
-        Verdict::Adequate => anstream::println!("\n{}", paint::good(summary)),
-        Verdict::Effect => anstream::println!("\n{}", paint::error(summary)),
-        _ => anstream::println!("\n{}", paint::caution(summary)),
+        Verdict::Adequate => say!("\n{}", paint::good(summary)),
+        Verdict::Effect => say!("\n{}", paint::error(summary)),
+        _ => say!("\n{}", paint::caution(summary)),
     }
 }
 
@@ -112,12 +113,12 @@ fn print_errors(report: &ExplainReport) {
     };
     let full = baseline.held_out_error_over_noise;
     let line = |name: &str, error: f64| {
-        anstream::println!(
+        say!(
             "  {name:<34} {error:8.3} x noise  {}",
             bar(error, full, WIDTH)
         );
     };
-    anstream::println!("\nError on data that was not fitted:");
+    say!("\nError on data that was not fitted:");
     line("all parameters refitted", full);
     for step in report.steps.iter().filter(|step| step.frame.is_none()) {
         line(
@@ -133,13 +134,13 @@ fn print_errors(report: &ExplainReport) {
 /// The error of the monitor's own model, on its own scale.
 fn print_frame_errors(frame: &FrameReport) {
     let full = frame.held_out_before.max(frame.held_out_after);
-    anstream::println!("\nError of the monitor's first residual on data that was not fitted:");
+    say!("\nError of the monitor's first residual on data that was not fitted:");
     let both = [
         ("in the motor file's frame", frame.held_out_before),
         ("in the rotor-flux frame", frame.held_out_after),
     ];
     for (name, error) in both {
-        anstream::println!(
+        say!(
             "  {name:<34} {error:8.3} x noise  {}",
             bar(error, full, WIDTH)
         );
@@ -151,13 +152,13 @@ fn print_ranking(report: &ExplainReport) {
         return;
     };
     let before = baseline.held_out_error_over_noise;
-    anstream::println!("\nEach effect alone, all parameters refitted with it (~ linearised):");
+    say!("\nEach effect alone, all parameters refitted with it (~ linearised):");
     let gains = |row: &&RankReport| row.gain_percent >= LEAST_GAIN_PERCENT;
     let shown: Vec<&RankReport> = report.ranking.iter().filter(gains).take(RANKS).collect();
     for row in &shown {
         let mark = if row.refitted { ' ' } else { '~' };
         let after = row.held_out_error_over_noise;
-        anstream::println!(
+        say!(
             "  {:<24} {before:7.3} -> {mark}{after:7.3} {:>7} %  {}",
             row.effect,
             percent(-row.gain_percent),
@@ -165,7 +166,7 @@ fn print_ranking(report: &ExplainReport) {
         );
     }
     let count = report.ranking.len() - report.ranking.iter().filter(gains).count();
-    anstream::println!(
+    say!(
         "  {} lower it by less than {LEAST_GAIN_PERCENT} %",
         match shown.is_empty() {
             true => format!("all {count}"),
@@ -177,10 +178,10 @@ fn print_ranking(report: &ExplainReport) {
 /// The first residual before and after, at every load.
 pub(super) fn print_frame(frame: &FrameReport) {
     let line = "First residual of a motor as the motor file says, percent of the voltage, over windows of steady running:";
-    anstream::println!("{}", wrapped(line));
-    anstream::println!("  load     windows   in its frame   rotor-flux frame");
+    say!("{}", wrapped(line));
+    say!("  load     windows   in its frame   rotor-flux frame");
     for band in &frame.by_load {
-        anstream::println!(
+        say!(
             "  {:>4.0} %   {:>7}   {:>12.3}   {:>16.3}",
             band.load_percent,
             band.windows,
@@ -197,28 +198,28 @@ fn print_step(step: &StepReport) {
         format!(" ({})", step.form)
     };
     let share = step.explained_percent.min(100.0);
-    anstream::println!(
+    say!(
         "\n{}{form} explains {share:.0} % of the excess error.",
         paint::strong(&step.effect)
     );
-    anstream::println!(
+    say!(
         "{}",
         wrapped(&format!("Seen when it is missing: {}.", step.symptom))
     );
     for p in &step.parameters {
         let value = uncertain(p.value, p.std_error);
-        anstream::println!("  {:<34} {value} {}", p.name, p.unit);
+        say!("  {:<34} {value} {}", p.name, p.unit);
     }
     if let Some(frame) = &step.frame {
         print_frame(frame);
     }
     if let Some(loss) = step.loss_watt {
-        anstream::println!("  it takes {loss:.0} W at rated voltage and synchronous speed");
+        say!("  it takes {loss:.0} W at rated voltage and synchronous speed");
     }
     if !step.tied_with.is_empty() {
         let others = step.tied_with.join(", ");
-        anstream::println!("{} {others}", paint::caution("As likely:"));
-        anstream::println!(
+        say!("{} {others}", paint::caution("As likely:"));
+        say!(
             "{}",
             wrapped(&format!("What separates them: {}.", step.separating_test))
         );
@@ -226,10 +227,10 @@ fn print_step(step: &StepReport) {
 }
 
 fn print_parameters(fit: &FitReport) {
-    anstream::println!("\nParameters    believed -> fitted +- standard error");
+    say!("\nParameters    believed -> fitted +- standard error");
     for p in &fit.parameters {
         let mark = if p.off { "  <- off" } else { "" };
-        anstream::println!(
+        say!(
             "  {:<30} {:>10} -> {} {:<7} {:>6} %{}",
             p.name,
             quantity(p.believed),
@@ -250,19 +251,17 @@ fn print_unexplained(report: &ExplainReport) {
         .summary
         .contains(rest.description.trim_end_matches('.'))
     {
-        anstream::println!(
+        say!(
             "\n{}",
             wrapped(&format!("What is left: {}", rest.description))
         );
     }
     let share = rest.best_lead_explains_percent;
     if let Some(lead) = rest.best_lead.as_ref().filter(|_| share >= 1.0) {
-        anstream::println!(
-            "\nBest lead, not proven: {lead}, explains {share:.0} % of the excess error."
-        );
+        say!("\nBest lead, not proven: {lead}, explains {share:.0} % of the excess error.");
     }
     if !rest.correlates_with.is_empty() {
-        anstream::println!(
+        say!(
             "What is left grows with: {}.",
             rest.correlates_with.join(", ")
         );

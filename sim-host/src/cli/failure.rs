@@ -9,6 +9,8 @@ pub enum Finding {
     Something,
     /// The data do not support an answer.
     Unsupported,
+    /// One of several recordings could not be read; the reason is told.
+    NotRead,
 }
 
 impl Finding {
@@ -17,6 +19,7 @@ impl Finding {
         match self {
             Finding::Nothing => 0,
             Finding::Something => 1,
+            Finding::NotRead => 2,
             Finding::Unsupported => 3,
         }
     }
@@ -49,6 +52,9 @@ pub enum Failure {
         /// What the system said.
         error: std::io::Error,
     },
+    /// Standard output could not be written.
+    #[error("standard output: cannot be written: {0}; send it to a place with room")]
+    Output(std::io::Error),
     /// Results of a campaign.
     #[error(transparent)]
     Store(#[from] crate::campaign::StoreError),

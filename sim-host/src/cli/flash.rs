@@ -10,6 +10,7 @@ use motor::effects;
 use super::failure::{Failure, Finding};
 use super::input::read_motor;
 use super::paint;
+use super::terminal::say;
 
 /// Build the firmware for one motor and write it to a board.
 ///
@@ -54,19 +55,19 @@ impl Flash {
         let elf = target_folder(&tree)
             .join(TARGET)
             .join("release/drive-monitor");
-        anstream::println!(
+        say!(
             "{}  {name}",
             paint::strong(&self.motor.display().to_string())
         );
         let steps = [build(&tree, &motor), write(&elf), restart()];
         if self.dry_run {
             for step in &steps {
-                anstream::println!("would run: {}", step.shown);
+                say!("would run: {}", step.shown);
             }
             return Ok(Finding::Nothing);
         }
         steps.into_iter().try_for_each(Step::run)?;
-        anstream::println!("{}", paint::good("written and started"));
+        say!("{}", paint::good("written and started"));
         Ok(Finding::Nothing)
     }
 
@@ -184,7 +185,7 @@ fn probe_rs(arguments: &[&str], file: Option<&Path>, failed: &'static str) -> St
 
 impl Step {
     fn run(mut self) -> Result<(), Failure> {
-        anstream::println!("{} {}", paint::faint("running"), self.shown);
+        say!("{} {}", paint::faint("running"), self.shown);
         let status = self.command.status().map_err(|error| {
             let (shown, remedy) = (&self.shown, self.absent);
             Failure::Usage(format!("{shown}: cannot be run: {error}; {remedy}"))

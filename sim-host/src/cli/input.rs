@@ -7,6 +7,7 @@ use motor::MotorFile;
 use recording::{Mapping, Source};
 
 use super::failure::Failure;
+use super::output::DASH;
 use super::progress;
 use super::study::quoted;
 use crate::study::effects_fit;
@@ -54,6 +55,9 @@ pub struct InputArgs {
     #[arg(long, value_name = "FILE")]
     sidecar: Option<PathBuf>,
 }
+
+/// What errors call standard input.
+const STDIN: &str = "standard input";
 
 impl InputArgs {
     /// The flags as they were typed, each with a blank before it: a command that reads the same file needs them too.
@@ -132,13 +136,23 @@ impl InputArgs {
         Ok(mapping)
     }
 
-    /// Reads a recording or load table with a progress bar.
+    /// The sidecar that is named instead of the one beside the recording.
+    pub fn sidecar(&self) -> Option<&PathBuf> {
+        self.sidecar.as_ref()
+    }
+
+    /// Reads a recording or load table with a progress bar; `-` is standard input.
     ///
     /// # Errors
     /// Whatever is wrong with flags, file or sidecar.
     pub fn read(&self, path: &Path) -> Result<Source, Failure> {
+        let mapping = self.mapping()?;
         let bar = progress::bar("reading", 0);
-        let source = recording::read_any(path, &self.mapping()?, &mut progress::reading(&bar))?;
+        let mut progress = progress::reading(&bar);
+        let source = match path.as_os_str() == DASH {
+            true => recording::read_stream(STDIN, std::io::stdin(), &mapping, &mut progress),
+            false => recording::read_any(path, &mapping, &mut progress),
+        }?;
         bar.finish_and_clear();
         Ok(source)
     }

@@ -11,7 +11,8 @@ use serde::Serialize;
 
 use super::failure::{Failure, Finding};
 use super::input::read_motor;
-use super::paint;
+use super::terminal::say;
+use super::{paint, terminal};
 use crate::live::{Collector, Decoder, Fetched, Source, open_probe, open_serial, recording};
 
 /// Silence after which the board is taken not to be there, s.
@@ -22,10 +23,10 @@ const SILENCE: Duration = Duration::from_secs(3);
 #[command(next_help_heading = "A running board instead of a recording")]
 pub struct LiveArgs {
     /// Read the board's frames from a serial port, e.g. /dev/ttyACM0 or COM3
-    #[arg(long, value_name = "PORT", conflicts_with_all = ["recording", "probe"])]
+    #[arg(long, value_name = "PORT", conflicts_with_all = ["recordings", "probe"])]
     pub serial: Option<String>,
     /// Read the board's frames through a debug probe (needs a build with the feature `probe`)
-    #[arg(long, conflicts_with = "recording")]
+    #[arg(long, conflicts_with = "recordings")]
     pub probe: bool,
     /// Speed of the serial port, bit/s
     #[arg(
@@ -72,6 +73,11 @@ struct Watch<'a> {
 }
 
 impl LiveArgs {
+    /// The recording that may be written.
+    pub fn capture(&self) -> Option<&PathBuf> {
+        self.capture.as_ref()
+    }
+
     /// Watches the board. `quiet` leaves standard output alone.
     ///
     /// # Errors
@@ -111,7 +117,7 @@ impl Watch<'_> {
                 self.take(message)?;
             }
             let enough = end.is_some_and(|end| begin.elapsed() >= end);
-            if enough || self.watched.capture.is_some() {
+            if enough || self.watched.capture.is_some() || terminal::is_closed() {
                 return Ok(());
             }
             if heard.elapsed() > SILENCE {
@@ -153,7 +159,7 @@ impl Watch<'_> {
         self.watched.fault |= fault.is_some_and(|k| lamps[k] == Lamp::On);
         if self.lamps != Some(lamps) && !self.quiet {
             if self.lamps.is_none() {
-                anstream::println!("    time s  RUN  r1 r2 r3 r4  SENSOR LINE LOAD FAULT");
+                say!("    time s  RUN  r1 r2 r3 r4  SENSOR LINE LOAD FAULT");
             }
             print_lamps(frame, &lamps);
         }
@@ -169,7 +175,7 @@ impl Watch<'_> {
         recording::write_recording(path, &recording)?;
         let name = path.display().to_string();
         if !self.quiet {
-            anstream::println!("{name}: {} samples around the alarm", recording.len());
+            say!("{name}: {} samples around the alarm", recording.len());
         }
         self.watched.capture = Some(name);
         Ok(())
@@ -197,23 +203,21 @@ fn print_lamps(frame: &Frame, lamps: &[Lamp; LAMPS]) {
         lamps.map(|lamp| super::monitor::symbol(lamp.name()));
     // The board samples at 10 kHz.
     let t = frame.sample_index as f64 * 1e-4;
-    anstream::println!(
-        "{t:>10.3}   {run}   {r1}  {r2}  {r3}  {r4}     {sensor}     {line}    {load}    {fault}"
-    );
+    say!("{t:>10.3}   {run}   {r1}  {r2}  {r3}  {r4}     {sensor}     {line}    {load}    {fault}");
 }
 
 fn print_end(watched: &Watched) {
-    anstream::println!("\n{} of {} windows judged", watched.judged, watched.windows);
+    say!("\n{} of {} windows judged", watched.judged, watched.windows);
     if watched.lost + watched.damaged > 0 {
         let (lost, damaged) = (watched.lost, watched.damaged);
-        anstream::println!(
+        say!(
             "{} {lost} windows lost, {damaged} frames damaged",
             paint::caution("line:")
         );
     }
     match (watched.fault, watched.judged) {
-        (true, _) => anstream::println!("{}", paint::error("FAULT was lit")),
-        (false, 0) => anstream::println!("{}", paint::caution("not judged")),
-        (false, _) => anstream::println!("{}", paint::good("no fault was lit")),
+        (true, _) => say!("{}", paint::error("FAULT was lit")),
+        (false, 0) => say!("{}", paint::caution("not judged")),
+        (false, _) => say!("{}", paint::good("no fault was lit")),
     }
 }

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand.
 
 mod adopt;
+mod answers;
 mod calibrate;
 mod campaign;
 mod compare;
@@ -8,6 +9,7 @@ mod completions;
 mod demo;
 mod explain;
 mod failure;
+mod files;
 mod flash;
 mod input;
 mod live;
@@ -21,6 +23,7 @@ mod progress;
 mod scale;
 mod simulate;
 mod study;
+mod terminal;
 
 use std::process::ExitCode;
 
@@ -77,6 +80,15 @@ enum Command {
 }
 
 impl Cli {
+    /// Shows the help, the version, or what is wrong with a command line; the exit code.
+    pub fn answer(error: &clap::Error) -> ExitCode {
+        terminal::page(error);
+        match terminal::finish() {
+            Err(failure) => ExitCode::from(told(&failure)),
+            Ok(()) => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
+        }
+    }
+
     /// Runs the chosen subcommand and turns its outcome into the exit code.
     pub fn run(self) -> ExitCode {
         let outcome = match self.command {
@@ -94,12 +106,21 @@ impl Cli {
             Command::Completions(completions) => completions.run(),
             Command::Man(man) => man.run(),
         };
-        match outcome {
-            Ok(finding) => ExitCode::from(finding.exit_code()),
-            Err(failure) => {
-                anstream::eprintln!("{}{failure}", paint::error("error: "));
-                ExitCode::from(failure.exit_code())
-            }
-        }
+        ExitCode::from(concluded(outcome))
     }
+}
+
+/// Ends the output and says what failed; the exit code.
+fn concluded(outcome: Result<Finding, Failure>) -> u8 {
+    let shown = terminal::finish();
+    let failures = [outcome.as_ref().err(), shown.as_ref().err()];
+    // 2, bad input or usage, outweighs 3.
+    let code = failures.into_iter().flatten().map(told).min();
+    code.unwrap_or_else(|| outcome.map_or(0, Finding::exit_code))
+}
+
+/// Prints what failed; the exit code.
+fn told(failure: &Failure) -> u8 {
+    terminal::complain(format_args!("{}{failure}", paint::error("error: ")));
+    failure.exit_code()
 }

@@ -9,10 +9,13 @@ use recording::{Audit, Expectation, audit};
 use recording::{LoadTable, Recording, Source};
 use serde::Serialize;
 
+use super::answers::{self, Answers};
 use super::failure::{Failure, Finding};
+use super::files::Files;
 use super::input::{InputArgs, read_motor};
 use super::live::LiveArgs;
 use super::output::OutputArgs;
+use super::terminal::say;
 use super::{paint, progress};
 use crate::operating_points::OperatingPoints;
 use crate::replay::{
@@ -29,9 +32,9 @@ use crate::words;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct MonitorArgs {
-    /// Recording or load-test table (.csv, .csv.gz, .parquet, .mat, .cfg, .cff)
+    /// Recordings or load-test tables, each judged by itself (.csv, .csv.gz, .parquet, .mat, .cfg, .cff)
     #[arg(value_name = "REC", required_unless_present_any = ["serial", "probe"])]
-    recording: Option<PathBuf>,
+    recordings: Vec<PathBuf>,
     /// Motor file; without it only audit and sequence components are reported
     #[arg(long, value_name = "M")]
     motor: Option<PathBuf>,
@@ -83,32 +86,51 @@ struct ResidualPercent {
 impl MonitorArgs {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        let Some(recording) = &self.recording else {
+        if self.recordings.is_empty() {
             return self.watch();
-        };
-        match self.input.read(recording)? {
-            Source::Recording(recording) => self.monitor(&recording),
-            Source::LoadTable(table) => self.show_table(&table),
         }
+        self.files().check()?;
+        let motor = self.motor.as_deref().map(read_motor).transpose()?;
+        let motor = motor.as_ref();
+        answers::each(&self.recordings, &self.output, |path, answers| {
+            match self.input.read(path)? {
+                Source::Recording(recording) => self.monitor(&recording, motor, answers),
+                Source::LoadTable(table) => show_table(&table, motor, answers),
+            }
+        })
+    }
+
+    fn files(&self) -> Files {
+        Files::default()
+            .reads_recordings(&self.recordings, &self.input)
+            .may_read("the motor file", self.motor.as_ref())
+            .writes_results(&self.output)
     }
 
     fn watch(&self) -> Result<Finding, Failure> {
         if self.output.report.is_some() {
             return Err(Failure::Usage(NO_LIVE_REPORT.to_owned()));
         }
-        let quiet = self.output.takes_stdout();
+        let files = self.files();
+        match self.live.capture() {
+            Some(path) => files.writes_recording("--capture", path).check(),
+            None => files.check(),
+        }?;
+        let quiet = self.output.json.takes_stdout();
         let (watched, finding) = self.live.run(self.motor.as_deref(), quiet)?;
-        self.output.write_json(&watched)?;
+        self.output.json.write(&watched)?;
         Ok(finding)
     }
 
-    fn monitor(&self, recording: &Recording) -> Result<Finding, Failure> {
-        let motor = self.motor.as_deref().map(read_motor).transpose()?;
-        let expectation = motor
-            .as_ref()
-            .map_or_else(Expectation::default, |motor| Expectation::from(motor));
+    fn monitor(
+        &self,
+        recording: &Recording,
+        motor: Option<&MotorFile>,
+        answers: &mut Answers<'_>,
+    ) -> Result<Finding, Failure> {
+        let expectation = motor.map_or_else(Expectation::default, Expectation::from);
         let audit = audit(recording, &expectation);
-        let config = match &motor {
+        let config = match motor {
             Some(motor) => replay::config_for(motor, recording),
             None => replay::stand_in_config(recording),
         };
@@ -117,7 +139,7 @@ impl MonitorArgs {
         } else {
             Timeline::default()
         };
-        self.tell(recording, motor.as_ref(), &audit, &timeline)
+        Self::tell(recording, motor, &audit, &timeline, answers)
     }
 
     fn replay(
@@ -148,16 +170,13 @@ impl MonitorArgs {
     }
 
     fn tell(
-        &self,
         recording: &Recording,
         motor: Option<&MotorFile>,
         audit: &Audit,
         timeline: &Timeline,
+        answers: &mut Answers<'_>,
     ) -> Result<Finding, Failure> {
         let verdict = timeline.verdict();
-        if !self.output.takes_stdout() {
-            print(recording, audit, timeline, &verdict);
-        }
         let finding = match (audit.supported, verdict.state) {
             (false, _) => Finding::Unsupported,
             (true, VerdictState::Fault) => Finding::Something,
@@ -182,19 +201,20 @@ impl MonitorArgs {
             residuals: &timeline.trace.residuals,
             operation: &timeline.trace.operation,
         };
-        self.output.write(Subject::Monitor, &result)?;
+        let show = || print(recording, audit, timeline, &result.verdict);
+        answers.give(Subject::Monitor, &result, show)?;
         Ok(finding)
     }
+}
 
-    fn show_table(&self, table: &LoadTable) -> Result<Finding, Failure> {
-        let motor = self.motor.as_deref().map(read_motor).transpose()?;
-        let points = OperatingPoints::new(table, motor.as_ref());
-        if !self.output.takes_stdout() {
-            anstream::println!("{points}");
-        }
-        self.output.write(Subject::LoadTable, &points)?;
-        Ok(Finding::Nothing)
-    }
+fn show_table(
+    table: &LoadTable,
+    motor: Option<&MotorFile>,
+    answers: &mut Answers<'_>,
+) -> Result<Finding, Failure> {
+    let points = OperatingPoints::new(table, motor);
+    answers.give(Subject::LoadTable, &points, || say!("{points}"))?;
+    Ok(Finding::Nothing)
 }
 
 fn residual_percent(timeline: &Timeline) -> Option<ResidualPercent> {
@@ -213,22 +233,22 @@ const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board se
 const LONGEST_TIMELINE: usize = 40;
 
 fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Verdict) {
-    anstream::println!(
+    say!(
         "{}  {:.3} s at {:.0} Hz",
         paint::strong(recording.name()),
         recording.duration(),
         1.0 / recording.t_sample()
     );
     for assumption in &recording.assumptions {
-        anstream::println!("  assumed: {assumption}");
+        say!("  assumed: {assumption}");
     }
     for finding in &audit.findings {
-        anstream::println!("  {} {}", paint::caution("audit:"), finding.detail);
+        say!("  {} {}", paint::caution("audit:"), finding.detail);
     }
     print_lamps(timeline);
     print_windows(timeline);
     print_sequence(&timeline.sequence());
-    anstream::println!("{}", words::rotor(&timeline.rotor()));
+    say!("{}", words::rotor(&timeline.rotor()));
     print_verdict(timeline, verdict);
 }
 
@@ -236,9 +256,9 @@ pub(super) fn print_lamps(timeline: &Timeline) {
     if timeline.lamps.is_empty() {
         return;
     }
-    anstream::println!("\n    time s  RUN  r1 r2 r3 r4  SENSOR LINE LOAD FAULT");
+    say!("\n    time s  RUN  r1 r2 r3 r4  SENSOR LINE LOAD FAULT");
     for state in timeline.lamps.iter().take(LONGEST_TIMELINE) {
-        anstream::println!(
+        say!(
             "{:>10.3}   {}   {}  {}  {}  {}     {}     {}    {}    {}    {}",
             state.t,
             symbol(state.run),
@@ -255,7 +275,7 @@ pub(super) fn print_lamps(timeline: &Timeline) {
     }
     let more = timeline.lamps.len().saturating_sub(LONGEST_TIMELINE);
     if more > 0 {
-        anstream::println!("  ... and {more} more changes (--json FILE has them all)");
+        say!("  ... and {more} more changes (--json FILE has them all)");
     }
 }
 
@@ -268,7 +288,7 @@ pub(super) fn symbol(lamp: &str) -> &'static str {
 }
 
 pub(super) fn print_windows(timeline: &Timeline) {
-    anstream::println!(
+    say!(
         "\n{} of {} windows judged",
         timeline.judged,
         timeline.windows
@@ -277,11 +297,11 @@ pub(super) fn print_windows(timeline: &Timeline) {
         anstream::println!("  {}", words::direction(direction));
     }
     for share in &timeline.not_judged {
-        anstream::println!("  {} not judged: {}", share.windows, share.reason);
+        say!("  {} not judged: {}", share.windows, share.reason);
     }
     if let Some((mean, deviation)) = timeline.residual_percent() {
         for (k, (mean, deviation)) in mean.iter().zip(deviation).enumerate() {
-            anstream::println!(
+            say!(
                 "  r{}  {mean:+8.3} % of scale, scatter {deviation:.3} %",
                 k + 1
             );
@@ -295,7 +315,7 @@ pub(super) fn print_sequence(sequence: &SequenceSummary) {
     let angle = sequence
         .i2_over_i1_angle_deg
         .map_or(String::new(), |angle| format!(" at {angle:.0} deg"));
-    anstream::println!(
+    say!(
         "negative over positive sequence: current {}{angle}, voltage {}; zero sequence of the current {}",
         percent(sequence.i2_over_i1),
         percent(sequence.v2_over_v1),
@@ -305,11 +325,11 @@ pub(super) fn print_sequence(sequence: &SequenceSummary) {
 
 pub(super) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
     match verdict.state {
-        VerdictState::Healthy => anstream::println!("{}", paint::good("healthy: no fault was lit")),
-        VerdictState::NotJudged => anstream::println!("{}", paint::caution("not judged")),
+        VerdictState::Healthy => say!("{}", paint::good("healthy: no fault was lit")),
+        VerdictState::NotJudged => say!("{}", paint::caution("not judged")),
         VerdictState::Fault => {
             let t = timeline.first_alarm_s.unwrap_or_default();
-            anstream::println!(
+            say!(
                 "{}",
                 paint::error(format!("FAULT, first lit at {t:.3} s; possible causes:"))
             );
@@ -319,7 +339,7 @@ pub(super) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
                     .map_or(String::new(), |phase| format!(", phase {phase}"));
                 let cause = words::fault(candidate.fault);
                 let percent = 100.0 * candidate.probability;
-                anstream::println!("  {percent:5.1} %  {:<3} {cause}{phase}", candidate.fault);
+                say!("  {percent:5.1} %  {:<3} {cause}{phase}", candidate.fault);
             }
             print_tie(verdict);
         }
@@ -330,11 +350,11 @@ fn print_tie(verdict: &Verdict) {
     if verdict.tied < 2 {
         return;
     }
-    anstream::println!(
+    say!(
         "the first {} are tied: this recording does not tell them apart. What does:",
         verdict.tied
     );
     for test in &verdict.separating_tests {
-        anstream::println!("  - {test}");
+        say!("  - {test}");
     }
 }

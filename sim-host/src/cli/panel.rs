@@ -11,6 +11,7 @@ use tokio::sync::watch;
 
 use super::failure::{Failure, Finding};
 use super::input::{InputArgs, read_motor};
+use super::terminal::say;
 use crate::live::{open_probe, open_serial};
 use crate::panel::source::{BoardSource, ReplayedSource, SimulatedSource, Source, built_in_motor};
 use crate::panel::{self, Options, PanelError, Session};
@@ -110,8 +111,8 @@ impl Panel {
         let status = session.status();
         let running = panel::bind(&self.options(), session).await?;
         let url = running.url();
-        anstream::println!("{}: {}", status.source.kind, status.source.name);
-        anstream::println!("panel: {url}   (Ctrl-C ends it)");
+        say!("{}: {}", status.source.kind, status.source.name);
+        say!("panel: {url}   (Ctrl-C ends it)");
         if self.open {
             open(&url);
         }
@@ -228,6 +229,8 @@ fn open(url: &str) {
         .spawn()
         .is_err()
     {
-        anstream::eprintln!("no browser could be opened; open {url} yourself");
+        super::terminal::complain(format_args!(
+            "no browser could be opened; open {url} yourself"
+        ));
     }
 }

@@ -1,6 +1,7 @@
 //! Where a model fails, in three lines of a terminal.
 
 use super::study::bar;
+use super::terminal::say;
 use crate::study::Place;
 
 /// Longest bar, characters.
@@ -10,7 +11,7 @@ const WIDTH: usize = 24;
 pub fn print(places: &[Place]) {
     let full = places.first().map_or(0.0, |place| place.error_over_noise);
     for place in places {
-        anstream::println!(
+        say!(
             "  {:<30} {} {:7.2} x noise  {}",
             place.name,
             time(place),

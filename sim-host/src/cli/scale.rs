@@ -4,6 +4,7 @@ use discovery::{AtRest, ErrorSource, Inconclusive, SpeedScaleReport};
 
 use super::paint;
 use super::study::{quantity, uncertain, wrapped};
+use super::terminal::say;
 
 /// What a standard error means that the recording does not tell.
 const UNTOLD: &str = "  No model here explains the recording, so the factor is only as sure as physics makes it: the least slip lies \
@@ -12,27 +13,27 @@ const UNTOLD: &str = "  No model here explains the recording, so the factor is o
 /// Prints the fitted scale and what cannot be concluded beside it.
 pub fn print(scale: Option<&SpeedScaleReport>, open: &[Inconclusive]) {
     let Some(scale) = scale else { return };
-    anstream::println!("\nScale of the speed, fitted because it was declared unknown:");
+    say!("\nScale of the speed, fitted because it was declared unknown:");
     let value = uncertain(scale.factor, scale.std_error);
-    anstream::println!("  {:<30} {value} {}", "factor", scale.unit);
+    say!("  {:<30} {value} {}", "factor", scale.unit);
     let at_rest = match scale.offset_is {
         AtRest::Measured => uncertain(scale.offset, scale.offset_std_error),
         AtRest::Given | AtRest::Assumed => format!("{:>10}", quantity(scale.offset)),
     };
     let origin = origin(scale.offset_is);
-    anstream::println!("  {:<30} {at_rest} {origin}", "column at rest");
+    say!("  {:<30} {at_rest} {origin}", "column at rest");
     if scale.std_error_is == ErrorSource::Physics {
-        anstream::println!("{}", wrapped(UNTOLD));
+        say!("{}", wrapped(UNTOLD));
     }
     if open.is_empty() {
         return;
     }
-    anstream::println!(
+    say!(
         "{}",
         paint::caution("Cannot be concluded with that scale free:")
     );
     for one in open {
-        anstream::println!("{}", wrapped(&format!("  {}: {}", one.name, one.why)));
+        say!("{}", wrapped(&format!("  {}: {}", one.name, one.why)));
     }
 }
 

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{Failure, Finding};
+use super::files::{Files, spare_what_is_no_sidecar};
 use super::progress;
+use super::terminal::say;
 use crate::scenario::Scenario;
 use crate::simulate;
 
@@ -37,15 +39,20 @@ const STEPS: u64 = 1000;
 impl Simulate {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        self.check_sidecar()?;
         let mut scenario = Scenario::read(&self.scenario)?;
+        Files::default()
+            .reads("the scenario", &self.scenario)
+            .may_read("the motor file", scenario.motor_path.as_ref())
+            .writes_recording("-o", &self.output)
+            .check()?;
+        spare_what_is_no_sidecar(&self.output)?;
         scenario.seed = self.seed.unwrap_or(scenario.seed);
         let bar = progress::bar("simulating", STEPS);
         let done = |share: f64| bar.set_position((share * STEPS as f64) as u64);
         let recording = simulate::record(&scenario, done).map_err(|error| self.failure(error))?;
         bar.finish_and_clear();
         recording::write_recording(&self.output, &recording)?;
-        anstream::println!(
+        say!(
             "{}: {} samples, {:.3} s of \"{}\"",
             self.output.display(),
             recording.len(),
@@ -53,20 +60,6 @@ impl Simulate {
             scenario.name
         );
         Ok(Finding::Nothing)
-    }
-
-    /// `x.toml` must not be lost to the sidecar of `x.csv.gz`.
-    fn check_sidecar(&self) -> Result<(), Failure> {
-        let sidecar = recording::sidecar_path(&self.output);
-        let same = |path: &PathBuf| std::fs::canonicalize(path).ok();
-        match same(&sidecar).is_some_and(|path| Some(path) == same(&self.scenario)) {
-            false => Ok(()),
-            true => Err(Failure::Usage(format!(
-                "{}: its sidecar would overwrite the scenario {}; give the recording another name",
-                self.output.display(),
-                self.scenario.display()
-            ))),
-        }
     }
 
     fn failure(&self, error: simulate::RecordError) -> Failure {

@@ -8,8 +8,10 @@ use motor::MotorFile;
 use recording::{Audit, Source};
 
 use super::failure::Failure;
+use super::files::Files;
 use super::input::{InputArgs, read_motor};
 use super::output::OutputArgs;
+use super::terminal::say;
 use super::{paint, progress};
 use crate::report::{Style, decimals, significant};
 use crate::study::Inputs;
@@ -33,6 +35,14 @@ pub struct StudyArgs {
 const STEPS: f64 = 1000.0;
 
 impl StudyArgs {
+    /// What the command reads and writes.
+    pub fn files(&self) -> Files {
+        Files::default()
+            .reads_recordings(&self.recordings, &self.input)
+            .reads("the motor file", &self.motor)
+            .writes_results(&self.output)
+    }
+
     /// All recordings in the order given.
     ///
     /// # Errors
@@ -129,15 +139,15 @@ pub fn with_progress<T>(
 /// Prints what the audit found.
 pub fn print_audit(audit: &Audit) {
     for finding in &audit.findings {
-        anstream::println!("  {} {}", paint::caution("audit:"), finding.detail);
+        say!("  {} {}", paint::caution("audit:"), finding.detail);
     }
 }
 
 /// Prints what to do next, with the command to type where there is one.
 pub fn print_next(why: &str, command: Option<&str>) {
-    anstream::println!("\n{}", wrapped(why));
+    say!("\n{}", wrapped(why));
     if let Some(command) = command {
-        anstream::println!("  {}", paint::strong(command));
+        say!("  {}", paint::strong(command));
     }
 }
 

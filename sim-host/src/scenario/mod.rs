@@ -51,6 +51,8 @@ pub struct Scenario {
     pub name: String,
     /// The motor, healthy.
     pub motor: MotorFile,
+    /// Where the motor was read; nowhere when it is built in.
+    pub motor_path: Option<PathBuf>,
     /// Which equations.
     pub plant: PlantKind,
     /// Where it begins.
@@ -100,6 +102,7 @@ impl Scenario {
             faults: Vec::new(),
             sensors: SensorSpec::of(&motor),
             effects: Vec::new(),
+            motor_path: None,
             motor,
         }
     }
@@ -121,8 +124,11 @@ impl Scenario {
     /// All problems of the scenario or of its motor file with file, line and remedy.
     pub fn parse(text: &str, file_label: &str, folder: &Path) -> Result<Scenario, FileError> {
         let document = Document::parse(text, file_label)?;
-        let motor = read::motor_file(&document, folder)?;
-        let scenario = read::scenario(&document, motor);
+        let (path, motor) = read::motor_file(&document, folder)?;
+        let scenario = read::scenario(&document, motor).map(|scenario| Scenario {
+            motor_path: Some(path),
+            ..scenario
+        });
         document.finish(scenario)
     }
 

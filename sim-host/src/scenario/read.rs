@@ -5,7 +5,7 @@ use crate::simulate::check_entry;
 use motor::MotorFile;
 use motor::document::{Bounds, Document, FileError, Section};
 use motor::motor_file::{EffectEntry, read_effects};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const MOTOR: &str = "the path of a motor file, seen from the scenario's folder, in double quotes";
 const DURATION: Bounds = Bounds::above(0.0, 86_400.0, "s");
@@ -27,7 +27,10 @@ const STARTS: [(&str, Start); 2] = [
 ];
 
 /// Reads the motor file that the scenario names; its problems are reported as its own.
-pub(super) fn motor_file(document: &Document, folder: &Path) -> Result<MotorFile, FileError> {
+pub(super) fn motor_file(
+    document: &Document,
+    folder: &Path,
+) -> Result<(PathBuf, MotorFile), FileError> {
     let root = document.root();
     let Some(name) = root.text("motor", MOTOR) else {
         if !root.has("motor") {
@@ -41,7 +44,8 @@ pub(super) fn motor_file(document: &Document, folder: &Path) -> Result<MotorFile
         root.report("motor", message);
         return Err(document.failure());
     }
-    MotorFile::read(path)
+    let motor = MotorFile::read(&path)?;
+    Ok((path, motor))
 }
 
 pub(super) fn scenario(document: &Document, motor: MotorFile) -> Option<Scenario> {
@@ -91,6 +95,7 @@ fn read_values(document: &Document, root: &Section<'_>, motor: MotorFile) -> Opt
         faults: faults?,
         sensors: sensors?,
         effects: effects?,
+        motor_path: None,
         motor: base.motor,
     })
 }

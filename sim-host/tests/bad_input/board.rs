@@ -138,6 +138,41 @@ const OTHERS: [(&str, &str, &str); 15] = [
         "sim-host/tests/full_disk.rs::a_folder_that_takes_nothing_is_named",
     ),
     (
+        "an output that is an input, its sidecar, its COMTRADE partner or another output",
+        "refused before the work with both parts, exit code 2; all files stay as they were",
+        "sim-host/tests/outputs.rs::nothing_that_is_read_is_written_and_nothing_is_written_twice",
+    ),
+    (
+        "a sidecar in the place of a motor file",
+        "refused, exit code 2",
+        "sim-host/tests/outputs.rs::a_sidecar_is_written_over_a_sidecar_only",
+    ),
+    (
+        "a terminal without room, `> /dev/full`",
+        "`error: standard output: cannot be written`, exit code 2; the files are there",
+        "sim-host/tests/outputs.rs::a_terminal_without_room_is_a_plain_error_and_the_files_are_there",
+    ),
+    (
+        "a reader that ends early, `| head`",
+        "silence; the exit code of the answer",
+        "sim-host/tests/outputs.rs::a_reader_that_has_seen_enough_changes_nothing",
+    ),
+    (
+        "one bad recording among several",
+        "told by its name, exit code 2; the others have their answer",
+        "sim-host/tests/outputs.rs::several_recordings_are_judged_each_by_itself",
+    ),
+    (
+        "a wrong bit in a file with checksums",
+        "refused, or nothing that is read changes",
+        "crates/recording/tests/formats/parquet.rs::a_wrong_byte_in_a_file_of_ours_is_noticed_wherever_it_is",
+    ),
+    (
+        "a configuration of 100 000 sections",
+        "refused within a second or two; the first fifty problems",
+        "crates/motor/src/document/tests.rs::many_sections_take_linear_time",
+    ),
+    (
         "a day without a pause",
         "the same lamps and the same numbers, a fault found as fast as in the first minute",
         "crates/monitor/tests/long_run.rs::a_day_changes_nothing",

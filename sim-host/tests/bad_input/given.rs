@@ -187,6 +187,10 @@ fn binary() -> Vec<Given> {
         "crates/recording/tests/formats/parquet.rs::every_compression_but_brotli_is_read";
     const MAT: &str =
         "crates/recording/tests/formats/mat.rs::damaged_and_foreign_files_are_refused";
+    const PARQUET_PHASE: &str =
+        "crates/recording/tests/formats/parquet.rs::a_phase_that_cannot_be_read_is_no_absent_one";
+    const MAT_PHASE: &str =
+        "crates/recording/tests/formats/mat.rs::a_phase_that_cannot_be_read_is_no_absent_one";
     const NAME: &str =
         "crates/recording/tests/formats/main.rs::a_name_that_does_not_fit_the_content_is_named";
     let (parquet, mat) = (data("pyarrow-gzip.parquet"), data("scipy-v6.mat"));
@@ -252,6 +256,30 @@ fn binary() -> Vec<Given> {
             MAT,
         ),
         given("MAT-file of version 7.3", "x.mat", new, 3, &["-v7"], MAT),
+        given(
+            "Parquet with ic as text",
+            "x.parquet",
+            data("pyarrow-text.parquet"),
+            2,
+            &["ic: cannot be read"],
+            PARQUET_PHASE,
+        ),
+        given(
+            "Parquet with ic as decimals of 20 digits",
+            "x.parquet",
+            data("pyarrow-decimal.parquet"),
+            2,
+            &["ic: cannot be read"],
+            PARQUET_PHASE,
+        ),
+        given(
+            "MAT-file with ic as cells",
+            "x.mat",
+            data("scipy-cell-phase.mat"),
+            2,
+            &["ic: cannot be read"],
+            MAT_PHASE,
+        ),
         given(
             "text that is called .mat",
             "x.mat",

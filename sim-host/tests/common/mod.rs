@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 pub const PROJECT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 /// Runs `drivemon` in the project's folder.
+#[allow(dead_code)]
 pub fn drivemon(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_drivemon"))
         .args(arguments)
@@ -31,6 +32,7 @@ pub fn scratch(name: &str) -> PathBuf {
     folder
 }
 
+#[allow(dead_code)]
 pub fn text(path: &Path) -> &str {
     path.to_str().expect("the path is UTF-8")
 }

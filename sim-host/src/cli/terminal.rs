@@ -1,0 +1,75 @@
+//! Standard output and standard error: what cannot be written there stops no work and ends in a plain error.
+
+use std::fmt::Arguments;
+use std::io::{self, ErrorKind, Write};
+use std::sync::{Mutex, PoisonError};
+
+use super::failure::Failure;
+
+/// Why nothing more is written to standard output; `None` while it takes everything.
+static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Prints a line to standard output, with its colours where they are shown.
+macro_rules! say {
+    ($($text:tt)*) => {
+        $crate::cli::terminal::line(format_args!($($text)*))
+    };
+}
+pub(super) use say;
+
+/// Prints a line to standard output.
+pub(super) fn line(text: Arguments<'_>) {
+    put(|| writeln!(anstream::stdout(), "{text}"));
+}
+
+/// Writes bytes to standard output as they are.
+pub(super) fn bytes(bytes: &[u8]) {
+    put(|| io::stdout().write_all(bytes));
+}
+
+/// Prints clap's answer: help and version to standard output, what is wrong with the command line to standard error.
+pub(super) fn page(answer: &clap::Error) {
+    match answer.use_stderr() {
+        // Where even that fails there is nobody to be told.
+        true => drop(answer.print()),
+        false => put(|| answer.print()),
+    }
+}
+
+/// Prints a line to standard error; where even that fails there is nobody to be told.
+pub(super) fn complain(text: Arguments<'_>) {
+    let _ = writeln!(anstream::stderr(), "{text}");
+}
+
+/// Lets what was printed so far out, before something goes to standard error.
+pub(super) fn flush() {
+    put(|| io::stdout().flush());
+}
+
+/// Whether nobody reads standard output any more, as behind `| head`.
+pub(super) fn is_closed() -> bool {
+    failed().is_some()
+}
+
+/// The end of standard output: everything is written now, or the reason why not. A reader that has seen enough is none.
+///
+/// # Errors
+/// A disk that is full, or whatever else the system said.
+pub(super) fn finish() -> Result<(), Failure> {
+    flush();
+    match failed().take() {
+        Some(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Output(error)),
+        _ => Ok(()),
+    }
+}
+
+fn put(write: impl FnOnce() -> io::Result<()>) {
+    let mut failed = failed();
+    if failed.is_none() {
+        *failed = write().err();
+    }
+}
+
+fn failed() -> std::sync::MutexGuard<'static, Option<io::Error>> {
+    FAILED.lock().unwrap_or_else(PoisonError::into_inner)
+}
