@@ -26,8 +26,13 @@ fn files(folder: &str, end: &str) -> Vec<Vec<u8>> {
     read.filter(|bytes| bytes.len() <= LONGEST).collect()
 }
 
+/// The motors that ship, and each with a formula.
 pub(crate) fn motor_files() -> Vec<Vec<u8>> {
-    files("motors", ".toml")
+    let shipped = files("motors", ".toml");
+    let formula = b"\n[[effects]]\nname = \"expression\"\nformula = \"k*omega*abs(omega)/(1+psi^2)\"\nadds_to = \"torque\"\nk = 1e-6\n";
+    let with = shipped.iter().map(|file| [&file[..], formula].concat());
+    let with: Vec<_> = with.collect();
+    [shipped, with].concat()
 }
 
 pub(crate) fn scenarios() -> Vec<Vec<u8>> {
@@ -79,6 +84,12 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 
 pub(crate) fn load_tables() -> Vec<Vec<u8>> {
     files("tests/data/imc_18k5_load_test", ".csv")
+}
+
+/// One of everything that a stream may hold.
+pub(crate) fn streams() -> Vec<Vec<u8>> {
+    let all = [csv(), csv_gz(), load_tables(), parquet(), mat(), comtrade()];
+    all.into_iter().flatten().collect()
 }
 
 const DATA: &str = "crates/recording/tests/data";

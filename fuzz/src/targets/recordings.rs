@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use monitor::Monitor;
-use recording::{Expectation, LoadTable, Mapping, Recording, Source, audit, read_any};
+use recording::{
+    Error, Expectation, LoadTable, Mapping, Recording, Source, audit, read_any, read_stream,
+};
 use sim_host::replay::{Samples, replay, stand_in_config};
 
 /// Samples that are replayed; more only take longer.
@@ -42,7 +44,11 @@ fn read(name: &str, bytes: &[u8], mapping: &Mapping) {
     let number: String = thread.chars().filter(char::is_ascii_digit).collect();
     let path = folder().join(format!("{number}-{name}"));
     std::fs::write(&path, bytes).expect("a file in the temporary folder");
-    match read_any(&path, mapping, &mut |_| {}) {
+    judge(read_any(&path, mapping, &mut |_| {}));
+}
+
+fn judge(read: Result<Source, Error>) {
+    match read {
         Ok(Source::Recording(recording)) => use_recording(&recording),
         Ok(Source::LoadTable(table)) => use_table(&table),
         Err(error) => {
@@ -80,6 +86,17 @@ pub(crate) fn csv(bytes: &[u8]) {
 
 pub(crate) fn csv_gz(bytes: &[u8]) {
     read("x.csv.gz", bytes, &Mapping::default());
+}
+
+/// Standard input, whose content alone tells what it is.
+pub(crate) fn stream(bytes: &[u8]) {
+    let stream = std::io::Cursor::new(bytes.to_vec());
+    judge(read_stream(
+        "standard input",
+        stream,
+        &mapping(),
+        &mut |_| {},
+    ));
 }
 
 pub(crate) fn parquet(bytes: &[u8]) {
