@@ -294,7 +294,7 @@ pub(super) fn print_windows(timeline: &Timeline) {
         timeline.windows
     );
     if let Some(direction @ ("backwards" | "both")) = timeline.direction() {
-        anstream::println!("  {}", words::direction(direction));
+        say!("  {}", words::direction(direction));
     }
     for share in &timeline.not_judged {
         say!("  {} not judged: {}", share.windows, share.reason);
