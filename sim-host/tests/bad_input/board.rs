@@ -66,7 +66,7 @@ const SEEN: [(&str, &str); 20] = [
 ];
 
 /// What reaches the core or the wire besides.
-const OTHERS: [(&str, &str, &str); 15] = [
+const OTHERS: [(&str, &str, &str); 22] = [
     (
         "any sequence of samples: NaN, infinity, jumps, clipping, missing channels",
         "RUN and SENSOR blink, not judged; never FAULT from r1..r4, never a number that is none",
