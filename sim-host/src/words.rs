@@ -9,7 +9,7 @@ pub fn not_judged(reason: NotJudged) -> String {
         NotJudged::NotLocked => "no periodic supply between 5 and 100 Hz".to_owned(),
         NotJudged::Settling => "the first cycles after the supply was found".to_owned(),
         NotJudged::Clipped => "a channel clips: choose a larger full scale".to_owned(),
-        NotJudged::Invalid => "samples that are not numbers".to_owned(),
+        NotJudged::Invalid => "samples that are no numbers, or that stand still".to_owned(),
         NotJudged::NoVoltages => "voltages are not recorded".to_owned(),
         NotJudged::NoCurrents => "currents are not recorded".to_owned(),
         NotJudged::NoSpeed => "speed is not recorded".to_owned(),

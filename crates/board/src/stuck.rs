@@ -50,7 +50,7 @@ impl StuckChannels {
         self.looks += 1;
         if self.looks >= LOOKS {
             *self = StuckChannels {
-                is_any: self.is_stuck(0) || self.is_stuck(1),
+                is_any: self.is_stuck(0) || self.is_stuck(1) || self.is_frozen(),
                 ..StuckChannels::default()
             };
         }
@@ -59,6 +59,13 @@ impl StuckChannels {
     /// Whether a channel was stuck at the last verdict, which is at most 0.4 s old.
     pub fn is_any(&self) -> bool {
         self.is_any
+    }
+
+    /// Whether all channels stand to the last bit, and some far from zero: a converter that works wavers by its noise.
+    fn is_frozen(&self) -> bool {
+        let mut ranges = self.lowest.iter().zip(&self.highest);
+        let still = ranges.clone().all(|(lowest, highest)| lowest == highest);
+        still && ranges.any(|(_, highest)| highest.abs_diff(ZERO) > FAR)
     }
 
     /// Whether, among voltages (0) or currents (1), one stands far from zero while another moves.
@@ -115,8 +122,19 @@ mod tests {
     #[test]
     fn an_open_phase_and_a_silent_motor_are_not_stuck() {
         assert!(!judged(50.0, 900.0, |codes| codes[3] = 2_050));
-        // Nothing moves: whatever the channels show, there is no supply.
-        assert!(!judged(50.0, 0.0, |codes| codes[2] = 700));
+        // Nothing but noise moves: whatever the channels show, there is no supply.
+        let last_bit = core::cell::Cell::new(0);
+        assert!(!judged(50.0, 0.0, |codes| {
+            last_bit.set(last_bit.get() ^ 1);
+            codes[2] = 700 + last_bit.get();
+        }));
+    }
+
+    #[test]
+    fn a_converter_whose_channels_all_stand_is_stuck() {
+        let held: [u16; CHANNELS] = core::array::from_fn(|k| 1_500 + 217 * k as u16);
+        assert!(judged(50.0, 900.0, |codes| *codes = held));
+        assert!(!judged(50.0, 900.0, |codes| *codes = [ZERO + 3; CHANNELS]));
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub(crate) const LEAST_REFERENCE: f32 = 0.05;
 pub struct IntakeState {
     held_voltages: Abc,
     held_currents: Abc,
+    /// Instants since voltages or currents last changed by a bit.
+    still: u32,
     /// Peaks of voltage and current as shares of their rated values, which decay slowly.
     peaks: [f32; 2],
     tally: Tally,
@@ -64,6 +66,7 @@ impl IntakeState {
         let tally = &mut self.tally;
         tally.samples = tally.samples.saturating_add(1);
         tally.clipped = tally.clipped.union(sample.clipped);
+        let before = (self.held_voltages, self.held_currents);
         let (u_s_abc, voltages) = hold_last(&mut self.held_voltages, sample.u_s_abc);
         let (i_s_abc, currents) = hold_last(&mut self.held_currents, sample.i_s_abc);
         for (count, quality) in tally.present.iter_mut().zip([voltages, currents]) {
@@ -77,7 +80,25 @@ impl IntakeState {
             tally.torque_sum += tau;
             tally.torque_samples = tally.torque_samples.saturating_add(1);
         }
+        let repeats = before == (u_s_abc, i_s_abc);
+        self.still = if repeats {
+            self.still.saturating_add(1)
+        } else {
+            0
+        };
         Admitted { u_s_abc, i_s_abc }
+    }
+
+    /// Whether all channels have repeated their values for so many instants, and these are not those of a motor at rest:
+    /// the recorder stands still. Shares are of rated voltage and current.
+    pub fn is_frozen(&self, instants: u32, config: &MonitorConfig) -> bool {
+        let beyond = |x: Abc, rated: f32| {
+            let least = LEAST_REFERENCE * rated;
+            x.a.abs() > least || x.b.abs() > least || x.c.abs() > least
+        };
+        self.still >= instants
+            && (beyond(self.held_voltages, config.rated_voltage)
+                || beyond(self.held_currents, config.rated_current))
     }
 
     /// Notes `instants` whose voltages and currents come from a converter and are numbers by construction.

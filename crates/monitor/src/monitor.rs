@@ -258,8 +258,10 @@ impl Monitor {
     fn explain_silence(&self, state: &MonitorState, report: &mut Report) {
         let dark = state.intake.is_dark();
         let searching = state.sync.is_searching();
-        report.supply = (dark && state.measured[0]).then_some(SupplyFinding::Lost);
+        let frozen = state.intake.is_frozen(self.idle_samples / 2, &self.config);
+        report.supply = (dark && !frozen && state.measured[0]).then_some(SupplyFinding::Lost);
         report.not_judged = Some(match (report.supply, searching) {
+            _ if frozen => NotJudged::Invalid,
             (Some(finding), _) => NotJudged::Supply(finding),
             (None, true) => NotJudged::NotLocked,
             (None, false) => NotJudged::Settling,

@@ -388,3 +388,37 @@ fn a_configuration_outside_its_ranges_makes_no_monitor() {
     let error = crate::Monitor::new(no_leakage).expect_err("the sum must not be zero");
     assert_eq!(error.parameter, "l_ls + l_lr");
 }
+
+/// A recorder that goes on writing what it saw last: SENSOR blinks, and nobody looks for the supply.
+#[test]
+fn a_recorder_that_stands_still_shows_at_the_sensor_lamp() {
+    for at in [0.5, 0.5013, 0.507, 0.5149] {
+        let mut bench = Bench::new(config());
+        let reports = bench.run(1.5, |t| Drive::healthy().sample(t.min(at)));
+        let report = reports.last().expect("reports go on");
+        assert_eq!(report.not_judged, Some(NotJudged::Invalid), "{at}");
+        assert_eq!(
+            (report.lamps.sensor, report.supply),
+            (Lamp::Blink, None),
+            "{at}"
+        );
+        assert!(
+            reports.iter().all(|report| report.lamps.fault == Lamp::Off),
+            "{at}"
+        );
+    }
+    // A supply that was switched off holds its values too: zeros.
+    let reports = Bench::new(config()).run(2.0, |t| {
+        let mut sample = Drive::healthy().sample(t);
+        if t > 0.5 {
+            sample.u_s_abc = Some(Default::default());
+            sample.i_s_abc = Some(Default::default());
+        }
+        sample
+    });
+    let dark = reports.last().expect("reports go on");
+    assert_eq!(
+        dark.not_judged,
+        Some(NotJudged::Supply(SupplyFinding::Lost))
+    );
+}
