@@ -42,6 +42,21 @@ fn a_recorder_that_stands_still_from_mid_file_is_named() {
     }
 }
 
+/// Whatever value it stands at, be it that of a peak, nothing else comes of it.
+#[test]
+fn a_recorder_that_stands_still_at_a_peak_does_not_clip() {
+    for from in (15_000..15_200).step_by(17) {
+        let audit = audited(|s| {
+            let each = s.v.iter_mut().chain(&mut s.i).chain([&mut s.speed]);
+            each.for_each(|x| {
+                let held = x[from];
+                x[from..].fill(held);
+            });
+        });
+        assert_codes(&audit, &[Code::Frozen]);
+    }
+}
+
 #[test]
 fn a_supply_that_is_off_does_not_freeze_a_recorder() {
     let audit = audited(|s| {

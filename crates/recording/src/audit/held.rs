@@ -44,10 +44,7 @@ pub(super) fn check(context: &mut Context<'_>) -> Vec<Finding> {
 
 /// The number of rows for which a channel keeps its value, where it is refreshed regularly.
 pub(super) fn rows(x: &[f64]) -> Option<f64> {
-    let changes: Vec<usize> = (1..x.len()).filter(|k| x[*k] != x[k - 1]).collect();
-    if changes.len() < FEWEST_REFRESHES {
-        return None;
-    }
+    let changes = refreshes(x)?;
     let waits = || changes.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
     let rows = quantile(waits(), 0.1)?;
     let whole = |wait: &f64| {
@@ -61,6 +58,20 @@ pub(super) fn rows(x: &[f64]) -> Option<f64> {
     let count = changes.len() as f64;
     (rows >= FEWEST_ROWS && regular >= REGULAR * (count - 1.0) && larger >= LARGER * count)
         .then_some(rows)
+}
+
+/// Where a channel changes: one or two rows in a row, the second where the change was interpolated; `None` where it changes
+/// too rarely or row by row.
+fn refreshes(x: &[f64]) -> Option<Vec<usize>> {
+    let mut first: Vec<usize> = Vec::new();
+    let (mut last, mut rows) = (0, 0_usize);
+    for k in (1..x.len()).filter(|k| x[*k] != x[k - 1]) {
+        if last == 0 || k > last + 1 {
+            first.push(k);
+        }
+        (last, rows) = (k, rows + 1);
+    }
+    (first.len() >= FEWEST_REFRESHES && rows <= 2 * first.len()).then_some(first)
 }
 
 /// Voltages and currents: held by half their refresh on average, some later than others.

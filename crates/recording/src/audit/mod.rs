@@ -58,14 +58,8 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
         findings.extend(not_locked::check(&context));
     }
     if findings.iter().all(|f| f.code != Code::RmsValues) {
-        let held = held::check(&mut context);
-        // Between two values of a display nothing stands still.
-        if held.iter().all(|f| !f.refuses) {
-            findings.extend(frozen::check(&context));
-        }
-        findings.extend(held);
+        findings.extend(standing_still(&mut context));
     }
-    findings.extend(stuck::check(&mut context));
     findings.extend(scale::check(&mut context));
     let drift = drift::check(&mut context);
     if drift.is_none() {
@@ -89,4 +83,16 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
         findings,
         unusable: context.unsound.iter().map(ToString::to_string).collect(),
     }
+}
+
+/// Recorders, displays and channels that keep their values: the widest cause speaks for what follows from it.
+fn standing_still(context: &mut Context<'_>) -> Vec<Finding> {
+    let held = held::check(context);
+    if held.iter().any(|finding| finding.refuses) {
+        return held;
+    }
+    let mut findings: Vec<Finding> = frozen::check(context).into_iter().collect();
+    findings.extend(held);
+    findings.extend(stuck::check(context));
+    findings
 }

@@ -4,11 +4,14 @@
 //! add up to zero: `X0/X1 = j/3 (a^2 + 2 a) w d`, a direction that belongs to no single gain. Voltages and currents show the
 //! same ratio, which gains do not. What voltages and currents have against each other stays open: there a motor's own power
 //! factor looks the same.
+//!
+//! Late sampling turns the zero sequence into a negative one of opposite sign, `X2 = -conj(X0)`, gains into one of the same:
+//! so that gains alone, whatever they are, never pass for delays.
 
 use super::context::Context;
 use super::finding::{Code, Finding};
-use super::sequence::a;
-use super::statistics::median_with_error;
+use super::sequence::{Sequence, a};
+use super::statistics::{median, median_with_error};
 use crate::channel::Channel;
 use num_complex::Complex64;
 
@@ -16,6 +19,8 @@ use num_complex::Complex64;
 const SIGNIFICANT: f64 = 6.0;
 /// Share of the ratio that may point elsewhere, and by which both kinds may differ.
 const AGREES: f64 = 0.2;
+/// `X2 X0/|X0|^2`: -1 of delays, 1 of gains; a supply's own unbalance adds to both.
+const LATE: f64 = -0.25;
 /// Shortest step that is proposed, s.
 const SHORTEST_S: f64 = 1e-6;
 
@@ -53,15 +58,19 @@ fn step(context: &Context<'_>, three: [Channel; 3]) -> Option<f64> {
     }
     let direction = Complex64::i() / 3.0 * (a() * a() + 2.0 * a());
     let settled = context.settled(three);
-    let steps: Vec<Complex64> = settled
+    let sequences: Vec<Sequence> = settled
         .iter()
         .map(|(_, three)| three.sequence())
-        .filter(|sequence| sequence.is_positive())
-        .map(|sequence| sequence.zero / sequence.positive / direction)
+        .filter(Sequence::is_positive)
         .collect();
+    let zero = |x: &Sequence| x.zero / x.positive;
+    let sign = |x: &Sequence| (zero(x) * x.negative / x.positive).re / zero(x).norm_sqr();
+    let steps: Vec<Complex64> = sequences.iter().map(|x| zero(x) / direction).collect();
+    let late = median(sequences.iter().map(sign))? < LATE;
     let re: Vec<f64> = steps.iter().map(|z| z.re).collect();
     let im: Vec<f64> = steps.iter().map(|z| z.im).collect();
     let (along, error) = median_with_error(&re)?;
     let (across, _) = median_with_error(&im)?;
-    (along.abs() > SIGNIFICANT * error && across.abs() < AGREES * along.abs()).then_some(along)
+    let sure = along.abs() > SIGNIFICANT * error && across.abs() < AGREES * along.abs();
+    (sure && late).then_some(along)
 }

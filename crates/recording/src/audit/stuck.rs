@@ -45,7 +45,8 @@ fn frozen(context: &Context<'_>, three: [Channel; 3], k: usize) -> Option<(Findi
             return false;
         };
         let usual = median(y.iter().map(|y| y.abs())).unwrap_or(0.0);
-        let stretch = &y[from..from + length];
+        // A coarse channel may have kept its value for a while before all stood still.
+        let stretch = &y[from + length / 4..from + length];
         let mean = super::blocks::mean(stretch);
         stretch.iter().any(|y| (y - mean).abs() > MOVING * usual)
     };

@@ -248,22 +248,23 @@ fn angle(context: &mut Context<'_>) -> Option<Finding> {
     let fits = |mistake: &&Mistake| motor_share(context, |i| mistake.undone(i)) > MOST;
     let fits: Vec<&Mistake> = MISTAKES.iter().filter(fits).collect();
     let code = fits.first()?.code;
-    let mut remedies: Vec<&str> = fits.iter().map(|mistake| mistake.remedy).collect();
-    if context.recording.speed().is_none() {
-        remedies.push("or a load drives it: a motor gives power back only above synchronous speed, which a speed would show");
+    let remedies: Vec<&str> = fits.iter().map(|mistake| mistake.remedy).collect();
+    let (lag, remedies) = (usual_lag(context), remedies.join("; or "));
+    let finding = Finding::new(code, names(&Channel::CURRENTS), lag, "degrees");
+    // Above synchronous speed a motor gives power back, and only a speed tells that it is there.
+    if context.recording.speed().is_none() && DRIVEN_DEGREES.contains(&lag) {
+        return Some(finding.detail(format!(
+            "The currents lag the voltages by {lag:.0} degrees: either a load drives the motor, which a recorded speed would \
+             show, or {remedies}."
+        )));
     }
-    let lag = usual_lag(context);
     context
         .unsound
         .extend(Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS));
-    Some(
-        Finding::new(code, names(&Channel::CURRENTS), lag, "degrees")
-            .detail(format!(
-                "The currents lag the voltages by {lag:.0} degrees, which no motor does (0 to 90): {}.",
-                remedies.join("; or ")
-            ))
-            .refusing(),
-    )
+    let detail = format!(
+        "The currents lag the voltages by {lag:.0} degrees, which no motor does (0 to 90): {remedies}."
+    );
+    Some(finding.detail(detail).refusing())
 }
 
 fn usual_lag(context: &Context<'_>) -> f64 {

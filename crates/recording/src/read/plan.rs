@@ -121,7 +121,7 @@ impl Plan {
             None => Ok(()),
             Some(target) => {
                 let message = format!(
-                    "a unit, scale or offset is given for {target}, which the file does not have"
+                    "a unit, scale, offset or delay is given for {target}, which the file does not have"
                 );
                 let remedy = format!("say which column it is: --column {target}=NAME");
                 Err(Error::at(file, line, &target.to_string(), message, remedy))

@@ -65,6 +65,8 @@ const WIDEST: f64 = 0.05;
 const FLANKS: f64 = 0.5;
 /// Rounding of a conversion from codes, as a share of the level.
 const ROUNDING: f64 = 1e-9;
+/// Longest top, in periods.
+const LONGEST_TOP: f64 = 0.6;
 /// Samples per period below which a peak has no top.
 const FEWEST_PER_PERIOD: f64 = 10.0;
 /// Tops this many periods apart belong to one stretch: a sensor recovers slowly.
@@ -163,20 +165,33 @@ impl Tops<'_> {
             || top.len() >= CROWDED * fullest_band(below, level.band).max(1)
     }
 
-    /// Runs of consecutive samples above the floor.
+    /// Runs of consecutive samples above the floor; what lasts longer than half a period stands still.
     fn tops(&self, level: &Level) -> Vec<Range<usize>> {
+        let mut tops = self.runs(level);
+        tops.retain(|top| (top.len() as f64) < LONGEST_TOP * self.period);
+        tops.into_iter().flat_map(|top| self.pieces(top)).collect()
+    }
+
+    /// A run without its gaps in time.
+    fn pieces(&self, run: Range<usize>) -> Vec<Range<usize>> {
+        let mut pieces = vec![run.start..run.start];
+        for k in run {
+            match pieces.last_mut() {
+                Some(last) if last.start == last.end || !self.is_gap(k) => last.end = k + 1,
+                _ => pieces.push(k..k + 1),
+            }
+        }
+        pieces
+    }
+
+    fn runs(&self, level: &Level) -> Vec<Range<usize>> {
         let (mut tops, mut from) = (Vec::new(), None);
         for k in 0..=self.x.len() {
             let above = k < self.x.len() && level.sign * self.x[k] >= level.floor;
-            let begins = above && (from.is_none() || self.is_gap(k));
-            if let Some(begin) = from.filter(|_| begins || !above) {
+            if let Some(begin) = from.filter(|_| !above) {
                 tops.push(begin..k);
             }
-            from = match (begins, above) {
-                (true, _) => Some(k),
-                (false, true) => from,
-                (false, false) => None,
-            };
+            from = above.then(|| from.unwrap_or(k));
         }
         tops
     }
