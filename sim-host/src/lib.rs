@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod campaign;
+pub mod causes;
 pub mod cli;
 pub mod demo;
 pub mod live;

@@ -1,7 +1,8 @@
 //! What the core's findings are called in front of people.
 
+use crate::causes::Candidate;
 use crate::replay::RotorSummary;
-use monitor::{Fault, NotJudged, Phase, SensorFinding, Sidebands, SupplyFinding};
+use monitor::{NotJudged, SensorFinding, Sidebands, SupplyFinding};
 
 /// Why a window was not judged, with what to do about it.
 pub fn not_judged(reason: NotJudged) -> String {
@@ -77,25 +78,6 @@ pub fn sensor(finding: SensorFinding) -> String {
     }
 }
 
-/// The row of Table 1 that a sensor finding belongs to.
-pub fn sensor_row(finding: SensorFinding) -> Fault {
-    match finding {
-        SensorFinding::DeadVoltage(_) | SensorFinding::VoltagesMissing => Fault::VoltageSensor,
-        SensorFinding::DeadCurrent(_) | SensorFinding::CurrentSum => Fault::CurrentSensor,
-        SensorFinding::SpeedImplausible => Fault::SpeedSensor,
-    }
-}
-
-/// The phase that a sensor finding names.
-pub fn sensor_phase(finding: SensorFinding) -> Option<&'static str> {
-    match finding {
-        SensorFinding::DeadVoltage(phase) | SensorFinding::DeadCurrent(phase) => {
-            Some(Phase::letter(phase))
-        }
-        _ => None,
-    }
-}
-
 /// What the sidebands of the current say about the rotor's bars.
 pub fn rotor(summary: &RotorSummary) -> String {
     match (
@@ -140,6 +122,24 @@ pub fn fault(name: &str) -> &'static str {
         "bars" => "broken rotor bars",
         _ => "none of the faults in the table",
     }
+}
+
+/// What to do about causes that cannot be told apart, each step once. A motor that was not calibrated is asked first
+/// whether it is merely warm: the calibration knows heat.
+pub fn todo(causes: &[Candidate], calibrated: bool) -> Vec<&'static str> {
+    let mut steps = Vec::new();
+    if !calibrated
+        && causes
+            .iter()
+            .any(|cause| matches!(cause.fault, "Rs" | "Rr"))
+    {
+        steps.push("first heat: is the motor hotter than its motor file says?");
+    }
+    steps.extend(crate::causes::tests(causes));
+    if steps.is_empty() && !causes.is_empty() {
+        steps.push("is it this motor's file? Then look at the residuals and the recording itself");
+    }
+    steps
 }
 
 /// The measurement that would prove or clear one cause; `None` for what is in no table.

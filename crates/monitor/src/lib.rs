@@ -17,6 +17,7 @@ mod health;
 mod intake;
 mod isolation;
 mod lamps;
+mod likely;
 mod monitor;
 mod operating_point;
 mod panel;
@@ -47,6 +48,7 @@ pub use isolation::{
     probabilities,
 };
 pub use lamps::{Lamp, Lamps};
+pub use likely::{Channel, Known, Suspect, Suspicion, TIE_RATIO, Witness, likely};
 pub use monitor::{Monitor, MonitorState};
 pub use operating_point::{Frame, OperatingPoint, Rehearsal};
 pub use phasor::{CHANNELS, ChannelCycle, CyclePhasors};

@@ -29,7 +29,7 @@ pub use detection::{DETECTED, Detection, Size};
 pub use fault::{FAULTS, FaultKind};
 pub use file::{About, Results, StoreError};
 pub use markdown::page as markdown;
-pub use outcome::{Answer, Cause, LampsSeen, Outcome};
+pub use outcome::{Answer, LampsSeen, Outcome};
 pub use parts::{Done, run as run_range};
 pub use plan::{Block, Case, LoadKnowledge, MotorPair, Place, Plan, Target};
 pub use row::Row;

@@ -1,16 +1,13 @@
 //! What a stream of reports amounts to: the only place of a campaign that looks into the monitor's answers.
 
-use monitor::{
-    ALL_CAUSES, Candidates, Isolation, Lamp, Lamps, NotJudged, Phase, Report, SensorFinding,
-    TABLE_1,
-};
+use monitor::{Lamp, Lamps, NotJudged, Report};
 
 use super::fault::FaultKind;
-use crate::replay::TIE_RATIO;
+use crate::causes::{self, Candidate};
 use crate::words;
 
 /// Probabilities closer than this are equal: the core computes them in single precision.
-const EQUAL: f32 = 1e-3;
+const EQUAL: f64 = 1e-3;
 
 /// What the core showed in one run.
 #[derive(Clone, Debug, Default)]
@@ -37,34 +34,14 @@ pub struct Outcome {
     pub faulty_lamps: LampsSeen,
     /// Windows that were not judged, by reason.
     reasons: Vec<(NotJudged, u32)>,
-    /// The evidence when FAULT was lit last (while the motor was healthy only if it was lit then alone).
-    evidence: Option<Evidence>,
-}
-
-/// What one window says about the cause.
-#[derive(Clone, Copy, Debug)]
-enum Evidence {
-    Bars,
-    Sensor(SensorFinding),
-    Residuals(Candidates),
-    Isolation(Isolation),
-}
-
-/// One possible cause.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cause {
-    /// The monitor's name for it.
-    pub name: &'static str,
-    /// Its phase, where the monitor says one.
-    pub phase: Option<&'static str>,
-    /// Its probability.
-    pub probability: f32,
+    /// The likely causes when FAULT was lit last and a window named any.
+    causes: Vec<Candidate>,
 }
 
 /// The monitor's answer, beside the truth.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// The likeliest cause and what is tied with it ([`TIE_RATIO`]), joined by `|`; empty when nothing was said.
+    /// The likeliest cause and what is tied with it ([`monitor::TIE_RATIO`]), joined by `|`; empty when nothing was said.
     pub named: String,
     /// Phase of the likeliest cause; empty without one.
     pub phase: String,
@@ -99,8 +76,10 @@ impl Outcome {
             }
         }
         self.lit_at_end = lit;
-        if lit {
-            self.evidence = evidence(report).or(self.evidence);
+        // Motor's and load's friction are one name here, as in the core.
+        let causes = causes::of_report(report, &[], false);
+        if !causes.is_empty() {
+            self.causes = causes;
         }
     }
 
@@ -124,24 +103,19 @@ impl Outcome {
 
     /// What the monitor said last, beside the fault that was there.
     pub fn answer(&self, truth: Option<&FaultKind>) -> Answer {
-        let causes = self.evidence.map_or(Vec::new(), causes);
-        let is_right = |cause: &Cause| truth.is_some_and(|kind| kind.is_named_by(cause.name));
+        let causes = &self.causes;
+        let is_right = |cause: &Candidate| truth.is_some_and(|kind| kind.is_named_by(cause.fault));
         let largest = |right: bool| {
             let of_kind = causes.iter().filter(|cause| is_right(cause) == right);
-            of_kind.map(|cause| cause.probability).fold(0.0, f32::max)
+            of_kind.map(|cause| cause.probability).fold(0.0, f64::max)
         };
-        let best = largest(true).max(largest(false));
-        let mut first: Vec<&Cause> = causes
-            .iter()
-            .filter(|cause| f64::from(cause.probability) > f64::from(best) / TIE_RATIO)
-            .collect();
-        first.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        let truth_is_named = first.iter().copied().any(is_right);
+        let first = &causes[..causes::tied(causes)];
+        let truth_is_named = first.iter().any(is_right);
         let right = causes.iter().filter(|cause| is_right(cause));
         Answer {
             named: first
                 .iter()
-                .map(|cause| cause.name)
+                .map(|cause| cause.fault)
                 .collect::<Vec<_>>()
                 .join("|"),
             phase: first
@@ -149,67 +123,12 @@ impl Outcome {
                 .and_then(|cause| cause.phase)
                 .unwrap_or("")
                 .to_owned(),
-            probability: f64::from(best),
-            truth: right.map(|cause| f64::from(cause.probability)).sum(),
+            probability: largest(true).max(largest(false)),
+            truth: right.map(|cause| cause.probability).sum(),
             name_is_right: largest(true) > largest(false) + EQUAL,
             truth_is_named,
         }
     }
-}
-
-fn evidence(report: &Report) -> Option<Evidence> {
-    let bars = report.rotor.is_broken.then_some(Evidence::Bars);
-    let sensor = report.sensor.map(Evidence::Sensor);
-    let isolation = report.isolation.map(Evidence::Isolation);
-    bars.or(sensor)
-        .or(isolation)
-        .or(report.candidates.map(Evidence::Residuals))
-}
-
-/// Everything that the evidence makes possible.
-fn causes(evidence: Evidence) -> Vec<Cause> {
-    match evidence {
-        Evidence::Sensor(finding) => vec![Cause {
-            name: words::sensor_row(finding).name(),
-            phase: words::sensor_phase(finding),
-            probability: 1.0,
-        }],
-        Evidence::Bars => vec![Cause {
-            name: "bars",
-            phase: None,
-            probability: 1.0,
-        }],
-        Evidence::Isolation(isolation) => isolated(&isolation),
-        Evidence::Residuals(candidates) => {
-            let cause = |(name, probability)| Cause {
-                name,
-                phase: None,
-                probability,
-            };
-            let names = TABLE_1.iter().map(|(fault, _)| fault.name());
-            let rows = names.zip(candidates.faults);
-            rows.chain([("unknown", candidates.unknown)])
-                .map(cause)
-                .collect()
-        }
-    }
-}
-
-/// The causes that the direction of the evidence tells apart.
-fn isolated(isolation: &Isolation) -> Vec<Cause> {
-    let (probabilities, unknown) = isolation.probabilities();
-    let named = ALL_CAUSES.iter().zip(probabilities);
-    let named = named.map(|(cause, probability)| Cause {
-        name: cause.name(),
-        phase: cause.phase().map(Phase::letter),
-        probability,
-    });
-    let unknown = Cause {
-        name: "unknown",
-        phase: None,
-        probability: unknown,
-    };
-    named.chain([unknown]).collect()
 }
 
 /// Lamps that were on at any time, RUN apart.
@@ -235,6 +154,7 @@ impl std::fmt::Display for LampsSeen {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use monitor::{Candidates, SensorFinding};
 
     fn report(fault: bool, candidates: Option<Candidates>) -> Report {
         Report {

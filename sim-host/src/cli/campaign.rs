@@ -237,7 +237,7 @@ impl Replay {
         monitor::print_lamps(&timeline);
         monitor::print_windows(&timeline);
         monitor::print_sequence(&timeline.sequence());
-        monitor::print_verdict(&timeline, &timeline.verdict());
+        monitor::print_verdict(&timeline, &timeline.verdict(&[]));
         Ok(())
     }
 }

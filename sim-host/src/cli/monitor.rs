@@ -176,7 +176,7 @@ impl MonitorArgs {
         timeline: &Timeline,
         answers: &mut Answers<'_>,
     ) -> Result<Finding, Failure> {
-        let verdict = timeline.verdict();
+        let verdict = timeline.verdict(&audit.findings);
         let finding = match (audit.supported, verdict.state) {
             (false, _) => Finding::Unsupported,
             (true, VerdictState::Fault) => Finding::Something,

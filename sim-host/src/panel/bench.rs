@@ -40,7 +40,7 @@ impl Bench {
         let config = source.config(motor);
         let monitor = config.map(Monitor::new).transpose()?;
         Ok(Bench {
-            plate: plate(monitor.as_ref(), motor.is_some()),
+            plate: plate(source, monitor.as_ref(), motor.is_some()),
             belief: belief(source, motor),
             monitor,
             state: MonitorState::default(),
@@ -53,7 +53,7 @@ impl Bench {
 
     /// Judges with another motor; the supply is found anew.
     pub fn judge_with(&mut self, source: &dyn Source, motor: &MotorFile, monitor: Monitor) {
-        self.plate = plate(Some(&monitor), true);
+        self.plate = plate(source, Some(&monitor), true);
         self.belief = belief(source, Some(motor));
         self.monitor = Some(monitor);
         self.state = MonitorState::default();
@@ -112,6 +112,7 @@ impl Bench {
         if let Some(period) = self.wave.period(report) {
             self.wave_sent = WallTime::now();
             self.shared.tell("wave", &period);
+            locked(&self.shared.shown).wave = Some(period);
         }
     }
 
@@ -121,6 +122,7 @@ impl Bench {
         locked(&self.shared.history).push(&window);
         let happened = locked(&self.shared.events).window(&window, unix_s());
         self.shared.tell("window", &window);
+        locked(&self.shared.shown).window = Some(window);
         if happened {
             self.tell_events();
         }
@@ -139,16 +141,14 @@ impl Shared {
         if self.stream.receiver_count() == 0 {
             return;
         }
-        // None of the messages has a key that is no text.
-        if let Ok(json) = serde_json::to_string(message) {
-            let json = json.into();
+        if let Some(message) = Broadcast::of(event, message) {
             // Whoever listened may have gone in this moment.
-            let _ = self.stream.send(Broadcast { event, json });
+            let _ = self.stream.send(message);
         }
     }
 }
 
-fn plate(monitor: Option<&Monitor>, known: bool) -> Plate {
+fn plate(source: &dyn Source, monitor: Option<&Monitor>, known: bool) -> Plate {
     let config = monitor.map(Monitor::config);
     Plate {
         rated_torque: config.map_or(f32::NAN, |config| config.rated_torque),
@@ -156,6 +156,7 @@ fn plate(monitor: Option<&Monitor>, known: bool) -> Plate {
         frame: config.map_or(monitor::Frame::default(), |config| config.frame),
         load_friction: config.is_some_and(|config| config.load == LoadKind::Friction),
         known: known && config.is_some(),
+        audit: source.info().audit,
     }
 }
 

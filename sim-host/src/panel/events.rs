@@ -6,8 +6,7 @@ use board::LAMP_NAMES;
 use recording::{Channel, LoadTorque, Metadata, Recording, Sensors, StartsFrom};
 use serde::Serialize;
 
-use super::causes::LikelyCause;
-use super::message::WindowMessage;
+use super::message::{LikelyCause, WindowMessage};
 use super::source::Instant;
 
 /// Samples are kept from this long before an alarm, s.
@@ -38,10 +37,21 @@ pub struct Event {
     pub causes: Vec<LikelyCause>,
     /// Findings of those windows, in words.
     pub findings: Vec<String>,
-    /// Whether somebody has seen it.
-    pub acknowledged: bool,
+    /// Who has seen it; `None` while nobody has.
+    pub acknowledged: Option<Acknowledgement>,
     /// Samples that can be fetched.
     pub samples: usize,
+}
+
+/// Somebody has seen an alarm.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Acknowledgement {
+    /// Who, as typed; empty for somebody who did not say.
+    pub by: String,
+    /// When, seconds since 1970 on the computer's clock.
+    pub unix_s: u64,
+    /// What was said about it.
+    pub comment: String,
 }
 
 /// The list and the samples.
@@ -126,7 +136,7 @@ impl Events {
             lit,
             causes: window.causes.clone(),
             findings: window.findings.clone(),
-            acknowledged: false,
+            acknowledged: None,
             samples: 0,
         });
         true
@@ -202,10 +212,10 @@ impl Events {
         found.map(|(_, recording)| recording)
     }
 
-    /// Somebody has seen all of them.
-    pub fn acknowledge(&mut self) {
+    /// Somebody has seen all that nobody had seen before.
+    pub fn acknowledge(&mut self, seen: &Acknowledgement) {
         for event in &mut self.list {
-            event.acknowledged = true;
+            event.acknowledged.get_or_insert_with(|| seen.clone());
         }
     }
 

@@ -5,7 +5,7 @@ use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 use serde::Serialize;
 
-use super::causes::{LikelyCause, likely_causes};
+use crate::causes::{self, Candidate};
 use crate::words;
 
 /// One window.
@@ -29,12 +29,52 @@ pub struct WindowMessage {
     pub significance_sigma: Option<f32>,
     /// Rise of the winding resistances since the calibration, percent; only of a calibrated motor.
     pub resistance_rise_percent: Option<f32>,
-    /// What may be wrong, the likeliest first; empty while FAULT is dark.
+    /// What may be wrong, the likeliest first; empty while FAULT is dark, or lit from windows before.
     pub causes: Vec<LikelyCause>,
+    /// What to do about the likeliest and what is tied with it.
+    pub todo: Vec<&'static str>,
     /// What the motor does.
     pub operation: Operation,
     /// Voltage, current and flux in the monitor's d-q frame; `None` without voltages, currents and speed.
     pub vectors: Option<Vectors>,
+}
+
+/// One possible cause.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LikelyCause {
+    /// Row of Table 1, a cause of a calibrated motor, `bars`, or `unknown`.
+    pub name: &'static str,
+    /// The same in plain words.
+    pub words: &'static str,
+    /// `a`, `b` or `c`, where the phase is known.
+    pub phase: Option<&'static str>,
+    /// Probability, percent.
+    pub probability_percent: f64,
+    /// Change of the quantity that explains the window best, percent; only of a calibrated motor.
+    pub size_percent: Option<f64>,
+    /// Cannot be told apart from the likeliest, or is the likeliest with which another is tied.
+    pub tied: bool,
+}
+
+/// The likeliest causes with their ties, and what to do about the first.
+pub(super) fn likely(
+    candidates: Vec<Candidate>,
+    calibrated: bool,
+) -> (Vec<LikelyCause>, Vec<&'static str>) {
+    let tied = causes::tied(&candidates);
+    let todo = words::todo(&candidates[..tied], calibrated);
+    let told = causes::listed(candidates)
+        .into_iter()
+        .enumerate()
+        .map(|(k, candidate)| LikelyCause {
+            name: candidate.fault,
+            words: words::fault(candidate.fault),
+            phase: candidate.phase,
+            probability_percent: 100.0 * candidate.probability,
+            size_percent: candidate.size_percent,
+            tied: tied > 1 && k < tied,
+        });
+    (told.collect(), todo)
 }
 
 /// Each lamp: `off`, `on` or `blink`.
@@ -97,7 +137,7 @@ pub struct Vectors {
 }
 
 /// What is needed beside a report to tell about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plate {
     /// Rated torque, N m.
     pub rated_torque: f32,
@@ -109,12 +149,17 @@ pub struct Plate {
     pub load_friction: bool,
     /// Whether the motor is known at all.
     pub known: bool,
+    /// What the audit of a recording found.
+    pub audit: Vec<recording::Finding>,
 }
 
 impl WindowMessage {
     /// Tells about a report whose window ended at `t_s`.
     pub fn new(sequence: u64, t_s: f64, report: &Report, plate: &Plate) -> WindowMessage {
         let isolation = report.isolation.as_ref();
+        let wrong = causes::wrong_channels(&plate.audit, [t_s, t_s]);
+        let candidates = causes::of_report(report, &wrong, plate.load_friction);
+        let (causes, todo) = likely(candidates, isolation.is_some());
         WindowMessage {
             sequence,
             t_s,
@@ -129,7 +174,8 @@ impl WindowMessage {
                 .map(|r| r.map(|r| r.is_finite().then_some(r))),
             significance_sigma: isolation.map(|isolation| isolation.significance),
             resistance_rise_percent: isolation.map(|isolation| 100.0 * isolation.heating.rise),
-            causes: likely_causes(report, plate.load_friction),
+            causes,
+            todo,
             operation: Operation::new(report, plate),
             vectors: report
                 .point

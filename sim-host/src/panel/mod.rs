@@ -7,7 +7,7 @@
 mod api;
 mod assets;
 mod bench;
-mod causes;
+mod connections;
 mod events;
 mod export;
 mod fields;
@@ -23,7 +23,7 @@ mod wave;
 pub mod workbench;
 mod worker;
 
-pub use guard::Guard;
+pub use guard::{Guard, Token};
 pub use message::{LampsMessage, Operation, Plate, Vectors, WindowMessage};
 pub use server::{Options, PanelError, Running, bind};
 pub use session::{Session, start};

@@ -1,8 +1,6 @@
 //! What all windows since the alarm say together about the cause, on a calibrated motor.
 
-use monitor::{ALL_CAUSES, CAUSES, Cause, Isolation, Report, magnitude};
-
-use super::Candidate;
+use monitor::{CAUSES, Isolation, Report, Witness, magnitude};
 
 /// Bands of current, as shares of rated: windows in one band share their systematic errors and count as one witness;
 /// bands are witnesses of their own.
@@ -10,10 +8,6 @@ const BANDS: [f32; 3] = [0.4, 0.7, 1.0];
 
 /// What a band of windows cannot rule out by itself.
 const DOUBT: f64 = 1e-3;
-
-/// Causes whose probability is at least the likeliest one's divided by this are tied with it: half a decade is not worth
-/// more than a bare mention (Jeffreys, Theory of Probability, appendix B).
-pub const TIE_RATIO: f64 = 3.162_277_66;
 
 /// Sums over one band.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,42 +37,22 @@ impl Causes {
         }
     }
 
-    /// Whether there is any evidence.
-    pub fn is_empty(&self) -> bool {
-        self.bands.iter().all(|band| band.windows == 0)
+    /// Windows that say something.
+    pub fn windows(&self) -> u64 {
+        self.bands.iter().map(|band| band.windows).sum()
     }
 
-    /// Causes by probability, the likeliest first; `load_friction` splits friction between motor and load.
-    pub fn candidates(&self, load_friction: bool) -> Vec<Candidate> {
-        let (shares, unknown) = self.probabilities();
-        let sizes = self.sizes();
-        let mut candidates = Vec::new();
-        for ((cause, probability), size) in ALL_CAUSES.into_iter().zip(shares).zip(sizes) {
-            let candidate = Candidate {
-                fault: cause.name(),
-                phase: cause.phase().map(monitor::Phase::letter),
-                probability,
-                size_percent: Some(100.0 * size),
-            };
-            if cause == Cause::Friction && load_friction {
-                // B and B_l only ever appear as their sum.
-                let half = |fault| Candidate {
-                    fault,
-                    probability: 0.5 * probability,
-                    ..candidate.clone()
-                };
-                candidates.extend([half("B"), half("Bl")]);
-            } else {
-                candidates.push(candidate);
-            }
+    /// What they say together; `Witness::None` without a window.
+    pub fn witness(&self) -> Witness {
+        if self.windows() == 0 {
+            return Witness::None;
         }
-        candidates.push(Candidate {
-            fault: "unknown",
-            phase: None,
-            probability: unknown,
-            size_percent: None,
-        });
-        candidates
+        let (shares, unknown) = self.probabilities();
+        Witness::Directions {
+            probabilities: shares.map(|share| share as f32),
+            unknown: unknown as f32,
+            sizes: self.sizes().map(|size| size as f32),
+        }
     }
 
     /// Windows of one band vote, bands multiply: a cause that one band rules out stays ruled out.
@@ -97,7 +71,7 @@ impl Causes {
     }
 
     fn sizes(&self) -> [f64; CAUSES] {
-        let windows: u64 = self.bands.iter().map(|band| band.windows).sum();
+        let windows = self.windows();
         let mut sizes = [0.0; CAUSES];
         for band in &self.bands {
             for (size, sum) in sizes.iter_mut().zip(band.sizes) {

@@ -6,12 +6,9 @@ mod samples;
 mod timeline;
 mod trace;
 
-pub use causes::TIE_RATIO;
 pub use rotor::RotorSummary;
 pub use samples::{Samples, Timed};
-pub use timeline::{
-    Candidate, LampState, NotJudgedShare, SequenceSummary, Timeline, Verdict, VerdictState,
-};
+pub use timeline::{LampState, NotJudgedShare, SequenceSummary, Timeline, Verdict, VerdictState};
 pub use trace::{Trace, WindowOperation, WindowResiduals};
 
 use monitor::{

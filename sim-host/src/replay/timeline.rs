@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 
 use monitor::{
-    Candidates, FAULTS, Fault, Lamps, LoadKind, MonitorConfig, NotJudged, Report, SensorFinding,
-    TABLE_1,
+    Candidates, Channel, FAULTS, Known, Lamps, LoadKind, MonitorConfig, NotJudged, Report, Witness,
 };
 use num_complex::Complex64;
+use recording::Finding;
 use serde::Serialize;
 
-use super::causes::{Causes, TIE_RATIO};
+use super::causes::Causes;
 use super::rotor::{RotorHistory, RotorSummary};
 use super::trace::Trace;
+use crate::causes::{self, Candidate};
 use crate::words;
 
 /// The lamps from one moment on.
@@ -53,32 +54,6 @@ pub enum VerdictState {
     NotJudged,
 }
 
-/// One possible cause.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Candidate {
-    /// Row of Table 1 (`Rs` .. `wr`), or `unknown`.
-    pub fault: &'static str,
-    /// The phase, where it is known.
-    pub phase: Option<&'static str>,
-    /// Probability, 0..=1; for a sensor finding the share of windows since the alarm that show it.
-    pub probability: f64,
-    /// Change that explains the windows best, percent of the healthy value, on a calibrated motor.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub size_percent: Option<f64>,
-}
-
-impl Candidate {
-    /// A cause that stands alone, without phase and size.
-    fn certain(fault: &'static str) -> Self {
-        Candidate {
-            fault,
-            phase: None,
-            probability: 1.0,
-            size_percent: None,
-        }
-    }
-}
-
 /// Verdict over the whole recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verdict {
@@ -86,30 +61,19 @@ pub struct Verdict {
     pub state: VerdictState,
     /// Possible causes, likeliest first.
     pub candidates: Vec<Candidate>,
-    /// How many of them, from the first, this recording cannot tell apart ([`TIE_RATIO`]); 1 where the first stands alone.
+    /// How many of them, from the first, this recording cannot tell apart ([`monitor::TIE_RATIO`]); 1 where the first stands alone.
     pub tied: usize,
     /// What would tell them apart; empty without a tie.
     pub separating_tests: Vec<&'static str>,
 }
 
 impl Verdict {
-    /// Candidates in any order.
-    fn new(state: VerdictState, mut candidates: Vec<Candidate>) -> Self {
-        candidates.sort_by(|x, y| y.probability.total_cmp(&x.probability));
-        let best = candidates.first().map_or(0.0, |first| first.probability);
-        let is_tied = |candidate: &&Candidate| candidate.probability > best / TIE_RATIO;
-        let tied = candidates.iter().take_while(is_tied).count();
-        let mut separating_tests = Vec::new();
-        if tied > 1 {
-            for test in candidates[..tied]
-                .iter()
-                .filter_map(|c| words::proof(c.fault))
-            {
-                if !separating_tests.contains(&test) {
-                    separating_tests.push(test);
-                }
-            }
-        }
+    fn new(state: VerdictState, candidates: Vec<Candidate>) -> Self {
+        let tied = causes::tied(&candidates);
+        let separating_tests = match tied {
+            0 | 1 => Vec::new(),
+            _ => causes::tests(&candidates[..tied]),
+        };
         Verdict {
             state,
             candidates,
@@ -175,8 +139,11 @@ pub struct Timeline {
     candidate_sum: [f64; FAULTS],
     unknown_sum: f64,
     candidate_windows: u64,
-    sensor_findings: Vec<(SensorFinding, u64)>,
-    windows_since_alarm: u64,
+    /// Channels that windows since the alarm found wrong, and how many windows did.
+    found: Vec<(Channel, u64)>,
+    /// Whether one of them was dead.
+    names_a_dead_sensor: bool,
+    since_alarm: u64,
     sequences: Sequences,
     /// Windows in which the field turned forwards and backwards.
     turned: [u64; 2],
@@ -290,7 +257,7 @@ impl Timeline {
         if self.first_alarm_s.is_none() {
             return;
         }
-        self.windows_since_alarm += 1;
+        self.since_alarm += 1;
         if let Some(candidates) = &report.candidates {
             self.add_candidates(candidates);
         }
@@ -299,7 +266,8 @@ impl Timeline {
             self.causes.add(report, self.rated_current);
         }
         if let Some(finding) = report.sensor {
-            self.add_sensor_finding(finding);
+            self.names_a_dead_sensor |= finding.is_dead();
+            self.add_found(Channel::of(finding));
         }
     }
 
@@ -311,84 +279,68 @@ impl Timeline {
         }
     }
 
-    fn add_sensor_finding(&mut self, finding: SensorFinding) {
-        match self
-            .sensor_findings
-            .iter_mut()
-            .find(|(known, _)| *known == finding)
-        {
+    fn add_found(&mut self, channel: Channel) {
+        match self.found.iter_mut().find(|(known, _)| *known == channel) {
             Some((_, windows)) => *windows += 1,
-            None => self.sensor_findings.push((finding, 1)),
+            None => self.found.push((channel, 1)),
         }
     }
 
-    /// The verdict over everything added so far.
-    pub fn verdict(&self) -> Verdict {
+    /// The verdict over everything added so far; `audit` is what is known of the recording's channels beforehand.
+    pub fn verdict(&self, audit: &[Finding]) -> Verdict {
         let state = match (self.first_alarm_s, self.judged) {
-            (Some(_), 0) if !self.names_a_dead_sensor() => VerdictState::NotJudged,
+            // A dead sensor is a finding of its own; signals that merely contradict each other, of which no window could be
+            // judged, are none.
+            (Some(_), 0) if !self.names_a_dead_sensor => VerdictState::NotJudged,
             (Some(_), _) => VerdictState::Fault,
             (None, 0) => VerdictState::NotJudged,
             (None, _) => VerdictState::Healthy,
         };
-        let mut candidates = self.sensor_candidates();
-        if self.rotor.is_broken() {
-            candidates.push(Candidate::certain("bars"));
-        } else if self.causes.is_empty() {
-            candidates.extend(self.table_candidates());
-        } else {
-            candidates.extend(self.isolated_candidates());
-        }
+        let candidates = self.first_alarm_s.map_or_else(Vec::new, |alarm_s| {
+            self.candidates(&causes::wrong_channels(audit, [alarm_s, f64::INFINITY]))
+        });
         Verdict::new(state, candidates)
     }
 
-    /// A dead sensor is a finding of its own; signals that merely contradict each other, of which no window could be
-    /// judged, are none.
-    fn names_a_dead_sensor(&self) -> bool {
-        self.sensor_findings
+    /// Each window since the alarm that says something has one voice.
+    fn candidates(&self, wrong: &[Channel]) -> Vec<Candidate> {
+        let (witness, voices) = self.witness();
+        let voices = voices + self.found.iter().map(|(_, windows)| windows).sum::<u64>();
+        let share = |windows: u64| windows as f32 / voices.max(1) as f32;
+        let found: Vec<_> = self
+            .found
             .iter()
-            .any(|(finding, _)| finding.is_dead())
-    }
-
-    fn sensor_candidates(&self) -> Vec<Candidate> {
-        let share = |windows: u64| windows as f64 / self.windows_since_alarm.max(1) as f64;
-        self.sensor_findings
-            .iter()
-            .map(|(finding, windows)| Candidate {
-                fault: words::sensor_row(*finding).name(),
-                phase: words::sensor_phase(*finding),
-                probability: share(*windows),
-                size_percent: None,
-            })
-            .collect()
-    }
-
-    fn isolated_candidates(&self) -> impl Iterator<Item = Candidate> + use<> {
-        let all = self.causes.candidates(self.load_friction).into_iter();
-        all.filter(|candidate| candidate.probability >= LEAST_PROBABILITY)
-    }
-
-    fn table_candidates(&self) -> Vec<Candidate> {
-        let n = self.candidate_windows.max(1) as f64;
-        let found = |fault: Fault| {
-            self.sensor_findings
-                .iter()
-                .any(|(f, _)| words::sensor_row(*f) == fault)
+            .map(|(channel, windows)| (*channel, share(*windows)))
+            .collect();
+        let known = Known {
+            found: &found,
+            witness,
+            wrong,
         };
-        let rows = TABLE_1
-            .iter()
-            .zip(self.candidate_sum)
-            .filter(|((fault, _), _)| !found(*fault));
-        let named = rows.map(|((fault, _), sum)| (fault.name(), sum));
-        named
-            .chain([("unknown", self.unknown_sum)])
-            .map(|(fault, sum)| Candidate {
-                fault,
-                phase: None,
-                probability: sum / n,
-                size_percent: None,
-            })
-            .filter(|candidate| candidate.probability >= LEAST_PROBABILITY)
-            .collect()
+        causes::listed(causes::candidates(&known, self.load_friction))
+    }
+
+    /// What the windows without a finding say, and how many they are.
+    fn witness(&self) -> (Witness, u64) {
+        if self.rotor.is_broken() {
+            let found: u64 = self.found.iter().map(|(_, windows)| windows).sum();
+            (Witness::Bars, self.since_alarm.saturating_sub(found))
+        } else if self.causes.windows() > 0 {
+            (self.causes.witness(), self.causes.windows())
+        } else if self.candidate_windows > 0 {
+            (Witness::Table(self.table()), self.candidate_windows)
+        } else {
+            (Witness::None, 0)
+        }
+    }
+
+    /// Mean over the windows.
+    fn table(&self) -> Candidates {
+        let mean = |sum: f64| (sum / self.candidate_windows.max(1) as f64) as f32;
+        Candidates {
+            faults: self.candidate_sum.map(mean),
+            unknown: mean(self.unknown_sum),
+        }
     }
 
     /// Relative rise of the resistances since the calibration, the mean over the judged windows; `None` without one.
@@ -430,9 +382,6 @@ impl Timeline {
         Some((mean, deviation))
     }
 }
-
-/// Causes less likely than this are not listed.
-const LEAST_PROBABILITY: f64 = 0.01;
 
 fn lamp_state(t: f64, report: &Report) -> LampState {
     let lamps = &report.lamps;

@@ -125,7 +125,7 @@ pub const MAP: [Entry; FIELDS] = {
             LikelyFault,
             Word,
             "",
-            "likeliest row of Table 1 while FAULT is lit by the residuals: 1 Rs, 2 Rr, 3 Ls, 4 Lr, 5 B, 6 Bl, 7 Iq, 8 Vq, 9 wr; 0 none; rows of the same pattern are tied, the first is named",
+            "likeliest cause while FAULT is lit: 1 Rs, 2 Rr, 3 Ls, 4 Lr, 5 B, 6 Bl, 7 Iq, 8 Vq, 9 wr, 10 Lm, 11 leakage, 12 turns, 13 bars; 0 none of them; causes of the same pattern are tied, the first is named",
         ),
         entry(FaultProbability, Word, "per mille", "its probability"),
         entry(Windows, Long, "", "windows since the start"),

@@ -2,7 +2,7 @@
 
 use core::f32::consts::{SQRT_2, TAU};
 
-use monitor::{CHANNELS, Candidates, Report, Window, magnitude};
+use monitor::{CHANNELS, Report, Suspect, Suspicion, TABLE_1, Window, likely, magnitude};
 
 use super::map::{Field, Image};
 use crate::calibration::CalibrationSource;
@@ -108,7 +108,7 @@ fn put_report(image: &mut Image, report: &Report) {
         Field::NotJudged,
         report.not_judged.map_or(0, |why| u16::from(reason(why))),
     );
-    let (fault, probability) = report.candidates.map_or((0, 0.0), likeliest);
+    let (fault, probability) = likeliest(report);
     image.set_word(Field::LikelyFault, fault);
     image.set_word(Field::FaultProbability, (1000.0 * probability) as u16);
     let residuals = report
@@ -119,15 +119,36 @@ fn put_report(image: &mut Image, report: &Report) {
     }
 }
 
-/// Number from 1 of the likeliest row of Table 1, the first of equals; 0 when none of them is likelier.
-fn likeliest(candidates: Candidates) -> (u16, f32) {
-    let mut best = (0, candidates.unknown);
-    for (number, &probability) in (1..).zip(&candidates.faults) {
-        if probability > best.1 {
-            best = (number, probability);
-        }
+/// Number of the likeliest cause while FAULT is lit, the first of equals; 0 when it is none that has a number.
+fn likeliest(report: &Report) -> (u16, f32) {
+    let mut best = (0, 0.0);
+    if report.lamps.fault == monitor::Lamp::On {
+        likely(report, &[], &mut |Suspicion {
+                                      suspect,
+                                      probability,
+                                      ..
+                                  }| {
+            if probability > best.1 {
+                best = (number(suspect), probability);
+            }
+        });
     }
     best
+}
+
+/// Rows of Table 1 from 1 on, then what only a calibrated motor or its sidebands show.
+fn number(suspect: Suspect) -> u16 {
+    let row = TABLE_1
+        .iter()
+        .position(|(fault, _)| fault.name() == suspect.name());
+    match (row, suspect.name()) {
+        (Some(row), _) => row as u16 + 1,
+        (None, "Lm") => 10,
+        (None, "leakage") => 11,
+        (None, "turns") => 12,
+        (None, "bars") => 13,
+        _ => 0,
+    }
 }
 
 fn put_window(image: &mut Image, window: Option<&Window>) {
@@ -156,7 +177,7 @@ fn put_window(image: &mut Image, window: Option<&Window>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use monitor::{Lamp, Residuals};
+    use monitor::{Candidates, Lamp, Residuals};
 
     fn float(image: &Image, field: Field) -> f32 {
         let words = image
@@ -242,5 +263,27 @@ mod tests {
             (2, 9)
         );
         assert!((500..=1000).contains(&word(&image, Field::FaultProbability)));
+        // The likeliest is no row at all: it has no number, as before.
+        faulty.candidates = Some(Candidates::from_normalised(&[0.0, 9.0, 0.0, 0.0]));
+        let image = Status::default().take(&faulty, &BoardStatus::default());
+        assert_eq!(word(&image, Field::LikelyFault), 0);
+    }
+
+    #[test]
+    fn a_dead_sensor_and_broken_bars_are_named_too() {
+        let mut faulty = report();
+        faulty.lamps.fault = Lamp::On;
+        faulty.sensor = Some(monitor::SensorFinding::DeadCurrent(monitor::Phase::A));
+        let named = |report: &Report| {
+            let image = Status::default().take(report, &BoardStatus::default());
+            (
+                word(&image, Field::LikelyFault),
+                word(&image, Field::FaultProbability),
+            )
+        };
+        assert_eq!(named(&faulty), (7, 1000));
+        faulty.sensor = None;
+        faulty.rotor.is_broken = true;
+        assert_eq!(named(&faulty), (13, 1000));
     }
 }

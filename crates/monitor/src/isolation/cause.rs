@@ -1,6 +1,7 @@
 //! What can be wrong with a calibrated motor, as the evidence tells it apart.
 
 use crate::health::Phase;
+use crate::signature::Fault;
 
 /// One cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,16 +88,19 @@ impl Cause {
         }
     }
 
+    /// The sensor row of Table 1 for a cause that lies in the instrument; `None` for one in the motor.
+    pub const fn sensor_row(self) -> Option<Fault> {
+        match self {
+            Cause::AllCurrents | Cause::CurrentChannel(_) => Some(Fault::CurrentSensor),
+            Cause::AllVoltages | Cause::VoltageChannel(_) => Some(Fault::VoltageSensor),
+            Cause::SpeedGain => Some(Fault::SpeedSensor),
+            _ => None,
+        }
+    }
+
     /// Whether the cause lies in the instrument, not in the motor.
     pub const fn is_sensor(self) -> bool {
-        matches!(
-            self,
-            Cause::AllCurrents
-                | Cause::AllVoltages
-                | Cause::SpeedGain
-                | Cause::CurrentChannel(_)
-                | Cause::VoltageChannel(_)
-        )
+        self.sensor_row().is_some()
     }
 
     /// A typical size as a share of the healthy value: it weighs a cause that explains much with little against others.

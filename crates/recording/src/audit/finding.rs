@@ -62,6 +62,9 @@ pub struct Finding {
     pub code: Code,
     /// The channel, or several separated by blanks.
     pub channel: String,
+    /// The one channel of several that is to blame, where that can be told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub suspect: Option<String>,
     /// How much; finite.
     pub value: f64,
     /// Unit of `value`.
@@ -94,6 +97,7 @@ impl Finding {
         Finding {
             code,
             channel: channel.to_string(),
+            suspect: None,
             value: if value.is_finite() { value } else { 0.0 },
             unit: unit.to_owned(),
             detail: String::new(),
@@ -106,6 +110,13 @@ impl Finding {
     pub(super) fn detail(self, detail: impl Into<String>) -> Finding {
         Finding {
             detail: detail.into(),
+            ..self
+        }
+    }
+
+    pub(super) fn suspecting(self, channel: Option<Channel>) -> Finding {
+        Finding {
+            suspect: channel.map(|channel| channel.to_string()),
             ..self
         }
     }

@@ -41,19 +41,21 @@ fn zero(context: &Context<'_>, three: [Channel; 3]) -> Option<Finding> {
             }
             _ => "The supply's neutral is displaced, or a sensor's gain is wrong.",
         };
-        Finding::new(Code::ZeroSequence, names(&three), percent, "%").detail(format!(
-            "{} do not add up to zero: {percent:.2} % of the positive sequence. {impossible}{}",
-            names(&three),
-            suspect(three, ratio)
-        ))
+        let suspect = gain_error(ratio).map(|(k, gain)| (three[k], gain));
+        Finding::new(Code::ZeroSequence, names(&three), percent, "%")
+            .suspecting(suspect.map(|(channel, _)| channel))
+            .detail(format!(
+                "{} do not add up to zero: {percent:.2} % of the positive sequence. {impossible}{}",
+                names(&three),
+                in_words(suspect)
+            ))
     })
 }
 
-fn suspect(three: [Channel; 3], ratio: Complex64) -> String {
-    match gain_error(ratio) {
-        Some((k, percent)) => format!(
-            " A gain error of {percent:+.1} % in {} would show this angle; compare the sensors on one wire.",
-            three[k]
+fn in_words(suspect: Option<(Channel, f64)>) -> String {
+    match suspect {
+        Some((channel, percent)) => format!(
+            " A gain error of {percent:+.1} % in {channel} would show this angle; compare the sensors on one wire.",
         ),
         None => " The angle names no single channel; compare the sensors on one wire.".to_owned(),
     }

@@ -2,13 +2,15 @@
 
 use std::time::{Duration, Instant as WallTime};
 
-use ::board::{Frame, Message};
-use monitor::MonitorConfig;
+use ::board::{self, Frame, Message};
+use monitor::{Candidates, Lamp, MonitorConfig, Report};
 use motor::MotorFile;
 
 use super::{Can, Item, Source, SourceFailure, SourceInfo};
 use crate::live::{Collector, Decoder, Source as Link, recording};
-use crate::panel::message::{LampsMessage, Operation, WindowMessage, rms, slip_percent};
+use crate::panel::message::{
+    LampsMessage, LikelyCause, Operation, WindowMessage, likely, rms, slip_percent,
+};
 use crate::words;
 
 /// s; sampling time of the board.
@@ -44,19 +46,50 @@ impl BoardSource {
     fn window(&mut self, frame: &Frame) -> Item {
         self.now_s = frame.sample_index as f64 * T_SAMPLE;
         let pole_pairs = self.motor.as_ref().map(|motor| motor.mechanics.n_p as f32);
+        let normalised = frame
+            .residuals
+            .zip(self.motor.as_ref())
+            .map(over_thresholds);
+        let (causes, todo) = self.causes(frame, normalised);
         Item::Judged(Box::new(WindowMessage {
+            causes,
+            todo,
             t_s: self.now_s,
             lamps: LampsMessage::from_order(std::array::from_fn(|k| frame.lamp(k))),
             not_judged: words::reason(frame.not_judged),
             r_percent: frame.residuals.map(|r| r.map(|r| 100.0 * r)),
-            r_over_threshold: frame.residuals.zip(self.motor.as_ref()).map(|(r, motor)| {
-                let thresholds = motor.monitor.threshold_percent;
-                std::array::from_fn(|k| Some(100.0 * r[k] / thresholds[k] as f32))
-            }),
+            r_over_threshold: normalised.map(|r| r.map(Some)),
             operation: operation(frame, pole_pairs),
             ..WindowMessage::default()
         }))
     }
+
+    /// What lit FAULT, from the residuals that the frame carries. A calibrated motor is judged by more than these, and a
+    /// dead sensor's name stays on the board: there is nothing to name then.
+    fn causes(
+        &self,
+        frame: &Frame,
+        normalised: Option<[f32; 4]>,
+    ) -> (Vec<LikelyCause>, Vec<&'static str>) {
+        let by_table = self
+            .motor
+            .as_ref()
+            .is_some_and(|motor| motor.healthy.is_none());
+        let lit = (1..=4).any(|k| frame.lamp(k) == Lamp::On);
+        let fault = frame.lamp(board::LAMPS - 1);
+        let candidates = normalised.filter(|_| by_table && lit && frame.not_judged == 0);
+        let mut report = Report {
+            candidates: candidates.as_ref().map(Candidates::from_normalised),
+            ..Report::default()
+        };
+        report.lamps.fault = fault;
+        likely(crate::causes::of_report(&report, &[], true), false)
+    }
+}
+
+fn over_thresholds((r, motor): ([f32; 4], &MotorFile)) -> [f32; 4] {
+    let thresholds = motor.monitor.threshold_percent;
+    std::array::from_fn(|k| 100.0 * r[k] / thresholds[k] as f32)
 }
 
 fn operation(frame: &Frame, pole_pairs: Option<f32>) -> Operation {
@@ -126,7 +159,7 @@ mod tests {
     use super::*;
     use crate::live::SourceError;
     use ::board::MAX_FRAME_BYTES;
-    use monitor::{Lamp, Lamps, NotJudged, Report, Residuals, Window};
+    use monitor::{Lamps, NotJudged, Residuals, Window};
 
     /// A link that delivers these bytes and then nothing.
     struct Canned(Vec<u8>);
@@ -183,6 +216,12 @@ mod tests {
         let [window] = windows(&[report()]).try_into().expect("one window");
         assert_eq!(window.lamps.lit(), ["r1", "r4", "fault"]);
         assert_eq!((window.t_s, window.not_judged.as_deref()), (2.5, None));
+        // r1 and r4: the resistances, a tie, as the terminal would name them.
+        let causes = window.causes.iter().map(|cause| (cause.name, cause.tied));
+        assert_eq!(
+            causes.take(2).collect::<Vec<_>>(),
+            [("Rs", true), ("Rr", true)]
+        );
         let over = window.r_over_threshold.expect("residuals");
         // Thresholds of r1 and r4: 0.6 % and 0.3 %.
         assert!(

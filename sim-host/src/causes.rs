@@ -1,0 +1,201 @@
+//! Likely causes as people read them: what the core makes of an alarm, in order, with ties, sizes and what to do.
+//!
+//! Terminal, report, panel and campaign all ask here, and the board asks the same function of the core.
+
+use monitor::{Channel, Fault, Known, Lamp, Phase, Report, Suspicion, likely};
+use recording::{Code, Finding};
+use serde::Serialize;
+
+use crate::words;
+
+/// Causes less likely than this are not listed.
+const LEAST_PROBABILITY: f64 = 0.01;
+
+/// One possible cause.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Row of Table 1 (`Rs` .. `wr`), a cause that only a calibrated motor shows, `bars`, or `unknown`.
+    pub fault: &'static str,
+    /// The phase, where it is known.
+    pub phase: Option<&'static str>,
+    /// Probability, 0..=1.
+    pub probability: f64,
+    /// Change that explains the windows best, percent of the healthy value, on a calibrated motor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size_percent: Option<f64>,
+}
+
+/// Candidates in the order of probability; `load_friction` splits friction between motor and load, whose sum alone
+/// ever appears.
+pub fn candidates(known: &Known<'_>, load_friction: bool) -> Vec<Candidate> {
+    ranked(load_friction, &mut |tell| known.weigh(tell))
+}
+
+/// The same of one window; empty while FAULT is dark.
+pub fn of_report(report: &Report, wrong: &[Channel], load_friction: bool) -> Vec<Candidate> {
+    if report.lamps.fault != Lamp::On {
+        return Vec::new();
+    }
+    ranked(load_friction, &mut |tell| likely(report, wrong, tell))
+}
+
+fn ranked(load_friction: bool, weigh: &mut dyn FnMut(&mut dyn FnMut(Suspicion))) -> Vec<Candidate> {
+    let mut all = Vec::new();
+    let mut table = false;
+    weigh(&mut |suspicion| {
+        table |= matches!(suspicion.suspect, monitor::Suspect::Row(_));
+        all.push(Candidate::of(&suspicion));
+    });
+    if load_friction && !table {
+        split_friction(&mut all);
+    }
+    all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    all
+}
+
+/// Those that are worth a line.
+pub fn listed(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+    candidates.retain(|candidate| candidate.probability >= LEAST_PROBABILITY);
+    candidates
+}
+
+/// Where the load is friction, motor and load share what the direction of the evidence says of their sum.
+fn split_friction(all: &mut Vec<Candidate>) {
+    let Some(sum) = all.iter_mut().find(|candidate| candidate.fault == "B") else {
+        return;
+    };
+    sum.probability *= 0.5;
+    let load = Candidate {
+        fault: "Bl",
+        ..sum.clone()
+    };
+    all.push(load);
+}
+
+impl Candidate {
+    fn of(suspicion: &Suspicion) -> Candidate {
+        Candidate {
+            fault: suspicion.suspect.name(),
+            phase: suspicion.suspect.phase().map(Phase::letter),
+            probability: f64::from(suspicion.probability),
+            size_percent: suspicion.size.map(|size| 100.0 * f64::from(size)),
+        }
+    }
+}
+
+/// How many candidates, from the first, cannot be told apart; 1 where the first stands alone.
+pub fn tied(candidates: &[Candidate]) -> usize {
+    let best = candidates.first().map_or(0.0, |first| first.probability);
+    let least = best / f64::from(monitor::TIE_RATIO);
+    let is_tied = |candidate: &&Candidate| candidate.probability > least;
+    candidates.iter().take_while(is_tied).count()
+}
+
+/// What would prove or clear each of these causes, each test once.
+pub fn tests(candidates: &[Candidate]) -> Vec<&'static str> {
+    let mut tests = Vec::new();
+    for test in candidates.iter().filter_map(|c| words::proof(c.fault)) {
+        if !tests.contains(&test) {
+            tests.push(test);
+        }
+    }
+    tests
+}
+
+/// The channels that an audit knows to be wrong at some time from `from_s` to `to_s`.
+pub fn wrong_channels(findings: &[Finding], [from_s, to_s]: [f64; 2]) -> Vec<Channel> {
+    let concerns = |finding: &&Finding| {
+        finding.to_s.is_none_or(|end_s| end_s >= from_s)
+            && finding.from_s.is_none_or(|begin_s| begin_s <= to_s)
+    };
+    let mut channels: Vec<Channel> = Vec::new();
+    for channel in findings.iter().filter(concerns).filter_map(wrong_channel) {
+        if !channels.contains(&channel) {
+            channels.push(channel);
+        }
+    }
+    channels
+}
+
+/// Findings that bend what is measured. A neutral that is displaced shifts all three voltages alike, which the monitor
+/// does not see; an offset it subtracts; samples that clip it does not judge.
+fn wrong_channel(finding: &Finding) -> Option<Channel> {
+    match finding.code {
+        Code::ZeroSequence => channel(finding.suspect.as_deref().unwrap_or(&finding.channel))
+            .filter(|channel| channel.row == Fault::CurrentSensor || finding.suspect.is_some()),
+        Code::Stuck | Code::Polarity | Code::SpeedImplausible => channel(&finding.channel),
+        _ => None,
+    }
+}
+
+/// A sensor by the name of its channel, or of several channels separated by blanks.
+fn channel(names: &str) -> Option<Channel> {
+    let mut each = names.split_whitespace();
+    let (first, more) = (each.next()?, each.next().is_some());
+    let (quantity, phase) = first.split_at_checked(1)?;
+    let row = match (first, quantity) {
+        ("speed", _) => Fault::SpeedSensor,
+        (_, "i") => Fault::CurrentSensor,
+        (_, "v") => Fault::VoltageSensor,
+        _ => return None,
+    };
+    let phase = Phase::ALL.into_iter().find(|known| known.letter() == phase);
+    Some(Channel {
+        row,
+        phase: phase.filter(|_| !more),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use monitor::{Candidates, SensorFinding};
+
+    fn report(normalised: [f32; 4]) -> Report {
+        let mut report = Report {
+            candidates: Some(Candidates::from_normalised(&normalised)),
+            ..Report::default()
+        };
+        report.lamps.fault = Lamp::On;
+        report
+    }
+
+    #[test]
+    fn resistances_are_one_tie_and_nothing_is_named_in_the_dark() {
+        let mut report = report([3.0, 0.0, 0.1, 3.0]);
+        let causes = of_report(&report, &[], true);
+        let names: Vec<_> = causes[..tied(&causes)].iter().map(|c| c.fault).collect();
+        assert_eq!(names, ["Rs", "Rr"], "{causes:?}");
+        assert!((0.45..0.5).contains(&causes[0].probability));
+        report.lamps.fault = Lamp::Off;
+        assert!(of_report(&report, &[], true).is_empty());
+    }
+
+    #[test]
+    fn a_row_of_its_own_is_no_tie() {
+        let causes = of_report(&report([3.0, 3.0, 3.0, 0.0]), &[], true);
+        assert_eq!((causes[0].fault, tied(&causes)), ("Iq", 1));
+    }
+
+    #[test]
+    fn a_dead_sensor_is_the_cause_of_its_fault() {
+        let mut report = Report {
+            sensor: Some(SensorFinding::DeadCurrent(Phase::A)),
+            ..Report::default()
+        };
+        report.lamps.fault = Lamp::On;
+        let causes = of_report(&report, &[], true);
+        assert_eq!((causes[0].fault, causes[0].phase), ("Iq", Some("a")));
+        assert_eq!((causes.len(), causes[0].probability), (1, 1.0));
+    }
+
+    #[test]
+    fn channels_are_found_by_their_names() {
+        let of = |names| channel(names).map(|channel| (channel.row, channel.phase));
+        assert_eq!(of("ia"), Some((Fault::CurrentSensor, Some(Phase::A))));
+        assert_eq!(of("ia ib ic"), Some((Fault::CurrentSensor, None)));
+        assert_eq!(of("vc"), Some((Fault::VoltageSensor, Some(Phase::C))));
+        assert_eq!(of("speed"), Some((Fault::SpeedSensor, None)));
+        assert_eq!((of("torque"), of("")), (None, None));
+    }
+}
