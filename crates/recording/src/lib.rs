@@ -28,7 +28,10 @@ pub use load_table::{LoadPoint, LoadTable, TableColumn};
 pub use mapping::{ColumnMap, Factor, Mapping, Origin, Target};
 pub use metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use names::{companions, sidecar_path};
-pub use read::{Preview, Source, preview, read_any, read_load_table, read_recording, read_stream};
+pub use read::{
+    Preview, Source, preview, read_any, read_load_table, read_recording, read_stream,
+    with_most_numbers,
+};
 pub use recording::{Bridged, Recording, UnknownScale};
 pub use sidecar::Sidecar;
 pub use source::Progress;

@@ -1,5 +1,7 @@
 //! The workbench over HTTP: from two recordings to a better motor file, and everything that is refused.
 
+use std::io::{Read, Write};
+use std::net::TcpStream;
 use std::time::Duration;
 
 use motor::MotorFile;
@@ -34,7 +36,8 @@ fn load(address: &str, slot: usize, name: &str) -> Value {
     let path = format!("recordings/{slot}/file?name={name}.csv.gz&sidecar_follows=true");
     let sent = upload(address, &path, &project(&format!("{PEER}/{name}.csv.gz")));
     assert_eq!(sent.status, 200, "{}", sent.text());
-    let path = format!("recordings/{slot}/sidecar?name={name}.toml");
+    let id = &sent.json()["recordings"][slot]["id"];
+    let path = format!("recordings/{slot}/sidecar?name={name}.toml&id={id}");
     let read = upload(address, &path, &project(&format!("{PEER}/{name}.toml")));
     assert_eq!(read.status, 200, "{}", read.text());
     read.json()["recordings"][slot].clone()
@@ -219,12 +222,11 @@ fn foreign_columns_are_mapped_and_the_audit_speaks() {
         "column": {"t": "zeit", "ia": "I1", "ib": "I2", "ic": "I3"}, "unit": {"ia": "mA", "ib": "mA", "ic": "mA"},
         "delimiter": ";", "decimal_comma": true,
     });
-    let read = post(
-        address,
-        "/api/workbench/recordings/0/mapping",
-        &columns.to_string(),
-    )
-    .json();
+    let mapping = format!(
+        "/api/workbench/recordings/0/mapping?id={}",
+        sent["recordings"][0]["id"]
+    );
+    let read = post(address, &mapping, &columns.to_string()).json();
     let read = &read["recordings"][0];
     assert_eq!(read["problem"], Value::Null);
     assert_eq!(
@@ -241,7 +243,7 @@ fn foreign_columns_are_mapped_and_the_audit_speaks() {
     );
     let wrong = post(
         address,
-        "/api/workbench/recordings/0/mapping",
+        &mapping,
         r#"{"column": {"ia": "I9"}, "delimiter": ";"}"#,
     )
     .json();
@@ -252,22 +254,139 @@ fn foreign_columns_are_mapped_and_the_audit_speaks() {
 }
 
 #[test]
-fn uploaded_files_go_with_the_panel() {
+fn uploaded_files_go_with_the_panel_however_it_is_ended() {
+    for signal in ["INT", "TERM"] {
+        let server = Server::start(&[]);
+        let name = format!("only-here-{signal}.csv");
+        let path = format!("recordings/0/file?name={name}");
+        let sent = upload(&server.address, &path, b"t,ia\n");
+        assert_eq!(sent.status, 200, "{}", sent.text());
+        let folder = Server::folders().into_iter().find(|folder| {
+            let places = std::fs::read_dir(folder).into_iter().flatten().flatten();
+            places
+                .into_iter()
+                .any(|place| place.path().join(&name).exists())
+        });
+        let folder = folder.expect("it is kept while the panel runs");
+        assert_eq!(server.ended_by(signal), Some(0), "{signal}");
+        assert!(!folder.exists(), "{signal}");
+    }
+}
+
+const TINY: &[u8] = b"t,ia,ib,ic\n0,1,-0.5,-0.5\n0.001,1,-0.5,-0.5\n0.002,1,-0.5,-0.5\n";
+
+#[test]
+fn a_refused_upload_leaves_what_lay_there() {
     let server = Server::start(&[]);
-    let sent = upload(
-        &server.address,
-        "recordings/0/file?name=only-here.csv",
-        b"t,ia\n",
+    let address = server.address.as_str();
+    assert_eq!(
+        upload(address, "recordings/0/file?name=kept.csv", TINY).status,
+        200
     );
-    assert_eq!(sent.status, 200);
-    let holds = || {
-        Server::folders()
-            .into_iter()
-            .find(|folder| folder.join("recording-0/only-here.csv").exists())
-    };
-    let folder = holds().expect("it is kept while the panel runs");
-    assert_eq!(server.interrupt(), Some(0));
-    assert!(!folder.exists());
+    too_large(address);
+    // A page that goes away in the middle of its file.
+    let mut broken = TcpStream::connect(address).expect("it listens");
+    broken
+        .write_all(&[upload_head(address, 1000).as_bytes(), b"t,ia"].concat())
+        .expect("sent");
+    drop(broken);
+    let kept = || state(address)["recordings"][0].clone();
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(kept()["name"], "kept.csv");
+    let id = kept()["id"].clone();
+    let mapping = format!("/api/workbench/recordings/0/mapping?id={id}");
+    // It can still be read.
+    assert_eq!(
+        post(address, &mapping, r#"{"sample_rate_hz": 1000}"#).status,
+        200
+    );
+    let removed = post(address, "/api/workbench/recordings/0/remove?id=999", "{}");
+    assert_eq!(removed.status, 409);
+    assert_eq!(kept()["name"], "kept.csv");
+}
+
+fn upload_head(address: &str, bytes: usize) -> String {
+    format!(
+        "POST /api/workbench/recordings/0/file?name=slow.csv HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\n\
+         Connection: close\r\nContent-Type: application/octet-stream\r\nContent-Length: {bytes}\r\n\r\n"
+    )
+}
+
+#[test]
+fn two_pages_do_not_take_each_others_place() {
+    let server = Server::start(&[]);
+    let address = server.address.as_str();
+    // The first one is slow: half of its file is there when the second one loads its own.
+    let mut slow = TcpStream::connect(address).expect("it listens");
+    slow.write_all(&[upload_head(address, TINY.len()).as_bytes(), &TINY[..20]].concat())
+        .expect("sent");
+    std::thread::sleep(Duration::from_millis(300));
+    let quick = upload(
+        address,
+        "recordings/0/file?name=quick.csv&sidecar_follows=true",
+        TINY,
+    );
+    assert_eq!(quick.status, 200);
+    slow.write_all(&TINY[20..]).expect("sent");
+    let mut answer = String::new();
+    slow.read_to_string(&mut answer).expect("an answer");
+    assert!(
+        answer.starts_with("HTTP/1.1 409") && answer.contains("another page"),
+        "{answer}"
+    );
+    assert_eq!(state(address)["recordings"][0]["name"], "quick.csv");
+    // A sidecar says which recording it belongs to.
+    let foreign = upload(address, "recordings/0/sidecar?name=slow.toml&id=77", b"");
+    assert_eq!(foreign.status, 409, "{}", foreign.text());
+    let id = &quick.json()["recordings"][0]["id"];
+    let own = upload(
+        address,
+        &format!("recordings/0/sidecar?name=quick.toml&id={id}"),
+        b"",
+    );
+    assert_eq!(own.status, 200, "{}", own.text());
+}
+
+/// Sixty million rows of three cells in a few hundred kilobytes.
+fn bomb() -> Vec<u8> {
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    packed.write_all(b"t,ia,ib,ic\n").expect("in memory");
+    let rows = b"0,1,2,3\n".repeat(1 << 17);
+    (0..400).for_each(|_| packed.write_all(&rows).expect("in memory"));
+    packed.finish().expect("in memory")
+}
+
+#[test]
+fn what_unpacks_without_bounds_is_refused_while_it_is_read() {
+    let server = Server::start(&[]);
+    let packed = bomb();
+    assert!(packed.len() < 2_000_000, "{}", packed.len());
+    let sent: Vec<_> = (0..2)
+        .map(|slot| {
+            let (address, packed) = (server.address.clone(), packed.clone());
+            std::thread::spawn(move || {
+                upload(
+                    &address,
+                    &format!("recordings/{slot}/file?name=bomb.csv.gz"),
+                    &packed,
+                )
+                .json()
+            })
+        })
+        .collect();
+    for (slot, sent) in sent.into_iter().enumerate() {
+        let problem = sent.join().expect("an answer")["recordings"][slot]["problem"].clone();
+        assert!(
+            problem
+                .as_str()
+                .is_some_and(|words| words.contains("50000000 numbers")),
+            "{problem}"
+        );
+    }
+    if let Some(bytes) = server.largest_memory() {
+        println!("largest memory: {} MB", bytes / 1_000_000);
+        assert!(bytes < 1_500_000_000, "{bytes}");
+    }
 }
 
 /// Time from sending a file to its being read.

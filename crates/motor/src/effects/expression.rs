@@ -66,7 +66,13 @@ struct Expression {
     slots: Vec<Slot>,
 }
 
-/// Formulas in use. They come from motor files and live as long as the program; equal ones are kept once.
+/// Characters of a formula: a line, not a program. Understood, each takes some thirty bytes.
+const MOST_CHARACTERS: usize = 1_000;
+/// Different formulas of one run of the program: with the bound above they take at most some 40 MB.
+const MOST_FORMULAS: usize = 1_000;
+
+/// Formulas in use. They come from motor files and live as long as the program; equal ones are kept once, whatever the
+/// values of their parameters, and there is room for [`MOST_FORMULAS`].
 static KNOWN: Mutex<BTreeMap<String, &'static Expression>> = Mutex::new(BTreeMap::new());
 
 /// The formula of a motor file, with its numbers (parameters and their typical sizes).
@@ -88,6 +94,14 @@ pub fn expression(
     let target = target.ok_or_else(|| {
         wrong("`adds_to` must be \"torque\", \"voltage_d\" or \"voltage_q\"".to_owned())
     })?;
+    let length = text.chars().count();
+    if length > MOST_CHARACTERS {
+        let reason = format!("it has {length} characters: write it with at most {MOST_CHARACTERS}");
+        return Err(EffectError::Formula {
+            formula: text.chars().take(40).chain("...".chars()).collect(),
+            reason,
+        });
+    }
     let flat = exmex::parse::<f64>(text).map_err(|e| wrong(e.to_string()))?;
     let mut parameters: Vec<(&str, f64)> = numbers
         .iter()
@@ -98,7 +112,7 @@ pub fn expression(
     check_names(&parameters, numbers).map_err(wrong)?;
     let slots = slots(&flat, &parameters).map_err(wrong)?;
     let typical = typical(&parameters, numbers).map_err(wrong)?;
-    let effect = interned(text, target, flat, slots, &parameters, &typical);
+    let effect = interned(text, target, flat, slots, &parameters, &typical).map_err(wrong)?;
     Ok(EffectConfig {
         effect,
         values: parameters.iter().map(|p| p.1).collect(),
@@ -173,12 +187,18 @@ fn interned(
     slots: Vec<Slot>,
     parameters: &[(&str, f64)],
     typical: &[f64],
-) -> &'static dyn Effect {
-    let key = format!("{formula}|{}|{parameters:?}|{typical:?}", target.0);
+) -> Result<&'static dyn Effect, String> {
+    let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
+    let key = format!("{formula}|{}|{names:?}|{typical:?}", target.0);
     let mut known = KNOWN
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner);
-    *known.entry(key).or_insert_with(|| {
+    if known.len() >= MOST_FORMULAS && !known.contains_key(&key) {
+        return Err(format!(
+            "{MOST_FORMULAS} other formulas were read since the program was started: start it again"
+        ));
+    }
+    Ok(*known.entry(key).or_insert_with(|| {
         let formula: &'static str = String::leak(formula.to_owned());
         Box::leak(Box::new(Expression {
             descriptor: Box::leak(Box::new(descriptor(formula, parameters, typical))),
@@ -187,7 +207,7 @@ fn interned(
             flat,
             slots,
         }))
-    })
+    }))
 }
 
 fn descriptor(formula: &'static str, parameters: &[(&str, f64)], typical: &[f64]) -> Descriptor {

@@ -1,7 +1,8 @@
 //! The columns of a binary file, all of them in memory.
 
+use super::budget::{most_numbers, too_large};
 use super::header::Header;
-use super::table_file::{MOST_NUMBERS, Row, TableFile, missing, not_finite, too_large};
+use super::table_file::{Row, TableFile, missing, not_finite};
 use crate::error::Error;
 use crate::source::Progress;
 
@@ -37,9 +38,9 @@ impl Columns {
 /// Refuses what would not fit into memory, before it is read.
 ///
 /// # Errors
-/// More numbers than [`MOST_NUMBERS`].
+/// More numbers than [`most_numbers`].
 pub(super) fn check_size(file: &str, rows: u64, columns: usize) -> Result<(), Error> {
-    match rows.saturating_mul(columns as u64) > MOST_NUMBERS {
+    match rows.saturating_mul(columns as u64) > most_numbers() {
         true => Err(too_large(file)),
         false => Ok(()),
     }

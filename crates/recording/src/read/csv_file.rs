@@ -1,7 +1,8 @@
 //! A CSV file with its header, row by row.
 
+use super::budget::{most_numbers, too_large};
 use super::header::Header;
-use super::table_file::{MOST_NUMBERS, Row, TableFile, missing, not_finite, too_large};
+use super::table_file::{Row, TableFile, missing, not_finite};
 use crate::error::Error;
 use crate::mapping::Mapping;
 use crate::source::{self, Progress, Source};
@@ -83,7 +84,7 @@ impl CsvFile {
             };
             return Err(Error::at(&self.header.file, line, "", message, remedy));
         }
-        if k * width as u64 > MOST_NUMBERS {
+        if k * width as u64 > most_numbers() {
             return Err(too_large(&self.header.file));
         }
         Ok(())

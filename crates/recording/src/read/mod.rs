@@ -1,5 +1,6 @@
 //! Reading recordings and load tables from files.
 
+mod budget;
 mod clock;
 mod columns;
 mod comtrade;
@@ -24,6 +25,7 @@ use crate::metadata::Metadata;
 use crate::recording::Recording;
 use crate::sidecar::Sidecar;
 use crate::source::Progress;
+pub use budget::with_most_numbers;
 use header::Header;
 use plan::Plan;
 pub use preview::{Preview, preview};

@@ -35,16 +35,6 @@ pub(super) trait Row {
     fn missing(&self, name: &str) -> Error;
 }
 
-/// Numbers of one file: 1.6 GB in memory. A compression bomb stops here.
-pub(super) const MOST_NUMBERS: u64 = 200_000_000;
-
-/// The error for a file beyond [`MOST_NUMBERS`].
-pub(super) fn too_large(file: &str) -> Error {
-    let message = format!("holds more than {MOST_NUMBERS} numbers");
-    let remedy = "cut the recording; a few seconds with load steps are enough";
-    Error::unsupported(file, message, remedy)
-}
-
 /// The error for a cell without a number.
 pub(super) fn missing(file: &str, line: u64, name: &str) -> Error {
     let remedy = "fill the cell, remove the row, or let --skip-missing drop such rows";

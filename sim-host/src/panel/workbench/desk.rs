@@ -9,10 +9,14 @@ use tempfile::TempDir;
 
 use super::motors::{self, Motor, MotorView};
 use super::slot::{Slot, SlotView};
+use super::upload::Budget;
 use crate::panel::session::{Refusal, Session, locked};
 
 /// The recording that is fitted, and the one that proves.
 pub(super) const SLOTS: usize = 2;
+
+/// Numbers of all recordings on the desk: twelve minutes of six channels at 10 kHz.
+const MOST_NUMBERS: u64 = 50_000_000;
 
 /// A question that can be asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -48,6 +52,8 @@ pub(super) struct Job {
 pub(super) struct Desk {
     /// Where uploaded files lie; removed with the desk.
     pub folder: Option<TempDir>,
+    /// Files that were put on the desk since the panel began.
+    pub files: u64,
     /// The recordings.
     pub slots: [Option<Slot>; SLOTS],
     /// The motor file; the panel's own when absent.
@@ -62,9 +68,13 @@ pub(super) struct Desk {
 
 /// The desk and the panel that it stands in.
 #[derive(Debug)]
-pub(super) struct Bench {
+pub struct Bench {
     session: Arc<Session>,
     desk: Mutex<Desk>,
+    /// What uploads take on the disk.
+    pub(super) budget: Arc<Budget>,
+    /// One file is read at a time: what reading takes in memory is then bounded too.
+    pub(super) reading: tokio::sync::Mutex<()>,
 }
 
 /// What the page shows of the desk.
@@ -81,20 +91,29 @@ pub(super) struct View {
 
 impl Bench {
     /// An empty desk.
-    pub fn new(session: Arc<Session>) -> Arc<Bench> {
+    pub(super) fn new(session: Arc<Session>) -> Arc<Bench> {
         Arc::new(Bench {
             session,
             desk: Mutex::default(),
+            budget: Arc::default(),
+            reading: tokio::sync::Mutex::default(),
         })
     }
 
+    /// Removes what was uploaded: the panel ends.
+    pub fn clear(&self) {
+        let mut desk = self.desk();
+        desk.slots = Default::default();
+        desk.folder = None;
+    }
+
     /// The desk, for a few lines.
-    pub fn desk(&self) -> MutexGuard<'_, Desk> {
+    pub(super) fn desk(&self) -> MutexGuard<'_, Desk> {
         locked(&self.desk)
     }
 
     /// The desk, unless a question is being worked on that its change would spoil.
-    pub fn free_desk(&self) -> Result<MutexGuard<'_, Desk>, Refusal> {
+    pub(super) fn free_desk(&self) -> Result<MutexGuard<'_, Desk>, Refusal> {
         let desk = self.desk();
         match desk.job.running {
             false => Ok(desk),
@@ -106,7 +125,7 @@ impl Bench {
     }
 
     /// The motor file on the desk: the chosen one, or the panel's present one.
-    pub fn motor(&self) -> Option<Motor> {
+    pub(super) fn motor(&self) -> Option<Motor> {
         let chosen = self.desk().motor.clone();
         chosen.or_else(|| self.session.motor().map(Motor::of_panel))
     }
@@ -123,7 +142,7 @@ impl Bench {
     }
 
     /// Audits every recording that is not audited yet, with the motor file as it now is.
-    pub fn audit_missing(&self) {
+    pub(super) fn audit_missing(&self) {
         for slot in 0..SLOTS {
             let unaudited = |slot: &&Slot| slot.view.audit.is_none();
             let source = self.desk().slots[slot]
@@ -144,7 +163,7 @@ impl Bench {
     }
 
     /// What the page shows.
-    pub fn state(&self) -> View {
+    pub(super) fn state(&self) -> View {
         let motor = self.motor();
         let desk = self.desk();
         let view = |slot: &Option<Slot>| slot.as_ref().map(|slot| slot.view.clone());
@@ -169,6 +188,15 @@ impl Desk {
         for slot in self.slots.iter_mut().flatten() {
             slot.view.audit = None;
         }
+    }
+
+    /// Numbers that a file which is read now into a slot may hold, beside the other slots.
+    pub fn numbers_left(&self, slot: usize) -> u64 {
+        let others = self.slots.iter().enumerate().filter(|(k, _)| *k != slot);
+        let held: u64 = others
+            .filter_map(|(_, there)| there.as_ref().map(Slot::numbers))
+            .sum();
+        MOST_NUMBERS.saturating_sub(held)
     }
 
     /// The recordings that can be asked about, with their names.

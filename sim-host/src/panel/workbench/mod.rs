@@ -22,13 +22,20 @@ use axum::routing::{get, post};
 use axum::{Json, Router};
 
 use super::session::{Refusal, Session};
-use desk::{Bench, Kind};
+use desk::Kind;
+
+pub use desk::Bench;
 
 /// Requests apart from files: a mapping, a choice.
 const MOST_REQUEST_BYTES: usize = 64 * 1024;
 
+/// The desk; it must be cleared when the panel ends.
+pub fn bench(session: Arc<Session>) -> Arc<Bench> {
+    Bench::new(session)
+}
+
 /// Its routes, all under `/api/workbench/`; the server merges them behind its guard.
-pub fn router(session: Arc<Session>) -> Router {
+pub fn router(bench: Arc<Bench>) -> Router {
     let files = Router::new()
         .route(
             "/api/workbench/recordings/{slot}/file",
@@ -59,7 +66,7 @@ pub fn router(session: Arc<Session>) -> Router {
         .route("/api/workbench/region", get(regions::region))
         .layer(DefaultBodyLimit::max(MOST_REQUEST_BYTES))
         .merge(files)
-        .with_state(Bench::new(session))
+        .with_state(bench)
 }
 
 async fn state(State(bench): State<Arc<Bench>>) -> Response {

@@ -27,7 +27,20 @@ pub(super) struct Named {
     sidecar_follows: bool,
 }
 
-/// A recording, in any format that is read.
+/// Which file is meant, by the number that the state gives it: another page may have put another one there.
+#[derive(Debug, Deserialize)]
+pub(super) struct Meant {
+    id: u64,
+}
+
+/// What goes with a sidecar.
+#[derive(Debug, Deserialize)]
+pub(super) struct Sidecar {
+    name: String,
+    id: u64,
+}
+
+/// A recording, in any format that is read. What lay there stays until the new one is whole and read.
 pub(super) async fn file(
     State(bench): State<Arc<Bench>>,
     Path(slot): Path<usize>,
@@ -35,30 +48,46 @@ pub(super) async fn file(
     headers: HeaderMap,
     body: Body,
 ) -> Response {
-    let stored = match folder(&bench, slot) {
-        Ok(folder) => store(&folder, &named.name, &headers, body).await,
-        Err(refusal) => Err(refusal),
+    let made = received(&bench, slot, &named, &headers, body).await;
+    let (made, before) = match made {
+        Ok((made, before)) if named.sidecar_follows => (made, before),
+        Ok((made, before)) => match read(&bench, slot, made).await {
+            Ok(made) => (made, before),
+            Err(refusal) => return refused(&refusal),
+        },
+        Err(refusal) => return refused(&refusal),
     };
-    let made = match stored {
-        Ok(path) if named.sidecar_follows => Ok(Slot::new(path)),
-        Ok(path) => read(Slot::new(path)).await,
-        Err(refusal) => Err(refusal),
-    };
-    place(&bench, slot, made).await
+    place(&bench, slot, made, before).await
+}
+
+/// The file, unread, and the number of the one that it is to replace.
+async fn received(
+    bench: &Bench,
+    slot: usize,
+    named: &Named,
+    headers: &HeaderMap,
+    body: Body,
+) -> Result<(Slot, Option<u64>), Refusal> {
+    known(slot)?;
+    let (folder, before) = begin(bench, slot)?;
+    let stored = store(&folder, &bench.budget, &named.name, headers, body).await?;
+    let mut desk = bench.desk();
+    desk.files += 1;
+    Ok((Slot::new(desk.files, stored), before))
 }
 
 /// The sidecar of the recording in a slot.
 pub(super) async fn sidecar(
     State(bench): State<Arc<Bench>>,
     Path(slot): Path<usize>,
-    Query(named): Query<Named>,
+    Query(Sidecar { name, id }): Query<Sidecar>,
     body: Bytes,
 ) -> Response {
-    let written = present(&bench, slot).and_then(|mut present| {
-        let folder = present.path.with_file_name("sidecar");
-        let path = folder.join(harmless(&named.name));
+    let written = present(&bench, slot, id).and_then(|mut present| {
+        let folder = present.file.path.with_file_name("sidecar");
+        let path = folder.join(harmless(&name));
         let done = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, &body));
-        done.map_err(|error| Refusal::of(format!("{}: cannot be kept: {error}", named.name)))?;
+        done.map_err(|error| Refusal::of(format!("{name}: cannot be kept: {error}")))?;
         present.sidecar = Some(path);
         Ok(present)
     });
@@ -69,60 +98,94 @@ pub(super) async fn sidecar(
 pub(super) async fn mapping(
     State(bench): State<Arc<Bench>>,
     Path(slot): Path<usize>,
+    Query(Meant { id }): Query<Meant>,
     body: Result<Json<Columns>, JsonRejection>,
 ) -> Response {
     let columns = body.map_err(|error| Refusal::of(error.body_text()));
     let changed = columns.and_then(|Json(columns)| {
-        let present = present(&bench, slot)?;
+        let present = present(&bench, slot, id)?;
         Ok(Slot { columns, ..present })
     });
     read_again(&bench, slot, changed).await
 }
 
 /// Takes a recording off the desk.
-pub(super) async fn remove(State(bench): State<Arc<Bench>>, Path(slot): Path<usize>) -> Response {
-    answer(&bench, known(slot).and_then(|()| put(&bench, slot, None)))
+pub(super) async fn remove(
+    State(bench): State<Arc<Bench>>,
+    Path(slot): Path<usize>,
+    Query(Meant { id }): Query<Meant>,
+) -> Response {
+    let done = known(slot).and_then(|()| put(&bench, slot, None, Some(id)));
+    answer(&bench, done)
 }
 
 async fn read_again(bench: &Arc<Bench>, slot: usize, changed: Result<Slot, Refusal>) -> Response {
     let made = match changed {
-        Ok(changed) => read(changed).await,
-        Err(refusal) => return refused(&refusal),
+        Ok(changed) => read(bench, slot, changed).await,
+        Err(refusal) => Err(refusal),
     };
-    place(bench, slot, made).await
+    match made {
+        Ok(made) => {
+            let before = Some(made.id);
+            place(bench, slot, made, before).await
+        }
+        Err(refusal) => refused(&refusal),
+    }
 }
 
-/// Reads beside the server's thread: the lamps go on.
-async fn read(slot: Slot) -> Result<Slot, Refusal> {
-    let reading = tokio::task::spawn_blocking(move || slot.read());
+/// Reads beside the server's thread: the lamps go on. One file at a time, with what the others leave of the memory.
+async fn read(bench: &Bench, slot: usize, made: Slot) -> Result<Slot, Refusal> {
+    let _one = bench.reading.lock().await;
+    let left = bench.desk().numbers_left(slot);
+    let reading = tokio::task::spawn_blocking(move || made.read(left));
     reading
         .await
         .map_err(|_| Refusal::of("the file cannot be read: the reader broke off"))
 }
 
-/// Puts a recording on the desk and audits it there.
-async fn place(bench: &Arc<Bench>, slot: usize, made: Result<Slot, Refusal>) -> Response {
-    let done = made.and_then(|made| put(bench, slot, Some(made)));
+/// Puts a recording on the desk in the place of `before`, audits it there, and answers with it.
+async fn place(bench: &Arc<Bench>, slot: usize, made: Slot, before: Option<u64>) -> Response {
+    let id = made.id;
+    let done = put(bench, slot, Some(made), before);
     if done.is_ok() {
         let shared = bench.clone();
         // A panic would leave the recording without findings.
         let _ = tokio::task::spawn_blocking(move || shared.audit_missing()).await;
     }
+    // Nobody is shown what another page has put there meanwhile as the answer to what was sent.
+    let done = done.and_then(|()| present(bench, slot, id).map(drop));
     answer(bench, done)
 }
 
-fn put(bench: &Bench, slot: usize, made: Option<Slot>) -> Result<(), Refusal> {
+fn put(bench: &Bench, slot: usize, made: Option<Slot>, before: Option<u64>) -> Result<(), Refusal> {
     let mut desk = bench.free_desk()?;
+    if desk.slots[slot].as_ref().map(|there| there.id) != before {
+        return Err(overtaken());
+    }
     desk.slots[slot] = made;
     desk.results.clear();
     desk.job.problem = None;
     Ok(())
 }
 
-fn present(bench: &Bench, slot: usize) -> Result<Slot, Refusal> {
+/// The file in a slot, if it still is the one that is meant.
+fn present(bench: &Bench, slot: usize, id: u64) -> Result<Slot, Refusal> {
     known(slot)?;
     let present = bench.free_desk()?.slots[slot].clone();
-    present.ok_or_else(|| Refusal::of("load a recording first"))
+    let present = present.ok_or_else(|| Refusal::of("load a recording first"))?;
+    match present.id == id {
+        true => Ok(present),
+        false => Err(overtaken()),
+    }
+}
+
+fn overtaken() -> Refusal {
+    Refusal {
+        status: 409,
+        ..Refusal::of(
+            "another page has meanwhile changed this place: look at what lies there now, then load yours again",
+        )
+    }
 }
 
 fn known(slot: usize) -> Result<(), Refusal> {
@@ -132,9 +195,8 @@ fn known(slot: usize) -> Result<(), Refusal> {
     }
 }
 
-/// The empty folder of a slot.
-fn folder(bench: &Bench, slot: usize) -> Result<PathBuf, Refusal> {
-    known(slot)?;
+/// The folder of the desk, and the number of the file that lies in a slot now.
+fn begin(bench: &Bench, slot: usize) -> Result<(PathBuf, Option<u64>), Refusal> {
     let mut desk = bench.free_desk()?;
     let failed = |error: std::io::Error| Refusal::of(format!("no folder for files: {error}"));
     let folder = match &mut desk.folder {
@@ -146,11 +208,6 @@ fn folder(bench: &Bench, slot: usize) -> Result<PathBuf, Refusal> {
                 .map_err(failed)?,
         ),
     };
-    let path = folder.path().join(format!("recording-{slot}"));
-    // What lay there belongs to a recording that is replaced now.
-    let _ = std::fs::remove_dir_all(&path);
-    desk.slots[slot] = None;
-    desk.results.clear();
-    std::fs::create_dir_all(&path).map_err(failed)?;
-    Ok(path)
+    let path = folder.path().to_owned();
+    Ok((path, desk.slots[slot].as_ref().map(|there| there.id)))
 }

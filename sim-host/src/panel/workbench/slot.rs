@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use recording::{Audit, Mapping, Preview, Source, TableColumn, preview, read_any};
+use recording::{
+    Audit, Mapping, Preview, Source, TableColumn, preview, read_any, with_most_numbers,
+};
 use serde::Serialize;
 
 use super::mapping::Columns;
+use super::upload::Stored;
 
 /// Rows of a preview.
 const ROWS: usize = 6;
@@ -15,8 +18,10 @@ const ROWS: usize = 6;
 /// A file on the desk.
 #[derive(Clone, Debug)]
 pub(super) struct Slot {
+    /// Another number for each file that is put on the desk.
+    pub id: u64,
     /// Where it lies.
-    pub path: PathBuf,
+    pub file: Arc<Stored>,
     /// Where its sidecar lies.
     pub sidecar: Option<PathBuf>,
     /// How its columns are read.
@@ -30,6 +35,8 @@ pub(super) struct Slot {
 /// What the page shows of a file.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct SlotView {
+    /// The number of the file: what is asked about it must say which one is meant.
+    pub id: u64,
     /// Name of the file.
     pub name: String,
     /// Name of its sidecar.
@@ -76,39 +83,54 @@ pub(super) enum Summary {
 
 impl Slot {
     /// A file that has not been read yet.
-    pub fn new(path: PathBuf) -> Slot {
-        let name = file_name(&path);
+    pub fn new(id: u64, file: Stored) -> Slot {
+        let name = file_name(&file.path);
         Slot {
-            path,
+            id,
+            file: Arc::new(file),
             sidecar: None,
             columns: Columns::default(),
             source: None,
             view: SlotView {
+                id,
                 name,
                 ..SlotView::default()
             },
         }
     }
 
-    /// Reads the file as it now is to be read; it is audited on the desk.
-    pub fn read(mut self) -> Slot {
+    /// Numbers that it holds in memory.
+    pub fn numbers(&self) -> u64 {
+        match self.source.as_deref() {
+            Some(Source::Recording(recording)) => {
+                (recording.len() * (1 + recording.channels().count())) as u64
+            }
+            Some(Source::LoadTable(_)) | None => 0,
+        }
+    }
+
+    /// Reads the file as it now is to be read, if it holds at most so many numbers; it is audited on the desk.
+    pub fn read(mut self, most_numbers: u64) -> Slot {
         let begin = Instant::now();
         let mapping = self.columns.mapping().map(|mapping| Mapping {
             sidecar: self.sidecar.clone(),
             ..mapping
         });
-        let read = mapping
-            .clone()
-            .and_then(|mapping| read_any(&self.path, &mapping, &mut |_| {}));
-        let shown = preview(&self.path, &mapping.unwrap_or_default(), ROWS).ok();
-        let folders = [Some(&self.path), self.sidecar.as_ref()];
+        let read = mapping.clone().and_then(|mapping| {
+            with_most_numbers(most_numbers, || {
+                read_any(&self.file.path, &mapping, &mut |_| {})
+            })
+        });
+        let shown = preview(&self.file.path, &mapping.unwrap_or_default(), ROWS).ok();
+        let folders = [Some(&self.file.path), self.sidecar.as_ref()];
         let plainly = |error: recording::Error| without_folders(&error.to_string(), folders);
         let (source, problem) = match read {
             Ok(source) => (Some(source), None),
             Err(error) => (None, Some(plainly(error))),
         };
         self.view = SlotView {
-            name: file_name(&self.path),
+            id: self.id,
+            name: file_name(&self.file.path),
             sidecar: self.sidecar.as_deref().map(file_name),
             preview: shown,
             columns: self.columns.clone(),

@@ -1,6 +1,6 @@
 //! The elements that a MAT-file is made of: a tag, the bytes, padding.
 
-use super::super::table_file::{MOST_NUMBERS, too_large};
+use super::super::budget::{most_numbers, too_large};
 use crate::error::Error;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
@@ -11,7 +11,9 @@ pub(super) const MATRIX: u32 = 14;
 pub(super) const COMPRESSED: u32 = 15;
 
 /// Bytes that all compressed elements of a file may unpack to.
-pub(super) const BUDGET: u64 = MOST_NUMBERS * 8;
+pub(super) fn budget() -> u64 {
+    most_numbers() * 8
+}
 
 /// One element.
 pub(super) struct Element<'b> {

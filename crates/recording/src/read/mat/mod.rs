@@ -56,7 +56,7 @@ fn arrays(name: &str, bytes: &[u8]) -> Result<Vec<array::Array>, Error> {
         }
     };
     let mut found = Vec::new();
-    let mut budget = element::BUDGET;
+    let mut budget = element::budget();
     let mut elements = Elements::new(&bytes[HEADER..], big_endian, HEADER);
     while let Some(element) = elements.next(name)? {
         match element.kind {
