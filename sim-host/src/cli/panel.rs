@@ -61,7 +61,12 @@ pub struct Panel {
         help_heading = "The server"
     )]
     host: IpAddr,
-    /// Let everybody who reaches --host watch and switch: there is no password
+    /// Let others who reach --host and have the printed link watch and switch
+    ///
+    /// A random token stands in the link; the browser keeps it as a cookie, and without it nothing is shown. It protects
+    /// against others on the network who do not have the link. It does not protect what is sent: there is no encryption
+    /// (TLS), so whoever can listen on the network can read the token too. On a network that is not yours put the panel
+    /// behind a proxy with TLS and a login, and leave --host out.
     #[arg(long, help_heading = "The server")]
     allow_network: bool,
     /// Answer to a further host name, e.g. that of a proxy
@@ -83,6 +88,33 @@ Examples:
   drivemon panel --serial /dev/ttyACM0 --motor m.toml              a running board
 Ctrl-C ends it.";
 
+/// For a file that is being read when the panel ends.
+const LAST_WORK: std::time::Duration = std::time::Duration::from_secs(1);
+
+/// Until Ctrl-C is pressed or the system asks the process to end. Without such signals the server lives until the process
+/// is ended.
+async fn told_to_end() {
+    let pressed = async {
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    #[cfg(unix)]
+    let asked = async {
+        use tokio::signal::unix::{SignalKind, signal};
+        match signal(SignalKind::terminate()) {
+            Ok(mut terminate) => drop(terminate.recv().await),
+            Err(_) => std::future::pending().await,
+        }
+    };
+    #[cfg(not(unix))]
+    let asked = std::future::pending::<()>();
+    tokio::select! {
+        () = pressed => {}
+        () = asked => {}
+    }
+}
+
 fn speed(text: &str) -> Result<f64, String> {
     let speed = text.parse::<f64>().map_err(|error| error.to_string())?;
     match (0.01..=100.0).contains(&speed) {
@@ -103,6 +135,8 @@ impl Panel {
             .build()
             .map_err(|error| Failure::Usage(format!("no server can be started: {error}")))?;
         let served = runtime.block_on(self.serve(Arc::new(session)));
+        // A file that is still being read must not hold the end up.
+        runtime.shutdown_timeout(LAST_WORK);
         served.map_err(|error| Failure::Usage(error.to_string()))?;
         Ok(Finding::Nothing)
     }
@@ -113,19 +147,19 @@ impl Panel {
         let url = running.url();
         say!("{}: {}", status.source.kind, status.source.name);
         say!("panel: {url}   (Ctrl-C ends it)");
+        if running.is_on_all_addresses() {
+            say!("from another computer: the same link with this computer's name or address");
+        }
         if self.open {
             open(&url);
         }
         let (end, ended) = watch::channel(false);
         tokio::spawn(async move {
-            if tokio::signal::ctrl_c().await.is_ok() {
-                let _ = end.send(true);
-            } else {
-                // Without the signal the server lives until the process is ended.
-                std::future::pending::<()>().await;
-            }
+            told_to_end().await;
+            let _ = end.send(true);
         });
-        running.serve(ended).await
+        running.serve(ended).await;
+        Ok(())
     }
 
     fn options(&self) -> Options {

@@ -1,32 +1,21 @@
 //! The server: where it listens, what it serves, how it ends.
 
-use std::future::IntoFuture;
 use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 
 use axum::extract::DefaultBodyLimit;
-use axum::serve::ListenerExt;
 use axum::{Router, middleware};
-use socket2::SockRef;
-use tokio::net::{TcpListener, TcpStream};
+use tokio::net::TcpListener;
 use tokio::sync::watch;
 
-use super::guard::{Guard, check};
+use super::connections::{self, Connections};
+use super::guard::{Guard, Token, check};
 use super::session::Session;
+use super::workbench::Bench;
 use super::{api, assets, workbench};
 
 /// A request of the live page is far smaller; the workbench sets its own limit for recordings.
 const MOST_BODY_BYTES: usize = 64 * 1024;
-
-/// What the system may hold back for one page, bytes: a second of windows. With more, a page that cannot follow would
-/// show what is long past instead of losing it.
-const SEND_BUFFER_BYTES: usize = 64 * 1024;
-
-/// Windows go out at once. A system that knows neither option serves all the same.
-fn prepare(stream: &mut TcpStream) {
-    let _ = stream.set_nodelay(true);
-    let _ = SockRef::from(&*stream).set_send_buffer_size(SEND_BUFFER_BYTES);
-}
 
 /// Where to listen and who may come.
 #[derive(Clone, Debug)]
@@ -46,10 +35,13 @@ pub struct Options {
 pub enum PanelError {
     /// Others could reach it.
     #[error(
-        "--host {0}: everybody on that network could switch and read this panel, and there is no password; \
-         add --allow-network if that is meant, or leave --host out"
+        "--host {0}: others on that network could reach this panel; add --allow-network if that is meant (it then asks for \
+         the token of the link that is printed), or leave --host out"
     )]
     Network(IpAddr),
+    /// No token could be made.
+    #[error("the system gives no random numbers for the token of --allow-network: {0}")]
+    Random(getrandom::Error),
     /// The system refuses.
     #[error("{address}: {error}; choose another --port, or --port 0 for any that is free")]
     Bind {
@@ -58,9 +50,6 @@ pub enum PanelError {
         /// What it says.
         error: std::io::Error,
     },
-    /// The server broke down.
-    #[error("the server ended: {0}")]
-    Ended(std::io::Error),
 }
 
 /// A server that listens and does not answer yet.
@@ -68,6 +57,8 @@ pub enum PanelError {
 pub struct Running {
     listener: TcpListener,
     address: SocketAddr,
+    guard: Arc<Guard>,
+    bench: Arc<Bench>,
     router: Router,
 }
 
@@ -84,44 +75,54 @@ pub async fn bind(options: &Options, session: Arc<Session>) -> Result<Running, P
         address: wanted,
         error,
     };
+    let token = options.allow_network.then(Token::random).transpose();
+    let token = token.map_err(PanelError::Random)?;
     let listener = TcpListener::bind(wanted).await.map_err(refused)?;
     let address = listener.local_addr().map_err(refused)?;
-    let guard = Arc::new(Guard::new(address, &options.allow_hosts));
+    let guard = Arc::new(Guard::new(address, &options.allow_hosts, token));
+    let bench = workbench::bench(session.clone());
     Ok(Running {
         listener,
         address,
-        router: router(session, guard),
+        router: router(session, bench.clone(), guard.clone()),
+        guard,
+        bench,
     })
 }
 
-fn router(session: Arc<Session>, guard: Arc<Guard>) -> Router {
+fn router(session: Arc<Session>, bench: Arc<Bench>, guard: Arc<Guard>) -> Router {
     Router::new()
-        .merge(api::router(session.clone()))
+        .merge(api::router(session))
         .layer(DefaultBodyLimit::max(MOST_BODY_BYTES))
-        .merge(workbench::router(session))
+        .merge(workbench::router(bench))
         .merge(assets::router())
         .fallback(assets::nowhere)
+        .layer(middleware::map_request(connections::not_for_ever))
         .layer(middleware::from_fn_with_state(guard, check))
 }
 
 impl Running {
-    /// The address that a browser opens.
+    /// The address that a browser opens, with the token where one is asked for.
     pub fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
             address.set_ip(IpAddr::from([127, 0, 0, 1]));
         }
-        format!("http://{address}/")
+        format!("http://{address}/{}", self.guard.query())
     }
 
-    /// Answers until `end` turns true; connections that are open then are cut.
-    ///
-    /// # Errors
-    /// The listener broke down.
-    pub async fn serve(self, mut end: watch::Receiver<bool>) -> Result<(), PanelError> {
+    /// Whether other computers can reach it under their own name for this one.
+    pub fn is_on_all_addresses(&self) -> bool {
+        self.address.ip().is_unspecified()
+    }
+
+    /// Answers until `end` turns true; connections that are open then are cut, and what was uploaded is removed.
+    pub async fn serve(self, mut end: watch::Receiver<bool>) {
+        let connections = Connections::default();
         tokio::select! {
-            served = axum::serve(self.listener.tap_io(prepare), self.router).into_future() => served.map_err(PanelError::Ended),
-            _ = end.wait_for(|end| *end) => Ok(()),
+            () = connections::serve(&self.listener, &self.router, &connections) => {}
+            _ = end.wait_for(|end| *end) => {}
         }
+        self.bench.clear();
     }
 }

@@ -9,6 +9,7 @@ pub struct Server {
     child: Child,
     /// `127.0.0.1:PORT`.
     pub address: String,
+    url: String,
 }
 
 /// The repository's root.
@@ -18,9 +19,22 @@ pub fn root() -> PathBuf {
 
 fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_drivemon"));
+    command.arg("panel").args(arguments);
+    piped(command)
+}
+
+/// The same under a limit of open files.
+fn command_with_files(files: u32, arguments: &[&str]) -> Command {
+    let mut command = Command::new("sh");
+    let script = format!("ulimit -n {files}; exec \"$0\" panel \"$@\"");
     command
-        .arg("panel")
-        .args(arguments)
+        .args(["-c", &script, env!("CARGO_BIN_EXE_drivemon")])
+        .args(arguments);
+    piped(command)
+}
+
+fn piped(mut command: Command) -> Command {
+    command
         .current_dir(root())
         // A server that is killed leaves what was uploaded to it; it goes with the target folder.
         .env("TMPDIR", env!("CARGO_TARGET_TMPDIR"))
@@ -35,16 +49,23 @@ impl Server {
     pub fn start(arguments: &[&str]) -> Server {
         let named = arguments.contains(&"--port");
         let port: &[&str] = if named { &[] } else { &["--port", "0"] };
-        let mut child = command(&[port, arguments].concat())
-            .spawn()
-            .expect("it starts");
+        Server::listening(command(&[port, arguments].concat()))
+    }
+
+    /// On any free port, with so many open files at most.
+    pub fn with_files(files: u32) -> Server {
+        Server::listening(command_with_files(files, &["--port", "0"]))
+    }
+
+    fn listening(mut command: Command) -> Server {
+        let mut child = command.spawn().expect("it starts");
         let stdout = child.stdout.take().expect("piped");
         let mut lines = BufReader::new(stdout).lines().map_while(Result::ok);
-        let address = lines.find_map(|line| {
-            let rest = line.strip_prefix("panel: http://")?;
-            Some(rest.split('/').next()?.to_owned())
+        let link = lines.find_map(|line| {
+            let link = line.strip_prefix("panel: ")?;
+            Some(link.split(' ').next()?.to_owned())
         });
-        let Some(address) = address else {
+        let Some(url) = link else {
             let mut said = String::new();
             let _ = child
                 .stderr
@@ -53,12 +74,36 @@ impl Server {
                 .read_to_string(&mut said);
             panic!("no address was printed: {said}");
         };
-        Server { child, address }
+        let host = url.strip_prefix("http://").expect("a link");
+        let address = host.split('/').next().expect("an address").to_owned();
+        Server {
+            child,
+            address,
+            url,
+        }
     }
 
     /// What the page would be opened by.
     pub fn url(&self) -> String {
-        format!("http://{}/", self.address)
+        self.url.clone()
+    }
+
+    /// Largest memory that it has had, bytes; only where the system has /proc.
+    pub fn largest_memory(&self) -> Option<u64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.id())).ok()?;
+        let line = status
+            .lines()
+            .find_map(|line| line.strip_prefix("VmHWM:"))?;
+        Some(1024 * line.trim().trim_end_matches(" kB").parse::<u64>().ok()?)
+    }
+
+    /// Sends it a signal.
+    pub fn signal(&self, name: &str) {
+        // The shell's own `kill`: a minimal Debian has no program of that name.
+        Command::new("sh")
+            .args(["-c", &format!("kill -{name} {}", self.child.id())])
+            .status()
+            .expect("a signal");
     }
 
     /// The port alone.
@@ -83,12 +128,13 @@ impl Server {
     }
 
     /// Presses Ctrl-C; its exit code.
-    pub fn interrupt(mut self) -> Option<i32> {
-        // The shell's own `kill`: a minimal Debian has no program of that name.
-        Command::new("sh")
-            .args(["-c", &format!("kill -INT {}", self.child.id())])
-            .status()
-            .expect("a signal");
+    pub fn interrupt(self) -> Option<i32> {
+        self.ended_by("INT")
+    }
+
+    /// Its exit code after a signal.
+    pub fn ended_by(mut self, signal: &str) -> Option<i32> {
+        self.signal(signal);
         self.child.wait().expect("it ends").code()
     }
 }

@@ -1,5 +1,9 @@
 //! Whom the server refuses, tried over a real socket.
 
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
 use crate::http::{get, post, request, send};
 use crate::server::{Server, refused};
 
@@ -199,26 +203,132 @@ fn bodies_without_bounds(address: &str) {
 fn an_address_that_others_reach_must_be_meant() {
     let (code, said) = refused(&["--host", "0.0.0.0", "--port", "0"]);
     assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("--allow-network"), "{said}");
-    let server = Server::start(&[
+    assert!(
+        said.contains("--allow-network") && said.contains("token"),
+        "{said}"
+    );
+    let server = open_server();
+    let (port, cookie) = (server.port(), cookie_of(&server));
+    let status = |host: &str| {
+        let headers = [format!("Host: {host}:{port}"), format!("Cookie: {cookie}")];
+        let headers = headers.each_ref().map(String::as_str);
+        request(&server.address, "GET", "/", &headers, "").status
+    };
+    assert_eq!(status("bench.example"), 200);
+    assert_eq!(status("192.168.1.7"), 200);
+    assert_eq!(status("evil.example"), 421);
+}
+
+fn open_server() -> Server {
+    Server::start(&[
         "--host",
         "0.0.0.0",
         "--allow-network",
         "--allow-host",
         "bench.example",
-    ]);
-    let port = server.port();
-    let status = |host: &str| {
+    ])
+}
+
+/// Name and value of the cookie that the printed link is exchanged for.
+fn cookie_of(server: &Server) -> String {
+    let url = server.url();
+    let (_, query) = url.split_once('?').expect("a token in the link");
+    let page = get(&server.address, &format!("/?{query}"));
+    assert_eq!(page.status, 200, "{}", page.text());
+    let cookie = page.header("set-cookie").expect("a cookie").to_owned();
+    assert!(
+        cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"),
+        "{cookie}"
+    );
+    cookie.split(';').next().expect("a value").to_owned()
+}
+
+#[test]
+fn on_a_network_nothing_is_shown_without_the_token() {
+    let server = open_server();
+    let address = server.address.as_str();
+    let url = server.url();
+    let (_, token) = url.split_once("token=").expect("a token");
+    assert_eq!(token.len(), 32, "128 bits");
+    let wrong = format!(
+        "{}{}",
+        &token[..31],
+        if token.ends_with('0') { '1' } else { '0' }
+    );
+    let cookie = cookie_of(&server);
+    let forged = cookie.replace(token, &wrong);
+    for path in [
+        "/",
+        "/api/status",
+        "/api/stream",
+        "/panel/main.js",
+        "/api/workbench/state",
+        "/nowhere",
+    ] {
+        for shown in [
+            "X: y".to_owned(),
+            format!("Cookie: {forged}"),
+            format!("Cookie: other={token}"),
+        ] {
+            let answer = request(address, "GET", path, &[&shown], "");
+            assert_eq!(answer.status, 401, "{path} {shown}");
+            assert!(!answer.text().contains("drivemon panel</title>"));
+            assert_eq!(answer.header("set-cookie"), None);
+        }
+    }
+    assert_eq!(get(address, &format!("/?token={wrong}")).status, 401);
+    // The token opens the page and nothing else.
+    assert_eq!(
+        get(address, &format!("/api/status?token={token}")).status,
+        401
+    );
+    let cookies = format!("Cookie: a=b; {cookie}");
+    assert_eq!(
+        request(address, "GET", "/api/status", &[&cookies], "").status,
+        200
+    );
+    let pause = |cookie: &str| {
         request(
-            &server.address,
-            "GET",
-            "/",
-            &[&format!("Host: {host}:{port}")],
-            "",
+            address,
+            "POST",
+            "/api/pause",
+            &[JSON, cookie],
+            "{\"paused\": true}",
         )
         .status
     };
-    assert_eq!(status("bench.example"), 200);
-    assert_eq!(status("192.168.1.7"), 200);
-    assert_eq!(status("evil.example"), 421);
+    assert_eq!((pause("X: y"), pause(&cookies)), (401, 204));
+}
+
+#[test]
+fn who_says_nothing_keeps_nobody_out() {
+    let server = Server::with_files(128);
+    let address = server.address.as_str();
+    let connect = || TcpStream::connect(address).expect("it listens");
+    let mut silent: Vec<TcpStream> = (0..300).map(|_| connect()).collect();
+    for stream in silent.iter_mut().skip(150) {
+        // Half a request; the server may have closed it already.
+        let _ = stream.write_all(b"GET / HTTP/1.1\r\nHost: ");
+    }
+    let begin = Instant::now();
+    assert_eq!(get(address, "/").status, 200);
+    assert!(
+        begin.elapsed() < Duration::from_secs(3),
+        "{:?}",
+        begin.elapsed()
+    );
+    drop(silent);
+    // Alone it has ten seconds for its request.
+    let mut half = connect();
+    half.write_all(b"GET / HTTP/1.1\r\nHost: ").expect("sent");
+    half.set_read_timeout(Some(Duration::from_secs(30)))
+        .expect("a time");
+    let begin = Instant::now();
+    // It may be told 408 first.
+    let _ = half.read_to_end(&mut Vec::new());
+    assert!(
+        (5..20).contains(&begin.elapsed().as_secs()),
+        "{:?}",
+        begin.elapsed()
+    );
 }
