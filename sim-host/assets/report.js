@@ -149,7 +149,8 @@ globalThis.drawFigures = (root, result) => {
   }
 
   function options(chart, data, box) {
-    const font = `${0.8 * parseFloat(getComputedStyle(document.documentElement).fontSize)}px system-ui, sans-serif`;
+    // uPlot takes whole pixels only.
+    const font = `${Math.round(0.8 * parseFloat(getComputedStyle(document.documentElement).fontSize))}px system-ui, sans-serif`;
     const limits = limited(chart, 1 + chart.series.length);
     return {
       ...size(box, chart), scales: scales(chart), axes: axes(chart, font), bands: limits.bands,
@@ -243,6 +244,7 @@ globalThis.drawFigures = (root, result) => {
 
   function remove() {
     dark.removeEventListener("change", rebuild);
+    window.removeEventListener("dppxchange", rebuild);
     for (const { observer, plot } of charts) {
       observer.disconnect();
       plot.destroy();
@@ -253,6 +255,8 @@ globalThis.drawFigures = (root, result) => {
   const rebuild = () => charts.forEach(build);
   root.querySelectorAll("figure[data-chart]").forEach(start);
   dark.addEventListener("change", rebuild);
+  // Another screen, another pixel ratio: text and lines are measured anew.
+  window.addEventListener("dppxchange", rebuild);
   return { count: charts.length, redraw, remove };
 };
 

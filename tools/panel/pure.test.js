@@ -3,11 +3,12 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { groups, named } from "../../sim-host/assets/panel/causes.js";
+import { groups, named, none } from "../../sim-host/assets/panel/causes.js";
 import { airy, decimals, following, symmetric } from "../../sim-host/assets/panel/charts.js";
 import { switched } from "../../sim-host/assets/panel/controls.js";
-import { lasting, likely } from "../../sim-host/assets/panel/events.js";
-import { clock, either, fixed, percent, shown } from "../../sim-host/assets/panel/format.js";
+import { lasting, likely, seen } from "../../sim-host/assets/panel/events.js";
+import { clock, either, fixed, moment, percent, rpm, shown, timeOfDay } from "../../sim-host/assets/panel/format.js";
+import { LIMIT_MS, Watch, stale } from "../../sim-host/assets/panel/freshness.js";
 import { advice, headline } from "../../sim-host/assets/panel/lamps.js";
 import { changed } from "../../sim-host/assets/panel/parameters.js";
 import { Series, firstAfter } from "../../sim-host/assets/panel/series.js";
@@ -37,16 +38,16 @@ const NOTHING = {
  */
 const window = (lamps, rest = {}) => ({
   sequence: 1, t_s: 1, lamps: { ...DARK, ...lamps }, not_judged: null, findings: [], r_percent: null, r_over_threshold: null,
-  significance_sigma: null, resistance_rise_percent: null, causes: [], operation: NOTHING, vectors: null, ...rest,
+  significance_sigma: null, resistance_rise_percent: null, causes: [], todo: [], operation: NOTHING, vectors: null, ...rest,
 });
 
 /**
  * @param {string} name
  * @param {number} probability_percent
- * @param {number | null} tie
+ * @param {boolean} [tied]
  * @returns {Cause}
  */
-const cause = (name, probability_percent, tie) => ({ name, words: name, phase: null, probability_percent, size_percent: null, tie });
+const cause = (name, probability_percent, tied = false) => ({ name, words: name, phase: null, probability_percent, size_percent: null, tied });
 
 test("numbers keep their digits and never show a minus zero", () => {
   assert.equal(shown(0.123456), "0.123");
@@ -87,29 +88,76 @@ test("a chart gets the last seconds of the columns it names", () => {
   assert.equal(firstAfter([], 2), 0);
 });
 
-test("each pattern of Table 1 has an advice of its own", () => {
-  const patterns = ["r1 r4", "r1 r3 r4", "r2 r3 r4", "r1 r2 r3", "r1 r2 r4", "r1 r2 r3 r4", "r2"];
-  const words = patterns.map((lit) => advice({ ...DARK, fault: "on", ...Object.fromEntries(lit.split(" ").map((name) => [name, "on"])) }, false));
-  assert.equal(new Set(words).size, patterns.length);
-  assert.ok(words.every((word) => word.length > 10));
+test("the advice is about the causes that the headline names", () => {
+  const bars = headline(window({ fault: "on" }, { causes: [cause("bars", 100)], todo: ["record at another load"] }));
+  assert.deepEqual([bars.why, bars.todo], ["Likeliest: bars.", "Record at another load."]);
+  const heat = advice(window({ fault: "on", r1: "on", r4: "on" }, { todo: ["first heat: is it hot?", "measure it"] }));
+  assert.equal(heat, "First heat: is it hot? Measure it.");
+  assert.equal(advice(window({ fault: "on" })), "");
 });
 
-test("the headline says the worst first", () => {
-  assert.equal(headline(window({}), false).mood, "good");
-  assert.deepEqual(headline(window({ run: "blink" }, { not_judged: "transient" }), false), { mood: "waiting", title: "Not judged", why: "Transient.", todo: "" });
-  const tied = window({ fault: "on", r1: "on", r4: "on", line: "on" }, { causes: [cause("Rs", 48, 1), cause("Rr", 48, 1), cause("unknown", 3, null)] });
-  assert.equal(headline(tied, false).why, "Likeliest: Rs or Rr.");
-  const dead = window({ run: "blink", fault: "on", sensor: "on" }, { findings: ["current sensor a is dead"], not_judged: "current sensor a is dead" });
-  assert.equal(headline(dead, false).title, "Fault");
-  assert.ok(headline(dead, false).why.startsWith("Current sensor a is dead."));
-  assert.equal(headline(window({ run: "off", line: "on" }, { not_judged: "no supply" }), false).todo, "Fuse, contactor.");
-  assert.equal(headline(window({ load: "on" }), false).title, "Overload");
+test("the headline says the worst first, and each thing once", () => {
+  assert.equal(headline(window({})).mood, "good");
+  assert.deepEqual(headline(window({ run: "blink" }, { not_judged: "transient" })), { mood: "waiting", title: "Not judged", why: "Transient.", todo: "" });
+  const tied = window({ fault: "on", r1: "on", r4: "on", line: "on" }, { causes: [cause("Rs", 48, true), cause("Rr", 48, true), cause("unknown", 3)] });
+  assert.equal(headline(tied).why, "Likeliest: Rs or Rr.");
+  const dead = { findings: ["current sensor a is dead"], not_judged: "current sensor a is dead" };
+  for (const causes of [[], [{ ...cause("Iq", 100), phase: "a" }]]) {
+    const { title, why, todo } = headline(window({ run: "blink", fault: "on", sensor: "on" }, { ...dead, causes }));
+    assert.deepEqual([title, why, todo], ["Fault", "Current sensor a is dead.", "Check the sensor's cable and its supply."]);
+  }
+  assert.equal(headline(window({ run: "off", line: "on" }, { not_judged: "no supply" })).todo, "Check fuse and contactor.");
+  assert.equal(headline(window({ load: "on" })).title, "Overload");
 });
 
-test("tied causes stand together, others alone", () => {
-  const found = groups([cause("a", 40, 1), cause("b", 40, 1), cause("c", 10, 2), cause("d", 10, 2), cause("e", 1, null), cause("f", 1, null)]);
-  assert.deepEqual(found.map((group) => group.map((one) => one.name)), [["a", "b"], ["c", "d"], ["e"], ["f"]]);
-  assert.equal(named({ ...cause("turns", 90, null), words: "shorted turns", phase: "b", size_percent: 4.4 }), "shorted turns, phase b +4 %");
+test("causes that are tied with the likeliest stand together, others alone", () => {
+  const found = groups([cause("a", 40, true), cause("b", 40, true), cause("c", 10), cause("d", 10)]);
+  assert.deepEqual(found.map((group) => group.map((one) => one.name)), [["a", "b"], ["c"], ["d"]]);
+  assert.deepEqual(groups([cause("a", 90), cause("b", 5)]).length, 2);
+  assert.equal(named({ ...cause("turns", 90), words: "shorted turns", phase: "b", size_percent: 4.4 }), "shorted turns, phase b +4 %");
+});
+
+test("no cause: FAULT is dark, or this window does not tell", () => {
+  assert.equal(none(window({})), "FAULT is dark: nothing to explain.");
+  assert.ok(none(window({ fault: "on" })).startsWith("FAULT is lit;"));
+});
+
+test("two seconds after the last window, or the last word, nothing holds any more", () => {
+  const heard = { window: 1000, word: 1000, rests: false, speed: 1 };
+  assert.equal(stale(heard, 1000 + LIMIT_MS), false);
+  assert.equal(stale(heard, 1001 + LIMIT_MS), true);
+  // A server that lives and brings no window is stale too, unless its source rests.
+  assert.equal(stale({ ...heard, word: 5000 }, 5000), true);
+  assert.equal(stale({ ...heard, word: 5000, rests: true }, 5000), false);
+  assert.equal(stale({ ...heard, rests: true }, 5000), true);
+  // At a hundredth of real time a window takes two seconds.
+  assert.equal(stale({ ...heard, word: 5000, speed: 0.01 }, 5000), false);
+});
+
+test("a source that rested has time for its next window", () => {
+  let now = 0;
+  const watch = new Watch(() => now);
+  watch.alive(true);
+  now = 60_000;
+  watch.alive(true);
+  assert.equal(watch.stale(), false);
+  now += 1000;
+  watch.alive(false);
+  now += LIMIT_MS;
+  assert.equal(watch.stale(), false);
+  watch.alive(false);
+  now += 1;
+  assert.equal(watch.stale(), true);
+  watch.window();
+  assert.equal(watch.stale(), false);
+});
+
+test("times of day and turns", () => {
+  assert.equal(timeOfDay(new Date(2026, 0, 2, 3, 4, 5)), "03:04:05");
+  const when = new Date(2026, 0, 2, 3, 4, 5).getTime() / 1000;
+  assert.equal(moment(when, new Date(2026, 0, 2)), "03:04:05");
+  assert.equal(moment(when, new Date(2026, 0, 3)), "2026-01-02 03:04:05");
+  assert.equal(Math.round(rpm(157.0796)), 1500);
 });
 
 test("a switch changes its own fault and no other", () => {
@@ -127,11 +175,16 @@ test("only what was changed is sent", () => {
 });
 
 test("events say what, and for how long", () => {
-  const event = { id: 0, t_s: 1, cleared_s: null, unix_s: 0, lit: [], causes: [cause("Rs", 48, 1), cause("Rr", 48, 1)], findings: [], acknowledged: false, samples: 0 };
+  const event = { id: 0, t_s: 1, cleared_s: null, unix_s: 0, lit: [], causes: [cause("Rs", 48, true), cause("Rr", 48, true)], findings: [], acknowledged: null, samples: 0 };
   assert.equal(likely(event), "Rs or Rr");
   assert.equal(likely({ ...event, findings: ["no supply"] }), "no supply");
   assert.equal(lasting(event), "lit now");
   assert.equal(lasting({ ...event, cleared_s: 2.5 }), "1.50 s");
+  const day = new Date(2026, 0, 2, 3, 4, 5);
+  const acknowledged = { by: "Ada", unix_s: day.getTime() / 1000, comment: "joint tightened" };
+  assert.equal(seen({ ...event, acknowledged }, day), "Ada, 03:04:05: joint tightened");
+  assert.equal(seen({ ...event, acknowledged: { ...acknowledged, by: "", comment: "" } }, day), "somebody, 03:04:05");
+  assert.equal(seen(event), "–");
 });
 
 test("axes keep the threshold in sight and noise small", () => {

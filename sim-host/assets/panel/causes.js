@@ -9,19 +9,24 @@ import { byId, make, say, show } from "./dom.js";
 const MOST = 6;
 
 /**
- * Neighbours that are tied, together.
+ * Those that are tied with the likeliest together, the others alone.
  * @param {Cause[]} causes the likeliest first
  * @returns {Cause[][]}
  */
 export function groups(causes) {
-  /** @type {Cause[][]} */
-  const found = [];
-  for (const cause of causes) {
-    const last = found[found.length - 1];
-    if (last && cause.tie !== null && last[0].tie === cause.tie) last.push(cause);
-    else found.push([cause]);
-  }
-  return found;
+  const tied = causes.filter((cause) => cause.tied);
+  const others = causes.filter((cause) => !cause.tied).map((cause) => [cause]);
+  return tied.length > 0 ? [tied, ...others] : others;
+}
+
+/**
+ * Why no cause is shown.
+ * @param {import("./messages").WindowMessage} window
+ * @returns {string}
+ */
+export function none(window) {
+  if (window.lamps.fault !== "on") return "FAULT is dark: nothing to explain.";
+  return "FAULT is lit; this window alone does not say why. The events keep what the windows before said.";
 }
 
 /**
@@ -35,20 +40,32 @@ export function named(cause) {
   return `${cause.words}${phase}${size}`;
 }
 
+const NO_DATA = "no data";
 let drawn = "";
 
 /** @param {import("./messages").WindowMessage} window */
 export function render(window) {
   const shown = window.causes.slice(0, MOST);
-  const state = JSON.stringify(shown.map((cause) => [named(cause), percent(cause.probability_percent), cause.tie]));
+  const state = JSON.stringify(shown.map((cause) => [named(cause), percent(cause.probability_percent), cause.tied]).concat([[none(window)]]));
   if (state !== drawn) {
     drawn = state;
     byId("causes").replaceChildren(...groups(shown).map(group));
+    say(byId("causes-none"), none(window));
     show(byId("causes-none"), shown.length === 0);
   }
   const sigma = window.significance_sigma;
   show(byId("significance"), sigma !== null);
   if (sigma !== null) say(byId("significance"), `${fixed(sigma, 1)} standard deviations from the healthy motor; windings ${fixed(window.resistance_rise_percent, 0)} % above the calibration.`);
+}
+
+/** No cause is known while nothing comes. */
+export function blank() {
+  if (drawn === NO_DATA) return;
+  drawn = NO_DATA;
+  byId("causes").replaceChildren();
+  say(byId("causes-none"), "No data.");
+  show(byId("causes-none"), true);
+  show(byId("significance"), false);
 }
 
 /** @param {Cause[]} causes */

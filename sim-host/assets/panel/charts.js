@@ -109,6 +109,8 @@ export class Chart {
     this.plot = this.build();
     new ResizeObserver(() => requestAnimationFrame(() => this.fit())).observe(this.plotBox);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.rebuild());
+    // Another screen, another ratio: canvas, lines and text are measured anew.
+    addEventListener("dppxchange", () => requestAnimationFrame(() => this.rebuild()));
   }
 
   size() {
@@ -129,7 +131,8 @@ export class Chart {
 
   build() {
     const { spec } = this;
-    const font = `${0.8 * rem()}px system-ui, sans-serif`;
+    // uPlot multiplies a whole number of pixels by the pixel ratio; of a fraction it takes the digits behind the point.
+    const font = `${Math.round(0.8 * rem())}px system-ui, sans-serif`;
     const axis = { stroke: colour("ink-2"), font, labelFont: font, labelGap: 2, grid: { stroke: colour("rule"), width: 1 }, ticks: { stroke: colour("rule"), width: 1, size: 4 } };
     /** @type {uPlot.Axis.DynamicValues} */
     const ticks = (_, values, _axis, _space, step) => values.map((value) => (value == null ? "" : fixed(value, decimals(step))));

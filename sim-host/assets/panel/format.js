@@ -39,6 +39,36 @@ export function clock(t) {
 }
 
 /**
+ * Turns per minute.
+ * @param {number} rad_s
+ * @returns {number}
+ */
+export function rpm(rad_s) {
+  return (30 / Math.PI) * rad_s;
+}
+
+/**
+ * Time of day, as 12:03:07.
+ * @param {Date} when
+ * @returns {string}
+ */
+export function timeOfDay(when) {
+  return [when.getHours(), when.getMinutes(), when.getSeconds()].map((part) => String(part).padStart(2, "0")).join(":");
+}
+
+/**
+ * Time of day, with the date unless it is today's.
+ * @param {number} unix_s seconds since 1970
+ * @param {Date} [today]
+ * @returns {string}
+ */
+export function moment(unix_s, today = new Date()) {
+  const when = new Date(1000 * unix_s);
+  const date = [when.getFullYear(), when.getMonth() + 1, when.getDate()].map((part) => String(part).padStart(2, "0")).join("-");
+  return when.toDateString() === today.toDateString() ? timeOfDay(when) : `${date} ${timeOfDay(when)}`;
+}
+
+/**
  * A probability, percent.
  * @param {number} value
  * @returns {string}

@@ -21,40 +21,25 @@ export const LAMPS = [
 ];
 
 /** @type {Record<string, string>} state of a lamp in a word */
-const STATES = { off: "off", on: "on", blink: "waiting" };
+const STATES = { off: "off", on: "on", blink: "waiting", unknown: "?" };
 
-/** @type {Record<string, string>} lit residuals to what to do, for a motor that was not calibrated */
-const ADVICE = {
-  "r1 r4": "First heat: is the motor hotter than its motor file says? Then terminals, windings, cage.",
-  "r1 r3 r4": "Compare the voltage sensors with a meter first: they are likelier than the inductance.",
-  "r2 r3 r4": "Bearings and the driven machine; a run without load, or a coast-down, separates the two.",
-  "r1 r2 r3": "Compare the current sensors on one wire.",
-  "r1 r2 r4": "Check the encoder and its coupling.",
-  "r1 r2 r3 r4": "Is it this motor's file? Otherwise an inductance, or several faults at once.",
-};
+/** Names of causes that are a sensor. */
+const SENSORS = ["Iq", "Vq", "wr"];
 
 /**
- * What a person should do, from the lamps alone.
- * @param {Lamps} lamps
- * @param {boolean} calibrated
+ * What a person should do: about the likeliest causes where there are any, from the lamps otherwise.
+ * @param {Pick<WindowMessage, "lamps" | "todo">} window
  * @returns {string}
  */
-export function advice(lamps, calibrated) {
-  if (lamps.sensor === "on") {
-    return lamps.run === "on" && lamps.fault === "on" && calibrated
-      ? "Compare the named channel with a meter."
-      : lamps.run === "on" ? "Compare the sensors with a meter: they are likelier than the motor." : "Cable and supply of the sensor.";
-  }
-  if (lamps.line === "on" && lamps.run === "off") return "Fuse, contactor.";
+export function advice({ lamps, todo }) {
+  if (lamps.sensor === "on" && lamps.run !== "on") return "Check the sensor's cable and its supply.";
+  if (lamps.line === "on" && lamps.run === "off") return "Check fuse and contactor.";
   if (lamps.line === "on" && lamps.run === "blink") return "Exchange two phases, of the motor or of the voltage probes.";
-  if (lamps.fault === "on") {
-    if (calibrated) return "The motor, its terminals or its load: see the likely causes.";
-    const lit = /** @type {const} */ (["r1", "r2", "r3", "r4"]).filter((name) => lamps[name] === "on").join(" ");
-    return ADVICE[lit] ?? "None of the faults in the table: look at the residuals and the recording itself.";
-  }
+  if (lamps.fault === "on") return todo.map(sentence).join(" ");
   if (lamps.line === "on") return "Measure the supply; unbalance above 1 % heats a healthy motor.";
   if (lamps.load === "on") return "Look at the driven machine.";
-  if (lamps.sensor === "blink") return "A sensor with a larger range; during a start this is common and goes away.";
+  if (lamps.sensor === "on") return "Compare the sensors with a meter: they are likelier than the motor.";
+  if (lamps.sensor === "blink") return "Use a sensor with a larger range; during a start this is common and goes away.";
   return "";
 }
 
@@ -69,18 +54,13 @@ export function advice(lamps, calibrated) {
 /**
  * The news in one line, why, and what to do.
  * @param {WindowMessage} window
- * @param {boolean} calibrated
  * @returns {Headline}
  */
-export function headline(window, calibrated) {
+export function headline(window) {
   const { lamps } = window;
-  const todo = advice(lamps, calibrated);
+  const todo = advice(window);
   const found = window.findings.map(sentence).join(" ");
-  if (lamps.fault === "on") {
-    const top = leading(window.causes).map((cause) => cause.words + (cause.phase ? ` in phase ${cause.phase}` : ""));
-    const why = top.length > 0 ? `Likeliest: ${either(top)}.` : window.not_judged ? sentence(window.not_judged) : "";
-    return { mood: "bad", title: "Fault", why: [found, why].filter(Boolean).join(" "), todo };
-  }
+  if (lamps.fault === "on") return { mood: "bad", title: "Fault", why: reasons(window).join(" "), todo };
   if (lamps.line === "on") return { mood: "bad", title: "Supply", why: found || sentence(window.not_judged ?? ""), todo };
   if (lamps.load === "on") return { mood: "caution", title: "Overload", why: "More torque than rated.", todo };
   if (lamps.sensor === "on") return { mood: "bad", title: "Sensor", why: found, todo };
@@ -89,13 +69,35 @@ export function headline(window, calibrated) {
 }
 
 /**
+ * Why FAULT is lit, each thing said once.
+ * @param {WindowMessage} window
+ * @returns {string[]}
+ */
+function reasons({ findings, causes, not_judged }) {
+  const [first] = causes;
+  // A sensor that is dead is named by its finding.
+  const said = first && findings.length > 0 && SENSORS.includes(first.name) && first.probability_percent > 99.5;
+  const parts = [...findings];
+  if (first && !said) parts.push(`likeliest: ${either(leading(causes).map(inPhase))}`);
+  if (!first && not_judged && !findings.includes(not_judged)) parts.push(`this window is not judged: ${not_judged}`);
+  return parts.map(sentence);
+}
+
+/**
+ * A cause with its phase, in words.
+ * @param {import("./messages").Cause} cause
+ */
+export function inPhase(cause) {
+  return cause.words + (cause.phase ? ` in phase ${cause.phase}` : "");
+}
+
+/**
  * The likeliest cause with those that are tied with it.
  * @param {import("./messages").Cause[]} causes
  */
 export function leading(causes) {
-  const [first] = causes;
-  if (!first) return [];
-  return first.tie === null ? [first] : causes.filter((cause) => cause.tie === first.tie);
+  const tied = causes.filter((cause) => cause.tied);
+  return tied.length > 0 ? tied : causes.slice(0, 1);
 }
 
 /**
@@ -103,7 +105,7 @@ export function leading(causes) {
  * @param {string} text
  */
 function sentence(text) {
-  return text ? `${text[0].toUpperCase()}${text.slice(1)}${text.endsWith(".") ? "" : "."}` : "";
+  return text ? `${text[0].toUpperCase()}${text.slice(1)}${/[.?]$/.test(text) ? "" : "."}` : "";
 }
 
 /**
@@ -124,8 +126,24 @@ export function build(door) {
  * @param {Lamps} lamps
  */
 export function render(door, lamps) {
+  paint(door, (lamp) => lamps[lamp]);
+}
+
+/**
+ * Shows that no lamp is known.
+ * @param {HTMLElement} door
+ */
+export function blank(door) {
+  paint(door, () => "unknown");
+}
+
+/**
+ * @param {HTMLElement} door
+ * @param {(lamp: LampName) => string} of
+ */
+function paint(door, of) {
   for (const light of door.querySelectorAll("li")) {
-    const state = lamps[/** @type {LampName} */ (light.dataset.lamp)];
+    const state = of(/** @type {LampName} */ (light.dataset.lamp));
     if (light.dataset.state === state) continue;
     light.dataset.state = state;
     const word = light.querySelector(".word");

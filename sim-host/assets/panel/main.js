@@ -5,7 +5,8 @@ import { Chart } from "./charts.js";
 import * as controls from "./controls.js";
 import { byId, make, of, say, show } from "./dom.js";
 import * as events from "./events.js";
-import { fixed } from "./format.js";
+import { Watch } from "./freshness.js";
+import { fixed, rpm, timeOfDay } from "./format.js";
 import * as lamps from "./lamps.js";
 import * as parameters from "./parameters.js";
 import { Series } from "./series.js";
@@ -31,7 +32,11 @@ let wave = null;
 let dirty = false;
 let drawnAt = 0;
 let lost = 0;
+let connected = false;
 let coordinates = /** @type {"abc" | "dq"} */ ("abc");
+const watch = new Watch();
+/** Between two looks at the age of what is shown, ms. */
+const LOOK_MS = 200;
 const series = new Series(KEYS, MOST_WINDOWS);
 
 const residuals = new Chart(byId("chart-residuals"), {
@@ -41,20 +46,21 @@ const residuals = new Chart(byId("chart-residuals"), {
 const slip = new Chart(byId("chart-slip"), { id: "slip", title: "Slip", x: "time, s", unit: "%", zero: true, rows: 10, lines: [{ label: "slip", color: "blue" }] });
 const load = new Chart(byId("chart-load"), { id: "load", title: "Load", x: "time, s", unit: "% of rated", zero: true, rows: 10, lines: [{ label: "air-gap torque", color: "green" }] });
 const phases = [{ label: "a", color: "blue" }, { label: "b", color: "vermillion", dash: [9, 4] }, { label: "c", color: "green", dash: [2, 3] }];
-const voltage = new Chart(byId("chart-voltage"), { id: "voltage", title: "Voltage", x: "time, ms", unit: "V", rows: 12, lines: phases });
-const current = new Chart(byId("chart-current"), { id: "current", title: "Current", x: "time, ms", unit: "A", rows: 12, lines: phases });
+const voltage = new Chart(byId("chart-voltage"), { id: "voltage", title: "Voltage", x: "time, ms", unit: "V, instantaneous", rows: 12, lines: phases });
+const current = new Chart(byId("chart-current"), { id: "current", title: "Current", x: "time, ms", unit: "A, instantaneous", rows: 12, lines: phases });
 const vectors = new VectorDiagram(byId("vectors"));
 
 /** @type {[keyof import("./messages").Operation, string, string, number][]} */
 const FIGURES = [
-  ["voltage_rms_volt", "Voltage", "V", 1], ["current_rms_amp", "Current", "A", 3], ["frequency_hz", "Frequency", "Hz", 2], ["speed_rad_s", "Speed", "rad/s", 1],
-  ["slip_percent", "Slip", "%", 2], ["torque_nm", "Torque", "N m", 3], ["load_percent", "Load", "%", 1],
+  ["voltage_rms_volt", "Phase voltage", "V rms", 1], ["current_rms_amp", "Phase current", "A rms", 3], ["frequency_hz", "Frequency", "Hz", 2], ["speed_rad_s", "Speed", "rad/s", 1],
+  ["slip_percent", "Slip", "%", 2], ["torque_nm", "Air-gap torque", "N m", 3], ["load_percent", "Load", "% of rated", 1],
   ["current_unbalance_percent", "Current unbalance", "%", 2], ["voltage_unbalance_percent", "Voltage unbalance", "%", 2],
 ];
 
 function buildFigures() {
   for (const [key, label, unit] of FIGURES) {
-    byId("operation").append(make("div", {}, make("dt", {}, label), make("dd", { id: `figure-${key}` }, "–"), make("span", { class: "unit" }, unit)));
+    const also = key === "speed_rad_s" ? [make("span", { id: "figure-rpm", class: "also" }, "–")] : [];
+    byId("operation").append(make("div", {}, make("dt", {}, label), make("dd", { id: `figure-${key}` }, "–"), make("span", { class: "unit" }, unit), ...also));
   }
 }
 
@@ -69,10 +75,13 @@ function overThreshold(percent) {
 
 /** @param {WindowMessage} window */
 function takeWindow(window) {
-  const over = window.r_over_threshold ?? [null, null, null, null];
+  // Also what is not compared, as of an undeclared load: the table shows it, and so does the history.
+  const over = overThreshold(window.r_percent ?? [null, null, null, null]);
   series.push(window.t_s, [...over, window.operation.slip_percent, window.operation.load_percent]);
   latest = window;
   dirty = true;
+  watch.window();
+  freshen();
 }
 
 async function takeHistory() {
@@ -95,6 +104,7 @@ async function takeHistory() {
 function takeStatus(next) {
   const another = status?.session !== next.session;
   status = next;
+  watch.heard.speed = next.speed;
   say(byId("source-name"), next.motor ?? next.source.name);
   document.title = `${next.source.name} – drivemon panel`;
   controls.render(next);
@@ -113,18 +123,40 @@ function audit(next) {
 
 /** @param {"open" | "waiting"} state */
 function connection(state) {
-  const pill = byId("connection");
-  pill.dataset.state = state;
-  say(pill, state === "open" ? "live" : "reconnecting …");
-  if (state !== "open") lost = 0;
-  document.body.classList.toggle("stale", state !== "open");
+  connected = state === "open";
+  if (!connected) lost = 0;
+  freshen();
+}
+
+/** Grey as soon as nothing comes any more, whatever the reason; by itself as before when it comes again. */
+function freshen() {
+  const old = watch.stale();
+  if (document.body.classList.toggle("stale", old)) renderStale();
+  else if (latest && byId("state").dataset.mood === "stale") dirty = true;
+  pill(old);
+}
+
+/** @param {boolean} old */
+function pill(old) {
+  const rests = watch.heard.rests ? (status?.paused ? "paused" : "ended") : null;
+  byId("connection").dataset.state = connected && !old ? "open" : "waiting";
+  say(byId("connection"), !connected ? "reconnecting …" : old ? "no data" : rests ?? (lost > 0 ? `live, ${lost} messages lost` : "live"));
+}
+
+/** Nothing is known any more: neither lamps nor causes. */
+function renderStale() {
+  dirty = false;
+  byId("state").dataset.mood = "stale";
+  say(byId("state-title"), `No data since ${timeOfDay(watch.since)}`);
+  say(byId("state-why"), status?.failure ?? "The panel does not hear from its source. What is grey was true then; what is true now is not known.");
+  say(byId("state-do"), status?.failure ? "" : "Is the panel still running, and the network up? It goes on by itself.");
+  lamps.blank(byId("door"));
+  causes.blank();
 }
 
 /** @param {WindowMessage} window */
 function renderState(window) {
-  const { mood, title, why, todo } = status?.failure
-    ? { mood: "caution", title: "No data", why: status.failure, todo: "" }
-    : lamps.headline(window, status?.calibrated ?? false);
+  const { mood, title, why, todo } = lamps.headline(window);
   byId("state").dataset.mood = mood;
   say(byId("state-title"), title);
   say(byId("state-why"), why);
@@ -141,6 +173,8 @@ function renderNumbers(window) {
   });
   cells("row-threshold").forEach((cell, k) => say(cell, fixed(status?.threshold_percent?.[k], 2)));
   for (const [key, , , decimals] of FIGURES) say(byId(`figure-${key}`), fixed(window.operation[key], decimals));
+  const { speed_rad_s } = window.operation;
+  say(byId("figure-rpm"), speed_rad_s === null ? "" : `${fixed(rpm(speed_rad_s), 0)} rpm`);
 }
 
 function renderWaves() {
@@ -163,7 +197,7 @@ function draw() {
 /** @param {number} now */
 function frame(now) {
   requestAnimationFrame(frame);
-  if (latest && dirty && now - drawnAt >= REDRAW_MS) {
+  if (latest && dirty && now - drawnAt >= REDRAW_MS && !watch.stale()) {
     drawnAt = now;
     dirty = false;
     renderState(latest);
@@ -183,6 +217,7 @@ function choose(chosen) {
   const names = chosen === "abc" ? ["a", "b", "c"] : ["d", "q", ""];
   for (const chart of [voltage, current]) {
     chart.spec.lines = phases.map((line, k) => ({ ...line, label: names[k] }));
+    chart.spec.unit = `${chart === voltage ? "V" : "A"}, ${chosen === "abc" ? "instantaneous" : "amplitude"}`;
     chart.rebuild();
   }
 }
@@ -213,6 +248,8 @@ function tabs() {
   show(byId("tab-workbench"), workbench.ready);
 }
 
+// The cookie has taken the token's place: it need not stay in sight and in the history.
+if (location.search) history.replaceState(null, "", location.pathname);
 lamps.build(byId("door"));
 buildFigures();
 controls.start();
@@ -223,12 +260,13 @@ byId("waves-abc").addEventListener("click", () => choose("abc"));
 byId("waves-dq").addEventListener("click", () => choose("dq"));
 byId("span").addEventListener("change", () => (dirty = true));
 requestAnimationFrame(frame);
+setInterval(freshen, LOOK_MS);
 listen({
   connection, status: takeStatus, window: takeWindow, events: events.render,
   wave: (message) => (wave = message),
+  alive: ({ rests }) => watch.alive(rests),
   lost: (messages) => {
     lost += messages;
-    say(byId("connection"), `live, ${lost} messages lost`);
     byId("connection").title = "this page could not follow; the source did not wait for it";
   },
 });

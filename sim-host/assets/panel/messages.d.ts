@@ -9,7 +9,8 @@ export interface Cause {
   phase: string | null;
   probability_percent: number;
   size_percent: number | null;
-  tie: number | null;
+  /** With the likeliest, from which it cannot be told apart. */
+  tied: boolean;
 }
 
 export interface Operation {
@@ -44,6 +45,7 @@ export interface WindowMessage {
   significance_sigma: number | null;
   resistance_rise_percent: number | null;
   causes: Cause[];
+  todo: string[];
   operation: Operation;
   vectors: Vectors | null;
 }
@@ -55,6 +57,9 @@ export interface WaveMessage {
   u_dq_volt: number[][];
   i_dq_amp: number[][];
 }
+
+/** Twice a second, whatever happens. */
+export interface Alive { rests: boolean }
 
 export interface SwitchedFault { name: string; change_percent: number }
 export interface FaultSwitch { name: string; words: string; table_1: boolean[] | null; least_percent: number }
@@ -93,7 +98,7 @@ export interface EventMessage {
   lit: LampName[];
   causes: Cause[];
   findings: string[];
-  acknowledged: boolean;
+  acknowledged: { by: string; unix_s: number; comment: string } | null;
   samples: number;
 }
 

@@ -10,9 +10,10 @@ use axum::routing::{get, post};
 use axum::{Json, Router};
 use serde::Deserialize;
 
+use super::events::Acknowledgement;
 use super::export;
 use super::fields::{Typed, with_typed};
-use super::session::{Refusal, Request, Session};
+use super::session::{Refusal, Request, Session, unix_s};
 use super::source::SwitchedFault;
 use super::stream::stream;
 
@@ -129,8 +130,33 @@ async fn parameters(State(session): State<Arc<Session>>, body: Body<Typed>) -> R
     ask(&session, request).await
 }
 
-async fn acknowledge(State(session): State<Arc<Session>>) -> Response {
-    ask(&session, Ok(Request::Acknowledge)).await
+/// Characters of a name and of a comment.
+const MOST_CHARACTERS: [usize; 2] = [60, 300];
+
+/// Who has seen the alarms, and what they say about them.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Seen {
+    by: String,
+    comment: String,
+}
+
+async fn acknowledge(State(session): State<Arc<Session>>, body: Body<Seen>) -> Response {
+    let request = body_of(body).and_then(|Seen { by, comment }| {
+        let long = |text: &str, most| text.chars().count() > most;
+        let [name, words] = MOST_CHARACTERS;
+        match long(&by, name) || long(&comment, words) {
+            true => Err(Refusal::of(format!(
+                "at most {name} characters for the name and {words} for the comment"
+            ))),
+            false => Ok(Request::Acknowledge(Acknowledgement {
+                by: by.trim().to_owned(),
+                unix_s: unix_s() as u64,
+                comment: comment.trim().to_owned(),
+            })),
+        }
+    });
+    ask(&session, request).await
 }
 
 fn body_of<T>(body: Body<T>) -> Result<T, Refusal> {

@@ -32,6 +32,7 @@ const ASSETS: &[Asset] = &[
     own!("stream.js", SCRIPT),
     own!("series.js", SCRIPT),
     own!("format.js", SCRIPT),
+    own!("freshness.js", SCRIPT),
     own!("lamps.js", SCRIPT),
     own!("causes.js", SCRIPT),
     own!("charts.js", SCRIPT),

@@ -7,8 +7,6 @@ use std::time::{Duration, Instant as WallTime};
 pub struct Pace {
     /// Source seconds per second on the wall.
     pub speed: f64,
-    /// Stands still.
-    pub paused: bool,
     wall: WallTime,
     source_s: f64,
 }
@@ -21,7 +19,6 @@ impl Pace {
     pub fn new(source_s: f64, speed: f64) -> Pace {
         Pace {
             speed,
-            paused: false,
             wall: WallTime::now(),
             source_s,
         }

@@ -8,10 +8,12 @@ use motor::MotorFile;
 use serde::Serialize;
 use tokio::sync::{broadcast, oneshot};
 
-use super::events::{Event, Events};
+use super::events::{Acknowledgement, Event, Events};
 use super::fields::{Field, FieldProblem, fields};
 use super::history::{History, HistoryRow};
+use super::message::WindowMessage;
 use super::source::{PANEL_FAULTS, PanelFault, Source, SourceInfo, SwitchedFault};
+use super::wave::WaveMessage;
 use super::worker::Worker;
 
 /// Messages that a reader may be behind before it loses the oldest: four seconds at 50 windows a second.
@@ -20,10 +22,21 @@ const BACKLOG: usize = 256;
 /// What goes to every page: the name of the event and its JSON.
 #[derive(Clone, Debug)]
 pub struct Broadcast {
-    /// `window`, `wave`, `status` or `events`.
+    /// `window`, `wave`, `status`, `events` or `alive`.
     pub event: &'static str,
     /// The message.
     pub json: Arc<str>,
+}
+
+impl Broadcast {
+    /// `None` never: no message has a key that is no text.
+    pub(super) fn of<T: Serialize>(event: &'static str, message: &T) -> Option<Broadcast> {
+        let json = serde_json::to_string(message).ok()?;
+        Some(Broadcast {
+            event,
+            json: json.into(),
+        })
+    }
 }
 
 /// What a page may ask of the source.
@@ -40,7 +53,7 @@ pub enum Request {
     /// Judge with another motor from now on.
     Motor(Box<MotorFile>),
     /// All events have been seen.
-    Acknowledge,
+    Acknowledge(Acknowledgement),
 }
 
 /// Understood, and not possible.
@@ -103,6 +116,15 @@ pub struct Shared {
     /// The motor that is judged with.
     pub(super) motor: Mutex<Option<MotorFile>>,
     pub(super) stream: broadcast::Sender<Broadcast>,
+    /// What was shown last, for a page that comes while the source rests.
+    pub(super) shown: Mutex<Shown>,
+}
+
+/// The last window and the last supply period.
+#[derive(Debug, Default)]
+pub(super) struct Shown {
+    pub window: Option<WindowMessage>,
+    pub wave: Option<WaveMessage>,
 }
 
 /// A running source.
@@ -136,6 +158,7 @@ pub fn start(
         events: Mutex::default(),
         motor: Mutex::new(motor.clone()),
         stream: broadcast::channel(BACKLOG).0,
+        shown: Mutex::default(),
     });
     let (commands, inbox) = mpsc::channel();
     let worker = Worker::new(source, motor, shared.clone())?;
@@ -166,6 +189,26 @@ impl Session {
     /// What the page shows beside the windows.
     pub fn status(&self) -> Status {
         locked(&self.shared.status).clone()
+    }
+
+    /// One thing about the status.
+    pub fn status_now<T>(&self, of: impl FnOnce(&Status) -> T) -> T {
+        of(&locked(&self.shared.status))
+    }
+
+    /// What a source that rests showed last: nothing new comes that a page could wait for.
+    pub fn shown_at_rest(&self) -> impl Iterator<Item = Broadcast> + use<> {
+        let rests = self.status_now(Status::rests);
+        let shown = locked(&self.shared.shown);
+        let window = shown
+            .window
+            .as_ref()
+            .and_then(|window| Broadcast::of("window", window));
+        let wave = shown
+            .wave
+            .as_ref()
+            .and_then(|wave| Broadcast::of("wave", wave));
+        [window, wave].into_iter().flatten().filter(move |_| rests)
     }
 
     /// The motor that is judged with, where it is known.
@@ -236,6 +279,11 @@ impl Status {
             status.judge_with(motor);
         }
         status
+    }
+
+    /// No window is due.
+    pub fn rests(&self) -> bool {
+        self.paused || self.ended
     }
 
     /// Shows another motor.

@@ -6,34 +6,39 @@ use std::time::Duration;
 
 use axum::extract::State;
 use axum::response::Sse;
-use axum::response::sse::{Event, KeepAlive};
-use tokio_stream::wrappers::BroadcastStream;
+use axum::response::sse::Event;
 use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
+use tokio_stream::wrappers::{BroadcastStream, IntervalStream};
 use tokio_stream::{Stream, StreamExt};
 
 use super::session::{Broadcast, Session};
 
-/// Between two signs of life while nothing happens.
-const ALIVE: Duration = Duration::from_secs(2);
+/// Between two signs of life: a page that misses four takes what it shows for stale.
+const ALIVE: Duration = Duration::from_millis(500);
 /// A page whose connection broke tries again after this time.
 const RETRY: Duration = Duration::from_millis(500);
 
-/// Everything from now on; the status and the events so far come first.
+/// Everything from now on; the status, the events so far and what a resting source showed last come first.
 pub async fn stream(
     State(session): State<Arc<Session>>,
 ) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    let from_now = BroadcastStream::new(session.subscribe()).map(|message| Ok(event(message)));
-    let first = [
-        Event::default()
-            .retry(RETRY)
-            .event("status")
-            .data(json(&session.status())),
-        Event::default()
-            .event("events")
-            .data(json(&session.events())),
+    let from_now = BroadcastStream::new(session.subscribe()).map(event);
+    let mut first = vec![
+        named("status", &json(&session.status())).retry(RETRY),
+        named("events", &json(&session.events())),
     ];
-    let stream = tokio_stream::iter(first.map(Ok)).chain(from_now);
-    Sse::new(stream).keep_alive(KeepAlive::new().interval(ALIVE))
+    let shown = session.shown_at_rest();
+    first.extend(shown.map(|Broadcast { event, json }| named(event, &json)));
+    let alive = IntervalStream::new(tokio::time::interval(ALIVE)).map(move |_| {
+        let rests = session.status_now(|status| status.rests());
+        named("alive", &format!("{{\"rests\":{rests}}}"))
+    });
+    let stream = tokio_stream::iter(first).chain(from_now.merge(alive));
+    Sse::new(stream.map(Ok))
+}
+
+fn named(event: &str, json: &str) -> Event {
+    Event::default().event(event).data(json)
 }
 
 fn json<T: serde::Serialize>(message: &T) -> String {
@@ -42,9 +47,7 @@ fn json<T: serde::Serialize>(message: &T) -> String {
 
 fn event(message: Result<Broadcast, BroadcastStreamRecvError>) -> Event {
     match message {
-        Ok(Broadcast { event, json }) => Event::default().event(event).data(&*json),
-        Err(BroadcastStreamRecvError::Lagged(messages)) => {
-            Event::default().event("lost").data(messages.to_string())
-        }
+        Ok(Broadcast { event, json }) => named(event, &json),
+        Err(BroadcastStreamRecvError::Lagged(messages)) => named("lost", &messages.to_string()),
     }
 }

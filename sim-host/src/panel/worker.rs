@@ -18,6 +18,9 @@ const TICK: Duration = Duration::from_millis(5);
 /// Source time that is worked on between two looks for commands, s.
 const SLICE_S: f64 = 0.02;
 
+/// Before an instant that is sought, s: finding the supply, filling a window and the persistence of the lamps at 5 Hz and more.
+const RUN_UP_S: f64 = 2.0;
+
 /// Everything that the thread owns.
 pub(super) struct Worker {
     source: Box<dyn Source>,
@@ -80,14 +83,16 @@ impl Worker {
     }
 
     fn rests(&self) -> bool {
-        self.pace.paused || locked(&self.shared.status).ended
+        locked(&self.shared.status).rests()
     }
 
     fn work(&mut self) {
-        if self.rests() {
-            return;
+        if !self.rests() {
+            self.advance(self.pace.due_s().min(self.source.now_s() + SLICE_S));
         }
-        let until = self.pace.due_s().min(self.source.now_s() + SLICE_S);
+    }
+
+    fn advance(&mut self, until: f64) {
         let bench = &mut self.bench;
         bench.rehearse(self.source.rehearsal());
         let outcome = self.source.advance(until, &mut |item| bench.take(item));
@@ -133,26 +138,26 @@ impl Worker {
             }
             Request::Pause(paused) => {
                 self.pace.restart(self.source.now_s());
-                self.pace.paused = paused;
                 locked(&self.shared.status).paused = paused;
             }
             Request::Seek(t_s) => self.seek(t_s)?,
             Request::Motor(motor) => self.judge_with(*motor)?,
-            Request::Acknowledge => {
-                locked(&self.shared.events).acknowledge();
+            Request::Acknowledge(seen) => {
+                locked(&self.shared.events).acknowledge(&seen);
                 self.bench.tell_events();
             }
         }
         Ok(())
     }
 
+    /// Goes there by way of what is needed to judge: a source that is paused, or sought at its end, shows that instant.
     fn seek(&mut self, t_s: f64) -> Result<(), Refusal> {
-        let done = self.source.seek(t_s);
+        let done = self.source.seek(t_s - RUN_UP_S);
         done.map_err(|error| Refusal::of(error.to_string()))?;
-        self.pace.restart(self.source.now_s());
         self.bench.restart();
         locked(&self.shared.events).interrupt();
-        locked(&self.shared.status).ended = false;
+        self.advance(t_s);
+        self.pace.restart(self.source.now_s());
         Ok(())
     }
 

@@ -72,7 +72,10 @@ fn an_alarm_leaves_a_recording_that_compare_reads() {
     let event = event();
     assert_eq!(event["lit"], serde_json::json!(["r1", "r4", "fault"]));
     assert_eq!(event["causes"][0]["name"], "Rs");
-    assert_eq!(event["causes"][0]["tie"], event["causes"][1]["tie"]);
+    for k in [0, 1] {
+        assert_eq!(event["causes"][k]["tied"], true);
+    }
+    acknowledged(address);
     let folder = std::env::temp_dir().join(format!("drivemon-panel-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     for format in ["csv", "parquet", "toml"] {
@@ -109,6 +112,65 @@ fn an_alarm_leaves_a_recording_that_compare_reads() {
         );
     }
     std::fs::remove_dir_all(folder).expect("it was made");
+}
+
+/// Who, when and what is kept by the server: every page is told, also one that comes later.
+fn acknowledged(address: &str) {
+    let seen = |by: &str, comment: &str| {
+        let body = serde_json::json!({"by": by, "comment": comment}).to_string();
+        post(address, "/api/acknowledge", &body).status
+    };
+    assert_eq!(seen(&"x".repeat(61), ""), 422);
+    assert_eq!(seen("Ada", "terminal tightened"), 204);
+    // What one has seen another does not overwrite.
+    assert_eq!(seen("Bob", ""), 204);
+    let kept = get(address, "/api/events").json()[0]["acknowledged"].clone();
+    assert_eq!(
+        (&kept["by"], &kept["comment"]),
+        (&"Ada".into(), &"terminal tightened".into())
+    );
+    let now = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .expect("now");
+    let when = kept["unix_s"].as_u64().expect("a time");
+    assert!(now.as_secs().abs_diff(when) < 60, "{when}");
+}
+
+#[test]
+fn a_replay_that_has_ended_or_is_paused_can_be_sought() {
+    let peer = "tests/data/peer/supply-unbalance/recording.csv.gz";
+    let server = Server::start(&[
+        "--replay",
+        peer,
+        "--motor",
+        "motors/peer-2k2.toml",
+        "--speed",
+        "50",
+    ]);
+    let address = server.address.as_str();
+    let status = || get(address, "/api/status").json();
+    until("the end", || status()["ended"] == true);
+    let last = || {
+        let rows = get(address, "/api/history").json();
+        rows.as_array()
+            .and_then(|rows| rows.last()?["t_s"].as_f64())
+            .unwrap_or(f64::NAN)
+    };
+    let end = status()["source"]["span_s"][1].as_f64().expect("an end");
+    assert!((last() - end).abs() < 0.05, "{} of {end}", last());
+    assert_eq!(
+        post(address, "/api/pause", "{\"paused\": true}").status,
+        204
+    );
+    for t_s in [0.5 * end, end, 0.3 * end] {
+        let body = format!("{{\"t_s\": {t_s}}}");
+        assert_eq!(post(address, "/api/seek", &body).status, 204);
+        assert!((last() - t_s).abs() < 0.05, "{} after {t_s}", last());
+    }
+    assert_eq!(
+        (&status()["paused"], &status()["ended"]),
+        (&true.into(), &false.into())
+    );
 }
 
 #[test]

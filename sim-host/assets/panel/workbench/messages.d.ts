@@ -22,6 +22,7 @@ export type Summary =
   | { kind: "load-table"; points: number; columns: string[] };
 
 export interface RecordingView {
+  id: number;
   name: string;
   sidecar: string | null;
   preview: { columns: string[]; rows: string[][] } | null;

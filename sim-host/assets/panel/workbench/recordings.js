@@ -40,17 +40,19 @@ export function inWords(summary) {
  * @param {number} slot
  * @param {File[]} files
  * @param {number} most bytes
+ * @param {RecordingView | null} present what lies there
  * @returns {Promise<View>}
  */
-async function load(slot, files, most) {
+async function load(slot, files, most, present) {
   const { recording, sidecar } = sorted(files);
   const path = `/recordings/${slot}`;
   const query = (/** @type {File} */ file, rest = "") => `?name=${encodeURIComponent(file.name)}${rest}`;
   if (recording && recording.size > most) throw new Error(`${recording.name}: is larger than ${Math.round(most / 2 ** 20)} MiB; cut the recording, a few seconds with load steps are enough`);
   if (recording && !sidecar) return server.upload(`${path}/file${query(recording)}`, recording);
-  if (recording) await server.upload(`${path}/file${query(recording, "&sidecar_follows=true")}`, recording);
   if (!sidecar) throw new Error("choose a file");
-  return server.upload(`${path}/sidecar${query(sidecar)}`, sidecar);
+  const sent = recording ? (await server.upload(`${path}/file${query(recording, "&sidecar_follows=true")}`, recording)).recordings[slot] : present;
+  if (!sent) throw new Error("choose the recording together with its sidecar");
+  return server.upload(`${path}/sidecar${query(sidecar, `&id=${sent.id}`)}`, sidecar);
 }
 
 /** @param {RecordingView} recording */
@@ -73,10 +75,10 @@ function content(slot, recording, change) {
   if (summary) parts.push(make("p", { class: "holds" }, inWords(summary)));
   if (problem) parts.push(make("p", { class: "problem", role: "alert" }, problem));
   parts.push(...findings(recording));
-  const form = columnForm(`slot-${slot}`, recording, (columns) => change(async () => server.send(`/recordings/${slot}/mapping`, columns())));
+  const form = columnForm(`slot-${slot}`, recording, (columns) => change(async () => server.send(`/recordings/${slot}/mapping?id=${recording.id}`, columns())));
   parts.push(make("details", { class: "mapping", open: problem !== null }, make("summary", {}, "Preview and columns"), form));
   const remove = make("button", { type: "button" }, "Remove");
-  remove.addEventListener("click", () => change(() => server.send(`/recordings/${slot}/remove`)));
+  remove.addEventListener("click", () => change(() => server.send(`/recordings/${slot}/remove?id=${recording.id}`)));
   return [...parts, make("p", { class: "actions" }, remove)];
 }
 
@@ -92,7 +94,7 @@ function card(slot, view, change) {
   const choose = make("p", {}, make("label", { for: input.id, class: "choose" }, recording ? "Choose another file " : "Choose a file "), input);
   input.addEventListener("change", () => {
     const files = [...(input.files ?? [])];
-    if (files.length > 0) change(() => load(slot, files, view.most_bytes), input.id);
+    if (files.length > 0) change(() => load(slot, files, view.most_bytes, recording), input.id);
   });
   return make("section", { class: "card", "aria-labelledby": `place-${slot}`, "data-slot": slot }, make("h3", { id: `place-${slot}` }, title), make("p", { class: "subtle", id: `file-${slot}-help` }, help), choose, ...(recording ? content(slot, recording, change) : []));
 }

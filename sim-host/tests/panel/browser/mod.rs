@@ -37,9 +37,21 @@ fn a_person_uses_the_panel() {
         stories::the_keyboard_and_a_screen_reader_suffice(&page).await;
         stories::the_page_comes_back_after_a_restart(&page).await;
         stories::a_measured_recording_is_played(&page).await;
+        stories::an_ended_replay_shows_its_last_state(&page).await;
+        stories::an_alarm_is_acknowledged(&page).await;
+        stories::charts_fit_their_screen(&page).await;
+        stories::the_link_with_its_token_opens_the_page(&page).await;
         if std::env::var_os("UPDATE_SCREENSHOTS").is_some() {
             shots::all(&page).await;
         }
+        page.assert_silent().await;
+    });
+}
+
+#[test]
+fn data_that_no_longer_come_do_not_look_healthy() {
+    visit(|page| async move {
+        stories::old_data_do_not_look_healthy(&page).await;
         page.assert_silent().await;
     });
 }

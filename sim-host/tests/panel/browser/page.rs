@@ -188,8 +188,13 @@ impl Page {
 
     /// Size of the view in CSS pixels.
     pub async fn size(&self, width: u32, height: u32) {
+        self.size_at(width, height, 1).await;
+    }
+
+    /// The same on a screen with so many pixels for each.
+    pub async fn size_at(&self, width: u32, height: u32, ratio: u32) {
         let metrics =
-            json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+            json!({"width": width, "height": height, "deviceScaleFactor": ratio, "mobile": false});
         self.devtools("Emulation.setDeviceMetricsOverride", metrics)
             .await;
     }

@@ -93,10 +93,16 @@ async fn both_directions_and_beyond_the_table(page: &Page) {
     page.click("#faults-card summary").await;
     page.click("label[for=fault-ia]").await;
     page.until_lamps("sensor fault").await;
+    // Said once, with what to do about it, and named as the cause.
+    assert_eq!(page.text("#state-why").await, "Current sensor a is dead.");
+    assert_eq!(
+        page.text("#state-do").await,
+        "Check the sensor's cable and its supply."
+    );
+    let named = page.text("#causes").await;
     assert!(
-        page.text("#state-why")
-            .await
-            .starts_with("Current sensor a is dead.")
+        named.contains("current sensor, phase a") && named.contains("100 %"),
+        "{named}"
     );
     page.click("#faults-off").await;
     page.until_lamps("run").await;
@@ -284,4 +290,191 @@ async fn seek(page: &Page, t_s: &str) {
         "const seek = document.querySelector('#seek'); seek.value = {t_s}; seek.dispatchEvent(new Event('change'))"
     );
     page.run(&script).await;
+}
+
+/// Stopped, killed, gone: nothing on the page may then look healthy.
+pub async fn old_data_do_not_look_healthy(page: &Page) {
+    let server = Server::start(&["--speed", "2"]);
+    page.go(&server.url()).await;
+    page.until_lamps("run").await;
+    page.until(
+        "green",
+        "document.querySelector('#state').dataset.mood === 'good'",
+    )
+    .await;
+    let begin = std::time::Instant::now();
+    server.signal("STOP");
+    page.until("grey", "document.body.classList.contains('stale')")
+        .await;
+    let took = begin.elapsed().as_secs_f64();
+    assert!(
+        (1.5..4.0).contains(&took),
+        "two seconds after the last window: {took}"
+    );
+    nothing_is_known(page).await;
+    server.signal("CONT");
+    page.until_lamps("run").await;
+    page.until(
+        "green again",
+        "document.querySelector('#state').dataset.mood === 'good'",
+    )
+    .await;
+    // A pause is no silence.
+    page.click("#pause").await;
+    page.until(
+        "a pause",
+        "document.querySelector('#connection').textContent === 'paused'",
+    )
+    .await;
+    tokio::time::sleep(std::time::Duration::from_secs(3)).await;
+    assert_eq!(page.lamps().await, "run");
+    page.click("#pause").await;
+    page.until(
+        "motion",
+        "document.querySelector('#connection').textContent === 'live'",
+    )
+    .await;
+    let port = server.port().to_owned();
+    server.signal("KILL");
+    page.until("grey", "document.body.classList.contains('stale')")
+        .await;
+    nothing_is_known(page).await;
+    drop(server);
+    let _again = Server::start(&["--port", &port, "--speed", "2"]);
+    page.until_lamps("run").await;
+}
+
+async fn nothing_is_known(page: &Page) {
+    let title = page.text("#state-title").await;
+    let time = title.strip_prefix("No data since ").expect("the headline");
+    assert!(time.len() == 8 && time.matches(':').count() == 2, "{title}");
+    assert_eq!(page.lamps().await, "");
+    let looks = "return [document.querySelector('#state').dataset.mood, document.querySelector('#causes').childElementCount, \
+                 getComputedStyle(document.querySelector('.board')).filter, document.querySelector('#connection').dataset.state]";
+    let expected = serde_json::json!(["stale", 0, "grayscale(1)", "waiting"]);
+    assert_eq!(page.run(looks).await, expected);
+}
+
+/// Opened after its end: the last state is there; pause and another time work.
+pub async fn an_ended_replay_shows_its_last_state(page: &Page) {
+    let peer = "tests/data/peer/supply-unbalance/recording.csv.gz";
+    let server = Server::start(&[
+        "--replay",
+        peer,
+        "--motor",
+        "motors/peer-2k2.toml",
+        "--speed",
+        "50",
+    ]);
+    let ended = || crate::http::get(&server.address, "/api/status").json()["ended"] == true;
+    crate::life::until("the end", ended);
+    page.go(&server.url()).await;
+    let lit = "document.querySelector('#door li[data-lamp=run]').dataset.state === 'on'";
+    page.until("its last state", lit).await;
+    let clock = "parseFloat(document.querySelector('#clock').textContent)";
+    page.until("its time", &format!("{clock} > 1")).await;
+    page.until(
+        "a figure",
+        "parseFloat(document.querySelector('#figure-speed_rad_s').textContent) > 100",
+    )
+    .await;
+    let rpm = page.text("#figure-rpm").await;
+    assert!(rpm.ends_with(" rpm") && rpm.len() > 6, "{rpm}");
+    page.click("#pause").await;
+    page.until(
+        "a pause",
+        "document.querySelector('#pause').textContent === 'Go on'",
+    )
+    .await;
+    assert_eq!(
+        page.run(&format!("return {clock} > 1")).await,
+        true,
+        "nothing is reset"
+    );
+    seek(page, "0.7").await;
+    page.until("another time", &format!("Math.abs({clock} - 0.7) < 0.05"))
+        .await;
+    page.until("its lamps", lit).await;
+    // Every residual has a line, as it has a number in the table.
+    let drawn = "document.querySelectorAll('#row-percent td').length === 4 && \
+                 [...document.querySelectorAll('#chart-residuals .u-series')].slice(1, 5).every((row) => row.querySelector('.u-value').textContent !== '–')";
+    page.until("four lines", drawn).await;
+}
+
+/// Text of the axes has the size of the page's text on every screen; nothing is cut off at 360 pixels.
+pub async fn charts_fit_their_screen(page: &Page) {
+    let server = Server::start(&["--speed", "2"]);
+    page.size_at(1280, 900, 2).await;
+    page.go(&server.url()).await;
+    page.until_lamps("run").await;
+    page.run(
+        "import('/panel/charts.js').then(({ Chart }) => { const box = document.createElement('div'); document.body.append(box); \
+         window.chart_ = new Chart(box, { id: 'x', title: 'x', x: 't', unit: 'V', lines: [{ label: 'a', color: 'blue' }] }); });",
+    )
+    .await;
+    page.until("a chart", "window.chart_").await;
+    for (width, ratio) in [(1280, 2), (1280, 1), (3840, 2), (360, 1), (360, 2)] {
+        page.size_at(width, 900, ratio).await;
+        let size =
+            "Math.round(0.8 * parseFloat(getComputedStyle(document.documentElement).fontSize))";
+        let font = format!(
+            "devicePixelRatio === {ratio} && window.chart_.plot.axes.every((axis) => axis.font[0].startsWith(`${{{size} * {ratio}}}px`))"
+        );
+        page.until(&format!("text at {width}, ratio {ratio}"), &font)
+            .await;
+    }
+    let cut = page
+        .run(
+            "return [...document.querySelectorAll('.u-legend')].filter((legend) => legend.scrollHeight > legend.clientHeight + 1 || \
+             legend.scrollWidth > legend.clientWidth + 1).map((legend) => legend.textContent)",
+        )
+        .await;
+    assert_eq!(cut, serde_json::json!([]));
+    assert_eq!(
+        page.run("return document.documentElement.scrollWidth <= 360")
+            .await,
+        true
+    );
+    page.size(1400, 1000).await;
+}
+
+/// Who has seen an alarm stays when the page is loaded again.
+pub async fn an_alarm_is_acknowledged(page: &Page) {
+    let server = Server::start(&["--speed", "2"]);
+    page.go(&server.url()).await;
+    page.until_lamps("run").await;
+    page.click("label[for=fault-Rs]").await;
+    page.until("an event", "document.querySelector('#events tbody tr')")
+        .await;
+    let at = page.text("#events tbody th").await;
+    assert_eq!(at.matches(':').count(), 2, "a time of day: {at}");
+    page.fill("#acknowledge-name", "Ada").await;
+    page.fill("#acknowledge-comment", "terminal tightened")
+        .await;
+    page.click("#acknowledge button").await;
+    let seen = "document.querySelector('#events .comment')?.textContent.startsWith('Ada, ')";
+    page.until("who has seen it", seen).await;
+    page.go(&server.url()).await;
+    page.until("the same after a reload", seen).await;
+    assert!(
+        page.text("#events .comment")
+            .await
+            .ends_with(": terminal tightened")
+    );
+    let name = "return document.querySelector('#acknowledge-name').value";
+    assert_eq!(page.run(name).await, "Ada");
+}
+
+/// The printed link opens a panel that others can reach; without it the page is refused.
+pub async fn the_link_with_its_token_opens_the_page(page: &Page) {
+    let server = Server::start(&["--host", "0.0.0.0", "--allow-network", "--speed", "2"]);
+    page.go(&server.url()).await;
+    page.until_lamps("run").await;
+    assert_eq!(
+        page.run("return location.search").await,
+        "",
+        "the token does not stay in sight"
+    );
+    page.go(&format!("http://{}/", server.address)).await;
+    page.until_lamps("run").await;
 }
