@@ -61,7 +61,7 @@ pub async fn faults_light_their_lamps_and_go_dark(page: &Page) {
     both_directions_and_beyond_the_table(page).await;
 }
 
-/// The cause is the likeliest, alone or tied, and ties show the same probability.
+/// The cause is the likeliest, alone or among those that cannot be told apart from it.
 async fn leads(page: &Page, name: &str) {
     let first = format!("document.querySelector('#causes li:first-child [data-cause={name}]')");
     page.until(&format!("{name} among the likeliest"), &first)
@@ -70,17 +70,16 @@ async fn leads(page: &Page, name: &str) {
         .run("return [...document.querySelectorAll('#causes li:first-child .cause b')].map((b) => b.textContent)")
         .await;
     let shown: Vec<String> = serde_json::from_value(shown).expect("texts");
-    assert!(
-        shown.iter().all(|percent| *percent == shown[0]),
-        "{name}: {shown:?}"
-    );
+    let number = |percent: &String| -> f64 {
+        let text = percent.trim_end_matches(" %").trim_start_matches("> ");
+        text.parse().expect("a number")
+    };
+    let percents: Vec<f64> = shown.iter().map(number).collect();
+    // One meaning of a tie everywhere: half a decade; shown without decimals.
+    let least = percents[0] / f64::from(monitor::TIE_RATIO) - 1.0;
+    assert!(percents.iter().all(|p| *p >= least), "{name}: {shown:?}");
     // Tied rows share what a lone one has: 94 %, 48 %, or on the weak inductance some 20 %.
-    let percent: f64 = shown[0]
-        .trim_end_matches(" %")
-        .trim_start_matches("> ")
-        .parse()
-        .expect("a number");
-    assert!(percent * shown.len() as f64 > 45.0, "{name}: {shown:?}");
+    assert!(percents.iter().sum::<f64>() > 45.0, "{name}: {shown:?}");
 }
 
 async fn both_directions_and_beyond_the_table(page: &Page) {
@@ -270,19 +269,29 @@ pub async fn a_measured_recording_is_played(page: &Page) {
         "parseFloat(document.querySelector('#clock').textContent) >= 0.5",
     )
     .await;
-    page.run("const speed = document.querySelector('#speed'); speed.value = '10'; speed.dispatchEvent(new Event('change'))").await;
+    speed(page, "10").await;
     page.until(
         "the end",
         "document.querySelector('#pace-note').textContent.includes('has ended')",
     )
     .await;
+    // Slowly: at ten times real time it is over before anybody has looked.
+    speed(page, "0.5").await;
     seek(page, "0").await;
     page.until(
         "another play",
-        "document.querySelector('#pace-note').textContent === ''",
+        // A busy computer may say that it was too slow instead.
+        "!document.querySelector('#pace-note').textContent.includes('has ended')",
     )
     .await;
     drop(server);
+}
+
+async fn speed(page: &Page, factor: &str) {
+    let script = format!(
+        "const speed = document.querySelector('#speed'); speed.value = '{factor}'; speed.dispatchEvent(new Event('change'))"
+    );
+    page.run(&script).await;
 }
 
 async fn seek(page: &Page, t_s: &str) {
@@ -413,7 +422,8 @@ pub async fn charts_fit_their_screen(page: &Page) {
     )
     .await;
     page.until("a chart", "window.chart_").await;
-    for (width, ratio) in [(1280, 2), (1280, 1), (3840, 2), (360, 1), (360, 2)] {
+    // Chromium tells a page of another ratio together with another width only.
+    for (width, ratio) in [(1280, 2), (1290, 1), (3840, 2), (370, 1), (360, 2)] {
         page.size_at(width, 900, ratio).await;
         let size =
             "Math.round(0.8 * parseFloat(getComputedStyle(document.documentElement).fontSize))";
