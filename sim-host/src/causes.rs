@@ -102,11 +102,12 @@ pub fn tests(candidates: &[Candidate]) -> Vec<&'static str> {
     tests
 }
 
-/// The channels that an audit knows to be wrong at some time from `from_s` to `to_s`.
+/// The channels that an audit knows to be wrong all the time from `from_s` to `to_s`; what a channel did for a part of it
+/// the windows of that part say themselves.
 pub fn wrong_channels(findings: &[Finding], [from_s, to_s]: [f64; 2]) -> Vec<Channel> {
     let concerns = |finding: &&Finding| {
-        finding.to_s.is_none_or(|end_s| end_s >= from_s)
-            && finding.from_s.is_none_or(|begin_s| begin_s <= to_s)
+        finding.to_s.is_none_or(|end_s| end_s >= to_s)
+            && finding.from_s.is_none_or(|begin_s| begin_s <= from_s)
     };
     let mut channels: Vec<Channel> = Vec::new();
     for channel in findings.iter().filter(concerns).filter_map(wrong_channel) {

@@ -194,8 +194,9 @@ impl Known<'_> {
     /// Hands over every suspect with its probability, in no order; together they are 1, or there is none.
     ///
     /// A channel that windows found wrong has these windows' share. Of the rest, a channel that is known to be wrong
-    /// beforehand has one half: whether it explains the alarm too, or a fault stands beside it, the windows cannot tell.
-    /// Sidebands of broken bars come from no channel.
+    /// beforehand has one half where the rows of Table 1 speak: whether it explains the alarm too, or a fault stands beside
+    /// it, they cannot tell. The evidence of a calibrated motor holds the sequences of its channels already, as they were
+    /// when it was healthy, and sidebands of broken bars come from no channel.
     pub fn weigh(&self, tell: &mut dyn FnMut(Suspicion)) {
         let shares = self.shares();
         for (k, (channel, _)) in self.found.iter().enumerate() {
@@ -224,9 +225,9 @@ impl Known<'_> {
         let found: f32 = self.found.iter().map(|(_, share)| share).sum();
         let beforehand = match self.witness {
             _ if self.wrong.is_empty() => 0.0,
-            Witness::Bars => 0.0,
+            Witness::Bars | Witness::Directions { .. } => 0.0,
             Witness::None => 1.0,
-            Witness::Table(_) | Witness::Directions { .. } => 0.5,
+            Witness::Table(_) => 0.5,
         };
         let silent = self.witness == Witness::None && self.wrong.is_empty();
         // Where nothing else speaks, the findings are all there is.
@@ -385,7 +386,8 @@ mod tests {
             wrong: &[CURRENT_A],
         });
         assert_eq!((all[0].0, all[0].1), ("Iq", Some(Phase::A)));
-        assert!((all[0].2 - 0.95).abs() < 1e-6);
+        // What the calibration knows of its channels is no news.
+        assert!((all[0].2 - 0.9).abs() < 1e-6);
         let named = all.iter().filter(|x| (x.0, x.1) == ("Iq", Some(Phase::A)));
         assert_eq!(named.count(), 1);
     }
