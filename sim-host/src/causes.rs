@@ -124,7 +124,9 @@ fn wrong_channel(finding: &Finding) -> Option<Channel> {
     match finding.code {
         Code::ZeroSequence => channel(finding.suspect.as_deref().unwrap_or(&finding.channel))
             .filter(|channel| channel.row == Fault::CurrentSensor || finding.suspect.is_some()),
-        Code::Stuck | Code::Polarity | Code::SpeedImplausible => channel(&finding.channel),
+        Code::Stuck | Code::Held | Code::Polarity | Code::SpeedImplausible => {
+            channel(&finding.channel)
+        }
         _ => None,
     }
 }
