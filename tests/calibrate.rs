@@ -20,7 +20,7 @@ fn calibrated(motor: &MotorFile, recordings: &[Recording]) -> Result<Calibrated,
 }
 
 fn verdict(recording: &Recording, motor: &MotorFile) -> Verdict {
-    monitored(recording, motor).1.verdict()
+    monitored(recording, motor).1.verdict(&[])
 }
 
 /// The measured motor with shorted turns: five repetitions of each state, three currents.

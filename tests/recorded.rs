@@ -46,7 +46,7 @@ fn every_peer_recording_is_judged_in_its_steady_parts() {
 fn a_healthy_motor_of_another_simulator_lights_nothing() {
     for recording in ["recording", "recording_b"] {
         let timeline = peer("none", recording);
-        assert_eq!(timeline.verdict().state, VerdictState::Healthy);
+        assert_eq!(timeline.verdict(&[]).state, VerdictState::Healthy);
         let quiet = |lamp: &str| lamp != "on";
         for lamps in &timeline.lamps {
             let residuals = [lamps.r1, lamps.r2, lamps.r3, lamps.r4];
@@ -63,12 +63,14 @@ fn a_healthy_motor_of_another_simulator_lights_nothing() {
 fn a_changed_resistance_lights_the_fault_lamp_and_a_changed_inertia_does_not() {
     assert_eq!(
         peer("stator-resistance-plus-25-percent", "recording")
-            .verdict()
+            .verdict(&[])
             .state,
         VerdictState::Fault
     );
     assert_eq!(
-        peer("inertia-plus-40-percent", "recording").verdict().state,
+        peer("inertia-plus-40-percent", "recording")
+            .verdict(&[])
+            .state,
         VerdictState::Healthy
     );
 }
@@ -100,7 +102,11 @@ fn three_currents_alone_give_the_published_negative_sequence_and_no_verdict() {
                 timeline.judged, 0,
                 "{name}: there is nothing to judge residuals from"
             );
-            assert_eq!(timeline.verdict().state, VerdictState::NotJudged, "{name}");
+            assert_eq!(
+                timeline.verdict(&[]).state,
+                VerdictState::NotJudged,
+                "{name}"
+            );
             assert!(
                 timeline.not_judged[0]
                     .reason

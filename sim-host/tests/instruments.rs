@@ -60,7 +60,7 @@ fn a_generator_starts_running_and_is_healthy() {
             let recording = recorded(&scenario(name, &text));
             let (audit, timeline) = monitored(&recording, &motor(name));
             assert_eq!(codes(&audit), [], "{name} {percent}: {:#?}", audit.findings);
-            let state = timeline.verdict().state;
+            let state = timeline.verdict(&[]).state;
             assert_eq!(state, VerdictState::Healthy, "{name} {percent}");
             assert!(
                 10 * timeline.judged > 8 * timeline.windows,
@@ -115,7 +115,7 @@ fn channels_sampled_one_after_the_other_are_healthy_once_their_delays_are_known(
             let (_, timeline) = monitored(&recording, &motor(name));
             if k == 0 {
                 // Currents three steps behind the voltages: what happens to whoever does not say so.
-                assert_eq!(timeline.verdict().state, VerdictState::Fault, "{name}");
+                assert_eq!(timeline.verdict(&[]).state, VerdictState::Fault, "{name}");
             }
             let mut flags = Mapping::default();
             for (late, channel) in order.into_iter().enumerate() {
@@ -126,7 +126,7 @@ fn channels_sampled_one_after_the_other_are_healthy_once_their_delays_are_known(
             let (audit, timeline) = monitored(&mended, &motor(name));
             assert_eq!(codes(&audit), [], "{name} {k}: {:#?}", audit.findings);
             assert_eq!(
-                timeline.verdict().state,
+                timeline.verdict(&[]).state,
                 VerdictState::Healthy,
                 "{name} {k}"
             );
