@@ -1,7 +1,8 @@
 //! The formats that are read; one entry registers one.
 
+use super::budget::{most_numbers, too_large};
 use super::csv_file::CsvFile;
-use super::table_file::{MOST_NUMBERS, TableFile, too_large};
+use super::table_file::TableFile;
 use super::{comtrade, mat, parquet};
 use crate::error::Error;
 use crate::mapping::Mapping;
@@ -50,8 +51,10 @@ const FORMATS: [Format; 3] = [
     },
 ];
 
-/// Bytes of a stream that are kept at once: [`MOST_NUMBERS`] doubles.
-const MOST_BYTES: u64 = 8 * MOST_NUMBERS;
+/// Bytes of a stream that are kept at once: [`most_numbers`] doubles.
+fn most_bytes() -> u64 {
+    8 * most_numbers()
+}
 /// Bytes that tell a format.
 const HEAD: u64 = 512;
 
@@ -118,9 +121,9 @@ pub(super) fn open_stream(
         let whole = std::io::Cursor::new(bytes).chain(stream);
         return Ok(Box::new(CsvFile::of_stream(name, whole, mapping)?));
     };
-    let mut rest = stream.take(MOST_BYTES);
+    let mut rest = stream.take(most_bytes());
     rest.read_to_end(&mut bytes).map_err(broken)?;
-    match bytes.len() as u64 > MOST_BYTES {
+    match bytes.len() as u64 > most_bytes() {
         true => Err(too_large(name)),
         false => (format.of_bytes)(name, bytes),
     }
