@@ -380,7 +380,7 @@ fn monitored(recording: &Recording, motor: &MotorFile, audit: &Audit) -> Verdict
     let config = replay::config_for(motor, recording);
     let monitor = Monitor::new(config).expect("a sound configuration");
     replay::replay(&monitor, &Samples::new(recording, audit), &mut |_| {})
-        .verdict()
+        .verdict(&[])
         .state
 }
 
