@@ -182,7 +182,8 @@ fn nothing_judged_is_no_answer() {
     let folder = scratch("nothing-judged");
     let motor = Path::new(PROJECT).join("motors/peer-2k2.toml");
     let shipped = std::fs::read_to_string(&motor).expect("it ships");
-    let other_poles = folder.join("six-poles.toml");
+    // Not the name of a recording: the sidecar of six-poles.csv is six-poles.toml.
+    let other_poles = folder.join("three-pole-pairs.toml");
     let six = shipped.replace("pole_pairs = 2", "pole_pairs = 3");
     assert_ne!(six, shipped);
     std::fs::write(&other_poles, six).expect("written");

@@ -368,3 +368,41 @@ fn several_recordings_may_come_as_json_on_standard_output() {
     let list: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON alone");
     assert_eq!(list.as_array().map(Vec::len), Some(2));
 }
+
+#[test]
+fn what_a_recording_has_no_use_for_is_refused() {
+    let folder = bench("no-use");
+    for (arguments, words) in [
+        (&["rec.csv", "--for", "3"][..], "cannot be used with"),
+        (
+            &["--serial", "/dev/null", "--for", "nan"],
+            "a time in seconds above 0",
+        ),
+        (
+            &["--serial", "/dev/null", "--for", "1e300"],
+            "a time in seconds above 0",
+        ),
+        (
+            &["rec.csv", "--motor", "m.toml", "--capture", "x.csv"],
+            "cannot be used with",
+        ),
+        (
+            &["rec.csv", "--pulses-per-revolution", "0"],
+            "the number on its plate",
+        ),
+        (&["."], ".: is a folder; name a .csv"),
+        (
+            &["s.toml"],
+            "s.toml: is a motor file, a scenario or a sidecar by its name",
+        ),
+        (
+            &["rec.csv", "--sidecar", "/dev/zero"],
+            "more than 1048576 bytes",
+        ),
+    ] {
+        let done = within(&folder, &[&["monitor"], arguments].concat());
+        let said = stderr(&done);
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+}

@@ -266,6 +266,21 @@ impl Mapping {
         Ok(())
     }
 
+    /// `--pulses-per-revolution N`.
+    ///
+    /// # Errors
+    /// No pulse, or more than any encoder has.
+    pub fn set_pulses(&mut self, pulses: u32) -> Result<(), Error> {
+        if !(1..=1_000_000).contains(&pulses) {
+            let message = format!("an encoder does not have {pulses} pulses in one turn");
+            let remedy = "give the number on its plate, 1 to 1000000";
+            let flag = "--pulses-per-revolution";
+            return Err(Error::at(COMMAND_LINE, 0, flag, message, remedy));
+        }
+        self.encoder_pulses_per_revolution = Some(pulses);
+        Ok(())
+    }
+
     /// `--delimiter C`: one ASCII character, or `tab`.
     ///
     /// # Errors
@@ -505,6 +520,7 @@ mod tests {
             (m.set_delay("t=1us"), "late against itself"),
             (m.set_sample_rate(-1.0), "samples per second"),
             (m.set_delimiter("comma"), "use one of"),
+            (m.set_pulses(0), "on its plate"),
         ];
         for (result, expected) in cases {
             let error = result.unwrap_err();

@@ -215,6 +215,9 @@ impl Recording {
     }
 }
 
+/// Time between two samples, s: from a tenth of a nanosecond to a clock in nanoseconds that is taken for one in seconds.
+const STEPS_S: std::ops::RangeInclusive<f64> = 1e-10..=1e11;
+
 fn check_clock(name: &str, t: &[f64]) -> Result<(), Error> {
     if t.len() < 2 {
         let message = format!("{} sample(s), at least 2 are needed", t.len());
@@ -229,8 +232,17 @@ fn check_clock(name: &str, t: &[f64]) -> Result<(), Error> {
     }
     match (1..t.len()).find(|&k| !(t[k] > t[k - 1] && t[k].is_finite())) {
         Some(at) => Err(bad(at)),
-        None => Ok(()),
+        None => check_step(name, median_step(t)),
     }
+}
+
+fn check_step(name: &str, step: f64) -> Result<(), Error> {
+    if STEPS_S.contains(&step) {
+        return Ok(());
+    }
+    let message = format!("the samples are {step:e} s apart, which no recorder does");
+    let remedy = "say the unit of the clock, --unit t=ms, or the rate, --sample-rate HZ";
+    Err(Error::at(name, 0, "t", message, remedy))
 }
 
 fn median_step(t: &[f64]) -> f64 {
@@ -265,6 +277,15 @@ mod tests {
             vec![f64::NAN, 1.0],
         ] {
             assert!(Recording::new("x.csv", t, Metadata::default()).is_err());
+        }
+    }
+
+    #[test]
+    fn a_clock_ticks_as_recorders_do() {
+        for step in [1e-300, 1e-12, 1e300] {
+            let t = vec![0.0, step, 2.0 * step];
+            let error = Recording::new("x.csv", t, Metadata::default()).unwrap_err();
+            assert!(error.to_string().contains("--sample-rate"), "{error}");
         }
     }
 

@@ -40,7 +40,7 @@ impl Sidecar {
     /// All problems of the file, each with line, key and remedy.
     pub fn read(path: &Path) -> Result<Sidecar, Error> {
         let file = path.display().to_string();
-        if std::fs::metadata(path).is_ok_and(|metadata| metadata.len() == 0) {
+        if std::fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() == 0) {
             let remedy = "remove it, or write for example voltage = \"instantaneous\"";
             return Err(Error::bad(&file, "the sidecar is empty", remedy));
         }

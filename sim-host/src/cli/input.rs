@@ -108,7 +108,6 @@ impl InputArgs {
             line_voltages: self.line_voltages.then_some(true),
             skip_missing: self.skip_missing.then_some(true),
             decimal_comma: self.decimal_comma.then_some(true),
-            encoder_pulses_per_revolution: self.pulses_per_revolution,
             sidecar: self.sidecar.clone(),
             ..Mapping::default()
         };
@@ -129,6 +128,9 @@ impl InputArgs {
             .try_for_each(|flag| mapping.set_delay(flag))?;
         if let Some(rate) = self.sample_rate {
             mapping.set_sample_rate(rate)?;
+        }
+        if let Some(pulses) = self.pulses_per_revolution {
+            mapping.set_pulses(pulses)?;
         }
         if let Some(delimiter) = &self.delimiter {
             mapping.set_delimiter(delimiter)?;

@@ -37,11 +37,23 @@ pub struct LiveArgs {
     )]
     baud: u32,
     /// Stop after so many seconds; without it the board is watched until Ctrl-C
-    #[arg(long = "for", value_name = "SECONDS")]
+    #[arg(long = "for", value_name = "SECONDS", conflicts_with = "recordings", value_parser = seconds)]
     seconds: Option<f64>,
     /// Fetch the samples around the first alarm, write them as a recording, and stop; needs --motor
-    #[arg(long, value_name = "FILE.csv", requires = "motor")]
+    #[arg(
+        long,
+        value_name = "FILE.csv",
+        requires = "motor",
+        conflicts_with = "recordings"
+    )]
     capture: Option<PathBuf>,
+}
+
+/// Seconds that a clock can count: more than none, at most a century.
+fn seconds(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|x: &f64| *x > 0.0 && *x <= 3e9);
+    number.ok_or_else(|| "write a time in seconds above 0, as 60".to_owned())
 }
 
 /// What was seen, as JSON.

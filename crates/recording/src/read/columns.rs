@@ -78,16 +78,14 @@ impl Row for Sample<'_> {
         self.k as u64 + 1
     }
 
-    fn number(&self, column: usize, name: &str) -> Result<Option<f64>, Error> {
+    fn number(&self, column: usize, _name: &str) -> Result<Option<f64>, Error> {
         let x = self.columns.values[column][self.k];
-        match x {
-            x if x.is_finite() => Ok(Some(x)),
-            x if x.is_nan() => Ok(None),
-            x => {
-                let file = &self.columns.header.file;
-                Err(not_finite(file, self.line(), name, &x.to_string(), x))
-            }
-        }
+        Ok(Some(x).filter(|x| !x.is_nan()))
+    }
+
+    fn not_finite(&self, _column: usize, name: &str, x: f64) -> Error {
+        let file = &self.columns.header.file;
+        not_finite(file, self.line(), name, &x.to_string(), x)
     }
 
     fn missing(&self, name: &str) -> Error {

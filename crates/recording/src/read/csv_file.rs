@@ -156,14 +156,18 @@ impl Row for Cells<'_> {
             text.parse::<f64>()
         };
         match parsed {
-            Ok(x) if x.is_finite() => Ok(Some(x)),
-            Ok(x) => Err(not_finite(self.file, self.line, name, text, x)),
+            Ok(x) => Ok(Some(x)),
             Err(_) => Err(self.not_a_number(name, text)),
         }
     }
 
     fn missing(&self, name: &str) -> Error {
         missing(self.file, self.line, name)
+    }
+
+    fn not_finite(&self, column: usize, name: &str, x: f64) -> Error {
+        let text = self.text(column, name).unwrap_or_default();
+        not_finite(self.file, self.line, name, text, x)
     }
 }
 

@@ -22,6 +22,7 @@ use crate::error::Error;
 use crate::load_table::LoadTable;
 use crate::mapping::{Mapping, Target};
 use crate::metadata::Metadata;
+use crate::names;
 use crate::recording::Recording;
 use crate::sidecar::Sidecar;
 use crate::source::Progress;
@@ -95,7 +96,8 @@ pub fn read_any(
 ) -> Result<Source, Error> {
     // A file that cannot be opened is the first thing to say, before anything about its sidecar.
     let metadata = std::fs::metadata(path).map_err(|error| Error::io(path, &error))?;
-    if !metadata.is_file() && !metadata.is_dir() {
+    refuse_others(path, metadata.is_dir())?;
+    if !metadata.is_file() {
         let stream = File::open(path).map_err(|error| Error::io(path, &error))?;
         return read_stream(&path.display().to_string(), stream, flags, progress);
     }
@@ -126,6 +128,21 @@ pub fn read_stream(
     read_as(sidecar, flags, progress, |mapping| {
         format::open_stream(name, stream, mapping)
     })
+}
+
+/// What is no recording by its place or name, said before a sidecar is looked for beside it.
+fn refuse_others(path: &Path, is_folder: bool) -> Result<(), Error> {
+    let name = path.display().to_string();
+    if is_folder {
+        let remedy = "name a .csv, .csv.gz, .parquet, .mat, .cfg or .cff file in it";
+        return Err(Error::bad(&name, "is a folder", remedy));
+    }
+    if names::extension(path) == "toml" {
+        let message = "is a motor file, a scenario or a sidecar by its name, no recording";
+        let remedy = "name the recording: .csv, .csv.gz, .parquet, .mat, .cfg or .cff";
+        return Err(Error::bad(&name, message, remedy));
+    }
+    Ok(())
 }
 
 fn read_as(
@@ -235,11 +252,12 @@ impl Collector {
     fn take(&mut self, cells: &dyn Row) -> Result<(), Error> {
         for (slot, column) in self.row.iter_mut().zip(&self.used) {
             match cells.number(column.index, &column.name)? {
-                Some(x) => *slot = x,
-                None if self.skip_missing => {
+                Some(x) if x.is_finite() => *slot = x,
+                _ if self.skip_missing => {
                     self.raw.skipped += 1;
                     return Ok(());
                 }
+                Some(x) => return Err(cells.not_finite(column.index, &column.name, x)),
                 None => return Err(cells.missing(&column.name)),
             }
         }

@@ -61,6 +61,9 @@ pub(super) fn load_table(
             let x = cells
                 .number(*k, column.name())?
                 .ok_or_else(|| cells.missing(column.name()))?;
+            if !x.is_finite() {
+                return Err(cells.not_finite(*k, column.name(), x));
+            }
             if let Some((complaint, remedy)) = column.complaint(x) {
                 let message = format!("{x} {complaint}");
                 return Err(Error::at(

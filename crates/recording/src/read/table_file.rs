@@ -25,7 +25,7 @@ pub(super) trait Row {
     /// Its line in a text file, its number in a binary one, counted from 1.
     fn line(&self) -> u64;
 
-    /// The finite number in a column; `None` where there is none.
+    /// The number in a column, infinite where the instrument overflowed; `None` where there is none.
     ///
     /// # Errors
     /// A cell that holds something else.
@@ -33,6 +33,9 @@ pub(super) trait Row {
 
     /// The error for a cell without a number.
     fn missing(&self, name: &str) -> Error;
+
+    /// The error for a cell whose number is infinite.
+    fn not_finite(&self, column: usize, name: &str, x: f64) -> Error;
 }
 
 /// The error for a cell without a number.

@@ -172,6 +172,13 @@ pub fn rows() -> Vec<Case> {
             "t,ia\n0,1\n1,inf\n",
             &["x.csv:3: ia", "`inf` is inf", "overflow"],
         ),
+        case(
+            "t,ia\n0,1\n1e-300,2\n2e-300,3\n",
+            &[
+                "x.csv: t: the samples are 1e-300 s apart",
+                "--sample-rate HZ",
+            ],
+        ),
         case("t,ia\n0,1\n1,1e999\n", &["x.csv:3: ia", "`1e999` is inf"]),
         case(
             "t,ia\n0,1\n1,off\n",

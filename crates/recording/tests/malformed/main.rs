@@ -144,6 +144,8 @@ fn unusual_but_sound_files_are_read() {
     let gap = read(b"t,ia\n0,1\n1,\n2,3\n", &holes);
     assert_eq!(gap.t(), [0.0, 2.0]);
     assert!(gap.assumptions[0].contains("1 rows without a number were dropped"));
+    // As the error of an overflow says.
+    assert_eq!(read(b"t,ia\n0,1\n1,inf\n2,3\n", &holes).t(), [0.0, 2.0]);
     let counted = Mapping {
         sample_rate_hz: Some(10.0),
         skip_missing: Some(true),
