@@ -18,6 +18,7 @@ pub fn not_judged(reason: NotJudged) -> String {
         NotJudged::Sensor(finding) => sensor(finding),
         NotJudged::Transient => "transient: current or speed are changing".to_owned(),
         NotJudged::NoLoadCurrent => "the motor draws no current".to_owned(),
+        NotJudged::Noise => "noise hides what the lamps are to show".to_owned(),
         NotJudged::Reversing => {
             "the shaft turns against the field: braking or reversing".to_owned()
         }
@@ -53,6 +54,7 @@ pub fn reason(number: u8) -> Option<String> {
         10 => not_judged(NotJudged::Transient),
         11 => not_judged(NotJudged::NoLoadCurrent),
         12 => not_judged(NotJudged::Reversing),
+        13 => not_judged(NotJudged::Noise),
         _ => "a reason that this version does not know".to_owned(),
     };
     Some(words)

@@ -139,6 +139,7 @@ pub(crate) fn reason(not_judged: NotJudged) -> u8 {
         NotJudged::Transient => 10,
         NotJudged::NoLoadCurrent => 11,
         NotJudged::Reversing => 12,
+        NotJudged::Noise => 13,
     }
 }
 

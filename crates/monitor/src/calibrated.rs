@@ -3,17 +3,14 @@
 use crate::config::LoadKind;
 use crate::frames::magnitude;
 use crate::isolation::{
-    Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, Temperature,
+    Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS, Temperature,
 };
-use crate::monitor::{Monitor, MonitorState};
-use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
+use crate::monitor::{DERIVATIVE_DOUBT, Monitor, MonitorState};
+use crate::noise::Allowance;
+use crate::operating_point::{OperatingPoint, Rehearsal};
 use crate::report::Report;
 use crate::residuals::{FieldCurrent, ResidualModel, Residuals};
 use crate::window::Window;
-
-/// Share of the accelerating torque that stays in doubt: a difference over five cycles, and an inertia that is only
-/// roughly known.
-const ACCELERATION_DOUBT: f32 = 0.3;
 
 impl Monitor {
     /// Time has passed since the last report, and current has heated the winding.
@@ -40,15 +37,22 @@ impl Monitor {
         rehearsal: &Rehearsal,
         temperature: &Temperature,
         window: &Window,
+        noise: &Allowance,
         report: &mut Report,
     ) {
         if report.not_judged.is_some() {
             return;
         }
         let evidence = if voltages {
-            self.evidence_of_all(healthy, rehearsal, temperature.latest(), window)
+            self.evidence_of_all(
+                healthy,
+                rehearsal,
+                temperature.latest(),
+                window,
+                &noise.rows,
+            )
         } else {
-            currents.then(|| Evidence::of_currents(healthy, window))
+            currents.then(|| Evidence::of_currents(healthy, window, &noise.rows))
         };
         let expected = temperature.expected(healthy);
         report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy, expected));
@@ -69,7 +73,9 @@ impl Monitor {
     ) {
         if let Some((point, residuals)) = self.warm_residuals(heating, rehearsal, window) {
             report.point = Some(point);
-            report.normalised = Some(self.normalise(&residuals, self.tau_load(window).is_some()));
+            let visible = report.visible.unwrap_or(self.config.thresholds);
+            let torque_known = self.tau_load(window).is_some();
+            report.normalised = Some(self.normalise(&residuals, &visible, torque_known));
             report.residuals = Some(residuals);
         }
     }
@@ -93,9 +99,9 @@ impl Monitor {
     /// components; with voltages the speed is needed too, and `None` without it.
     pub fn evidence(&self, healthy: &Healthy, window: &Window) -> Option<Evidence> {
         if window.u_s.positive.norm_sqr() > 0.0 {
-            self.evidence_of_all(healthy, &Rehearsal::default(), 0.0, window)
+            self.evidence_of_all(healthy, &Rehearsal::default(), 0.0, window, &[0.0; ROWS])
         } else {
-            Some(Evidence::of_currents(healthy, window))
+            Some(Evidence::of_currents(healthy, window, &[0.0; ROWS]))
         }
     }
 
@@ -107,7 +113,7 @@ impl Monitor {
         rehearsal: &Rehearsal,
         window: &Window,
     ) -> Option<Residuals> {
-        let evidence = self.evidence_of_all(healthy, rehearsal, 0.0, window)?;
+        let evidence = self.evidence_of_all(healthy, rehearsal, 0.0, window, &[0.0; ROWS])?;
         let heating = Isolation::of(&evidence, healthy, Heating::any(healthy)).heating;
         let (_, residuals) = self.warm_residuals(heating.rise, rehearsal, window)?;
         Some(residuals)
@@ -121,6 +127,7 @@ impl Monitor {
         rehearsal: &Rehearsal,
         near: f32,
         window: &Window,
+        noise: &[f32; ROWS],
     ) -> Option<Evidence> {
         let measured = self.corrected_at(near, window)?.rehearsed(rehearsal);
         let tau_load = self.tau_load(window);
@@ -134,29 +141,27 @@ impl Monitor {
             omega_sync: window.omega_sync,
             tau_load,
         };
-        let mut residuals = bench.residuals()?;
+        let residuals = bench.residuals()?;
         let directions = bench.directions(&residuals)?;
-        let mech_rate = window.speed_change / window.span;
-        let acceleration = self.model.acceleration_share(window.omega_sync, mech_rate);
-        let [torque, ..] = &mut residuals;
-        *torque += acceleration; // (36) row 2
-        let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
-        let [volt, _] = self.unsteadiness(window, &point);
-        // While the rotor flux settles, e_d is its time constant times its rate (15), and the torque follows it.
-        let settling =
-            volt * (1.0 + window.omega_sync * measured.params.l_r() / measured.params.r_r);
+        let moving = self.moving_at(near, window)?.rehearsed(rehearsal);
+        let without = Bench {
+            measured: &moving,
+            ..bench
+        };
+        let mut unsteadiness = without.residuals()?;
+        for (x, r) in unsteadiness.iter_mut().zip(residuals) {
+            *x = DERIVATIVE_DOUBT * (*x - r).abs();
+        }
         let positive = PositiveEvidence {
             residuals,
             directions,
-            unsteadiness: [
-                ACCELERATION_DOUBT * acceleration.abs() + settling,
-                settling,
-                volt,
-            ],
+            unsteadiness,
             rise: near,
             torque_known: self.config.load == LoadKind::Friction || tau_load.is_some(),
         };
         let n_p = self.config.mechanics.n_p;
-        Some(Evidence::new(healthy, window, &measured, n_p, &positive))
+        Some(Evidence::new(
+            healthy, window, &measured, n_p, &positive, noise,
+        ))
     }
 }

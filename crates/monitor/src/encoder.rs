@@ -32,8 +32,10 @@ pub struct EncoderState {
     latest_edge: u32,
     counts: i32,
     glitches: u16,
-    /// Mean of a measured speed in this window.
+    /// Mean of a measured speed in this window: its first value, and sums of what the others are beside it.
+    first: f32,
     sum: f32,
+    square: f32,
     measured: u32,
     missing: u32,
 }
@@ -45,6 +47,9 @@ pub struct SpeedReading {
     pub omega_mech: Option<f32>,
     /// Counts that were too fast to be true and were left out.
     pub glitches: u16,
+    /// Standard deviation of `omega_mech` by the scatter of a measured speed's samples, rad/s; ripple counts as noise. 0 with
+    /// an encoder.
+    pub noise: f32,
     /// No edge came in this window: the shaft stands, or the encoder is dead.
     pub silent: bool,
 }
@@ -67,7 +72,12 @@ impl EncoderConfig {
             SpeedSample::None => state.missing = state.missing.saturating_add(1),
             // NaN and infinity fail the comparison too.
             SpeedSample::RadPerSecond(omega) if omega.abs() < FASTEST => {
-                state.sum += omega;
+                if state.measured == 0 {
+                    state.first = omega;
+                }
+                let beside = omega - state.first;
+                state.sum += beside;
+                state.square += beside * beside;
                 state.measured = state.measured.saturating_add(1);
             }
             SpeedSample::RadPerSecond(_) => state.missing = state.missing.saturating_add(1),
@@ -98,11 +108,13 @@ impl EncoderConfig {
         let reading = SpeedReading {
             omega_mech: self.mean_speed(state),
             glitches: state.glitches,
+            noise: measured_noise(state),
             silent: state.latest_edge == 0 && state.measured == 0,
         };
         state.samples = state.samples.wrapping_sub(state.latest_edge);
         (state.counts, state.latest_edge, state.glitches) = (0, 0, 0);
-        (state.sum, state.measured, state.missing) = (0.0, 0, 0);
+        (state.sum, state.square) = (0.0, 0.0);
+        (state.measured, state.missing) = (0, 0);
         reading
     }
 
@@ -111,7 +123,7 @@ impl EncoderConfig {
             return None;
         }
         if state.measured > 0 {
-            return Some(state.sum / state.measured as f32);
+            return Some(state.first + state.sum / state.measured as f32);
         }
         state.last_count?;
         if state.latest_edge == 0 {
@@ -120,6 +132,16 @@ impl EncoderConfig {
         let revolutions = state.counts as f32 / self.counts_per_revolution;
         Some(TAU * revolutions / (state.latest_edge as f32 * self.t_sample))
     }
+}
+
+/// Standard deviation of a mean of independent samples.
+fn measured_noise(state: &EncoderState) -> f32 {
+    if state.measured < 2 {
+        return 0.0;
+    }
+    let n = state.measured as f32;
+    let mean = state.sum / n;
+    libm::sqrtf((state.square / n - mean * mean).max(0.0) / (n - 1.0))
 }
 
 #[cfg(test)]
@@ -158,6 +180,21 @@ mod tests {
             let resolution = (2.0 / 200.0_f64).min(2.0 / counts_in_window);
             let measured = f64::from(speed_over(3, 200, omega));
             prop_assert!((measured / omega - 1.0).abs() <= resolution + 1e-5, "{measured} for {omega}");
+        }
+    }
+
+    /// Alternating by 1 rad/s about 150: the mean of 100 samples is 150, known to 1/sqrt(99).
+    #[test]
+    fn a_measured_speed_knows_its_noise() {
+        let mut state = EncoderState::default();
+        for _ in 0..2 {
+            for k in 0..100 {
+                let omega = 150.0 + if k % 2 == 0 { 1.0 } else { -1.0 };
+                config().update(&mut state, SpeedSample::RadPerSecond(omega));
+            }
+            let reading = config().close_window(&mut state);
+            assert_eq!(reading.omega_mech, Some(150.0));
+            assert!((reading.noise - 0.1005).abs() < 1e-4, "{}", reading.noise);
         }
     }
 

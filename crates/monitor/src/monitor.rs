@@ -13,6 +13,7 @@ use crate::intake::{
     IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
 };
 use crate::isolation::Temperature;
+use crate::noise::{Allowance, CycleScatter};
 use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
 use crate::panel::{PanelConfig, PanelState};
 use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
@@ -20,9 +21,11 @@ use crate::report::{NotJudged, Report};
 use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
 use crate::rotor::{RotorState, Sidebands};
 use crate::sample::Sample;
+use crate::settled::settled;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
-use crate::window::{Cycle, Window, WindowState};
+use crate::trend::rate_noise;
+use crate::window::{Cycle, CycleNoise, Window, WindowState};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +54,8 @@ pub struct MonitorState {
     pub(crate) phasor: PhasorState,
     pub(crate) axes: Axes,
     pub(crate) encoder: EncoderState,
-    window: WindowState,
+    pub(crate) window: WindowState,
+    pub(crate) scatter: CycleScatter,
     panel: PanelState,
     rotor: RotorState,
     pub(crate) temperature: Temperature,
@@ -85,7 +89,10 @@ impl MonitorState {
 
     /// After missing samples: finds the supply anew; lamps and their persistence stay as they are.
     pub fn resume_after_gap(&mut self) {
+        let mut scatter = self.scatter;
+        scatter.interrupt();
         *self = MonitorState {
+            scatter,
             panel: self.panel,
             temperature: self.temperature,
             samples: self.samples,
@@ -108,8 +115,26 @@ const VOLTAGE_RANGE: [f32; 2] = [0.75, 1.2];
 const MAX_UNBALANCE: f32 = 0.03;
 /// Share of synchronous speed that voltages and currents of a running motor imply at the least: a braked one's imply none.
 const LEAST_RUNNING: f32 = 0.5;
-/// A window counts as steady when the neglected derivative terms stay below this share of the threshold.
+/// A window counts as steady when what is left of the derivative terms stays below this share of the threshold.
 const STEADY_SHARE: f32 = 0.25;
+/// Share of the derivative terms that stays in doubt: parameters and inertia are only roughly known.
+pub(crate) const DERIVATIVE_DOUBT: f32 = 0.25;
+/// A step in the middle of five cycles lies 0.4 to 0.5 of itself off the straight line.
+const STEP_PER_BEND: f32 = 2.0;
+/// Standard deviations of the noise within which a change is none.
+const NOISE_DEVIATIONS: f32 = 4.0;
+/// A residual is too noisy when it must exceed so many thresholds to be seen.
+const NOISY: f32 = 10.0;
+
+/// How a window changes.
+#[derive(Clone, Copy, Debug)]
+struct Movement {
+    /// What stays in doubt of the derivative terms in r1..r4.
+    doubt: [f32; RESIDUALS],
+    is_steady: bool,
+    /// The shaft turns against the field, and voltages and currents agree.
+    is_plugged: bool,
+}
 
 impl Monitor {
     /// Prepares a monitor.
@@ -204,6 +229,7 @@ impl Monitor {
 
     fn restart(&self, state: &mut MonitorState) {
         state.window.clear();
+        state.scatter.interrupt();
         state.intake.close_cycle();
         self.encoder.close_window(&mut state.encoder);
     }
@@ -281,8 +307,13 @@ impl Monitor {
         }
         report.not_judged = self.obstacle(measured, window, report);
         report.rotor.sidebands = self.follow_rotor(state, window, report.not_judged);
-        if voltages && currents {
-            self.evaluate(&state.rehearsal, window, report);
+        let movement = (voltages && currents)
+            .then(|| self.movement(&state.rehearsal, window))
+            .flatten();
+        let calm = movement.is_none_or(|m| m.is_steady && !m.is_plugged);
+        let noise = self.allowance(state, window, calm && report.not_judged.is_none());
+        if let Some(movement) = &movement {
+            self.evaluate(&state.rehearsal, window, movement, &noise, report);
         }
         if let Some(healthy) = &self.config.healthy {
             self.isolate(
@@ -291,6 +322,7 @@ impl Monitor {
                 &state.rehearsal,
                 &state.temperature,
                 window,
+                &noise,
                 report,
             );
             if let Some(isolation) = &report.isolation {
@@ -363,7 +395,14 @@ impl Monitor {
     }
 
     #[inline(never)]
-    fn evaluate(&self, rehearsal: &Rehearsal, window: &Window, report: &mut Report) {
+    fn evaluate(
+        &self,
+        rehearsal: &Rehearsal,
+        window: &Window,
+        movement: &Movement,
+        noise: &Allowance,
+        report: &mut Report,
+    ) {
         let Some(point) = self.operating_point(self.config.frame, rehearsal, window) else {
             return;
         };
@@ -371,11 +410,15 @@ impl Monitor {
         let residuals = self.model.evaluate(&point, tau_load);
         report.point = Some(point);
         report.residuals = Some(residuals);
-        report.normalised = Some(self.normalise(&residuals, tau_load.is_some()));
-        if self.is_plugged(rehearsal, window) {
+        let visible = self.visible(movement, noise);
+        report.visible = Some(visible);
+        report.normalised = Some(self.normalise(&residuals, &visible, tau_load.is_some()));
+        if movement.is_plugged {
             report.not_judged = report.not_judged.or(Some(NotJudged::Reversing));
-        } else if !self.is_steady(window, &point) {
+        } else if !movement.is_steady {
             report.not_judged = report.not_judged.or(Some(NotJudged::Transient));
+        } else if self.is_too_noisy(&visible) {
+            report.not_judged = report.not_judged.or(Some(NotJudged::Noise));
         } else if window.invalid_samples == 0 {
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
         }
@@ -395,6 +438,19 @@ impl Monitor {
     /// The same with resistances that have risen by this share: an effect's law may depend on the flux behind them.
     #[inline(never)]
     pub(crate) fn corrected_at(&self, rise: f32, window: &Window) -> Option<Corrected> {
+        let moving = self.moving_at(rise, window)?;
+        let mechanics = &self.config.mechanics;
+        Some(settled(
+            &moving,
+            &window.rates,
+            window.omega_sync,
+            mechanics,
+        ))
+    }
+
+    /// The same as it is, with whatever it changes.
+    #[inline(never)]
+    pub(crate) fn moving_at(&self, rise: f32, window: &Window) -> Option<Corrected> {
         let config = &self.config;
         let params = TParams {
             r_s: config.params.r_s * (1.0 + rise),
@@ -424,12 +480,38 @@ impl Monitor {
             .map(|point| point.rehearse(rehearsal))
     }
 
-    /// Over the thresholds; what an undeclared load makes meaningless becomes NaN, which no comparator counts.
-    pub(crate) fn normalise(&self, residuals: &Residuals, torque_known: bool) -> [f32; RESIDUALS] {
+    /// Residuals that light their lamps: the thresholds, and what changes and noise of this window can do.
+    fn visible(&self, movement: &Movement, noise: &Allowance) -> [f32; RESIDUALS] {
+        let mut visible = self.config.thresholds;
+        let more = movement.doubt.iter().zip(noise.residuals);
+        for (x, (doubt, noise)) in visible.iter_mut().zip(more) {
+            *x += doubt + noise;
+        }
+        visible
+    }
+
+    fn is_too_noisy(&self, [visible, ..]: &[f32; RESIDUALS]) -> bool {
+        let [threshold, ..] = self.config.thresholds;
+        *visible > NOISY * threshold
+    }
+
+    /// Over what lights the lamps. What an undeclared load makes meaningless, and what is too noisy, becomes NaN, which no
+    /// comparator counts.
+    pub(crate) fn normalise(
+        &self,
+        residuals: &Residuals,
+        visible: &[f32; RESIDUALS],
+        torque_known: bool,
+    ) -> [f32; RESIDUALS] {
         let load_known = self.config.load == LoadKind::Friction || torque_known;
         let mut normalised = residuals.r;
-        for (x, threshold) in normalised.iter_mut().zip(self.config.thresholds) {
-            *x /= threshold;
+        let limits = visible.iter().zip(self.config.thresholds);
+        for (x, (visible, threshold)) in normalised.iter_mut().zip(limits) {
+            *x = if *visible > NOISY * threshold {
+                f32::NAN
+            } else {
+                *x / visible
+            };
         }
         if !load_known {
             normalised.iter_mut().skip(1).for_each(|x| *x = f32::NAN);
@@ -457,16 +539,70 @@ impl Monitor {
             })
     }
 
-    fn is_steady(&self, window: &Window, point: &OperatingPoint) -> bool {
-        let unsteadiness = self.unsteadiness(window, point);
-        let [r1, r2, ..] = self.config.thresholds;
-        let limits = [STEADY_SHARE * r1, STEADY_SHARE * r2];
-        unsteadiness.iter().zip(limits).all(|(x, limit)| *x < limit)
+    /// How this window changes; `None` where there is no operating point.
+    #[inline(never)]
+    fn movement(&self, rehearsal: &Rehearsal, window: &Window) -> Option<Movement> {
+        let point = self.operating_point(self.config.frame, rehearsal, window)?;
+        let doubt = self.doubt(rehearsal, window, &point)?;
+        let noise = window.cycle_noise(self.config.t_sample);
+        let [r1, r2, ..] = self
+            .config
+            .thresholds
+            .map(|threshold| STEADY_SHARE * threshold);
+        let [doubt_1, doubt_2, ..] = doubt;
+        let [bend_1, bend_2] = self.bend(window, &noise, &point);
+        let [noise_1, noise_2] = self.noise_of_doubt(window, &noise);
+        let is_steady =
+            doubt_1 < r1 + noise_1 && doubt_2 < r2 + noise_2 && bend_1 < r1 && bend_2 < r2;
+        Some(Movement {
+            doubt,
+            is_steady,
+            is_plugged: self.is_plugged(rehearsal, window),
+        })
     }
 
-    pub(crate) fn unsteadiness(&self, window: &Window, point: &OperatingPoint) -> [f32; 2] {
-        let current_rate = window.current_change / window.span;
-        let mech_rate = window.speed_change / window.span;
-        self.model.unsteadiness(point, current_rate, mech_rate)
+    /// What stays in doubt of the derivative terms: a share of what they move.
+    fn doubt(
+        &self,
+        rehearsal: &Rehearsal,
+        window: &Window,
+        point: &OperatingPoint,
+    ) -> Option<[f32; RESIDUALS]> {
+        let measured = self.moving_at(0.0, window)?;
+        let moving = OperatingPoint::new(
+            &measured,
+            self.config.frame,
+            window.omega_sync,
+            measured.omega_mech * self.config.mechanics.n_p,
+        )?;
+        let tau_load = self.tau_load(window);
+        let without = self.model.evaluate(&moving.rehearse(rehearsal), tau_load);
+        let mut doubt = self.model.evaluate(point, tau_load).r;
+        for (x, without) in doubt.iter_mut().zip(without.r) {
+            *x = DERIVATIVE_DOUBT * (*x - without).abs();
+        }
+        Some(doubt)
+    }
+
+    /// How much of a doubt noise alone may make: the rates of flux and speed are known no better.
+    fn noise_of_doubt(&self, window: &Window, noise: &CycleNoise) -> [f32; 2] {
+        let p = &self.config.params;
+        let (of_voltage, of_current) = (noise.voltage / window.omega_sync, noise.current * p.l_a());
+        let flux = libm::sqrtf(of_voltage * of_voltage + of_current * of_current);
+        let rate = NOISE_DEVIATIONS * rate_noise(self.config.window_cycles, window.span);
+        let speeding = self
+            .model
+            .acceleration_share(window.omega_sync, rate * noise.speed);
+        [self.charging_share(window, rate * flux), speeding].map(|x| DERIVATIVE_DOUBT * x)
+    }
+
+    /// What no straight line explains, beyond what noise bends.
+    fn bend(&self, window: &Window, noise: &CycleNoise, point: &OperatingPoint) -> [f32; 2] {
+        let beyond = |bend: f32, noise: f32| (bend - NOISE_DEVIATIONS * noise).max(0.0);
+        let current = beyond(window.current_bend, noise.current);
+        let speed = beyond(window.speed_bend, noise.speed);
+        let per_second = STEP_PER_BEND / window.span;
+        self.model
+            .unsteadiness(point, current * per_second, speed * per_second)
     }
 }

@@ -31,12 +31,14 @@ pub enum NotJudged {
     Supply(SupplyFinding),
     /// A sensor is dead or contradicts the others.
     Sensor(SensorFinding),
-    /// Current or speed are changing.
+    /// Current or speed are changing, and not along straight lines.
     Transient,
     /// The motor is supplied but draws no current.
     NoLoadCurrent,
     /// The shaft turns against the field, which brakes or reverses it (slip above 1), or the field changes its direction.
     Reversing,
+    /// Noise hides what the lamps are to show: see [`Report::visible`].
+    Noise,
 }
 
 /// One window's result.
@@ -56,8 +58,11 @@ pub struct Report {
     pub sensor: Option<SensorFinding>,
     /// Finding about the supply in this window, before persistence.
     pub supply: Option<SupplyFinding>,
-    /// Residuals over their thresholds: beyond 1 is on.
+    /// Residuals over what lights their lamps: beyond 1 is on.
     pub normalised: Option<[f32; RESIDUALS]>,
+    /// Residuals, shares of their scales, from which on the lamps light in this window: the thresholds, and what its noise
+    /// and its changes can do. `None` where there are no residuals.
+    pub visible: Option<[f32; RESIDUALS]>,
     /// Which cause explains the window, where the motor was calibrated.
     pub isolation: Option<Isolation>,
     /// What the current's sidebands say about the rotor's bars.

@@ -8,6 +8,7 @@ use crate::encoder::SpeedReading;
 use crate::frames::{Sequence, magnitude};
 use crate::phasor::{CHANNELS, ChannelCycle, CyclePhasors};
 use crate::sample::ClippedChannels;
+use crate::trend::Trend;
 
 /// Longest window, in supply cycles.
 pub const MAX_WINDOW_CYCLES: usize = 10;
@@ -92,11 +93,14 @@ pub struct Window {
     pub omega_mech: Option<f32>,
     /// Mean brake torque against the field, N m.
     pub tau_load: Option<f32>,
-    /// Change of the current, seen from the voltage, from the first to the last cycle, A; an excursion in between
-    /// counts with its share of the window.
-    pub current_change: f32,
-    /// Change of the mechanical speed with the field from the first to the last cycle, rad/s.
-    pub speed_change: f32,
+    /// How fast voltage, current and speed change.
+    pub rates: Rates,
+    /// Farthest that the current of a cycle, seen from the voltage, lies off a straight line through the window, A.
+    pub current_bend: f32,
+    /// The same of the mechanical speed, rad/s.
+    pub speed_bend: f32,
+    /// Standard deviation of the speed of a cycle by the scatter of its samples, rad/s.
+    pub speed_noise: f32,
     /// Time between the middles of the first and the last cycle, s.
     pub span: f32,
     /// Channels that touched a rail anywhere in the window.
@@ -107,6 +111,28 @@ pub struct Window {
     pub glitches: u16,
     /// The speed sensor gave no edge in any cycle.
     pub encoder_silent: bool,
+}
+
+/// Standard deviations of what single cycles show.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CycleNoise {
+    /// Of the voltage vector, V.
+    pub voltage: f32,
+    /// Of the current vector, A.
+    pub current: f32,
+    /// Of the mechanical speed, rad/s.
+    pub speed: f32,
+}
+
+/// Slopes of straight lines through the cycles of a window.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rates {
+    /// Of the voltage's amplitude, V/s.
+    pub voltage: f32,
+    /// Of the current as the voltage sees it, A/s.
+    pub current: Complex32,
+    /// Of the mechanical speed with the field, rad/s2; 0 without a sensor.
+    pub speed: f32,
 }
 
 impl Window {
@@ -128,6 +154,26 @@ impl Window {
         }
     }
 
+    /// What the samples beside their fundamentals do to the vectors of single cycles. Harmonics and ripple count as noise:
+    /// an upper limit.
+    pub fn cycle_noise(&self, t_sample: f32) -> CycleNoise {
+        let beside = |channel: &ChannelCycle| {
+            channel.mean_square - channel.offset * channel.offset - 0.5 * channel.phasor.norm_sqr()
+        };
+        // Two parts of a phasor, each of variance 2 s^2/n, of the mean of three; n samples in a turn.
+        let share = 4.0 * self.omega_sync * t_sample / (3.0 * TAU);
+        let of = |first: usize| {
+            let three = self.channels.iter().skip(first).take(3);
+            let mean = three.map(beside).sum::<f32>() / 3.0;
+            libm::sqrtf(mean.max(0.0) * share)
+        };
+        CycleNoise {
+            voltage: of(0),
+            current: of(3),
+            speed: self.speed_noise,
+        }
+    }
+
     /// A ratio of negative or zero over positive sequence as the channels a, b, c show it: in the mirror the unbalance
     /// that a real change of one channel makes is the conjugate of what it is forwards.
     pub fn in_channels(&self, ratio: Complex32) -> Complex32 {
@@ -139,7 +185,7 @@ impl Window {
         if self.backwards {
             self.omega_mech = self.omega_mech.map(|omega| -omega);
             self.tau_load = self.tau_load.map(|tau| -tau);
-            self.speed_change = -self.speed_change;
+            self.rates.speed = -self.rates.speed;
         }
         self
     }
@@ -187,25 +233,43 @@ impl WindowState {
         window.span = span * t_sample;
         window.omega_sync =
             (TAU * (length - 1) as f32 + phase_advance(oldest, newest)) / window.span;
-        window.current_change = current_change(cycles, length, oldest, newest);
-        if let (Some(first), Some(last)) = (oldest.speed.omega_mech, newest.speed.omega_mech) {
-            window.speed_change = last - first;
-        }
+        window.follow_changes(cycles, length);
         Some(window.mirrored())
+    }
+
+    /// The cycle that came `age` cycles before the newest, as if it were a whole window like `like` without any change.
+    pub fn single(&self, age: usize, like: &Window) -> Option<Window> {
+        let cycle = mean(self.latest(age + 1)?.skip(age), 1);
+        let cycle = Window {
+            omega_sync: like.omega_sync,
+            ..cycle
+        };
+        (cycle.backwards == like.backwards).then(|| cycle.mirrored())
     }
 }
 
-/// From the first cycle to the last, or what an excursion in between adds to the window's mean, whichever is larger.
-fn current_change<'a>(
-    cycles: impl Iterator<Item = &'a Cycle>,
-    length: usize,
-    oldest: &Cycle,
-    newest: &Cycle,
-) -> f32 {
-    let start = seen_from_voltage(oldest);
-    let square = |cycle: &Cycle| (seen_from_voltage(cycle) - start).norm_sqr();
-    let largest = libm::sqrtf(cycles.map(square).fold(0.0, f32::max));
-    libm::sqrtf(square(newest)).max(largest / length as f32)
+impl Window {
+    fn follow_changes<'a>(
+        &mut self,
+        cycles: impl Iterator<Item = &'a Cycle> + Clone,
+        length: usize,
+    ) {
+        let per_second = (length - 1) as f32 / self.span;
+        let real = |x: f32| Complex32::new(x, 0.0);
+        let voltages = cycles
+            .clone()
+            .map(|cycle| real(magnitude(positive(cycle).0)));
+        let currents = Trend::of(cycles.clone().map(seen_from_voltage), length);
+        self.rates.voltage = Trend::of(voltages, length).slope.re * per_second;
+        self.rates.current = currents.slope * per_second;
+        self.current_bend = currents.bend;
+        if self.omega_mech.is_some() {
+            let speed = |cycle: &Cycle| real(cycle.speed.omega_mech.unwrap_or_default());
+            let speeds = Trend::of(cycles.map(speed), length);
+            self.rates.speed = speeds.slope.re * per_second;
+            self.speed_bend = speeds.bend;
+        }
+    }
 }
 
 fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> Window {
@@ -223,6 +287,7 @@ fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> W
             sum.offset += channel.offset * share;
             sum.mean_square += channel.mean_square * share;
         }
+        window.speed_noise = window.speed_noise.max(cycle.speed.noise);
         window.clipped = window.clipped.union(cycle.clipped);
         window.invalid_samples = window.invalid_samples.saturating_add(cycle.invalid_samples);
         window.glitches = window.glitches.saturating_add(cycle.speed.glitches);
@@ -357,7 +422,10 @@ mod tests {
             assert_eq!(window.is_some(), k >= 2, "after {k}");
             if let Some(window) = window {
                 assert_eq!(window.omega_mech, Some(f32::from(k - 1)), "mean of three");
-                assert_eq!(window.speed_change, 2.0, "latest less first");
+                assert!(
+                    (window.rates.speed * 0.02 - 1.0).abs() < 1e-5,
+                    "one more a cycle"
+                );
             }
         }
         // Three were to be kept: more cannot be had.
@@ -493,21 +561,29 @@ mod tests {
             cycle(axis * 300.0, axis * i, 200.0, 150.0)
         };
         let i = Complex32::new(3.0, -4.0);
-        let steady = [0.0, 0.2, 0.4].map(|angle| turned(angle, i));
-        assert!(window_of(&steady).current_change < 1e-5);
-        let moved = [
+        let steady = window_of(&[0.0, 0.2, 0.4].map(|angle| turned(angle, i)));
+        assert!(steady.rates.current.norm() < 1e-3 && steady.current_bend < 1e-5);
+        let step = Complex32::new(0.3, 0.4);
+        let moving = [
             turned(0.0, i),
-            turned(0.1, i),
-            turned(0.2, i + Complex32::new(0.3, 0.4)),
+            turned(0.1, i + step),
+            turned(0.2, i + step * 2.0),
         ];
-        assert!((window_of(&moved).current_change - 0.5).abs() < 1e-5);
-        // There and back: a third of the window was elsewhere.
-        let excursion = [
+        let moving = window_of(&moving);
+        // The voltage's own turning shortens the cycles by half a per cent.
+        assert!(
+            (moving.rates.current * 0.02 - step).norm() < 0.01,
+            "{moving:?}"
+        );
+        assert!(moving.current_bend < 1e-5);
+        // There and back: no slope, two thirds of the way off the mean.
+        let excursion = window_of(&[
             turned(0.0, i),
             turned(0.1, i + Complex32::new(0.6, 0.0)),
             turned(0.2, i),
-        ];
-        assert!((window_of(&excursion).current_change - 0.2).abs() < 1e-5);
+        ]);
+        assert!(excursion.rates.current.norm() < 1e-3);
+        assert!((excursion.current_bend - 0.4).abs() < 1e-5);
     }
 
     #[test]
@@ -520,10 +596,16 @@ mod tests {
                 150.0,
             )
         };
-        let window = window_of(&[current(5.0, 0.0), current(5.0, 0.4)]);
-        assert!(window.current_change < 1e-5);
-        let window = window_of(&[current(5.0, 0.0), current(4.0, 0.4)]);
-        assert!((window.current_change - 1.0).abs() < 1e-5);
+        let rate = |cycles: [Cycle; 2]| window_of(&cycles).rates.current.norm() * 0.02;
+        assert!(rate([current(5.0, 0.0), current(5.0, 0.4)]) < 1e-5);
+        assert!((rate([current(5.0, 0.0), current(4.0, 0.4)]) - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_growing_voltage_has_its_rate() {
+        let cycles = [300.0, 303.0, 306.0]
+            .map(|u| cycle(Complex32::new(u, 0.0), Complex32::ONE, 200.0, 150.0));
+        assert!((window_of(&cycles).rates.voltage - 150.0).abs() < 0.01);
     }
 
     /// A gain acts on amplitude and offset once and on the mean square twice.

@@ -72,6 +72,7 @@ struct MonitorJson<'a> {
     sequence: SequenceSummary,
     rotor: RotorSummary,
     threshold_percent: Option<[f64; 4]>,
+    smallest_visible_percent: Option<[f64; 4]>,
     residuals: &'a [WindowResiduals],
     operation: &'a [WindowOperation],
 }
@@ -198,6 +199,7 @@ impl MonitorArgs {
             sequence: timeline.sequence(),
             rotor: timeline.rotor(),
             threshold_percent: motor.map(|motor| motor.monitor.threshold_percent),
+            smallest_visible_percent: timeline.visible_percent(),
             residuals: &timeline.trace.residuals,
             operation: &timeline.trace.operation,
         };
@@ -306,6 +308,11 @@ pub(super) fn print_windows(timeline: &Timeline) {
                 k + 1
             );
         }
+    }
+    if let Some([r1, r2, r3, r4]) = timeline.visible_percent() {
+        anstream::println!(
+            "  smallest that lights a lamp here: r1 {r1:.2}, r2 {r2:.2}, r3 {r3:.2}, r4 {r4:.2} % of scale"
+        );
     }
 }
 

@@ -136,6 +136,9 @@ pub struct Timeline {
     reasons: BTreeMap<String, u64>,
     shown: Option<(Lamps, Option<NotJudged>)>,
     moments: Moments,
+    /// Residuals that would have lit their lamps, percent of scale, summed up over the windows that had any.
+    visible_sum: [f64; 4],
+    visible_windows: u64,
     candidate_sum: [f64; FAULTS],
     unknown_sum: f64,
     candidate_windows: u64,
@@ -186,6 +189,7 @@ impl Timeline {
         if let Some(window) = &report.window {
             self.turned[usize::from(window.backwards)] += 1;
         }
+        self.note_visible(report);
         self.note_judgement(report);
         self.note_lamps(t, report);
         self.rotor.add(&report.rotor);
@@ -218,6 +222,24 @@ impl Timeline {
         {
             "no motor file was given (--motor M)".clone_into(reason);
         }
+    }
+
+    fn note_visible(&mut self, report: &Report) {
+        let steady = matches!(report.not_judged, None | Some(NotJudged::Noise));
+        let Some(visible) = report.visible.filter(|_| steady) else {
+            return;
+        };
+        self.visible_windows += 1;
+        for (sum, visible) in self.visible_sum.iter_mut().zip(visible) {
+            *sum += 100.0 * f64::from(visible);
+        }
+    }
+
+    /// Residuals that light their lamps, percent of scale: thresholds with what noise and changes do, the mean over the
+    /// steady windows.
+    pub fn visible_percent(&self) -> Option<[f64; 4]> {
+        let n = self.visible_windows as f64;
+        (self.visible_windows > 0).then(|| self.visible_sum.map(|sum| sum / n))
     }
 
     fn note_judgement(&mut self, report: &Report) {

@@ -118,7 +118,7 @@ pub const MAP: [Entry; FIELDS] = {
             NotJudged,
             Word,
             "",
-            "0 judged, 1 no supply found, 2 settling, 3 clipped, 4 invalid, 5 no voltages, 6 no currents, 7 no speed, 8 supply, 9 sensor, 10 transient, 11 no load current, 12 braking or reversing",
+            "0 judged, 1 no supply found, 2 settling, 3 clipped, 4 invalid, 5 no voltages, 6 no currents, 7 no speed, 8 supply, 9 sensor, 10 transient, 11 no load current, 12 braking or reversing, 13 noise",
         ),
         entry(Verdict, Word, "", "0 not judged yet, 1 healthy, 2 fault"),
         entry(

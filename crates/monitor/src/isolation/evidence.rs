@@ -63,20 +63,21 @@ impl Evidence {
         measured: &Corrected,
         n_p: f32,
         positive: &PositiveEvidence,
+        noise: &Rows,
     ) -> Self {
-        let slip = (2.0 * window.omega_sync - (window.omega_sync - measured.omega_mech * n_p))
-            / window.omega_sync;
-        let negative = Negative::from_voltages(window, measured, slip);
+        let negative = Negative::from_voltages(window, measured, n_p);
         let mut known = healthy.scatter.map(|scatter| scatter > 0.0);
         let [torque, ..] = &mut known;
         *torque &= positive.torque_known;
         let mut scatter = healthy.scatter;
+        for (scatter, noise) in scatter.iter_mut().zip(noise) {
+            *scatter = scatter.max(*noise);
+        }
         for (scatter, unsteady) in scatter.iter_mut().zip(positive.unsteadiness) {
             *scatter = libm::sqrtf(*scatter * *scatter + unsteady * unsteady);
         }
-        let zero = [window.i_s.zero_ratio(), window.u_s.zero_ratio()];
         let evidence = Evidence {
-            departure: assemble(&positive.residuals, negative.value, zero),
+            departure: rows_with(window, &positive.residuals, negative.value),
             known,
             scatter,
             positive: positive.directions,
@@ -88,7 +89,7 @@ impl Evidence {
     }
 
     /// From currents alone: their negative and zero sequence.
-    pub(crate) fn of_currents(healthy: &Healthy, window: &Window) -> Self {
+    pub(crate) fn of_currents(healthy: &Healthy, window: &Window, noise: &Rows) -> Self {
         let value = window.i_s.unbalance();
         let [re, im] = healthy.turns_axis;
         let negative = Negative {
@@ -109,12 +110,14 @@ impl Evidence {
             set(&mut scatter, row, healthy.current_unbalance_scatter);
             set(&mut known, row, healthy.current_unbalance_scatter > 0.0);
         }
+        for (scatter, noise) in scatter.iter_mut().zip(noise) {
+            *scatter = scatter.max(*noise);
+        }
         for row in [Row::ZeroCurrent as usize, Row::ZeroCurrent as usize + 1] {
             set(&mut known, row, scatter.get(row).is_some_and(|s| *s > 0.0));
         }
-        let zero = [window.i_s.zero_ratio(), Complex32::ZERO];
         let evidence = Evidence {
-            departure: assemble(&[0.0; 3], value, zero),
+            departure: rows_of_currents(window),
             known,
             scatter,
             positive: Directions::default(),
@@ -295,7 +298,8 @@ impl Evidence {
 }
 
 impl Negative {
-    fn from_voltages(window: &Window, measured: &Corrected, slip: f32) -> Self {
+    fn from_voltages(window: &Window, measured: &Corrected, n_p: f32) -> Self {
+        let slip = (window.omega_sync + measured.omega_mech * n_p) / window.omega_sync;
         let z_2 = impedance(&measured.params, window.omega_sync, slip);
         let (v_1, i_1) = (window.u_s.positive, window.i_s.positive);
         let drop = z_2 * window.i_s.negative / v_1;
@@ -311,6 +315,28 @@ impl Negative {
             drop,
         }
     }
+}
+
+/// What a window shows: residuals of the positive sequence, negative and zero sequences.
+pub(crate) fn rows_of(
+    window: &Window,
+    measured: &Corrected,
+    n_p: f32,
+    positive: &Positive,
+) -> Rows {
+    let negative = Negative::from_voltages(window, measured, n_p);
+    rows_with(window, positive, negative.value)
+}
+
+/// What a window of currents alone shows.
+pub(crate) fn rows_of_currents(window: &Window) -> Rows {
+    let zero = [window.i_s.zero_ratio(), Complex32::ZERO];
+    assemble(&[0.0; 3], window.i_s.unbalance(), zero)
+}
+
+fn rows_with(window: &Window, positive: &Positive, negative: Complex32) -> Rows {
+    let zero = [window.i_s.zero_ratio(), window.u_s.zero_ratio()];
+    assemble(positive, negative, zero)
 }
 
 /// Axes on which a change in one phase enters the negative and the zero sequence; backwards phases b and c change places.

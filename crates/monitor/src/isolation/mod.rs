@@ -22,7 +22,7 @@ pub use temperature::Heating;
 
 pub(crate) use directions::Bench;
 pub use evidence::Evidence;
-pub(crate) use evidence::PositiveEvidence;
+pub(crate) use evidence::{PositiveEvidence, rows_of, rows_of_currents};
 use gauss::dot;
 pub(crate) use temperature::Temperature;
 

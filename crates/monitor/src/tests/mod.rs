@@ -7,5 +7,6 @@ mod drive;
 mod judgement;
 #[path = "../../tests/motor_2200_watt/mod.rs"]
 pub mod motor_2200_watt;
+mod noise;
 
 use crate as monitor;

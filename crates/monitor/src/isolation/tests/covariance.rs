@@ -187,7 +187,7 @@ fn currents_alone_show_their_unbalance() {
     assert_eq!(evidence.known(), &known);
     healthy.current_unbalance_scatter = 0.0;
     healthy.scatter = [0.0; ROWS];
-    let nothing = Evidence::of_currents(&healthy, &window);
+    let nothing = Evidence::of_currents(&healthy, &window, &[0.0; ROWS]);
     assert_eq!(nothing.known_rows(), 0);
 }
 
@@ -202,7 +202,7 @@ fn currents_alone_name_the_phase_of_shorted_turns() {
         // The negative sequence sees phase b a third of a turn ahead, phase c a third behind.
         let axis = Complex32::from_polar(1.0, third * k as f32);
         let window = currents(Complex32::new(re, im) * axis * (0.1 / 3.0), Complex32::ZERO);
-        let evidence = Evidence::of_currents(&healthy, &window);
+        let evidence = Evidence::of_currents(&healthy, &window, &[0.0; ROWS]);
         let isolation = Isolation::of(&evidence, &healthy, Heating::any(&healthy));
         let place = |cause| {
             crate::ALL_CAUSES

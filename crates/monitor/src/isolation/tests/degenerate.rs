@@ -35,8 +35,12 @@ fn windows() -> impl Strategy<Value = Window> {
             i_s,
             omega_sync,
             omega_mech: Some(0.5 * speed * omega_sync),
-            current_change,
-            speed_change,
+            current_bend: current_change,
+            rates: crate::Rates {
+                voltage: 10.0 * current_change,
+                current: num_complex::Complex32::new(current_change, -current_change),
+                speed: speed_change,
+            },
             span: 0.08,
             ..Window::default()
         },

@@ -1,0 +1,192 @@
+//! What the noise of this window can do: lamps take their threshold and as much more.
+
+use motor::steady_state::rotor_flux;
+
+use crate::effects::Corrected;
+use crate::frames::magnitude;
+use crate::isolation::{Bench, ROWS, rows_of, rows_of_currents};
+use crate::monitor::{Monitor, MonitorState};
+use crate::operating_point::OperatingPoint;
+use crate::residuals::{FieldCurrent, RESIDUALS, ResidualModel};
+use crate::scatter::{Noise, ScatterState};
+use crate::trend::rate_noise;
+use crate::window::Window;
+
+/// r1..r4, the rows of evidence, the rotor flux, V s, and the speed, rad/s.
+const FOLLOWED: usize = RESIDUALS + ROWS + 2;
+const FLUX: usize = RESIDUALS + ROWS;
+const SPEED: usize = FLUX + 1;
+
+/// What the noise of the cycles is known to be.
+pub type CycleScatter = ScatterState<FOLLOWED>;
+
+/// What noise can do to one window.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Allowance {
+    /// Of r1..r4, shares of their scales.
+    pub residuals: [f32; RESIDUALS],
+    /// Standard deviations of the rows of evidence.
+    pub rows: [f32; ROWS],
+}
+
+/// Standard deviations that noise may reach: with the persistence of three windows once in some million of them.
+const DEVIATIONS: f32 = 4.5;
+/// Before anything was seen the noise of a window is believed to be this share of the threshold.
+const BELIEVED: f32 = 0.125;
+
+impl Monitor {
+    /// Learns from the cycles of a steady window and says what their noise can do to it.
+    #[inline(never)]
+    pub(crate) fn allowance(
+        &self,
+        state: &mut MonitorState,
+        window: &Window,
+        is_steady: bool,
+    ) -> Allowance {
+        let believed = self.believed();
+        if is_steady {
+            self.follow_cycles(state, window, &believed);
+        } else {
+            state.scatter.interrupt();
+        }
+        self.allowed(&state.scatter.noise(&believed), window)
+    }
+
+    fn follow_cycles(&self, state: &mut MonitorState, window: &Window, believed: &[f32; FOLLOWED]) {
+        let cycles = match state.scatter.is_interrupted() {
+            true => self.config.window_cycles,
+            false => 1,
+        };
+        for age in (0..cycles).rev() {
+            let cycle = state.window.single(age, window);
+            match cycle.and_then(|cycle| self.shown(&cycle)) {
+                Some(shown) => state.scatter.follow(&shown, believed),
+                None => state.scatter.interrupt(),
+            }
+        }
+    }
+
+    /// Standard deviations of single cycles before any was seen.
+    fn believed(&self) -> [f32; FOLLOWED] {
+        let root = libm::sqrtf(self.config.window_cycles as f32);
+        let mut believed = [0.0; FOLLOWED];
+        for (sigma, threshold) in believed.iter_mut().zip(self.config.thresholds) {
+            *sigma = root * BELIEVED * threshold;
+        }
+        if let Some(healthy) = &self.config.healthy {
+            let rows = believed.iter_mut().skip(RESIDUALS);
+            for (sigma, scatter) in rows.zip(healthy.scatter) {
+                *sigma = root * scatter;
+            }
+        }
+        believed
+    }
+
+    /// What one cycle shows; `None` where voltages, currents or speed are missing.
+    #[inline(never)]
+    fn shown(&self, cycle: &Window) -> Option<[f32; FOLLOWED]> {
+        let mut shown = [0.0; FOLLOWED];
+        if cycle.u_s.positive.norm_sqr() == 0.0 {
+            self.config.healthy.as_ref()?;
+            let rows = shown.iter_mut().skip(RESIDUALS);
+            rows.zip(rows_of_currents(cycle))
+                .for_each(|(x, row)| *x = row);
+            return Some(shown);
+        }
+        let measured = self.moving_at(0.0, cycle)?;
+        let point = self.point_of(&measured, cycle.omega_sync)?;
+        let tau_load = self.tau_load(cycle);
+        let residuals = self.model.evaluate(&point, tau_load);
+        shown.iter_mut().zip(residuals.r).for_each(|(x, r)| *x = r);
+        if self.config.healthy.is_some() {
+            let rows = self.rows(cycle, &measured, tau_load)?;
+            let places = shown.iter_mut().skip(RESIDUALS);
+            places.zip(rows).for_each(|(x, row)| *x = row);
+        }
+        let psi_r = rotor_flux(
+            &measured.params,
+            measured.u_s,
+            measured.i_s,
+            cycle.omega_sync,
+        );
+        let last = [(FLUX, magnitude(psi_r)), (SPEED, measured.omega_mech)];
+        for (k, value) in last {
+            if let Some(place) = shown.get_mut(k) {
+                *place = value;
+            }
+        }
+        Some(shown)
+    }
+
+    fn rows(
+        &self,
+        cycle: &Window,
+        measured: &Corrected,
+        tau_load: Option<f32>,
+    ) -> Option<[f32; ROWS]> {
+        let model = ResidualModel {
+            field: FieldCurrent::Live,
+            ..self.model
+        };
+        let bench = Bench {
+            model: &model,
+            measured,
+            omega_sync: cycle.omega_sync,
+            tau_load,
+        };
+        let n_p = self.config.mechanics.n_p;
+        Some(rows_of(cycle, measured, n_p, &bench.residuals()?))
+    }
+
+    fn allowed(&self, noise: &Noise<FOLLOWED>, window: &Window) -> Allowance {
+        let length = self.config.window_cycles;
+        let share = 1.0 / libm::sqrtf(length as f32);
+        let mut allowance = Allowance::default();
+        let mut cycles = noise.cycle.iter().map(|sigma| sigma * share);
+        let places = allowance.residuals.iter_mut().chain(&mut allowance.rows);
+        places.zip(&mut cycles).for_each(|(x, sigma)| *x = sigma);
+        let rate = rate_noise(length, window.span);
+        let of_rate = |k: usize| rate * noise.cycle.get(k).copied().unwrap_or_default();
+        let charging = self.charging_share(window, of_rate(FLUX));
+        let speeding = self
+            .model
+            .acceleration_share(window.omega_sync, of_rate(SPEED));
+        let [r1, r2, r3, r4] = &mut allowance.residuals;
+        let [torque, flux, ..] = &mut allowance.rows;
+        for (x, more) in [
+            (r1, charging),
+            (r4, charging),
+            (flux, charging),
+            (r2, speeding),
+            (r3, speeding),
+            (torque, speeding),
+        ] {
+            *x = libm::sqrtf(*x * *x + more * more);
+        }
+        let far = DEVIATIONS * noise.doubt(DEVIATIONS);
+        allowance.residuals.iter_mut().for_each(|x| *x *= far);
+        let significance = self.config.healthy.map_or(DEVIATIONS, |h| h.significance);
+        let doubt = noise.doubt(significance.min(MOST_DEVIATIONS));
+        allowance.rows.iter_mut().for_each(|x| *x *= doubt);
+        allowance
+    }
+
+    /// What a rate of the rotor flux, V s/s, adds to r1: the current that charges it, on the scale of the voltage.
+    pub(crate) fn charging_share(&self, window: &Window, psi_rate: f32) -> f32 {
+        let p = &self.config.params;
+        let volt = magnitude(window.u_s.positive);
+        if volt > f32::MIN_POSITIVE {
+            window.omega_sync * p.l_m / p.r_r * psi_rate / volt
+        } else {
+            0.0
+        }
+    }
+
+    fn point_of(&self, measured: &Corrected, omega_sync: f32) -> Option<OperatingPoint> {
+        let omega_el = measured.omega_mech * self.config.mechanics.n_p;
+        OperatingPoint::new(measured, self.config.frame, omega_sync, omega_el)
+    }
+}
+
+/// Beyond so many deviations Student's distribution at few degrees of freedom leaves single precision.
+const MOST_DEVIATIONS: f32 = 8.0;

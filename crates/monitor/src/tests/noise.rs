@@ -1,0 +1,93 @@
+//! Noise alone lights nothing, and what it hides is said.
+
+use rand::SeedableRng;
+use rand_distr::{Distribution, Normal};
+use std::cell::RefCell;
+
+use super::calibrated::calibrated;
+use super::drive::{Bench, Drive, config};
+use crate::{Abc, Lamp, MonitorConfig, NotJudged, Report, Sample, SpeedSample};
+
+/// Two seconds of a drive whose channels have noise: standard deviations of `share` of 600 V, 60 A and 200 rad/s.
+fn noisy(config: MonitorConfig, drive: Drive, share: f64, seed: u64) -> Vec<Report> {
+    let random = RefCell::new(rand_pcg::Pcg64::seed_from_u64(seed));
+    let noise = |scale: f64| {
+        let normal = Normal::new(0.0, share * scale).expect("a deviation");
+        normal.sample(&mut *random.borrow_mut()) as f32
+    };
+    let all = |x: Abc, scale| Abc::from_array(x.to_array().map(|x| x + noise(scale)));
+    Bench::new(config).run(2.0, |t| {
+        let clean = drive.sample(t);
+        let SpeedSample::RadPerSecond(omega) = clean.speed else {
+            panic!("a measured speed");
+        };
+        Sample {
+            u_s_abc: clean.u_s_abc.map(|u| all(u, 600.0)),
+            i_s_abc: clean.i_s_abc.map(|i| all(i, 60.0)),
+            speed: SpeedSample::RadPerSecond(omega + noise(200.0)),
+            ..clean
+        }
+    })
+}
+
+/// One per cent of full scale is a fifth of this current's amplitude: r1 scatters by as much as its threshold.
+#[test]
+fn noise_alone_lights_no_lamp() {
+    for config in [config(), calibrated()] {
+        for seed in 0..6 {
+            for share in [0.002, 0.005, 0.01, 0.02] {
+                for report in noisy(config, Drive::healthy(), share, seed) {
+                    let lamps = report.lamps;
+                    assert!(
+                        lamps.fault == Lamp::Off && lamps.is_quiet(),
+                        "{share}: {report:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// What lights a lamp grows with the noise, from the threshold on; a fault beyond it is found all the same.
+#[test]
+fn a_window_says_what_it_can_show() {
+    let visible = |share| {
+        let reports = noisy(config(), Drive::healthy(), share, 1);
+        reports
+            .last()
+            .and_then(|report| report.visible)
+            .expect("evaluated")
+    };
+    let [none, some, much] = [0.0, 0.002, 0.01].map(visible);
+    let thresholds = config().thresholds;
+    for k in 0..4 {
+        // What was believed at the start fades: an eighth of a threshold by 4.5 deviations, on 70 degrees of freedom 8.
+        assert!(none[k] < 1.25 * thresholds[k], "{none:?}");
+        assert!(none[k] < some[k] && some[k] < much[k]);
+        // Five times the noise: five times what is above the threshold, but for the scatter of a scatter and for the belief,
+        // which is more than the smaller noise of r2 and r3 and still counts as a seventh.
+        let ratio = (much[k] - thresholds[k]) / (some[k] - thresholds[k]);
+        assert!((1.9..7.5).contains(&ratio), "{ratio}");
+    }
+    let mut faulty = Drive::healthy();
+    faulty.u = faulty.u.map(|u| u * 0.9);
+    let reports = noisy(config(), faulty, 0.01, 1);
+    assert_eq!(reports.last().expect("reports").lamps.fault, Lamp::On);
+}
+
+/// A fifth of full scale: nothing is to be seen, and this is the reason.
+#[test]
+fn what_is_too_noisy_is_not_judged() {
+    for config in [config(), calibrated()] {
+        let reports = noisy(config, Drive::healthy(), 0.1, 3);
+        let late = reports.iter().skip(reports.len() / 2);
+        let reasons: Vec<_> = late.map(|report| report.not_judged).collect();
+        let noise = reasons
+            .iter()
+            .filter(|r| **r == Some(NotJudged::Noise))
+            .count();
+        assert!(2 * noise > reasons.len(), "{reasons:?}");
+        assert!(reasons.iter().all(Option::is_some), "{reasons:?}");
+        assert!(reports.iter().all(|report| report.lamps.fault == Lamp::Off));
+    }
+}
