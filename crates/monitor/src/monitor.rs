@@ -480,12 +480,13 @@ impl Monitor {
             .map(|point| point.rehearse(rehearsal))
     }
 
-    /// Residuals that light their lamps: the thresholds, and what changes and noise of this window can do.
+    /// Residuals that light their lamps: the thresholds, or what the noise of this window can do where that is more (a
+    /// threshold holds the noise with which it was derived), and what its changes leave in doubt.
     fn visible(&self, movement: &Movement, noise: &Allowance) -> [f32; RESIDUALS] {
         let mut visible = self.config.thresholds;
         let more = movement.doubt.iter().zip(noise.residuals);
         for (x, (doubt, noise)) in visible.iter_mut().zip(more) {
-            *x += doubt + noise;
+            *x = x.max(noise) + doubt;
         }
         visible
     }

@@ -29,8 +29,8 @@ pub struct Allowance {
     pub rows: [f32; ROWS],
 }
 
-/// Standard deviations that noise may reach: with the persistence of three windows once in some million of them.
-const DEVIATIONS: f32 = 4.5;
+/// Standard deviations that noise may reach: once in two million windows, and a lamp wants three in a row.
+const DEVIATIONS: f32 = 5.0;
 /// Before anything was seen the noise of a window is believed to be this share of the threshold.
 const BELIEVED: f32 = 0.125;
 
@@ -43,7 +43,7 @@ impl Monitor {
         window: &Window,
         is_steady: bool,
     ) -> Allowance {
-        let believed = self.believed();
+        let believed = self.believed(window);
         if is_steady {
             self.follow_cycles(state, window, &believed);
         } else {
@@ -66,20 +66,59 @@ impl Monitor {
         }
     }
 
-    /// Standard deviations of single cycles before any was seen.
-    fn believed(&self) -> [f32; FOLLOWED] {
+    /// Standard deviations of single cycles before any was compared with another: what the samples beside their
+    /// fundamentals let expect, but no less than what thresholds and calibration hold.
+    fn believed(&self, window: &Window) -> [f32; FOLLOWED] {
         let root = libm::sqrtf(self.config.window_cycles as f32);
-        let mut believed = [0.0; FOLLOWED];
+        let mut believed = self.expected(window);
         for (sigma, threshold) in believed.iter_mut().zip(self.config.thresholds) {
-            *sigma = root * BELIEVED * threshold;
+            *sigma = sigma.max(root * BELIEVED * threshold);
         }
         if let Some(healthy) = &self.config.healthy {
             let rows = believed.iter_mut().skip(RESIDUALS);
             for (sigma, scatter) in rows.zip(healthy.scatter) {
-                *sigma = root * scatter;
+                *sigma = sigma.max(root * scatter);
             }
         }
         believed
+    }
+
+    /// What white noise of the samples does to what a cycle shows, in the order of what is followed.
+    fn expected(&self, window: &Window) -> [f32; FOLLOWED] {
+        let (p, mechanics) = (&self.config.params, &self.config.mechanics);
+        let noise = window.cycle_noise(self.config.t_sample);
+        let (u, i) = (noise.voltage * ONE_PART, noise.current * ONE_PART);
+        let (omega, volt) = (window.omega_sync, magnitude(window.u_s.positive));
+        let ampere = magnitude(window.i_s.positive);
+        let root = |a: f32, b: f32| libm::sqrtf(a * a + b * b);
+        let flux = share(root(u, omega * p.l_s() * i), volt);
+        let psi = share(volt, omega);
+        let torque = 1.5 * mechanics.n_p * psi * root(i, i);
+        let torque = self
+            .model
+            .acceleration_share(omega, torque / mechanics.inertia);
+        let slip = share(root(p.r_r * i, psi * mechanics.n_p * noise.speed), volt);
+        let leakage = root(p.r_s + p.r_r, omega * p.l_a());
+        let negative = share(root(u, leakage * i), volt);
+        let (zero_i, zero_u) = (share(i, ampere), share(u, volt));
+        let flux_rate = root(share(u, omega), p.l_a() * i);
+        [
+            flux,
+            torque,
+            torque,
+            flux, // r1..r4
+            torque,
+            flux,
+            slip, // torque balance, e_d, e_q
+            negative,
+            negative,
+            zero_i,
+            zero_i,
+            zero_u,
+            zero_u,
+            flux_rate,
+            noise.speed,
+        ]
     }
 
     /// What one cycle shows; `None` where voltages, currents or speed are missing.
@@ -186,6 +225,13 @@ impl Monitor {
         let omega_el = measured.omega_mech * self.config.mechanics.n_p;
         OperatingPoint::new(measured, self.config.frame, omega_sync, omega_el)
     }
+}
+
+/// One part of a complex number whose parts scatter alike.
+const ONE_PART: f32 = core::f32::consts::FRAC_1_SQRT_2;
+
+fn share(x: f32, of: f32) -> f32 {
+    if of > f32::MIN_POSITIVE { x / of } else { 0.0 }
 }
 
 /// Beyond so many deviations Student's distribution at few degrees of freedom leaves single precision.

@@ -34,7 +34,7 @@ const FREEDOM: f32 = 1.0 / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0));
 /// A second difference counts for at most so many times the variance: a fault that comes is no noise.
 const LARGEST: f32 = 9.0;
 /// Degrees of freedom with which what is believed beforehand counts.
-const BELIEF: f32 = 8.0;
+const BELIEF: f32 = 16.0;
 
 impl<const N: usize> Default for ScatterState<N> {
     fn default() -> Self {
@@ -148,8 +148,8 @@ mod tests {
                 assert!((noise.cycle[1] / 0.1 - 1.0).abs() < 0.45, "{noise:?}");
             }
         }
-        // What exceeds three standard deviations is cut, and the belief pulls by a tenth.
-        assert!((mean / 2.0 - 0.95).abs() < 0.05, "{mean}");
+        // What exceeds three standard deviations is cut, and the belief of a quarter pulls by a tenth.
+        assert!((mean / 2.0 - 0.9).abs() < 0.07, "{mean}");
     }
 
     /// A fault that comes at once: the noise that is known hardly grows.

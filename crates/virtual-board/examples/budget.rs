@@ -6,11 +6,11 @@ use sim_host::simulate::Simulation;
 use virtual_board::{CORE_HZ, Inputs, Tally, VirtualBoard};
 
 /// Bytes of flash.
-const MOST_FLASH: f64 = 64.0 * 1024.0;
+const MOST_FLASH: f64 = 216.0 * 1024.0;
 /// Bytes of RAM, stack included.
-const MOST_RAM: f64 = 24.0 * 1024.0;
+const MOST_RAM: f64 = 64.0 * 1024.0;
 /// Instructions per sampling instant, everything included.
-const MOST_PER_SAMPLE: f64 = 400.0;
+const MOST_PER_SAMPLE: f64 = 800.0;
 /// Instructions of the dearest window: residuals, lamps, frame.
 const MOST_PER_WINDOW: f64 = 60_000.0;
 /// Per cent of the core's cycles.

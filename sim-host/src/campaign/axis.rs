@@ -27,10 +27,25 @@ pub enum Axis {
     Bits,
     /// Largest gain error left in a voltage or current channel, percent.
     GainError,
+    /// Samples a second, Hz.
+    SampleRate,
+    /// 1 where the motor runs backwards, 0 where it runs forwards.
+    Backwards,
+    /// How long steps of voltage, load and frequency take, s; 0 for at once.
+    Ramp,
+    /// Supply frequency after the step, Hz.
+    FrequencyStepTo,
 }
 
 /// Number of axes.
-pub const AXES: usize = 11;
+pub const AXES: usize = 15;
+
+/// Axes that every plan draws from one stream of random numbers; those that came later have another, so that the runs of a
+/// plan which does not name them stay what they were.
+pub(super) const FIRST_STREAM: usize = 11;
+
+/// The board's sampling rate, Hz.
+const BOARD_RATE_HZ: f64 = 10_000.0;
 
 /// An axis as a plan file names it.
 pub(super) struct Described {
@@ -124,6 +139,25 @@ pub(super) const DESCRIBED: [Described; AXES] = [
         "sensor_gain_error_percent",
         Bounds::between(0.0, 50.0, "percent"),
         0.0,
+    ),
+    described(
+        Axis::SampleRate,
+        "sample_rate_hz",
+        Bounds::between(500.0, 50_000.0, "Hz"),
+        BOARD_RATE_HZ,
+    ),
+    described(
+        Axis::Backwards,
+        "backwards",
+        Bounds::between(0.0, 1.0, "0 or 1"),
+        0.0,
+    ),
+    described(Axis::Ramp, "ramp_s", Bounds::between(0.0, 600.0, "s"), 0.0),
+    described(
+        Axis::FrequencyStepTo,
+        "frequency_step_to_hz",
+        Bounds::between(1.0, 400.0, "Hz"),
+        f64::NAN,
     ),
 ];
 

@@ -7,7 +7,7 @@ use crate::scenario::Start;
 /// A trouble that may cause an alarm, and a run without it.
 type Trouble = (&'static str, fn(&mut Run<'_>));
 
-const TROUBLES: [Trouble; 11] = [
+const TROUBLES: [Trouble; 14] = [
     ("winding temperature", |run| {
         let cold = run.nominal(Axis::Winding);
         run.set(Axis::Winding, cold);
@@ -18,6 +18,11 @@ const TROUBLES: [Trouble; 11] = [
     ("noise", |run| run.set(Axis::Noise, 0.0)),
     ("load step", |run| run.set(Axis::LoadStepTo, f64::NAN)),
     ("voltage step", |run| run.set(Axis::VoltageStepTo, f64::NAN)),
+    ("frequency step", |run| {
+        run.set(Axis::FrequencyStepTo, f64::NAN);
+    }),
+    ("sampling rate", |run| run.set(Axis::SampleRate, 10_000.0)),
+    ("direction", |run| run.set(Axis::Backwards, 0.0)),
     ("start", |run| run.start = Start::Running),
     ("voltage", |run| run.set(Axis::Voltage, 100.0)),
     ("frequency", |run| {

@@ -178,19 +178,20 @@ impl Plan {
 }
 
 impl Place<'_> {
-    /// The conditions, with a source of uniform random numbers: one is drawn for every axis, needed or not.
-    pub fn conditions(&self, mut uniform: impl FnMut() -> f64) -> Conditions {
+    /// The conditions, with a source of uniform random numbers that is told the axis: one is drawn for every axis, needed or
+    /// not.
+    pub fn conditions(&self, mut uniform: impl FnMut(usize) -> f64) -> Conditions {
         let mut cell = self.cell;
-        let mut value = |grid: &Grid| {
+        let mut value = |axis: usize, grid: &Grid| {
             let position = cell % grid.len();
             cell /= grid.len();
-            let u = uniform();
+            let u = uniform(axis);
             if self.block.drawn {
                 grid.drawn(u)
             } else {
                 grid.at(position)
             }
         };
-        Conditions(std::array::from_fn(|k| value(&self.block.grids[k])))
+        Conditions(std::array::from_fn(|k| value(k, &self.block.grids[k])))
     }
 }

@@ -46,6 +46,14 @@ pub struct Row {
     pub adc_bits: f64,
     /// Largest gain error of the channels, percent.
     pub sensor_gain_error_percent: f64,
+    /// Samples a second, Hz.
+    pub sample_rate_hz: f64,
+    /// 1 where the motor ran backwards.
+    pub backwards: f64,
+    /// How long steps took, s.
+    pub ramp_s: f64,
+    /// Supply frequency after the step, Hz.
+    pub frequency_step_to_hz: f64,
     /// Why the motor cannot run under these conditions; empty where it ran.
     pub not_run: String,
     /// Time of the fault, s.
@@ -153,6 +161,10 @@ fn conditions(run: &Run<'_>) -> Row {
         noise_percent_of_full_scale: of(Axis::Noise),
         adc_bits: of(Axis::Bits).round(),
         sensor_gain_error_percent: of(Axis::GainError),
+        sample_rate_hz: of(Axis::SampleRate),
+        backwards: of(Axis::Backwards).round(),
+        ramp_s: of(Axis::Ramp),
+        frequency_step_to_hz: of(Axis::FrequencyStepTo),
         fault_from_s: if case.is_some() {
             run.fault_from_s
         } else {

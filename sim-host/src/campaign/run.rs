@@ -13,7 +13,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use twox_hash::XxHash64;
 
-use super::axis::{Axis, Conditions};
+use super::axis::{Axis, Conditions, FIRST_STREAM};
 use super::outcome::Outcome;
 use super::plan::{LoadKnowledge, Place, Plan};
 use crate::scenario::{LoadSpec, Piecewise, Scenario, SensorSpec, SpeedSensor, Start, SupplySpec};
@@ -69,7 +69,11 @@ impl<'p> Run<'p> {
         let place = plan.place(index)?;
         let seed = XxHash64::oneshot(plan.seed, &index.to_le_bytes());
         let mut random = Pcg64::seed_from_u64(seed);
-        let drawn = place.conditions(|| random.random());
+        let mut later = Pcg64::seed_from_u64(!seed);
+        let drawn = place.conditions(|axis| match axis < FIRST_STREAM {
+            true => random.random(),
+            false => later.random(),
+        });
         let conditions = resolved(&drawn, &place);
         let phase = random.random_range(0..3);
         let jitter: f64 = random.random();
@@ -129,8 +133,18 @@ impl<'p> Run<'p> {
                 case.kind
                     .faults(case.percent, self.phase, self.fault_from_s)
             }),
+            sample_rate_hz: self.sample_rate_hz(),
             ..Scenario::of(motor, self.duration_s)
         }
+    }
+
+    fn sample_rate_hz(&self) -> f64 {
+        self.conditions.of(Axis::SampleRate)
+    }
+
+    /// Whether the motor runs backwards: it is simulated forwards and shown to the monitor in the mirror.
+    pub fn is_backwards(&self) -> bool {
+        self.conditions.of(Axis::Backwards) >= 0.5
     }
 
     /// What the monitor is told: the nominal motor, and the load where it is declared.
@@ -177,11 +191,16 @@ impl<'p> Run<'p> {
         let mut amplitude = Piecewise::constant(volt(self.conditions.of(Axis::Voltage)));
         let step_to = self.conditions.of(Axis::VoltageStepTo);
         if !step_to.is_nan() {
-            amplitude.change(self.step_time(1), volt(step_to), 0.0);
+            amplitude.change(self.step_time(1), volt(step_to), self.ramp_s());
+        }
+        let mut frequency = Piecewise::constant(self.conditions.of(Axis::Frequency));
+        let step_to = self.conditions.of(Axis::FrequencyStepTo);
+        if !step_to.is_nan() {
+            frequency.change(self.step_time(1), step_to, self.ramp_s());
         }
         SupplySpec {
             amplitude_volt: amplitude,
-            frequency_hz: Piecewise::constant(self.conditions.of(Axis::Frequency)),
+            frequency_hz: frequency,
             phase_rad: self.chance.supply_angle,
             components: self.components(),
             ..SupplySpec::rated(&motor.nameplate)
@@ -217,14 +236,29 @@ impl<'p> Run<'p> {
             torque: first,
             active,
         };
-        let points = vec![(0.0, first), (self.step_time(0), torque(step_to))];
+        let (from_s, second) = (self.step_time(0), torque(step_to));
+        let (points, between) = match self.ramp_s() > 0.0 {
+            true => (
+                vec![
+                    (0.0, first),
+                    (from_s, first),
+                    (from_s + self.ramp_s(), second),
+                ],
+                Interpolation::Linear,
+            ),
+            false => (vec![(0.0, first), (from_s, second)], Interpolation::Step),
+        };
         // A step that does not come is not a number, and no profile.
-        let other = Profile::new(points, Interpolation::Step)
+        let other = Profile::new(points, between)
             .map_or(constant, |profile| Load::Profile { profile, active });
         LoadSpec {
             other,
             ..LoadSpec::default()
         }
+    }
+
+    fn ramp_s(&self) -> f64 {
+        self.conditions.of(Axis::Ramp)
     }
 
     fn step_time(&self, which: usize) -> f64 {
@@ -256,11 +290,18 @@ impl<'p> Run<'p> {
     /// Why the motor cannot run under these conditions, in words.
     pub fn replay(&self, mut each: impl FnMut(f64, &Report)) -> Result<(), String> {
         let simulation = Simulation::new(&self.scenario()).map_err(|error| error.to_string())?;
-        let config = MonitorConfig::from_motor_file(&self.monitor_file(), T_SAMPLE_S);
+        let t_sample = 1.0 / self.sample_rate_hz();
+        let config = MonitorConfig::from_motor_file(&self.monitor_file(), t_sample);
         let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
         let mut state = MonitorState::default();
         for sample in simulation {
-            if let Some(report) = monitor.update_raw(&mut state, &raw(&sample.measured)) {
+            let shown = raw(&sample.measured);
+            let shown = if self.is_backwards() {
+                mirrored(shown)
+            } else {
+                shown
+            };
+            if let Some(report) = monitor.update_raw(&mut state, &shown) {
                 each(sample.t, &report);
             }
         }
@@ -316,6 +357,14 @@ fn nominal(axis: Axis, place: &Place<'_>) -> Option<f64> {
         Axis::Bits => Some(f64::from(file.sensors.adc_bits)),
         _ => None,
     }
+}
+
+/// The mirror image: phases b and c exchanged, the shaft turning the other way.
+fn mirrored(mut raw: RawSample) -> RawSample {
+    raw.voltage_codes.swap(1, 2);
+    raw.current_codes.swap(1, 2);
+    raw.encoder_count = raw.encoder_count.wrapping_neg();
+    raw
 }
 
 fn raw(measured: &Measured) -> RawSample {

@@ -181,7 +181,7 @@ pub fn conditions(row: &Row) -> String {
         }
     };
     format!(
-        "load {:.0}{} %, voltage {:.0}{} %, {:.1} Hz, unbalance {:.1} %, THD {:.1} %, {:.0} degC, noise {:.2} %, gains within {:.2} %",
+        "load {:.0}{} %, voltage {:.0}{} %, {:.1} Hz, unbalance {:.1} %, THD {:.1} %, {:.0} degC, noise {:.2} %, gains within {:.2} %{}",
         row.load_percent,
         step(row.load_step_to_percent),
         row.voltage_percent,
@@ -192,7 +192,26 @@ pub fn conditions(row: &Row) -> String {
         row.winding_degc,
         row.noise_percent_of_full_scale,
         row.sensor_gain_error_percent,
+        beyond_the_board(row),
     )
+}
+
+/// What not every campaign asks: another sampling rate than the board's, the mirror, ramps.
+fn beyond_the_board(row: &Row) -> String {
+    let mut more = String::new();
+    if row.sample_rate_hz > 0.0 && row.sample_rate_hz != 10_000.0 {
+        more += &format!(", {:.0} samples a second", row.sample_rate_hz);
+    }
+    if row.frequency_step_to_hz > 0.0 {
+        more += &format!(", to {:.1} Hz", row.frequency_step_to_hz);
+    }
+    if row.ramp_s > 0.0 {
+        more += &format!(", within {:.1} s", row.ramp_s);
+    }
+    if row.backwards > 0.0 {
+        more += ", backwards";
+    }
+    more
 }
 
 /// How often each text came, the most frequent first.

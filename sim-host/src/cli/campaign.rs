@@ -15,6 +15,7 @@ use crate::campaign::{self, Plan, Results, Row, Run, Table};
 use crate::replay::Timeline;
 use crate::report::Subject;
 use crate::simulate;
+use recording::{Channel, Recording};
 
 /// Measure what the lamps can be trusted with: faults, sizes and conditions, thousands of runs on all cores.
 #[derive(Debug, Args)]
@@ -262,9 +263,32 @@ fn print_run(run: &Run<'_>) {
     }
 }
 
+/// The same motor running backwards: phases b and c exchanged, speed and torque with the other sign.
+fn mirrored(recording: &Recording) -> Result<Recording, recording::Error> {
+    let t = recording.t().to_vec();
+    let mut mirror = Recording::new(recording.name(), t, recording.metadata.clone())?;
+    let [[va, vb, vc], [ia, ib, ic]] = [Channel::VOLTAGES, Channel::CURRENTS];
+    let exchanged = [(va, va), (vb, vc), (vc, vb), (ia, ia), (ib, ic), (ic, ib)];
+    let turned = [Channel::SPEED, Channel::TORQUE];
+    for (channel, from) in exchanged {
+        if let Some(values) = recording.channel(from) {
+            mirror = mirror.with_channel(channel, values.to_vec())?;
+        }
+    }
+    for channel in turned {
+        if let Some(values) = recording.channel(channel) {
+            mirror = mirror.with_channel(channel, values.iter().map(|x| -x).collect())?;
+        }
+    }
+    Ok(mirror)
+}
+
 fn record(run: &Run<'_>, path: &Path) -> Result<Finding, Failure> {
     let refused = |error| Failure::Usage(format!("run {}: {error}", run.index));
-    let recording = simulate::record(&run.scenario(), |_| {}).map_err(refused)?;
+    let mut recording = simulate::record(&run.scenario(), |_| {}).map_err(refused)?;
+    if run.is_backwards() {
+        recording = mirrored(&recording)?;
+    }
     recording::write_recording(path, &recording)?;
     let motor = motor_of(path);
     write_text(&motor, &run.monitor_file().to_toml())?;
