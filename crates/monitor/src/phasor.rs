@@ -6,6 +6,7 @@
 
 use num_complex::Complex32;
 
+use crate::rotation::arcsine;
 use crate::sync::SyncTick;
 
 /// Channels: voltages a, b, c, then currents a, b, c.
@@ -14,6 +15,8 @@ pub const CHANNELS: usize = 6;
 /// Running sums over one cycle, in V and A or in whatever [`Unit`] says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhasorState {
+    /// See [`CyclePhasors::missing`].
+    missing: f32,
     gram: Gram,
     channels: [Projection; CHANNELS],
 }
@@ -85,6 +88,9 @@ pub struct CyclePhasors {
     pub channels: [ChannelCycle; CHANNELS],
     /// Length of the cycle in samples.
     pub samples: f32,
+    /// Angle that the cycle lacks of a whole turn, rad: the oscillator is set to the supply's phase at a sample, up to one
+    /// sample behind the crossing at which a turn begins.
+    pub missing: f32,
 }
 
 impl PhasorState {
@@ -97,7 +103,10 @@ impl PhasorState {
         units: &[Unit; CHANNELS],
     ) -> Option<CyclePhasors> {
         if tick.restarted {
-            *self = PhasorState::default();
+            *self = PhasorState {
+                missing: arcsine(tick.axis.im),
+                ..PhasorState::default()
+            };
         }
         match tick.turn_ends {
             Some(share) => self.turn(tick.axis, share, x, units),
@@ -163,6 +172,7 @@ impl PhasorState {
         let samples = self.gram.one();
         let mut cycle = CyclePhasors {
             samples,
+            missing: self.missing,
             ..CyclePhasors::default()
         };
         for ((result, sums), unit) in cycle.channels.iter_mut().zip(&self.channels).zip(units) {

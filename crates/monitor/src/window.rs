@@ -7,6 +7,7 @@ use num_complex::Complex32;
 use crate::encoder::SpeedReading;
 use crate::frames::{Sequence, magnitude};
 use crate::phasor::{CHANNELS, ChannelCycle, CyclePhasors};
+use crate::rotation::arcsine;
 use crate::sample::ClippedChannels;
 use crate::trend::Trend;
 
@@ -231,8 +232,8 @@ impl WindowState {
         let all: f32 = cycles.clone().map(|cycle| cycle.phasors.samples).sum();
         let span = all - 0.5 * (newest.phasors.samples + oldest.phasors.samples);
         window.span = span * t_sample;
-        window.omega_sync =
-            (TAU * (length - 1) as f32 + phase_advance(oldest, newest)) / window.span;
+        let turns = TAU * (length - 1) as f32 - 0.5 * oldest.phasors.missing;
+        window.omega_sync = (turns + phase_advance(oldest, newest)) / window.span;
         window.follow_changes(cycles, length);
         Some(window.mirrored())
     }
@@ -346,9 +347,7 @@ fn phase_advance(from: &Cycle, to: &Cycle) -> f32 {
     if square <= f32::MIN_POSITIVE {
         return 0.0;
     }
-    let sine = ((last * first.conj()).im / square).clamp(-0.5, 0.5);
-    // arcsine to fifth order: 1e-4 rad at the clamp, exact to rounding below 0.1 rad.
-    sine * (1.0 + sine * sine * (1.0 / 6.0 + sine * sine * 3.0 / 40.0))
+    arcsine((last * first.conj()).im / square)
 }
 
 /// The sequences of voltages and currents that carry the motor.

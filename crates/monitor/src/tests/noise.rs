@@ -91,3 +91,24 @@ fn what_is_too_noisy_is_not_judged() {
         assert!(reports.iter().all(|report| report.lamps.fault == Lamp::Off));
     }
 }
+
+/// The oscillator is set at the sample after a crossing, up to a twentieth of a turn late at 1 kHz: the first cycle lacks
+/// that angle, and no frequency may come of it.
+#[test]
+fn the_first_window_has_the_frequency_of_the_others() {
+    for late in [0.0, 2e-4, 5e-4, 9e-4] {
+        let mut slow = config();
+        slow.t_sample = 1e-3;
+        let monitor = crate::Monitor::new(slow).expect("valid");
+        let mut state = crate::MonitorState::default();
+        let drive = Drive::healthy();
+        let samples = (0..400).map(|k| drive.sample(f64::from(k) * 1e-3 + late));
+        let reports = samples.filter_map(|sample| monitor.update(&mut state, &sample));
+        let omegas: Vec<f32> = reports.filter_map(|r| Some(r.window?.omega_sync)).collect();
+        assert!(omegas.len() > 5);
+        for omega in &omegas {
+            let off = omega / super::drive::OMEGA_SYNC as f32 - 1.0;
+            assert!(off.abs() < 2e-4, "{late}: {omegas:?}");
+        }
+    }
+}
