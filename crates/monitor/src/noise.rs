@@ -29,8 +29,8 @@ pub struct Allowance {
     pub rows: [f32; ROWS],
 }
 
-/// Standard deviations that noise may reach: once in two million windows, and a lamp wants three in a row.
-const DEVIATIONS: f32 = 5.0;
+/// Standard deviations that noise may reach: once in 150 000 windows, and a lamp wants three in a row.
+const DEVIATIONS: f32 = 4.5;
 /// Before anything was seen the noise of a window is believed to be this share of the threshold.
 const BELIEVED: f32 = 0.125;
 
