@@ -1,14 +1,13 @@
 //! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
 
 use crate::free_scale;
-use crate::signal::{Supply, denoise, estimated_sigma, smooth};
+use crate::inputs::{InputNoise, Load, measured_speed};
+use crate::signal::{Supply, Windows, denoise, estimated_sigma};
 use crate::table::{self, Point};
 use motor::dynamic::clarke;
 use motor::effects::{Between, Inputs, Plant, Rated, Timeline};
 use num_complex::Complex64;
-use recording::{
-    Channel, LoadTable, LoadTorque, Recording, StartsFrom, Supply as SupplyKind, VoltageKind,
-};
+use recording::{Channel, LoadTable, Recording, StartsFrom, Supply as SupplyKind, VoltageKind};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
@@ -63,7 +62,7 @@ pub(crate) struct Speeds<'a> {
 /// A recording made ready.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
-    /// Inputs as measured, voltage denoised.
+    /// Voltage and load torque as measured, denoised.
     pub inputs: Inputs,
     /// Voltage between samples.
     pub between: Between,
@@ -87,8 +86,12 @@ pub(crate) struct Case {
     pub block: usize,
     /// Denoised supply.
     pub supply: Supply,
-    /// Noise of the raw voltage, V per axis, and of the torque, N m.
-    pub input_noise: (f64, f64),
+    /// Noise of the inputs before they were smoothed.
+    pub input_noise: InputNoise,
+    /// How the load torque was smoothed.
+    pub load_windows: Windows,
+    /// How the speed was smoothed.
+    pub speed_windows: Windows,
     /// Whether an inverter feeds the motor.
     pub inverter: bool,
     /// Whether the scale of the speed is a free parameter: the speeds here are right up to a factor near one.
@@ -125,13 +128,13 @@ impl Case {
         let between = between(rec, t_sample);
         let load = Load::new(rec);
         let theta_mech = measured_angle(rec);
-        let speed = smoothed_speed(rec, t_sample);
+        let speed = measured_speed(rec, t_sample);
         let running_at = running_at(rec, currents, rated);
         let mut case = Self {
             inputs: Inputs {
                 t_sample,
                 u_s: supply.u_s.clone(),
-                tau_load: load.torque,
+                tau_load: load.torque.value,
             },
             between,
             timeline: Arc::new(Timeline {
@@ -139,7 +142,7 @@ impl Case {
                 omega_sync: supply.omega_sync.clone(),
                 theta_mech,
             }),
-            speed,
+            speed: speed.value,
             speed_is_input: load.unknown,
             running_at,
             open: Vec::new(),
@@ -148,7 +151,13 @@ impl Case {
             weight: Vec::new(),
             block: 1,
             supply,
-            input_noise: (axis_noise, load.noise),
+            input_noise: InputNoise {
+                voltage: axis_noise,
+                torque: load.torque.noise,
+                speed: if load.unknown { speed.noise } else { 0.0 },
+            },
+            load_windows: load.torque.windows,
+            speed_windows: speed.windows,
             inverter: rec.metadata.supply == SupplyKind::Inverter,
             speed_scale_is_free: false,
             table: None,
@@ -182,7 +191,9 @@ impl Case {
             weight,
             block: 1,
             supply: Supply::default(),
-            input_noise: (0.0, 0.0),
+            input_noise: InputNoise::default(),
+            load_windows: Windows::default(),
+            speed_windows: Windows::default(),
             inverter: false,
             speed_scale_is_free: false,
             table: Some(points),
@@ -194,20 +205,20 @@ impl Case {
         self.inputs.t_sample * (self.between.stride() * self.decimation) as f64
     }
 
-    /// The measured speeds that drive a simulation of `plant`: with a free scale they are what the plant's speed sensor
-    /// would have to see to show the channel.
-    pub fn speeds(&self, plant: &Plant) -> Speeds<'_> {
+    /// The measured speeds that drive a simulation of `plant`, from the smoothed `speed`: with a free scale they are what
+    /// the plant's speed sensor would have to see to show the channel.
+    pub fn speeds<'a>(&self, plant: &Plant, speed: &'a [f64]) -> Speeds<'a> {
         let gain = free_scale::gain_of(&plant.effects);
         if !self.speed_scale_is_free || gain == 1.0 {
             return Speeds {
-                speed: Cow::Borrowed(&self.speed),
+                speed: Cow::Borrowed(speed),
                 running_at: self.running_at,
                 timeline: self.timeline.clone(),
             };
         }
         let over = |x: &[f64]| x.iter().map(|x| x / gain).collect::<Vec<f64>>();
         Speeds {
-            speed: Cow::Owned(over(&self.speed)),
+            speed: Cow::Owned(over(speed)),
             running_at: self.running_at.map(|x| x / gain),
             timeline: Arc::new(Timeline {
                 theta_mech: over(&self.timeline.theta_mech),
@@ -219,7 +230,7 @@ impl Case {
     /// The same with the scale of the speed as a plant has it, for everything that looks at the measured speed.
     pub fn as_seen_by(&self, plant: &Plant) -> Self {
         let mut case = self.clone();
-        let speeds = self.speeds(plant);
+        let speeds = self.speeds(plant, &self.speed);
         case.speed = speeds.speed.into_owned();
         (case.running_at, case.timeline) = (speeds.running_at, speeds.timeline);
         if self.speed_scale_is_free {
@@ -378,7 +389,7 @@ fn check_clock(rec: &Recording) -> Result<(), Unsupported> {
 }
 
 /// Declared noise of a channel, or an estimate, never zero.
-fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
+pub(crate) fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
     let declared = rec.metadata.sensors.sigma(channel);
     let sigma = declared.unwrap_or_else(|| estimated_sigma(x));
     let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
@@ -400,35 +411,6 @@ fn between(rec: &Recording, t_sample: f64) -> Between {
     }
 }
 
-struct Load {
-    torque: Vec<f64>,
-    noise: f64,
-    unknown: bool,
-}
-
-impl Load {
-    fn new(rec: &Recording) -> Self {
-        let none = vec![0.0; rec.len()];
-        match (rec.metadata.load_torque, rec.torque()) {
-            (LoadTorque::Friction, _) => Self::known(none, 0.0),
-            (_, Some(torque)) => Self::known(torque.to_vec(), sigma(rec, Channel::TORQUE, torque)),
-            _ => Self {
-                torque: none,
-                noise: 0.0,
-                unknown: rec.speed().is_some(),
-            },
-        }
-    }
-
-    fn known(torque: Vec<f64>, noise: f64) -> Self {
-        Self {
-            torque,
-            noise,
-            unknown: false,
-        }
-    }
-}
-
 /// Shaft angle by integrating the measured speed (trapezoids), rad.
 fn measured_angle(rec: &Recording) -> Vec<f64> {
     let Some(speed) = rec.speed() else {
@@ -442,16 +424,6 @@ fn measured_angle(rec: &Recording) -> Vec<f64> {
     std::iter::once(0.0)
         .chain(speed.windows(2).map(&mut next))
         .collect()
-}
-
-/// Speed smoothed over 10 ms, rad/s.
-fn smoothed_speed(rec: &Recording, t_sample: f64) -> Vec<f64> {
-    let Some(speed) = rec.speed() else {
-        return Vec::new();
-    };
-    let x: Vec<_> = speed.iter().map(|&w| Complex64::new(w, 0.0)).collect();
-    let smoothed = smooth(&x, (0.01 / t_sample) as usize);
-    smoothed.value.iter().map(|x| x.re).collect()
 }
 
 /// Initial speed if the motor already runs.

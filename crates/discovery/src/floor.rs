@@ -1,11 +1,11 @@
 //! The error that is left when nothing is missing: sensor noise and propagated input noise.
 
 use crate::case::{Case, N_CHANNELS};
-use crate::predict::outputs_on;
+use crate::predict::{Drive, outputs_on};
 use motor::effects::Plant;
 use num_complex::Complex64;
 use rand::SeedableRng;
-use rand_distr::{Distribution, Normal};
+use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
@@ -45,10 +45,9 @@ pub(crate) fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
             sd: 0.0,
         };
     }
-    let base = outputs_on(case, plant, &case.inputs);
+    let base = outputs_on(case, plant, &Drive::of(case));
     let draw = |k: u64| {
-        let inputs = disturbed(case, seed.wrapping_add(k));
-        let out = outputs_on(case, plant, &inputs);
+        let out = outputs_on(case, plant, &disturbed(case, seed.wrapping_add(k)));
         let error = |r: &std::ops::Range<usize>| {
             let range = r.start * N_CHANNELS..r.end * N_CHANNELS;
             let pairs = out[range.clone()].iter().zip(&base[range]);
@@ -83,24 +82,30 @@ fn judged(case: &Case, rows: &std::ops::Range<usize>) -> f64 {
     weights.filter(|&&w| w > 0.0).count() as f64
 }
 
-/// Inputs with one more draw of their noise.
-fn disturbed(case: &Case, seed: u64) -> motor::effects::Inputs {
+/// What drives the model, with one more draw of its noise.
+fn disturbed(case: &Case, seed: u64) -> Drive<'_> {
     let mut rng = Pcg64::seed_from_u64(seed);
-    let (u, tau) = case.input_noise;
-    let mut inputs = case.inputs.clone();
-    let Ok(normal) = Normal::new(0.0, 1.0) else {
-        return inputs;
+    let mut drive = Drive::of(case);
+    let noise = case.input_noise;
+    let mut draw = |sigma: f64| {
+        let normal: f64 = StandardNormal.sample(&mut rng);
+        sigma * normal
     };
-    let mut pair = || Complex64::new(normal.sample(&mut rng), normal.sample(&mut rng)) * u;
-    let noise: Vec<_> = inputs.u_s.iter().map(|_| pair()).collect();
-    for (x, d) in inputs.u_s.iter_mut().zip(case.supply.filter(&noise)) {
-        *x += d;
+    let inputs = drive.inputs.to_mut();
+    let mut pair = || Complex64::new(draw(noise.voltage), draw(noise.voltage));
+    let voltage: Vec<_> = inputs.u_s.iter().map(|_| pair()).collect();
+    add(&mut inputs.u_s, case.supply.filter(&voltage));
+    let torque: Vec<f64> = inputs.tau_load.iter().map(|_| draw(noise.torque)).collect();
+    add(&mut inputs.tau_load, case.load_windows.smooth_real(&torque));
+    if noise.speed > 0.0 {
+        let speed: Vec<f64> = drive.speed.iter().map(|_| draw(noise.speed)).collect();
+        add(drive.speed.to_mut(), case.speed_windows.smooth_real(&speed));
     }
-    inputs
-        .tau_load
-        .iter_mut()
-        .for_each(|x| *x += tau * normal.sample(&mut rng));
-    inputs
+    drive
+}
+
+fn add<T: std::ops::AddAssign>(to: &mut [T], what: Vec<T>) {
+    to.iter_mut().zip(what).for_each(|(x, d)| *x += d);
 }
 
 #[cfg(test)]
@@ -117,7 +122,7 @@ mod tests {
     #[test]
     fn without_input_noise_every_judged_value_counts_one() {
         let (mut case, plant) = prepared();
-        case.input_noise = (0.0, 0.0);
+        case.input_noise = InputNoise::default();
         case.weight[3] = [0.0; N_CHANNELS];
         let floor = floor(&case, &plant, 1);
         assert!((floor.mean - 1.0).abs() < 1e-12 && floor.sd < 1e-12);
@@ -145,7 +150,7 @@ mod tests {
     #[test]
     fn input_noise_is_drawn_with_its_declared_deviation() {
         let (mut case, _) = prepared();
-        case.input_noise = (0.5, 0.02);
+        case.input_noise = InputNoise { voltage: 0.5, torque: 0.02, speed: 0.0 };
         let noise = disturbed(&case, 7);
         assert_eq!(disturbed(&case, 7), noise);
         assert_ne!(disturbed(&case, 8), noise);
@@ -165,9 +170,9 @@ mod tests {
     fn propagated_noise_adds_to_the_floor_with_its_square() {
         let (mut case, plant) = prepared();
         let excess = |case: &Case| floor(case, &plant, 3).mean - 1.0;
-        case.input_noise = (0.0, 0.5);
+        case.input_noise.torque = 0.5;
         let once = excess(&case);
-        case.input_noise = (0.0, 1.0);
+        case.input_noise.torque = 1.0;
         let twice = excess(&case);
         assert!(once > 1e-4, "{once}");
         assert!((twice / once - 4.0).abs() < 0.4, "{once} {twice}");

@@ -278,7 +278,7 @@ impl Means {
             omega_sync: 0.5 * (self.omega_sync + other.omega_sync),
             omega_el: n_p * 0.5 * (self.omega + other.omega),
             sigma: [
-                case.input_noise.0 / rows,
+                case.input_noise.voltage / rows,
                 axis_share * of_channel(0) / rows,
                 n_p * of_channel(3) / rows,
             ],

@@ -19,6 +19,7 @@ mod frame;
 mod free_scale;
 mod gram;
 mod inconclusive;
+mod inputs;
 mod predict;
 mod present;
 mod proof;

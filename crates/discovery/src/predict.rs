@@ -5,6 +5,7 @@ use crate::case::{Case, N_CHANNELS};
 use crate::table::{self, Point};
 use motor::effects::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Recordings simulated by this process so far.
@@ -24,17 +25,36 @@ pub(crate) enum Teacher {
     On(f64),
 }
 
-/// Simulates a plant on the inputs of a case.
-pub(crate) fn run(case: &Case, plant: &Plant, inputs: &Inputs, teacher: Teacher) -> Outputs {
+/// What drives a model: voltage, load torque, and the speed where it is given.
+#[derive(Clone, Debug)]
+pub(crate) struct Drive<'a> {
+    /// Voltage and load torque.
+    pub inputs: Cow<'a, Inputs>,
+    /// Smoothed speed, rad/s; empty without a speed channel.
+    pub speed: Cow<'a, [f64]>,
+}
+
+impl<'a> Drive<'a> {
+    /// As the recording has it.
+    pub fn of(case: &'a Case) -> Self {
+        Self {
+            inputs: Cow::Borrowed(&case.inputs),
+            speed: Cow::Borrowed(&case.speed),
+        }
+    }
+}
+
+/// Simulates a plant on what drives it.
+pub(crate) fn run(case: &Case, plant: &Plant, drive: &Drive<'_>, teacher: Teacher) -> Outputs {
     SIMULATIONS.fetch_add(1, Ordering::Relaxed);
-    let speeds = case.speeds(plant);
+    let speeds = case.speeds(plant, &drive.speed);
     let speed = match teacher {
         _ if case.speed_is_input => SpeedSource::Imposed(&speeds.speed),
-        Teacher::On(rate) if !case.speed.is_empty() => SpeedSource::Observed(&speeds.speed, rate),
+        Teacher::On(rate) if !drive.speed.is_empty() => SpeedSource::Observed(&speeds.speed, rate),
         _ => SpeedSource::Free,
     };
     let run = Run {
-        inputs,
+        inputs: &drive.inputs,
         between: case.between,
         speed,
         timeline: &speeds.timeline,
@@ -71,13 +91,13 @@ pub(crate) fn outputs(case: &Case, belief: &Belief, h: &Hypothesis, teacher: Tea
     let plant = h.plant(belief);
     match &case.table {
         Some(points) => steady(case, &plant, points),
-        None => weighted(case, &run(case, &plant, &case.inputs, teacher)),
+        None => weighted(case, &run(case, &plant, &Drive::of(case), teacher)),
     }
 }
 
-/// Weighted outputs with other inputs (noise propagation).
-pub(crate) fn outputs_on(case: &Case, plant: &Plant, inputs: &Inputs) -> Vec<f64> {
-    weighted(case, &run(case, plant, inputs, Teacher::Off))
+/// Weighted outputs of a plant that something else drives (noise propagation).
+pub(crate) fn outputs_on(case: &Case, plant: &Plant, drive: &Drive<'_>) -> Vec<f64> {
+    weighted(case, &run(case, plant, drive, Teacher::Off))
 }
 
 /// Residual: weighted measurement minus weighted model.

@@ -49,8 +49,8 @@ fn rows_hold_every_second_sample_and_weigh_it_by_its_noise() {
         assert!((case.weight[row][4] * volt / 3f64.sqrt() - 1.0).abs() < 1e-12);
     }
     assert_eq!(case.judged(), 5.0 * 2500.0);
-    assert!((case.input_noise.0 - (2.0f64 / 3.0).sqrt() * volt).abs() < 1e-12);
-    assert!((case.input_noise.1 - SIGMA[3]).abs() < 1e-12);
+    assert!((case.input_noise.voltage - (2.0f64 / 3.0).sqrt() * volt).abs() < 1e-12);
+    assert!((case.input_noise.torque - SIGMA[3]).abs() < 1e-12);
     assert!(!case.inverter && case.open.is_empty() && !case.speed_is_input);
 }
 
@@ -289,12 +289,12 @@ fn held_or_slow_voltages_are_not_interpolated() {
 fn the_load_is_what_is_declared_or_measured() {
     let rec = specimen::recording(0.3, |_| 1.0);
     let load = Load::new(&rec);
-    assert!(!load.unknown && load.torque.iter().all(|x| *x == 1.0));
-    assert!((load.noise - SIGMA[3]).abs() < 1e-12);
+    assert!(!load.unknown && load.torque.value.iter().all(|x| *x == 1.0));
+    assert!((load.torque.noise - SIGMA[3]).abs() < 1e-12);
     let mut friction = rec.clone();
     friction.metadata.load_torque = LoadTorque::Friction;
     let load = Load::new(&friction);
-    assert!(!load.unknown && load.noise == 0.0 && load.torque.iter().all(|x| *x == 0.0));
+    assert!(!load.unknown && load.torque.noise == 0.0 && load.torque.value.iter().all(|x| *x == 0.0));
     let free = changed(&rec, |c, x| (c != Channel::TORQUE).then_some(x));
     assert!(
         Load::new(&free).unknown,
@@ -324,14 +324,14 @@ fn angle_and_smoothed_speed_follow_the_measured_speed() {
         Some(if c == Channel::SPEED { ramp.clone() } else { x })
     });
     let theta = measured_angle(&rec);
-    let speed = smoothed_speed(&rec, T_SAMPLE);
+    let speed = measured_speed(&rec, T_SAMPLE).value;
     for (k, t) in rec.t().iter().enumerate() {
         // Trapezoids of a straight line are exact.
         assert!((theta[k] - (100.0 * t + 20.0 * t * t)).abs() < 1e-9);
         assert!((speed[k] - (100.0 + 40.0 * t)).abs() < 1e-9);
     }
     let without = changed(&rec, |c, x| (c != Channel::SPEED).then_some(x));
-    assert!(measured_angle(&without).is_empty() && smoothed_speed(&without, T_SAMPLE).is_empty());
+    assert!(measured_angle(&without).is_empty() && measured_speed(&without, T_SAMPLE).value.is_empty());
 }
 
 #[test]
@@ -372,7 +372,7 @@ fn a_smoothed_speed_has_lost_its_jitter() {
         let speed = (0..x.len()).map(|k| 100.0 + jitter(k)).collect();
         Some(if c == Channel::SPEED { speed } else { x })
     });
-    let smoothed = smoothed_speed(&rec, T_SAMPLE);
+    let smoothed = measured_speed(&rec, T_SAMPLE).value;
     assert!(smoothed[100..1400].iter().all(|w| (w - 100.0).abs() < 0.1));
 }
 

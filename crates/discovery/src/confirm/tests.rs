@@ -273,7 +273,7 @@ fn ringing(frequency_hz: f64) -> Study {
     let mut plant = study.belief.plant.clone();
     plant.effects = shaft;
     let case = &mut study.fitted.case;
-    let out = crate::predict::run(case, &plant, &case.inputs, Teacher::Off);
+    let out = crate::predict::run(case, &plant, &crate::predict::Drive::of(case), Teacher::Off);
     for (row, measured) in case.measured.iter_mut().enumerate() {
         let [a, b, c] = out.i_s_abc[row * case.decimation];
         *measured = [a, b, c, out.omega_mech[row * case.decimation], 0.0];

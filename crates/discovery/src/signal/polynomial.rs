@@ -37,15 +37,30 @@ pub(crate) struct Smoothed {
     pub slope: Vec<Complex64>,
 }
 
+/// How far the smoothing of a point looks, and how often it is evaluated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// Points of a window.
+    pub window: usize,
+    /// Points from one evaluation to the next.
+    pub stride: usize,
+}
+
+/// The reach of windows of about `window` points over `n` points; `None` where there is nothing to smooth.
+pub(crate) fn reach(n: usize, window: usize) -> Option<Reach> {
+    let window = (window | 1).min(n);
+    let stride = (window / KNOTS).max(1);
+    (window >= 5).then_some(Reach { window, stride })
+}
+
 /// Smooths one segment with windows of about `window` points; nearer to an end the last full window counts.
 pub(crate) fn smooth(x: &[Complex64], window: usize) -> Smoothed {
-    let window = (window | 1).min(x.len());
-    if window < 5 {
+    let Some(Reach { window, stride }) = reach(x.len(), window) else {
         return Smoothed {
             value: x.to_vec(),
             slope: vec![Complex64::ZERO; x.len()],
         };
-    }
+    };
     let (re, im): (Vec<f64>, Vec<f64>) = x.iter().map(|x| (x.re, x.im)).unzip();
     let half = window / 2;
     let centre = weights(window, half as f64);
@@ -61,7 +76,7 @@ pub(crate) fn smooth(x: &[Complex64], window: usize) -> Smoothed {
             apply(&weights(window, (k - first) as f64))
         }
     };
-    joined(x.len(), (window / KNOTS).max(1), at)
+    joined(x.len(), stride, at)
 }
 
 /// Evaluates `at` on every `stride`-th sample and joins by straight lines: what a window has smoothed hardly

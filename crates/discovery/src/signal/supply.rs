@@ -1,6 +1,6 @@
 //! Denoises measured or commanded voltages: a smooth amplitude and angle between amplitude steps, plus harmonics.
 
-use super::polynomial::smooth;
+use super::adaptive::{Noisy, Windows};
 use num_complex::Complex64;
 use std::ops::Range;
 
@@ -33,6 +33,8 @@ pub(crate) struct Supply {
     pub raw: Vec<Range<usize>>,
     /// Component of each order relative to the fundamental (order 0: V).
     pub harmonics: Vec<(f64, Complex64)>,
+    /// The window of each sample's envelope, segment after segment.
+    windows: Vec<Windows>,
     window: usize,
 }
 
@@ -42,10 +44,10 @@ pub(crate) fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated:
     let window = (period as usize).max(16);
     // An unbalance makes the amplitude ripple: steps are looked for once the harmonics are known and removed.
     let whole = 0..raw.len();
-    let first = Supply::described(raw, raw, vec![whole], t_sample, window, 1);
+    let first = Supply::described(raw, raw, vec![whole], t_sample, sigma, window, 1);
     let clean = first.cleaned(raw);
     let segments = segments(&clean, window / 2, sigma);
-    let mut supply = Supply::described(raw, &clean, segments, t_sample, window, 4);
+    let mut supply = Supply::described(raw, &clean, segments, t_sample, sigma, window, 4);
     supply.restore(raw, sigma);
     let restored: usize = supply.raw.iter().map(Range::len).sum();
     let rest = raw.iter().zip(&supply.u_s).map(|(a, b)| (a - b).norm_sqr());
@@ -66,10 +68,11 @@ impl Supply {
         clean: &[Complex64],
         segments: Vec<Range<usize>>,
         t_sample: f64,
+        sigma: f64,
         window: usize,
         rounds: usize,
     ) -> Self {
-        let (theta, slope) = angle(clean, &segments, window);
+        let (theta, slope) = angle(clean, &segments, sigma, window);
         let mut supply = Self {
             u_s: Vec::new(),
             omega_sync: slope.iter().map(|x| x / t_sample).collect(),
@@ -78,15 +81,19 @@ impl Supply {
             denoised: true,
             raw: Vec::new(),
             harmonics: Vec::new(),
+            windows: Vec::new(),
             window,
         };
+        supply.choose_windows(clean, sigma);
         // Smoothing leaks a little of each harmonic into the fundamental, most at the ends of segments:
         // clean and repeat.
         let mut fundamental = supply.fundamental(clean);
         for _ in 0..rounds {
             supply.harmonics = supply.fit_harmonics(raw, &fundamental);
             supply.u_s = supply.with_harmonics(&fundamental);
-            fundamental = supply.fundamental(&supply.cleaned(raw));
+            let clean = supply.cleaned(raw);
+            supply.choose_windows(&clean, sigma);
+            fundamental = supply.fundamental(&clean);
         }
         supply.u_s = supply.with_harmonics(&fundamental);
         supply.hold_frequency(&fundamental);
@@ -163,13 +170,30 @@ impl Supply {
         filtered
     }
 
+    /// The envelope of a segment in the turning frame.
+    fn envelope(&self, raw: &[Complex64], segment: &Range<usize>) -> Vec<Complex64> {
+        let turned = |k: usize| raw[k] * Complex64::from_polar(1.0, -self.theta[k]);
+        segment.clone().map(turned).collect()
+    }
+
+    /// The longest windows over which the envelope is smooth, one period at least.
+    fn choose_windows(&mut self, clean: &[Complex64], sigma: f64) {
+        let of_segment = |segment: &Range<usize>| {
+            let series = Noisy {
+                x: &self.envelope(clean, segment),
+                variance: &vec![sigma * sigma; segment.len()],
+                two_axes: true,
+            };
+            Windows::longest(series, self.window, false)
+        };
+        self.windows = self.segments.iter().map(of_segment).collect();
+    }
+
     /// The fundamental: the envelope in the turning frame, smoothed within each segment.
     fn fundamental(&self, raw: &[Complex64]) -> Vec<Complex64> {
-        let turned = |k: usize| raw[k] * Complex64::from_polar(1.0, -self.theta[k]);
         let mut out = Vec::with_capacity(raw.len());
-        for segment in &self.segments {
-            let envelope: Vec<_> = segment.clone().map(turned).collect();
-            let smoothed = smooth(&envelope, self.window).value;
+        for (segment, windows) in self.segments.iter().zip(&self.windows) {
+            let smoothed = windows.smooth(&self.envelope(raw, segment)).value;
             let back = |(k, e): (usize, Complex64)| e * Complex64::from_polar(1.0, self.theta[k]);
             out.extend(segment.clone().zip(smoothed).map(back));
         }
@@ -197,7 +221,12 @@ impl Supply {
 }
 
 /// Unwrapped angle and its slope per sample, smoothed within each segment.
-fn angle(raw: &[Complex64], segments: &[Range<usize>], window: usize) -> (Vec<f64>, Vec<f64>) {
+fn angle(
+    raw: &[Complex64],
+    segments: &[Range<usize>],
+    sigma: f64,
+    window: usize,
+) -> (Vec<f64>, Vec<f64>) {
     let mut theta = 0.0;
     let mut last = Complex64::new(1.0, 0.0);
     let mut unwrapped = |u: &Complex64| {
@@ -210,7 +239,14 @@ fn angle(raw: &[Complex64], segments: &[Range<usize>], window: usize) -> (Vec<f6
     let all: Vec<_> = raw.iter().map(&mut unwrapped).collect();
     let (mut value, mut slope) = (Vec::new(), Vec::new());
     for segment in segments {
-        let smoothed = smooth(&all[segment.clone()], 2 * window);
+        // Noise across a vector turns it by its share of the length.
+        let noise = |k: usize| sigma * sigma / raw[k].norm_sqr().max(f64::MIN_POSITIVE);
+        let series = Noisy {
+            x: &all[segment.clone()],
+            variance: &segment.clone().map(noise).collect::<Vec<_>>(),
+            two_axes: false,
+        };
+        let smoothed = Windows::longest(series, 2 * window, false).smooth(series.x);
         value.extend(smoothed.value.iter().map(|x| x.re));
         slope.extend(smoothed.slope.iter().map(|x| x.re));
     }

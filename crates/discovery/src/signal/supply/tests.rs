@@ -142,6 +142,15 @@ fn where_the_raw_voltage_is_used_its_noise_is_too() {
         segments: vec![0..300],
         denoised: true,
         raw: vec![100..120],
+        windows: vec![Windows::longest(
+            Noisy {
+                x: &[Complex64::ZERO; 300],
+                variance: &[1.0; 300],
+                two_axes: true,
+            },
+            41,
+            false,
+        )],
         window: 41,
         ..Supply::default()
     };
