@@ -17,11 +17,20 @@ const ADEQUATE: f64 = 1.02;
 /// Least size, in typical sizes.
 const LEAST_SIZE: f64 = 0.05;
 
-/// Relative gain of one kind of evidence if the pairs prove it, otherwise zero.
+/// Whether squared errors fall, in most pairs of blocks and by more than their own scatter.
+fn falls(before: &[f64], after: &[f64]) -> bool {
+    let fall = |(b, a): (&f64, &f64)| b - a;
+    let falls: Vec<f64> = before.iter().zip(after).map(fall).collect();
+    let sum: f64 = falls.iter().sum();
+    let mean = sum / falls.len().max(1) as f64;
+    let scatter = falls.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt();
+    sum > scatter && wilcoxon(before, after) < P_LIMIT
+}
+
+/// Relative gain of one kind of evidence if it is proven, otherwise zero.
 fn gain(before: &[f64], after: &[f64]) -> f64 {
     let (sum_before, sum_after): (f64, f64) = (before.iter().sum(), after.iter().sum());
-    let proven = wilcoxon(before, after) < P_LIMIT;
-    if proven {
+    if falls(before, after) {
         1.0 - (sum_after / sum_before).sqrt()
     } else {
         0.0
@@ -42,7 +51,8 @@ pub(crate) fn beats(better: &Trial, worse: &Trial) -> bool {
 fn share(before: f64, after: f64) -> f64 {
     let excess = before * before - 1.0;
     if excess <= 0.0 {
-        1.0
+        // Where nothing is missing nothing can be explained.
+        0.0
     } else {
         (before * before - after * after) / excess
     }
@@ -84,6 +94,25 @@ fn beats_on_folds(better: &Trial, worse: &Trial) -> bool {
 fn worse_on_proof(before: &Trial, after: &Trial) -> bool {
     let sum = |t: &Trial| t.proof.iter().sum::<f64>();
     sum(after) > (1.0 + LESSER_GAIN) * sum(before)
+}
+
+/// Whether the data that were not fitted are explained significantly worse by `one` than by `other`. A proving recording
+/// in which both predict the same says nothing.
+pub(crate) fn worse(study: &Study, one: &Trial, other: &Trial) -> bool {
+    falls(&one.folds, &other.folds)
+        && (other.proof.is_empty()
+            || falls(&one.proof, &other.proof)
+            || study.proof_is_silent(one, other))
+}
+
+/// Whether `after` explains the data that were not fitted better than `before` does, by enough to be worth a new motor
+/// file.
+pub(crate) fn gained(before: &Trial, after: &Trial) -> bool {
+    let folds = gain(&before.folds, &after.folds);
+    match after.proof.is_empty() {
+        true => folds > LESSER_GAIN,
+        false => gain(&before.proof, &after.proof) > LESSER_GAIN,
+    }
 }
 
 /// Whether the last effect's size is worth naming.

@@ -1,6 +1,6 @@
 //! The three questions a user asks.
 
-use crate::accept::{explained, proven};
+use crate::accept::{explained, gained, proven};
 use crate::case::Case;
 use crate::confirm::{best_of, only};
 use crate::explain::{self, Explanation, nominal_name, stands_for};
@@ -110,7 +110,7 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
         let all = baseline.parameters.iter_mut().chain(&mut last.parameters);
         all.for_each(|p| p.off = false);
     }
-    let verdict = verdict(found, &steps);
+    let verdict = verdict(study, found, &steps);
     let unexplained = (!found.nameable).then(|| unexplained(study, found));
     let mut report = ExplainReport {
         audit: question.audit.clone(),
@@ -161,11 +161,11 @@ fn frame_step(frame: FrameReport) -> StepReport {
     }
 }
 
-fn verdict(found: &Explanation, steps: &[StepReport]) -> Verdict {
+fn verdict(study: &Study, found: &Explanation, steps: &[StepReport]) -> Verdict {
     if !found.nameable {
         return Verdict::Unknown;
     }
-    if !implausible(found.last()).is_empty() {
+    if !implausible(study, found.last()).is_empty() {
         return Verdict::Implausible;
     }
     if steps.iter().any(|s| !s.tied_with.is_empty()) {
@@ -286,7 +286,8 @@ fn unexplained(study: &Study, found: &Explanation) -> Unexplained {
 }
 
 /// Adds an effect, refits, and shows the error before and after; the new motor file comes with the report.
-/// The name `parameters` takes over the refitted parameters and adds nothing.
+/// The name `parameters` takes over the refitted parameters and adds nothing; what they gain is held against the
+/// parameters of the motor file as they are.
 ///
 /// # Errors
 /// An unknown or already present effect, wrong effects in the motor file, or sources that cannot be judged.
@@ -300,25 +301,30 @@ pub fn adopt(
     let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
     progress("refitting the parameters", 0.2);
-    let before = study.trial(&study.beliefs(), Effort::FULL);
+    let refitted = study.trial(&study.beliefs(), Effort::FULL);
     if effect == frame::NAME {
-        return adopted_frame(&question, motor, &before);
+        return adopted_frame(&question, motor, &refitted);
     }
     progress("fitting the effect", 0.5);
-    let after = if effect == PARAMETERS {
-        before.clone()
-    } else {
-        fitted(study, &before, effect)?
+    let is_new = effect != PARAMETERS;
+    let (before, after) = match is_new {
+        true => {
+            let after = fitted(study, &refitted, effect)?;
+            (refitted, after)
+        }
+        false => (study.trial(&study.beliefs(), Effort::NONE), refitted),
     };
     progress("done", 1.0);
     let nominals = fit_report(study, &after).parameters;
-    let is_new = effect != PARAMETERS;
     let report = AdoptReport {
         audit: question.audit.clone(),
         effect: effect.to_owned(),
         before: errors(study, &before),
         after: errors(study, &after),
-        proven: is_new && proven(study, &before, &after),
+        proven: match is_new {
+            true => proven(study, &before, &after),
+            false => gained(&before, &after),
+        },
         parameters: if is_new {
             effect_parameters(study, &after, study.given_effects())
         } else {

@@ -12,12 +12,26 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Output channels in the order of a residual row.
-pub(crate) const CHANNELS: [&str; 5] = ["ia", "ib", "ic", "speed", "v0"];
-/// The speed among them.
-const SPEED: usize = 3;
-/// Number of output channels.
-pub(crate) const N_CHANNELS: usize = CHANNELS.len();
+/// Number of output channels: values of a residual row.
+pub(crate) const N_CHANNELS: usize = 5;
+/// Output channels of a recording in the order of a residual row, and their units.
+const OF_RECORDING: [(&str, &str); N_CHANNELS] = [
+    ("ia", "A"),
+    ("ib", "A"),
+    ("ic", "A"),
+    ("speed", "rad/s"),
+    ("v0", "V"),
+];
+/// Output channels of a load table.
+const OF_TABLE: [(&str, &str); N_CHANNELS] = [
+    ("current", "A rms"),
+    ("speed", "rad/s"),
+    ("power_factor", "-"),
+    ("efficiency", "-"),
+    ("", ""),
+];
+/// The speed among the channels of a recording.
+pub(crate) const SPEED: usize = 3;
 /// Trust in the model of a current sensor beside its noise: half a per cent of the reading.
 pub(crate) const RELATIVE_CURRENT: f64 = 0.005;
 /// Length of a block, s: short, so that a direct-on-line start reaches every fold.
@@ -74,6 +88,8 @@ pub(crate) struct Case {
     pub speed_is_input: bool,
     /// Speed at the start unless from standstill.
     pub running_at: Option<f64>,
+    /// Whether the speed at the start is not measured, but that at which the model carries the load.
+    pub settles: bool,
     /// Samples at which a switch has taken the motor off the supply.
     pub open: Vec<Range<usize>>,
     /// Integration steps per residual row.
@@ -126,7 +142,7 @@ impl Case {
         let axis_noise = sigma_u * (2.0f64 / 3.0).sqrt();
         let supply = denoise(&raw, t_sample, axis_noise, rated.omega_sync);
         let between = between(rec, t_sample);
-        let load = Load::new(rec);
+        let load = Load::new(rec)?;
         let theta_mech = measured_angle(rec);
         let speed = measured_speed(rec, t_sample);
         let running_at = running_at(rec, currents, rated);
@@ -145,6 +161,7 @@ impl Case {
             speed: speed.value,
             speed_is_input: load.unknown,
             running_at,
+            settles: rec.speed().is_none(),
             open: Vec::new(),
             decimation: 1,
             measured: Vec::new(),
@@ -185,6 +202,7 @@ impl Case {
             speed: Vec::new(),
             speed_is_input: false,
             running_at: None,
+            settles: false,
             open: Vec::new(),
             decimation: 1,
             measured,
@@ -198,6 +216,14 @@ impl Case {
             speed_scale_is_free: false,
             table: Some(points),
         })
+    }
+
+    /// Names and units of the output channels.
+    pub fn channels(&self) -> [(&'static str, &'static str); N_CHANNELS] {
+        match self.table {
+            Some(_) => OF_TABLE,
+            None => OF_RECORDING,
+        }
     }
 
     /// Time between residual rows, s.

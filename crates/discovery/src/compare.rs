@@ -74,33 +74,9 @@ pub fn compare(
 /// The scale of the speed that suits the motor file as it is, where it was unknown, and what that leaves open.
 fn scale_of(study: &Study) -> Option<(SpeedScaleReport, Vec<Inconclusive>)> {
     study.speed_scale?;
-    let nothing_moved = Effort {
-        iterations: 0,
-        ..Effort::FULL
-    };
-    let trial = study.trial(&study.beliefs(), nothing_moved);
+    let trial = study.trial(&study.beliefs(), Effort::NONE);
     let open = inconclusive::list(study, &trial, &[]);
     Some((speed_scale_report(study, &trial)?, open))
-}
-
-/// Names and units of the channels of a case.
-fn channels(case: &Case) -> [(&'static str, &'static str); N_CHANNELS] {
-    if case.table.is_some() {
-        return [
-            ("current", "A rms"),
-            ("speed", "rad/s"),
-            ("power_factor", "-"),
-            ("efficiency", "-"),
-            ("", ""),
-        ];
-    }
-    [
-        ("ia", "A"),
-        ("ib", "A"),
-        ("ic", "A"),
-        ("speed", "rad/s"),
-        ("v0", "V"),
-    ]
 }
 
 fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
@@ -122,7 +98,7 @@ fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
             error_over_noise: ratio,
         }
     };
-    let known = channels(case).into_iter().enumerate();
+    let known = case.channels().into_iter().enumerate();
     known.filter(|(k, _)| judged(*k) > 0.0).map(one).collect()
 }
 
@@ -153,10 +129,8 @@ fn state(study: &Study, rows: &Range<usize>) -> String {
     if slip > 20.0 {
         return "start-up".to_owned();
     }
-    let torque = &case.inputs.tau_load[part.clone()];
-    let half = torque.len() / 2;
-    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
-    let step = (mean(&torque[..half]) - mean(&torque[half..])).abs();
+    let half = rows.start + rows.len() / 2;
+    let step = (load_torque(study, rows.start..half) - load_torque(study, half..rows.end)).abs();
     let stepped = case
         .supply
         .segments
@@ -167,6 +141,26 @@ fn state(study: &Study, rows: &Range<usize>) -> String {
     }
     let round = |x: f64| (x / 5.0).round() * 5.0 + 0.0; // -0 becomes 0: one region, not two
     format!("load {:.0} %, voltage {:.0} %", round(load), round(voltage))
+}
+
+/// Mean load torque of some rows, N m: as measured, or that of the air gap (its power over the synchronous speed).
+fn load_torque(study: &Study, rows: Range<usize>) -> f64 {
+    let case = &study.fitted.case;
+    let stride = case.between.stride() * case.decimation;
+    let r_s = study.belief.plant.motor.r_s;
+    let n_p = study.belief.plant.rated.n_p;
+    let torque = |row: usize| {
+        let k = row * stride;
+        if case.input_noise.torque > 0.0 {
+            return case.inputs.tau_load[k];
+        }
+        let [a, b, c, ..] = case.measured[row];
+        let i_s = clarke([a, b, c]);
+        let power = 1.5 * ((case.inputs.u_s[k] - i_s * r_s) * i_s.conj()).re;
+        power * n_p / case.timeline.omega_sync[k].abs().max(1.0)
+    };
+    let n = rows.len().max(1) as f64;
+    rows.map(torque).sum::<f64>() / n
 }
 
 /// Load, voltage, slip and frequency of a block, percent of rated (slip: percent).
@@ -185,7 +179,7 @@ fn percents(study: &Study, rows: &Range<usize>) -> [f64; 4] {
     });
     let voltage = mean(&|row| case.inputs.u_s[row * stride].norm());
     [
-        100.0 * mean(&|row| case.inputs.tau_load[row * stride]) / rated.torque,
+        100.0 * load_torque(study, rows.clone()) / rated.torque,
         100.0 * voltage / rated.voltage,
         100.0 * (1.0 - rated.n_p * speed / omega),
         100.0 * omega / rated.omega_sync,

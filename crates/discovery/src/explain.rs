@@ -4,7 +4,7 @@ use crate::accept::{adequate, beats, explained, proven};
 use crate::belief::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::confirm::{Candidate, Round, combined, likely, round};
 use crate::fit::Effort;
-use crate::present::off_nominals;
+use crate::off;
 use crate::study::{Study, Trial};
 use motor::effects::Kind;
 
@@ -50,9 +50,10 @@ pub(crate) struct Explanation {
 }
 
 impl Explanation {
-    /// The model with everything that was found.
+    /// The model with everything that was found and may be named.
     pub fn last(&self) -> &Trial {
-        self.steps.last().map_or(&self.baseline, |s| &s.trial)
+        let named = self.steps.last().filter(|_| self.nameable);
+        named.map_or(&self.baseline, |s| &s.trial)
     }
 }
 
@@ -179,15 +180,12 @@ fn contests(
     let moved = |k: usize| last.fit.hypothesis.z[k];
     let doubtful = |&k: &usize| k == FRICTION || k == LEAKAGE && moved(k) > WORTH_A_CABLE;
     let contest = |k: usize| (k, contest(study, last, k, excluded));
-    let off = off_nominals(last).into_iter();
+    let off = study.off(last).iter().copied();
     off.filter(doubtful).map(contest).collect()
 }
 
 fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Candidate> {
-    let mut frozen = last.fit.hypothesis.clone();
-    frozen.z[k] = 0.0;
-    frozen.free[k] = false;
-    let base = study.trial(&frozen, Effort::FULL);
+    let base = off::held(study, last, k);
     let found = likely(study, &base, excluded);
     let equal = |c: &Candidate| proven(study, &base, &c.trial) && !beats(last, &c.trial);
     found.candidates.into_iter().filter(equal).collect()

@@ -4,7 +4,7 @@ use crate::belief::{Belief, Hypothesis, N_NOMINAL};
 use crate::case::Case;
 use crate::gram::{self, Block, Penalty};
 use crate::predict::{Teacher, jacobian, outputs, residual};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 /// Limits of the inflation of the nominals' prior weight.
 pub(crate) const KAPPA: [f64; 2] = [30.0, 400.0];
@@ -57,15 +57,15 @@ impl Effort {
         teacher: Teacher::Off,
         abandon_above: f64::INFINITY,
     };
+
+    /// Nothing is moved: the start is measured as it is.
+    pub const NONE: Effort = Effort {
+        iterations: 0,
+        ..Effort::FULL
+    };
 }
 
 impl Fit {
-    /// Covariance of the fitted coordinates.
-    pub fn covariance(&self) -> DMatrix<f64> {
-        let nominals = self.free.iter().filter(|&&k| k < N_NOMINAL).count();
-        gram::covariance(&self.blocks, &self.penalty, nominals, self.kappa)
-    }
-
     /// Held-out squared error of each block.
     pub fn held_out(&self) -> Vec<f64> {
         gram::held_out(&self.blocks, &self.penalty)
@@ -287,7 +287,7 @@ mod tests {
         );
         assert_eq!(out, fit.outputs);
         assert_eq!(residual(&study.fitted.case, &out), fit.residual);
-        let variance = fit.covariance();
+        let variance = crate::uncertainty::covariance(&study, &fit);
         assert!((0..4).all(|k| variance[(k, k)] > 0.0 && variance[(k, k)] < 0.11));
         assert_eq!(fit.held_out().len(), 12);
     }

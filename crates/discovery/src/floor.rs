@@ -1,6 +1,7 @@
 //! The error that is left when nothing is missing: sensor noise and propagated input noise.
 
 use crate::case::{Case, N_CHANNELS};
+use crate::gram::dot;
 use crate::predict::{Drive, outputs_on};
 use motor::effects::Plant;
 use num_complex::Complex64;
@@ -8,6 +9,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Monte-Carlo draws of the input noise.
 const DRAWS: u64 = 30;
@@ -45,17 +47,14 @@ pub(crate) fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
             sd: 0.0,
         };
     }
-    let base = outputs_on(case, plant, &Drive::of(case));
-    let draw = |k: u64| {
-        let out = outputs_on(case, plant, &disturbed(case, seed.wrapping_add(k)));
-        let error = |r: &std::ops::Range<usize>| {
-            let range = r.start * N_CHANNELS..r.end * N_CHANNELS;
-            let pairs = out[range.clone()].iter().zip(&base[range]);
-            pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
+    let squares = |change: Vec<f64>| {
+        let error = |r: &Range<usize>| {
+            let part = &change[r.start * N_CHANNELS..r.end * N_CHANNELS];
+            dot(part, part)
         };
         rows.iter().map(error).collect::<Vec<f64>>()
     };
-    let draws: Vec<Vec<f64>> = (0..DRAWS).into_par_iter().map(draw).collect();
+    let draws = noise_draws(case, plant, seed, DRAWS, squares);
     let mut block: Vec<f64> = rows.iter().map(|r| judged(case, r)).collect();
     for draw in &draws {
         block
@@ -77,9 +76,26 @@ pub(crate) fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
     }
 }
 
-fn judged(case: &Case, rows: &std::ops::Range<usize>) -> f64 {
+fn judged(case: &Case, rows: &Range<usize>) -> f64 {
     let weights = case.weight[rows.clone()].iter().flatten();
     weights.filter(|&&w| w > 0.0).count() as f64
+}
+
+/// What each of `count` draws of the input noise changes in the weighted outputs of a plant, handed to `of`.
+pub(crate) fn noise_draws<T: Send>(
+    case: &Case,
+    plant: &Plant,
+    seed: u64,
+    count: u64,
+    of: impl Fn(Vec<f64>) -> T + Sync,
+) -> Vec<T> {
+    let base = outputs_on(case, plant, &Drive::of(case));
+    let draw = |k: u64| {
+        let mut change = outputs_on(case, plant, &disturbed(case, seed.wrapping_add(k)));
+        change.iter_mut().zip(&base).for_each(|(x, b)| *x -= b);
+        of(change)
+    };
+    (0..count).into_par_iter().map(draw).collect()
 }
 
 /// What drives the model, with one more draw of its noise.
@@ -111,6 +127,7 @@ fn add<T: std::ops::AddAssign>(to: &mut [T], what: Vec<T>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inputs::InputNoise;
     use crate::specimen;
 
     fn prepared() -> (Case, Plant) {
@@ -150,10 +167,14 @@ mod tests {
     #[test]
     fn input_noise_is_drawn_with_its_declared_deviation() {
         let (mut case, _) = prepared();
-        case.input_noise = InputNoise { voltage: 0.5, torque: 0.02, speed: 0.0 };
-        let noise = disturbed(&case, 7);
-        assert_eq!(disturbed(&case, 7), noise);
-        assert_ne!(disturbed(&case, 8), noise);
+        case.input_noise = InputNoise {
+            voltage: 0.5,
+            torque: 0.02,
+            speed: 0.0,
+        };
+        let noise = disturbed(&case, 7).inputs;
+        assert_eq!(disturbed(&case, 7).inputs, noise);
+        assert_ne!(disturbed(&case, 8).inputs, noise);
         let torque = noise.tau_load.iter().zip(&case.inputs.tau_load);
         let mean_square = torque.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / 2500.0;
         // 2500 draws: their variance is known to 2.8 %.

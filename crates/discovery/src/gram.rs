@@ -175,37 +175,6 @@ pub(crate) fn score_inflation(blocks: &[Block], n: usize) -> f64 {
     ratios.get(n / 2).copied().unwrap_or(1.0)
 }
 
-/// Covariance of the coordinates: a sandwich over blocks, never below the naive value.
-///
-/// The first `nominals` carry a prior `kappa` times too heavy because so many rows count as one; what the data
-/// leave open keeps the uncertainty of the true prior.
-pub(crate) fn covariance(
-    blocks: &[Block],
-    penalty: &Penalty,
-    nominals: usize,
-    kappa: f64,
-) -> DMatrix<f64> {
-    let all = total(blocks);
-    let h = &all.gram + DMatrix::from_diagonal(&penalty.weight);
-    let n = h.nrows();
-    let inverse = h
-        .clone()
-        .try_inverse()
-        .unwrap_or_else(|| DMatrix::zeros(n, n));
-    let mean = &all.score / blocks.len() as f64;
-    let spread = |m: DMatrix<f64>, b: &Block| {
-        let d = &b.score - &mean;
-        m + &d * d.transpose()
-    };
-    let meat = blocks.iter().fold(DMatrix::zeros(n, n), spread);
-    let mut out = &inverse * meat * &inverse;
-    for k in 0..n {
-        let rows_per_datum = if k < nominals { kappa } else { 1.0 };
-        out[(k, k)] = out[(k, k)].max(rows_per_datum * inverse[(k, k)]);
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -373,36 +342,5 @@ mod tests {
         // Scatter 2 x 1, 2 x 4, 2 x 100 over grams of 2.
         let blocks = [block([1.0, 2.0, 10.0]), block([-1.0, -2.0, -10.0])];
         assert!((score_inflation(&blocks, 3) - 4.0).abs() < 1e-12);
-    }
-
-    /// `1/h` of white residuals; scatter of the scores over `h^2` where that is more; a prior counts `kappa` times.
-    #[test]
-    fn the_variance_is_the_largest_of_naive_sandwich_and_prior() {
-        let penalty = penalty(&[4.0], &[0.0]);
-        let quiet = scored(&[1.0, 1.0, 1.0], 2.0);
-        let variance = |blocks: &[Block], nominals, kappa| {
-            covariance(blocks, &penalty, nominals, kappa)[(0, 0)]
-        };
-        assert!((variance(&quiet, 0, 30.0) - 0.1).abs() < 1e-12);
-        assert!((variance(&quiet, 1, 30.0) - 3.0).abs() < 1e-12);
-        let wild = scored(&[1.0, 20.0, -30.0], 2.0);
-        // Mean -3: 16 + 529 + 729 over (6 + 4)^2.
-        assert!((variance(&wild, 0, 30.0) - 12.74).abs() < 1e-12);
-    }
-
-    #[test]
-    fn two_coordinates_share_their_sandwich() {
-        let block = |s: [f64; 2]| Block {
-            gram: DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 3.0]),
-            score: DVector::from_column_slice(&s),
-            sse: 0.0,
-        };
-        let blocks = [block([5.0, 0.0]), block([-5.0, 4.0])];
-        let got = covariance(&blocks, &penalty(&[0.0; 2], &[0.0; 2]), 0, 1.0);
-        // h = [4 2; 2 6], its inverse [6 -2; -2 4]/20; deviations +-(5, -2).
-        let h = DMatrix::from_row_slice(2, 2, &[0.3, -0.1, -0.1, 0.2]);
-        let d = DMatrix::from_row_slice(2, 1, &[5.0, -2.0]);
-        let expected = &h * (&d * d.transpose() * 2.0) * &h;
-        assert!((got - expected).norm() < 1e-12);
     }
 }

@@ -8,7 +8,7 @@ use crate::belief::{Belief, FRICTION, N_NOMINAL, NOMINALS};
 use crate::fit::{Fit, KAPPA};
 use crate::free_scale::EFFECT;
 use crate::gram;
-use crate::present::{RELEVANT, RELEVANT_FRICTION, SIGNIFICANT};
+use crate::off::{RELEVANT, RELEVANT_FRICTION, SIGNIFICANT};
 use crate::report::{ErrorSource, Inconclusive};
 use crate::screen::Screened;
 use crate::study::{Study, Trial};

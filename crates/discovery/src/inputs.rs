@@ -1,6 +1,6 @@
 //! Measured torque and speed made ready to drive a model: as smooth as their noise allows.
 
-use crate::case::sigma;
+use crate::case::{Unsupported, sigma};
 use crate::signal::{Windows, longest_real};
 use recording::{Channel, LoadTorque, Recording};
 
@@ -32,7 +32,13 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    fn new(rec: &Recording, channel: Channel, x: &[f64], shortest: usize, may_be_raw: bool) -> Self {
+    fn new(
+        rec: &Recording,
+        channel: Channel,
+        x: &[f64],
+        shortest: usize,
+        may_be_raw: bool,
+    ) -> Self {
         let noise = sigma(rec, channel, x);
         let windows = longest_real(x, noise, shortest, may_be_raw);
         Self {
@@ -52,25 +58,33 @@ pub(crate) struct Load {
 }
 
 impl Load {
-    /// A measured torque, the friction of the motor file, or nothing.
-    pub fn new(rec: &Recording) -> Self {
+    /// A measured torque, the friction of the motor file, or a measured speed that takes the load's place.
+    ///
+    /// # Errors
+    /// None of the three: then every torque explains the currents, with another speed.
+    pub fn new(rec: &Recording) -> Result<Self, Unsupported> {
         let none = Driver {
             value: vec![0.0; rec.len()],
             ..Driver::default()
         };
+        let known = |torque| Self {
+            torque,
+            unknown: false,
+        };
         match (rec.metadata.load_torque, rec.torque()) {
-            (LoadTorque::Friction, _) => Self {
+            (LoadTorque::Friction, _) => Ok(known(none)),
+            (_, Some(x)) => {
+                let torque = Driver::new(rec, Channel::TORQUE, x, SHORTEST_TORQUE, true);
+                Ok(known(torque))
+            }
+            _ if rec.speed().is_some() => Ok(Self {
                 torque: none,
-                unknown: false,
-            },
-            (_, Some(x)) => Self {
-                torque: Driver::new(rec, Channel::TORQUE, x, SHORTEST_TORQUE, true),
-                unknown: false,
-            },
-            _ => Self {
-                torque: none,
-                unknown: rec.speed().is_some(),
-            },
+                unknown: true,
+            }),
+            _ => Err(Unsupported::new(
+                "the recording has neither speed nor torque: what the motor carries is not known",
+                "record `speed` (rad/s), or `torque` (N m) at the shaft; if the load is the friction of the motor file                  alone, write `load_torque = \"friction\"` into the sidecar",
+            )),
         }
     }
 }

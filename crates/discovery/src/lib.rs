@@ -20,6 +20,7 @@ mod free_scale;
 mod gram;
 mod inconclusive;
 mod inputs;
+mod off;
 mod predict;
 mod present;
 mod proof;
@@ -33,6 +34,7 @@ mod signal;
 mod specimen;
 mod study;
 mod table;
+mod uncertainty;
 mod unexplained;
 mod words;
 

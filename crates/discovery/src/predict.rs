@@ -4,6 +4,8 @@ use crate::belief::{Belief, Hypothesis};
 use crate::case::{Case, N_CHANNELS};
 use crate::table::{self, Point};
 use motor::effects::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
+use motor::steady_state::SteadyState;
+use num_complex::Complex64;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -58,10 +60,23 @@ pub(crate) fn run(case: &Case, plant: &Plant, drive: &Drive<'_>, teacher: Teache
         between: case.between,
         speed,
         timeline: &speeds.timeline,
-        running_at: speeds.running_at,
+        running_at: speeds.running_at.map(|measured| match case.settles {
+            true => settled(plant, drive, speeds.timeline.omega_sync[0]).unwrap_or(measured),
+            false => measured,
+        }),
         open: &case.open,
     };
     simulate(plant, &run)
+}
+
+/// Speed at which the motor carries what the first samples ask of it, rad/s.
+fn settled(plant: &Plant, drive: &Drive<'_>, omega_sync: f64) -> Option<f64> {
+    let (u_s, torque) = (drive.inputs.u_s.first()?, *drive.inputs.tau_load.first()?);
+    let amplitude = Complex64::new(u_s.norm(), 0.0);
+    let friction = plant.mechanics.total_friction();
+    let curve = SteadyState::new(&plant.motor, plant.mechanics.n_p, amplitude, omega_sync);
+    let point = curve.at_load(|omega| torque + friction * omega);
+    point.ok().map(|point| point.omega_mech)
 }
 
 /// Weighted model outputs, row after row. A model that left the finite numbers counts as infinitely wrong.

@@ -1,53 +1,27 @@
 //! From fits to the numbers of a report.
 
-use crate::belief::{FRICTION, MAGNETIZING, N_NOMINAL, NOMINALS};
+use crate::belief::{FRICTION, N_NOMINAL, NOMINALS};
 use crate::report::{FitReport, NominalReport, ParameterReport};
 use crate::study::{Study, Trial};
 use motor::effects::{Kind, Role};
 
-/// A parameter is off when it moved by more than so many standard errors ...
-pub(crate) const SIGNIFICANT: f64 = 3.0;
-/// ... and by more than this share ...
-pub(crate) const RELEVANT: f64 = 0.05;
-/// ... or, for friction, by more than this per cent of rated torque.
-pub(crate) const RELEVANT_FRICTION: f64 = 2.0;
 /// A move beyond so many prior standard deviations is implausible, ...
 const IMPLAUSIBLE: f64 = 3.0;
 /// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.
 const HOT_COPPER: f64 = 0.41;
 
 /// Standard error of coordinate `k`, zero if it was not fitted.
-fn coordinate_error(trial: &Trial, covariance: &nalgebra::DMatrix<f64>, k: usize) -> f64 {
+pub(crate) fn coordinate_error(
+    trial: &Trial,
+    covariance: &nalgebra::DMatrix<f64>,
+    k: usize,
+) -> f64 {
     let position = trial.fit.free.iter().position(|&free| free == k);
     position.map_or(0.0, |p| covariance[(p, p)].max(0.0).sqrt())
 }
 
-/// Whether nominal `k` of a trial moved relevantly, and significantly.
-fn is_off(trial: &Trial, k: usize, error: f64) -> bool {
-    let z = trial.fit.hypothesis.z[k];
-    // With saturation the magnetizing inductance is that of rated flux, another number than the believed one.
-    let mut effects = trial.fit.hypothesis.effects.iter();
-    let saturated = effects.any(|e| e.effect.descriptor().name == "magnetizing-saturation");
-    if k == MAGNETIZING && saturated {
-        return false;
-    }
-    let relevant = if k == FRICTION {
-        z.abs() > RELEVANT_FRICTION
-    } else {
-        z.exp_m1().abs() > RELEVANT
-    };
-    relevant && z.abs() > SIGNIFICANT * error
-}
-
-/// Indices of the nominals that are off.
-pub(crate) fn off_nominals(trial: &Trial) -> Vec<usize> {
-    let covariance = trial.fit.covariance();
-    let off = |&k: &usize| is_off(trial, k, coordinate_error(trial, &covariance, k));
-    (0..N_NOMINAL).filter(off).collect()
-}
-
-/// Names of the nominals that no such motor has.
-pub(crate) fn implausible(trial: &Trial) -> Vec<&'static str> {
+/// Names of the nominals that are off so far that no such motor has them.
+pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
     let z = &trial.fit.hypothesis.z;
     let far = |&k: &usize| {
         let limit = IMPLAUSIBLE * NOMINALS[k].prior;
@@ -58,18 +32,16 @@ pub(crate) fn implausible(trial: &Trial) -> Vec<&'static str> {
         };
         k != FRICTION && !(-limit..limit + warm).contains(&z[k])
     };
-    (0..N_NOMINAL)
-        .filter(far)
-        .map(|k| NOMINALS[k].name)
-        .collect()
+    let off = study.off(trial).iter().copied();
+    off.filter(far).map(|k| NOMINALS[k].name).collect()
 }
 
 /// Errors and nominal parameters of a trial.
 pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
-    let covariance = trial.fit.covariance();
+    let covariance = study.covariance(trial);
     let nominal = |k: usize| {
         let z = trial.fit.hypothesis.z[k];
-        let error = coordinate_error(trial, &covariance, k);
+        let error = coordinate_error(trial, covariance, k);
         let change = if k == FRICTION { z } else { 100.0 * z.exp_m1() };
         NominalReport {
             name: NOMINALS[k].name.to_owned(),
@@ -77,7 +49,7 @@ pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
             value: study.belief.nominal_value(k, z),
             std_error: study.belief.nominal_error(k, z, error),
             unit: NOMINALS[k].unit.to_owned(),
-            off: is_off(trial, k, error),
+            off: study.off(trial).contains(&k),
             change_percent: change,
         }
     };
@@ -95,7 +67,7 @@ pub(crate) fn effect_parameters(
     index: usize,
 ) -> Vec<ParameterReport> {
     let h = &trial.fit.hypothesis;
-    let covariance = trial.fit.covariance();
+    let covariance = study.covariance(trial);
     let rated = &study.belief.plant.rated;
     let config = &h.configs(rated)[index];
     let descriptor = config.effect.descriptor();
@@ -105,7 +77,7 @@ pub(crate) fn effect_parameters(
             return 0.0;
         };
         let p = &descriptor.parameters[parameter];
-        let error = coordinate_error(trial, &covariance, k);
+        let error = coordinate_error(trial, covariance, k);
         match p.role {
             Role::Size => error * p.typical * p.scale.of(rated),
             _ => error * config.values[parameter],

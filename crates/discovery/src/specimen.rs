@@ -16,6 +16,7 @@ use recording::{
     Channel, LoadTable, LoadTorque, Metadata, Recording, Sensors, Source, StartsFrom, UNITS,
     UnknownScale,
 };
+use std::sync::OnceLock;
 
 const MOTOR: &str = r#"
 name = "specimen"
@@ -239,6 +240,8 @@ pub(crate) fn known_to(trial: &Trial, errors: &[f64]) -> Trial {
         score: DVector::zeros(n),
         sse: 0.0,
     }];
+    let variance = errors.iter().map(|e| e * e);
+    known.covariance = OnceLock::from(DMatrix::from_diagonal(&DVector::from_iterator(n, variance)));
     known
 }
 

@@ -6,7 +6,11 @@ use crate::fit::{Effort, Fit, fit};
 use crate::floor::{Floor, floor};
 use crate::free_scale::{self, FreeScale};
 use crate::gram;
+use crate::off;
 use crate::predict::{Teacher, outputs, residual};
+use crate::uncertainty;
+use nalgebra::DMatrix;
+use std::sync::OnceLock;
 
 /// Seed of the propagated noise: the same input gives the same bytes.
 const SEED: u64 = 20_220_913;
@@ -46,6 +50,10 @@ pub(crate) struct Trial {
     pub folds: Vec<f64>,
     /// Squared error of each block of the proving recordings, one after the other.
     pub proof: Vec<f64>,
+    /// Covariance of the fitted coordinates, once it was asked for.
+    pub covariance: OnceLock<DMatrix<f64>>,
+    /// Nominals that are off, once they were asked for.
+    pub off: OnceLock<Vec<usize>>,
 }
 
 impl Subject {
@@ -107,8 +115,21 @@ impl Study {
         Trial {
             folds: fit.held_out(),
             proof: self.proofs.iter().flat_map(errors).collect(),
+            covariance: OnceLock::new(),
+            off: OnceLock::new(),
             fit,
         }
+    }
+
+    /// Covariance of the fitted coordinates of a trial, in their order.
+    pub fn covariance<'a>(&self, trial: &'a Trial) -> &'a DMatrix<f64> {
+        let of_fit = || uncertainty::covariance(self, &trial.fit);
+        trial.covariance.get_or_init(of_fit)
+    }
+
+    /// Indices of the nominals of a trial that are off.
+    pub fn off<'a>(&self, trial: &'a Trial) -> &'a [usize] {
+        trial.off.get_or_init(|| off::nominals(self, trial))
     }
 
     /// Error over noise by the folds of the fitted recording.

@@ -1,6 +1,6 @@
 //! Describes what is left: where, in which channel, with what it grows.
 
-use crate::case::{CHANNELS, Case, N_CHANNELS};
+use crate::case::{Case, N_CHANNELS};
 use crate::report::Unexplained;
 use crate::study::{Study, Trial};
 
@@ -23,13 +23,13 @@ pub(crate) fn describe(
         .collect();
     correlated.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let (channel, error) = worst_channel(case, &trial.fit.residual);
-    let at = worst_time(study, trial);
+    let at = worst_place(study, trial);
     let lead = best_lead.as_ref().map_or_else(String::new, |name| {
         format!(" The best lead, {name}, explains {share:.0} % of it.")
     });
     Unexplained {
         description: format!(
-            "The worst channel is {channel} ({error:.2} of its noise), the worst time {at:.2} s.{lead}"
+            "The worst channel is {channel} ({error:.2} of its noise), {at}.{lead}"
         ),
         correlates_with: correlated
             .iter()
@@ -87,14 +87,22 @@ fn worst_channel(case: &Case, residual: &[f64]) -> (&'static str, f64) {
     };
     let worst = (0..N_CHANNELS).max_by(|&a, &b| error(a).total_cmp(&error(b)));
     let worst = worst.unwrap_or(0);
-    (CHANNELS[worst], error(worst))
+    (case.channels()[worst].0, error(worst))
 }
 
-fn worst_time(study: &Study, trial: &Trial) -> f64 {
+/// Where the error is largest: a time of a recording, a point of a table.
+fn worst_place(study: &Study, trial: &Trial) -> String {
+    let case = &study.fitted.case;
     let blocks = trial.fit.blocks.iter().enumerate();
     let worst = blocks.max_by(|a, b| a.1.sse.total_cmp(&b.1.sse));
-    let start = worst.map_or(0, |(k, _)| k * study.fitted.case.block);
-    start as f64 * study.fitted.case.t_row()
+    let block = worst.map_or(0, |(k, _)| k);
+    match case.table {
+        Some(_) => format!("the worst point number {}", block + 1),
+        None => format!(
+            "the worst time {:.2} s",
+            (block * case.block) as f64 * case.t_row()
+        ),
+    }
 }
 
 #[cfg(test)]

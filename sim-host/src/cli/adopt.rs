@@ -20,7 +20,8 @@ use crate::study::{Adopted, PARAMETERS};
 /// Add a physical effect to a motor file, refit everything, and show the error before and after.
 ///
 /// The error is shown on data that was not fitted too. The new motor file keeps the comments of the old one. The name
-/// `parameters` takes over the refitted parameters and adds nothing.
+/// `parameters` takes over the refitted parameters and adds nothing. A motor file is written only where the error on data
+/// that was not fitted falls by more than its own scatter.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Adopt {
@@ -32,13 +33,16 @@ pub struct Adopt {
     /// Motor file to write
     #[arg(short, long = "out", value_name = "M2")]
     out: PathBuf,
+    /// Write the motor file even where no gain is proven
+    #[arg(long)]
+    anyway: bool,
 }
 
 const EXAMPLES: &str = "\
 Example:
   drivemon adopt magnetizing-saturation a.csv.gz b.csv.gz --motor m.toml -o m2.toml
-Exit codes: 0 the gain is proven on data that was not fitted, 1 it is not (the file is written all the same),
-2 bad input, 3 the data do not support an answer.";
+Exit codes: 0 the gain is proven on data that was not fitted, 1 it is not, and the file is written all the same (--anyway),
+2 bad input, 3 nothing is gained, or the data do not support an answer: nothing is written.";
 
 /// Longest bar, characters.
 const WIDTH: usize = 36;
@@ -53,17 +57,19 @@ impl Adopt {
         let inputs = self.study.inputs(&names, &sources, &motor);
         let (mut result, adopted) =
             with_progress(|progress| Adopted::new(&self.effect, inputs, progress))?;
-        self.write_motor(&adopted)?;
-        result.report.motor_file = self.out.display().to_string();
-        result.next_command = self.next();
+        let written = result.report.proven || self.anyway;
+        if written {
+            self.write_motor(&adopted)?;
+            result.report.motor_file = self.out.display().to_string();
+            result.next_command = self.next();
+        }
         self.study
             .output
             .give(Subject::Adopt, &result, || print(&result))?;
-        let good = result.report.proven || self.effect == PARAMETERS;
-        Ok(if good {
-            Finding::Nothing
-        } else {
-            Finding::Something
+        Ok(match (result.report.proven, written) {
+            (true, _) => Finding::Nothing,
+            (false, true) => Finding::Something,
+            (false, false) => Finding::Unsupported,
         })
     }
 
@@ -99,16 +105,14 @@ fn print(result: &Adopted) {
         );
     };
     say!("\nError on data that was not fitted:");
-    line(
-        "before, all parameters refitted",
-        report.before.held_out_error_over_noise,
-    );
+    let before = match report.effect.as_str() {
+        PARAMETERS => "before, as the motor file has it",
+        _ => "before, all parameters refitted",
+    };
+    line(before, report.before.held_out_error_over_noise);
     line("after", report.after.held_out_error_over_noise);
     say!("Error on the fitted data:");
-    line(
-        "before, all parameters refitted",
-        report.before.error_over_noise,
-    );
+    line(before, report.before.error_over_noise);
     line("after", report.after.error_over_noise);
     print_verdict(report);
     if let Some(frame) = &report.frame {
@@ -117,13 +121,13 @@ fn print(result: &Adopted) {
         print_values(report);
     }
     scale::print(report.speed_scale.as_ref(), &report.cannot_be_concluded);
-    print_next(
-        &format!(
-            "{} is written. Is anything still missing?",
-            report.motor_file
+    match report.motor_file.as_str() {
+        "" => print_next("Nothing is written; --anyway writes it all the same.", None),
+        file => print_next(
+            &format!("{file} is written. Is anything still missing?"),
+            Some(&result.next_command),
         ),
-        Some(&result.next_command),
-    );
+    }
 }
 
 fn print_verdict(report: &AdoptReport) {
@@ -132,18 +136,26 @@ fn print_verdict(report: &AdoptReport) {
             "{}",
             paint::good("The gain is proven on data that was not fitted.")
         );
-    } else if report.effect != PARAMETERS {
-        say!(
-            "{}",
-            paint::caution(
+    } else {
+        let what = match report.effect.as_str() {
+            PARAMETERS => {
+                "Nothing is gained: the motor file explains data that was not fitted as well as the fit does."
+            }
+            _ => {
                 "The gain is not proven on data that was not fitted: do not trust this effect yet."
-            )
-        );
+            }
+        };
+        anstream::println!("{}", paint::caution(what));
     }
 }
 
 fn print_values(report: &AdoptReport) {
-    say!("\nIn the new motor file:");
+    let written = !report.motor_file.is_empty();
+    let heading = match written {
+        true => "In the new motor file",
+        false => "What the fit found",
+    };
+    say!("\n{heading}:");
     for p in &report.parameters {
         let value = uncertain(p.value, p.std_error);
         say!("  {:<34} {value} {}", p.name, p.unit);

@@ -16,7 +16,9 @@ pub fn content(result: &Place<'_>) -> Markup {
     html! {
         (answer(result))
         (cards(&summary(result)))
-        (next("Is anything still missing?", result.text("next_command")))
+        @if !result.text("next_command").is_empty() {
+            (next("Is anything still missing?", result.text("next_command")))
+        }
         (errors(result))
         (frame::section(result))
         (overlay::section(result))
@@ -33,9 +35,13 @@ fn answer(result: &Place<'_>) -> Markup {
         (shown(result, "after/held_out_error_over_noise", decimals(2))) " times the noise"
     };
     let (mood, text) = match (effect, result.is_true("proven")) {
-        ("parameters", _) => (
+        ("parameters", true) => (
             Mood::Good,
-            html! { "The refitted parameters are taken over" },
+            html! { "The refitted parameters take the error from " (after) },
+        ),
+        ("parameters", false) => (
+            Mood::Caution,
+            html! { "Nothing is gained by refitted parameters: " (after) },
         ),
         (_, true) => (
             Mood::Good,
@@ -46,8 +52,12 @@ fn answer(result: &Place<'_>) -> Markup {
             html! { "The gain of " (effect) " is not proven: " (after) },
         ),
     };
+    let file = result.text("motor_file");
     let more = html! {
-        p.subtle { (result.text("motor")) ". Errors on data that was not fitted. Motor file: " code { (result.text("motor_file")) } }
+        p.subtle {
+            (result.text("motor")) ". Errors on data that was not fitted. "
+            @if file.is_empty() { "No motor file is written." } @else { "Motor file: " code { (file) } }
+        }
     };
     verdict(mood, &text, &more)
 }
@@ -89,11 +99,15 @@ fn errors(result: &Place<'_>) -> Markup {
         })
     };
     let rows: Vec<Bar<'_>> = ERRORS.into_iter().filter_map(row).collect();
+    let before = match result.text("effect") {
+        "parameters" => " Before: the motor file as it is; after: all parameters refitted.",
+        _ => " Before and after, all parameters are refitted.",
+    };
     html! {
         section aria-labelledby="fall" {
             h2 id="fall" { "Error before and after" }
             (bars(&rows))
-            p.subtle { (NOISE) " Before and after, all parameters are refitted." }
+            p.subtle { (NOISE) (before) }
         }
     }
 }
@@ -102,7 +116,9 @@ fn values(result: &Place<'_>) -> Markup {
     let effect = result.items("parameters");
     html! {
         section aria-labelledby="parameters" {
-            h2 id="parameters" { "What the new motor file holds" }
+            h2 id="parameters" {
+                @if result.text("motor_file").is_empty() { "What the fit found" } @else { "What the new motor file holds" }
+            }
             @if !effect.is_empty() { (of_effect(&effect)) }
             (nominals(&result.items("nominals")))
         }

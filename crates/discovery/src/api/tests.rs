@@ -172,13 +172,20 @@ fn what_cannot_be_judged_is_a_verdict_and_a_wrong_question_an_error() {
 fn a_verdict_is_the_gravest_that_applies() {
     let question = tables();
     let study = &question.study;
-    let of = |found: &Explanation| verdict(found, &steps(study, found));
+    let of = |found: &Explanation| verdict(study, found, &steps(study, found));
     assert_eq!(of(&nothing(study, 1.0)), Verdict::Adequate);
     let mut found = stepwise(study, &["core-loss"], &[3.0, 1.0], &[]);
     assert_eq!(of(&found), Verdict::Effect);
     found.steps[0].tied.push("windage".to_owned());
     assert_eq!(of(&found), Verdict::Ambiguous);
+    found.steps[0].trial.off = std::sync::OnceLock::new();
     found.steps[0].trial.fit.hypothesis.z[MAGNETIZING] = 1.0;
+    assert_eq!(
+        of(&found),
+        Verdict::Ambiguous,
+        "far, but not shown to be off"
+    );
+    found.steps[0].trial.off = std::sync::OnceLock::from(vec![MAGNETIZING]);
     assert_eq!(of(&found), Verdict::Implausible);
     found.nameable = false;
     assert_eq!(of(&found), Verdict::Unknown);
@@ -228,7 +235,7 @@ fn a_moved_parameter_that_an_effect_explains_as_well_is_a_step_of_both() {
     assert_eq!(steps[0].effect, "windage");
     let others = ["friction_nm_s", "current-gain", "coulomb-friction"];
     assert_eq!(steps[0].tied_with, others);
-    assert_eq!(verdict(&found, &steps), Verdict::Ambiguous);
+    assert_eq!(verdict(study, &found, &steps), Verdict::Ambiguous);
 }
 
 /// Folds at 4, proof at 2: what a screen leaves of the folds is taken as the same share of the proof.

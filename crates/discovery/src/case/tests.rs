@@ -1,6 +1,6 @@
 use super::*;
 use crate::specimen::{self, SIGMA, T_SAMPLE};
-use recording::Metadata;
+use recording::{LoadTorque, Metadata};
 
 fn rated() -> Rated<f64> {
     specimen::belief("").plant.rated
@@ -288,20 +288,25 @@ fn held_or_slow_voltages_are_not_interpolated() {
 #[test]
 fn the_load_is_what_is_declared_or_measured() {
     let rec = specimen::recording(0.3, |_| 1.0);
-    let load = Load::new(&rec);
+    let load = Load::new(&rec).expect("known");
     assert!(!load.unknown && load.torque.value.iter().all(|x| *x == 1.0));
     assert!((load.torque.noise - SIGMA[3]).abs() < 1e-12);
     let mut friction = rec.clone();
     friction.metadata.load_torque = LoadTorque::Friction;
-    let load = Load::new(&friction);
-    assert!(!load.unknown && load.torque.noise == 0.0 && load.torque.value.iter().all(|x| *x == 0.0));
+    let load = Load::new(&friction).expect("known");
+    assert!(
+        !load.unknown && load.torque.noise == 0.0 && load.torque.value.iter().all(|x| *x == 0.0)
+    );
     let free = changed(&rec, |c, x| (c != Channel::TORQUE).then_some(x));
     assert!(
-        Load::new(&free).unknown,
+        Load::new(&free).expect("a speed").unknown,
         "the measured speed takes the place of the load"
     );
     let nothing = changed(&free, |c, x| (c != Channel::SPEED).then_some(x));
-    assert!(!Load::new(&nothing).unknown);
+    let refused = Load::new(&nothing)
+        .err()
+        .expect("nothing says what the load is");
+    assert!(refused.remedy.contains("`speed`") && refused.remedy.contains("`torque`"));
 }
 
 #[test]
@@ -331,7 +336,9 @@ fn angle_and_smoothed_speed_follow_the_measured_speed() {
         assert!((speed[k] - (100.0 + 40.0 * t)).abs() < 1e-9);
     }
     let without = changed(&rec, |c, x| (c != Channel::SPEED).then_some(x));
-    assert!(measured_angle(&without).is_empty() && measured_speed(&without, T_SAMPLE).value.is_empty());
+    assert!(
+        measured_angle(&without).is_empty() && measured_speed(&without, T_SAMPLE).value.is_empty()
+    );
 }
 
 #[test]

@@ -139,9 +139,9 @@ fn misfits(x: &[Complex64], variance: &[f64], window: usize) -> Vec<f64> {
     let of_window = |first: usize| {
         let part = first..first + reach.window;
         let noise = variance[part.clone()].iter().sum::<f64>() / reach.window as f64;
-        let squares = polynomials.iter().map(|p| {
-            dot(p, &re[part.clone()]).powi(2) + dot(p, &im[part.clone()]).powi(2)
-        });
+        let squares = polynomials
+            .iter()
+            .map(|p| dot(p, &re[part.clone()]).powi(2) + dot(p, &im[part.clone()]).powi(2));
         squares.sum::<f64>() / noise.max(f64::MIN_POSITIVE)
     };
     let last = x.len() - reach.window;

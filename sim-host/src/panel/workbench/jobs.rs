@@ -141,6 +141,9 @@ impl Work {
                 let effect = self.question.effect.as_str();
                 let adopted = Adopted::new(effect, inputs, &mut progress);
                 let (mut adopted, motor) = adopted.map_err(plainly)?;
+                if !adopted.report.proven {
+                    return Ok((shown(Subject::Adopt, &adopted)?, None));
+                }
                 let motor = self.motor.with(effect, motor);
                 adopted.report.motor_file.clone_from(&motor.file);
                 Ok((shown(Subject::Adopt, &adopted)?, Some(motor)))

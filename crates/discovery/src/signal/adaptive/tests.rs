@@ -1,0 +1,187 @@
+use super::*;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+
+fn noise(n: usize, sigma: f64, seed: u64) -> Vec<f64> {
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
+    let one = || {
+        let normal: f64 = StandardNormal.sample(&mut rng);
+        sigma * normal
+    };
+    std::iter::repeat_with(one).take(n).collect()
+}
+
+fn rms(x: impl Iterator<Item = f64>) -> f64 {
+    let (n, sum) = x.fold((0usize, 0.0), |(n, sum), x| (n + 1, sum + x * x));
+    (sum / n.max(1) as f64).sqrt()
+}
+
+/// Over a constant the windows grow until nearly all noise is gone: a quadratic over 25600 samples leaves
+/// 1.5/sqrt(25600) of it in the middle, some times that at the ends; a window of 25 leaves 0.3.
+#[test]
+fn a_constant_loses_its_noise() {
+    let x: Vec<f64> = noise(60_000, 1.0, 1).iter().map(|e| 20.0 + e).collect();
+    let windows = longest_real(&x, 1.0, 25, true);
+    let smooth = windows.smooth_real(&x);
+    let left = rms(smooth.iter().map(|y| y - 20.0));
+    assert!(left < 0.05, "{left}");
+    let longest = *windows.level.iter().max().expect("samples");
+    assert!(25usize << (longest - 1) > 15_000, "{longest}");
+}
+
+/// A step of ten deviations stays at its sample: nothing of it is smeared further than its noise.
+#[test]
+fn a_step_stays_a_step() {
+    let clean = |k: usize| if k < 5000 { 0.0 } else { 10.0 };
+    let x: Vec<f64> = noise(10_000, 1.0, 2)
+        .iter()
+        .enumerate()
+        .map(|(k, e)| clean(k) + e)
+        .collect();
+    let smooth = longest_real(&x, 1.0, 25, true).smooth_real(&x);
+    let worst = smooth
+        .iter()
+        .enumerate()
+        .map(|(k, y)| (y - clean(k)).abs())
+        .fold(0.0, f64::max);
+    // Four deviations of the raw noise.
+    assert!(worst < 4.0, "{worst}");
+    let away = smooth
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| k.abs_diff(5000) > 200);
+    let left = rms(away.map(|(k, y)| y - clean(k)));
+    assert!(left < 0.2, "{left}");
+}
+
+/// A ramp that begins: the bias at the kink stays within what the shorter windows would have left of noise.
+#[test]
+fn a_kink_is_not_rounded_by_more_than_noise() {
+    let clean = |k: usize| 0.01 * k.saturating_sub(10_000) as f64;
+    let worst = |seed: u64| {
+        let x: Vec<f64> = noise(20_000, 1.0, seed)
+            .iter()
+            .enumerate()
+            .map(|(k, e)| clean(k) + e)
+            .collect();
+        let smooth = longest_real(&x, 1.0, 25, true).smooth_real(&x);
+        smooth[9_000..11_000]
+            .iter()
+            .zip(9_000..)
+            .map(|(y, k)| (y - clean(k)).abs())
+            .fold(0.0, f64::max)
+    };
+    // A window of 25 leaves 0.3 of the noise, four deviations of it 1.2.
+    for seed in 1..6 {
+        assert!(worst(seed) < 1.2, "{}", worst(seed));
+    }
+}
+
+/// What moves within the shortest window is left alone where that is allowed, and is not where it is not.
+#[test]
+fn what_is_faster_than_any_window_stays() {
+    let x: Vec<f64> = (0..2000)
+        .map(|k| 10.0 * (2.0 * f64::from(k)).sin())
+        .collect();
+    assert_eq!(longest_real(&x, 0.1, 25, true).smooth_real(&x), x);
+    let smoothed = longest_real(&x, 0.1, 25, false).smooth_real(&x);
+    assert!(rms(smoothed[50..1950].iter().copied()) < 3.0);
+}
+
+/// Slow swings are kept: their amplitude and their slope.
+#[test]
+fn a_swing_keeps_its_value_and_slope() {
+    let omega = std::f64::consts::TAU / 4000.0;
+    let clean = |k: usize| 30.0 * (omega * k as f64).sin();
+    let x: Vec<Complex64> = noise(20_000, 0.5, 4)
+        .iter()
+        .enumerate()
+        .map(|(k, e)| Complex64::new(clean(k) + e, 0.0))
+        .collect();
+    let variance = vec![0.25; x.len()];
+    let series = Noisy {
+        x: &x,
+        variance: &variance,
+        two_axes: false,
+    };
+    let smoothed = Windows::longest(series, 25, false).smooth(&x);
+    let inside = 500..19_500;
+    let off = rms(inside.clone().map(|k| smoothed.value[k].re - clean(k)));
+    // Less than windows of 100 samples would leave: 0.5 x 1.5/10.
+    assert!(off < 0.075, "{off}");
+    let slope = |k: usize| 30.0 * omega * (omega * k as f64).cos();
+    let off = rms(inside.map(|k| smoothed.slope[k].re - slope(k)));
+    assert!(off < 0.1 * 30.0 * omega, "{off}");
+}
+
+/// Two axes at once, and a linear operation: a sum is smoothed to the sum.
+#[test]
+fn smoothing_is_linear_in_what_is_smoothed() {
+    let [a, b] = [7, 8].map(|seed| noise(3000, 1.0, seed));
+    let [c, d] = [9, 10].map(|seed| noise(3000, 1.0, seed));
+    let one: Vec<_> = a
+        .iter()
+        .zip(&b)
+        .map(|(&a, &b)| Complex64::new(a, b))
+        .collect();
+    let two: Vec<_> = c
+        .iter()
+        .zip(&d)
+        .map(|(&c, &d)| Complex64::new(c, d))
+        .collect();
+    let variance = vec![1.0; one.len()];
+    let windows = Windows::longest(
+        Noisy {
+            x: &one,
+            variance: &variance,
+            two_axes: true,
+        },
+        50,
+        true,
+    );
+    let sum: Vec<_> = one.iter().zip(&two).map(|(a, b)| a + b).collect();
+    let [one, two, sum] = [one, two, sum].map(|x| windows.smooth(&x).value);
+    for ((one, two), sum) in one.iter().zip(&two).zip(&sum) {
+        assert!((one + two - sum).norm() < 1e-9);
+    }
+}
+
+/// Orthonormal, and blind to every quadratic.
+#[test]
+fn what_is_left_over_is_no_quadratic() {
+    let polynomials = left_over(40);
+    assert_eq!(polynomials.len(), 4);
+    for (j, p) in polynomials.iter().enumerate() {
+        for (k, q) in polynomials.iter().enumerate() {
+            let expected = f64::from(u8::from(j == k));
+            assert!((dot(p, q) - expected).abs() < 1e-9);
+        }
+        for order in 0..3 {
+            let power: Vec<f64> = (0..40).map(|k| f64::from(k).powi(order)).collect();
+            assert!(dot(p, &power).abs() < 1e-7 * dot(&power, &power).sqrt());
+        }
+    }
+}
+
+/// Chance exceeds the limits in one window of a thousand.
+#[test]
+fn the_limits_are_those_of_chi_square() {
+    let exceeds = |two_axes: bool, limit: f64| {
+        let [re, im] = [21, 22].map(|seed| noise(2_000_000, 1.0, seed));
+        let x: Vec<_> = re
+            .iter()
+            .zip(&im)
+            .map(|(&re, &im)| Complex64::new(re, if two_axes { im } else { 0.0 }))
+            .collect();
+        let variance = vec![1.0; 50];
+        let windows = x
+            .chunks_exact(49)
+            .map(|part| misfits(part, &variance[..49], 49)[20]);
+        windows.filter(|&m| m > limit).count()
+    };
+    // 40816 windows: 41 expected, four deviations of a count.
+    for (two_axes, limit) in [(false, LIMIT), (true, LIMIT_TWO_AXES)] {
+        let count = exceeds(two_axes, limit);
+        assert!((15..=67).contains(&count), "{count}");
+    }
+}

@@ -219,11 +219,11 @@ fn the_unwrapped_angle_goes_through_many_turns() {
     let turning: Vec<_> = (0..2000)
         .map(|k| Complex64::from_polar(5.0, 0.1 * f64::from(k)))
         .collect();
-    let (theta, slope) = angle(&turning, &[0..2000], 20);
+    let (theta, slope) = angle(&turning, &[0..2000], 1e-3, 20);
     for (k, (theta, slope)) in theta.iter().zip(slope).enumerate() {
         assert!((theta - 0.1 * k as f64).abs() < 1e-8);
         assert!((slope - 0.1).abs() < 1e-8);
     }
-    let (theta, _) = angle(&[Complex64::ZERO; 50], &[0..50], 20);
+    let (theta, _) = angle(&[Complex64::ZERO; 50], &[0..50], 1e-3, 20);
     assert!(theta.iter().all(|x| x.abs() < 1e-12));
 }

@@ -1,0 +1,113 @@
+//! How often the intervals that the tool prints hold the truth: random motors, random beliefs, random recorders.
+//!
+//! `cargo run --release -p sim-host --example coverage -- --machines 300 --first 1`
+//! `--explain` asks every machine for missing effects too; `--verbose` prints every interval. Exits with 1 when a promise is
+//! missed.
+
+mod machine;
+mod tally;
+
+use discovery::{NominalReport, Verdict, adopt, explain};
+use machine::Case;
+use rayon::prelude::*;
+use recording::Source;
+use sim_host::calibrate::{Surroundings, calibrate};
+use std::process::ExitCode;
+use tally::{Answer, Interval};
+
+/// Intervals of one machine by `adopt` (the same that `explain` prints of a model to which nothing is added).
+fn fitted(case: &Case) -> Answer {
+    let source = [Source::Recording(case.recording.clone())];
+    let report = adopt("parameters", &source, &case.believed, &mut |_, _| {});
+    let (report, _) = match report {
+        Ok(found) => found,
+        Err(error) => return Answer::refused(error.to_string()),
+    };
+    let interval = |p: &NominalReport| Interval {
+        name: p.name.clone(),
+        truth: case.truth_of(&p.name),
+        value: p.value,
+        std_error: p.std_error,
+        believed: p.believed,
+        off: p.off,
+    };
+    let judged = report.nominals.iter().filter(|p| p.std_error > 0.0);
+    Answer {
+        intervals: judged.map(interval).collect(),
+        said: format!("{:.3} x noise", report.after.held_out_error_over_noise),
+        ..Answer::default()
+    }
+}
+
+/// What `explain` says beyond parameters.
+fn explained(case: &Case) -> Answer {
+    let source = [Source::Recording(case.recording.clone())];
+    match explain(&source, &case.believed, &mut |_, _| {}) {
+        Ok(report) => Answer {
+            wrong: !matches!(report.verdict, Verdict::Adequate | Verdict::Unsupported),
+            said: report.summary,
+            ..Answer::default()
+        },
+        Err(error) => Answer::refused(error.to_string()),
+    }
+}
+
+/// Intervals of one machine by `calibrate`.
+fn calibrated(case: &Case) -> Answer {
+    let surroundings = Surroundings {
+        winding_kelvin: 20.0,
+        false_alarm_rate: 1e-6,
+    };
+    let recording = std::slice::from_ref(&case.recording);
+    let found = match calibrate(&case.believed, recording, &surroundings) {
+        Ok(found) => found,
+        Err(error) => return Answer::refused(error.to_string()),
+    };
+    let interval = |(cause, change, error): &(monitor::Cause, f64, f64)| {
+        let name = machine::name_of(*cause);
+        let believed = case.believed_of(name);
+        Interval {
+            name: name.to_owned(),
+            truth: case.truth_of(name),
+            value: believed * (1.0 + change),
+            std_error: believed * (1.0 + change) * error,
+            believed,
+            off: false,
+        }
+    };
+    Answer {
+        intervals: found.changes.iter().map(interval).collect(),
+        ..Answer::default()
+    }
+}
+
+fn main() -> ExitCode {
+    let value = |flag: &str| std::env::args().skip_while(|a| a != flag).nth(1);
+    let number = |flag: &str, otherwise: u64| {
+        value(flag).map_or(otherwise, |x| x.parse().expect("a whole number"))
+    };
+    let has = |flag: &str| std::env::args().any(|a| a == flag);
+    let first = number("--first", 1);
+    let seeds: Vec<u64> = (first..first + number("--machines", 300)).collect();
+    let asked = |what: &str, of: fn(&Case) -> Answer| {
+        let one = |&seed: &u64| {
+            let case = Case::random(seed);
+            let answer = of(&case);
+            eprintln!("{what:9} {seed:4} {} {}", case.words, answer.said);
+            if has("--verbose") {
+                answer.print();
+            }
+            answer
+        };
+        seeds.par_iter().map(one).collect::<Vec<Answer>>()
+    };
+    println!(
+        "| intervals | machines | hold the truth | share | promised | said to be off |\n|---|---|---|---|---|---|"
+    );
+    let mut kept = tally::row("explain and adopt", &asked("adopt", fitted));
+    kept &= tally::row("calibrate", &asked("calibrate", calibrated));
+    if has("--explain") {
+        kept &= tally::wrong(&asked("explain", explained));
+    }
+    ExitCode::from(u8::from(!kept))
+}
