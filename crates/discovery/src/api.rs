@@ -8,6 +8,7 @@ use crate::fit::Effort;
 use crate::frame::{self, FrameReport};
 use crate::gram::dot;
 use crate::inconclusive::{self, Uncertainty};
+use crate::polish::with_nominals;
 use crate::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
 use crate::question::{Error, Question};
 use crate::report::{
@@ -312,7 +313,7 @@ pub fn adopt(
             let after = fitted(study, &refitted, effect)?;
             (refitted, after)
         }
-        false => (study.trial(&study.beliefs(), Effort::NONE), refitted),
+        false => (as_believed(study), refitted),
     };
     progress("done", 1.0);
     let nominals = fit_report(study, &after).parameters;
@@ -337,6 +338,13 @@ pub fn adopt(
         cannot_be_concluded: inconclusive::list(study, &after, &[]),
     };
     Ok((report, updated(study, &after, motor)))
+}
+
+/// The motor file as it is: nothing is fitted, not even on the folds.
+fn as_believed(study: &Study) -> Trial {
+    let mut beliefs = study.beliefs();
+    beliefs.free.fill(false);
+    study.trial(&beliefs, Effort::NONE)
 }
 
 /// Changes nothing but the frame in which the monitor forms its residuals.
@@ -421,7 +429,7 @@ fn is_open(entry: &EffectEntry) -> bool {
 
 /// The motor file with the parameters and effects of a trial.
 fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
-    let plant = trial.fit.hypothesis.plant(&study.belief);
+    let plant = with_nominals(trial, study.polished(trial)).plant(&study.belief);
     let mut file = motor.clone();
     file.parameters = plant.motor;
     file.mechanics = plant.mechanics;

@@ -22,6 +22,8 @@ pub(crate) const MAGNETIZING: usize = 3;
 pub(crate) const FRICTION: usize = 5;
 /// Effects keep a plain wide prior: so many typical sizes.
 const SIZE_PRIOR: f64 = 4.0;
+/// Gain of a voltage or current channel, standard deviation: instruments of class 0.5.
+pub(crate) const CHANNEL_GAIN: f64 = 0.003;
 /// Prior of a shape: a factor of e.
 const SHAPE_PRIOR: f64 = 1.0;
 
@@ -112,6 +114,8 @@ pub(crate) struct Hypothesis {
     /// Whether a coordinate is fitted.
     pub free: Vec<bool>,
     coordinates: Vec<Coordinate>,
+    /// The effect by which an instrument may be off within its class: no finding, a nuisance.
+    instrument: Option<usize>,
 }
 
 impl Hypothesis {
@@ -123,6 +127,7 @@ impl Hypothesis {
             z: vec![0.0; N_NOMINAL],
             free: free.collect(),
             coordinates: Vec::new(),
+            instrument: None,
         }
     }
 
@@ -153,6 +158,19 @@ impl Hypothesis {
         more
     }
 
+    /// The same with the effect by which an instrument may be off within its class.
+    pub fn with_instrument(&self, effect: EffectConfig, rated: &Rated<f64>) -> Self {
+        Self {
+            instrument: Some(self.effects.len()),
+            ..self.with(effect, rated)
+        }
+    }
+
+    /// Whether coordinate `k` is a belief: of the motor file about the motor, or of the class about an instrument.
+    pub fn is_belief(&self, k: usize) -> bool {
+        k < N_NOMINAL || self.instrument == Some(self.effect_of(k))
+    }
+
     /// Prior standard deviation of a coordinate, and its centre.
     pub fn prior(&self, k: usize, rated: &Rated<f64>) -> (f64, f64) {
         if k < N_NOMINAL {
@@ -160,6 +178,7 @@ impl Hypothesis {
         }
         let p = self.parameter(k);
         match p.role {
+            Role::Size if self.is_belief(k) => (CHANNEL_GAIN / p.typical, 0.0),
             Role::Size => (SIZE_PRIOR, 0.0),
             _ => (
                 SHAPE_PRIOR,

@@ -76,7 +76,7 @@ impl Fit {
 fn penalty(belief: &Belief, h: &Hypothesis, free: &[usize], kappa: f64) -> Penalty {
     let one = |&k: &usize| {
         let (sd, centre) = h.prior(k, &belief.plant.rated);
-        let factor = if k < N_NOMINAL { kappa } else { 1.0 };
+        let factor = if h.is_belief(k) { kappa } else { 1.0 };
         (factor / (sd * sd), centre - h.z[k])
     };
     let (weight, pull): (Vec<_>, Vec<_>) = free.iter().map(one).unzip();

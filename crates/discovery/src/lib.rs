@@ -21,6 +21,7 @@ mod gram;
 mod inconclusive;
 mod inputs;
 mod off;
+mod polish;
 mod predict;
 mod present;
 mod proof;

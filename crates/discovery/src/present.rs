@@ -22,7 +22,7 @@ pub(crate) fn coordinate_error(
 
 /// Names of the nominals that are off so far that no such motor has them.
 pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
-    let z = &trial.fit.hypothesis.z;
+    let z = &study.polished(trial).fit.hypothesis.z;
     let far = |&k: &usize| {
         let limit = IMPLAUSIBLE * NOMINALS[k].prior;
         let warm = if NOMINALS[k].unit == "ohm" {
@@ -38,10 +38,11 @@ pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
 
 /// Errors and nominal parameters of a trial.
 pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
-    let covariance = study.covariance(trial);
+    let polished = study.polished(trial);
+    let covariance = study.covariance(polished);
     let nominal = |k: usize| {
-        let z = trial.fit.hypothesis.z[k];
-        let error = coordinate_error(trial, covariance, k);
+        let z = polished.fit.hypothesis.z[k];
+        let error = coordinate_error(polished, covariance, k);
         let change = if k == FRICTION { z } else { 100.0 * z.exp_m1() };
         NominalReport {
             name: NOMINALS[k].name.to_owned(),

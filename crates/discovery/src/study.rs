@@ -7,6 +7,7 @@ use crate::floor::{Floor, floor};
 use crate::free_scale::{self, FreeScale};
 use crate::gram;
 use crate::off;
+use crate::polish;
 use crate::predict::{Teacher, outputs, residual};
 use crate::uncertainty;
 use nalgebra::DMatrix;
@@ -54,6 +55,8 @@ pub(crate) struct Trial {
     pub covariance: OnceLock<DMatrix<f64>>,
     /// Nominals that are off, once they were asked for.
     pub off: OnceLock<Vec<usize>>,
+    /// The same beside the errors of the voltage channels, once it was asked for.
+    pub polished: OnceLock<Option<Box<Trial>>>,
 }
 
 impl Subject {
@@ -117,6 +120,7 @@ impl Study {
             proof: self.proofs.iter().flat_map(errors).collect(),
             covariance: OnceLock::new(),
             off: OnceLock::new(),
+            polished: OnceLock::new(),
             fit,
         }
     }
@@ -127,9 +131,21 @@ impl Study {
         trial.covariance.get_or_init(of_fit)
     }
 
+    /// The trial from which the parameters of a motor are read: refitted beside the errors of the voltage channels.
+    pub fn polished<'a>(&self, trial: &'a Trial) -> &'a Trial {
+        let refit = || polish::polished(self, trial).map(Box::new);
+        trial
+            .polished
+            .get_or_init(refit)
+            .as_deref()
+            .unwrap_or(trial)
+    }
+
     /// Indices of the nominals of a trial that are off.
     pub fn off<'a>(&self, trial: &'a Trial) -> &'a [usize] {
-        trial.off.get_or_init(|| off::nominals(self, trial))
+        trial
+            .off
+            .get_or_init(|| off::nominals(self, self.polished(trial)))
     }
 
     /// Error over noise by the folds of the fitted recording.

@@ -5,7 +5,7 @@
 //! sample to sample; noise of the inputs as it passes through the model; instruments that are off by their class; and the
 //! priors, whose pull is not zero where the true motor is not as believed. The covariances of these scores add up.
 
-use crate::belief::N_NOMINAL;
+use crate::belief::{CHANNEL_GAIN, N_NOMINAL};
 use crate::case::{Case, N_CHANNELS, SPEED};
 use crate::fit::Fit;
 use crate::floor::noise_draws;
@@ -16,8 +16,6 @@ use motor::effects::Plant;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
-/// Gain of a voltage or current channel, standard deviation: instruments of class 0.5.
-const CHANNEL_GAIN: f64 = 0.003;
 /// Gain of a torque transducer.
 const TORQUE_GAIN: f64 = 0.005;
 /// Gain of a speed: an encoder against the clock of the recorder.
@@ -69,8 +67,9 @@ fn rows_per_datum(study: &Study, fit: &Fit) -> f64 {
 /// The pull of the priors on a motor that is not as believed: `W Sigma W` with the variances `Sigma` of the beliefs.
 fn priors(fit: &Fit) -> DMatrix<f64> {
     let pull = |(&k, &weight): (&usize, &f64)| {
-        // Beliefs about nominals weigh `kappa` times their inverse variance in the fit.
-        weight * if k < N_NOMINAL { fit.kappa } else { 1.0 }
+        // Beliefs weigh `kappa` times their inverse variance in the fit.
+        let believed = fit.hypothesis.is_belief(k);
+        weight * if believed { fit.kappa } else { 1.0 }
     };
     let all = fit.free.iter().zip(fit.penalty.weight.iter());
     DMatrix::from_diagonal(&DVector::from_iterator(fit.free.len(), all.map(pull)))
@@ -119,8 +118,11 @@ fn instruments(case: &Case, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
     for current in 0..3 {
         sum += outer(&measured(current), CHANNEL_GAIN.powi(2));
     }
-    // A gain of one voltage alone is two thirds unbalance and zero sequence, which the parameters do not see.
-    sum += outer(&driven(louder_voltage(case)), CHANNEL_GAIN.powi(2) / 3.0);
+    let fitted = |&k: &usize| k >= N_NOMINAL && fit.hypothesis.is_belief(k);
+    if !fit.free.iter().any(fitted) {
+        // What all three share of their gains: the rest is unbalance and zero sequence.
+        sum += outer(&driven(louder_voltage(case)), CHANNEL_GAIN.powi(2) / 3.0);
+    }
     if case.input_noise.torque > 0.0 {
         sum += outer(&driven(louder_torque(case)), TORQUE_GAIN.powi(2));
     }

@@ -48,7 +48,11 @@ fn a_share_is_what_goes_of_the_excess_over_the_noise() {
     assert_eq!(share(3.0, 3.0), 0.0);
     assert!((share(3.0, 1.0) - 1.0).abs() < 1e-12);
     assert!(share(3.0, 4.0) < 0.0);
-    assert_eq!(share(0.9, 0.8), 1.0, "no excess is left to explain");
+    assert_eq!(
+        share(0.9, 0.8),
+        0.0,
+        "nothing is missing, nothing is explained"
+    );
 }
 
 #[test]
@@ -173,9 +177,9 @@ fn the_folds_prove_alone_from_two_per_cent_on() {
 }
 
 #[test]
-fn no_excess_at_all_is_explained_by_everything() {
-    assert_eq!(share(1.0, 0.5), 1.0);
-    assert_eq!(share(1.0, 1.0), 1.0);
+fn where_nothing_is_missing_nothing_is_explained() {
+    assert_eq!(share(1.0, 0.5), 0.0);
+    assert_eq!(share(1.0, 1.0), 0.0);
 }
 
 /// Folds from 3 to 2: five eighths; the proving table from 2 to 1.5: 1.75 of 3.

@@ -188,7 +188,7 @@ fn a_verdict_is_the_gravest_that_applies() {
     found.steps[0].trial.off = std::sync::OnceLock::from(vec![MAGNETIZING]);
     assert_eq!(of(&found), Verdict::Implausible);
     found.nameable = false;
-    assert_eq!(of(&found), Verdict::Unknown);
+    assert_eq!(verdict(study, &found, &[]), Verdict::Unknown);
 }
 
 /// From 3 to 2 times the noise five eighths of the excess go, from 2 to 1 all of it.
@@ -313,6 +313,7 @@ fn a_wrong_frame_comes_before_all_physics() {
     let mut found = stepwise(study, &["core-loss"], &[3.0, 1.0], &[]);
     found.steps[0].trial.fit.hypothesis.z[0] = 0.2;
     found.steps[0].trial = specimen::known_to(&found.steps[0].trial, &[0.01; 5]);
+    found.steps[0].trial.off = std::sync::OnceLock::from(vec![0]);
     let plain = report(&question, &found, None);
     assert_eq!((plain.verdict, plain.steps.len()), (Verdict::Effect, 1));
     assert!(plain.unexplained.is_none());

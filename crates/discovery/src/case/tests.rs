@@ -289,7 +289,7 @@ fn held_or_slow_voltages_are_not_interpolated() {
 fn the_load_is_what_is_declared_or_measured() {
     let rec = specimen::recording(0.3, |_| 1.0);
     let load = Load::new(&rec).expect("known");
-    assert!(!load.unknown && load.torque.value.iter().all(|x| *x == 1.0));
+    assert!(!load.unknown && load.torque.value.iter().all(|x| (x - 1.0).abs() < 1e-9));
     assert!((load.torque.noise - SIGMA[3]).abs() < 1e-12);
     let mut friction = rec.clone();
     friction.metadata.load_torque = LoadTorque::Friction;

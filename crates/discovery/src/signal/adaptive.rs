@@ -13,10 +13,10 @@ use num_complex::Complex64;
 /// three swings.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
 /// Sum of squares of their four coefficients, in variances, above which the window is too long: chance exceeds it in
-/// one window of a thousand (chi-square).
-const LIMIT: f64 = 18.5;
+/// one window of a hundred (chi-square).
+const LIMIT: f64 = 13.3;
 /// The same for the eight coefficients of a signal of two axes.
-const LIMIT_TWO_AXES: f64 = 26.1;
+const LIMIT_TWO_AXES: f64 = 20.1;
 
 /// A series of samples and its white noise.
 #[derive(Clone, Copy, Debug)]

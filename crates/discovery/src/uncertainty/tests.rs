@@ -40,8 +40,8 @@ fn without_data_the_belief_is_left() {
     }
 }
 
-/// A motor in steady state whose currents show 1 % more: the rotor resistance moves by what the covariance says of
-/// a gain of 1 %.
+/// A motor in steady state whose currents show 0.2 % more: the rotor resistance moves by what the covariance says of
+/// a gain of 0.2 %.
 #[test]
 fn a_gain_of_the_currents_moves_the_fit_as_foretold() {
     let truth = specimen::study(1.0, |t| if t < 0.5 { 0.5 } else { 1.5 });
@@ -51,17 +51,17 @@ fn a_gain_of_the_currents_moves_the_fit_as_foretold() {
     let curvature = &all.gram + DMatrix::from_diagonal(&fit.penalty.weight);
     let mut change = vec![0.0; case.measured.len() * N_CHANNELS];
     for (row, (y, w)) in case.measured.iter().zip(&case.weight).enumerate() {
-        (0..3).for_each(|k| change[row * N_CHANNELS + k] = 0.01 * y[k] * w[k]);
+        (0..3).for_each(|k| change[row * N_CHANNELS + k] = 0.002 * y[k] * w[k]);
     }
     let foretold = curvature.try_inverse().expect("regular") * score(&fit, &change);
     let mut louder = truth.clone();
     for row in &mut louder.fitted.case.measured {
-        row[..3].iter_mut().for_each(|i| *i *= 1.01);
+        row[..3].iter_mut().for_each(|i| *i *= 1.002);
     }
     let moved = louder.trial(&louder.beliefs(), Effort::FULL).fit;
     for (k, &at) in fit.free.iter().enumerate() {
         let step = moved.hypothesis.z[at] - fit.hypothesis.z[at];
-        // Linear up to the squares of some per cent.
+        // Linear up to the squares of some tenths of a per cent.
         assert!(
             (step - foretold[k]).abs() < 0.1 * foretold.amax(),
             "{at}: {step} {}",
