@@ -2,7 +2,7 @@
 
 use crate::free_scale;
 use crate::inputs::{InputNoise, Load, measured_speed};
-use crate::signal::{Supply, Windows, denoise, estimated_sigma};
+use crate::signal::{Supply, Windows, denoise, estimated_sigma, refined};
 use crate::table::{self, Point};
 use motor::dynamic::clarke;
 use motor::effects::{Between, Inputs, Plant, Rated, Timeline};
@@ -42,6 +42,10 @@ const AFTER_SWITCH: f64 = 0.03;
 const CARRIES: f64 = 20.0;
 /// ... and up to which it is only noise: three standard deviations over a period of 200 samples are 1.3.
 const NOISE_ONLY: f64 = 1.6;
+/// Longest sampling time at which two samples make one step of integration, s ...
+const LONGEST_SMOOTH: f64 = 2.6e-4;
+/// ... and that of finer inputs of a slower recording.
+const FINE: f64 = 2e-4;
 /// Residual rows per second that are worth their time.
 const ROW_RATE: f64 = 5500.0;
 
@@ -100,8 +104,12 @@ pub(crate) struct Case {
     pub weight: Vec<[f64; N_CHANNELS]>,
     /// Rows per block.
     pub block: usize,
-    /// Denoised supply.
+    /// Denoised supply, one value per input sample.
     pub supply: Supply,
+    /// Input samples per sample of the recording.
+    pub finer: usize,
+    /// The supply as it was denoised, at the rate of the recording, where the inputs are finer.
+    pub coarse: Option<Supply>,
     /// Noise of the inputs before they were smoothed.
     pub input_noise: InputNoise,
     /// How the load torque was smoothed.
@@ -141,16 +149,23 @@ impl Case {
         // Clarke's transform of three independent noises: sqrt(2/3) of one phase in each axis.
         let axis_noise = sigma_u * (2.0f64 / 3.0).sqrt();
         let supply = denoise(&raw, t_sample, axis_noise, rated.omega_sync);
-        let between = between(rec, t_sample);
         let load = Load::new(rec)?;
-        let theta_mech = measured_angle(rec);
         let speed = measured_speed(rec, t_sample);
+        let finer = finer(rec, &supply);
+        let (supply, coarse) = match finer {
+            1 => (supply, None),
+            _ => (supply.finer(finer), Some(supply)),
+        };
+        let t_sample = t_sample / finer as f64;
+        let between = between(rec, t_sample);
+        let fine = |x: Vec<f64>| if finer == 1 { x } else { refined(&x, finer) };
+        let theta_mech = fine(measured_angle(rec));
         let running_at = running_at(rec, currents, rated);
         let mut case = Self {
             inputs: Inputs {
                 t_sample,
                 u_s: supply.u_s.clone(),
-                tau_load: load.torque.value,
+                tau_load: fine(load.torque.value),
             },
             between,
             timeline: Arc::new(Timeline {
@@ -158,7 +173,7 @@ impl Case {
                 omega_sync: supply.omega_sync.clone(),
                 theta_mech,
             }),
-            speed: speed.value,
+            speed: fine(speed.value),
             speed_is_input: load.unknown,
             running_at,
             settles: rec.speed().is_none(),
@@ -168,6 +183,8 @@ impl Case {
             weight: Vec::new(),
             block: 1,
             supply,
+            finer,
+            coarse,
             input_noise: InputNoise {
                 voltage: axis_noise,
                 torque: load.torque.noise,
@@ -209,6 +226,8 @@ impl Case {
             weight,
             block: 1,
             supply: Supply::default(),
+            finer: 1,
+            coarse: None,
             input_noise: InputNoise::default(),
             load_windows: Windows::default(),
             speed_windows: Windows::default(),
@@ -296,22 +315,27 @@ impl Case {
         sigma_u: f64,
     ) {
         let h = self.inputs.t_sample * self.between.stride() as f64;
-        self.decimation = ((1.0 / ROW_RATE / h).round() as usize).max(1);
+        // Every sample of a slow recording is a row.
+        let step = match self.finer {
+            1 => ((1.0 / ROW_RATE / h).round() as usize).max(1),
+            finer => finer / self.between.stride(),
+        };
+        self.decimation = step;
         self.block = ((BLOCK / self.t_row()) as usize).max(1);
         let sigma_i = [0, 1, 2].map(|k| sigma(rec, Channel::CURRENTS[k], currents[k]));
         let speed = rec.speed().filter(|_| !self.speed_is_input);
         let w_speed = speed.map_or(0.0, |x| 1.0 / sigma(rec, Channel::SPEED, x));
         let w_zero = 3f64.sqrt() / sigma_u;
-        let stride = self.between.stride() * self.decimation;
-        let last = (rec.len() - 1) / self.between.stride() * self.between.stride();
+        let stride = self.between.stride() * self.decimation / self.finer;
+        let whole = (self.between.stride() / self.finer).max(1);
+        let last = (rec.len() - 1) / whole * whole;
         let limits = [0, 1, 2].map(|k| clip_limit(rec, k, currents[k]));
-        self.open = switched_off(currents, sigma_i, self.inputs.t_sample);
-        let settles = (AFTER_SWITCH / self.inputs.t_sample) as usize;
+        let open = switched_off(currents, sigma_i, rec.t_sample());
+        let settles = (AFTER_SWITCH / rec.t_sample()) as usize;
         for k in (0..=last).step_by(stride) {
             let i = currents.map(|c| c[k]);
             let w_i = |p: usize| {
-                let settled = self
-                    .open
+                let settled = open
                     .iter()
                     .all(|off| k + 10 < off.start || k > off.start + settles);
                 let judged = settled && i[p].abs() < limits[p];
@@ -322,6 +346,8 @@ impl Case {
             self.measured.push([i[0], i[1], i[2], omega, zero]);
             self.weight.push([w_i(0), w_i(1), w_i(2), w_speed, w_zero]);
         }
+        let times = |r: &Range<usize>| r.start * self.finer..r.end * self.finer;
+        self.open = open.iter().map(times).collect();
     }
 }
 
@@ -428,9 +454,20 @@ fn vectors(abc: [&[f64]; 3]) -> Vec<Complex64> {
         .collect()
 }
 
+/// Input samples per sample of a recording: voltages that are smooth between samples are known there too, as far as
+/// amplitude, angle and harmonics describe them, and a slow recording takes finer steps.
+fn finer(rec: &Recording, supply: &Supply) -> usize {
+    let held = rec.metadata.voltage == VoltageKind::Hold || !supply.denoised;
+    match held || rec.t_sample() <= LONGEST_SMOOTH {
+        true => 1,
+        // An even number: a step spans two input samples.
+        false => 2 * (rec.t_sample() / (2.0 * FINE)).ceil() as usize,
+    }
+}
+
 /// Double steps while they stay below a quarter of a millisecond.
 fn between(rec: &Recording, t_sample: f64) -> Between {
-    if rec.metadata.voltage == VoltageKind::Hold || t_sample > 2.6e-4 {
+    if rec.metadata.voltage == VoltageKind::Hold || t_sample > LONGEST_SMOOTH {
         Between::Held
     } else {
         Between::Smooth

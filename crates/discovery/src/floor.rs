@@ -3,6 +3,7 @@
 use crate::case::{Case, N_CHANNELS};
 use crate::gram::dot;
 use crate::predict::{Drive, outputs_on};
+use crate::signal::refined;
 use motor::effects::Plant;
 use num_complex::Complex64;
 use rand::SeedableRng;
@@ -108,14 +109,22 @@ fn disturbed(case: &Case, seed: u64) -> Drive<'_> {
         sigma * normal
     };
     let inputs = drive.inputs.to_mut();
+    let coarse = case.coarse.as_ref().unwrap_or(&case.supply);
+    let samples = 0..coarse.theta.len();
     let mut pair = || Complex64::new(draw(noise.voltage), draw(noise.voltage));
-    let voltage: Vec<_> = inputs.u_s.iter().map(|_| pair()).collect();
-    add(&mut inputs.u_s, case.supply.filter(&voltage));
-    let torque: Vec<f64> = inputs.tau_load.iter().map(|_| draw(noise.torque)).collect();
-    add(&mut inputs.tau_load, case.load_windows.smooth_real(&torque));
+    let voltage: Vec<_> = samples.clone().map(|_| pair()).collect();
+    let voltage = coarse.filter(&voltage);
+    add(
+        &mut inputs.u_s,
+        coarse.refined_vector(&voltage, &case.supply.theta, case.finer),
+    );
+    let torque: Vec<f64> = samples.clone().map(|_| draw(noise.torque)).collect();
+    let torque = case.load_windows.smooth_real(&torque);
+    add(&mut inputs.tau_load, refined(&torque, case.finer));
     if noise.speed > 0.0 {
-        let speed: Vec<f64> = drive.speed.iter().map(|_| draw(noise.speed)).collect();
-        add(drive.speed.to_mut(), case.speed_windows.smooth_real(&speed));
+        let speed: Vec<f64> = samples.map(|_| draw(noise.speed)).collect();
+        let speed = case.speed_windows.smooth_real(&speed);
+        add(drive.speed.to_mut(), refined(&speed, case.finer));
     }
     drive
 }

@@ -250,19 +250,6 @@ fn with_gains(recording: &Recording, rng: &mut Pcg64) -> Recording {
                 _ => GAINS[0],
             };
             let normal: f64 = StandardNormal.sample(rng);
-            let env = |k: &str| {
-                std::env::var(k)
-                    .ok()
-                    .map_or(1.0, |x| x.parse::<f64>().unwrap())
-            };
-            let sd = sd
-                * if Channel::VOLTAGES.contains(&channel) {
-                    env("GV")
-                } else if Channel::CURRENTS.contains(&channel) {
-                    env("GI")
-                } else {
-                    env("GT")
-                };
             let gain = 1.0 + sd * normal;
             rec.with_channel(channel, x.iter().map(|x| gain * x).collect())
                 .expect("a channel")

@@ -191,6 +191,22 @@ fn a_verdict_is_the_gravest_that_applies() {
     assert_eq!(verdict(study, &found, &[]), Verdict::Unknown);
 }
 
+/// What is not proven is not reported: neither its effect nor the parameters that it would ask for.
+#[test]
+fn the_parameters_of_an_unknown_are_those_of_the_baseline() {
+    let question = tables();
+    let mut found = stepwise(&question.study, &["core-loss"], &[3.0, 2.0], &[]);
+    found.steps[0].trial.fit.hypothesis.z[0] = 0.3;
+    found.nameable = false;
+    let report = report(&question, &found, None);
+    assert_eq!(report.verdict, Verdict::Unknown);
+    let values = |fit: &Option<crate::report::FitReport>| {
+        let parameters = &fit.as_ref().expect("fitted").parameters;
+        parameters.iter().map(|p| p.value).collect::<Vec<f64>>()
+    };
+    assert_eq!(values(&report.final_), values(&report.baseline));
+}
+
 /// From 3 to 2 times the noise five eighths of the excess go, from 2 to 1 all of it.
 #[test]
 fn steps_tell_what_each_effect_brought_and_what_ties_with_it() {

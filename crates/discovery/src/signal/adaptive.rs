@@ -53,11 +53,11 @@ impl Windows {
             if means.len() < shortest.max(5) && number > 1 {
                 break;
             }
-            let misfit = misfits(&means, &variance, shortest);
+            let quadratic = without_chance(&misfits(&means, &variance, shortest), limit, shortest);
             let mut any = number == 1;
             for (k, at) in level.iter_mut().enumerate() {
-                let block = (k >> (number - 1)).min(misfit.len() - 1);
-                if *at + 1 >= number && misfit[block] < limit {
+                let block = (k >> (number - 1)).min(quadratic.len() - 1);
+                if *at + 1 >= number && quadratic[block] {
                     *at = (*at).max(number);
                 }
                 any |= *at == number;
@@ -153,6 +153,27 @@ fn misfits(x: &[Complex64], variance: &[f64], window: usize) -> Vec<f64> {
         let misfit = of_window(middle.saturating_sub(reach.window / 2).min(last));
         out[k..end].fill(misfit);
         k = end;
+    }
+    out
+}
+
+/// Where a window holds a quadratic: what bends the signal is seen by all windows around it, so that fewer neighbours than
+/// half a window exceed the limit by chance.
+fn without_chance(misfit: &[f64], limit: f64, window: usize) -> Vec<bool> {
+    let half = window / 2;
+    // Nearer to an end than half a window all points share one window.
+    let own = half..misfit.len().saturating_sub(half).max(half + 1);
+    let mut out = vec![true; misfit.len()];
+    let mut k = 0;
+    while k < misfit.len() {
+        let end = (k..misfit.len())
+            .find(|&j| misfit[j] < limit)
+            .unwrap_or(misfit.len());
+        let windows = end.min(own.end).saturating_sub(k.max(own.start));
+        if windows > half {
+            out[k..end].fill(false);
+        }
+        k = end + 1;
     }
     out
 }

@@ -7,4 +7,4 @@ mod supply;
 
 pub(crate) use adaptive::{Windows, longest_real};
 pub(crate) use noise::estimated_sigma;
-pub(crate) use supply::{Supply, denoise};
+pub(crate) use supply::{Supply, denoise, refined};

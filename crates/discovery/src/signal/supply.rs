@@ -189,6 +189,40 @@ impl Supply {
         self.windows = self.segments.iter().map(of_segment).collect();
     }
 
+    /// The same supply at `factor` times the rate: envelope and angle on straight lines between the samples, which the turning
+    /// voltage itself is not.
+    pub fn finer(&self, factor: usize) -> Self {
+        let times = |r: &Range<usize>| r.start * factor..r.end * factor;
+        let mut finer = Self {
+            theta: refined(&self.theta, factor),
+            omega_sync: refined(&self.omega_sync, factor),
+            segments: self.segments.iter().map(times).collect(),
+            raw: self.raw.iter().map(times).collect(),
+            harmonics: self.harmonics.clone(),
+            denoised: self.denoised,
+            window: self.window * factor,
+            ..Self::default()
+        };
+        let harmonics = |k: usize| self.harmonic_sum(k, self.u_s[k].norm());
+        let fundamental: Vec<_> = (0..self.u_s.len())
+            .map(|k| self.u_s[k] - harmonics(k))
+            .collect();
+        finer.u_s = finer.with_harmonics(&self.refined_vector(&fundamental, &finer.theta, factor));
+        finer
+    }
+
+    /// A vector that turns with this supply at `factor` times the rate, where the angle is `theta`.
+    pub fn refined_vector(&self, x: &[Complex64], theta: &[f64], factor: usize) -> Vec<Complex64> {
+        let envelope = |(x, theta): (&Complex64, &f64)| x * Complex64::from_polar(1.0, -theta);
+        let envelope: Vec<_> = x.iter().zip(&self.theta).map(envelope).collect();
+        let back = |(e, theta): (Complex64, &f64)| e * Complex64::from_polar(1.0, *theta);
+        refined(&envelope, factor)
+            .into_iter()
+            .zip(theta)
+            .map(back)
+            .collect()
+    }
+
     /// The fundamental: the envelope in the turning frame, smoothed within each segment.
     fn fundamental(&self, raw: &[Complex64]) -> Vec<Complex64> {
         let mut out = Vec::with_capacity(raw.len());
@@ -218,6 +252,24 @@ impl Supply {
         let at = |(k, f): (usize, &Complex64)| f + self.harmonic_sum(k, f.norm());
         fundamental.iter().enumerate().map(at).collect()
     }
+}
+
+/// A series at `factor` times the rate, on straight lines between its samples.
+pub(crate) fn refined<T>(x: &[T], factor: usize) -> Vec<T>
+where
+    T: Copy
+        + std::ops::Add<Output = T>
+        + std::ops::Sub<Output = T>
+        + std::ops::Mul<f64, Output = T>,
+{
+    let line = |pair: &[T]| {
+        let (first, step) = (pair[0], (pair[1] - pair[0]) * (1.0 / factor as f64));
+        (0..factor).map(move |k| first + step * k as f64)
+    };
+    x.windows(2)
+        .flat_map(line)
+        .chain(x.last().copied())
+        .collect()
 }
 
 /// Unwrapped angle and its slope per sample, smoothed within each segment.

@@ -185,3 +185,25 @@ fn the_limits_are_those_of_chi_square() {
         assert!((327..=489).contains(&count), "{count}");
     }
 }
+
+/// Windows of eleven points: six neighbours that exceed are a kink, five are chance; at an end half a window shares one.
+#[test]
+fn few_neighbours_exceed_by_chance() {
+    let series = |high: std::ops::Range<usize>| -> Vec<f64> {
+        (0..60)
+            .map(|k| if high.contains(&k) { 9.0 } else { 1.0 })
+            .collect()
+    };
+    let failed = |high| {
+        without_chance(&series(high), 5.0, 11)
+            .iter()
+            .filter(|x| !**x)
+            .count()
+    };
+    assert_eq!(failed(20..25), 0);
+    assert_eq!(failed(20..26), 6);
+    assert_eq!(failed(0..10), 0, "five of them share the first window");
+    assert_eq!(failed(0..11), 11);
+    assert_eq!(failed(49..60), 11);
+    assert_eq!(failed(50..60), 0);
+}
