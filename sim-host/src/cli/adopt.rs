@@ -145,7 +145,7 @@ fn print_verdict(report: &AdoptReport) {
                 "The gain is not proven on data that was not fitted: do not trust this effect yet."
             }
         };
-        anstream::println!("{}", paint::caution(what));
+        say!("{}", paint::caution(what));
     }
 }
 
