@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::specimen;
 use recording::{Channel, Recording};
 
-/// A constant load whose voltage channel a shows 0.6 % too much, twice its class: without its gain the leakage takes it over;
+/// A constant load whose voltage channel a shows 0.3 % too much, as its class allows: without its gain the leakage takes it over;
 /// beside it the leakage is known as well as it says.
 #[test]
 fn the_error_of_a_channel_is_not_turned_into_leakage() {
@@ -13,7 +13,7 @@ fn the_error_of_a_channel_is_not_turned_into_leakage() {
     let empty = Recording::new("va", rec.t().to_vec(), rec.metadata.clone()).expect("a clock");
     let rec = rec.channels().fold(empty, |to, (channel, x)| {
         let gain = if channel == Channel::VOLTAGES[0] {
-            1.006
+            1.003
         } else {
             1.0
         };
@@ -25,7 +25,7 @@ fn the_error_of_a_channel_is_not_turned_into_leakage() {
     let trial = study.trial(&study.beliefs(), Effort::FULL);
     let beside = study.polished(&trial);
     let leakage = |t: &Trial| t.fit.hypothesis.z[LEAKAGE];
-    assert!(leakage(&trial) > 0.1, "{}", leakage(&trial));
+    assert!(leakage(&trial) > 0.05, "{}", leakage(&trial));
     let at = beside
         .fit
         .free
@@ -39,7 +39,7 @@ fn the_error_of_a_channel_is_not_turned_into_leakage() {
         leakage(beside)
     );
     assert!(
-        leakage(beside).abs() < 3.0 * error,
+        leakage(beside).abs() < 2.0 * error,
         "{} {error}",
         leakage(beside)
     );
