@@ -36,14 +36,21 @@ pub struct Recording {
     t: Vec<f64>,
     t_sample: f64,
     channels: BTreeMap<Channel, Vec<f64>>,
-    derived: BTreeSet<Channel>,
-    bridged: BTreeMap<Channel, Bridged>,
+    made: Box<Made>,
     /// What is known beside the samples.
     pub metadata: Metadata,
     /// Set when nobody knows the factor of the speed: the channel then holds `unit(raw - offset)`.
     pub unknown_speed_scale: Option<Box<UnknownScale>>,
     /// What had to be assumed to read the file, one sentence each; a report shows them.
     pub assumptions: Vec<String>,
+}
+
+/// What was made of channels when they were read.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Made {
+    /// Channels that were computed from others.
+    derived: BTreeSet<Channel>,
+    bridged: BTreeMap<Channel, Bridged>,
 }
 
 impl Recording {
@@ -58,8 +65,7 @@ impl Recording {
             t_sample: median_step(&t),
             t,
             channels: BTreeMap::new(),
-            derived: BTreeSet::new(),
-            bridged: BTreeMap::new(),
+            made: Box::default(),
             metadata,
             unknown_speed_scale: None,
             assumptions: Vec::new(),
@@ -94,18 +100,19 @@ impl Recording {
     /// Adds a channel that was computed from others (the third current of three).
     pub(crate) fn derive(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), Error> {
         self.set(channel, values)?;
-        self.derived.insert(channel);
+        self.made.derived.insert(channel);
         Ok(())
     }
 
     /// Notes that spikes of a channel were bridged.
     pub(crate) fn note_bridged(&mut self, channel: Channel, bridged: Bridged) {
-        self.bridged.insert(channel, bridged);
+        self.made.bridged.insert(channel, bridged);
     }
 
     /// The channels of which spikes were bridged when they were read.
     pub fn bridged(&self) -> impl Iterator<Item = (Channel, Bridged)> {
-        self.bridged
+        self.made
+            .bridged
             .iter()
             .map(|(channel, bridged)| (*channel, *bridged))
     }
@@ -150,7 +157,7 @@ impl Recording {
 
     /// Whether a channel was computed from others instead of measured.
     pub fn is_derived(&self, channel: Channel) -> bool {
-        self.derived.contains(&channel)
+        self.made.derived.contains(&channel)
     }
 
     /// The three phase voltages, V, if all three exist.
@@ -206,8 +213,7 @@ impl Recording {
         for (channel, values) in self.channels() {
             cut.set(channel, values[range.clone()].to_vec())?;
         }
-        cut.derived.clone_from(&self.derived);
-        cut.bridged.clone_from(&self.bridged);
+        cut.made.clone_from(&self.made);
         cut.unknown_speed_scale
             .clone_from(&self.unknown_speed_scale);
         cut.assumptions.clone_from(&self.assumptions);

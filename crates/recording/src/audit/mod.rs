@@ -19,6 +19,7 @@ mod missing;
 mod not_locked;
 mod offset;
 mod probes;
+mod refresh;
 mod rms_values;
 mod scale;
 mod sequence;

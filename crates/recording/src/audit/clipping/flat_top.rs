@@ -174,10 +174,10 @@ impl Tops<'_> {
 
     /// A run without its gaps in time.
     fn pieces(&self, run: Range<usize>) -> Vec<Range<usize>> {
-        let mut pieces = vec![run.start..run.start];
+        let mut pieces: Vec<Range<usize>> = Vec::new();
         for k in run {
             match pieces.last_mut() {
-                Some(last) if last.start == last.end || !self.is_gap(k) => last.end = k + 1,
+                Some(last) if !self.is_gap(k) => last.end = k + 1,
                 _ => pieces.push(k..k + 1),
             }
         }

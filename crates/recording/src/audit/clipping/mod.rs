@@ -8,7 +8,7 @@ mod flat_top;
 
 use super::context::Context;
 use super::finding::{Code, Finding};
-use super::held;
+use super::refresh;
 use super::statistics::noise;
 use crate::channel::{Channel, Quantity, Signal};
 use crate::metadata::Supply;
@@ -73,7 +73,7 @@ fn at_tops(recording: &Recording, channel: Channel, x: &[f64], omega: f64) -> Op
     // The voltage of an inverter has flat tops by nature.
     let pulsed =
         recording.metadata.supply == Supply::Inverter && channel.quantity() == Quantity::Voltage;
-    let shapeless = pulsed || recording.is_derived(channel) || held::rows(x).is_some();
+    let shapeless = pulsed || recording.is_derived(channel) || refresh::rows(x).is_some();
     if !channel.is_electrical() || shapeless {
         return None;
     }
