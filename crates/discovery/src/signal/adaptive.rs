@@ -18,6 +18,9 @@ const LIMIT: f64 = 13.3;
 /// The same for the eight coefficients of a signal of two axes.
 const LIMIT_TWO_AXES: f64 = 20.1;
 
+/// So many limits are no chance, however few windows exceed them: one in a million.
+const FAR: f64 = 2.5;
+
 /// A series of samples and its white noise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Noisy<'a> {
@@ -157,8 +160,8 @@ fn misfits(x: &[Complex64], variance: &[f64], window: usize) -> Vec<f64> {
     out
 }
 
-/// Where a window holds a quadratic: what bends the signal is seen by all windows around it, so that fewer neighbours than
-/// half a window exceed the limit by chance.
+/// Where a window holds a quadratic: what bends the signal is seen by the windows around it, so that fewer neighbours than
+/// half a window exceed the limit by chance, unless by far.
 fn without_chance(misfit: &[f64], limit: f64, window: usize) -> Vec<bool> {
     let half = window / 2;
     // Nearer to an end than half a window all points share one window.
@@ -170,7 +173,8 @@ fn without_chance(misfit: &[f64], limit: f64, window: usize) -> Vec<bool> {
             .find(|&j| misfit[j] < limit)
             .unwrap_or(misfit.len());
         let windows = end.min(own.end).saturating_sub(k.max(own.start));
-        if windows > half {
+        let far = misfit[k..end].iter().any(|&m| m > FAR * limit);
+        if windows > half || far {
             out[k..end].fill(false);
         }
         k = end + 1;
