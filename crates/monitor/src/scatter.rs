@@ -1,18 +1,19 @@
 //! How much noise moves what a window shows: learnt from cycle to cycle, known as well as the cycles seen allow.
 //!
-//! What a single cycle shows, less twice the one before and with the one before that, is free of any steady value and of
-//! any straight line: of white noise of variance `s^2` it has `6 s^2`. Nothing is assumed of the noise's origin, and what
-//! lasts (a fault, harmonics, a ramp) does not count.
+//! What a single cycle shows, less the two before it and with the one before those, is free of any steady value, of any
+//! straight line and of what changes its sign from cycle to cycle, as a motor of four poles shows its turn: a window takes
+//! the mean of that away. Of white noise of variance `s^2` it has `4 s^2`. Nothing is assumed of the noise's origin, and
+//! what lasts (a fault, harmonics, a ramp) does not count.
 
 /// Quantities that are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatterState<const N: usize> {
-    before: [f32; N],
-    before_that: [f32; N],
-    /// Cycles in a row, up to two.
+    /// The cycles before the next one, the newest first.
+    before: [[f32; N]; 3],
+    /// Cycles in a row, up to three.
     in_row: u8,
     variance: [f32; N],
-    /// Second differences that `variance` stands for, at most [`MEMORY`].
+    /// Differences that `variance` stands for, at most [`MEMORY`].
     seen: f32,
 }
 
@@ -25,13 +26,13 @@ pub struct Noise<const N: usize> {
     pub freedom: f32,
 }
 
-/// Second differences that are remembered: half of them are forgotten within a second and a half at 50 Hz.
+/// Differences that are remembered: half of them are forgotten within a second and a half at 50 Hz.
 const MEMORY: f32 = 120.0;
-/// Variance of a second difference of white noise of variance 1.
-const SECOND_DIFFERENCE: f32 = 6.0;
-/// Degrees of freedom in one second difference: neighbours share two of three values (correlations -2/3 and 1/6).
-const FREEDOM: f32 = 1.0 / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0));
-/// A second difference counts for at most so many times the variance: a fault that comes is no noise.
+/// Variance of a difference `x - y - z + w` of white noise of variance 1.
+const DIFFERENCE: f32 = 4.0;
+/// Degrees of freedom in one difference: neighbours share values (correlations -1/4, -1/2 and 1/4).
+const FREEDOM: f32 = 1.0 / (1.0 + 2.0 * (1.0 / 16.0 + 1.0 / 4.0 + 1.0 / 16.0));
+/// A difference counts for at most so many times the variance: a fault that comes is no noise.
 const LARGEST: f32 = 9.0;
 /// Degrees of freedom with which what is believed beforehand counts.
 const BELIEF: f32 = 16.0;
@@ -39,8 +40,7 @@ const BELIEF: f32 = 16.0;
 impl<const N: usize> Default for ScatterState<N> {
     fn default() -> Self {
         ScatterState {
-            before: [0.0; N],
-            before_that: [0.0; N],
+            before: [[0.0; N]; 3],
             in_row: 0,
             variance: [0.0; N],
             seen: 0.0,
@@ -55,26 +55,28 @@ impl<const N: usize> ScatterState<N> {
             self.interrupt();
             return;
         }
-        if self.in_row >= 2 {
+        if self.in_row >= 3 {
             self.learn(cycle, believed);
         }
-        self.in_row = (self.in_row + 1).min(2);
-        (self.before_that, self.before) = (self.before, *cycle);
+        self.in_row = (self.in_row + 1).min(3);
+        let [y, z, _] = self.before;
+        self.before = [*cycle, y, z];
     }
 
     fn learn(&mut self, cycle: &[f32; N], believed: &[f32; N]) {
         let noise = self.noise(believed);
         self.seen = (self.seen + 1.0).min(MEMORY);
-        let pasts = self.before.iter().zip(&self.before_that);
-        for (((variance, x), (y, z)), sigma) in self
+        let [y, z, w] = &self.before;
+        let pasts = y.iter().zip(z).zip(w);
+        for (((variance, x), ((y, z), w)), sigma) in self
             .variance
             .iter_mut()
             .zip(cycle)
             .zip(pasts)
             .zip(noise.cycle)
         {
-            let second = x - 2.0 * y + z;
-            let square = second * second / SECOND_DIFFERENCE;
+            let difference = x - y - z + w;
+            let square = difference * difference / DIFFERENCE;
             let known = sigma * sigma;
             let admitted = if known > 0.0 {
                 square.min(LARGEST * known)
@@ -150,6 +152,20 @@ mod tests {
         }
         // What exceeds three standard deviations is cut, and the belief of a quarter pulls by a tenth.
         assert!((mean / 2.0 - 0.9).abs() < 0.07, "{mean}");
+    }
+
+    /// Once a turn of four poles is half the supply's frequency, less half the slip: 100 times the noise, of which a window of
+    /// five cycles keeps a fifth at the most and takes none for noise.
+    #[test]
+    fn a_motor_that_shows_its_turn_is_not_noisy() {
+        let mut random = rand_pcg::Pcg64::seed_from_u64(3);
+        let mut state = ScatterState::<1>::default();
+        for k in 0..500_u16 {
+            let turn = if k % 2 == 0 { 10.0 } else { -10.0 };
+            state.follow(&[turn + 0.1 * normal(&mut random)], &[0.1]);
+        }
+        let noise = state.noise(&[0.1]);
+        assert!((noise.cycle[0] / 0.1 - 1.0).abs() < 0.45, "{noise:?}");
     }
 
     /// A fault that comes at once: the noise that is known hardly grows.
