@@ -25,7 +25,7 @@ use crate::settled::settled;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
 use crate::trend::rate_noise;
-use crate::window::{Cycle, CycleNoise, Window, WindowState};
+use crate::window::{Cycle, CycleNoise, Rates, Window, WindowState};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -496,8 +496,8 @@ impl Monitor {
         *visible > NOISY * threshold
     }
 
-    /// Over what lights the lamps. What an undeclared load makes meaningless, and what is too noisy, becomes NaN, which no
-    /// comparator counts.
+    /// Over what lights the lamps: noise stands in it already. What an undeclared load makes meaningless becomes NaN, which
+    /// no comparator counts.
     pub(crate) fn normalise(
         &self,
         residuals: &Residuals,
@@ -506,13 +506,8 @@ impl Monitor {
     ) -> [f32; RESIDUALS] {
         let load_known = self.config.load == LoadKind::Friction || torque_known;
         let mut normalised = residuals.r;
-        let limits = visible.iter().zip(self.config.thresholds);
-        for (x, (visible, threshold)) in normalised.iter_mut().zip(limits) {
-            *x = if *visible > NOISY * threshold {
-                f32::NAN
-            } else {
-                *x / visible
-            };
+        for (x, visible) in normalised.iter_mut().zip(visible) {
+            *x /= visible;
         }
         if !load_known {
             normalised.iter_mut().skip(1).for_each(|x| *x = f32::NAN);
@@ -544,17 +539,16 @@ impl Monitor {
     #[inline(never)]
     fn movement(&self, rehearsal: &Rehearsal, window: &Window) -> Option<Movement> {
         let point = self.operating_point(self.config.frame, rehearsal, window)?;
-        let doubt = self.doubt(rehearsal, window, &point)?;
         let noise = window.cycle_noise(self.config.t_sample);
+        let doubt = self.doubt(rehearsal, window, &window.rates)?;
+        let beyond = window.rates.beyond(&self.noise_of_rates(window, &noise));
+        let [doubt_1, doubt_2, ..] = self.doubt(rehearsal, window, &beyond)?;
         let [r1, r2, ..] = self
             .config
             .thresholds
             .map(|threshold| STEADY_SHARE * threshold);
-        let [doubt_1, doubt_2, ..] = doubt;
         let [bend_1, bend_2] = self.bend(window, &noise, &point);
-        let [noise_1, noise_2] = self.noise_of_doubt(window, &noise);
-        let is_steady =
-            doubt_1 < r1 + noise_1 && doubt_2 < r2 + noise_2 && bend_1 < r1 && bend_2 < r2;
+        let is_steady = doubt_1 < r1 && doubt_2 < r2 && bend_1 < r1 && bend_2 < r2;
         Some(Movement {
             doubt,
             is_steady,
@@ -562,39 +556,46 @@ impl Monitor {
         })
     }
 
-    /// What stays in doubt of the derivative terms: a share of what they move.
+    /// What stays in doubt of the derivative terms at these rates: a share of what they move.
     fn doubt(
         &self,
         rehearsal: &Rehearsal,
         window: &Window,
-        point: &OperatingPoint,
+        rates: &Rates,
     ) -> Option<[f32; RESIDUALS]> {
-        let measured = self.moving_at(0.0, window)?;
-        let moving = OperatingPoint::new(
-            &measured,
-            self.config.frame,
-            window.omega_sync,
-            measured.omega_mech * self.config.mechanics.n_p,
-        )?;
-        let tau_load = self.tau_load(window);
-        let without = self.model.evaluate(&moving.rehearse(rehearsal), tau_load);
-        let mut doubt = self.model.evaluate(point, tau_load).r;
-        for (x, without) in doubt.iter_mut().zip(without.r) {
+        let moving = self.moving_at(0.0, window)?;
+        let omega_sync = window.omega_sync;
+        let still = settled(&moving, rates, omega_sync, &self.config.mechanics);
+        let without = self.residuals_at(&moving, rehearsal, window)?;
+        let mut doubt = self.residuals_at(&still, rehearsal, window)?;
+        for (x, without) in doubt.iter_mut().zip(without) {
             *x = DERIVATIVE_DOUBT * (*x - without).abs();
         }
         Some(doubt)
     }
 
-    /// How much of a doubt noise alone may make: the rates of flux and speed are known no better.
-    fn noise_of_doubt(&self, window: &Window, noise: &CycleNoise) -> [f32; 2] {
-        let p = &self.config.params;
-        let (of_voltage, of_current) = (noise.voltage / window.omega_sync, noise.current * p.l_a());
-        let flux = libm::sqrtf(of_voltage * of_voltage + of_current * of_current);
-        let rate = NOISE_DEVIATIONS * rate_noise(self.config.window_cycles, window.span);
-        let speeding = self
+    fn residuals_at(
+        &self,
+        measured: &Corrected,
+        rehearsal: &Rehearsal,
+        window: &Window,
+    ) -> Option<[f32; RESIDUALS]> {
+        let omega_el = measured.omega_mech * self.config.mechanics.n_p;
+        let point = OperatingPoint::new(measured, self.config.frame, window.omega_sync, omega_el)?;
+        let residuals = self
             .model
-            .acceleration_share(window.omega_sync, rate * noise.speed);
-        [self.charging_share(window, rate * flux), speeding].map(|x| DERIVATIVE_DOUBT * x)
+            .evaluate(&point.rehearse(rehearsal), self.tau_load(window));
+        Some(residuals.r)
+    }
+
+    /// What noise alone may make of each rate: whatever the model makes of it, right or wrong, it is no movement.
+    fn noise_of_rates(&self, window: &Window, noise: &CycleNoise) -> CycleNoise {
+        let rate = NOISE_DEVIATIONS * rate_noise(self.config.window_cycles, window.span);
+        CycleNoise {
+            voltage: rate * noise.voltage,
+            current: rate * noise.current,
+            speed: rate * noise.speed,
+        }
     }
 
     /// What no straight line explains, beyond what noise bends.

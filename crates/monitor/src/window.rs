@@ -136,6 +136,25 @@ pub struct Rates {
     pub speed: f32,
 }
 
+impl Rates {
+    /// What remains of each rate beyond `noise`, V/s, A/s and rad/s2.
+    pub fn beyond(&self, noise: &CycleNoise) -> Self {
+        Rates {
+            voltage: self.voltage * share_beyond(self.voltage.abs(), noise.voltage),
+            current: self.current * share_beyond(magnitude(self.current), noise.current),
+            speed: self.speed * share_beyond(self.speed.abs(), noise.speed),
+        }
+    }
+}
+
+fn share_beyond(length: f32, noise: f32) -> f32 {
+    if length > noise {
+        1.0 - noise / length
+    } else {
+        0.0
+    }
+}
+
 impl Window {
     /// Mean mechanical speed as the sensor shows it, rad/s: negative backwards, whatever the field does.
     pub fn shaft_speed(&self) -> Option<f32> {
