@@ -142,14 +142,17 @@ impl Page {
         active.send_keys(keys).await.expect("it takes keys");
     }
 
-    /// The text that a person sees.
+    /// The text that a person sees. The page may draw the element anew between finding and reading it.
     pub async fn text(&self, css: &str) -> String {
-        let found = self
-            .client
-            .find(Locator::Css(css))
-            .await
-            .expect("it is there");
-        found.text().await.expect("text")
+        for _ in 0..10 {
+            let found = self.client.find(Locator::Css(css)).await;
+            match found.expect("it is there").text().await {
+                Ok(text) => return text,
+                Err(error) if error.is_stale_element_reference() => {}
+                Err(error) => panic!("{css}: {error}"),
+            }
+        }
+        panic!("{css} is drawn anew all the time");
     }
 
     /// Names of the lamps that are on.
