@@ -39,7 +39,10 @@ pub fn of_report(report: &Report, wrong: &[Channel], load_friction: bool) -> Vec
     ranked(load_friction, &mut |tell| likely(report, wrong, tell))
 }
 
-fn ranked(load_friction: bool, weigh: &mut dyn FnMut(&mut dyn FnMut(Suspicion))) -> Vec<Candidate> {
+/// What is told of one suspicion after the other.
+type Tell<'a> = dyn FnMut(Suspicion) + 'a;
+
+fn ranked(load_friction: bool, weigh: &mut dyn FnMut(&mut Tell<'_>)) -> Vec<Candidate> {
     let mut all = Vec::new();
     let mut table = false;
     weigh(&mut |suspicion| {

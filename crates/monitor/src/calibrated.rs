@@ -28,7 +28,7 @@ impl Monitor {
         }
     }
 
-    /// Which cause explains a steady window.
+    /// Which cause explains a steady window with its noise.
     #[inline(never)]
     pub(crate) fn isolate(
         &self,
@@ -36,8 +36,7 @@ impl Monitor {
         [voltages, currents]: [bool; 2],
         rehearsal: &Rehearsal,
         temperature: &Temperature,
-        window: &Window,
-        noise: &Allowance,
+        (window, noise): (&Window, &Allowance),
         report: &mut Report,
     ) {
         if report.not_judged.is_some() {

@@ -321,8 +321,7 @@ impl Monitor {
                 measured,
                 &state.rehearsal,
                 &state.temperature,
-                window,
-                &noise,
+                (window, &noise),
                 report,
             );
             if let Some(isolation) = &report.isolation {

@@ -1,6 +1,6 @@
 //! The answers of one command about several recordings: each by itself on the terminal, a list in the JSON.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde_json::json;
@@ -84,7 +84,7 @@ impl Answers<'_> {
         Ok(())
     }
 
-    fn refused(&mut self, recording: &PathBuf, failure: &Failure) -> Result<u8, Failure> {
+    fn refused(&mut self, recording: &Path, failure: &Failure) -> Result<u8, Failure> {
         let name = recording.display().to_string();
         let answer = json!({ "recording": name, "error": failure.to_string() });
         self.list.get_or_insert_default().push(text_of(&answer)?);

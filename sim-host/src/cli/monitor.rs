@@ -310,7 +310,7 @@ pub(super) fn print_windows(timeline: &Timeline) {
         }
     }
     if let Some([r1, r2, r3, r4]) = timeline.visible_percent() {
-        anstream::println!(
+        say!(
             "  smallest that lights a lamp here: r1 {r1:.2}, r2 {r2:.2}, r3 {r3:.2}, r4 {r4:.2} % of scale"
         );
     }

@@ -213,7 +213,7 @@ impl Panel {
         };
         let expectation = motor
             .as_ref()
-            .map_or_else(Expectation::default, |motor| Expectation::from(motor));
+            .map_or_else(Expectation::default, Expectation::from);
         let audit = audit(&recording, &expectation);
         if !audit.supported {
             return Err(Failure::Unsupported(why_not(path, &audit)));

@@ -12,6 +12,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+/// A table, or why there is none.
+type Opened = Result<Box<dyn TableFile>, Error>;
+
 /// A format other than CSV.
 struct Format {
     /// The words of a message: "is {name}".
@@ -21,9 +24,9 @@ struct Format {
     /// Whether the first bytes of a file are this format's and no other's.
     is: fn(&[u8]) -> bool,
     /// Reads a file of this name.
-    open: fn(&Path) -> Result<Box<dyn TableFile>, Error>,
+    open: fn(&Path) -> Opened,
     /// Reads what was in a stream of this name.
-    of_bytes: fn(&str, Vec<u8>) -> Result<Box<dyn TableFile>, Error>,
+    of_bytes: fn(&str, Vec<u8>) -> Opened,
 }
 
 /// Every format but CSV, which is what remains.
