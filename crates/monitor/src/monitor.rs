@@ -538,7 +538,8 @@ impl Monitor {
     #[inline(never)]
     fn movement(&self, rehearsal: &Rehearsal, window: &Window) -> Option<Movement> {
         let point = self.operating_point(self.config.frame, rehearsal, window)?;
-        let noise = window.cycle_noise(self.config.t_sample);
+        let mut noise = window.cycle_noise(self.config.t_sample);
+        noise.speed += self.speed_resolution(window);
         let doubt = self.doubt(rehearsal, window, &window.rates)?;
         let beyond = window.rates.beyond(&self.noise_of_rates(window, &noise));
         let [doubt_1, doubt_2, ..] = self.doubt(rehearsal, window, &beyond)?;
@@ -553,6 +554,15 @@ impl Monitor {
             is_steady,
             is_plugged: self.is_plugged(rehearsal, window),
         })
+    }
+
+    /// Standard deviation of a cycle's speed by the encoder's counts: one of them more or less in a cycle, evenly spread,
+    /// rad/s.
+    fn speed_resolution(&self, window: &Window) -> f32 {
+        /// One over the root of twelve.
+        const EVENLY_SPREAD: f32 = 0.289;
+        let counts = self.config.encoder_counts_per_revolution.max(1.0);
+        EVENLY_SPREAD * window.omega_sync / counts
     }
 
     /// What stays in doubt of the derivative terms at these rates: a share of what they move.

@@ -110,8 +110,12 @@ impl Evidence {
             set(&mut scatter, row, healthy.current_unbalance_scatter);
             set(&mut known, row, healthy.current_unbalance_scatter > 0.0);
         }
-        for (scatter, noise) in scatter.iter_mut().zip(noise) {
-            *scatter = scatter.max(*noise);
+        // What a calibration has learnt of the currents' unrest holds whole windows; changes from cycle to cycle, which mostly
+        // cancel in a window, would count several times.
+        for (k, (scatter, noise)) in scatter.iter_mut().zip(noise).enumerate() {
+            if !known.get(k).copied().unwrap_or(false) && *scatter <= 0.0 {
+                *scatter = *noise;
+            }
         }
         for row in [Row::ZeroCurrent as usize, Row::ZeroCurrent as usize + 1] {
             set(&mut known, row, scatter.get(row).is_some_and(|s| *s > 0.0));
