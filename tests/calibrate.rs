@@ -172,6 +172,48 @@ fn parameters_believed_wrongly_are_found_and_the_healthy_motor_stays_dark() {
     }
 }
 
+fn with_gain(recording: &Recording, scaled: &[Channel], gain: f64) -> Recording {
+    let (clock, metadata) = (recording.t().to_vec(), recording.metadata.clone());
+    let empty = Recording::new(recording.name(), clock, metadata).expect("a clock");
+    recording.channels().fold(empty, |rec, (channel, x)| {
+        let gain = if scaled.contains(&channel) { gain } else { 1.0 };
+        let x = x.iter().map(|x| gain * x).collect();
+        rec.with_channel(channel, x).expect("a channel")
+    })
+}
+
+/// Recorders of class 0.5: each kind of channel off by two of its standard deviations, one after the other.
+#[test]
+fn a_gain_within_its_class_leaves_the_truth_within_the_intervals() {
+    let truth = peer_motor("none");
+    let healthy = peer("none", "recording");
+    let kinds: [(&str, &[Channel], f64); 4] = [
+        ("voltages", &Channel::VOLTAGES, 0.003 / 3f64.sqrt()),
+        ("currents", &Channel::CURRENTS, 0.003 / 3f64.sqrt()),
+        ("speed", &[Channel::SPEED], 1e-4),
+        ("torque", &[Channel::TORQUE], 0.005),
+    ];
+    for (name, scaled, deviation) in kinds {
+        for sign in [-2.0, 2.0] {
+            let gain = 1.0 + sign * deviation;
+            let recording = with_gain(&healthy, scaled, gain);
+            let found = calibrated(&misjudged(&truth), &[recording]).expect("healthy");
+            let of = |m: &MotorFile| {
+                let p = m.parameters;
+                [p.r_s, p.r_r, p.l_m, p.l_ls]
+            };
+            let pairs = of(&found.motor).into_iter().zip(of(&truth));
+            for ((value, true_value), (cause, _, std_error)) in pairs.zip(&found.changes) {
+                let off = (value - true_value) / (value * std_error);
+                println!(
+                    "{name} x {gain:.4}: {cause:?} {off:+.2} standard errors of {std_error:.4}"
+                );
+                assert!(off.abs() < 3.0, "{name} x {gain}: {cause:?} {off:+.2}");
+            }
+        }
+    }
+}
+
 /// FAULT before the effect is in the motor file, none after: on the recording that was learnt from and on another one.
 fn an_effect_is_missed_until_it_is_in_the_file(set: &str, effect: EffectEntry) {
     let nominal = peer_motor(set);

@@ -1,5 +1,6 @@
 //! What the user believes, and hypotheses about how it is wrong.
 
+use crate::class::CHANNEL_GAIN;
 use motor::effects::{Effect, EffectConfig, Parameter, Plant, Rated, Role, expression, rated};
 use motor::{Mechanics, MotorFile, TParams};
 
@@ -22,8 +23,6 @@ pub(crate) const MAGNETIZING: usize = 3;
 pub(crate) const FRICTION: usize = 5;
 /// Effects keep a plain wide prior: so many typical sizes.
 const SIZE_PRIOR: f64 = 4.0;
-/// Gain of a voltage or current channel, standard deviation: instruments of class 0.5.
-pub(crate) const CHANNEL_GAIN: f64 = 0.003;
 /// Prior of a shape: a factor of e.
 const SHAPE_PRIOR: f64 = 1.0;
 

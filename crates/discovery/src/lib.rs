@@ -10,6 +10,7 @@ mod belief;
 #[cfg(test)]
 mod beliefs_checked;
 mod case;
+pub mod class;
 mod compare;
 mod confirm;
 mod explain;

@@ -5,8 +5,9 @@
 //! sample to sample; noise of the inputs as it passes through the model; instruments that are off by their class; and the
 //! priors, whose pull is not zero where the true motor is not as believed. The covariances of these scores add up.
 
-use crate::belief::{CHANNEL_GAIN, N_NOMINAL};
+use crate::belief::N_NOMINAL;
 use crate::case::{Case, N_CHANNELS, SPEED};
+use crate::class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
 use crate::fit::Fit;
 use crate::floor::noise_draws;
 use crate::gram::{self, Block, dot};
@@ -16,10 +17,6 @@ use motor::effects::Plant;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
-/// Gain of a torque transducer.
-const TORQUE_GAIN: f64 = 0.005;
-/// Gain of a speed: an encoder against the clock of the recorder.
-const SPEED_GAIN: f64 = 1e-4;
 /// Gain for which the derivative is taken.
 const GAIN_STEP: f64 = 1e-3;
 /// Draws of the input noise.

@@ -1,8 +1,8 @@
 //! How often the intervals that the tool prints hold the truth: random motors, random beliefs, random recorders.
 //!
 //! `cargo run --release -p sim-host --example coverage -- --machines 300 --first 1`
-//! `--explain` asks every machine for missing effects too; `--verbose` prints every interval. Exits with 1 when a promise is
-//! missed.
+//! `--only adopt|calibrate|explain` asks one command; `--explain` asks every machine for missing effects too; `--verbose`
+//! prints every interval. Exits with 1 when a promise is missed.
 
 mod machine;
 mod tally;
@@ -104,9 +104,16 @@ fn main() -> ExitCode {
     println!(
         "| intervals | machines | hold the truth | share | promised | said to be off |\n|---|---|---|---|---|---|"
     );
-    let mut kept = tally::row("explain and adopt", &asked("adopt", fitted));
-    kept &= tally::row("calibrate", &asked("calibrate", calibrated));
-    if has("--explain") {
+    let only = value("--only");
+    let wanted = |command: &str| only.as_deref().is_none_or(|only| only == command);
+    let mut kept = true;
+    if wanted("adopt") {
+        kept &= tally::row("explain and adopt", &asked("adopt", fitted));
+    }
+    if wanted("calibrate") {
+        kept &= tally::row("calibrate", &asked("calibrate", calibrated));
+    }
+    if only.as_deref() == Some("explain") || has("--explain") {
         kept &= tally::wrong(&asked("explain", explained));
     }
     ExitCode::from(u8::from(!kept))

@@ -3,34 +3,57 @@
 //! Gauss-Newton on the torque balance, `e_d` and `e_q`, with the very directions that the monitor isolates faults by:
 //! what remains after it is what the lamps will see of the healthy motor.
 
-use monitor::{Cause, Evidence, Healthy, Monitor, MonitorConfig};
+use monitor::{Cause, Evidence, Healthy, LoadKind, Monitor, MonitorConfig};
 use motor::MotorFile;
 use nalgebra::{DMatrix, DVector};
 
 use super::Refusal;
 use super::windows::Observed;
 
-/// What is fitted, with its prior standard deviation as a share of the believed value.
-const FITTED: [(Cause, f64); 5] = [
+/// What is fitted, with its prior standard deviation: of logarithms, and of the friction's coordinate (see [`Beliefs`]).
+pub(super) const FITTED: [(Cause, f64); 5] = [
     (Cause::StatorResistance, 0.3),
     (Cause::RotorResistance, 0.3),
     (Cause::MagnetizingInductance, 0.15),
     (Cause::Leakage, 0.3),
-    (Cause::Friction, 0.5),
+    (Cause::Friction, 1.0),
 ];
+/// Prior standard deviation of friction that is known, a share of it.
+const FRICTION_PRIOR: f64 = 0.5;
+/// Friction that nobody knows, a share of rated torque at synchronous speed: bearings and a fan take 0.5 to 3 %.
+const FRICTION_GUESS: f64 = 0.01;
+/// Largest believable change of a parameter, a share of what is believed.
+const LARGEST_CHANGE: f64 = 0.8;
+/// Largest believable change of a guessed friction, in guesses.
+const MOST_GUESSES: f64 = 5.0;
+/// Least friction, a share of what is believed: a loss is no drive.
+const LEAST_FRICTION: f64 = 0.1;
 /// Rows of the positive sequence.
-const ROWS: usize = 3;
+pub(super) const ROWS: usize = 3;
 /// Least misfit that a row is credited with: the sensors' linearity.
 const FLOOR: f64 = 5e-4;
 const ITERATIONS: usize = 8;
+
+/// The motor as believed, which its coordinates move: logarithms, but for the friction, which is often a guess and may be
+/// wrong by several times. Its coordinate is a change in steps of its uncertainty.
+pub(super) struct Beliefs<'a> {
+    motor: &'a MotorFile,
+    /// [`FRICTION_GUESS`] as a share of the friction that the residuals see.
+    friction_guess: f64,
+}
 
 /// Parameters as fitted.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The motor with its new parameters.
     pub motor: MotorFile,
-    /// Change of each of [`Fitted::causes`] and its standard error, as shares of the believed value.
-    pub changes: Vec<(f64, f64)>,
+    /// The fitted coordinates.
+    pub(super) coordinates: Vec<f64>,
+    /// Change of each of [`Fitted::causes`], a share of the believed value.
+    pub changes: Vec<f64>,
+    /// How far each may be off, a share of the fitted value, seen through the instruments that it was fitted with: their
+    /// gains are in it already.
+    pub seen_through: Vec<f64>,
     /// Root mean square of what remains: torque balance, `e_d`, `e_q`.
     pub misfit: [f64; ROWS],
 }
@@ -46,39 +69,111 @@ impl Fitted {
 ///
 /// # Errors
 /// Parameters that the core does not take.
-pub fn fit(
-    believed: &MotorFile,
+pub(super) fn fit(
+    beliefs: &Beliefs<'_>,
     observed: &[Observed],
     config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
 ) -> Result<Fitted, Refusal> {
-    let mut logs = DVector::<f64>::zeros(FITTED.len());
+    let mut z = DVector::<f64>::zeros(FITTED.len());
     let mut misfit = [0.01; ROWS];
     let mut covariance = DMatrix::identity(FITTED.len(), FITTED.len());
     for _ in 0..ITERATIONS {
-        let motor = changed(believed, logs.as_slice());
+        let motor = beliefs.changed(z.as_slice());
         let evidence = evidence(&motor, observed, config_of)?;
         misfit = root_mean_square(&evidence, observed);
-        let (step, posterior) = step(&evidence, observed, &misfit, &logs);
-        logs += &step;
+        let relative = beliefs.relative(z.as_slice());
+        let (step, posterior) = step(&evidence, observed, &misfit, &z, &relative);
+        z += &step;
         covariance = posterior;
         if step.amax() < 1e-6 {
             break;
         }
     }
-    let error = |k: usize| covariance[(k, k)].max(0.0).sqrt();
-    let changes = logs
-        .iter()
-        .enumerate()
-        .map(|(k, log)| (log.exp() - 1.0, error(k)));
+    let coordinates = z.as_slice().to_vec();
+    let relative = beliefs.relative(&coordinates);
+    let error = |k: usize| relative[k] * covariance[(k, k)].max(0.0).sqrt();
     Ok(Fitted {
-        motor: changed(believed, logs.as_slice()),
-        changes: changes.collect(),
+        motor: beliefs.changed(&coordinates),
+        changes: beliefs.factors(&coordinates).map(|x| x - 1.0).to_vec(),
+        seen_through: (0..FITTED.len()).map(error).collect(),
+        coordinates,
         misfit,
     })
 }
 
+impl<'a> Beliefs<'a> {
+    /// `config_of` as for [`fit`].
+    pub(super) fn new(
+        motor: &'a MotorFile,
+        config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    ) -> Self {
+        let (m, plate) = (&motor.mechanics, &motor.nameplate);
+        let seen = match config_of(motor, 0).load {
+            LoadKind::Friction => m.total_friction(),
+            _ => m.friction,
+        };
+        let synchronous = plate.omega_sync() / f64::from(plate.pole_pairs);
+        let guess = FRICTION_GUESS * plate.torque_nm / synchronous;
+        Beliefs {
+            motor,
+            friction_guess: if seen > 0.0 { guess / seen } else { 0.0 },
+        }
+    }
+
+    fn friction_step(&self) -> f64 {
+        FRICTION_PRIOR.hypot(self.friction_guess)
+    }
+
+    /// Largest believable change of each quantity, a share of what is believed.
+    pub(super) fn largest_changes(&self) -> [f64; FITTED.len()] {
+        FITTED.map(|(cause, _)| match cause {
+            Cause::Friction => LARGEST_CHANGE.max(MOST_GUESSES * self.friction_guess),
+            _ => LARGEST_CHANGE,
+        })
+    }
+
+    /// Ratio of each quantity to what is believed of it.
+    fn factors(&self, z: &[f64]) -> [f64; FITTED.len()] {
+        std::array::from_fn(|k| match FITTED[k].0 {
+            Cause::Friction => (1.0 + self.friction_step() * z[k]).max(LEAST_FRICTION),
+            _ => z[k].exp(),
+        })
+    }
+
+    /// Relative change of each quantity per change of its coordinate.
+    pub(super) fn relative(&self, z: &[f64]) -> [f64; FITTED.len()] {
+        let factors = self.factors(z);
+        std::array::from_fn(|k| match FITTED[k].0 {
+            Cause::Friction => self.friction_step() / factors[k],
+            _ => 1.0,
+        })
+    }
+
+    /// The motor at these coordinates.
+    pub(super) fn changed(&self, z: &[f64]) -> MotorFile {
+        let mut motor = self.motor.clone();
+        let (p, m) = (&mut motor.parameters, &mut motor.mechanics);
+        for ((cause, _), factor) in FITTED.iter().zip(self.factors(z)) {
+            match cause {
+                Cause::StatorResistance => p.r_s *= factor,
+                Cause::RotorResistance => p.r_r *= factor,
+                Cause::MagnetizingInductance => p.l_m *= factor,
+                Cause::Leakage => {
+                    p.l_ls *= factor;
+                    p.l_lr *= factor;
+                }
+                _ => {
+                    m.friction *= factor;
+                    m.load_friction *= factor;
+                }
+            }
+        }
+        motor
+    }
+}
+
 /// The evidence of each window against a motor about which nothing is known.
-fn evidence(
+pub(super) fn evidence(
     motor: &MotorFile,
     observed: &[Observed],
     config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
@@ -105,26 +200,28 @@ fn root_mean_square(evidence: &[Option<Evidence>], observed: &[Observed]) -> [f6
     sum.map(|sum| (sum / votes.max(f64::MIN_POSITIVE)).sqrt().max(FLOOR))
 }
 
-/// One step in the logarithms of the parameters, and their posterior covariance.
+/// One step in the coordinates, and their posterior covariance; `relative` as [`Beliefs::relative`].
 fn step(
     evidence: &[Option<Evidence>],
     observed: &[Observed],
     misfit: &[f64; ROWS],
-    logs: &DVector<f64>,
+    z: &DVector<f64>,
+    relative: &[f64],
 ) -> (DVector<f64>, DMatrix<f64>) {
     let n = FITTED.len();
     let mut normal = DMatrix::zeros(n, n);
     let mut right = DVector::zeros(n);
     for (k, (_, prior)) in FITTED.iter().enumerate() {
         normal[(k, k)] = 1.0 / (prior * prior);
-        right[k] = -logs[k] / (prior * prior);
+        right[k] = -z[k] / (prior * prior);
     }
     for (evidence, o) in evidence.iter().zip(observed) {
         let Some(evidence) = evidence else { continue };
         let directions = FITTED.map(|(cause, _)| evidence.direction(cause));
         for (row, misfit) in misfit.iter().enumerate() {
             let weight = o.weight / (misfit * misfit);
-            let along = DVector::from_iterator(n, directions.iter().map(|d| f64::from(d[row])));
+            let along = directions.iter().zip(relative);
+            let along = DVector::from_iterator(n, along.map(|(d, per)| f64::from(d[row]) * per));
             right += &along * (weight * f64::from(evidence.departure[row]));
             normal += &along * along.transpose() * weight;
         }
@@ -132,27 +229,4 @@ fn step(
     // A prior on every parameter keeps the normal matrix positive definite.
     let covariance = normal.try_inverse().unwrap_or_else(|| DMatrix::zeros(n, n));
     (&covariance * right, covariance)
-}
-
-/// The motor with its parameters changed by these logarithms.
-fn changed(believed: &MotorFile, logs: &[f64]) -> MotorFile {
-    let mut motor = believed.clone();
-    let (p, m) = (&mut motor.parameters, &mut motor.mechanics);
-    for ((cause, _), log) in FITTED.iter().zip(logs) {
-        let factor = log.exp();
-        match cause {
-            Cause::StatorResistance => p.r_s *= factor,
-            Cause::RotorResistance => p.r_r *= factor,
-            Cause::MagnetizingInductance => p.l_m *= factor,
-            Cause::Leakage => {
-                p.l_ls *= factor;
-                p.l_lr *= factor;
-            }
-            _ => {
-                m.friction *= factor;
-                m.load_friction *= factor;
-            }
-        }
-    }
-    motor
 }

@@ -7,6 +7,7 @@ mod fit;
 mod gains;
 mod refuse;
 mod statistics;
+mod uncertainty;
 mod windows;
 
 use monitor::{Cause, Healthy, MonitorConfig};
@@ -48,7 +49,8 @@ pub struct Calibrated {
     pub windows: usize,
     /// Audits of the recordings.
     pub audits: Vec<Audit>,
-    /// Parameters: change against the believed value and its standard error, as shares. Empty without voltages.
+    /// Parameters: change, a share of the believed value, and standard error with that of the instruments, a share of the
+    /// fitted value. Empty without voltages.
     pub changes: Vec<(Cause, f64, f64)>,
     /// Gains of the channels a, b, c that were found.
     pub gains: Vec<(Kind, [f64; 3])>,
@@ -92,16 +94,22 @@ pub fn calibrate(
             )?;
         }
     }
-    let fitted = if has_voltages {
-        fit::fit(&believed, &observed, &config_of)?
+    let (fitted, errors) = if has_voltages {
+        let beliefs = fit::Beliefs::new(&believed, &config_of);
+        let fitted = fit::fit(&beliefs, &observed, &config_of)?;
+        refuse::implausible(&beliefs, &fitted, recordings)?;
+        let errors = uncertainty::standard_errors(&beliefs, &fitted, &observed, &config_of)?;
+        (fitted, errors)
     } else {
-        fit::Fitted {
+        let nothing = fit::Fitted {
             motor: believed,
+            coordinates: Vec::new(),
             changes: Vec::new(),
+            seen_through: Vec::new(),
             misfit: [0.0; 3],
-        }
+        };
+        (nothing, Vec::new())
     };
-    refuse::implausible(&fitted, recordings)?;
     let healthy = statistics::healthy(&fitted, &observed, surroundings, &config_of)?;
     let mut motor = fitted.motor.clone();
     motor.healthy = Some(healthy);
@@ -115,8 +123,8 @@ pub fn calibrate(
         windows: observed.len(),
         audits: sources.into_iter().map(|source| source.audit).collect(),
         changes: fit::Fitted::causes()
-            .zip(&fitted.changes)
-            .map(|(cause, (change, error))| (cause, *change, *error))
+            .zip(fitted.changes.iter().zip(errors))
+            .map(|(cause, (change, error))| (cause, *change, error))
             .collect(),
         gains,
         misfit_percent: fitted.misfit.map(|x| 100.0 * x),

@@ -6,12 +6,10 @@ use num_complex::Complex32;
 use recording::Recording;
 
 use super::Refusal;
-use super::fit::Fitted;
+use super::fit::{Beliefs, Fitted};
 use super::windows::{Healthily, Observed};
 use crate::replay::config_for;
 
-/// Largest believable change of a parameter.
-const LARGEST_CHANGE: f64 = 0.8;
 /// Largest change of `I_2/I_1` inside healthy recordings of unchanged supply: a tenth of the turns of a phase shorted
 /// moved a measured motor by 0.06 to 0.09, its healthy windows stay within 0.02.
 const LARGEST_UNBALANCE_CHANGE: f32 = 0.04;
@@ -24,9 +22,14 @@ fn strays_allowed(windows: usize) -> usize {
 }
 
 /// Refuses a fit that changed a parameter beyond belief.
-pub fn implausible(fitted: &Fitted, recordings: &[Recording]) -> Result<(), Refusal> {
-    let mut changes = Fitted::causes().zip(&fitted.changes);
-    match changes.find(|(_, (change, _))| change.abs() > LARGEST_CHANGE) {
+pub fn implausible(
+    beliefs: &Beliefs<'_>,
+    fitted: &Fitted,
+    recordings: &[Recording],
+) -> Result<(), Refusal> {
+    let limits = beliefs.largest_changes();
+    let mut changes = Fitted::causes().zip(fitted.changes.iter().zip(limits));
+    match changes.find(|(_, (change, limit))| change.abs() > *limit) {
         None => Ok(()),
         Some((cause, (change, _))) => Err(Refusal::new(
             &names(recordings),

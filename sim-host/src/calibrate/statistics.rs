@@ -15,6 +15,8 @@ const LEAST_SCATTER_PERCENT: f64 = 0.02;
 /// Gain of a clamped or uncalibrated current transformer from one recording to the next, percent: between five healthy
 /// recordings of one laboratory motor it moved by 5 % in one channel, by less than 1 % in the others.
 const TRANSFORMER_REPEATABILITY_PERCENT: f64 = 2.0;
+/// Largest uncertainty that a motor file takes, percent.
+const LARGEST_SHARE_PERCENT: f64 = 1000.0;
 /// Rows of the positive sequence, whose mean is zero by the fit.
 const POSITIVE_ROWS: usize = 3;
 
@@ -115,9 +117,9 @@ fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
     ];
     let has_friction = fitted.motor.mechanics.total_friction() > 0.0;
     let seen = [true, true, true, true, has_friction];
-    for ((place, (_, error)), seen) in places.into_iter().zip(&fitted.changes).zip(seen) {
+    for ((place, error), seen) in places.into_iter().zip(&fitted.seen_through).zip(seen) {
         if seen {
-            *place = place.hypot(100.0 * error);
+            *place = place.hypot(100.0 * error).min(LARGEST_SHARE_PERCENT);
         }
     }
 }

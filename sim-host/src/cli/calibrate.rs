@@ -220,7 +220,7 @@ fn parameters(believed: &MotorFile, calibrated: &Calibrated) -> Vec<ParameterJso
             unit,
             believed: value,
             value: value * (1.0 + change),
-            std_error: value * error,
+            std_error: value * (1.0 + change) * error,
             change_percent: 100.0 * change,
         }
     };
