@@ -64,4 +64,4 @@ pub use signature::{Candidates, FAULTS, Fault, TABLE_1};
 pub use supply::{SupplyConfig, SupplyFinding};
 pub use sync::{SyncConfig, SyncState, SyncTick};
 pub use threshold::{ComparatorConfig, ComparatorState};
-pub use window::{CycleNoise, MAX_WINDOW_CYCLES, Rates, Window};
+pub use window::{CycleNoise, MAX_WINDOW_CYCLES, RateNoise, Rates, Window};

@@ -8,6 +8,7 @@ use crate::block::{Axes, Codes};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
 use crate::effects::{Corrected, correct};
 use crate::encoder::{EncoderConfig, EncoderState};
+use crate::frames::magnitude;
 use crate::health::{HealthConfig, SensorFinding};
 use crate::intake::{
     IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
@@ -24,8 +25,8 @@ use crate::sample::Sample;
 use crate::settled::settled;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
-use crate::trend::rate_noise;
-use crate::window::{Cycle, CycleNoise, Rates, Window, WindowState};
+use crate::trend::{frequency_rate_noise, rate_noise};
+use crate::window::{Cycle, CycleNoise, RateNoise, Rates, Window, WindowState};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -598,12 +599,16 @@ impl Monitor {
     }
 
     /// What noise alone may make of each rate: whatever the model makes of it, right or wrong, it is no movement.
-    fn noise_of_rates(&self, window: &Window, noise: &CycleNoise) -> CycleNoise {
-        let rate = NOISE_DEVIATIONS * rate_noise(self.config.window_cycles, window.span);
-        CycleNoise {
+    fn noise_of_rates(&self, window: &Window, noise: &CycleNoise) -> RateNoise {
+        let length = self.config.window_cycles;
+        let rate = NOISE_DEVIATIONS * rate_noise(length, window.span);
+        let volt = magnitude(window.u_s.positive).max(f32::MIN_POSITIVE);
+        let angle = noise.voltage / volt;
+        RateNoise {
             voltage: rate * noise.voltage,
             current: rate * noise.current,
             speed: rate * noise.speed,
+            supply: NOISE_DEVIATIONS * frequency_rate_noise(length, window.span) * angle,
         }
     }
 

@@ -18,6 +18,18 @@ pub fn rate_noise(length: usize, span: f32) -> f32 {
     (n - 1.0) / span * libm::sqrtf(12.0 / (n * (n * n - 1.0)))
 }
 
+/// Standard deviation of the rate of a frequency over that of a single cycle's angle, in 1/s2: the line through the
+/// differences of `length` angles, of which the first and the last lie `span` seconds apart.
+pub fn frequency_rate_noise(length: usize, span: f32) -> f32 {
+    let differences = length as f32 - 1.0;
+    if differences < 2.0 {
+        return 0.0;
+    }
+    let square = differences * differences;
+    let per_second = differences / span;
+    libm::sqrtf(72.0 / (square * (square - 1.0))) * per_second * per_second
+}
+
 impl Trend {
     /// Through `length` values, at least 2: least squares.
     pub fn of(values: impl Iterator<Item = Complex32> + Clone, length: usize) -> Self {
@@ -61,6 +73,14 @@ mod tests {
         let trend = Trend::of(values.into_iter(), 5);
         assert!((trend.slope.re - 0.3).abs() < 1e-6, "{trend:?}");
         assert!((trend.bend - 0.4).abs() < 1e-6, "{trend:?}");
+    }
+
+    /// Five angles: differences weighed -3, -1, 1, 3 tenths are angles weighed 3, -2, -2, -2, 3 tenths: root of 0.3.
+    #[test]
+    fn the_rate_of_a_frequency_is_as_uncertain_as_its_line() {
+        let expected = libm::sqrtf(0.3) / (0.02 * 0.02);
+        assert!((frequency_rate_noise(5, 0.08) / expected - 1.0).abs() < 1e-6);
+        assert_eq!(frequency_rate_noise(2, 0.02), 0.0);
     }
 
     /// The textbook's `sigma/(T sqrt(sum x^2))` for five values 20 ms apart.

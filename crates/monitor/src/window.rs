@@ -134,15 +134,31 @@ pub struct Rates {
     pub current: Complex32,
     /// Of the mechanical speed with the field, rad/s2; 0 without a sensor.
     pub speed: f32,
+    /// Of the supply's frequency, rad/s2.
+    pub supply: f32,
+}
+
+/// What noise may make of each of [`Rates`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RateNoise {
+    /// Of the voltage's amplitude, V/s.
+    pub voltage: f32,
+    /// Of the current, A/s.
+    pub current: f32,
+    /// Of the mechanical speed, rad/s2.
+    pub speed: f32,
+    /// Of the supply's frequency, rad/s2.
+    pub supply: f32,
 }
 
 impl Rates {
-    /// What remains of each rate beyond `noise`, V/s, A/s and rad/s2.
-    pub fn beyond(&self, noise: &CycleNoise) -> Self {
+    /// What remains of each rate beyond `noise`.
+    pub fn beyond(&self, noise: &RateNoise) -> Self {
         Rates {
             voltage: self.voltage * share_beyond(self.voltage.abs(), noise.voltage),
             current: self.current * share_beyond(magnitude(self.current), noise.current),
             speed: self.speed * share_beyond(self.speed.abs(), noise.speed),
+            supply: self.supply * share_beyond(self.supply.abs(), noise.supply),
         }
     }
 }
@@ -253,7 +269,7 @@ impl WindowState {
         window.span = span * t_sample;
         let turns = TAU * (length - 1) as f32 - 0.5 * oldest.phasors.missing;
         window.omega_sync = (turns + phase_advance(oldest, newest)) / window.span;
-        window.follow_changes(cycles, length);
+        window.follow_changes(cycles, length, t_sample);
         Some(window.mirrored())
     }
 
@@ -273,6 +289,7 @@ impl Window {
         &mut self,
         cycles: impl Iterator<Item = &'a Cycle> + Clone,
         length: usize,
+        t_sample: f32,
     ) {
         let per_second = (length - 1) as f32 / self.span;
         let real = |x: f32| Complex32::new(x, 0.0);
@@ -282,6 +299,12 @@ impl Window {
         let currents = Trend::of(cycles.clone().map(seen_from_voltage), length);
         self.rates.voltage = Trend::of(voltages, length).slope.re * per_second;
         self.rates.current = currents.slope * per_second;
+        let pairs = cycles.clone().zip(cycles.clone().skip(1));
+        let frequencies = pairs.map(|(newer, older)| real(frequency(older, newer, t_sample)));
+        // Between two cycles there is one frequency, and no change.
+        if length > 2 {
+            self.rates.supply = Trend::of(frequencies, length - 1).slope.re * per_second;
+        }
         self.current_bend = currents.bend;
         if self.omega_mech.is_some() {
             let speed = |cycle: &Cycle| real(cycle.speed.omega_mech.unwrap_or_default());
@@ -369,6 +392,12 @@ fn phase_advance(from: &Cycle, to: &Cycle) -> f32 {
     arcsine((last * first.conj()).im / square)
 }
 
+/// Mean frequency of the supply from the middle of a cycle to the middle of the next, rad/s.
+fn frequency(older: &Cycle, newer: &Cycle, t_sample: f32) -> f32 {
+    let turn = TAU - 0.5 * older.phasors.missing + phase_advance(older, newer);
+    turn / (0.5 * (older.phasors.samples + newer.phasors.samples) * t_sample)
+}
+
 /// The sequences of voltages and currents that carry the motor.
 fn positive(cycle: &Cycle) -> (Complex32, Complex32) {
     let phases = cycle.phases();
@@ -415,6 +444,23 @@ mod tests {
         cycle.phasors.samples = samples;
         cycle.speed.omega_mech = Some(omega_mech);
         cycle
+    }
+
+    /// Five cycles of a supply whose oscillator stands still while it speeds up: its angle grows as a parabola.
+    #[test]
+    fn a_supply_that_speeds_up_has_its_rate() {
+        for length in [2_usize, 3, 5, 10] {
+            let mut state = WindowState::default();
+            for k in 0..length {
+                let angle = 0.5 * 30.0 * (k as f32 * 0.02).powi(2);
+                let u = Complex32::from_polar(300.0, angle);
+                state.push(cycle(u, u * 0.01, 200.0, 150.0), length);
+            }
+            let supply = state.measure(length, T_SAMPLE).expect("full").rates.supply;
+            let expected = if length > 2 { 30.0 } else { 0.0 };
+            // Single precision of an angle, 1e-7 of a turn, twice differentiated over 0.02 s.
+            assert!((supply - expected).abs() < 0.02, "{length}: {supply}");
+        }
     }
 
     fn plain(i: Complex32) -> Cycle {

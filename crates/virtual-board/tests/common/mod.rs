@@ -84,6 +84,7 @@ pub struct Sensors {
     simulation: Simulation,
     next: u64,
     latest: RawSample,
+    mirrored: bool,
 }
 
 impl Sensors {
@@ -92,6 +93,15 @@ impl Sensors {
             simulation: Simulation::new(scenario).expect("a scenario that runs"),
             next: 0,
             latest: RawSample::default(),
+            mirrored: false,
+        }
+    }
+
+    /// Phases b and c exchanged and the shaft turning the other way: the same motor running backwards.
+    pub fn mirrored(self) -> Self {
+        Sensors {
+            mirrored: true,
+            ..self
         }
     }
 }
@@ -107,6 +117,11 @@ impl Inputs for Sensors {
                     current_codes: measured.current_codes,
                     encoder_count: measured.encoder_count,
                 };
+                if self.mirrored {
+                    self.latest.voltage_codes.swap(1, 2);
+                    self.latest.current_codes.swap(1, 2);
+                    self.latest.encoder_count = self.latest.encoder_count.wrapping_neg();
+                }
             }
         }
         self.latest
@@ -187,11 +202,16 @@ pub fn watch(scenario: &Scenario) -> Seen {
 impl Program {
     /// Runs a scenario on the board, looking at the lamps every 20 ms from the end of the lamp test on.
     pub fn watch(&self, scenario: &Scenario) -> Seen {
-        let sensors = Box::new(Sensors::new(scenario));
-        let mut board = VirtualBoard::new(&self.elf, sensors).expect("a firmware that loads");
+        self.watch_sensors(Sensors::new(scenario), scenario.duration_s)
+    }
+
+    /// The same of any sensors, for so many seconds.
+    pub fn watch_sensors(&self, sensors: Sensors, duration_s: f64) -> Seen {
+        let mut board =
+            VirtualBoard::new(&self.elf, Box::new(sensors)).expect("a firmware that loads");
         board.run(LAMP_TEST_S).expect("a lamp test");
         let mut observed = Vec::new();
-        for _ in 0..(scenario.duration_s / 0.02) as usize {
+        for _ in 0..(duration_s / 0.02) as usize {
             board.run(0.02).expect("a run without an unknown access");
             observed.push((board.lamps(), board.taken().len()));
         }

@@ -40,6 +40,7 @@ fn windows() -> impl Strategy<Value = Window> {
                 voltage: 10.0 * current_change,
                 current: num_complex::Complex32::new(current_change, -current_change),
                 speed: speed_change,
+                supply: -speed_change,
             },
             span: 0.08,
             ..Window::default()
