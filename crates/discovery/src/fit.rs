@@ -70,6 +70,11 @@ impl Fit {
     pub fn held_out(&self) -> Vec<f64> {
         gram::held_out(&self.blocks, &self.penalty)
     }
+
+    /// Squared residual and the pull of the priors: what a fit makes small.
+    pub fn cost(&self) -> f64 {
+        cost(&self.residual, &self.penalty)
+    }
 }
 
 /// Weights of the priors and their pull at the present coordinates.
