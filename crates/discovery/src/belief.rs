@@ -113,8 +113,8 @@ pub(crate) struct Hypothesis {
     /// Whether a coordinate is fitted.
     pub free: Vec<bool>,
     coordinates: Vec<Coordinate>,
-    /// The effect by which an instrument may be off within its class: no finding, a nuisance.
-    instrument: Option<usize>,
+    /// The effects by which instruments may be off within their class: no finding, a nuisance.
+    instruments: Vec<usize>,
 }
 
 impl Hypothesis {
@@ -126,7 +126,7 @@ impl Hypothesis {
             z: vec![0.0; N_NOMINAL],
             free: free.collect(),
             coordinates: Vec::new(),
-            instrument: None,
+            instruments: Vec::new(),
         }
     }
 
@@ -157,17 +157,22 @@ impl Hypothesis {
         more
     }
 
-    /// The same with the effect by which an instrument may be off within its class.
+    /// The same with an effect by which an instrument may be off within its class.
     pub fn with_instrument(&self, effect: EffectConfig, rated: &Rated<f64>) -> Self {
-        Self {
-            instrument: Some(self.effects.len()),
-            ..self.with(effect, rated)
-        }
+        let mut more = self.with(effect, rated);
+        more.instruments.push(self.effects.len());
+        more
+    }
+
+    /// Whether a coordinate of the instrument effect of this name is among the beliefs.
+    pub fn holds_instrument(&self, name: &str) -> bool {
+        let mut names = self.instruments.iter().map(|&k| self.effects[k].effect);
+        names.any(|effect| effect.descriptor().name == name)
     }
 
     /// Whether coordinate `k` is a belief: of the motor file about the motor, or of the class about an instrument.
     pub fn is_belief(&self, k: usize) -> bool {
-        k < N_NOMINAL || self.instrument == Some(self.effect_of(k))
+        k < N_NOMINAL || self.instruments.contains(&self.effect_of(k))
     }
 
     /// Prior standard deviation of a coordinate, and its centre.

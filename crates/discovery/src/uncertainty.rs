@@ -11,6 +11,7 @@ use crate::class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
 use crate::fit::Fit;
 use crate::floor::noise_draws;
 use crate::gram::{self, Block, dot};
+use crate::polish::{CURRENTS, VOLTAGES};
 use crate::predict::{Drive, outputs_on};
 use crate::study::Study;
 use motor::effects::Plant;
@@ -112,11 +113,12 @@ fn instruments(case: &Case, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
         )
     };
     let mut sum = DMatrix::zeros(n, n);
-    for current in 0..3 {
-        sum += outer(&measured(current), CHANNEL_GAIN.powi(2));
+    if !fit.hypothesis.holds_instrument(CURRENTS) {
+        for current in 0..3 {
+            sum += outer(&measured(current), CHANNEL_GAIN.powi(2));
+        }
     }
-    let fitted = |&k: &usize| k >= N_NOMINAL && fit.hypothesis.is_belief(k);
-    if !fit.free.iter().any(fitted) {
+    if !fit.hypothesis.holds_instrument(VOLTAGES) {
         // What all three share of their gains: the rest is unbalance and zero sequence.
         sum += outer(&driven(louder_voltage(case)), CHANNEL_GAIN.powi(2) / 3.0);
     }
