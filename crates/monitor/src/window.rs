@@ -254,7 +254,7 @@ impl WindowState {
     pub fn latest_current(&self) -> Option<(Complex32, f32)> {
         let mut latest = self.latest(2)?;
         let (newest, before) = (latest.next()?, latest.next()?);
-        let mean = (seen_from_voltage(newest) + seen_from_voltage(before)) * 0.5;
+        let mean = (Turned::of(newest).current + Turned::of(before).current) * 0.5;
         Some((mean, newest.phasors.samples))
     }
 
@@ -262,14 +262,12 @@ impl WindowState {
     pub fn measure(&self, length: usize, t_sample: f32) -> Option<Window> {
         let length = length.clamp(2, MAX_WINDOW_CYCLES);
         let cycles = self.latest(length)?;
-        let (newest, oldest) = (cycles.clone().next()?, cycles.clone().last()?);
         let mut window = mean(cycles.clone(), length);
-        let all: f32 = cycles.clone().map(|cycle| cycle.phasors.samples).sum();
-        let span = all - 0.5 * (newest.phasors.samples + oldest.phasors.samples);
-        window.span = span * t_sample;
-        let turns = TAU * (length - 1) as f32 - 0.5 * oldest.phasors.missing;
-        window.omega_sync = (turns + phase_advance(oldest, newest)) / window.span;
-        window.follow_changes(cycles, length, t_sample);
+        let mut turned = [Turned::default(); MAX_WINDOW_CYCLES];
+        for (turned, cycle) in turned.iter_mut().zip(cycles) {
+            *turned = Turned::of(cycle);
+        }
+        window.follow(turned.get(..length)?, t_sample)?;
         Some(window.mirrored())
     }
 
@@ -284,35 +282,85 @@ impl WindowState {
     }
 }
 
+/// What the field's sequence shows of a cycle.
+#[derive(Clone, Copy, Default)]
+struct Turned {
+    /// Voltage, or the current where voltages are not measured: what the frequency is told by.
+    reference: Complex32,
+    /// Length of the voltage, V.
+    voltage: f32,
+    /// The current as the voltage sees it, A.
+    current: Complex32,
+    /// Speed over the cycle, rad/s.
+    speed: f32,
+    /// Length, samples.
+    samples: f32,
+    /// See [`CyclePhasors::missing`].
+    missing: f32,
+}
+
+impl Turned {
+    fn of(cycle: &Cycle) -> Self {
+        let (u, i) = positive(cycle);
+        let voltage = magnitude(u);
+        Turned {
+            reference: if u.norm_sqr() > 0.0 { u } else { i },
+            voltage,
+            current: seen_from(u, voltage, i),
+            speed: cycle.speed.omega_mech.unwrap_or_default(),
+            samples: cycle.phasors.samples,
+            missing: cycle.phasors.missing,
+        }
+    }
+
+    /// How far the supply turned from the middle of this cycle to the middle of one that came `turns` later, rad.
+    fn advance(&self, later: &Turned, turns: usize) -> f32 {
+        let advance = phase_advance(self.reference, later.reference);
+        TAU * turns as f32 - 0.5 * self.missing + advance
+    }
+}
+
 impl Window {
-    fn follow_changes<'a>(
-        &mut self,
-        cycles: impl Iterator<Item = &'a Cycle> + Clone,
-        length: usize,
-        t_sample: f32,
-    ) {
+    /// Frequency and rates of the cycles of a window, the newest first; `None` without any.
+    fn follow(&mut self, cycles: &[Turned], t_sample: f32) -> Option<()> {
+        let (newest, oldest) = (cycles.first()?, cycles.last()?);
+        let length = cycles.len();
+        let all: f32 = cycles.iter().map(|cycle| cycle.samples).sum();
+        self.span = (all - 0.5 * (newest.samples + oldest.samples)) * t_sample;
+        self.omega_sync = oldest.advance(newest, length - 1) / self.span;
         let per_second = (length - 1) as f32 / self.span;
         let real = |x: f32| Complex32::new(x, 0.0);
-        let voltages = cycles
-            .clone()
-            .map(|cycle| real(magnitude(positive(cycle).0)));
-        let currents = Trend::of(cycles.clone().map(seen_from_voltage), length);
+        let voltages = cycles.iter().map(|cycle| real(cycle.voltage));
         self.rates.voltage = Trend::of(voltages, length).slope.re * per_second;
+        let currents = Trend::of(cycles.iter().map(|cycle| cycle.current), length);
         self.rates.current = currents.slope * per_second;
-        let pairs = cycles.clone().zip(cycles.clone().skip(1));
-        let frequencies = pairs.map(|(newer, older)| real(frequency(older, newer, t_sample)));
-        // Between two cycles there is one frequency, and no change.
-        if length > 2 {
-            self.rates.supply = Trend::of(frequencies, length - 1).slope.re * per_second;
-        }
         self.current_bend = currents.bend;
+        self.rates.supply = supply_rate(cycles, t_sample) * per_second;
         if self.omega_mech.is_some() {
-            let speed = |cycle: &Cycle| real(cycle.speed.omega_mech.unwrap_or_default());
-            let speeds = Trend::of(cycles.map(speed), length);
+            let speeds = Trend::of(cycles.iter().map(|cycle| real(cycle.speed)), length);
             self.rates.speed = speeds.slope.re * per_second;
             self.speed_bend = speeds.bend;
         }
+        Some(())
     }
+}
+
+/// Change of the supply's frequency from a cycle to the next, rad/s: frequencies stand between two cycles each.
+fn supply_rate(cycles: &[Turned], t_sample: f32) -> f32 {
+    let mut frequencies = [Complex32::ZERO; MAX_WINDOW_CYCLES];
+    let pairs = cycles.iter().zip(cycles.iter().skip(1));
+    for (frequency, (newer, older)) in frequencies.iter_mut().zip(pairs) {
+        let seconds = 0.5 * (older.samples + newer.samples) * t_sample;
+        frequency.re = older.advance(newer, 1) / seconds;
+    }
+    let count = cycles.len().saturating_sub(1);
+    // One frequency is no change.
+    if count < 2 {
+        return 0.0;
+    }
+    Trend::of(frequencies.iter().take(count).copied(), count)
+        .slope
+        .re
 }
 
 fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> Window {
@@ -382,20 +430,22 @@ fn components(phases: [Complex32; 3], backwards: bool) -> Sequence {
     })
 }
 
+/// A current as a voltage of this length sees it; its length alone without a voltage.
+fn seen_from(u: Complex32, length: f32, i: Complex32) -> Complex32 {
+    if length > 0.0 {
+        i * u.conj() / length
+    } else {
+        Complex32::new(magnitude(i), 0.0)
+    }
+}
+
 /// How far the supply turned beyond the oscillator from one cycle to a later one, rad.
-fn phase_advance(from: &Cycle, to: &Cycle) -> f32 {
-    let (first, last) = (reference(from), reference(to));
+fn phase_advance(first: Complex32, last: Complex32) -> f32 {
     let square = first.norm_sqr();
     if square <= f32::MIN_POSITIVE {
         return 0.0;
     }
     arcsine((last * first.conj()).im / square)
-}
-
-/// Mean frequency of the supply from the middle of a cycle to the middle of the next, rad/s.
-fn frequency(older: &Cycle, newer: &Cycle, t_sample: f32) -> f32 {
-    let turn = TAU - 0.5 * older.phasors.missing + phase_advance(older, newer);
-    turn / (0.5 * (older.phasors.samples + newer.phasors.samples) * t_sample)
 }
 
 /// The sequences of voltages and currents that carry the motor.
@@ -404,22 +454,6 @@ fn positive(cycle: &Cycle) -> (Complex32, Complex32) {
     let backwards = turn_backwards(&phases);
     let [u, i] = phases.map(|phases| components(phases, backwards).positive);
     (u, i)
-}
-
-/// Positive-sequence voltage, or the current where voltages are not measured.
-fn reference(cycle: &Cycle) -> Complex32 {
-    let (u, i) = positive(cycle);
-    if u.norm_sqr() > 0.0 { u } else { i }
-}
-
-fn seen_from_voltage(cycle: &Cycle) -> Complex32 {
-    let (u, i) = positive(cycle);
-    let length = magnitude(u);
-    if length > 0.0 {
-        i * u.conj() / length
-    } else {
-        Complex32::new(magnitude(i), 0.0)
-    }
 }
 
 #[cfg(test)]
@@ -598,23 +632,15 @@ mod tests {
     /// Half a radian is the most that the series is used for.
     #[test]
     fn a_large_phase_advance_is_held_at_half_a_radian() {
-        let volt = |angle| {
-            cycle(
-                Complex32::from_polar(300.0, angle),
-                Complex32::ONE,
-                200.0,
-                150.0,
-            )
-        };
-        let advance = |angle| phase_advance(&volt(0.0), &volt(angle));
+        let volt = |angle| Complex32::from_polar(300.0, angle);
+        let advance = |angle| phase_advance(volt(0.0), volt(angle));
         let most = core::f32::consts::FRAC_PI_6; // arcsine of one half
         assert!((advance(1.5) - most).abs() < 1e-3);
         assert!((advance(-1.5) + most).abs() < 1e-3);
         // Exact to rounding where windows are steady.
         assert!((advance(0.1) - 0.1).abs() < 1e-6);
         assert!((advance(0.3) - 0.3).abs() < 3e-5);
-        let silent = cycle(Complex32::ZERO, Complex32::ZERO, 200.0, 0.0);
-        assert_eq!(phase_advance(&silent, &volt(0.3)), 0.0);
+        assert_eq!(phase_advance(Complex32::ZERO, volt(0.3)), 0.0);
     }
 
     /// A current that turns with the voltage does not change; one that ends elsewhere has changed by the way there.
