@@ -143,6 +143,7 @@ impl Case {
             )
         })?;
         check_clock(rec)?;
+        check_size(rec)?;
         let t_sample = rec.t_sample();
         let sigma_u = sigma(rec, Channel::VOLTAGES[0], voltages[0]);
         let raw: Vec<_> = vectors(voltages);
@@ -436,6 +437,24 @@ fn check_clock(rec: &Recording) -> Result<(), Unsupported> {
         Some(k) => Err(Unsupported::new(
             format!("the clock is not even at t = {} s", rec.t()[k]),
             "cut the recording at its gaps, or resample it",
+        )),
+    }
+}
+
+/// No quantity of a motor is as large, in whichever unit; squares and sums stay far from overflow.
+const LARGEST: f64 = 1e12;
+
+fn check_size(rec: &Recording) -> Result<(), Unsupported> {
+    let largest = |x: &[f64]| x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    let beyond = rec
+        .channels()
+        .map(|(channel, x)| (channel, largest(x)))
+        .find(|(_, largest)| *largest > LARGEST);
+    match beyond {
+        None => Ok(()),
+        Some((channel, largest)) => Err(Unsupported::new(
+            format!("{channel} reaches {largest:.0e}, which no motor does"),
+            "check which column it is and in which unit",
         )),
     }
 }

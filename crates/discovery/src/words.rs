@@ -2,8 +2,23 @@
 
 use crate::report::{ExplainReport, Verdict};
 
-/// One sentence that says what was found.
+/// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
+const FAR_BELOW: f64 = 0.3;
+
+/// What was found, in a sentence or two.
 pub(crate) fn summary(report: &ExplainReport) -> String {
+    let found = finding(report);
+    let error = report.final_.as_ref().map(|f| f.held_out_error_over_noise);
+    match error {
+        Some(error) if error < FAR_BELOW => format!(
+            "{found} The error is only {error:.2} x noise: the recording holds less noise than its instruments declare; with the \
+             right noise smaller errors show."
+        ),
+        _ => found,
+    }
+}
+
+fn finding(report: &ExplainReport) -> String {
     let off: Vec<String> = report
         .final_
         .iter()

@@ -35,15 +35,42 @@ struct Ratings {
 /// Parameters in the order of the motor file.
 type Parameters = [f64; 6];
 
+/// What a case is asked about.
+#[derive(Clone, Copy, Debug)]
+pub enum Question {
+    /// Random beliefs, any operation.
+    Any,
+    /// The motor is as believed and carries a constant load.
+    Healthy,
+    /// One parameter, by its place, is so many times what is believed, in an operation that shows it.
+    Changed(usize, f64),
+}
+
 impl Case {
     /// The machine of a seed.
-    pub fn random(seed: u64) -> Self {
+    pub fn new(seed: u64, question: Question) -> Self {
         let mut rng = Pcg64::seed_from_u64(seed);
         let ratings = Ratings::random(&mut rng);
-        let truth = ratings.parameters(&mut rng);
-        let believed = ratings.beliefs(&truth, &mut rng);
+        let mut truth = ratings.parameters(&mut rng);
+        let mut believed = ratings.beliefs(&truth, &mut rng);
         let instrument = instrument(&ratings, &mut rng);
-        let operation = Operation::random(&mut rng);
+        let mut operation = Operation::random(&mut rng);
+        match question {
+            Question::Any => {}
+            Question::Healthy => {
+                believed = truth;
+                operation = operation.constant();
+            }
+            Question::Changed(which, factor) => {
+                believed = truth;
+                truth[which] *= factor;
+                // A constant speed shows no inertia.
+                operation = match which == INERTIA {
+                    true => operation.steps(),
+                    false => operation.constant(),
+                };
+            }
+        }
         let [truth, believed] = [truth, believed].map(|p| ratings.motor_file(&p, &instrument));
         let scenario = scenario_of(&operation.scenario(&ratings, seed), &truth, seed);
         let recorded = record(&scenario, |_| {}).expect("a recording");
@@ -162,6 +189,9 @@ fn instrument(ratings: &Ratings, rng: &mut Pcg64) -> String {
     )
 }
 
+/// Place of the inertia among the parameters.
+const INERTIA: usize = 4;
+
 /// What the motor does.
 struct Operation {
     kind: &'static str,
@@ -193,6 +223,30 @@ impl Operation {
             rate,
             loads,
         }
+    }
+
+    /// At its first load all the time, a minute at most.
+    fn constant(mut self) -> Self {
+        self.loads.truncate(1);
+        if self.kind == "start" {
+            self.loads = vec![0.8];
+        }
+        self.kind = "constant";
+        self.no_longer_than_a_minute()
+    }
+
+    /// From load to load.
+    fn steps(mut self) -> Self {
+        self.kind = "steps";
+        self.loads = vec![0.2, 1.0, 0.5, 0.9, 0.1, 0.7];
+        self.no_longer_than_a_minute()
+    }
+
+    fn no_longer_than_a_minute(mut self) -> Self {
+        if self.duration > 60.0 {
+            (self.duration, self.rate) = (60.0, 2e3);
+        }
+        self
     }
 
     fn words(&self) -> String {

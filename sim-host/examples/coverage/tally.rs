@@ -31,6 +31,8 @@ pub struct Answer {
     pub intervals: Vec<Interval>,
     pub refused: bool,
     pub wrong: bool,
+    /// Parameters that are said to be off.
+    pub off: Vec<String>,
     pub said: String,
 }
 
@@ -98,4 +100,26 @@ pub fn wrong(answers: &[Answer]) -> bool {
         answers.len()
     );
     wrong == 0
+}
+
+/// Prints how many healthy machines have a parameter called off, or an effect named; whether none has.
+pub fn called_off(answers: &[Answer]) -> bool {
+    let judged = answers.iter().filter(|a| !a.refused).count();
+    let off = answers.iter().filter(|a| !a.off.is_empty()).count();
+    println!("| healthy at constant load: a parameter called off | {judged} | {off} | | 0 | |");
+    let no_effect = wrong(answers);
+    off == 0 && no_effect
+}
+
+/// Prints in how many machines a changed parameter is found; whether in all.
+pub fn found(name: &str, factor: f64, answers: &[Answer]) -> bool {
+    let found = answers
+        .iter()
+        .filter(|a| a.off.iter().any(|off| off == name));
+    let found = found.count();
+    println!(
+        "| `{name}` x {factor}: called off | {} | {found} | | all | |",
+        answers.len()
+    );
+    found == answers.len()
 }

@@ -27,6 +27,18 @@ fn changed(rec: &Recording, change: impl Fn(Channel, Vec<f64>) -> Option<Vec<f64
 }
 
 #[test]
+fn numbers_that_no_motor_has_are_refused_with_their_channel() {
+    let rec = specimen::recording(0.5, |_| 1.0);
+    let rec = changed(&rec, |channel, mut x| {
+        if channel == Channel::SPEED {
+            x[100] = 1e300;
+        }
+        Some(x)
+    });
+    assert_eq!(reason(&rec), "speed reaches 1e300, which no motor does");
+}
+
+#[test]
 fn rows_hold_every_second_sample_and_weigh_it_by_its_noise() {
     let rec = specimen::recording(1.0, |_| 1.0);
     let case = case_of(&rec);
