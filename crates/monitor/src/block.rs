@@ -4,47 +4,12 @@
 //! wait for the end of the block (or of the turn) and then keep their place in the processor's registers. Sample by
 //! sample, in blocks of any length: the operations and their order are the same, and so is every bit of the result.
 
-use num_complex::Complex32;
-
-use crate::config::MonitorConfig;
 use crate::encoder::EncoderState;
-use crate::intake::{IntakeState, reference_scales};
+use crate::intake::IntakeState;
 use crate::monitor::{Monitor, MonitorState};
-use crate::phasor::{CHANNELS, CodeRange, Unit};
 use crate::report::Report;
-use crate::sample::{RawBlock, RawSample};
+use crate::sample::{CHANNELS, RawBlock, RawSample};
 use crate::sync::{SyncState, SyncTick};
-
-/// Most instants that wait to be summed up.
-const PART: usize = 32;
-
-/// Axes of the instants that wait to be summed up. Kept in the state only to spare their initialisation.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Axes([Complex32; PART]);
-
-/// What the sample path needs to know about ADC codes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Codes {
-    pub range: CodeRange,
-    pub units: [Unit; CHANNELS],
-    /// Turns `2a - b - c` of voltage codes and of current codes into shares of rated.
-    pub reference_per_code: [f32; 2],
-}
-
-impl Codes {
-    pub fn new(config: &MonitorConfig) -> Self {
-        let converter = &config.converter;
-        let [per_volt, per_ampere] = reference_scales(config);
-        Codes {
-            range: converter.code_range(),
-            units: converter.units(),
-            reference_per_code: [
-                converter.voltage.unit_per_code * per_volt,
-                converter.current.unit_per_code * per_ampere,
-            ],
-        }
-    }
-}
 
 impl Monitor {
     /// Takes one instant in ADC codes. See [`Monitor::update`] and, for many instants, [`Monitor::update_block`].

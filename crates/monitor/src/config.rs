@@ -6,8 +6,8 @@ use crate::convert::Converter;
 use crate::effects::ActiveEffects;
 use crate::isolation::Healthy;
 use crate::operating_point::Frame;
-use crate::phasor::CHANNELS;
 use crate::residuals::{FieldCurrent, RESIDUALS};
+use crate::sample::CHANNELS;
 use crate::threshold::ComparatorConfig;
 use crate::window::MAX_WINDOW_CYCLES;
 
@@ -90,6 +90,11 @@ const HUGE: f32 = 1e6;
 const TINY: f32 = 1e-9;
 
 impl MonitorConfig {
+    /// Rated amplitudes of a voltage, V, and of a current, A.
+    pub(crate) fn rated_channels(&self) -> [f32; 2] {
+        [self.rated_voltage, self.rated_current]
+    }
+
     /// Checks every range, so that nothing in the sample path can fail.
     ///
     /// # Errors

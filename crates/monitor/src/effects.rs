@@ -5,7 +5,7 @@ pub use motor::effects::MAX_PARAMETERS as MAX_EFFECT_PARAMETERS;
 use motor::effects::{Rated, SteadyEffect, SteadyPoint};
 use num_complex::Complex32;
 
-use crate::operating_point::Rehearsal;
+use crate::rehearsal::Rehearsal;
 
 /// Most effects that one motor file may switch on.
 pub const MAX_EFFECTS: usize = 4;

@@ -10,8 +10,8 @@ use crate::effects::{ActiveEffect, ActiveEffects, MAX_EFFECT_PARAMETERS, MAX_EFF
 use crate::frames::Abc;
 use crate::isolation::{Healthy, Uncertainty};
 use crate::operating_point::Frame;
-use crate::phasor::CHANNELS;
 use crate::residuals::FieldCurrent;
+use crate::sample::CHANNELS;
 use crate::threshold::ComparatorConfig;
 
 /// Quadrature counts per encoder pulse.

@@ -1,6 +1,5 @@
 //! The door of the core: bad numbers are kept out, missing and clipped channels are noted.
 
-use crate::config::MonitorConfig;
 use crate::frames::Abc;
 use crate::sample::{ClippedChannels, Sample};
 
@@ -91,14 +90,14 @@ impl IntakeState {
 
     /// Whether all channels have repeated their values for so many instants, and these are not those of a motor at rest:
     /// the recorder stands still. Shares are of rated voltage and current.
-    pub fn is_frozen(&self, instants: u32, config: &MonitorConfig) -> bool {
+    pub fn is_frozen(&self, instants: u32, [rated_voltage, rated_current]: [f32; 2]) -> bool {
         let beyond = |x: Abc, rated: f32| {
             let least = LEAST_REFERENCE * rated;
             x.a.abs() > least || x.b.abs() > least || x.c.abs() > least
         };
         self.still >= instants
-            && (beyond(self.held_voltages, config.rated_voltage)
-                || beyond(self.held_currents, config.rated_current))
+            && (beyond(self.held_voltages, rated_voltage)
+                || beyond(self.held_currents, rated_current))
     }
 
     /// Notes `instants` whose voltages and currents come from a converter and are numbers by construction.
@@ -144,8 +143,8 @@ pub(crate) fn reference_of(x: Abc) -> f32 {
 }
 
 /// Turns [`reference_of`] voltages in V and of currents in A into shares of rated.
-pub(crate) fn reference_scales(config: &MonitorConfig) -> [f32; 2] {
-    [config.rated_voltage, config.rated_current].map(|rated| 1.0 / (3.0 * rated))
+pub(crate) fn reference_scales(rated: [f32; 2]) -> [f32; 2] {
+    rated.map(|rated| 1.0 / (3.0 * rated))
 }
 
 /// Not `max`, which has to care for NaN: neither can be one here.

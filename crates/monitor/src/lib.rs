@@ -4,8 +4,10 @@
 //! One sample's way: [`Converter`] (codes to SI) -> [`SyncConfig`] (angle of the supply) ->
 //! phasors of whole cycles -> once per cycle: residuals -> thresholds -> signature -> lamps.
 
+mod allowance;
 mod block;
 mod calibrated;
+mod codes;
 mod config;
 mod convert;
 mod effects;
@@ -23,6 +25,7 @@ mod noise;
 mod operating_point;
 mod panel;
 mod phasor;
+mod rehearsal;
 mod report;
 mod residuals;
 mod rotation;
@@ -54,12 +57,13 @@ pub use isolation::{
 pub use lamps::{Lamp, Lamps};
 pub use likely::{Channel, Known, Suspect, Suspicion, TIE_RATIO, Witness, likely};
 pub use monitor::{Monitor, MonitorState};
-pub use operating_point::{Frame, OperatingPoint, Rehearsal};
-pub use phasor::{CHANNELS, ChannelCycle, CyclePhasors};
+pub use operating_point::{Frame, OperatingPoint};
+pub use phasor::{ChannelCycle, CyclePhasors};
+pub use rehearsal::Rehearsal;
 pub use report::{NotJudged, Report};
 pub use residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use rotor::{RotorReading, RotorState, Sidebands};
-pub use sample::{ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
+pub use sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
 pub use signature::{Candidates, FAULTS, Fault, TABLE_1};
 pub use supply::{SupplyConfig, SupplyFinding};
 pub use sync::{SyncConfig, SyncState, SyncTick};

@@ -4,7 +4,8 @@ use motor::TParams;
 use motor::effects::Rated;
 use num_complex::Complex32;
 
-use crate::block::{Axes, Codes};
+use crate::allowance::{Allowance, CycleScatter};
+use crate::codes::{Axes, Codes};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
 use crate::effects::{Corrected, correct};
 use crate::encoder::{EncoderConfig, EncoderState};
@@ -14,14 +15,14 @@ use crate::intake::{
     IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
 };
 use crate::isolation::Temperature;
-use crate::noise::{Allowance, CycleScatter};
-use crate::operating_point::{Frame, OperatingPoint, Rehearsal};
+use crate::operating_point::{Frame, OperatingPoint};
 use crate::panel::{PanelConfig, PanelState};
-use crate::phasor::{CHANNELS, CyclePhasors, PhasorState, Unit};
+use crate::phasor::{CyclePhasors, PhasorState, Unit};
+use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
 use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
 use crate::rotor::{RotorState, Sidebands};
-use crate::sample::Sample;
+use crate::sample::{CHANNELS, Sample};
 use crate::settled::settled;
 use crate::supply::{SupplyConfig, SupplyFinding};
 use crate::sync::{SyncConfig, SyncState, SyncTick};
@@ -159,7 +160,7 @@ impl Monitor {
                 OVERSPEED * omega_max / config.mechanics.n_p,
             ),
             codes: Codes::new(&config),
-            reference_per_si: reference_scales(&config),
+            reference_per_si: reference_scales(config.rated_channels()),
             peak_keep: 1.0 - PEAK_DECAY_PER_SECOND * config.t_sample,
             model: ResidualModel {
                 mechanics: config.mechanics,
@@ -285,7 +286,9 @@ impl Monitor {
     fn explain_silence(&self, state: &MonitorState, report: &mut Report) {
         let dark = state.intake.is_dark();
         let searching = state.sync.is_searching();
-        let frozen = state.intake.is_frozen(self.idle_samples / 2, &self.config);
+        let frozen = state
+            .intake
+            .is_frozen(self.idle_samples / 2, self.config.rated_channels());
         report.supply = (dark && !frozen && state.measured[0]).then_some(SupplyFinding::Lost);
         report.not_judged = Some(match (report.supply, searching) {
             _ if frozen => NotJudged::Invalid,

@@ -2,32 +2,16 @@
 
 use motor::steady_state::rotor_flux;
 
+use crate::allowance::{Allowance, FLUX, FOLLOWED, SPEED};
 use crate::effects::Corrected;
 use crate::frames::magnitude;
 use crate::isolation::{Bench, ROWS, rows_of, rows_of_currents};
 use crate::monitor::{Monitor, MonitorState};
 use crate::operating_point::OperatingPoint;
 use crate::residuals::{FieldCurrent, RESIDUALS, ResidualModel};
-use crate::scatter::{Noise, ScatterState};
+use crate::scatter::Noise;
 use crate::trend::rate_noise;
 use crate::window::Window;
-
-/// r1..r4, the rows of evidence, the rotor flux, V s, and the speed, rad/s.
-const FOLLOWED: usize = RESIDUALS + ROWS + 2;
-const FLUX: usize = RESIDUALS + ROWS;
-const SPEED: usize = FLUX + 1;
-
-/// What the noise of the cycles is known to be.
-pub type CycleScatter = ScatterState<FOLLOWED>;
-
-/// What noise can do to one window.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Allowance {
-    /// Of r1..r4, shares of their scales.
-    pub residuals: [f32; RESIDUALS],
-    /// Standard deviations of the rows of evidence.
-    pub rows: [f32; ROWS],
-}
 
 /// Standard deviations that noise may reach: once in 150 000 windows, and a lamp wants three in a row.
 const DEVIATIONS: f32 = 4.5;

@@ -7,10 +7,8 @@
 use num_complex::Complex32;
 
 use crate::rotation::arcsine;
+use crate::sample::CHANNELS;
 use crate::sync::SyncTick;
-
-/// Channels: voltages a, b, c, then currents a, b, c.
-pub const CHANNELS: usize = 6;
 
 /// Running sums over one cycle, in V and A or in whatever [`Unit`] says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,7 +1,9 @@
 //! What arrives at the core: one instant of the six analogue channels and the speed sensor.
 
 use crate::frames::Abc;
-use crate::phasor::CHANNELS;
+
+/// Channels: voltages a, b, c, then currents a, b, c.
+pub const CHANNELS: usize = 6;
 
 /// One sampling instant as the hardware delivers it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

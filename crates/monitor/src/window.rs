@@ -6,9 +6,9 @@ use num_complex::Complex32;
 
 use crate::encoder::SpeedReading;
 use crate::frames::{Sequence, magnitude};
-use crate::phasor::{CHANNELS, ChannelCycle, CyclePhasors};
+use crate::phasor::{ChannelCycle, CyclePhasors};
 use crate::rotation::arcsine;
-use crate::sample::ClippedChannels;
+use crate::sample::{CHANNELS, ClippedChannels};
 use crate::trend::Trend;
 
 /// Longest window, in supply cycles.

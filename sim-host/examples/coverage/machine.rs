@@ -40,6 +40,8 @@ type Parameters = [f64; 6];
 pub enum Question {
     /// Random beliefs, any operation.
     Any,
+    /// The same, but no recording is longer than a minute.
+    Short,
     /// The motor is as believed and carries a constant load.
     Healthy,
     /// One parameter, by its place, is so many times what is believed, in an operation that shows it.
@@ -57,6 +59,7 @@ impl Case {
         let mut operation = Operation::random(&mut rng);
         match question {
             Question::Any => {}
+            Question::Short => operation = operation.no_longer_than_a_minute(),
             Question::Healthy => {
                 believed = truth;
                 operation = operation.constant();

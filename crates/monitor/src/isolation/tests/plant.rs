@@ -8,7 +8,7 @@ use crate::config::MonitorConfig;
 use crate::frames::Sequence;
 use crate::health::Phase;
 use crate::isolation::{Healthy, ROWS, Uncertainty};
-use crate::phasor::CHANNELS;
+use crate::sample::CHANNELS;
 pub use crate::tests::motor_2200_watt::OMEGA_SYNC;
 use crate::tests::motor_2200_watt::{self, AMPLITUDE, FRICTION, PARAMS};
 use crate::window::Window;
