@@ -8,7 +8,7 @@ use embassy_stm32::peripherals::{DMA1_CH2, PC6, PC7, TIM3, TIM4};
 use embassy_stm32::timer::qei::{Config, Qei};
 use embassy_stm32::timer::{Ch1, Ch2, UpDma};
 
-use super::sampling::Irqs;
+use super::interrupts::Irqs;
 
 /// The quadrature counter: four counts per encoder pulse, 16 bits, wrapping.
 pub struct Encoder {

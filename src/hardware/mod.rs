@@ -4,6 +4,7 @@ pub mod board;
 pub mod encoder;
 pub mod flash_store;
 pub mod housekeeping;
+mod interrupts;
 pub mod lamps;
 mod ring;
 pub mod sampling;

@@ -8,12 +8,13 @@ use embassy_stm32::dma::ReadableRingBuffer;
 use embassy_stm32::peripherals::{ADC1, DMA1_CH1, DMA1_CH2, PA0, PA1, PC0, PC1, PC2, PC3, TIM4};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{MasterMode, Timer};
-use embassy_stm32::{Peri, bind_interrupts, dma, pac, triggers};
+use embassy_stm32::{Peri, pac, triggers};
 use embassy_time::{Duration, with_timeout};
 use monitor::{RawBlock, RawSample};
 
 use super::encoder::{self, Encoder};
-use super::ring::{self, HalfFilled, Ring};
+use super::interrupts::Irqs;
+use super::ring::{self, Ring};
 
 /// Sampling instants per second; the motor constants are compiled for it.
 const SAMPLE_RATE: Hertz = Hertz(10_000);
@@ -29,14 +30,6 @@ const STALL: Duration = Duration::from_micros(3 * 3_200);
 /// Instants by which the two rings may seem apart: the trigger can fall between the two look-ups,
 /// and the converter is behind the encoder by one sequence.
 const SKEW: usize = 2;
-
-bind_interrupts!(
-    /// Interrupts of the two DMA rings.
-    pub struct Irqs {
-        DMA1_CHANNEL1 => HalfFilled, dma::InterruptHandler<DMA1_CH1>;
-        DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
-    }
-);
 
 /// What acquisition is made of. Kept by the caller so that it can be started anew after a gap.
 pub struct Sources {

@@ -4,11 +4,7 @@ use monitor::{Lamp, NotJudged, RESIDUALS, Report};
 use serde::{Deserialize, Serialize};
 
 use crate::display::LAMPS;
-use crate::framing::{self, MAX_FRAME_BYTES};
-use crate::message::Message;
-
-/// What the fields mean; a reader refuses every other number.
-pub(crate) const SCHEMA: u8 = 1;
+use crate::framing::{self, MAX_FRAME_BYTES, SCHEMA};
 
 /// What the board says about one window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,35 +31,6 @@ pub struct Frame {
     /// Supply of the converters, mV.
     pub vdda_millivolt: u16,
 }
-
-/// Why bytes are no frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameError {
-    /// Not COBS, or too short or too long.
-    Framing,
-    /// Damaged on the way.
-    Checksum,
-    /// From another version of the firmware.
-    Schema(u8),
-    /// The checksum holds and the content does not.
-    Content,
-}
-
-impl core::fmt::Display for FrameError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            FrameError::Framing => f.write_str("not a frame: wrong framing or length"),
-            FrameError::Checksum => f.write_str("damaged frame: wrong checksum"),
-            FrameError::Schema(other) => write!(
-                f,
-                "frame of schema {other}, this reader knows {SCHEMA}: use the drivemon of the same version as the firmware"
-            ),
-            FrameError::Content => f.write_str("frame with unreadable content"),
-        }
-    }
-}
-
-impl core::error::Error for FrameError {}
 
 impl Frame {
     /// What a report says.
@@ -102,17 +69,6 @@ impl Frame {
     pub fn encode<'a>(&self, buffer: &'a mut [u8; MAX_FRAME_BYTES]) -> &'a [u8] {
         framing::encode(self, buffer)
     }
-
-    /// Reads one frame; the zero byte behind it may be there or not.
-    ///
-    /// # Errors
-    /// Anything but a whole, undamaged frame of this schema.
-    pub fn decode(bytes: &[u8]) -> Result<Self, FrameError> {
-        match Message::decode(bytes)? {
-            Message::Window(frame) => Ok(frame),
-            Message::Capture(_) => Err(FrameError::Content),
-        }
-    }
 }
 
 pub(crate) fn packed(report: &Report) -> u32 {
@@ -146,6 +102,7 @@ pub(crate) fn reason(not_judged: NotJudged) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::framing::FrameError;
     use proptest::prelude::*;
 
     /// Every number at its longest.

@@ -5,8 +5,9 @@
 use serde::Serialize;
 
 use crate::checksum::crc32;
-use crate::frame::FrameError;
 
+/// What the fields mean; a reader refuses every other number.
+pub(crate) const SCHEMA: u8 = 1;
 /// Bytes of the longest frame, zero byte included: 102 of content at most, 4 of checksum, 2 of COBS and end.
 pub const MAX_FRAME_BYTES: usize = 112;
 const CHECKSUM_BYTES: usize = 4;
@@ -53,3 +54,32 @@ pub(crate) fn decode<'a>(
         Err(FrameError::Checksum)
     }
 }
+
+/// Frame decoding error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameError {
+    /// Not COBS, or too short or too long.
+    Framing,
+    /// Damaged on the way.
+    Checksum,
+    /// From another version of the firmware.
+    Schema(u8),
+    /// The checksum holds and the content does not.
+    Content,
+}
+
+impl core::fmt::Display for FrameError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            FrameError::Framing => f.write_str("not a frame: wrong framing or length"),
+            FrameError::Checksum => f.write_str("damaged frame: wrong checksum"),
+            FrameError::Schema(other) => write!(
+                f,
+                "frame of schema {other}, this reader knows {SCHEMA}: use the drivemon of the same version as the firmware"
+            ),
+            FrameError::Content => f.write_str("frame with unreadable content"),
+        }
+    }
+}
+
+impl core::error::Error for FrameError {}

@@ -22,8 +22,8 @@ pub use calibration::{
 pub use capture::{CAPTURE_EVERY, CAPTURE_INSTANTS, Capture, CaptureChunk, CaptureState};
 pub use checksum::{crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, levels};
-pub use frame::{Frame, FrameError};
-pub use framing::MAX_FRAME_BYTES;
+pub use frame::Frame;
+pub use framing::{FrameError, MAX_FRAME_BYTES};
 pub use image::{EffectTerms, IMAGE_WORDS, ImageError, MotorImage};
 pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal};
 pub use message::Message;

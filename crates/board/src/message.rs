@@ -1,8 +1,8 @@
 //! Everything that the board sends without being asked, told apart by the first byte.
 
 use crate::capture::{self, CaptureChunk};
-use crate::frame::{self, Frame, FrameError};
-use crate::framing::{self, MAX_FRAME_BYTES};
+use crate::frame::Frame;
+use crate::framing::{self, FrameError, MAX_FRAME_BYTES};
 
 /// One frame's content.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +22,24 @@ impl Message {
         let mut plain = [0; MAX_FRAME_BYTES];
         let content = framing::decode(bytes, &mut plain)?;
         let read = match content.first() {
-            Some(&frame::SCHEMA) => postcard::from_bytes(content).map(Message::Window),
+            Some(&framing::SCHEMA) => postcard::from_bytes(content).map(Message::Window),
             Some(&capture::SCHEMA) => postcard::from_bytes(content).map(Message::Capture),
             Some(&other) => return Err(FrameError::Schema(other)),
             None => return Err(FrameError::Framing),
         };
         read.map_err(|_| FrameError::Content)
+    }
+}
+
+impl Frame {
+    /// Reads one frame; the zero byte behind it may be there or not.
+    ///
+    /// # Errors
+    /// Anything but a whole, undamaged frame of this schema.
+    pub fn decode(bytes: &[u8]) -> Result<Self, FrameError> {
+        match Message::decode(bytes)? {
+            Message::Window(frame) => Ok(frame),
+            Message::Capture(_) => Err(FrameError::Content),
+        }
     }
 }

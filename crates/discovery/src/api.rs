@@ -5,12 +5,13 @@ use crate::case::Case;
 use crate::confirm::{best_of, only};
 use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::fit::Effort;
-use crate::frame::{self, FrameReport};
+use crate::frame;
 use crate::gram::dot;
 use crate::inconclusive::{self, Uncertainty};
 use crate::polish::with_nominals;
 use crate::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
 use crate::question::{Error, Question};
+use crate::report::FrameReport;
 use crate::report::{
     AdoptReport, ErrorReport, ExplainReport, RankReport, SpeedScaleReport, StepReport, Unexplained,
     Verdict,
@@ -94,7 +95,11 @@ fn judged_frame(question: &Question, motor: &MotorFile, trial: &Trial) -> Option
 pub(crate) fn speed_scale_report(study: &Study, trial: &Trial) -> Option<SpeedScaleReport> {
     let scale = study.speed_scale?;
     let uncertainty = Uncertainty::of(study, trial);
-    Some(scale.report(&trial.fit.hypothesis, &study.belief, &uncertainty))
+    Some(scale.report(
+        &trial.fit.hypothesis,
+        &study.belief,
+        uncertainty.of_scale_and_source(),
+    ))
 }
 
 fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) -> ExplainReport {

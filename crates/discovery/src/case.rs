@@ -1,9 +1,11 @@
 //! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
 
-use crate::free_scale;
+use crate::channels::{N_CHANNELS, SPEED};
 use crate::inputs::{InputNoise, Load, measured_speed};
-use crate::signal::{Supply, Windows, denoise, estimated_sigma, refined};
+use crate::signal::{Supply, Windows, denoise, refined, sigma};
+use crate::speed_gain::gain_of;
 use crate::table::{self, Point};
+use crate::unsupported::Unsupported;
 use motor::dynamic::clarke;
 use motor::effects::{Between, Inputs, Plant, Rated, Timeline};
 use num_complex::Complex64;
@@ -12,8 +14,6 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Number of output channels: values of a residual row.
-pub(crate) const N_CHANNELS: usize = 5;
 /// Output channels of a recording in the order of a residual row, and their units.
 const OF_RECORDING: [(&str, &str); N_CHANNELS] = [
     ("ia", "A"),
@@ -30,8 +30,6 @@ const OF_TABLE: [(&str, &str); N_CHANNELS] = [
     ("efficiency", "-"),
     ("", ""),
 ];
-/// The speed among the channels of a recording.
-pub(crate) const SPEED: usize = 3;
 /// Trust in the model of a current sensor beside its noise: half a per cent of the reading.
 pub(crate) const RELATIVE_CURRENT: f64 = 0.005;
 /// Length of a block, s: short, so that a direct-on-line start reaches every fold.
@@ -48,24 +46,6 @@ const LONGEST_SMOOTH: f64 = 2.6e-4;
 const FINE: f64 = 2e-4;
 /// Residual rows per second that are worth their time.
 const ROW_RATE: f64 = 5500.0;
-
-/// Why a recording cannot be judged.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unsupported {
-    /// What is missing or wrong.
-    pub reason: String,
-    /// What to do about it.
-    pub remedy: String,
-}
-
-impl Unsupported {
-    pub(crate) fn new(reason: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self {
-            reason: reason.into(),
-            remedy: remedy.into(),
-        }
-    }
-}
 
 /// Measured speeds in the scale of a hypothesis.
 pub(crate) struct Speeds<'a> {
@@ -254,7 +234,7 @@ impl Case {
     /// The measured speeds that drive a simulation of `plant`, from the smoothed `speed`: with a free scale they are what
     /// the plant's speed sensor would have to see to show the channel.
     pub fn speeds<'a>(&self, plant: &Plant, speed: &'a [f64]) -> Speeds<'a> {
-        let gain = free_scale::gain_of(&plant.effects);
+        let gain = gain_of(&plant.effects);
         if !self.speed_scale_is_free || gain == 1.0 {
             return Speeds {
                 speed: Cow::Borrowed(speed),
@@ -280,7 +260,7 @@ impl Case {
         case.speed = speeds.speed.into_owned();
         (case.running_at, case.timeline) = (speeds.running_at, speeds.timeline);
         if self.speed_scale_is_free {
-            let gain = free_scale::gain_of(&plant.effects);
+            let gain = gain_of(&plant.effects);
             for (y, w) in case.measured.iter_mut().zip(&mut case.weight) {
                 y[SPEED] /= gain;
                 w[SPEED] *= gain;
@@ -457,14 +437,6 @@ fn check_size(rec: &Recording) -> Result<(), Unsupported> {
             "check which column it is and in which unit",
         )),
     }
-}
-
-/// Declared noise of a channel, or an estimate, never zero.
-pub(crate) fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
-    let declared = rec.metadata.sensors.sigma(channel);
-    let sigma = declared.unwrap_or_else(|| estimated_sigma(x));
-    let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-    sigma.max(1e-6 * top).max(1e-9)
 }
 
 fn vectors(abc: [&[f64]; 3]) -> Vec<Complex64> {

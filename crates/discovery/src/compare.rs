@@ -1,7 +1,8 @@
 //! Where the model fails, as the motor file says it, nothing refitted.
 
 use crate::api::{Progress, speed_scale_report};
-use crate::case::{Case, N_CHANNELS};
+use crate::case::Case;
+use crate::channels::N_CHANNELS;
 use crate::fit::Effort;
 use crate::inconclusive;
 use crate::predict::{Teacher, outputs, residual};

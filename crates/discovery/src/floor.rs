@@ -1,6 +1,7 @@
 //! The error that is left when nothing is missing: sensor noise and propagated input noise.
 
-use crate::case::{Case, N_CHANNELS};
+use crate::case::Case;
+use crate::channels::N_CHANNELS;
 use crate::gram::dot;
 use crate::predict::{Drive, outputs_on};
 use crate::signal::refined;

@@ -7,12 +7,12 @@
 use crate::belief::Belief;
 use crate::case::{Case, RELATIVE_CURRENT};
 use crate::proof::wilcoxon;
+use crate::report::{FrameBand, FrameReport};
 use motor::dynamic::clarke;
 use motor::motor_file::{FieldCurrent, Frame};
 use motor::steady_state::rotor_flux;
 use motor::{MotorFile, TParams};
 use num_complex::Complex64;
-use serde::Serialize;
 
 /// Name under which `explain` reports and `adopt` takes the frame.
 pub(crate) const NAME: &str = "rotor-flux-frame";
@@ -46,39 +46,6 @@ struct Form {
     frame: Frame,
     /// Constant field current, A.
     constant: Option<f64>,
-}
-
-/// The residual at one load, with the parameters of the motor file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FrameBand {
-    /// Air-gap torque over rated torque, percent, to the nearest ten.
-    pub load_percent: f64,
-    /// Windows of steady running at this load.
-    pub windows: usize,
-    /// Root mean square of r1 over the voltage in the frame of the motor file, percent.
-    pub r1_before_percent: f64,
-    /// The same in the rotor-flux frame with live field current, percent.
-    pub r1_after_percent: f64,
-}
-
-/// What the frame of the motor file costs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FrameReport {
-    /// Windows of steady running.
-    pub windows: usize,
-    /// Error over noise of r1 in the motor file's frame, on the proving recordings or else on the only one; its
-    /// parameters explain currents and speed, r1 itself is never fitted.
-    pub held_out_before: f64,
-    /// The same in the rotor-flux frame.
-    pub held_out_after: f64,
-    /// Error over noise of r1 on the first recording before.
-    pub fitted_before: f64,
-    /// The same after.
-    pub fitted_after: f64,
-    /// Whether the gain is proven on every recording.
-    pub proven: bool,
-    /// By load.
-    pub by_load: Vec<FrameBand>,
 }
 
 /// Judges the frame of a motor file with parameters `fitted` to currents and speed; `None` if it already is the right

@@ -5,20 +5,19 @@
 //! supply's.
 
 use crate::belief::{Belief, Hypothesis, N_NOMINAL};
-use crate::case::{Case, Unsupported};
+use crate::case::Case;
 use crate::fit::{Effort, fit};
 use crate::gram::dot;
-use crate::inconclusive::Uncertainty;
 use crate::predict::{Teacher, outputs, residual};
-use crate::report::{AtRest, SpeedScaleReport};
+use crate::report::{AtRest, ErrorSource, SpeedScaleReport};
 use crate::signal::estimated_sigma;
+use crate::speed_gain::{EFFECT, gain_of};
+use crate::unsupported::Unsupported;
 use motor::dynamic::clarke;
 use motor::effects::{EffectConfig, Rated, find};
 use recording::{Recording, StartsFrom, UnknownScale};
 use std::ops::Range;
 
-/// The effect that holds what the starting value leaves open.
-pub(crate) const EFFECT: &str = "speed-scale";
 /// Share of the rated voltage and current below which a motor is not supplied.
 const QUIET: f64 = 0.05;
 /// Share of the running reading below which the reading of an unsupplied motor is that of rest, and by which it may
@@ -141,20 +140,20 @@ impl FreeScale {
         }
     }
 
-    /// What a report says of it, after a fit found `h`.
+    /// What a report says of it, after a fit found `h`; `error`: standard error, a share of the factor, and its source.
     pub fn report(
         &self,
         h: &Hypothesis,
         belief: &Belief,
-        uncertainty: &Uncertainty,
+        (error, source): (f64, ErrorSource),
     ) -> SpeedScaleReport {
         let factor = self.over(gain(h, belief)).factor;
         let unit = self.unknown.unit;
         let given = self.unknown.offset.unwrap_or(0.0);
         SpeedScaleReport {
             factor,
-            std_error: (factor * uncertainty.of_scale()).abs(),
-            std_error_is: uncertainty.source(),
+            std_error: (factor * error).abs(),
+            std_error_is: source,
             unit: format!("{} per unit of the column", unit.name),
             offset: given + self.at_rest / unit.factor,
             offset_std_error: self.at_rest_error / unit.factor,
@@ -182,14 +181,6 @@ fn beliefs_frozen() -> Hypothesis {
 /// What the channel shows over the truth, in a hypothesis.
 fn gain(h: &Hypothesis, belief: &Belief) -> f64 {
     gain_of(&h.configs(&belief.plant.rated))
-}
-
-/// What the speed channel shows over the truth, with these effects.
-pub(crate) fn gain_of(effects: &[EffectConfig]) -> f64 {
-    let scale = effects
-        .iter()
-        .find(|c| c.effect.descriptor().name == EFFECT);
-    1.0 + scale.map_or(0.0, |c| c.values[0])
 }
 
 /// Means over one period.
@@ -408,8 +399,12 @@ mod tests {
             },
             ..study.speed_scale.expect("free")
         };
-        let uncertainty = Uncertainty::of(&study, &trial);
-        let report = scale.report(&trial.fit.hypothesis, &study.belief, &uncertainty);
+        let uncertainty = crate::inconclusive::Uncertainty::of(&study, &trial);
+        let report = scale.report(
+            &trial.fit.hypothesis,
+            &study.belief,
+            uncertainty.of_scale_and_source(),
+        );
         assert!((report.offset - -10.0).abs() < 1e-12, "{report:?}");
         assert!((report.offset_std_error - 3.0).abs() < 1e-12, "{report:?}");
         assert_eq!(report.at_rest_rad_s, -2.0);

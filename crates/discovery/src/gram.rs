@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::ops::Range;
 
-use crate::case::N_CHANNELS;
+use crate::channels::N_CHANNELS;
 
 /// Number of interleaved folds.
 pub(crate) const FOLDS: usize = 5;

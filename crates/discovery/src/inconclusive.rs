@@ -6,11 +6,11 @@
 use crate::accept::adequate;
 use crate::belief::{Belief, FRICTION, N_NOMINAL, NOMINALS};
 use crate::fit::{Fit, KAPPA};
-use crate::free_scale::EFFECT;
 use crate::gram;
 use crate::off::{RELEVANT, RELEVANT_FRICTION, SIGNIFICANT};
 use crate::report::{ErrorSource, Inconclusive};
 use crate::screen::Screened;
+use crate::speed_gain::EFFECT;
 use crate::study::{Study, Trial};
 use nalgebra::{DMatrix, DVector};
 
@@ -94,16 +94,21 @@ impl Uncertainty {
     }
 
     /// Relative standard error of the scale.
-    pub fn of_scale(&self) -> f64 {
+    fn of_scale(&self) -> f64 {
         self.scale * self.unit
     }
 
     /// Where that comes from.
-    pub fn source(&self) -> ErrorSource {
+    fn source(&self) -> ErrorSource {
         match self.told {
             true => ErrorSource::Recording,
             false => ErrorSource::Physics,
         }
+    }
+
+    /// Standard error of the scale, a share of it, and where that error comes from.
+    pub fn of_scale_and_source(&self) -> (f64, ErrorSource) {
+        (self.of_scale(), self.source())
     }
 }
 

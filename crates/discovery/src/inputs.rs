@@ -1,7 +1,7 @@
 //! Measured torque and speed made ready to drive a model: as smooth as their noise allows.
 
-use crate::case::{Unsupported, sigma};
-use crate::signal::{Windows, longest_real};
+use crate::signal::{Windows, longest_real, sigma};
+use crate::unsupported::Unsupported;
 use recording::{Channel, LoadTorque, Recording};
 
 /// Shortest window of a load torque, samples: a load step stays a step.

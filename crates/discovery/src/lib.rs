@@ -10,6 +10,7 @@ mod belief;
 #[cfg(test)]
 mod beliefs_checked;
 mod case;
+mod channels;
 pub mod class;
 mod compare;
 mod confirm;
@@ -27,6 +28,7 @@ mod predict;
 mod present;
 mod proof;
 mod question;
+mod readings;
 #[cfg(test)]
 mod refitted_folds;
 mod report;
@@ -34,21 +36,23 @@ mod screen;
 mod signal;
 #[cfg(test)]
 mod specimen;
+mod speed_gain;
 mod study;
 mod table;
 mod uncertainty;
 mod unexplained;
+mod unsupported;
 mod words;
 
 pub use api::{Progress, adopt, explain, explain_without};
-pub use case::Unsupported;
 pub use compare::compare;
-pub use frame::{FrameBand, FrameReport};
 pub use predict::simulations;
 pub use question::Error;
 pub use report::{
     AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,
-    FitReport, Inconclusive, NominalReport, OrderReport, Overall, ParameterReport, RankReport,
-    RegionReport, SignalReport, SpeedScaleReport, StepReport, Unexplained, Verdict,
+    FitReport, FrameBand, FrameReport, Inconclusive, NominalReport, OrderReport, Overall,
+    ParameterReport, RankReport, RegionReport, SignalReport, SpeedScaleReport, StepReport,
+    Unexplained, Verdict,
 };
 pub use table::table_values;
+pub use unsupported::Unsupported;

@@ -1,7 +1,8 @@
 //! Weighted residuals of a hypothesis, and their derivatives.
 
 use crate::belief::{Belief, Hypothesis};
-use crate::case::{Case, N_CHANNELS};
+use crate::case::Case;
+use crate::channels::N_CHANNELS;
 use crate::table::{self, Point};
 use motor::effects::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
 use motor::steady_state::SteadyState;

@@ -1,9 +1,11 @@
 //! From files to a study: audit, preparation, errors.
 
 use crate::belief::Belief;
-use crate::case::{Case, Unsupported};
-use crate::free_scale::{EFFECT, FreeScale};
+use crate::case::Case;
+use crate::free_scale::FreeScale;
+use crate::speed_gain::EFFECT;
 use crate::study::Study;
+use crate::unsupported::Unsupported;
 use motor::MotorFile;
 use motor::effects::{Rated, from_motor_file};
 use recording::{Audit, Expectation, LoadTorque, Recording, Source, audit, with_sound_probes};

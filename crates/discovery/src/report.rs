@@ -1,6 +1,5 @@
 //! What the user gets, with the stable keys of the JSON interface.
 
-use crate::frame::FrameReport;
 use recording::Audit;
 use serde::Serialize;
 
@@ -274,6 +273,39 @@ pub struct OrderReport {
 pub struct Overall {
     /// Rms error over noise.
     pub error_over_noise: f64,
+}
+
+/// The residual at one load, with the parameters of the motor file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrameBand {
+    /// Air-gap torque over rated torque, percent, to the nearest ten.
+    pub load_percent: f64,
+    /// Windows of steady running at this load.
+    pub windows: usize,
+    /// Root mean square of r1 over the voltage in the frame of the motor file, percent.
+    pub r1_before_percent: f64,
+    /// The same in the rotor-flux frame with live field current, percent.
+    pub r1_after_percent: f64,
+}
+
+/// What the frame of the motor file costs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrameReport {
+    /// Windows of steady running.
+    pub windows: usize,
+    /// Error over noise of r1 in the motor file's frame, on the proving recordings or else on the only one; its
+    /// parameters explain currents and speed, r1 itself is never fitted.
+    pub held_out_before: f64,
+    /// The same in the rotor-flux frame.
+    pub held_out_after: f64,
+    /// Error over noise of r1 on the first recording before.
+    pub fitted_before: f64,
+    /// The same after.
+    pub fitted_after: f64,
+    /// Whether the gain is proven on every recording.
+    pub proven: bool,
+    /// By load.
+    pub by_load: Vec<FrameBand>,
 }
 
 /// The report of `compare`: the motor file as it is, nothing refitted.

@@ -3,9 +3,9 @@
 use crate::belief::{Belief, N_NOMINAL};
 use crate::case::Case;
 use crate::fit::Fit;
-use crate::free_scale::EFFECT;
 use crate::gram::{self, Block, Penalty};
 use crate::predict::outputs;
+use crate::speed_gain::EFFECT;
 use motor::effects::{ALL, Applies, Effect, EffectConfig, Parameter, Role, expression};
 use nalgebra::DVector;
 use rayon::prelude::*;

@@ -6,10 +6,7 @@ use crate::fit::{Effort, Fit, fit};
 use crate::floor::{Floor, floor};
 use crate::free_scale::{self, FreeScale};
 use crate::gram;
-use crate::off;
-use crate::polish;
 use crate::predict::{Teacher, outputs, residual};
-use crate::uncertainty;
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
 
@@ -123,29 +120,6 @@ impl Study {
             polished: OnceLock::new(),
             fit,
         }
-    }
-
-    /// Covariance of the fitted coordinates of a trial, in their order.
-    pub fn covariance<'a>(&self, trial: &'a Trial) -> &'a DMatrix<f64> {
-        let of_fit = || uncertainty::covariance(self, &trial.fit);
-        trial.covariance.get_or_init(of_fit)
-    }
-
-    /// The trial from which the parameters of a motor are read: refitted beside the errors of the voltage channels.
-    pub fn polished<'a>(&self, trial: &'a Trial) -> &'a Trial {
-        let refit = || polish::polished(self, trial).map(Box::new);
-        trial
-            .polished
-            .get_or_init(refit)
-            .as_deref()
-            .unwrap_or(trial)
-    }
-
-    /// Indices of the nominals of a trial that are off.
-    pub fn off<'a>(&self, trial: &'a Trial) -> &'a [usize] {
-        trial
-            .off
-            .get_or_init(|| off::nominals(self, self.polished(trial)))
     }
 
     /// Error over noise by the folds of the fitted recording.

@@ -1,6 +1,7 @@
 //! Load-test tables: the same method with the steady-state equations, points instead of blocks.
 
-use crate::case::{N_CHANNELS, Unsupported};
+use crate::channels::N_CHANNELS;
+use crate::unsupported::Unsupported;
 use motor::effects::{EffectConfig, Plant, Rated, SteadyPoint};
 use num_complex::Complex64;
 use recording::{LoadPoint, LoadTable};

@@ -6,7 +6,8 @@
 //! priors, whose pull is not zero where the true motor is not as believed. The covariances of these scores add up.
 
 use crate::belief::N_NOMINAL;
-use crate::case::{Case, N_CHANNELS, SPEED};
+use crate::case::Case;
+use crate::channels::{N_CHANNELS, SPEED};
 use crate::class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
 use crate::fit::Fit;
 use crate::floor::noise_draws;

@@ -1,6 +1,7 @@
 //! Describes what is left: where, in which channel, with what it grows.
 
-use crate::case::{Case, N_CHANNELS};
+use crate::case::Case;
+use crate::channels::N_CHANNELS;
 use crate::report::Unexplained;
 use crate::study::{Study, Trial};
 

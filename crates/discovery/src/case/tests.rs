@@ -1,4 +1,5 @@
 use super::*;
+use crate::signal::estimated_sigma;
 use crate::specimen::{self, SIGMA, T_SAMPLE};
 use recording::{LoadTorque, Metadata};
 

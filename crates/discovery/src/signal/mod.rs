@@ -6,5 +6,5 @@ mod polynomial;
 mod supply;
 
 pub(crate) use adaptive::{Windows, longest_real};
-pub(crate) use noise::estimated_sigma;
+pub(crate) use noise::{estimated_sigma, sigma};
 pub(crate) use supply::{Supply, denoise, refined};

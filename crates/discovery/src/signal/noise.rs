@@ -1,4 +1,6 @@
-//! Noise of a channel whose instrument was not declared.
+//! Noise of a channel, declared or estimated.
+
+use recording::{Channel, Recording};
 
 /// Standard deviation of white noise on a smooth signal: the median magnitude of its third differences.
 ///
@@ -15,6 +17,14 @@ pub(crate) fn estimated_sigma(x: &[f64]) -> f64 {
     let median = *third.select_nth_unstable_by(middle, f64::total_cmp).1;
     // Variance of the difference: 1 + 9 + 9 + 1; median of |normal|: 0.6745 sigma.
     median / (0.6745 * 20f64.sqrt())
+}
+
+/// Declared noise of a channel, or an estimate, never zero.
+pub(crate) fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
+    let declared = rec.metadata.sensors.sigma(channel);
+    let sigma = declared.unwrap_or_else(|| estimated_sigma(x));
+    let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    sigma.max(1e-6 * top).max(1e-9)
 }
 
 #[cfg(test)]

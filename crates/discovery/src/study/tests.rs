@@ -1,6 +1,6 @@
 use super::*;
 use crate::belief::N_NOMINAL;
-use crate::case::N_CHANNELS;
+use crate::channels::N_CHANNELS;
 use crate::specimen;
 
 /// The speed of a table counts in revolutions per minute: two more at each point are four in each block.

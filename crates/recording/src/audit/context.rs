@@ -1,7 +1,7 @@
 //! What all checks look at.
 
 use super::blocks::{Block, Three, blocks};
-use super::clipping::{Clipped, clipped};
+use super::clipped::{Clipped, clipped};
 use super::expectation::Expectation;
 use super::statistics::median;
 use crate::channel::Channel;

@@ -4,6 +4,7 @@
 //! [`Context`], and later checks leave them alone: one mistake gives one finding.
 
 mod blocks;
+mod clipped;
 mod clipping;
 mod clock;
 mod context;
