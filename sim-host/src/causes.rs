@@ -94,6 +94,24 @@ pub fn tied(candidates: &[Candidate]) -> usize {
     candidates.iter().take_while(is_tied).count()
 }
 
+/// What to do about causes that cannot be told apart, each step once. A motor that was not calibrated is asked first
+/// whether it is merely warm: the calibration knows heat.
+pub fn todo(causes: &[Candidate], calibrated: bool) -> Vec<&'static str> {
+    let mut steps = Vec::new();
+    if !calibrated
+        && causes
+            .iter()
+            .any(|cause| matches!(cause.fault, "Rs" | "Rr"))
+    {
+        steps.push("first heat: is the motor hotter than its motor file says?");
+    }
+    steps.extend(tests(causes));
+    if steps.is_empty() && !causes.is_empty() {
+        steps.push("is it this motor's file? Then look at the residuals and the recording itself");
+    }
+    steps
+}
+
 /// What would prove or clear each of these causes, each test once.
 pub fn tests(candidates: &[Candidate]) -> Vec<&'static str> {
     let mut tests = Vec::new();

@@ -1,6 +1,5 @@
 //! What the core's findings are called in front of people.
 
-use crate::causes::Candidate;
 use crate::replay::RotorSummary;
 use monitor::{NotJudged, SensorFinding, Sidebands, SupplyFinding};
 
@@ -124,24 +123,6 @@ pub fn fault(name: &str) -> &'static str {
         "bars" => "broken rotor bars",
         _ => "none of the faults in the table",
     }
-}
-
-/// What to do about causes that cannot be told apart, each step once. A motor that was not calibrated is asked first
-/// whether it is merely warm: the calibration knows heat.
-pub fn todo(causes: &[Candidate], calibrated: bool) -> Vec<&'static str> {
-    let mut steps = Vec::new();
-    if !calibrated
-        && causes
-            .iter()
-            .any(|cause| matches!(cause.fault, "Rs" | "Rr"))
-    {
-        steps.push("first heat: is the motor hotter than its motor file says?");
-    }
-    steps.extend(crate::causes::tests(causes));
-    if steps.is_empty() && !causes.is_empty() {
-        steps.push("is it this motor's file? Then look at the residuals and the recording itself");
-    }
-    steps
 }
 
 /// The measurement that would prove or clear one cause; `None` for what is in no table.

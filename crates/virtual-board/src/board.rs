@@ -1,42 +1,16 @@
 //! The whole board: power, time, lamps, button, and faults of the board itself.
 
 use monitor::RawSample;
-use unicorn_engine::uc_error;
 
 use crate::CORE_HZ;
 use crate::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE, UNTOUCHED};
 use crate::elf::Firmware;
+use crate::error::BoardError;
 use crate::gpio::Pin;
 use crate::log::Log;
-use crate::machine::{Cause, Inputs, Machine, Port, Tally};
+use crate::machine::{Inputs, Machine, Port, Tally};
+use crate::rcc::Cause;
 use crate::usart::{Quality, Sent};
-
-/// Why the board cannot go on.
-#[derive(Debug, thiserror::Error)]
-pub enum BoardError {
-    /// The file is not what the board can run.
-    #[error("the firmware file cannot be used: {0}")]
-    Elf(String),
-    /// The emulator refused.
-    #[error("the emulator refuses: {0:?}")]
-    Emulator(uc_error),
-    /// The program did something that this board cannot do.
-    #[error("stopped at pc {pc:#x}, lr {lr:#x}: {what}")]
-    Stopped {
-        /// What it did.
-        what: String,
-        /// Program counter.
-        pc: u32,
-        /// Link register.
-        lr: u32,
-    },
-}
-
-impl From<uc_error> for BoardError {
-    fn from(error: uc_error) -> Self {
-        BoardError::Emulator(error)
-    }
-}
 
 /// Lamps in the order run, r1..r4, sensor, line, load, fault; the table of docs/wiring.md.
 pub const LAMPS: [(&str, Pin); 9] = [

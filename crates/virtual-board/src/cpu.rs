@@ -6,8 +6,8 @@
 use unicorn_engine::{Arch, Mode, Prot, RegisterARM as R, Unicorn, uc_error};
 
 use crate::block::{Block, Conditions};
-use crate::board::BoardError;
 use crate::bus::FACTORY_VALUES;
+use crate::error::BoardError;
 use crate::flash::Step;
 use crate::machine::Machine;
 

@@ -2,7 +2,7 @@
 
 use object::{Object, ObjectSegment, ObjectSymbol};
 
-use crate::board::BoardError;
+use crate::error::BoardError;
 
 /// Loadable bytes by physical address, and symbols.
 pub struct Firmware {

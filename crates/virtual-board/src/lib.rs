@@ -11,6 +11,7 @@ mod bus;
 mod cpu;
 mod dma;
 mod elf;
+mod error;
 mod flash;
 mod gpio;
 mod iwdg;
@@ -23,9 +24,11 @@ mod rtt;
 mod timer;
 mod usart;
 
-pub use board::{BoardError, LAMPS, Snapshot, VirtualBoard};
+pub use board::{LAMPS, Snapshot, VirtualBoard};
+pub use error::BoardError;
 pub use gpio::Pin;
-pub use machine::{Cause, Inputs, Port, Tally};
+pub use machine::{Inputs, Port, Tally};
+pub use rcc::Cause;
 pub use usart::{Quality, Sent};
 
 /// Core cycles per second.

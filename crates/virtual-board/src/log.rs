@@ -2,7 +2,7 @@
 
 use defmt_decoder::Table;
 
-use crate::board::BoardError;
+use crate::error::BoardError;
 
 /// Joins the bytes of the log to lines.
 pub(crate) struct Log {

@@ -11,7 +11,7 @@ use crate::flash::Flash;
 use crate::gpio::Port as Gpio;
 use crate::iwdg::Iwdg;
 use crate::nvic::Nvic;
-use crate::rcc::Rcc;
+use crate::rcc::{Cause, Rcc};
 use crate::registers::{Registers, Unmodelled};
 use crate::timer::Timer;
 use crate::usart::Usart;
@@ -20,29 +20,6 @@ use crate::usart::Usart;
 pub trait Inputs {
     /// Instant `index` after the first one; called with growing indices, some of which may be left out.
     fn at(&mut self, index: u64) -> RawSample;
-}
-
-/// Why the chip was reset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cause {
-    /// Power came: the supply was absent or too low.
-    Power,
-    /// The watchdog.
-    Watchdog,
-    /// The program.
-    Software,
-}
-
-impl Cause {
-    /// Flags in RCC_CSR; the pin is pulled by every internal reset.
-    pub(crate) fn flags(self) -> u32 {
-        1 << 26
-            | match self {
-                Cause::Power => 1 << 27,
-                Cause::Watchdog => 1 << 29,
-                Cause::Software => 1 << 28,
-            }
-    }
 }
 
 /// A serial port, as docs/wiring.md names them.

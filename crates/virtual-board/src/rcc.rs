@@ -1,6 +1,5 @@
 //! Clocks, power and reset flags: oscillators are ready at once, and enables are enforced elsewhere.
 
-use crate::machine::Cause;
 use crate::registers::{Registers, Unmodelled};
 
 const CR: u32 = 0x00;
@@ -8,6 +7,29 @@ const CFGR: u32 = 0x08;
 const BDCR: u32 = 0x90;
 const CSR: u32 = 0x94;
 const CRRCR: u32 = 0x98;
+/// Why the chip was reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// Power came: the supply was absent or too low.
+    Power,
+    /// The watchdog.
+    Watchdog,
+    /// The program.
+    Software,
+}
+
+impl Cause {
+    /// Flags in RCC_CSR; the pin is pulled by every internal reset.
+    pub(crate) fn flags(self) -> u32 {
+        1 << 26
+            | match self {
+                Cause::Power => 1 << 27,
+                Cause::Watchdog => 1 << 29,
+                Cause::Software => 1 << 28,
+            }
+    }
+}
+
 /// Peripheral clock enables.
 pub const AHB1ENR: u32 = 0x48;
 /// See [`AHB1ENR`].

@@ -55,7 +55,10 @@ fn a_noisy_front_end_lights_no_fault() {
             let mut scenario = scenario(1.6);
             scenario.motor.sensors.noise_sigma_fraction_of_full_scale = 0.01;
             let mut seen = watch(&program, &scenario, backwards);
-            check(&mut seen, &format!("{name}, 1 % noise, backwards {backwards}"));
+            check(
+                &mut seen,
+                &format!("{name}, 1 % noise, backwards {backwards}"),
+            );
         }
     }
 }
@@ -68,7 +71,10 @@ fn a_supply_that_sinks_lights_no_fault() {
             let sunk = 0.9 * scenario.motor.nameplate.phase_voltage_amplitude();
             scenario.supply.amplitude_volt.change(1.0, sunk, 3.0);
             let mut seen = watch(&program, &scenario, backwards);
-            check(&mut seen, &format!("{name}, supply -10 % in 3 s, backwards {backwards}"));
+            check(
+                &mut seen,
+                &format!("{name}, supply -10 % in 3 s, backwards {backwards}"),
+            );
         }
     }
 }

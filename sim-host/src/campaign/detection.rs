@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use super::fault::FaultKind;
 use super::file::{About, Results};
+use super::groups::{Named, counted, grouped};
 use super::pair::Sides;
 use super::row::Row;
 use super::statistics::{Share, quantile};
-use super::table::{Named, counted, grouped};
 
 /// A size counts as detected from this share of runs on.
 pub const DETECTED: f64 = 0.99;

@@ -3,8 +3,9 @@
 use std::fmt::{Display, Formatter, Result};
 
 use super::detection::{Detection, Size};
+use super::groups::Named;
 use super::statistics::Share;
-use super::table::{Named, Table};
+use super::table::Table;
 
 /// More alarms than this are left to the JSON.
 const MOST_ALARMS: usize = 20;

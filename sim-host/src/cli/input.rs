@@ -9,7 +9,7 @@ use recording::{Mapping, Source};
 use super::failure::Failure;
 use super::output::DASH;
 use super::progress;
-use super::study::quoted;
+use super::shell::quoted;
 use crate::study::effects_fit;
 
 /// How the columns of the file become channels in SI units. A sidecar `x.toml` beside `x.csv.gz` says the same things.

@@ -212,7 +212,7 @@ impl Watch<'_> {
 
 fn print_lamps(frame: &Frame, lamps: &[Lamp; LAMPS]) {
     let [run, r1, r2, r3, r4, sensor, line, load, fault] =
-        lamps.map(|lamp| super::monitor::symbol(lamp.name()));
+        lamps.map(|lamp| super::lamp_symbol::symbol(lamp.name()));
     // The board samples at 10 kHz.
     let t = frame.sample_index as f64 * 1e-4;
     say!("{t:>10.3}   {run}   {r1}  {r2}  {r3}  {r4}     {sensor}     {line}    {load}    {fault}");

@@ -13,6 +13,7 @@ use super::answers::{self, Answers};
 use super::failure::{Failure, Finding};
 use super::files::Files;
 use super::input::{InputArgs, read_motor};
+use super::lamp_symbol::symbol;
 use super::live::LiveArgs;
 use super::output::OutputArgs;
 use super::terminal::say;
@@ -278,14 +279,6 @@ pub(super) fn print_lamps(timeline: &Timeline) {
     let more = timeline.lamps.len().saturating_sub(LONGEST_TIMELINE);
     if more > 0 {
         say!("  ... and {more} more changes (--json FILE has them all)");
-    }
-}
-
-pub(super) fn symbol(lamp: &str) -> &'static str {
-    match lamp {
-        "on" => "●",
-        "blink" => "◐",
-        _ => "○",
     }
 }
 

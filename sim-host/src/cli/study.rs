@@ -11,6 +11,7 @@ use super::failure::Failure;
 use super::files::Files;
 use super::input::{InputArgs, read_motor};
 use super::output::OutputArgs;
+use super::shell::quoted;
 use super::terminal::say;
 use super::{paint, progress};
 use crate::report::{Style, decimals, significant};
@@ -102,16 +103,6 @@ impl StudyArgs {
         let stem = self.motor.file_stem().unwrap_or_default();
         let name = format!("{}-{addition}.toml", stem.to_string_lossy());
         quoted(&self.motor.with_file_name(name).display().to_string())
-    }
-}
-
-/// A word of a command line, in quotes where a shell needs them.
-pub fn quoted(name: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@\\".contains(c);
-    if name.chars().all(plain) {
-        name.to_owned()
-    } else {
-        format!("\"{name}\"")
     }
 }
 

@@ -62,7 +62,7 @@ pub(super) fn likely(
     calibrated: bool,
 ) -> (Vec<LikelyCause>, Vec<&'static str>) {
     let tied = causes::tied(&candidates);
-    let todo = words::todo(&candidates[..tied], calibrated);
+    let todo = causes::todo(&candidates[..tied], calibrated);
     let told = causes::listed(candidates)
         .into_iter()
         .enumerate()

@@ -13,6 +13,7 @@ mod demo;
 mod explain;
 mod frame;
 mod load_table;
+mod models;
 mod monitor;
 mod number;
 mod overlay;

@@ -3,12 +3,9 @@
 use maud::{Markup, html};
 
 use super::chart::{Chart, Kind, Series};
+use super::models::models;
 use super::place::Place;
 use super::table_overlay;
-
-/// Colours of the models: what was believed stands out, what was found agrees.
-const TWO: [&str; 2] = ["vermillion", "green"];
-const THREE: [&str; 3] = ["vermillion", "purple", "green"];
 
 /// Quantities that the error is shown against: key, axis, unit, what a trend would mean.
 const AGAINST: [(&str, &str, &str, &str); 4] = [
@@ -65,17 +62,6 @@ pub fn section(result: &Place<'_>) -> Markup {
             }
         }
     }
-}
-
-/// Names and colours of the models.
-pub fn models(overlay: &Place<'_>) -> Vec<(String, &'static str)> {
-    let names: Vec<String> = overlay
-        .items("models")
-        .iter()
-        .map(|name| name.as_text().to_owned())
-        .collect();
-    let colours: &[&str] = if names.len() > 2 { &THREE } else { &TWO };
-    names.into_iter().zip(colours.iter().copied()).collect()
 }
 
 fn signal(

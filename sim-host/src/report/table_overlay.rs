@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::chart::{Chart, Kind, Series};
-use super::overlay::models;
+use super::models::models;
 use super::place::Place;
 
 /// Columns: key, what it is, unit.

@@ -2,7 +2,7 @@
 
 use super::SimulationError;
 use super::full::Make;
-use super::plant::EXTRA_STATES;
+use super::presence::{EXTRA_STATES, common_series};
 use super::waveform::Waveform;
 use crate::scenario::{Asymmetry, Fault, Scenario, Target};
 use motor::MotorFile;
@@ -102,16 +102,7 @@ fn broken_symmetry(faults: &[&Fault]) -> Vec<EffectEntry> {
     stator.into_iter().chain(rotor).map(entry).collect()
 }
 
-/// Resistance in series with one phase, `share` of `R_s`, drops `share/3 R_s (i + e^(2j gamma) conj(i))`, gamma being
-/// the axis of the phase. This is the sum of the first terms, a higher `R_s`.
-pub(super) fn common_series(faults: &[&Fault]) -> f64 {
-    let series = faults
-        .iter()
-        .filter(|fault| matches!(fault.target, Target::Asymmetry(Asymmetry::Series(_))));
-    series.map(|fault| fault.share() / 3.0).sum()
-}
-
-/// The second term of [`common_series`].
+/// The second term of [`super::presence::common_series`].
 fn series_in_phase(asymmetry: Asymmetry, share: f64) -> Option<Complex64> {
     let Asymmetry::Series(phase) = asymmetry else {
         return None;

@@ -1,7 +1,6 @@
 //! The five-state motor on the scenario's supply and load.
 
-use super::effects::common_series;
-use super::plant::Presence;
+use super::presence::{Presence, common_series};
 use super::waveform::Waveform;
 use super::{SimulationError, Truth};
 use crate::scenario::{Fault, Parameter, Scenario, Start, Target};

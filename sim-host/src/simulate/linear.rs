@@ -3,7 +3,7 @@
 //! Its q axis lies on the voltage, so that voltage frame and rotor-flux frame are one and the same.
 
 use super::Truth;
-use super::plant::Presence;
+use super::presence::Presence;
 use super::waveform::Waveform;
 use crate::scenario::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::phases;

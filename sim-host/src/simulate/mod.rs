@@ -4,6 +4,7 @@ mod effects;
 mod full;
 mod linear;
 mod plant;
+mod presence;
 mod record;
 mod sensing;
 mod shown;

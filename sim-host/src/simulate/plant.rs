@@ -3,15 +3,13 @@
 use super::effects;
 use super::full::Full;
 use super::linear::Linear;
+use super::presence::EXTRA_STATES;
 use super::{SimulationError, Truth};
 use crate::scenario::{Fault, PlantKind, Scenario};
 use motor::dynamic::{Dynamic, NoEffects};
 use motor::effects::EffectStack;
 use motor::{Mechanics, TParams};
 use std::fmt;
-
-/// As many states as effects may add to one motor.
-pub(super) const EXTRA_STATES: usize = 8;
 
 pub(super) enum Plant {
     Plain(Full<NoEffects>),
@@ -89,30 +87,5 @@ impl Plant {
             Plant::Effects(full) => full.advance(t, t_next),
             Plant::Linear(linear) => linear.advance(t, t_next),
         }
-    }
-}
-
-/// Which faults are present, remembered so that the motor is rebuilt only when that changes.
-#[derive(Debug, Default)]
-pub(super) struct Presence(Option<Vec<bool>>);
-
-impl Presence {
-    /// The faults in force at `t`, when they are others than the last time.
-    pub(super) fn changed_at<'f>(&mut self, faults: &'f [Fault], t: f64) -> Option<Vec<&'f Fault>> {
-        let now = faults.iter().map(|fault| fault.is_active(t));
-        if self
-            .0
-            .iter()
-            .any(|before| now.clone().eq(before.iter().copied()))
-        {
-            return None;
-        }
-        self.0 = Some(now.collect());
-        Some(faults.iter().filter(|fault| fault.is_active(t)).collect())
-    }
-
-    /// As if nothing had ever been present.
-    pub(super) fn forget(&mut self) {
-        self.0 = None;
     }
 }
