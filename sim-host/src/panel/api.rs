@@ -13,7 +13,8 @@ use serde::Deserialize;
 use super::events::Acknowledgement;
 use super::export;
 use super::fields::{Typed, with_typed};
-use super::session::{Refusal, Request, Session, unix_s};
+use super::session::Session;
+use super::shared::{Refusal, Request, unix_s};
 use super::source::SwitchedFault;
 use super::stream::stream;
 

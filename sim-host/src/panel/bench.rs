@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::events::Belief;
 use super::message::{Plate, WindowMessage};
-use super::session::{Broadcast, Shared, locked, unix_s};
+use super::shared::{Broadcast, Shared, locked, unix_s};
 use super::source::{Instant, Item, Reading, Source};
 use super::wave::Wave;
 

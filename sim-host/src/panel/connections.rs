@@ -21,7 +21,7 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Notify;
 use tokio_stream::StreamExt;
 
-use super::session::locked;
+use super::shared::locked;
 
 /// Connections at a time: a page takes one for its stream and a few for its files. Below half of the usual smallest limit
 /// of open files, 128.

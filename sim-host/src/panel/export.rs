@@ -14,7 +14,8 @@ use parquet::record::RecordWriter;
 use recording::{Recording, sidecar_text, write_csv, write_parquet};
 
 use super::history::HistoryRow;
-use super::session::{Session, locked};
+use super::session::Session;
+use super::shared::locked;
 
 /// `windows.csv`, `windows.parquet` or `windows.json`: the last two minutes.
 pub async fn windows(State(session): State<Arc<Session>>, Path(format): Path<String>) -> Response {

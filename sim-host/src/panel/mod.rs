@@ -17,6 +17,7 @@ mod message;
 mod pace;
 mod server;
 mod session;
+mod shared;
 pub mod source;
 mod stream;
 mod wave;

@@ -11,7 +11,8 @@ use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
 use tokio_stream::wrappers::{BroadcastStream, IntervalStream};
 use tokio_stream::{Stream, StreamExt};
 
-use super::session::{Broadcast, Session};
+use super::session::Session;
+use super::shared::Broadcast;
 
 /// Between two signs of life: a page that misses four takes what it shows for stale.
 const ALIVE: Duration = Duration::from_millis(500);

@@ -10,7 +10,7 @@ use motor::MotorFile;
 
 use super::bench::Bench;
 use super::pace::Pace;
-use super::session::{Command, Refusal, Request, Shared, locked};
+use super::shared::{Command, Refusal, Request, Shared, locked};
 use super::source::Source;
 
 /// Between two looks at the clock: a quarter of a window at 50 Hz.

@@ -10,7 +10,8 @@ use tempfile::TempDir;
 use super::motors::{self, Motor, MotorView};
 use super::slot::{Slot, SlotView};
 use super::upload::Budget;
-use crate::panel::session::{Refusal, Session, locked};
+use crate::panel::session::Session;
+use crate::panel::shared::{Refusal, locked};
 
 /// The recording that is fitted, and the one that proves.
 pub(super) const SLOTS: usize = 2;

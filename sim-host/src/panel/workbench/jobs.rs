@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::answer;
 use super::desk::{Bench, Desk, Job, Kind};
 use super::motors::Motor;
-use crate::panel::session::Refusal;
+use crate::panel::shared::Refusal;
 use crate::report::{Subject, fragment};
 use crate::study::{Adopted, Compared, Explained, Inputs};
 

@@ -6,6 +6,7 @@
 mod desk;
 mod jobs;
 mod mapping;
+mod motor_requests;
 mod motors;
 mod recordings;
 mod regions;
@@ -21,7 +22,8 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 
-use super::session::{Refusal, Session};
+use super::session::Session;
+use super::shared::Refusal;
 use desk::Kind;
 
 pub use desk::Bench;
@@ -57,10 +59,10 @@ pub fn router(bench: Arc<Bench>) -> Router {
             "/api/workbench/recordings/{slot}/remove",
             post(recordings::remove),
         )
-        .route("/api/workbench/motor", post(motors::choose))
-        .route("/api/workbench/motor/file", post(motors::file))
-        .route("/api/workbench/motor/undo", post(motors::undo))
-        .route("/api/workbench/motor.toml", get(motors::save))
+        .route("/api/workbench/motor", post(motor_requests::choose))
+        .route("/api/workbench/motor/file", post(motor_requests::file))
+        .route("/api/workbench/motor/undo", post(motor_requests::undo))
+        .route("/api/workbench/motor.toml", get(motor_requests::save))
         .route("/api/workbench/jobs", post(jobs::begin))
         .route("/api/workbench/results/{kind}", get(result))
         .route("/api/workbench/region", get(regions::region))

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use super::desk::Bench;
 use super::refused;
 use crate::overlay::{Model, Overlay};
-use crate::panel::session::Refusal;
+use crate::panel::shared::Refusal;
 use crate::study::in_fitted_scale;
 
 /// From where to where, s.
