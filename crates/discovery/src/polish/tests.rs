@@ -46,6 +46,37 @@ fn the_error_of_a_channel_is_not_turned_into_leakage() {
     assert_eq!(with_nominals(&trial, beside).effects.len(), 0);
 }
 
+/// Voltages and currents off within their class, each channel by itself: the zero sequence of the voltages pins their gains, and
+/// what the currents show beside it is no leakage either.
+#[test]
+fn the_errors_of_current_channels_are_not_turned_into_leakage() {
+    let belief = specimen::belief("");
+    let rec = specimen::recording(4.0, |_| 1.0);
+    let empty = Recording::new("all", rec.t().to_vec(), rec.metadata.clone()).expect("a clock");
+    let gains = [1.003, 0.998, 1.001, 0.997, 1.004, 1.0];
+    let channels: Vec<Channel> = Channel::VOLTAGES
+        .into_iter()
+        .chain(Channel::CURRENTS)
+        .collect();
+    let rec = rec.channels().fold(empty, |to, (channel, x)| {
+        let place = channels.iter().position(|c| *c == channel);
+        let gain = place.map_or(1.0, |k| gains[k]);
+        to.with_channel(channel, x.iter().map(|x| gain * x).collect())
+            .expect("a channel")
+    });
+    let case = Case::new(&rec, &belief.plant.rated).expect("judged");
+    let study = Study::new(belief, case, Vec::new(), None);
+    let trial = study.trial(&study.beliefs(), Effort::FULL);
+    let beside = study.polished(&trial);
+    let covariance = study.covariance(beside);
+    for (at, &k) in beside.fit.free.iter().enumerate() {
+        if k < N_NOMINAL {
+            let off = beside.fit.hypothesis.z[k] / covariance[(at, at)].sqrt();
+            assert!(off.abs() < 3.0, "coordinate {k}: {off:.2} standard errors");
+        }
+    }
+}
+
 #[test]
 fn tables_and_models_with_an_unbalance_are_left_as_they_are() {
     let table = specimen::table_study(|_| ());
