@@ -164,6 +164,13 @@ impl Hypothesis {
         more
     }
 
+    /// The same with an effect that it holds already taken for one of an instrument within its class: what its channels have
+    /// in common is no more uncertain than that.
+    pub fn as_instrument(mut self, effect: usize) -> Self {
+        self.instruments.push(effect);
+        self
+    }
+
     /// Whether a coordinate of the instrument effect of this name is among the beliefs.
     pub fn holds_instrument(&self, name: &str) -> bool {
         let mut names = self.instruments.iter().map(|&k| self.effects[k].effect);

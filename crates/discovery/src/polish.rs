@@ -20,8 +20,9 @@ const INSTRUMENTS: [(&str, &[&str]); 2] = [
     (CURRENTS, &[CURRENTS]),
 ];
 
-/// The trial refitted beside the gains of the channels; `None` where they cannot be fitted: a load table, or a model that
-/// holds an unbalance of voltages and currents already.
+/// The trial refitted beside the gains of the channels; `None` where they cannot be fitted: a load table, or a motor file that
+/// holds an unbalance of voltages and currents already. Gains that were found are held to their class, too: the data tell
+/// how they differ, and nothing tells what all three have in common from the impedances of another motor.
 pub(crate) fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
     let h = &trial.fit.hypothesis;
     let held = h.effects.iter().chain(&study.belief.plant.effects);
@@ -31,13 +32,21 @@ pub(crate) fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
     }
     let rated = &study.belief.plant.rated;
     let mut here = h.clone();
+    let mut any = false;
     for (instrument, same) in INSTRUMENTS {
-        if !names.iter().any(|name| same.contains(name)) {
-            let gains = EffectConfig::absent(find(instrument, "")?, rated);
-            here = here.with_instrument(gains, rated);
-        }
+        let of_name = |c: &EffectConfig| c.effect.descriptor().name == instrument;
+        let found = h.effects.iter().position(of_name);
+        here = match found {
+            Some(found) => here.as_instrument(found),
+            None if names.iter().any(|name| same.contains(name)) => continue,
+            None => {
+                let gains = EffectConfig::absent(find(instrument, "")?, rated);
+                here.with_instrument(gains, rated)
+            }
+        };
+        any = true;
     }
-    if here.effects.len() == h.effects.len() {
+    if !any {
         return None;
     }
     let mut believed = here.clone();
