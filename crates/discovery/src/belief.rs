@@ -166,7 +166,7 @@ impl Hypothesis {
 
     /// The same with an effect that it holds already taken for one of an instrument within its class: what its channels have
     /// in common is no more uncertain than that.
-    pub fn as_instrument(mut self, effect: usize) -> Self {
+    pub fn taken_for_instrument(mut self, effect: usize) -> Self {
         self.instruments.push(effect);
         self
     }

@@ -37,7 +37,7 @@ pub(crate) fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
         let of_name = |c: &EffectConfig| c.effect.descriptor().name == instrument;
         let found = h.effects.iter().position(of_name);
         here = match found {
-            Some(found) => here.as_instrument(found),
+            Some(found) => here.taken_for_instrument(found),
             None if names.iter().any(|name| same.contains(name)) => continue,
             None => {
                 let gains = EffectConfig::absent(find(instrument, "")?, rated);
