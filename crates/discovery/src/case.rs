@@ -5,7 +5,7 @@ use crate::inputs::{InputNoise, Load, measured_speed};
 use crate::signal::{Supply, Windows, denoise, refined, sigma};
 use crate::speed_gain::gain_of;
 use crate::table::{self, Point};
-use crate::unsupported::Unsupported;
+use crate::unsupported::{Unsupported, check_clock, check_size};
 use motor::dynamic::clarke;
 use motor::effects::{Between, Inputs, Plant, Rated, Timeline};
 use num_complex::Complex64;
@@ -406,36 +406,6 @@ fn clip_limit(rec: &Recording, phase: usize, x: &[f64]) -> f64 {
         0.99 * top
     } else {
         f64::INFINITY
-    }
-}
-
-fn check_clock(rec: &Recording) -> Result<(), Unsupported> {
-    let t_sample = rec.t_sample();
-    let uneven = |pair: &[f64]| (pair[1] - pair[0] - t_sample).abs() > 0.01 * t_sample;
-    match rec.t().windows(2).position(uneven) {
-        None => Ok(()),
-        Some(k) => Err(Unsupported::new(
-            format!("the clock is not even at t = {} s", rec.t()[k]),
-            "cut the recording at its gaps, or resample it",
-        )),
-    }
-}
-
-/// No quantity of a motor is as large, in whichever unit; squares and sums stay far from overflow.
-const LARGEST: f64 = 1e12;
-
-fn check_size(rec: &Recording) -> Result<(), Unsupported> {
-    let largest = |x: &[f64]| x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-    let beyond = rec
-        .channels()
-        .map(|(channel, x)| (channel, largest(x)))
-        .find(|(_, largest)| *largest > LARGEST);
-    match beyond {
-        None => Ok(()),
-        Some((channel, largest)) => Err(Unsupported::new(
-            format!("{channel} reaches {largest:.0e}, which no motor does"),
-            "check which column it is and in which unit",
-        )),
     }
 }
 

@@ -4,22 +4,24 @@ use crate::case::Case;
 use crate::specimen;
 use recording::{Channel, Recording};
 
+/// The recording with these channels so many times what they are.
+fn with_gains(rec: &Recording, gains: &[(Channel, f64)]) -> Recording {
+    let empty = Recording::new("gains", rec.t().to_vec(), rec.metadata.clone()).expect("a clock");
+    rec.channels().fold(empty, |to, (channel, x)| {
+        let known = gains.iter().find(|(scaled, _)| *scaled == channel);
+        let gain = known.map_or(1.0, |(_, gain)| *gain);
+        to.with_channel(channel, x.iter().map(|x| gain * x).collect())
+            .expect("a channel")
+    })
+}
+
 /// A constant load whose voltage channel a shows 0.3 % too much, as its class allows: without its gain the leakage takes it over;
 /// beside it the leakage is known as well as it says.
 #[test]
 fn the_error_of_a_channel_is_not_turned_into_leakage() {
     let belief = specimen::belief("");
     let rec = specimen::recording(2.0, |_| 1.0);
-    let empty = Recording::new("va", rec.t().to_vec(), rec.metadata.clone()).expect("a clock");
-    let rec = rec.channels().fold(empty, |to, (channel, x)| {
-        let gain = if channel == Channel::VOLTAGES[0] {
-            1.003
-        } else {
-            1.0
-        };
-        to.with_channel(channel, x.iter().map(|x| gain * x).collect())
-            .expect("a channel")
-    });
+    let rec = with_gains(&rec, &[(Channel::VOLTAGES[0], 1.003)]);
     let case = Case::new(&rec, &belief.plant.rated).expect("judged");
     let study = Study::new(belief, case, Vec::new(), None);
     let trial = study.trial(&study.beliefs(), Effort::FULL);
@@ -52,18 +54,9 @@ fn the_error_of_a_channel_is_not_turned_into_leakage() {
 fn the_errors_of_current_channels_are_not_turned_into_leakage() {
     let belief = specimen::belief("");
     let rec = specimen::recording(4.0, |_| 1.0);
-    let empty = Recording::new("all", rec.t().to_vec(), rec.metadata.clone()).expect("a clock");
     let gains = [1.003, 0.998, 1.001, 0.997, 1.004, 1.0];
-    let channels: Vec<Channel> = Channel::VOLTAGES
-        .into_iter()
-        .chain(Channel::CURRENTS)
-        .collect();
-    let rec = rec.channels().fold(empty, |to, (channel, x)| {
-        let place = channels.iter().position(|c| *c == channel);
-        let gain = place.map_or(1.0, |k| gains[k]);
-        to.with_channel(channel, x.iter().map(|x| gain * x).collect())
-            .expect("a channel")
-    });
+    let channels = Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS);
+    let rec = with_gains(&rec, &channels.zip(gains).collect::<Vec<_>>());
     let case = Case::new(&rec, &belief.plant.rated).expect("judged");
     let study = Study::new(belief, case, Vec::new(), None);
     let trial = study.trial(&study.beliefs(), Effort::FULL);
