@@ -2,13 +2,13 @@
 
 use motor::{Mechanics, TParams};
 
-use crate::convert::Converter;
-use crate::effects::ActiveEffects;
+use crate::input::converter::Converter;
+use crate::input::sample::CHANNELS;
 use crate::isolation::Healthy;
-use crate::operating_point::Frame;
-use crate::residuals::{FieldCurrent, RESIDUALS};
-use crate::sample::CHANNELS;
-use crate::threshold::ComparatorConfig;
+use crate::lamps::threshold::ComparatorConfig;
+use crate::model::effects::ActiveEffects;
+use crate::model::operating_point::Frame;
+use crate::model::residuals::{FieldCurrent, RESIDUALS};
 use crate::window::MAX_WINDOW_CYCLES;
 
 /// What drives the shaft's load, as the motor file declares it.

@@ -5,14 +5,14 @@ use motor::motor_file::{self, HealthySettings, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
 
 use crate::config::{LoadKind, MonitorConfig};
-use crate::convert::{ChannelScale, Converter};
-use crate::effects::{ActiveEffect, ActiveEffects, MAX_EFFECT_PARAMETERS, MAX_EFFECTS};
 use crate::frames::Abc;
+use crate::input::converter::{ChannelScale, Converter};
+use crate::input::sample::CHANNELS;
 use crate::isolation::{Healthy, Uncertainty};
-use crate::operating_point::Frame;
-use crate::residuals::FieldCurrent;
-use crate::sample::CHANNELS;
-use crate::threshold::ComparatorConfig;
+use crate::lamps::threshold::ComparatorConfig;
+use crate::model::effects::{ActiveEffect, ActiveEffects, MAX_EFFECT_PARAMETERS, MAX_EFFECTS};
+use crate::model::operating_point::Frame;
+use crate::model::residuals::FieldCurrent;
 
 /// Quadrature counts per encoder pulse.
 const COUNTS_PER_PULSE: f32 = 4.0;

@@ -4,68 +4,48 @@
 //! One sample's way: [`Converter`] (codes to SI) -> [`SyncConfig`] (angle of the supply) ->
 //! phasors of whole cycles -> once per cycle: residuals -> thresholds -> signature -> lamps.
 
-mod allowance;
-mod block;
-mod calibrated;
-mod codes;
+mod checks;
 mod config;
-mod convert;
-mod effects;
-mod encoder;
 mod frames;
 #[cfg(feature = "motor-file")]
 mod from_motor_file;
-mod health;
-mod intake;
+mod input;
 mod isolation;
 mod lamps;
-mod likely;
+mod model;
 mod monitor;
 mod noise;
-mod operating_point;
-mod panel;
-mod phasor;
 mod rehearsal;
 mod report;
-mod residuals;
-mod rotation;
-mod rotor;
-mod sample;
-mod scatter;
-mod settled;
-mod signature;
-mod supply;
 mod sync;
 #[cfg(test)]
 mod tests;
-mod threshold;
-mod trend;
 mod window;
 
+pub use checks::rotor_bars::{RotorReading, RotorState, Sidebands};
+pub use checks::sensors::{HealthConfig, Phase, SensorFinding};
+pub use checks::supply::{SupplyConfig, SupplyFinding};
 pub use config::{ConfigError, LoadKind, MonitorConfig};
-pub use convert::{ChannelScale, Converter};
-pub use effects::{
-    ActiveEffect, ActiveEffects, Corrected, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, correct,
-};
-pub use encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
-pub use health::{HealthConfig, Phase, SensorFinding};
+pub use input::converter::{ChannelScale, Converter};
+pub use input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
 pub use isolation::{
     ALL_CAUSES, CAUSES, Cause, Evidence, Healthy, Heating, Isolation, ROWS, Row, Uncertainty,
     probabilities,
 };
-pub use lamps::{Lamp, Lamps};
-pub use likely::{Channel, Known, Suspect, Suspicion, TIE_RATIO, Witness, likely};
+pub use lamps::lamp::{Lamp, Lamps};
+pub use lamps::likely_cause::{Channel, Known, Suspect, Suspicion, TIE_RATIO, Witness, likely};
+pub use lamps::signature::{Candidates, FAULTS, Fault, TABLE_1};
+pub use lamps::threshold::{ComparatorConfig, ComparatorState};
+pub use model::effects::{
+    ActiveEffect, ActiveEffects, Corrected, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, correct,
+};
+pub use model::operating_point::{Frame, OperatingPoint};
+pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
-pub use operating_point::{Frame, OperatingPoint};
-pub use phasor::{ChannelCycle, CyclePhasors};
 pub use rehearsal::Rehearsal;
 pub use report::{NotJudged, Report};
-pub use residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
-pub use rotor::{RotorReading, RotorState, Sidebands};
-pub use sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
-pub use signature::{Candidates, FAULTS, Fault, TABLE_1};
-pub use supply::{SupplyConfig, SupplyFinding};
-pub use sync::{SyncConfig, SyncState, SyncTick};
-pub use threshold::{ComparatorConfig, ComparatorState};
+pub use sync::encoder::{EncoderConfig, EncoderState, SpeedReading};
+pub use sync::phasor::{ChannelCycle, CyclePhasors};
+pub use sync::pll::{SyncConfig, SyncState, SyncTick};
 pub use window::{CycleNoise, MAX_WINDOW_CYCLES, RateNoise, Rates, Window};

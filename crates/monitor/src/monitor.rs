@@ -4,29 +4,29 @@ use motor::TParams;
 use motor::effects::Rated;
 use num_complex::Complex32;
 
-use crate::allowance::{Allowance, CycleScatter};
-use crate::codes::{Axes, Codes};
+use crate::checks::rotor_bars::{RotorState, Sidebands};
+use crate::checks::sensors::{HealthConfig, SensorFinding};
+use crate::checks::supply::{SupplyConfig, SupplyFinding};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
-use crate::effects::{Corrected, correct};
-use crate::encoder::{EncoderConfig, EncoderState};
 use crate::frames::magnitude;
-use crate::health::{HealthConfig, SensorFinding};
-use crate::intake::{
+use crate::input::codes::{Axes, Codes};
+use crate::input::sample::{CHANNELS, Sample};
+use crate::input::validity::{
     IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
 };
 use crate::isolation::Temperature;
-use crate::operating_point::{Frame, OperatingPoint};
-use crate::panel::{PanelConfig, PanelState};
-use crate::phasor::{CyclePhasors, PhasorState, Unit};
+use crate::lamps::logic::{PanelConfig, PanelState};
+use crate::model::effects::{Corrected, correct};
+use crate::model::operating_point::{Frame, OperatingPoint};
+use crate::model::residuals::{RESIDUALS, ResidualModel, Residuals};
+use crate::model::settled::settled;
+use crate::noise::allowance::{Allowance, CycleScatter};
+use crate::noise::trend::{frequency_rate_noise, rate_noise};
 use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
-use crate::residuals::{RESIDUALS, ResidualModel, Residuals};
-use crate::rotor::{RotorState, Sidebands};
-use crate::sample::{CHANNELS, Sample};
-use crate::settled::settled;
-use crate::supply::{SupplyConfig, SupplyFinding};
-use crate::sync::{SyncConfig, SyncState, SyncTick};
-use crate::trend::{frequency_rate_noise, rate_noise};
+use crate::sync::encoder::{EncoderConfig, EncoderState};
+use crate::sync::phasor::{CyclePhasors, PhasorState, Unit};
+use crate::sync::pll::{SyncConfig, SyncState, SyncTick};
 use crate::window::{Cycle, CycleNoise, RateNoise, Rates, Window, WindowState};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.

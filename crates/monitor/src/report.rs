@@ -1,13 +1,13 @@
 //! What the monitor says about one window.
 
-use crate::health::SensorFinding;
+use crate::checks::rotor_bars::RotorReading;
+use crate::checks::sensors::SensorFinding;
+use crate::checks::supply::SupplyFinding;
 use crate::isolation::Isolation;
-use crate::lamps::Lamps;
-use crate::operating_point::OperatingPoint;
-use crate::residuals::{RESIDUALS, Residuals};
-use crate::rotor::RotorReading;
-use crate::signature::Candidates;
-use crate::supply::SupplyFinding;
+use crate::lamps::lamp::Lamps;
+use crate::lamps::signature::Candidates;
+use crate::model::operating_point::OperatingPoint;
+use crate::model::residuals::{RESIDUALS, Residuals};
 use crate::window::Window;
 
 /// Why a window was not judged.

@@ -4,12 +4,12 @@ use core::f32::consts::TAU;
 
 use num_complex::Complex32;
 
-use crate::encoder::SpeedReading;
 use crate::frames::{Sequence, magnitude};
-use crate::phasor::{ChannelCycle, CyclePhasors};
-use crate::rotation::arcsine;
-use crate::sample::{CHANNELS, ClippedChannels};
-use crate::trend::Trend;
+use crate::input::sample::{CHANNELS, ClippedChannels};
+use crate::noise::trend::Trend;
+use crate::sync::encoder::SpeedReading;
+use crate::sync::phasor::{ChannelCycle, CyclePhasors};
+use crate::sync::rotation::arcsine;
 
 /// Longest window, in supply cycles.
 pub const MAX_WINDOW_CYCLES: usize = 10;

@@ -75,7 +75,7 @@ const OTHERS: [(&str, &str, &str); 22] = [
     (
         "samples that are not finite",
         "replaced by their predecessors and counted; the window is not judged",
-        "crates/monitor/src/intake.rs::a_bad_number_is_replaced_by_its_predecessor_and_counted",
+        "crates/monitor/src/input/validity.rs::a_bad_number_is_replaced_by_its_predecessor_and_counted",
     ),
     (
         "a damaged frame on the COM port",

@@ -1,7 +1,7 @@
 //! What can be wrong with a calibrated motor, as the evidence tells it apart.
 
-use crate::health::Phase;
-use crate::signature::Fault;
+use crate::checks::sensors::Phase;
+use crate::lamps::signature::Fault;
 
 /// One cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

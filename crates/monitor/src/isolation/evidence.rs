@@ -6,8 +6,8 @@ use super::cause::Cause;
 use super::directions::{Directions, Positive, impedance};
 use super::gauss::Covariance;
 use super::healthy::{Healthy, ROWS, Row};
-use crate::effects::Corrected;
-use crate::health::Phase;
+use crate::checks::sensors::Phase;
+use crate::model::effects::Corrected;
 use crate::window::Window;
 
 /// A vector over the rows of evidence.

@@ -4,6 +4,7 @@
 //! its own ([`directions`]); what calibration left uncertain and the range of winding temperature give its covariance.
 //! A departure that is long in units of that covariance lights FAULT; its direction names the cause.
 
+pub(crate) mod calibrated;
 mod cause;
 mod directions;
 mod evidence;

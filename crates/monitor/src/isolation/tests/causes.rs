@@ -1,7 +1,7 @@
 //! Directions against the changed motor, and causes named from synthetic windows.
 
 use super::plant::{Plant, evidence, index, statistics};
-use crate::health::Phase;
+use crate::checks::sensors::Phase;
 use crate::isolation::{ALL_CAUSES, Cause, Heating, Isolation};
 
 /// The healthy motor with one quantity changed by a share.

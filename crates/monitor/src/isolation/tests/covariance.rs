@@ -5,8 +5,8 @@ use num_complex::Complex32;
 
 use super::plant::{Plant, evidence, monitor, statistics};
 use crate::Evidence;
+use crate::checks::sensors::Phase;
 use crate::frames::Sequence;
-use crate::health::Phase;
 use crate::isolation::{Cause, Healthy, Heating, Isolation, ROWS, Row};
 use crate::window::Window;
 

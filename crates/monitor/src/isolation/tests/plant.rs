@@ -4,11 +4,11 @@ use motor::TParams;
 use motor::steady_state::{OperatingPoint, SteadyState};
 use num_complex::{Complex32, Complex64};
 
+use crate::checks::sensors::Phase;
 use crate::config::MonitorConfig;
 use crate::frames::Sequence;
-use crate::health::Phase;
+use crate::input::sample::CHANNELS;
 use crate::isolation::{Healthy, ROWS, Uncertainty};
-use crate::sample::CHANNELS;
 pub use crate::tests::motor_2200_watt::OMEGA_SYNC;
 use crate::tests::motor_2200_watt::{self, AMPLITUDE, FRICTION, PARAMS};
 use crate::window::Window;

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::plant::{Plant, evidence, statistics};
-use crate::health::Phase;
+use crate::checks::sensors::Phase;
 use crate::isolation::{
     ALL_CAUSES, Cause, Fit, Heating, IMPOSSIBLE, Isolation, ROWS, Warmth, dot, probabilities,
     score_of_anything, significance_of_anything,

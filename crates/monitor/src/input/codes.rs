@@ -3,9 +3,9 @@
 use num_complex::Complex32;
 
 use crate::config::MonitorConfig;
-use crate::intake::reference_scales;
-use crate::phasor::{CodeRange, Unit};
-use crate::sample::CHANNELS;
+use crate::input::sample::CHANNELS;
+use crate::input::validity::reference_scales;
+use crate::sync::phasor::{CodeRange, Unit};
 
 /// Most instants that wait to be summed up.
 const PART: usize = 32;

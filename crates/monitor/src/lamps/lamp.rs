@@ -1,6 +1,6 @@
 //! The lamps on the panel door.
 
-use crate::residuals::RESIDUALS;
+use crate::model::residuals::RESIDUALS;
 
 /// What one lamp shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

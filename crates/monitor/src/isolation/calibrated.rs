@@ -1,16 +1,16 @@
 //! What a calibrated monitor does with a window beyond the residuals: the cause behind it, and the winding's temperature.
 
-use crate::allowance::Allowance;
 use crate::config::LoadKind;
 use crate::frames::magnitude;
 use crate::isolation::{
     Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS, Temperature,
 };
+use crate::model::operating_point::OperatingPoint;
+use crate::model::residuals::{FieldCurrent, ResidualModel, Residuals};
 use crate::monitor::{DERIVATIVE_DOUBT, Monitor, MonitorState};
-use crate::operating_point::OperatingPoint;
+use crate::noise::allowance::Allowance;
 use crate::rehearsal::Rehearsal;
 use crate::report::Report;
-use crate::residuals::{FieldCurrent, ResidualModel, Residuals};
 use crate::window::Window;
 
 impl Monitor {

@@ -1,10 +1,10 @@
 //! What an alarm is likely caused by: the one place where findings about sensors, sidebands of the rotor, the direction
 //! of the evidence, the rows of Table 1 and what is known of the instrument beforehand become probabilities.
 
-use crate::health::{Phase, SensorFinding};
+use crate::checks::sensors::{Phase, SensorFinding};
 use crate::isolation::{ALL_CAUSES, CAUSES, Cause, Isolation};
+use crate::lamps::signature::{Candidates, Fault, TABLE_1};
 use crate::report::Report;
-use crate::signature::{Candidates, Fault, TABLE_1};
 
 /// Causes whose probability is at least the likeliest one's divided by this are tied with it: half a decade is not worth
 /// more than a bare mention (Jeffreys, Theory of Probability, appendix B).

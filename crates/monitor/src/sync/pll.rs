@@ -8,8 +8,8 @@ use core::f32::consts::{PI, TAU};
 
 use num_complex::Complex32;
 
-use crate::intake::{PEAK_DECAY_PER_SECOND, higher};
-use crate::rotation::{renormalise, small_rotation};
+use crate::input::validity::{PEAK_DECAY_PER_SECOND, higher};
+use crate::sync::rotation::{renormalise, small_rotation};
 
 /// Limits and gains of the synchronisation.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! The door of the core: bad numbers are kept out, missing and clipped channels are noted.
 
 use crate::frames::Abc;
-use crate::sample::{ClippedChannels, Sample};
+use crate::input::sample::{ClippedChannels, Sample};
 
 /// Share of a peak that is forgotten per second.
 pub(crate) const PEAK_DECAY_PER_SECOND: f32 = 5.0;

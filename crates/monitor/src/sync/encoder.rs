@@ -6,7 +6,7 @@
 
 use core::f32::consts::TAU;
 
-use crate::sample::SpeedSample;
+use crate::input::sample::SpeedSample;
 
 /// The encoder and what it can plausibly deliver.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,15 +2,15 @@
 
 use motor::steady_state::rotor_flux;
 
-use crate::allowance::{Allowance, FLUX, FOLLOWED, SPEED};
-use crate::effects::Corrected;
 use crate::frames::magnitude;
 use crate::isolation::{Bench, ROWS, rows_of, rows_of_currents};
+use crate::model::effects::Corrected;
+use crate::model::operating_point::OperatingPoint;
+use crate::model::residuals::{FieldCurrent, RESIDUALS, ResidualModel};
 use crate::monitor::{Monitor, MonitorState};
-use crate::operating_point::OperatingPoint;
-use crate::residuals::{FieldCurrent, RESIDUALS, ResidualModel};
-use crate::scatter::Noise;
-use crate::trend::rate_noise;
+use crate::noise::allowance::{Allowance, FLUX, FOLLOWED, SPEED};
+use crate::noise::scatter::Noise;
+use crate::noise::trend::rate_noise;
 use crate::window::Window;
 
 /// Standard deviations that noise may reach: once in 150 000 windows, and a lamp wants three in a row.

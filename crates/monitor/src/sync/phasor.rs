@@ -6,9 +6,9 @@
 
 use num_complex::Complex32;
 
-use crate::rotation::arcsine;
-use crate::sample::CHANNELS;
-use crate::sync::SyncTick;
+use crate::input::sample::CHANNELS;
+use crate::sync::pll::SyncTick;
+use crate::sync::rotation::arcsine;
 
 /// Running sums over one cycle, in V and A or in whatever [`Unit`] says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -4,8 +4,8 @@ use motor::TParams;
 use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 
-use crate::effects::Corrected;
 use crate::frames::{Dq, magnitude};
+use crate::model::effects::Corrected;
 use crate::rehearsal::Rehearsal;
 
 /// Where the d axis lies.

@@ -1,6 +1,6 @@
 //! The fault signature matrix (Table 1) and the probability of each fault (seventh and eighth stage).
 
-use crate::residuals::RESIDUALS;
+use crate::model::residuals::RESIDUALS;
 
 /// The rows of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,12 +4,12 @@
 //! wait for the end of the block (or of the turn) and then keep their place in the processor's registers. Sample by
 //! sample, in blocks of any length: the operations and their order are the same, and so is every bit of the result.
 
-use crate::encoder::EncoderState;
-use crate::intake::IntakeState;
+use crate::input::sample::{CHANNELS, RawBlock, RawSample};
+use crate::input::validity::IntakeState;
 use crate::monitor::{Monitor, MonitorState};
 use crate::report::Report;
-use crate::sample::{CHANNELS, RawBlock, RawSample};
-use crate::sync::{SyncState, SyncTick};
+use crate::sync::encoder::EncoderState;
+use crate::sync::pll::{SyncState, SyncTick};
 
 impl Monitor {
     /// Takes one instant in ADC codes. See [`Monitor::update`] and, for many instants, [`Monitor::update_block`].

@@ -1,8 +1,8 @@
 //! What is followed of the noise of cycles, and what it can do to a window.
 
 use crate::isolation::ROWS;
-use crate::residuals::RESIDUALS;
-use crate::scatter::ScatterState;
+use crate::model::residuals::RESIDUALS;
+use crate::noise::scatter::ScatterState;
 
 /// r1..r4, the rows of evidence, the rotor flux, V s, and the speed, rad/s.
 pub(crate) const FOLLOWED: usize = RESIDUALS + ROWS + 2;

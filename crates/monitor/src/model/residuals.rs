@@ -2,7 +2,7 @@
 
 use motor::Mechanics;
 
-use crate::operating_point::OperatingPoint;
+use crate::model::operating_point::OperatingPoint;
 
 /// How many residuals the lamps show.
 pub const RESIDUALS: usize = 4;

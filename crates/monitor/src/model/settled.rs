@@ -16,8 +16,8 @@ use motor::Mechanics;
 use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 
-use crate::effects::Corrected;
 use crate::frames::magnitude;
+use crate::model::effects::Corrected;
 use crate::window::Rates;
 
 /// The point at rest that a moving one stands for.
@@ -59,8 +59,8 @@ mod tests {
     use num_complex::Complex64;
 
     use super::*;
-    use crate::operating_point::{Frame, OperatingPoint};
-    use crate::residuals::{FieldCurrent, ResidualModel};
+    use crate::model::operating_point::{Frame, OperatingPoint};
+    use crate::model::residuals::{FieldCurrent, ResidualModel};
 
     const PARAMS: TParams<f64> = TParams {
         r_s: 3.7,

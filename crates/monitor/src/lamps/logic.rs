@@ -1,13 +1,13 @@
 //! From findings to lamps: persistence, hysteresis, and what each lamp means.
 
+use crate::checks::supply::SupplyFinding;
 use crate::config::{LoadKind, MonitorConfig};
 use crate::isolation::Isolation;
-use crate::lamps::{Lamp, Lamps};
+use crate::lamps::lamp::{Lamp, Lamps};
+use crate::lamps::signature::Candidates;
+use crate::lamps::threshold::{ComparatorConfig, ComparatorState};
+use crate::model::residuals::RESIDUALS;
 use crate::report::{NotJudged, Report};
-use crate::residuals::RESIDUALS;
-use crate::signature::Candidates;
-use crate::supply::SupplyFinding;
-use crate::threshold::{ComparatorConfig, ComparatorState};
 
 /// How lamps react.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,8 +170,8 @@ fn load_lamp(overload: bool, not_judged: Option<NotJudged>) -> Lamp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::health::SensorFinding;
-    use crate::residuals::Residuals;
+    use crate::checks::sensors::SensorFinding;
+    use crate::model::residuals::Residuals;
     use crate::window::Window;
 
     fn panel(load: LoadKind, significance: Option<f32>) -> PanelConfig {

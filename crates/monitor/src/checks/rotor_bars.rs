@@ -10,7 +10,7 @@ use core::f32::consts::TAU;
 
 use num_complex::Complex32;
 
-use crate::rotation::{renormalise, small_rotation};
+use crate::sync::rotation::{renormalise, small_rotation};
 
 /// Turns of twice the slip angle in one block: load steps and other pulsations cancel the better, the more there are.
 const TURNS: f32 = 4.0;

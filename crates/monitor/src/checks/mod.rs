@@ -1,0 +1,5 @@
+//! What is looked at beside the model: sensors, supply, bars of the rotor.
+
+pub(crate) mod rotor_bars;
+pub(crate) mod sensors;
+pub(crate) mod supply;
