@@ -1,23 +1,23 @@
 //! The three questions a user asks.
 
-use crate::accept::{explained, gained, proven};
-use crate::case::Case;
-use crate::confirm::{best_of, only};
+use crate::data::case::Case;
+use crate::data::question::{Error, Question};
+use crate::data::study::{Study, Trial};
 use crate::explain::{self, Explanation, nominal_name, stands_for};
-use crate::fit::Effort;
-use crate::frame;
-use crate::gram::dot;
-use crate::inconclusive::{self, Uncertainty};
-use crate::polish::with_nominals;
-use crate::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
-use crate::question::{Error, Question};
-use crate::report::FrameReport;
-use crate::report::{
+use crate::fit::normal_equations::dot;
+use crate::fit::output_error::Effort;
+use crate::fit::polish::with_nominals;
+use crate::report::frame;
+use crate::report::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
+use crate::report::types::FrameReport;
+use crate::report::types::{
     AdoptReport, ErrorReport, ExplainReport, RankReport, SpeedScaleReport, StepReport, Unexplained,
     Verdict,
 };
-use crate::study::{Study, Trial};
-use crate::unexplained;
+use crate::report::unexplained;
+use crate::search::accept::{explained, gained, proven};
+use crate::search::inconclusive::{self, Uncertainty};
+use crate::search::refit::{best_of, only};
 use motor::MotorFile;
 use motor::effects::{Descriptor, expression, find, names, to_entry};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
@@ -134,7 +134,7 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
     if let Some(frame) = frame.filter(|f| f.proven) {
         add_frame(&mut report, frame);
     }
-    report.summary = crate::words::summary(&report);
+    report.summary = crate::report::words::summary(&report);
     report
 }
 

@@ -1,17 +1,17 @@
 //! Where the model fails, as the motor file says it, nothing refitted.
 
 use crate::api::{Progress, speed_scale_report};
-use crate::case::Case;
-use crate::channels::N_CHANNELS;
-use crate::fit::Effort;
-use crate::inconclusive;
-use crate::predict::{Teacher, outputs, residual};
-use crate::question::{Error, Question};
-use crate::report::{
+use crate::data::case::Case;
+use crate::data::channels::N_CHANNELS;
+use crate::data::question::{Error, Question};
+use crate::data::study::Study;
+use crate::fit::output_error::Effort;
+use crate::model::prediction::{Teacher, outputs, residual};
+use crate::report::types::{
     BandReport, CompareReport, Inconclusive, OrderReport, Overall, RegionReport, SignalReport,
     SpeedScaleReport,
 };
-use crate::study::Study;
+use crate::search::inconclusive;
 use motor::MotorFile;
 use motor::dynamic::clarke;
 use num_complex::Complex64;
@@ -64,7 +64,7 @@ pub fn compare(
         bands: bands(study, &r),
         orders: orders(case, &r),
         overall: Some(Overall {
-            error_over_noise: study.fold_error(&[crate::gram::dot(&r, &r)]),
+            error_over_noise: study.fold_error(&[crate::fit::normal_equations::dot(&r, &r)]),
         }),
         speed_scale,
         cannot_be_concluded: cannot_be_concluded.unwrap_or_default(),
@@ -107,7 +107,7 @@ fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
 fn error_of(study: &Study, r: &[f64], blocks: &[Numbered]) -> f64 {
     let sse = |rows: &Range<usize>| {
         let part = &r[rows.start * N_CHANNELS..rows.end * N_CHANNELS];
-        crate::gram::dot(part, part)
+        crate::fit::normal_equations::dot(part, part)
     };
     let error: f64 = blocks.iter().map(|(_, rows)| sse(rows)).sum();
     let floor: f64 = blocks

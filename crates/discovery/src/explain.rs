@@ -1,11 +1,11 @@
 //! Which physical effect is missing: step by step, each proven on data that was not fitted.
 
-use crate::accept::{adequate, beats, explained, proven};
-use crate::belief::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
-use crate::confirm::{Candidate, Round, combined, likely, round};
-use crate::fit::Effort;
-use crate::off;
-use crate::study::{Study, Trial};
+use crate::data::study::{Study, Trial};
+use crate::fit::output_error::Effort;
+use crate::model::prior::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
+use crate::search::accept::{adequate, beats, explained, proven};
+use crate::search::off;
+use crate::search::refit::{Candidate, Round, combined, likely, round};
 use motor::effects::Kind;
 
 /// Most effects that are added.
@@ -151,7 +151,7 @@ fn drop_patches(study: &Study, baseline: &Trial, steps: &mut Vec<Step>) {
 }
 
 /// The effects of a trial with the nominals at their beliefs.
-fn at_beliefs(trial: &Trial) -> crate::belief::Hypothesis {
+fn at_beliefs(trial: &Trial) -> crate::model::prior::Hypothesis {
     let mut h = trial.fit.hypothesis.clone();
     for k in (0..N_NOMINAL).filter(|&k| h.free[k]) {
         h.z[k] = 0.0;

@@ -4,55 +4,27 @@
 //! adds one and shows the error fall on held-out data. The first source is fitted, further ones prove; a single
 //! one is proven by interleaved folds of 40 ms blocks. The same input gives the same report, byte for byte.
 
-mod accept;
 mod api;
-mod belief;
-#[cfg(test)]
-mod beliefs_checked;
-mod case;
-mod channels;
-pub mod class;
 mod compare;
-mod confirm;
+mod data;
 mod explain;
 mod fit;
-mod floor;
-mod frame;
-mod free_scale;
-mod gram;
-mod inconclusive;
-mod inputs;
-mod off;
-mod polish;
-mod predict;
-mod present;
-mod proof;
-mod question;
-mod readings;
-#[cfg(test)]
-mod refitted_folds;
+mod model;
 mod report;
-mod screen;
-mod signal;
+mod search;
 #[cfg(test)]
-mod specimen;
-mod speed_gain;
-mod study;
-mod table;
-mod uncertainty;
-mod unexplained;
-mod unsupported;
-mod words;
+mod tests;
 
 pub use api::{Progress, adopt, explain, explain_without};
 pub use compare::compare;
-pub use predict::simulations;
-pub use question::Error;
-pub use report::{
+pub use data::instrument_class;
+pub use data::load_table::table_values;
+pub use data::question::Error;
+pub use data::unsupported::Unsupported;
+pub use model::prediction::simulations;
+pub use report::types::{
     AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,
     FitReport, FrameBand, FrameReport, Inconclusive, NominalReport, OrderReport, Overall,
     ParameterReport, RankReport, RegionReport, SignalReport, SpeedScaleReport, StepReport,
     Unexplained, Verdict,
 };
-pub use table::table_values;
-pub use unsupported::Unsupported;

@@ -4,7 +4,7 @@
 //! A gain that is off by its class is then in the parameters: `s = H^-1 J' W g` for the change `g` of the residuals per
 //! gain. With the covariance of noise and beliefs, the covariance is `H^-1 (J' W J + P S P) H^-1 + sum sigma^2 s s'`.
 
-use discovery::class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
+use discovery::instrument_class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
 use monitor::{MonitorConfig, Window};
 use nalgebra::{DMatrix, DVector, SVector};
 

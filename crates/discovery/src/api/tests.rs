@@ -1,9 +1,9 @@
 use super::*;
-use crate::belief::{FRICTION, MAGNETIZING};
-use crate::confirm::{Candidate, Round, combined};
 use crate::explain::Step;
-use crate::screen::Screened;
-use crate::specimen;
+use crate::model::prior::{FRICTION, MAGNETIZING};
+use crate::search::refit::{Candidate, Round, combined};
+use crate::search::screen::Screened;
+use crate::tests::specimen;
 use motor::effects::Plant;
 use recording::Recording;
 
@@ -200,7 +200,7 @@ fn the_parameters_of_an_unknown_are_those_of_the_baseline() {
     found.nameable = false;
     let report = report(&question, &found, None);
     assert_eq!(report.verdict, Verdict::Unknown);
-    let values = |fit: &Option<crate::report::FitReport>| {
+    let values = |fit: &Option<crate::report::types::FitReport>| {
         let parameters = &fit.as_ref().expect("fitted").parameters;
         parameters.iter().map(|p| p.value).collect::<Vec<f64>>()
     };
@@ -333,7 +333,7 @@ fn a_wrong_frame_comes_before_all_physics() {
     let plain = report(&question, &found, None);
     assert_eq!((plain.verdict, plain.steps.len()), (Verdict::Effect, 1));
     assert!(plain.unexplained.is_none());
-    let off = |fit: &Option<crate::report::FitReport>| {
+    let off = |fit: &Option<crate::report::types::FitReport>| {
         let parameters = &fit.as_ref().expect("fitted").parameters;
         parameters.iter().filter(|p| p.off).count()
     };

@@ -1,5 +1,5 @@
 use super::*;
-use crate::specimen;
+use crate::tests::specimen;
 use motor::effects::{Plant, names};
 use std::collections::BTreeSet;
 

@@ -1,0 +1,207 @@
+//! Smoothing with windows that are as long as the signal allows.
+//!
+//! A local quadratic over a short window keeps the signal and much of the noise; over a long one it loses both. Each
+//! sample gets the longest window, of a series that doubles, over which the signal is a quadratic as far as its noise
+//! can tell. On a constant load the noise of an input is the only thing that moves a model; what is left of it biases
+//! the parameters that damp it (leakage, inertia).
+
+use super::polynomial::{Smoothed, reach, smooth};
+use crate::fit::normal_equations::dot;
+use num_complex::Complex64;
+
+/// Orders of the polynomials that a quadratic leaves over and that are looked for in a window: kinks, steps and up to
+/// three swings.
+const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
+/// Sum of squares of their four coefficients, in variances, above which the window is too long: chance exceeds it in
+/// one window of a hundred (chi-square).
+const LIMIT: f64 = 13.3;
+/// The same for the eight coefficients of a signal of two axes.
+const LIMIT_TWO_AXES: f64 = 20.1;
+
+/// So many limits are no chance, however few windows exceed them: one in a million.
+const FAR: f64 = 2.5;
+
+/// A series of samples and its white noise.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Noisy<'a> {
+    /// Samples; a signal of one axis has no imaginary part.
+    pub x: &'a [Complex64],
+    /// Variance of the noise of each sample, per axis.
+    pub variance: &'a [f64],
+    /// Whether both axes carry noise.
+    pub two_axes: bool,
+}
+
+/// The window of each sample.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Windows {
+    /// 0: the sample itself; `k`: the shortest window times `2^(k - 1)`.
+    level: Vec<u8>,
+    /// Shortest window, samples.
+    shortest: usize,
+}
+
+impl Windows {
+    /// The longest windows over which a series is a quadratic as far as its noise can tell; none is shorter than
+    /// `shortest` samples, except that a sample is left as it is where not even that holds and `may_be_raw`.
+    pub fn longest(series: Noisy<'_>, shortest: usize, may_be_raw: bool) -> Self {
+        let limit = match series.two_axes {
+            true => LIMIT_TWO_AXES,
+            false => LIMIT,
+        };
+        let mut level = vec![u8::from(!may_be_raw); series.x.len()];
+        let mut means = series.x.to_vec();
+        let mut variance = series.variance.to_vec();
+        for number in 1.. {
+            if means.len() < shortest.max(5) && number > 1 {
+                break;
+            }
+            let quadratic = without_chance(&misfits(&means, &variance, shortest), limit, shortest);
+            let mut any = number == 1;
+            for (k, at) in level.iter_mut().enumerate() {
+                let block = (k >> (number - 1)).min(quadratic.len() - 1);
+                if *at + 1 >= number && quadratic[block] {
+                    *at = (*at).max(number);
+                }
+                any |= *at == number;
+            }
+            if !any {
+                break;
+            }
+            means = halved(&means);
+            variance = halved(&variance).iter().map(|v| 0.5 * v).collect();
+        }
+        Self { level, shortest }
+    }
+
+    /// Smooths a series with these windows; the operation is linear.
+    pub fn smooth(&self, x: &[Complex64]) -> Smoothed {
+        let mut out = Smoothed {
+            value: x.to_vec(),
+            slope: vec![Complex64::ZERO; x.len()],
+        };
+        let mut means = x.to_vec();
+        for number in 1..=self.level.iter().copied().max().unwrap_or(0) {
+            let smoothed = smooth(&means, self.shortest);
+            let mine = self.level.iter().enumerate();
+            for (k, _) in mine.filter(|&(_, &level)| level == number) {
+                (out.value[k], out.slope[k]) = between_blocks(&smoothed, k, number - 1);
+            }
+            means = halved(&means);
+        }
+        out
+    }
+
+    /// The same for a signal of one axis.
+    pub fn smooth_real(&self, x: &[f64]) -> Vec<f64> {
+        let x: Vec<_> = x.iter().map(|&x| Complex64::new(x, 0.0)).collect();
+        self.smooth(&x).value.iter().map(|x| x.re).collect()
+    }
+}
+
+/// The longest windows of a signal of one axis with noise of the standard deviation `sigma`.
+pub(crate) fn longest_real(x: &[f64], sigma: f64, shortest: usize, may_be_raw: bool) -> Windows {
+    let complex: Vec<_> = x.iter().map(|&x| Complex64::new(x, 0.0)).collect();
+    let series = Noisy {
+        x: &complex,
+        variance: &vec![sigma * sigma; x.len()],
+        two_axes: false,
+    };
+    Windows::longest(series, shortest, may_be_raw)
+}
+
+/// Means of neighbouring pairs; an odd last one is left out.
+fn halved<T>(x: &[T]) -> Vec<T>
+where
+    T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+{
+    let mean = |pair: &[T]| (pair[0] + pair[1]) * 0.5;
+    x.chunks_exact(2).map(mean).collect()
+}
+
+/// Value and slope (per sample) at sample `k` of a series whose points are means of `2^halvings` samples.
+fn between_blocks(smoothed: &Smoothed, k: usize, halvings: u8) -> (Complex64, Complex64) {
+    let length = f64::from(1u32 << halvings);
+    let last = smoothed.value.len() - 1;
+    // A block stands at the mean position of its samples.
+    let at = (k as f64 - 0.5 * (length - 1.0)) / length;
+    let block = (at.max(0.0) as usize).min(last.saturating_sub(1));
+    let share = at - block as f64;
+    let next = (block + 1).min(last);
+    let line = |x: &[Complex64]| x[block] + (x[next] - x[block]) * share;
+    (line(&smoothed.value), line(&smoothed.slope) / length)
+}
+
+/// How much more than a quadratic the window around each point holds, in variances of the noise.
+fn misfits(x: &[Complex64], variance: &[f64], window: usize) -> Vec<f64> {
+    let Some(reach) = reach(x.len(), window) else {
+        return vec![0.0; x.len()];
+    };
+    let polynomials = left_over(reach.window);
+    let (re, im): (Vec<f64>, Vec<f64>) = x.iter().map(|x| (x.re, x.im)).unzip();
+    let of_window = |first: usize| {
+        let part = first..first + reach.window;
+        let noise = variance[part.clone()].iter().sum::<f64>() / reach.window as f64;
+        let squares = polynomials
+            .iter()
+            .map(|p| dot(p, &re[part.clone()]).powi(2) + dot(p, &im[part.clone()]).powi(2));
+        squares.sum::<f64>() / noise.max(f64::MIN_POSITIVE)
+    };
+    let last = x.len() - reach.window;
+    let mut out = vec![0.0; x.len()];
+    let mut k = 0;
+    while k < x.len() {
+        let end = (k + reach.stride).min(x.len());
+        let middle = (k + end - 1) / 2;
+        let misfit = of_window(middle.saturating_sub(reach.window / 2).min(last));
+        out[k..end].fill(misfit);
+        k = end;
+    }
+    out
+}
+
+/// Where a window holds a quadratic: what bends the signal is seen by the windows around it, so that fewer neighbours than
+/// half a window exceed the limit by chance, unless by far.
+fn without_chance(misfit: &[f64], limit: f64, window: usize) -> Vec<bool> {
+    let half = window / 2;
+    // Nearer to an end than half a window all points share one window.
+    let own = half..misfit.len().saturating_sub(half).max(half + 1);
+    let mut out = vec![true; misfit.len()];
+    let mut k = 0;
+    while k < misfit.len() {
+        let end = (k..misfit.len())
+            .find(|&j| misfit[j] < limit)
+            .unwrap_or(misfit.len());
+        let windows = end.min(own.end).saturating_sub(k.max(own.start));
+        let far = misfit[k..end].iter().any(|&m| m > FAR * limit);
+        if windows > half || far {
+            out[k..end].fill(false);
+        }
+        k = end + 1;
+    }
+    out
+}
+
+/// Orthonormal polynomials of [`ORDERS`] over `n` equally spaced points.
+fn left_over(n: usize) -> Vec<Vec<f64>> {
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    let x = |k: usize| 2.0 * (k as f64 + 0.5) / n as f64 - 1.0;
+    for order in 0..=*ORDERS.end() {
+        let mut p: Vec<f64> = match found.last() {
+            None => vec![1.0; n],
+            Some(last) => last.iter().enumerate().map(|(k, p)| p * x(k)).collect(),
+        };
+        for lower in &found {
+            let along = dot(lower, &p);
+            p.iter_mut().zip(lower).for_each(|(p, l)| *p -= along * l);
+        }
+        let length = dot(&p, &p).sqrt().max(f64::MIN_POSITIVE);
+        p.iter_mut().for_each(|p| *p /= length);
+        debug_assert_eq!(found.len(), order);
+        found.push(p);
+    }
+    found.split_off(*ORDERS.start())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,173 @@
+//! The recordings of one question: the first is fitted, the others prove.
+
+use crate::data::case::Case;
+use crate::data::noise_floor::{Floor, floor};
+use crate::fit::normal_equations;
+use crate::fit::output_error::{Effort, Fit, fit};
+use crate::model::prediction::{Teacher, outputs, residual};
+use crate::model::prior::{Belief, Hypothesis};
+use crate::model::speed_scale::{self, FreeScale};
+use nalgebra::DMatrix;
+use std::sync::OnceLock;
+
+/// Seed of the propagated noise: the same input gives the same bytes.
+const SEED: u64 = 20_220_913;
+
+/// Mean squared difference of two predictions, in units of the floor, that no proof can resolve: a hundredth moves the
+/// error by half a per cent.
+const SILENT: f64 = 0.01;
+
+/// A recording with its noise floor.
+#[derive(Clone, Debug)]
+pub(crate) struct Subject {
+    /// The prepared recording.
+    pub case: Case,
+    /// Its floor.
+    pub floor: Floor,
+}
+
+/// Everything that stays the same while hypotheses come and go.
+#[derive(Clone, Debug)]
+pub(crate) struct Study {
+    /// What the user believes.
+    pub belief: Belief,
+    /// Recording that is fitted.
+    pub fitted: Subject,
+    /// Recordings that prove.
+    pub proofs: Vec<Subject>,
+    /// How the speed channel becomes a speed, where its scale is a free parameter.
+    pub speed_scale: Option<FreeScale>,
+}
+
+/// A hypothesis, fitted and measured on data that was not fitted.
+#[derive(Clone, Debug)]
+pub(crate) struct Trial {
+    /// The fit.
+    pub fit: Fit,
+    /// Held-out squared error of each block of the fitted recording (folds).
+    pub folds: Vec<f64>,
+    /// Squared error of each block of the proving recordings, one after the other.
+    pub proof: Vec<f64>,
+    /// Covariance of the fitted coordinates, once it was asked for.
+    pub covariance: OnceLock<DMatrix<f64>>,
+    /// Nominals that are off, once they were asked for.
+    pub off: OnceLock<Vec<usize>>,
+    /// The same beside the errors of the voltage channels, once it was asked for.
+    pub polished: OnceLock<Option<Box<Trial>>>,
+}
+
+impl Subject {
+    fn new(case: Case, belief: &Belief) -> Self {
+        let floor = floor(&case, &belief.plant, SEED);
+        Self { case, floor }
+    }
+
+    /// Squared error of each block of a hypothesis.
+    pub fn errors(&self, belief: &Belief, h: &Hypothesis) -> Vec<f64> {
+        let r = residual(&self.case, &outputs(&self.case, belief, h, Teacher::Off));
+        let blocks = normal_equations::blocks(&self.case.blocks(), &r, &[]);
+        blocks.iter().map(|b| b.sse).collect()
+    }
+}
+
+impl Study {
+    /// Prepares the floors.
+    pub fn new(
+        belief: Belief,
+        fitted: Case,
+        proofs: Vec<Case>,
+        speed_scale: Option<FreeScale>,
+    ) -> Self {
+        let subject = |case| Subject::new(case, &belief);
+        Self {
+            fitted: subject(fitted),
+            proofs: proofs.into_iter().map(subject).collect(),
+            belief,
+            speed_scale,
+        }
+    }
+
+    /// Nothing added, beliefs as they are; a scale of the speed that nobody knows is free from the start.
+    pub fn beliefs(&self) -> Hypothesis {
+        let beliefs = match self.fitted.case.table {
+            Some(_) => Hypothesis::beliefs_of_table(),
+            None => Hypothesis::beliefs(self.fitted.case.speed_is_input),
+        };
+        match self.speed_scale {
+            Some(_) => speed_scale::free(&beliefs, &self.belief),
+            None => beliefs,
+        }
+    }
+
+    /// Effects that every hypothesis holds: they are no finding.
+    pub fn given_effects(&self) -> usize {
+        usize::from(self.speed_scale.is_some())
+    }
+
+    /// Fits a hypothesis and measures it.
+    pub fn trial(&self, start: &Hypothesis, effort: Effort) -> Trial {
+        self.measured(fit(&self.fitted.case, &self.belief, start, effort))
+    }
+
+    /// Measures a fit on what it has not seen.
+    pub fn measured(&self, fit: Fit) -> Trial {
+        let errors = |s: &Subject| s.errors(&self.belief, &fit.hypothesis);
+        Trial {
+            folds: fit.held_out(),
+            proof: self.proofs.iter().flat_map(errors).collect(),
+            covariance: OnceLock::new(),
+            off: OnceLock::new(),
+            polished: OnceLock::new(),
+            fit,
+        }
+    }
+
+    /// Error over noise by the folds of the fitted recording.
+    pub fn fold_error(&self, sse: &[f64]) -> f64 {
+        let total: f64 = sse.iter().sum();
+        self.fitted
+            .floor
+            .error_over_noise(total, self.fitted.case.judged())
+    }
+
+    /// Error over noise on the proving recordings; by folds if there are none.
+    pub fn proof_error(&self, trial: &Trial) -> f64 {
+        if self.proofs.is_empty() {
+            return self.fold_error(&trial.folds);
+        }
+        let floor = |s: &Subject| s.floor.mean * s.case.judged();
+        let expected: f64 = self.proofs.iter().map(floor).sum();
+        (trial.proof.iter().sum::<f64>() / expected).sqrt()
+    }
+
+    /// Whether the proving recordings cannot tell two trials apart: their predictions there differ by too little.
+    pub fn proof_is_silent(&self, one: &Trial, other: &Trial) -> bool {
+        let difference = |s: &Subject| {
+            let run = |t: &Trial| outputs(&s.case, &self.belief, &t.fit.hypothesis, Teacher::Off);
+            let squares = run(one)
+                .into_iter()
+                .zip(run(other))
+                .map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>() / (s.floor.mean * s.case.judged())
+        };
+        !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
+    }
+
+    /// Share of the floor below which a typical effect cannot be seen in a recording.
+    pub const VISIBLE: f64 = 0.02;
+
+    /// By how much of the floor the error would rise if a signature of this size were missing.
+    pub fn visibility(&self, visible: f64) -> f64 {
+        let expected = self.fitted.floor.mean * self.fitted.case.judged();
+        (1.0 + (visible / expected).max(0.0)).sqrt() - 1.0
+    }
+
+    /// Relative allowance of the gate for the uncertainty of the floor.
+    pub fn allowance(&self) -> f64 {
+        let all = std::iter::once(&self.fitted).chain(&self.proofs);
+        all.map(|s| s.floor.allowance()).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,351 @@
+//! Output-error fit of a hypothesis: Levenberg-Marquardt with priors.
+
+use crate::data::case::Case;
+use crate::fit::normal_equations::{self, Block, Penalty};
+use crate::model::prediction::{Teacher, jacobian, outputs, residual};
+use crate::model::prior::{Belief, Hypothesis, N_NOMINAL};
+use nalgebra::DVector;
+
+/// Limits of the inflation of the nominals' prior weight.
+pub(crate) const KAPPA: [f64; 2] = [30.0, 400.0];
+/// The same for a load table, whose few points cannot be correlated over thousands of samples.
+const KAPPA_TABLE: [f64; 2] = [1.0, 30.0];
+
+/// Iterations after which a hopeless fit may be given up.
+const PATIENCE: usize = 4;
+/// Relative gain of an iteration below which a fit has arrived.
+const ARRIVED: f64 = 3e-5;
+
+/// A fitted hypothesis with everything that proofs need.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    /// The hypothesis at its best coordinates.
+    pub hypothesis: Hypothesis,
+    /// Indices of the fitted coordinates.
+    pub free: Vec<usize>,
+    /// Residual.
+    pub residual: Vec<f64>,
+    /// Columns of the derivative.
+    pub jacobian: Vec<Vec<f64>>,
+    /// Normal equations per block.
+    pub blocks: Vec<Block>,
+    /// Penalty at the best coordinates.
+    pub penalty: Penalty,
+    /// Weighted model outputs.
+    pub outputs: Vec<f64>,
+    /// Inflation of the nominals' prior weight: so many rows count as one.
+    pub kappa: f64,
+    /// Treatment of the speed in this fit.
+    pub teacher: Teacher,
+}
+
+/// How hard to fit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// Most iterations.
+    pub iterations: usize,
+    /// Treatment of the speed.
+    pub teacher: Teacher,
+    /// Give up when after [`PATIENCE`] iterations the squared error still exceeds this.
+    pub abandon_above: f64,
+}
+
+impl Effort {
+    /// A complete fit of a freely running model.
+    pub const FULL: Effort = Effort {
+        iterations: 14,
+        teacher: Teacher::Off,
+        abandon_above: f64::INFINITY,
+    };
+
+    /// Nothing is moved: the start is measured as it is.
+    pub const NONE: Effort = Effort {
+        iterations: 0,
+        ..Effort::FULL
+    };
+}
+
+impl Fit {
+    /// Held-out squared error of each block.
+    pub fn held_out(&self) -> Vec<f64> {
+        normal_equations::held_out(&self.blocks, &self.penalty)
+    }
+
+    /// Squared residual and the pull of the priors: what a fit makes small.
+    pub fn cost(&self) -> f64 {
+        cost(&self.residual, &self.penalty)
+    }
+}
+
+/// Weights of the priors and their pull at the present coordinates.
+fn penalty(belief: &Belief, h: &Hypothesis, free: &[usize], kappa: f64) -> Penalty {
+    let one = |&k: &usize| {
+        let (sd, centre) = h.prior(k, &belief.plant.rated);
+        let factor = if h.is_belief(k) { kappa } else { 1.0 };
+        (factor / (sd * sd), centre - h.z[k])
+    };
+    let (weight, pull): (Vec<_>, Vec<_>) = free.iter().map(one).unzip();
+    Penalty {
+        weight: DVector::from_vec(weight),
+        pull: DVector::from_vec(pull),
+    }
+}
+
+fn cost(r: &[f64], penalty: &Penalty) -> f64 {
+    let prior = penalty
+        .weight
+        .iter()
+        .zip(&penalty.pull)
+        .map(|(w, p)| w * p * p);
+    let sum = normal_equations::dot(r, r) + prior.sum::<f64>();
+    if sum.is_finite() { sum } else { f64::INFINITY }
+}
+
+/// The hypothesis moved by `step` along its free coordinates, inside its bounds.
+fn moved(belief: &Belief, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> Hypothesis {
+    let mut next = h.clone();
+    for (&k, dz) in free.iter().zip(step.iter()) {
+        let [low, high] = h.bounds(k, belief);
+        next.z[k] = (h.z[k] + dz.clamp(-1.5, 1.5)).clamp(low, high);
+    }
+    next
+}
+
+/// Fits the free coordinates of `start` to a case.
+pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effort) -> Fit {
+    let free: Vec<usize> = (0..start.z.len()).filter(|&k| start.free[k]).collect();
+    let rows = case.blocks();
+    let mut h = start.clone();
+    let mut out = outputs(case, belief, &h, effort.teacher);
+    let mut damping = 1e-4;
+    let mut linear = None;
+    let limits = if case.table.is_some() {
+        KAPPA_TABLE
+    } else {
+        KAPPA
+    };
+    let mut kappa = limits[0];
+    for iteration in 0..effort.iterations {
+        let r = residual(case, &out);
+        let sse = normal_equations::dot(&r, &r);
+        let j = jacobian(case, belief, &h, &out, effort.teacher);
+        let blocks = normal_equations::blocks(&rows, &r, &j);
+        let nominals = free.iter().filter(|&&k| k < N_NOMINAL).count();
+        kappa = normal_equations::score_inflation(&blocks, nominals).clamp(limits[0], limits[1]);
+        let here = penalty(belief, &h, &free, kappa);
+        let search = Search {
+            case,
+            belief,
+            free: &free,
+            kappa,
+            teacher: effort.teacher,
+        };
+        let better = search.step(
+            &h,
+            &r,
+            &here,
+            &normal_equations::total(&blocks),
+            &mut damping,
+        );
+        linear = Some((r, j, blocks));
+        let Some((next, next_out, gain)) = better else {
+            break;
+        };
+        (h, out) = (next, next_out);
+        linear = None;
+        let hopeless = iteration >= PATIENCE && sse > effort.abandon_above;
+        if gain < ARRIVED || hopeless {
+            break;
+        }
+    }
+    let (r, j, blocks) = linear.unwrap_or_else(|| {
+        let r = residual(case, &out);
+        let j = jacobian(case, belief, &h, &out, effort.teacher);
+        let blocks = normal_equations::blocks(&rows, &r, &j);
+        (r, j, blocks)
+    });
+    Fit {
+        penalty: penalty(belief, &h, &free, kappa),
+        hypothesis: h,
+        free,
+        residual: r,
+        jacobian: j,
+        blocks,
+        outputs: out,
+        kappa,
+        teacher: effort.teacher,
+    }
+}
+
+/// One damped step of a fit.
+struct Search<'a> {
+    case: &'a Case,
+    belief: &'a Belief,
+    free: &'a [usize],
+    kappa: f64,
+    teacher: Teacher,
+}
+
+impl Search<'_> {
+    /// The damped step; coordinates that it would push out of their bounds stay, the others make up for it.
+    fn inside(
+        &self,
+        h: &Hypothesis,
+        here: &Penalty,
+        normal: &Block,
+        damping: f64,
+    ) -> Option<DVector<f64>> {
+        let mut held = here.clone();
+        let mut step = held.solve(normal, damping)?;
+        for _ in 0..3 {
+            let mut again = false;
+            for (i, &k) in self.free.iter().enumerate() {
+                let [low, high] = h.bounds(k, self.belief);
+                let outward = (h.z[k] <= low && step[i] < 0.0) || (h.z[k] >= high && step[i] > 0.0);
+                if outward {
+                    held.weight[i] = 1e9 * (normal.gram[(i, i)] + here.weight[i] + 1.0);
+                    held.pull[i] = 0.0;
+                    again = true;
+                }
+            }
+            if !again {
+                break;
+            }
+            step = held.solve(normal, damping)?;
+        }
+        Some(step)
+    }
+
+    /// A better hypothesis, its outputs and the relative gain; `None` if there is none nearby.
+    fn step(
+        &self,
+        h: &Hypothesis,
+        r: &[f64],
+        here: &Penalty,
+        normal: &Block,
+        damping: &mut f64,
+    ) -> Option<(Hypothesis, Vec<f64>, f64)> {
+        let before = cost(r, here);
+        for _ in 0..7 {
+            if let Some(step) = self.inside(h, here, normal, *damping) {
+                let next = moved(self.belief, h, self.free, &step);
+                let out = outputs(self.case, self.belief, &next, self.teacher);
+                let there = penalty(self.belief, &next, self.free, self.kappa);
+                let after = cost(&residual(self.case, &out), &there);
+                if after < before {
+                    *damping = (*damping * 0.2).max(1e-7);
+                    return Some((next, out, 1.0 - after / before));
+                }
+            }
+            *damping = (*damping * 8.0).max(1e-5);
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::prior::{FRICTION, MAGNETIZING};
+    use crate::tests::specimen;
+
+    #[test]
+    fn a_table_of_the_believed_machine_moves_nothing() {
+        let study = specimen::table_study(|_| ());
+        let fit = fit(
+            &study.fitted.case,
+            &study.belief,
+            &study.beliefs(),
+            Effort::FULL,
+        );
+        assert!(
+            fit.hypothesis.z.iter().all(|z| z.abs() < 1e-4),
+            "{:?}",
+            fit.hypothesis.z
+        );
+        assert!(normal_equations::dot(&fit.residual, &fit.residual) < 1e-4);
+    }
+
+    /// Parameters that differ by some per cent are found: the table is exact, the priors are wide.
+    #[test]
+    fn a_fit_finds_the_parameters_behind_a_table() {
+        let truth = [0.06, -0.05, 0.04, 0.03];
+        let study = specimen::table_study(|plant| {
+            plant.motor.r_s *= f64::exp(truth[0]);
+            plant.motor.r_r *= f64::exp(truth[1]);
+            plant.motor.l_ls *= f64::exp(truth[2]);
+            plant.motor.l_lr *= f64::exp(truth[2]);
+            plant.motor.l_m *= f64::exp(truth[3]);
+        });
+        let fit = fit(
+            &study.fitted.case,
+            &study.belief,
+            &study.beliefs(),
+            Effort::FULL,
+        );
+        for k in [0, 1, MAGNETIZING] {
+            let z = fit.hypothesis.z[k];
+            assert!((z - truth[k]).abs() < 0.02, "{k}: {z}");
+        }
+        assert_eq!(fit.hypothesis.z[FRICTION], 0.0, "not fitted from a table");
+        assert_eq!(fit.free, [0, 1, 2, 3]);
+        // What is returned belongs together: residual, outputs and columns at the best coordinates.
+        let out = outputs(
+            &study.fitted.case,
+            &study.belief,
+            &fit.hypothesis,
+            Teacher::Off,
+        );
+        assert_eq!(out, fit.outputs);
+        assert_eq!(residual(&study.fitted.case, &out), fit.residual);
+        let variance = crate::fit::uncertainty::covariance(&study, &fit);
+        assert!((0..4).all(|k| variance[(k, k)] > 0.0 && variance[(k, k)] < 0.11));
+        assert_eq!(fit.held_out().len(), 12);
+    }
+
+    /// The optimum of squared error and priors: no gradient is left, `J' r + W p = 0`.
+    #[test]
+    fn the_best_coordinates_have_no_gradient() {
+        let study = specimen::table_study(|plant| plant.motor.l_m *= 1.05);
+        let fit = fit(
+            &study.fitted.case,
+            &study.belief,
+            &study.beliefs(),
+            Effort::FULL,
+        );
+        let all = normal_equations::total(&fit.blocks);
+        let gradient = &all.score + fit.penalty.weight.component_mul(&fit.penalty.pull);
+        for (k, g) in gradient.iter().enumerate() {
+            let scale = (all.gram[(k, k)] + fit.penalty.weight[k]).sqrt();
+            assert!(g.abs() < 0.02 * scale, "{k}: {g} {scale}");
+        }
+    }
+
+    /// Priors: one over the squared deviation, `kappa` times for nominals; the pull leads back to the belief.
+    #[test]
+    fn a_penalty_is_the_prior_seen_from_where_one_is() {
+        let study = specimen::table_study(|_| ());
+        let mut h = study.beliefs();
+        h.z[1] = 0.25;
+        let p = penalty(&study.belief, &h, &[0, 1], 30.0);
+        assert!(
+            (p.weight[0] - 30.0 / 0.01).abs() < 1e-9 && (p.weight[1] - 30.0 / 0.01).abs() < 1e-9
+        );
+        assert_eq!((p.pull[0], p.pull[1]), (0.0, -0.25));
+        let expected = 9.0 + 4.0 + 3000.0 * 0.0625;
+        assert!((cost(&[3.0, -2.0], &p) - expected).abs() < 1e-9);
+        assert_eq!(cost(&[f64::NAN], &p), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_step_is_limited_and_stays_inside_the_bounds() {
+        let study = specimen::table_study(|_| ());
+        let mut h = study.beliefs();
+        h.z[0] = 1.0;
+        let step = DVector::from_column_slice(&[1.2, -9.0]);
+        let next = moved(&study.belief, &h, &[0, 1], &step);
+        // A factor of e^1.6 at most, and 1.5 at a time.
+        assert_eq!((next.z[0], next.z[1]), (1.6, -1.5));
+        assert_eq!(next.z[2..], h.z[2..]);
+    }
+}

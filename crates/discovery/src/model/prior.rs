@@ -1,0 +1,291 @@
+//! What the user believes, and hypotheses about how it is wrong.
+
+use crate::data::instrument_class::CHANNEL_GAIN;
+use motor::effects::{Effect, EffectConfig, Parameter, Plant, Rated, Role, expression, rated};
+use motor::{Mechanics, MotorFile, TParams};
+
+/// Nominal parameters in the order of a hypothesis.
+pub(crate) const NOMINALS: [Nominal; 6] = [
+    Nominal::new("stator_resistance_ohm", "ohm", 0.1),
+    Nominal::new("rotor_resistance_ohm", "ohm", 0.1),
+    Nominal::new("stator_leakage_henry", "H", 0.1),
+    Nominal::new("magnetizing_inductance_henry", "H", 0.1),
+    Nominal::new("inertia_kg_m2", "kg m2", 0.2),
+    Nominal::new("friction_nm_s", "N m s", 10.0),
+];
+/// Number of nominal parameters.
+pub(crate) const N_NOMINAL: usize = NOMINALS.len();
+/// Index of the leakages.
+pub(crate) const LEAKAGE: usize = 2;
+/// Index of the magnetizing inductance.
+pub(crate) const MAGNETIZING: usize = 3;
+/// Index of the viscous friction, the only nominal that is added instead of multiplied.
+pub(crate) const FRICTION: usize = 5;
+/// Effects keep a plain wide prior: so many typical sizes.
+const SIZE_PRIOR: f64 = 4.0;
+/// Prior of a shape: a factor of e.
+const SHAPE_PRIOR: f64 = 1.0;
+
+/// A parameter of the motor file that every hypothesis refits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nominal {
+    /// Key in the motor file.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Prior standard deviation of its coordinate.
+    pub prior: f64,
+}
+
+impl Nominal {
+    const fn new(name: &'static str, unit: &'static str, prior: f64) -> Self {
+        Self { name, unit, prior }
+    }
+}
+
+/// The motor as believed.
+#[derive(Clone, Debug)]
+pub(crate) struct Belief {
+    /// Plant with the effects of the motor file.
+    pub plant: Plant,
+    /// Formulas of the motor file whose parameters are all zero: candidates, not beliefs.
+    pub formulas: Vec<&'static dyn Effect>,
+    /// Friction that takes 1 % of rated torque at synchronous speed, N m s.
+    pub friction_unit: f64,
+}
+
+impl Belief {
+    /// From a motor file and its effects (already validated).
+    pub fn new(file: &MotorFile, effects: Vec<EffectConfig>) -> Self {
+        let rated = rated(file);
+        let open = |e: &EffectConfig| {
+            e.effect.descriptor().name == expression::NAME && e.values.iter().all(|&x| x == 0.0)
+        };
+        let (formulas, effects): (Vec<_>, Vec<_>) = effects.into_iter().partition(open);
+        let plant = Plant {
+            motor: file.parameters,
+            mechanics: file.mechanics,
+            rated,
+            effects,
+        };
+        Self {
+            friction_unit: 0.01 * rated.torque / rated.speed(),
+            formulas: formulas.iter().map(|e| e.effect).collect(),
+            plant,
+        }
+    }
+
+    /// Value of nominal parameter `k` at coordinate `z`, as the motor file writes it.
+    pub fn nominal_value(&self, k: usize, z: f64) -> f64 {
+        let (m, mech) = (&self.plant.motor, &self.plant.mechanics);
+        let believed = [m.r_s, m.r_r, m.l_ls, m.l_m, mech.inertia, mech.friction][k];
+        if k == FRICTION {
+            believed + z * self.friction_unit
+        } else {
+            believed * z.exp()
+        }
+    }
+
+    /// Standard error of that value for a standard error of the coordinate.
+    pub fn nominal_error(&self, k: usize, z: f64, error: f64) -> f64 {
+        if k == FRICTION {
+            error * self.friction_unit
+        } else {
+            error * self.nominal_value(k, z)
+        }
+    }
+}
+
+/// One coordinate of an effect.
+#[derive(Clone, Copy, Debug)]
+struct Coordinate {
+    effect: usize,
+    parameter: usize,
+}
+
+/// Nominals and effects with their fitted coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct Hypothesis {
+    /// Effects beyond those of the motor file; values are start values.
+    pub effects: Vec<EffectConfig>,
+    /// Coordinates: six nominals, then those of the effects.
+    pub z: Vec<f64>,
+    /// Whether a coordinate is fitted.
+    pub free: Vec<bool>,
+    coordinates: Vec<Coordinate>,
+    /// The effects by which instruments may be off within their class: no finding, a nuisance.
+    instruments: Vec<usize>,
+}
+
+impl Hypothesis {
+    /// Beliefs, nothing added; the mechanical nominals are free unless the speed is given.
+    pub fn beliefs(speed_is_input: bool) -> Self {
+        let free = (0..N_NOMINAL).map(|k| k < 4 || !speed_is_input);
+        Self {
+            effects: Vec::new(),
+            z: vec![0.0; N_NOMINAL],
+            free: free.collect(),
+            coordinates: Vec::new(),
+            instruments: Vec::new(),
+        }
+    }
+
+    /// Beliefs for a load table: inertia and friction cannot move. At one speed friction is one number with
+    /// every other constant loss; as a loss it is looked for among the effects.
+    pub fn beliefs_of_table() -> Self {
+        let mut h = Self::beliefs(true);
+        h.free[FRICTION] = false;
+        h
+    }
+
+    /// The same with one more effect, its coordinates at its start values.
+    pub fn with(&self, effect: EffectConfig, rated: &Rated<f64>) -> Self {
+        let mut more = self.clone();
+        let index = more.effects.len();
+        for (k, p) in effect.effect.descriptor().parameters.iter().enumerate() {
+            if p.role == Role::Form {
+                continue;
+            }
+            more.coordinates.push(Coordinate {
+                effect: index,
+                parameter: k,
+            });
+            more.z.push(to_coordinate(p, effect.values[k], rated));
+            more.free.push(true);
+        }
+        more.effects.push(effect);
+        more
+    }
+
+    /// The same with an effect by which an instrument may be off within its class.
+    pub fn with_instrument(&self, effect: EffectConfig, rated: &Rated<f64>) -> Self {
+        let mut more = self.with(effect, rated);
+        more.instruments.push(self.effects.len());
+        more
+    }
+
+    /// The same with an effect that it holds already taken for one of an instrument within its class: what its channels have
+    /// in common is no more uncertain than that.
+    pub fn taken_for_instrument(mut self, effect: usize) -> Self {
+        self.instruments.push(effect);
+        self
+    }
+
+    /// Whether a coordinate of the instrument effect of this name is among the beliefs.
+    pub fn holds_instrument(&self, name: &str) -> bool {
+        let mut names = self.instruments.iter().map(|&k| self.effects[k].effect);
+        names.any(|effect| effect.descriptor().name == name)
+    }
+
+    /// Whether coordinate `k` is a belief: of the motor file about the motor, or of the class about an instrument.
+    pub fn is_belief(&self, k: usize) -> bool {
+        k < N_NOMINAL || self.instruments.contains(&self.effect_of(k))
+    }
+
+    /// Prior standard deviation of a coordinate, and its centre.
+    pub fn prior(&self, k: usize, rated: &Rated<f64>) -> (f64, f64) {
+        if k < N_NOMINAL {
+            return (NOMINALS[k].prior, 0.0);
+        }
+        let p = self.parameter(k);
+        match p.role {
+            Role::Size if self.is_belief(k) => (CHANNEL_GAIN / p.typical, 0.0),
+            Role::Size => (SIZE_PRIOR, 0.0),
+            _ => (
+                SHAPE_PRIOR,
+                to_coordinate(p, p.typical * p.scale.of(rated), rated),
+            ),
+        }
+    }
+
+    /// Step of a numerical derivative.
+    pub fn step(&self, k: usize) -> f64 {
+        match k {
+            FRICTION => 0.1,
+            0..N_NOMINAL => 1e-3,
+            _ if self.parameter(k).role == Role::Size => 0.02,
+            _ => 1e-3,
+        }
+    }
+
+    /// Lowest and highest coordinate.
+    pub fn bounds(&self, k: usize, belief: &Belief) -> [f64; 2] {
+        if k == FRICTION {
+            // Total friction may not drive the shaft.
+            let mech = &belief.plant.mechanics;
+            return [-mech.total_friction() / belief.friction_unit, 1e3];
+        }
+        if k < N_NOMINAL {
+            return [-1.6, 1.6];
+        }
+        let (p, rated) = (self.parameter(k), &belief.plant.rated);
+        p.range
+            .map(|x| to_coordinate(p, x * p.scale.of(rated), rated))
+    }
+
+    /// Descriptor of the parameter behind coordinate `k` (of an effect).
+    pub fn parameter(&self, k: usize) -> &'static Parameter {
+        let c = self.coordinates[k - N_NOMINAL];
+        &self.effects[c.effect].effect.descriptor().parameters[c.parameter]
+    }
+
+    /// Index of the effect to which coordinate `k` belongs.
+    pub fn effect_of(&self, k: usize) -> usize {
+        self.coordinates[k - N_NOMINAL].effect
+    }
+
+    /// Index of the parameter (within its effect) behind coordinate `k`.
+    pub fn parameter_of(&self, k: usize) -> usize {
+        self.coordinates[k - N_NOMINAL].parameter
+    }
+
+    /// The effects with the values of the coordinates.
+    pub fn configs(&self, rated: &Rated<f64>) -> Vec<EffectConfig> {
+        let mut effects = self.effects.clone();
+        for (c, &z) in self.coordinates.iter().zip(&self.z[N_NOMINAL..]) {
+            let config = &mut effects[c.effect];
+            let p = &config.effect.descriptor().parameters[c.parameter];
+            config.values[c.parameter] = from_coordinate(p, z, rated);
+        }
+        effects
+    }
+
+    /// The plant of this hypothesis.
+    pub fn plant(&self, belief: &Belief) -> Plant {
+        let b = &belief.plant;
+        let leakage = self.z[2].exp();
+        let mut effects = b.effects.clone();
+        effects.extend(self.configs(&b.rated));
+        Plant {
+            motor: TParams {
+                r_s: b.motor.r_s * self.z[0].exp(),
+                r_r: b.motor.r_r * self.z[1].exp(),
+                l_ls: b.motor.l_ls * leakage,
+                l_lr: b.motor.l_lr * leakage,
+                l_m: b.motor.l_m * self.z[3].exp(),
+            },
+            mechanics: Mechanics {
+                inertia: b.mechanics.inertia * self.z[4].exp(),
+                friction: b.mechanics.friction + self.z[FRICTION] * belief.friction_unit,
+                ..b.mechanics
+            },
+            rated: b.rated,
+            effects,
+        }
+    }
+}
+
+/// Sizes in typical sizes, shapes as logarithms.
+pub(crate) fn to_coordinate(p: &Parameter, value: f64, rated: &Rated<f64>) -> f64 {
+    match p.role {
+        Role::Size => value / (p.typical * p.scale.of(rated)),
+        Role::Shape | Role::Form => value.ln(),
+    }
+}
+
+fn from_coordinate(p: &Parameter, z: f64, rated: &Rated<f64>) -> f64 {
+    match p.role {
+        Role::Size => z * p.typical * p.scale.of(rated),
+        Role::Shape | Role::Form => z.exp(),
+    }
+}

@@ -1,0 +1,7 @@
+//! The answer: types, words, tables.
+
+pub(crate) mod frame;
+pub(crate) mod present;
+pub(crate) mod types;
+pub(crate) mod unexplained;
+pub(crate) mod words;

@@ -1,0 +1,123 @@
+//! From fits to the numbers of a report.
+
+use crate::data::study::{Study, Trial};
+use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
+use crate::report::types::{FitReport, NominalReport, ParameterReport};
+use motor::effects::{Kind, Role};
+
+/// A move beyond so many prior standard deviations is implausible, ...
+const IMPLAUSIBLE: f64 = 3.0;
+/// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.
+const HOT_COPPER: f64 = 0.41;
+
+/// Standard error of coordinate `k`, zero if it was not fitted.
+pub(crate) fn coordinate_error(
+    trial: &Trial,
+    covariance: &nalgebra::DMatrix<f64>,
+    k: usize,
+) -> f64 {
+    let position = trial.fit.free.iter().position(|&free| free == k);
+    position.map_or(0.0, |p| covariance[(p, p)].max(0.0).sqrt())
+}
+
+/// Names of the nominals that are off so far that no such motor has them.
+pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
+    let z = &study.polished(trial).fit.hypothesis.z;
+    let far = |&k: &usize| {
+        let limit = IMPLAUSIBLE * NOMINALS[k].prior;
+        let warm = if NOMINALS[k].unit == "ohm" {
+            HOT_COPPER
+        } else {
+            0.0
+        };
+        k != FRICTION && !(-limit..limit + warm).contains(&z[k])
+    };
+    let off = study.off(trial).iter().copied();
+    off.filter(far).map(|k| NOMINALS[k].name).collect()
+}
+
+/// Errors and nominal parameters of a trial.
+pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
+    let polished = study.polished(trial);
+    let covariance = study.covariance(polished);
+    let nominal = |k: usize| {
+        let z = polished.fit.hypothesis.z[k];
+        let error = coordinate_error(polished, covariance, k);
+        let change = if k == FRICTION { z } else { 100.0 * z.exp_m1() };
+        NominalReport {
+            name: NOMINALS[k].name.to_owned(),
+            believed: study.belief.nominal_value(k, 0.0),
+            value: study.belief.nominal_value(k, z),
+            std_error: study.belief.nominal_error(k, z, error),
+            unit: NOMINALS[k].unit.to_owned(),
+            off: study.off(trial).contains(&k),
+            change_percent: change,
+        }
+    };
+    FitReport {
+        held_out_error_over_noise: study.proof_error(trial),
+        fold_error_over_noise: study.fold_error(&trial.folds),
+        parameters: (0..N_NOMINAL).map(nominal).collect(),
+    }
+}
+
+/// Parameters of effect `index` of a trial.
+pub(crate) fn effect_parameters(
+    study: &Study,
+    trial: &Trial,
+    index: usize,
+) -> Vec<ParameterReport> {
+    let h = &trial.fit.hypothesis;
+    let covariance = study.covariance(trial);
+    let rated = &study.belief.plant.rated;
+    let config = &h.configs(rated)[index];
+    let descriptor = config.effect.descriptor();
+    let error_of = |parameter: usize| {
+        let mine = |&k: &usize| h.effect_of(k) == index && h.parameter_of(k) == parameter;
+        let Some(k) = (N_NOMINAL..h.z.len()).find(mine) else {
+            return 0.0;
+        };
+        let p = &descriptor.parameters[parameter];
+        let error = coordinate_error(trial, covariance, k);
+        match p.role {
+            Role::Size => error * p.typical * p.scale.of(rated),
+            _ => error * config.values[parameter],
+        }
+    };
+    let parameters = descriptor.parameters.iter().enumerate();
+    parameters
+        .map(|(n, p)| ParameterReport {
+            name: p.name.to_owned(),
+            value: p.to_file(config.values[n]),
+            std_error: p.error_to_file(config.values[n], error_of(n)),
+            unit: p.unit.to_owned(),
+        })
+        .collect()
+}
+
+/// The kind of answer in words.
+pub(crate) fn kind_word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Physics => "physics",
+        Kind::Sensor => "sensor",
+        Kind::Supply => "supply",
+    }
+}
+
+/// Power of a loss at rated voltage and synchronous speed, W; `None` for an effect that is no loss.
+///
+/// Core loss: `1.5 g |u|^2` behind the stator resistance, which is negligible here; torques: `tau w`.
+pub(crate) fn loss_watt(study: &Study, trial: &Trial, index: usize) -> Option<f64> {
+    let rated = &study.belief.plant.rated;
+    let config = &trial.fit.hypothesis.configs(rated)[index];
+    let (size, speed) = (config.values[0], rated.speed());
+    match config.effect.descriptor().name {
+        "core-loss" => Some(1.5 * size * rated.voltage * rated.voltage),
+        "coulomb-friction" => Some(size * speed),
+        "windage" => Some(size * speed.powi(3)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests;

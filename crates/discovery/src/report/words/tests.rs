@@ -1,0 +1,125 @@
+use super::*;
+use crate::report::types::{FitReport, NominalReport, StepReport, Unexplained};
+use recording::Audit;
+
+fn nominal(name: &str, off: bool, change_percent: f64) -> NominalReport {
+    NominalReport {
+        name: name.to_owned(),
+        believed: 1.0,
+        value: 1.0,
+        std_error: 0.1,
+        unit: "ohm".to_owned(),
+        off,
+        change_percent,
+    }
+}
+
+fn step(effect: &str, tied: &[&str], test: &str) -> StepReport {
+    StepReport {
+        effect: effect.to_owned(),
+        form: String::new(),
+        kind: "physics".to_owned(),
+        tied_with: tied.iter().map(ToString::to_string).collect(),
+        separating_test: test.to_owned(),
+        symptom: String::new(),
+        held_out_error_over_noise: 1.0,
+        fold_error_over_noise: 1.0,
+        explained_percent: 100.0,
+        loss_watt: None,
+        parameters: Vec::new(),
+        frame: None,
+    }
+}
+
+fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) -> String {
+    summary(&ExplainReport {
+        audit: Audit {
+            supported: true,
+            findings: Vec::new(),
+            unusable: Vec::new(),
+        },
+        verdict,
+        summary: String::new(),
+        baseline: None,
+        steps: steps.to_vec(),
+        final_: Some(FitReport {
+            held_out_error_over_noise: 1.0,
+            fold_error_over_noise: 1.0,
+            parameters: parameters.to_vec(),
+        }),
+        ranking: Vec::new(),
+        not_testable: Vec::new(),
+        unexplained: (verdict == Verdict::Unknown).then(|| Unexplained {
+            description: "It is loud.".to_owned(),
+            correlates_with: Vec::new(),
+            best_lead: None,
+            best_lead_explains_percent: 0.0,
+        }),
+        speed_scale: None,
+        cannot_be_concluded: Vec::new(),
+    })
+}
+
+const OFF: &str = " Parameters that are off: r +12.3 %, l -7.0 %.";
+
+fn moved() -> [NominalReport; 3] {
+    [
+        nominal("r", true, 12.34),
+        nominal("quiet", false, 3.0),
+        nominal("l", true, -7.0),
+    ]
+}
+
+#[test]
+fn an_adequate_model_is_said_to_explain_with_what_moved() {
+    let plain = "The model explains the recording.";
+    assert_eq!(said(Verdict::Adequate, &[], &[]), plain);
+    assert_eq!(said(Verdict::Adequate, &moved()[1..2], &[]), plain);
+    assert_eq!(
+        said(Verdict::Adequate, &moved(), &[]),
+        format!("{plain}{OFF}")
+    );
+}
+
+#[test]
+fn effects_are_named_in_their_order() {
+    let steps = [step("windage", &[], "x"), step("core-loss", &[], "y")];
+    let plain = "Missing: windage; core-loss.";
+    assert_eq!(said(Verdict::Effect, &[], &steps), plain);
+    assert_eq!(
+        said(Verdict::Effect, &moved(), &steps),
+        format!("{plain}{OFF}")
+    );
+}
+
+/// The test is that of the first step that something ties with.
+#[test]
+fn an_ambiguity_comes_with_the_test_that_ends_it() {
+    let steps = [
+        step("saturation", &[], "not this"),
+        step("windage", &["friction", "core-loss"], "a coast-down"),
+    ];
+    let plain =
+        "Missing: saturation; windage (or friction or core-loss). To separate: a coast-down.";
+    assert_eq!(said(Verdict::Ambiguous, &[], &steps), plain);
+    assert_eq!(
+        said(Verdict::Ambiguous, &moved(), &steps),
+        format!("{plain}{OFF}")
+    );
+}
+
+#[test]
+fn the_other_verdicts_have_a_sentence_each() {
+    assert_eq!(
+        said(Verdict::Implausible, &moved(), &[]),
+        format!("Only parameters that no such motor has explain the recording.{OFF}")
+    );
+    assert_eq!(
+        said(Verdict::Unknown, &[], &[]),
+        "Something is missing that the library does not hold. It is loud."
+    );
+    assert_eq!(
+        said(Verdict::Unsupported, &[], &[]),
+        "The recording cannot be judged."
+    );
+}

@@ -1,0 +1,70 @@
+//! Which parameters of the motor file are off.
+
+use crate::data::study::{Study, Trial};
+use crate::fit::output_error::Effort;
+use crate::model::prior::{FRICTION, MAGNETIZING, N_NOMINAL, NOMINALS};
+use crate::report::present::coordinate_error;
+use crate::search::accept::worse;
+
+/// A parameter is off when it moved by more than so many standard errors ...
+pub(crate) const SIGNIFICANT: f64 = 3.0;
+/// ... and by more than this share ...
+pub(crate) const RELEVANT: f64 = 0.05;
+/// ... or, for friction, by more than this per cent of rated torque, ...
+pub(crate) const RELEVANT_FRICTION: f64 = 2.0;
+/// ... where the recording leaves at most this share of the variance of the belief, ...
+const LEFT_OPEN: f64 = 0.1;
+
+/// Indices of the nominals that are off: moved far, known well, and with the parameter held at its belief and all others
+/// refitted the data that were not fitted are explained significantly worse, or only by stranger parameters.
+pub(crate) fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
+    let free = |k: &usize| trial.fit.free.contains(k);
+    let candidates = (0..N_NOMINAL)
+        .filter(free)
+        .filter(|&k| moved(study, trial, k));
+    let needed = |&k: &usize| {
+        let held = held(study, trial, k);
+        worse(study, &held, trial) || strains(&held) > strains(trial) + SIGNIFICANT.powi(2)
+    };
+    candidates.filter(needed).collect()
+}
+
+/// How far the nominals of a trial are from their beliefs: sum of squares, in prior standard deviations.
+///
+/// One operating point never shows all of them: held at its belief, a parameter can be replaced by others. They do not
+/// explain the recording if they have to leave their beliefs further than the parameter itself.
+fn strains(trial: &Trial) -> f64 {
+    let nominals = trial.fit.hypothesis.z.iter().zip(&NOMINALS);
+    nominals
+        .map(|(z, nominal)| (z / nominal.prior).powi(2))
+        .sum()
+}
+
+/// The trial with one nominal held at its belief and everything else refitted.
+pub(crate) fn held(study: &Study, trial: &Trial, k: usize) -> Trial {
+    let mut frozen = trial.fit.hypothesis.clone();
+    frozen.z[k] = 0.0;
+    frozen.free[k] = false;
+    study.trial(&frozen, Effort::FULL)
+}
+
+/// Whether nominal `k` moved relevantly and significantly, and is known from the recording.
+fn moved(study: &Study, trial: &Trial, k: usize) -> bool {
+    // With saturation the magnetizing inductance is that of rated flux, another number than the believed one.
+    let mut effects = trial.fit.hypothesis.effects.iter();
+    let saturated = effects.any(|e| e.effect.descriptor().name == "magnetizing-saturation");
+    if k == MAGNETIZING && saturated {
+        return false;
+    }
+    let z = trial.fit.hypothesis.z[k];
+    let relevant = match k {
+        FRICTION => z.abs() > RELEVANT_FRICTION,
+        _ => z.exp_m1().abs() > RELEVANT,
+    };
+    let error = coordinate_error(trial, study.covariance(trial), k);
+    let known = error * error < LEFT_OPEN * NOMINALS[k].prior.powi(2);
+    relevant && known && z.abs() > SIGNIFICANT * error
+}
+
+#[cfg(test)]
+mod tests;

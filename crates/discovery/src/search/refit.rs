@@ -1,0 +1,284 @@
+//! Refits the best candidates with free shapes.
+
+use crate::data::case::Case;
+use crate::data::study::{Study, Trial};
+use crate::fit::normal_equations;
+use crate::fit::output_error::{Effort, Fit, fit};
+use crate::model::prediction::Teacher;
+use crate::model::prior::Hypothesis;
+use crate::search::accept::{adequate, explained};
+use crate::search::screen::{Screened, ranked, screen};
+use motor::effects::{expression, names};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Candidates that are refitted.
+const CONFIRMED: usize = 6;
+/// Points of a shape grid from which a refit may start.
+const STARTS: usize = 3;
+/// A candidate that has not improved the squared error by this factor soon is given up.
+const HOPELESS: f64 = 0.97;
+/// Error above which a model is poor: hopeless refits are given up, unlikely ones are tried.
+const POOR: f64 = 1.1;
+/// Error above which a freely running fit may have settled in a wrong valley.
+const WRONG_VALLEY: f64 = 1.5;
+/// Rate at which the observer draws the modelled speed to the measured one, 1/s.
+const OBSERVER: f64 = 200.0;
+/// Screened gain of error below which nothing can pass the proofs.
+const LEAST_GAIN: f64 = 0.005;
+
+/// Share of the excess that the linearised candidate may leave to be likely.
+const LIKELY: f64 = 0.6;
+/// Error below which no further candidates are looked for.
+const SOLVED: f64 = 1.05;
+
+/// Share of the excess that a candidate explains when no better valley is looked for.
+const SETTLED_SHARE: f64 = 0.9;
+
+/// A candidate effect, refitted together with everything else.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    /// Name of the effect.
+    pub name: &'static str,
+    /// Its refit.
+    pub trial: Trial,
+    /// Error over noise: geometric mean of folds and proof.
+    pub error: f64,
+}
+
+/// Result of one round of screening and confirming.
+#[derive(Clone, Debug)]
+pub(crate) struct Round {
+    /// Every effect at its best grid point (linearised), best first.
+    pub screened: Vec<Screened>,
+    /// Refitted candidates, best first.
+    pub candidates: Vec<Candidate>,
+}
+
+impl Round {
+    /// Nothing was asked.
+    pub fn empty() -> Self {
+        Self {
+            screened: Vec::new(),
+            candidates: Vec::new(),
+        }
+    }
+}
+
+/// Where a refit starts: nominals, and the grid points of one effect.
+#[derive(Clone, Debug)]
+struct Start {
+    hypothesis: Hypothesis,
+    group: Vec<Screened>,
+    teacher: Teacher,
+}
+
+/// A short refit, to choose between starts.
+fn short(teacher: Teacher) -> Effort {
+    Effort {
+        iterations: 3,
+        teacher,
+        abandon_above: f64::INFINITY,
+    }
+}
+
+/// Screens all effects on top of `base` and refits the most promising.
+///
+/// `tell` hears which of the two is being done.
+/// `nominal` is the same hypothesis with the nominals at their beliefs, from which a fit that settled in a
+/// wrong valley starts again.
+pub(crate) fn round(
+    study: &Study,
+    base: &Trial,
+    nominal: &Hypothesis,
+    excluded: &[&str],
+    tell: &mut dyn FnMut(&str),
+) -> Round {
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    tell("screening all effects");
+    let groups = ranked(&screen(case, belief, &base.fit, excluded), STARTS);
+    tell("refitting the likeliest");
+    let error = study.fold_error(&base.folds);
+    let (likely, rest) = promising(study, &base.fit, &groups, error);
+    let mut candidates = confirm(study, base, &likely);
+    if !candidates.first().is_some_and(|c| settled(study, base, c)) {
+        if may_be_in_wrong_valley(case, error) {
+            candidates.extend(retaught(study, base, nominal, excluded));
+        }
+        if candidates.iter().all(|c| c.error > SOLVED) {
+            candidates.extend(confirm(study, base, &rest));
+        }
+    }
+    let explains = |c: &Candidate| adequate(study, &c.trial);
+    if !adequate(study, base) && !candidates.iter().any(explains) {
+        candidates.extend(confirm(study, base, &second_chances(&base.fit, &groups)));
+    }
+    Round {
+        candidates: best_of_each(candidates),
+        screened: groups.into_iter().map(|g| g[0].clone()).collect(),
+    }
+}
+
+/// Whether no better valley needs to be looked for.
+fn settled(study: &Study, base: &Trial, c: &Candidate) -> bool {
+    c.error < SOLVED || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < WRONG_VALLEY
+}
+
+/// Whether a fit with this error may have gone astray, and a measured speed can lead it.
+fn may_be_in_wrong_valley(case: &Case, error: f64) -> bool {
+    error > WRONG_VALLEY && !case.speed.is_empty() && !case.speed_is_input
+}
+
+/// Effects whose linear estimate has an impossible sign: from a base in a wrong valley that is no verdict.
+fn second_chances(fit: &Fit, groups: &[Vec<Screened>]) -> Vec<Start> {
+    let impossible =
+        |g: &&Vec<Screened>| !g[0].possible && !g[0].config.effect.descriptor().is_resonance();
+    let start = |group: &Vec<Screened>| Start {
+        hypothesis: fit.hypothesis.clone(),
+        group: group.clone(),
+        teacher: fit.teacher,
+    };
+    groups.iter().filter(impossible).map(start).collect()
+}
+
+/// Screens all effects and refits only those that may explain most of the excess.
+pub(crate) fn likely(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
+    let groups = ranked(
+        &screen(&study.fitted.case, &study.belief, &base.fit, excluded),
+        STARTS,
+    );
+    let (likely, _) = promising(study, &base.fit, &groups, study.fold_error(&base.folds));
+    Round {
+        candidates: confirm(study, base, &likely),
+        screened: groups.into_iter().map(|g| g[0].clone()).collect(),
+    }
+}
+
+/// Starts again from the beliefs with the speed drawn to the measured one.
+fn retaught(
+    study: &Study,
+    base: &Trial,
+    nominal: &Hypothesis,
+    excluded: &[&str],
+) -> Vec<Candidate> {
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    let taught = fit(case, belief, nominal, short(Teacher::On(OBSERVER)));
+    let groups = ranked(&screen(case, belief, &taught, excluded), STARTS);
+    let (likely, rest) = promising(study, &taught, &groups, f64::INFINITY);
+    let mut candidates = confirm(study, base, &likely);
+    if candidates.first().is_none_or(|c| c.error > SOLVED) {
+        candidates.extend(confirm(study, base, &rest));
+    }
+    candidates
+}
+
+/// The first few groups that can still matter: the likely ones and the rest.
+fn promising(
+    study: &Study,
+    fit: &Fit,
+    groups: &[Vec<Screened>],
+    error: f64,
+) -> (Vec<Start>, Vec<Start>) {
+    let start = |group: &Vec<Screened>| Start {
+        hypothesis: fit.hypothesis.clone(),
+        group: group.clone(),
+        teacher: fit.teacher,
+    };
+    let screened = |s: &Start| study.fold_error(&s.group[0].held_out);
+    // Shapes move during a refit: a bad model may gain more than its secant promises.
+    let matters = |s: &Start| error > POOR || screened(s) < (1.0 - LEAST_GAIN) * error;
+    let starts = groups.iter().map(start).filter(matters).take(CONFIRMED);
+    let own = study.fold_error(&[normal_equations::dot(&fit.residual, &fit.residual)]);
+    let limit = 1.0 + LIKELY * (own * own - 1.0).max(0.0);
+    let (mut likely, mut rest) = (Vec::new(), Vec::new());
+    for s in starts {
+        if likely.is_empty() || screened(&s).powi(2) < limit {
+            likely.push(s);
+        } else {
+            rest.push(s);
+        }
+    }
+    (likely, rest)
+}
+
+fn confirm(study: &Study, base: &Trial, starts: &[Start]) -> Vec<Candidate> {
+    let one = |start: &Start| candidate(study, base, start);
+    best_of_each(starts.par_iter().map(one).collect())
+}
+
+/// Several forms and starts of one effect are one answer: the best speaks for it.
+fn best_of_each(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+    candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
+    let mut seen = BTreeSet::new();
+    candidates.retain(|c| seen.insert(c.name));
+    candidates
+}
+
+fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
+    let rated = &study.belief.plant.rated;
+    let at = |s: &Screened| start.hypothesis.with(s.config.clone(), rated);
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    let tried = |s: &Screened| fit(case, belief, &at(s), short(start.teacher));
+    let sse = |f: &Fit| normal_equations::dot(&f.residual, &f.residual);
+    let resonance = start.group[0].config.effect.descriptor().is_resonance();
+    let best = if !resonance && start.teacher == Teacher::Off {
+        at(&start.group[0])
+    } else {
+        let tries = if resonance { start.group.len() } else { 1 };
+        let fits = start.group[..tries].iter().map(tried);
+        let best = fits.min_by(|a, b| sse(a).total_cmp(&sse(b)));
+        best.map_or_else(|| at(&start.group[0]), |f| f.hypothesis)
+    };
+    // On top of a model that already fits nothing improves the error by much: every refit is finished.
+    let poor = study.fold_error(&base.folds) > POOR;
+    let limit = HOPELESS * normal_equations::dot(&base.fit.residual, &base.fit.residual);
+    let effort = Effort {
+        abandon_above: if poor { limit } else { f64::INFINITY },
+        ..Effort::FULL
+    };
+    let trial = study.trial(&best, effort);
+    Candidate {
+        name: start.group[0].config.effect.descriptor().name,
+        error: combined(study, &trial),
+        trial,
+    }
+}
+
+/// Refits one effect, every form of it, from the present nominals and from the beliefs.
+pub(crate) fn only(study: &Study, base: &Trial, effect: &str) -> Vec<Candidate> {
+    let (case, belief) = (&study.fitted.case, &study.belief);
+    let all = names().into_iter().chain([expression::NAME]);
+    let others: Vec<&str> = all.filter(|n| *n != effect).collect();
+    let start = |fit: &Fit| {
+        let groups = ranked(&screen(case, belief, fit, &others), STARTS);
+        let one = |group: Vec<Screened>| Start {
+            hypothesis: fit.hypothesis.clone(),
+            group,
+            teacher: fit.teacher,
+        };
+        groups.into_iter().map(one).collect::<Vec<_>>()
+    };
+    let mut starts = start(&base.fit);
+    if may_be_in_wrong_valley(case, study.fold_error(&base.folds)) {
+        starts.extend(start(&fit(
+            case,
+            belief,
+            &study.beliefs(),
+            short(Teacher::On(OBSERVER)),
+        )));
+    }
+    confirm(study, base, &starts)
+}
+
+/// The trial of the best candidate.
+pub(crate) fn best_of(candidates: Vec<Candidate>) -> Option<Trial> {
+    candidates.into_iter().next().map(|c| c.trial)
+}
+
+/// Geometric mean of the error by folds and by proof.
+pub(crate) fn combined(study: &Study, trial: &Trial) -> f64 {
+    (study.fold_error(&trial.folds) * study.proof_error(trial)).sqrt()
+}
+
+#[cfg(test)]
+mod tests;
