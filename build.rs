@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use board::MotorImage;
 use monitor::{MAX_EFFECTS, Monitor, MonitorConfig};
-use motor::effects::{self, SteadyEffect};
+use motor::effect::SteadyEffect;
 use motor::motor_file::MotorFile;
+use motor::{effect, effects};
 
 /// The motor file that is compiled in unless the environment names another.
 const DEFAULT_MOTOR: &str = "motors/assumed-300w.toml";
@@ -70,7 +71,7 @@ fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
 
 /// Only the motor file's own effects become part of the program.
 fn effect_terms(file: &MotorFile) -> Result<String, Box<dyn Error>> {
-    let configs = effects::from_motor_file(file, &file.name)?;
+    let configs = effect::from_motor_file(file, &file.name)?;
     if configs.len() > MAX_EFFECTS {
         return Err(format!(
             "effects: {} of them, but at most {MAX_EFFECTS} fit",

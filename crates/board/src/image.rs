@@ -6,7 +6,8 @@ use monitor::{
     FieldCurrent, Frame, Healthy, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MonitorConfig,
     ROWS, Uncertainty,
 };
-use motor::effects::{STEADY, SteadyEffect};
+use motor::effect::SteadyEffect;
+use motor::effects::STEADY;
 use motor::{Mechanics, TParams};
 
 use crate::checksum::crc32_words;

@@ -19,7 +19,8 @@ use crate::search::accept::{explained, gained, proven};
 use crate::search::inconclusive::{self, Uncertainty};
 use crate::search::refit::{best_of, only};
 use motor::MotorFile;
-use motor::effects::{Descriptor, expression, find, names, to_entry};
+use motor::effect::{Descriptor, expression, to_entry};
+use motor::effects::{find, names};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
 use recording::Source;
 

@@ -6,7 +6,7 @@ use crate::model::prior::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::search::accept::{adequate, beats, explained, proven};
 use crate::search::off;
 use crate::search::refit::{Candidate, Round, combined, likely, round};
-use motor::effects::Kind;
+use motor::effect::Kind;
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;

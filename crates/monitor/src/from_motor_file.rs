@@ -1,6 +1,7 @@
 //! The monitor's configuration from a motor file (feature `motor-file`; hosts and build scripts only).
 
-use motor::effects::{self, EffectConfig, SteadyEffect};
+use motor::effect;
+use motor::effect::{EffectConfig, SteadyEffect};
 use motor::motor_file::{self, HealthySettings, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
 
@@ -75,9 +76,9 @@ pub fn single_mechanics(m: &Mechanics<f64>) -> Mechanics<f32> {
     }
 }
 
-/// The motor file's effects; whoever reads the file checks them with [`effects::from_motor_file`] and their number.
+/// The motor file's effects; whoever reads the file checks them with [`effect::from_motor_file`] and their number.
 fn effects_of(file: &MotorFile) -> impl Iterator<Item = EffectConfig> {
-    let configs = effects::from_motor_file(file, &file.name);
+    let configs = effect::from_motor_file(file, &file.name);
     configs.unwrap_or_default().into_iter()
 }
 

@@ -1,7 +1,7 @@
 //! The monitor: one sample in, one report per supply cycle out.
 
 use motor::TParams;
-use motor::effects::Rated;
+use motor::effect::Rated;
 use num_complex::Complex32;
 
 use crate::checks::rotor_bars::{RotorState, Sidebands};

@@ -8,6 +8,7 @@ pub mod connection;
 pub mod document;
 #[cfg(feature = "std")]
 pub mod dynamic;
+pub mod effect;
 pub mod effects;
 #[cfg(feature = "std")]
 pub mod linear_plant;

@@ -1,9 +1,10 @@
 //! Every effect of the library: consistent with itself, absent at zero, the same in dynamics and steady state.
 
-use motor::effects::{
-    ALL, At, Between, EffectConfig, EffectError, Inputs, MAX_PARAMETERS, Outputs, Plant, Rated,
-    Role, Run, SpeedSource, SteadyPoint, Timeline, simulate,
+use motor::effect::{
+    At, Between, EffectConfig, EffectError, Inputs, MAX_PARAMETERS, Outputs, Plant, Rated, Role,
+    Run, SpeedSource, SteadyPoint, Timeline, simulate,
 };
+use motor::effects::ALL;
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
 use std::collections::BTreeSet;
@@ -346,8 +347,8 @@ fn slip_is_one_at_standstill() {
 #[cfg(feature = "file")]
 mod formulas {
     use super::{difference, inputs, outputs, plant};
-    use motor::effects::expression::expression;
-    use motor::effects::{Between, EffectConfig, Plant};
+    use motor::effect::expression::expression;
+    use motor::effect::{Between, EffectConfig, Plant};
 
     fn numbers(list: &[(&str, f64)]) -> Vec<(String, f64)> {
         list.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect()

@@ -2,7 +2,7 @@
 //! process of its own, because the room is one for all.
 #![cfg(feature = "file")]
 
-use motor::effects::expression::expression;
+use motor::effect::expression::expression;
 
 fn read(formula: &str, k: f64) -> Result<(), String> {
     let numbers = [("k".to_owned(), k), ("k_typical".to_owned(), 1e-3)];

@@ -5,7 +5,7 @@ use std::process::{Command, ExitStatus};
 
 use clap::Args;
 use monitor::{Monitor, MonitorConfig};
-use motor::effects;
+use motor::{effect, effects};
 
 use super::failure::{Failure, Finding};
 use super::input::read_motor;
@@ -80,7 +80,7 @@ impl Flash {
             file: file.clone(),
             error,
         })?;
-        for effect in effects::from_motor_file(&motor, &file)? {
+        for effect in effect::from_motor_file(&motor, &file)? {
             let descriptor = effect.effect.descriptor();
             if !effects::STEADY
                 .iter()

@@ -4,9 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use motor::dynamic::clarke;
-use motor::effects::{
-    Between, Inputs, Outputs, Plant, Rated, Run, SpeedSource, Timeline, simulate,
-};
+use motor::effect::{Between, Inputs, Outputs, Plant, Rated, Run, SpeedSource, Timeline, simulate};
 use num_complex::Complex64;
 use recording::{LoadTorque, Recording, StartsFrom, VoltageKind};
 

@@ -10,7 +10,7 @@ mod table;
 pub use model::Model;
 pub use table::{Quantities, TableOverlay, TablePoint};
 
-use motor::effects::Outputs;
+use motor::effect::Outputs;
 use recording::{Recording, Source};
 use serde::Serialize;
 

@@ -2,7 +2,7 @@
 
 use discovery::{ExplainReport, FitReport};
 use motor::MotorFile;
-use motor::effects::{Plant, from_motor_file, rated};
+use motor::effect::{Plant, from_motor_file, rated};
 use motor::motor_file::{EffectEntry, EffectParameter, EffectValue};
 
 /// A motor with its effects, and what people call it.

@@ -7,7 +7,7 @@ use super::waveform::Waveform;
 use crate::scenario::{Asymmetry, Fault, Scenario, Target};
 use motor::MotorFile;
 use motor::dynamic::Dynamic;
-use motor::effects::{EffectConfig, EffectStack, Hook, Timeline, extra_states, from_entry, rated};
+use motor::effect::{EffectConfig, EffectStack, Hook, Timeline, extra_states, from_entry, rated};
 use motor::motor_file::EffectEntry;
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -7,7 +7,7 @@ use super::presence::EXTRA_STATES;
 use super::{SimulationError, Truth};
 use crate::scenario::{Fault, PlantKind, Scenario};
 use motor::dynamic::{Dynamic, NoEffects};
-use motor::effects::EffectStack;
+use motor::effect::EffectStack;
 use motor::{Mechanics, TParams};
 use std::fmt;
 

@@ -4,7 +4,7 @@ use super::sensing::Instruments;
 use super::{SimSample, SimulationError, Truth};
 use crate::scenario::{Scenario, SpeedSensor};
 use motor::dynamic::{clarke, phases};
-use motor::effects::{EffectConfig, Hook, Inputs, Outputs, Rated, rated};
+use motor::effect::{EffectConfig, Hook, Inputs, Outputs, Rated, rated};
 use num_complex::Complex64;
 
 /// An effect turns what was shown into what was true; the other way around takes a few rounds, a gain error of 10 % one for

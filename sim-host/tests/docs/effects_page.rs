@@ -30,7 +30,7 @@ file writes it; every size may be 0 (or 1 for a gain), which means absent, up to
 
 fn effects_page() -> String {
     let motor = motor::MotorFile::read(root().join("motors/peer-2k2.toml")).expect("shipped");
-    let rated = motor::effects::rated(&motor);
+    let rated = motor::effect::rated(&motor);
     let mut page = EFFECTS_INTRODUCTION.to_owned();
     for effect in motor::effects::ALL {
         let known = effect.descriptor();
@@ -63,11 +63,11 @@ fn effects_page() -> String {
             );
         }
         page += match known.applies {
-            motor::effects::Applies::Inverter => "\nBehind a frequency converter only.\n",
-            motor::effects::Applies::Samples => {
+            motor::effect::Applies::Inverter => "\nBehind a frequency converter only.\n",
+            motor::effect::Applies::Samples => {
                 "\nShows in samples over time only, not in a load-test table.\n"
             }
-            motor::effects::Applies::Always => "",
+            motor::effect::Applies::Always => "",
         };
     }
     page

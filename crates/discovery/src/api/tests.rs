@@ -4,7 +4,7 @@ use crate::model::prior::{FRICTION, MAGNETIZING};
 use crate::search::refit::{Candidate, Round, combined};
 use crate::search::screen::Screened;
 use crate::tests::specimen;
-use motor::effects::Plant;
+use motor::effect::Plant;
 use recording::Recording;
 
 mod adopted;

@@ -7,7 +7,7 @@ use crate::data::signal::{Supply, Windows, denoise, refined, sigma};
 use crate::data::unsupported::{Unsupported, check_clock, check_size};
 use crate::model::speed_gain::gain_of;
 use motor::dynamic::clarke;
-use motor::effects::{Between, Inputs, Plant, Rated, Timeline};
+use motor::effect::{Between, Inputs, Plant, Rated, Timeline};
 use num_complex::Complex64;
 use recording::{Channel, LoadTable, Recording, StartsFrom, Supply as SupplyKind, VoltageKind};
 use std::borrow::Cow;

@@ -2,7 +2,7 @@
 
 use crate::data::channels::N_CHANNELS;
 use crate::data::unsupported::Unsupported;
-use motor::effects::{EffectConfig, Plant, Rated, SteadyPoint};
+use motor::effect::{EffectConfig, Plant, Rated, SteadyPoint};
 use num_complex::Complex64;
 use recording::{LoadPoint, LoadTable};
 

@@ -5,7 +5,7 @@ use crate::data::channels::N_CHANNELS;
 use crate::data::signal::refined;
 use crate::fit::normal_equations::dot;
 use crate::model::prediction::{Drive, outputs_on};
-use motor::effects::Plant;
+use motor::effect::Plant;
 use num_complex::Complex64;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

@@ -7,7 +7,7 @@ use crate::model::prior::Belief;
 use crate::model::speed_gain::EFFECT;
 use crate::model::speed_scale::FreeScale;
 use motor::MotorFile;
-use motor::effects::{Rated, from_motor_file};
+use motor::effect::{Rated, from_motor_file};
 use recording::{Audit, Expectation, LoadTorque, Recording, Source, audit, with_sound_probes};
 use std::fmt;
 

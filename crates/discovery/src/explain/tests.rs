@@ -1,6 +1,7 @@
 use super::*;
 use crate::tests::specimen;
-use motor::effects::{Plant, names};
+use motor::effect::Plant;
+use motor::effects::names;
 use std::collections::BTreeSet;
 
 fn candidate(study: &Study, name: &'static str, size: f64, error: f64) -> Candidate {

@@ -8,7 +8,8 @@
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
 use crate::model::prior::N_NOMINAL;
-use motor::effects::{EffectConfig, find};
+use motor::effect::EffectConfig;
+use motor::effects::find;
 
 /// The effect that holds the gains of the voltage channels ...
 pub(crate) const VOLTAGES: &str = "phase-voltage-gain";

@@ -15,7 +15,7 @@ use crate::fit::output_error::Fit;
 use crate::fit::polish::{CURRENTS, VOLTAGES};
 use crate::model::prediction::{Drive, outputs_on};
 use crate::model::prior::N_NOMINAL;
-use motor::effects::Plant;
+use motor::effect::Plant;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 

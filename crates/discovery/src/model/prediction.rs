@@ -4,7 +4,7 @@ use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
 use crate::data::load_table::{self, Point};
 use crate::model::prior::{Belief, Hypothesis};
-use motor::effects::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
+use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
 use motor::steady_state::SteadyState;
 use num_complex::Complex64;
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! What the user believes, and hypotheses about how it is wrong.
 
 use crate::data::instrument_class::CHANNEL_GAIN;
-use motor::effects::{Effect, EffectConfig, Parameter, Plant, Rated, Role, expression, rated};
+use motor::effect::{Effect, EffectConfig, Parameter, Plant, Rated, Role, expression, rated};
 use motor::{Mechanics, MotorFile, TParams};
 
 /// Nominal parameters in the order of a hypothesis.

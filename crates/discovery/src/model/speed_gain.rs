@@ -1,6 +1,6 @@
 //! The free scale of a speed channel, as an effect.
 
-use motor::effects::EffectConfig;
+use motor::effect::EffectConfig;
 
 /// The effect that holds what the starting value leaves open.
 pub(crate) const EFFECT: &str = "speed-scale";

@@ -14,7 +14,8 @@ use crate::model::prior::{Belief, Hypothesis, N_NOMINAL};
 use crate::model::speed_gain::{EFFECT, gain_of};
 use crate::report::types::{AtRest, ErrorSource, SpeedScaleReport};
 use motor::dynamic::clarke;
-use motor::effects::{EffectConfig, Rated, find};
+use motor::effect::{EffectConfig, Rated};
+use motor::effects::find;
 use recording::{Recording, StartsFrom, UnknownScale};
 use std::ops::Range;
 

@@ -3,7 +3,7 @@
 use crate::data::study::{Study, Trial};
 use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
 use crate::report::types::{FitReport, NominalReport, ParameterReport};
-use motor::effects::{Kind, Role};
+use motor::effect::{Kind, Role};
 
 /// A move beyond so many prior standard deviations is implausible, ...
 const IMPLAUSIBLE: f64 = 3.0;

@@ -2,7 +2,7 @@
 
 use crate::data::study::{Study, Trial};
 use crate::search::proof::wilcoxon;
-use motor::effects::Role;
+use motor::effect::Role;
 
 /// Least relative gain of held-out error, on one of the two kinds of evidence ...
 const GAIN: f64 = 0.02;

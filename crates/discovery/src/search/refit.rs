@@ -8,7 +8,8 @@ use crate::model::prediction::Teacher;
 use crate::model::prior::Hypothesis;
 use crate::search::accept::{adequate, explained};
 use crate::search::screen::{Screened, ranked, screen};
-use motor::effects::{expression, names};
+use motor::effect::expression;
+use motor::effects::names;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 

@@ -6,7 +6,8 @@ use crate::fit::output_error::Fit;
 use crate::model::prediction::outputs;
 use crate::model::prior::{Belief, N_NOMINAL};
 use crate::model::speed_gain::EFFECT;
-use motor::effects::{ALL, Applies, Effect, EffectConfig, Parameter, Role, expression};
+use motor::effect::{Applies, Effect, EffectConfig, Parameter, Role, expression};
+use motor::effects::ALL;
 use nalgebra::DVector;
 use rayon::prelude::*;
 

@@ -3,7 +3,8 @@
 use crate::data::study::Study;
 use crate::model::prior::{FRICTION, N_NOMINAL, to_coordinate};
 use crate::tests::specimen;
-use motor::effects::{EffectConfig, Role, find};
+use motor::effect::{EffectConfig, Role};
+use motor::effects::find;
 
 fn study() -> Study {
     specimen::table_study(|_| ())

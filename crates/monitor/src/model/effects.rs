@@ -1,8 +1,8 @@
 //! Physical effects that the motor file adds to the T model, as the lamps need them: their steady-state terms.
 
 use motor::TParams;
-pub use motor::effects::MAX_PARAMETERS as MAX_EFFECT_PARAMETERS;
-use motor::effects::{Rated, SteadyEffect, SteadyPoint};
+pub use motor::effect::MAX_PARAMETERS as MAX_EFFECT_PARAMETERS;
+use motor::effect::{Rated, SteadyEffect, SteadyPoint};
 use num_complex::Complex32;
 
 use crate::rehearsal::Rehearsal;

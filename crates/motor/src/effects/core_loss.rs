@@ -1,7 +1,7 @@
 //! Core loss behind the stator resistance: `i = (i_s + g u)/(1 + g R_s)`, `g` one over the loss resistance.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -34,7 +34,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::CoreLoss;
     use crate::dynamic::{Terminal, Winding};
-    use crate::effects::{At, Effect, Hook};
+    use crate::effect::{At, Effect, Hook};
 
     impl Effect for CoreLoss {
         fn hooks(&self) -> &'static [Hook] {

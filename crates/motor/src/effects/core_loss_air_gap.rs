@@ -1,7 +1,7 @@
 //! Core loss at the air gap: `i = i_s + g j w_sync psi_m`, `g` one over the loss resistance.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
 use num_complex::Complex;
 use num_traits::Float;
 
@@ -37,7 +37,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::CoreLossAirGap;
     use crate::dynamic::{Terminal, Winding};
-    use crate::effects::{At, Effect, Hook};
+    use crate::effect::{At, Effect, Hook};
     use num_complex::Complex64;
 
     impl Effect for CoreLossAirGap {

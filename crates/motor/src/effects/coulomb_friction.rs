@@ -1,7 +1,7 @@
 //! Coulomb friction: `T_c sgn(w)`, smoothed over 0.5 % of synchronous speed.
 
-use super::steady::{Real, lit, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Rated, Scale, SteadyPoint};
+use crate::effect::steady::{Real, lit, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Rated, Scale, SteadyPoint};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "coulomb-friction",
@@ -38,7 +38,7 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::{CoulombFriction, torque};
     use crate::dynamic::Flow;
-    use crate::effects::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates};
 
     impl Effect for CoulombFriction {
         fn hooks(&self) -> &'static [Hook] {

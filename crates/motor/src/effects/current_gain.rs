@@ -1,7 +1,7 @@
 //! All current channels show `gain` times the truth.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -28,7 +28,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::CurrentGain;
-    use crate::effects::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Outputs, Rated};
 
     impl Effect for CurrentGain {
         fn hooks(&self) -> &'static [Hook] {

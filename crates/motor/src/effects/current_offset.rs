@@ -1,7 +1,7 @@
 //! Each current channel is shifted by a constant.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "current-offset",
@@ -27,7 +27,7 @@ steady_effect!(CurrentOffset, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::CurrentOffset;
-    use crate::effects::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Outputs, Rated};
 
     impl Effect for CurrentOffset {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,7 +1,7 @@
 //! DC link that is not what the inverter believes: `u (1 + a + b P)`, `P` the electrical power.
 
-use super::steady::{lit, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{lit, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -33,7 +33,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::DcLink;
     use crate::dynamic::{Terminal, Winding};
-    use crate::effects::{At, Effect, Hook};
+    use crate::effect::{At, Effect, Hook};
 
     impl Effect for DcLink {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,7 +1,7 @@
 //! DC link of an inverter that a diode bridge charges.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "dc-link",
@@ -56,7 +56,7 @@ steady_effect!(DcLinkCapacitor, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::DcLinkCapacitor;
     use crate::dynamic::{Flow, Terminal, Winding};
-    use crate::effects::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates};
     use core::f64::consts::{FRAC_PI_3, FRAC_PI_6, PI, TAU};
 
     /// Rectified voltage over its mean: cosine crests of 60 degrees.

@@ -1,7 +1,7 @@
 //! Skin effect in the rotor bars: `R_r (1 + k_R abs(s)^n)`, `L_lr (1 - k_L abs(s)^n)`.
 
-use super::steady::{Real, lit, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{Real, lit, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use crate::TParams;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -47,7 +47,7 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::{DeepBar, apply};
-    use crate::effects::{At, Effect, Hook, Instantaneous};
+    use crate::effect::{At, Effect, Hook, Instantaneous};
     use num_complex::Complex64;
 
     impl Effect for DeepBar {

@@ -1,7 +1,7 @@
 //! A second rotor cage, equal to the single cage at low slip: `R_1 = R_r/(1-a)`, `R_2 = R_r/a`, `L_2 = lambda L_lr`.
 
-use super::steady::{lit, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{lit, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use crate::TParams;
 use num_complex::Complex;
 use num_traits::Float;
@@ -65,7 +65,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::{DoubleCage, cages};
     use crate::dynamic::Flow;
-    use crate::effects::{At, Cage, Effect, Hook, Instantaneous, Rates};
+    use crate::effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
     use num_complex::Complex64;
 
     impl Effect for DoubleCage {

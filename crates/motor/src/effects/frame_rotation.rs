@@ -1,7 +1,7 @@
 //! The voltages are turned against the currents: `u e^(j delta)`.
 
-use super::steady::{Real, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{Real, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "frame-rotation",
@@ -27,7 +27,7 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::FrameRotation;
-    use crate::effects::{Effect, Hook, Inputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Rated};
     use num_complex::Complex64;
 
     impl Effect for FrameRotation {

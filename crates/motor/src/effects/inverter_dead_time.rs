@@ -1,7 +1,7 @@
 //! Dead time and device drop of an inverter: `-V tanh(i_k/I_0)` per phase, decided once per hold period.
 
-use super::steady::{length, lit, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{length, lit, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use num_complex::Complex;
 use num_traits::Float;
 
@@ -44,7 +44,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::InverterDeadTime;
     use crate::dynamic::{clarke, phases};
-    use crate::effects::{At, Effect, Hook};
+    use crate::effect::{At, Effect, Hook};
     use num_complex::Complex64;
 
     impl Effect for InverterDeadTime {

@@ -1,7 +1,7 @@
 //! LC filter: `L_f di/dt = v - u`, `du/dt = (2 pi f_r)^2 L_f (i - i_m)`.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "series-inductance",
@@ -41,7 +41,7 @@ steady_effect!(LcFilter, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::LcFilter;
     use crate::dynamic::{Flow, Terminal, Winding};
-    use crate::effects::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates};
     use num_complex::Complex64;
 
     impl Effect for LcFilter {

@@ -1,7 +1,7 @@
 //! Leakage saturation: both leakages times `1 - k x^2/(1 + x^2)`, `x = abs(i_s)/i_ref`.
 
-use super::steady::{lit, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{lit, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -48,7 +48,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::{LeakageSaturation, factor};
     use crate::dynamic::Linear;
-    use crate::effects::{At, Effect, Hook, Instantaneous};
+    use crate::effect::{At, Effect, Hook, Instantaneous};
     use num_complex::Complex64;
 
     impl Effect for LeakageSaturation {

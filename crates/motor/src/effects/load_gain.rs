@@ -1,7 +1,7 @@
 //! The torque channel shows `gain` times the truth.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, Written};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, Written};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "load-gain",
@@ -23,7 +23,7 @@ steady_effect!(LoadGain, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::LoadGain;
-    use crate::effects::{Effect, Hook, Inputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Rated};
 
     impl Effect for LoadGain {
         fn hooks(&self) -> &'static [Hook] {

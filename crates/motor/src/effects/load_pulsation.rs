@@ -1,7 +1,7 @@
 //! Torque that pulsates once per turn: `a cos(theta) + b sin(theta)`.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "load-pulsation",
@@ -27,7 +27,7 @@ steady_effect!(LoadPulsation, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::LoadPulsation;
     use crate::dynamic::Flow;
-    use crate::effects::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates};
 
     impl Effect for LoadPulsation {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,7 +1,7 @@
 //! Magnetizing saturation: `i_m = psi/L_m (1 + k((psi/psi_rated)^n - 1))`.
 
-use super::steady::{Real, length, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{Real, length, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use crate::TParams;
 use num_traits::Float;
 
@@ -59,7 +59,7 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::{MagnetizingSaturation, relocated};
     use crate::TParams;
-    use crate::effects::{Effect, Hook, Rated};
+    use crate::effect::{Effect, Hook, Rated};
 
     impl Effect for MagnetizingSaturation {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,44 +1,10 @@
 //! Physical effects: one file each, one line in the macro `effects!` below to register it.
 //!
-//! An effect is stateless; its parameters are a slice in the order of its [`Descriptor`]. Its steady-state term
-//! ([`SteadyEffect`]) needs neither `std` nor allocation and works in `f32` or `f64`; its dynamic term
-//! ([`Effect`]) lives on the host.
+//! What an effect is and may change says [`crate::effect`].
 
 #[cfg(feature = "std")]
-mod config;
-mod descriptor;
-#[cfg(feature = "std")]
-mod effect;
-#[cfg(feature = "file")]
-pub mod expression;
-#[cfg(feature = "file")]
-mod file;
-#[cfg(feature = "file")]
-mod motions;
-#[cfg(feature = "std")]
-mod signals;
-#[cfg(feature = "std")]
-mod simulate;
-#[cfg(feature = "std")]
-mod stack;
-mod steady;
-
-#[cfg(feature = "std")]
-pub use config::{EffectConfig, EffectError};
-pub use descriptor::{Applies, Descriptor, Kind, Parameter, Rated, Role, Scale, Written};
-#[cfg(feature = "std")]
-pub use effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
-#[cfg(feature = "file")]
-pub(crate) use file::check;
-#[cfg(feature = "file")]
-pub use file::{from_entry, from_motor_file, rated, to_entry};
-#[cfg(feature = "std")]
-pub use signals::{Inputs, Outputs};
-#[cfg(feature = "std")]
-pub use simulate::{Between, Plant, Run, SpeedSource, simulate};
-#[cfg(feature = "std")]
-pub use stack::{EffectStack, Timeline, extra_states};
-pub use steady::{MAX_PARAMETERS, SteadyEffect, SteadyPoint};
+use crate::effect::Effect;
+use crate::effect::SteadyEffect;
 
 /// Registers effects: the file and the type in it.
 macro_rules! effects {

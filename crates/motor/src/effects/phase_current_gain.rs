@@ -1,7 +1,7 @@
 //! Each current channel shows its own gain times the truth.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, Written};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, Written};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "phase-current-gain",
@@ -27,7 +27,7 @@ steady_effect!(PhaseCurrentGain, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::PhaseCurrentGain;
-    use crate::effects::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Outputs, Rated};
 
     impl Effect for PhaseCurrentGain {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,7 +1,7 @@
 //! Each voltage channel shows its own gain times the truth.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, Written};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, Written};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "phase-voltage-gain",
@@ -28,7 +28,7 @@ steady_effect!(PhaseVoltageGain, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::PhaseVoltageGain;
     use crate::dynamic::{clarke, phases};
-    use crate::effects::{Effect, Hook, Inputs, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Outputs, Rated};
     use num_complex::Complex64;
 
     /// Zero sequence that wrong channels show for a star without zero sequence.

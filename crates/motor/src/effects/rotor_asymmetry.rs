@@ -1,7 +1,7 @@
 //! Broken rotor bar: rotor voltage drop `R_r (i_r + k e^(j 2 theta_el) conj(i_r))`.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "rotor-asymmetry",
@@ -27,7 +27,7 @@ steady_effect!(RotorAsymmetry, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::RotorAsymmetry;
     use crate::dynamic::Flow;
-    use crate::effects::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates};
     use num_complex::Complex64;
 
     impl Effect for RotorAsymmetry {

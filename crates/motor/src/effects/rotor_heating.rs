@@ -1,7 +1,7 @@
 //! Heating of the rotor: `R (1 + D(1 - e^(-t/tau)))`, `t` from the start of the recording.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -39,7 +39,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::RotorHeating;
-    use crate::effects::{At, Effect, Hook, Instantaneous};
+    use crate::effect::{At, Effect, Hook, Instantaneous};
     use num_complex::Complex64;
 
     impl Effect for RotorHeating {

@@ -1,7 +1,7 @@
 //! The currents are sampled later than the voltages: `i(t - d)`.
 
-use super::steady::{Real, steady_effect};
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::{Real, steady_effect};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "sample-delay",
@@ -28,8 +28,8 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::SampleDelay;
-    use crate::effects::signals::delayed;
-    use crate::effects::{Effect, Hook, Outputs, Rated};
+    use crate::effect::signals::delayed;
+    use crate::effect::{Effect, Hook, Outputs, Rated};
 
     impl Effect for SampleDelay {
         fn hooks(&self) -> &'static [Hook] {

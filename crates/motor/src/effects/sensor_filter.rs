@@ -1,7 +1,7 @@
 //! The current channels are low-passed: `1/(1 + tau s)`.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use num_complex::Complex;
 use num_traits::Float;
 
@@ -34,8 +34,8 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::SensorFilter;
-    use crate::effects::signals::low_passed;
-    use crate::effects::{Effect, Hook, Outputs, Rated};
+    use crate::effect::signals::low_passed;
+    use crate::effect::{Effect, Hook, Outputs, Rated};
 
     impl Effect for SensorFilter {
         fn hooks(&self) -> &'static [Hook] {

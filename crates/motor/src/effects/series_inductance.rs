@@ -1,7 +1,7 @@
 //! Inductance of an output filter or cable between the voltage and the motor.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -34,7 +34,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::SeriesInductance;
     use crate::TParams;
-    use crate::effects::{Effect, Hook, Rated};
+    use crate::effect::{Effect, Hook, Rated};
 
     impl Effect for SeriesInductance {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,7 +1,7 @@
 //! Two masses on an elastic shaft: torsional frequency, damping ratio and the motor's share of the inertia.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "shaft-compliance",
@@ -49,7 +49,7 @@ steady_effect!(ShaftCompliance, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::ShaftCompliance;
     use crate::dynamic::Flow;
-    use crate::effects::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates};
 
     impl Effect for ShaftCompliance {
         fn hooks(&self) -> &'static [Hook] {

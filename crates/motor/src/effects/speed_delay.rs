@@ -1,7 +1,7 @@
 //! The speed channel is late: `w(t - d)`.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "speed-delay",
@@ -23,8 +23,8 @@ steady_effect!(SpeedDelay, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::SpeedDelay;
-    use crate::effects::signals::delayed;
-    use crate::effects::{Effect, Hook, Outputs, Rated};
+    use crate::effect::signals::delayed;
+    use crate::effect::{Effect, Hook, Outputs, Rated};
 
     impl Effect for SpeedDelay {
         fn hooks(&self) -> &'static [Hook] {

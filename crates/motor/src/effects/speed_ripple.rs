@@ -1,7 +1,7 @@
 //! The speed channel ripples once per turn.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "speed-ripple",
@@ -26,7 +26,7 @@ steady_effect!(SpeedRipple, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::SpeedRipple;
-    use crate::effects::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Outputs, Rated};
 
     impl Effect for SpeedRipple {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,7 +1,7 @@
 //! Series resistance or shorted turns in one phase: voltage drop `R_s (i + k conj(i))`.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "stator-asymmetry",
@@ -27,7 +27,7 @@ steady_effect!(StatorAsymmetry, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::StatorAsymmetry;
     use crate::dynamic::{Terminal, Winding};
-    use crate::effects::{At, Effect, Hook};
+    use crate::effect::{At, Effect, Hook};
     use num_complex::Complex64;
 
     impl Effect for StatorAsymmetry {

@@ -1,7 +1,7 @@
 //! The motor sees a negative sequence that was not measured: `u + k conj(u)`.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "voltage-asymmetry",
@@ -26,7 +26,7 @@ steady_effect!(VoltageAsymmetry, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::VoltageAsymmetry;
-    use crate::effects::{Effect, Hook, Inputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Rated};
     use num_complex::Complex64;
 
     impl Effect for VoltageAsymmetry {

@@ -1,7 +1,7 @@
 //! All voltage channels show `gain` times the truth.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint, Written};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -28,7 +28,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::VoltageGain;
-    use crate::effects::{Effect, Hook, Inputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Rated};
 
     impl Effect for VoltageGain {
         fn hooks(&self) -> &'static [Hook] {

@@ -1,7 +1,7 @@
 //! Each voltage channel is shifted by a constant.
 
-use super::steady::{steady_effect, unchanged};
-use super::{Applies, Descriptor, Kind, Parameter, Scale};
+use crate::effect::steady::{steady_effect, unchanged};
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
 
 static DESCRIPTOR: Descriptor = Descriptor {
     name: "voltage-offset",
@@ -28,7 +28,7 @@ steady_effect!(VoltageOffset, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::VoltageOffset;
     use crate::dynamic::clarke;
-    use crate::effects::{Effect, Hook, Inputs, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Outputs, Rated};
 
     impl Effect for VoltageOffset {
         fn hooks(&self) -> &'static [Hook] {

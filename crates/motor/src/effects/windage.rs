@@ -1,7 +1,7 @@
 //! Windage: `k w abs(w)`.
 
-use super::steady::steady_effect;
-use super::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
+use crate::effect::steady::steady_effect;
+use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale, SteadyPoint};
 use num_traits::Float;
 
 static DESCRIPTOR: Descriptor = Descriptor {
@@ -34,7 +34,7 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::Windage;
     use crate::dynamic::Flow;
-    use crate::effects::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates};
 
     impl Effect for Windage {
         fn hooks(&self) -> &'static [Hook] {

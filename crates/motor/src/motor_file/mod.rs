@@ -110,7 +110,7 @@ fn read_document(document: &Document) -> Option<MotorFile> {
     let healthy = healthy::read(&root);
     let effects = read_effects(&root);
     if let (Some(plate), Some(effects)) = (&nameplate, &effects) {
-        crate::effects::check(document, plate, effects);
+        crate::effect::check(document, plate, effects);
     }
     root.finish();
     let electrical = electrical?;

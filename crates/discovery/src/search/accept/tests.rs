@@ -1,6 +1,7 @@
 use super::*;
 use crate::tests::specimen;
-use motor::effects::{EffectConfig, find};
+use motor::effect::EffectConfig;
+use motor::effects::find;
 
 /// Squared errors of 12 blocks that scatter a little, `scale` times.
 fn errors(scale: f64) -> Vec<f64> {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::tests::specimen;
-use motor::effects::Timeline;
+use motor::effect::Timeline;
 use std::sync::Arc;
 
 const R_R: usize = 1;

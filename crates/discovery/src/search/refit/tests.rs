@@ -1,6 +1,6 @@
 use super::*;
 use crate::tests::specimen;
-use motor::effects::Plant;
+use motor::effect::Plant;
 
 fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
     move |plant| plant.effects.push(specimen::effect(name, size))

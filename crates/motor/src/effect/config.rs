@@ -1,6 +1,7 @@
 //! An effect as it stands in a motor file: validated once, used without checks afterwards.
 
-use super::{Effect, Parameter, Rated, Role, find, names};
+use crate::effect::{Effect, Parameter, Rated, Role};
+use crate::effects::{find, names};
 use core::fmt;
 
 /// An effect with values for its parameters (inside values, in the order of the descriptor).

@@ -1,8 +1,8 @@
 //! Whether a formula is a number at every motion of a motor: where it is none there is nothing to add, and to leave it out
 //! there would be another model than the one that was asked for.
 
-use super::expression::VARIABLES;
-use super::{EffectError, Rated};
+use crate::effect::expression::VARIABLES;
+use crate::effect::{EffectError, Rated};
 use exmex::{Express, FlatEx};
 
 /// Speeds over the synchronous one: both directions, to half as much again; the usual ones first.

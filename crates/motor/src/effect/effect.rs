@@ -1,8 +1,8 @@
 //! An effect in the dynamic model.
 
-use super::{Inputs, Outputs, Rated, SteadyEffect};
 use crate::TParams;
 use crate::dynamic::{Flow, Terminal, Winding};
+use crate::effect::{Inputs, Outputs, Rated, SteadyEffect};
 use num_complex::Complex64;
 
 /// A second rotor circuit beside the first.

@@ -1,10 +1,10 @@
 //! Effects in the motor file: from its entries and back.
 
-use super::config::known_effect;
-use super::{Descriptor, EffectConfig, EffectError, Rated};
-use super::{expression, motions};
 use crate::MotorFile;
 use crate::document::{Document, FileError};
+use crate::effect::config::known_effect;
+use crate::effect::{Descriptor, EffectConfig, EffectError, Rated};
+use crate::effect::{expression, motions};
 use crate::motor_file::{EffectEntry, EffectParameter, EffectValue, Nameplate};
 
 /// Key that chooses between several forms of one effect.

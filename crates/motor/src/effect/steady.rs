@@ -1,7 +1,7 @@
 //! Effects in steady state: what the lamps need, without allocation and in single precision.
 
-use super::{Descriptor, Rated};
 use crate::TParams;
+use crate::effect::{Descriptor, Rated};
 use num_complex::Complex;
 use num_traits::Float;
 
@@ -70,21 +70,21 @@ pub trait SteadyEffect: Sync {
 /// Implements [`SteadyEffect`] from one generic function.
 macro_rules! steady_effect {
     ($effect:ident, $descriptor:ident, $correct:ident) => {
-        impl $crate::effects::SteadyEffect for $effect {
-            fn descriptor(&self) -> &'static $crate::effects::Descriptor {
+        impl $crate::effect::SteadyEffect for $effect {
+            fn descriptor(&self) -> &'static $crate::effect::Descriptor {
                 &$descriptor
             }
 
             fn correct_f32(
                 &self,
-                p: &[f32; $crate::effects::MAX_PARAMETERS],
-                point: &mut $crate::effects::SteadyPoint<f32>,
+                p: &[f32; $crate::effect::MAX_PARAMETERS],
+                point: &mut $crate::effect::SteadyPoint<f32>,
             ) {
                 $correct(p, point);
             }
 
             #[cfg(feature = "std")]
-            fn correct_f64(&self, p: &[f64], point: &mut $crate::effects::SteadyPoint<f64>) {
+            fn correct_f64(&self, p: &[f64], point: &mut $crate::effect::SteadyPoint<f64>) {
                 $correct(p, point);
             }
         }

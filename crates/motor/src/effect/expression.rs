@@ -12,11 +12,11 @@
 //! d axis on the rotor flux; `psi` is its magnitude (V s), `omega` the mechanical speed (rad/s), `theta` the shaft
 //! angle (rad), `slip` 1 at standstill, `t` seconds from the start of the recording.
 
-use super::{
+use crate::dynamic::{Flow, Terminal, Winding};
+use crate::effect::{
     Applies, At, Descriptor, Effect, EffectConfig, EffectError, Hook, Kind, MAX_PARAMETERS,
     Parameter, Rates, Role, Scale, SteadyEffect, SteadyPoint, Written,
 };
-use crate::dynamic::{Flow, Terminal, Winding};
 use exmex::{Express, FlatEx};
 use num_complex::Complex64;
 use std::collections::BTreeMap;

@@ -1,7 +1,9 @@
 //! A motor with effects, driven by measured signals.
 
-use super::{EffectConfig, EffectStack, Hook, Inputs, Outputs, Rated, Timeline, extra_states};
 use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, phases};
+use crate::effect::{
+    EffectConfig, EffectStack, Hook, Inputs, Outputs, Rated, Timeline, extra_states,
+};
 use crate::{Mechanics, TParams};
 use num_complex::Complex64;
 use std::ops::Range;

@@ -1,9 +1,9 @@
 //! Several effects at work in one dynamic model.
 
-use super::effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
-use super::{EffectConfig, Rated};
 use crate::TParams;
 use crate::dynamic::{DynamicState, Extra, Flow, Hooks, Linear, Terminal, Winding};
+use crate::effect::effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
+use crate::effect::{EffectConfig, Rated};
 use num_complex::Complex64;
 use std::sync::Arc;
 
