@@ -6,8 +6,8 @@ use common::{in_project, monitored, motor, read};
 use motor::MotorFile;
 use motor::motor_file::{EffectEntry, LoadKind};
 use recording::{Channel, Mapping, Recording, Signal};
-use sim_host::calibrate::{Calibrated, Refusal, Surroundings, calibrate};
-use sim_host::replay::{Verdict, VerdictState};
+use replay::calibrate::{Calibrated, Refusal, Surroundings, calibrate};
+use replay::{Verdict, VerdictState};
 
 /// The defaults of `drivemon calibrate`.
 const SURROUNDINGS: Surroundings = Surroundings {

@@ -4,8 +4,8 @@
 use discovery::{ExplainReport, Verdict, adopt, compare, explain};
 use motor::MotorFile;
 use recording::{Channel, Recording, Source};
-use sim_host::scenario::Scenario;
-use sim_host::simulate::record;
+use scenario::Scenario;
+use scenario::simulate::record;
 use std::path::Path;
 
 /// Ten seconds of the 2.2 kW motor on a load profile, its torque measured, 0.2 % noise.

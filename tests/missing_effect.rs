@@ -6,8 +6,8 @@ use common::motor;
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample, Report};
 use motor::MotorFile;
 use motor::motor_file::{EffectEntry, Frame};
-use sim_host::scenario::{Fault, Scenario};
-use sim_host::simulate::Simulation;
+use scenario::simulate::Simulation;
+use scenario::{Fault, Scenario};
 
 /// An iron loss of 54 W, a sixth of the rated power, as a motor file writes it.
 fn core_loss() -> EffectEntry {

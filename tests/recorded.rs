@@ -4,7 +4,7 @@ mod common;
 
 use common::{in_project, in_shared_data, monitored, motor, read};
 use recording::{Code, Mapping};
-use sim_host::replay::{Timeline, VerdictState};
+use replay::{Timeline, VerdictState};
 
 const PEER_SETS: [&str; 9] = [
     "inertia-plus-40-percent",
@@ -134,7 +134,7 @@ fn the_load_table_becomes_operating_points() {
         recording::read_load_table(&file, &Mapping::default(), &mut |_| {}).expect("readable");
     let motor = motor("motors/imc-18k5.toml");
     let points =
-        sim_host::operating_points::OperatingPoints::new(&table, Some(&motor)).operating_points;
+        replay::operating_points::OperatingPoints::new(&table, Some(&motor)).operating_points;
     assert_eq!(points.len(), 14);
     let rated = points
         .iter()

@@ -9,8 +9,8 @@ use monitor::{Lamp, Monitor, MonitorConfig, MonitorState, RawSample, Report, Sid
 use motor::dynamic::clarke;
 use motor::motor_file::{EffectEntry, Frame};
 use num_complex::Complex64;
-use sim_host::scenario::{Fault, Scenario};
-use sim_host::simulate::{SimSample, Simulation};
+use scenario::simulate::{SimSample, Simulation};
+use scenario::{Fault, Scenario};
 
 const MOTOR: &str = "motors/peer-2k2.toml";
 /// Pole pairs and supply frequency of it.

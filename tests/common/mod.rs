@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use monitor::Monitor;
 use motor::MotorFile;
 use recording::{Audit, Expectation, Mapping, Recording, audit, read_recording};
-use sim_host::replay::{self, Samples, Timeline};
+use replay::{self, Samples, Timeline};
 
 /// A file of the project.
 pub fn in_project(path: &str) -> PathBuf {

@@ -3,29 +3,29 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { groups, named, none } from "../../sim-host/assets/panel/causes.js";
-import { airy, decimals, following, symmetric } from "../../sim-host/assets/panel/charts.js";
-import { switched } from "../../sim-host/assets/panel/controls.js";
-import { lasting, likely, seen } from "../../sim-host/assets/panel/events.js";
-import { clock, either, fixed, moment, percent, rpm, shown, timeOfDay } from "../../sim-host/assets/panel/format.js";
-import { LIMIT_MS, Watch, stale } from "../../sim-host/assets/panel/freshness.js";
-import { advice, headline } from "../../sim-host/assets/panel/lamps.js";
-import { changed } from "../../sim-host/assets/panel/parameters.js";
-import { Series, firstAfter } from "../../sim-host/assets/panel/series.js";
-import { columnsOf } from "../../sim-host/assets/panel/workbench/columns.js";
-import { inWords, sorted } from "../../sim-host/assets/panel/workbench/recordings.js";
-import { worstOf } from "../../sim-host/assets/panel/workbench/regions.js";
-import { adoptable } from "../../sim-host/assets/panel/workbench/results.js";
-import { arrows, polar, tip } from "../../sim-host/assets/panel/vectors.js";
+import { groups, named, none } from "../../crates/panel/assets/causes.js";
+import { airy, decimals, following, symmetric } from "../../crates/panel/assets/charts.js";
+import { switched } from "../../crates/panel/assets/controls.js";
+import { lasting, likely, seen } from "../../crates/panel/assets/events.js";
+import { clock, either, fixed, moment, percent, rpm, shown, timeOfDay } from "../../crates/panel/assets/format.js";
+import { LIMIT_MS, Watch, stale } from "../../crates/panel/assets/freshness.js";
+import { advice, headline } from "../../crates/panel/assets/lamps.js";
+import { changed } from "../../crates/panel/assets/parameters.js";
+import { Series, firstAfter } from "../../crates/panel/assets/series.js";
+import { columnsOf } from "../../crates/panel/assets/workbench/columns.js";
+import { inWords, sorted } from "../../crates/panel/assets/workbench/recordings.js";
+import { worstOf } from "../../crates/panel/assets/workbench/regions.js";
+import { adoptable } from "../../crates/panel/assets/workbench/results.js";
+import { arrows, polar, tip } from "../../crates/panel/assets/vectors.js";
 
-/** @typedef {import("../../sim-host/assets/panel/messages").WindowMessage} WindowMessage */
-/** @typedef {import("../../sim-host/assets/panel/messages").Lamps} Lamps */
-/** @typedef {import("../../sim-host/assets/panel/messages").Cause} Cause */
+/** @typedef {import("../../crates/panel/assets/messages").WindowMessage} WindowMessage */
+/** @typedef {import("../../crates/panel/assets/messages").Lamps} Lamps */
+/** @typedef {import("../../crates/panel/assets/messages").Cause} Cause */
 
 /** @type {Lamps} */
 const DARK = { run: "on", r1: "off", r2: "off", r3: "off", r4: "off", sensor: "off", line: "off", load: "off", fault: "off" };
 
-/** @type {import("../../sim-host/assets/panel/messages").Operation} */
+/** @type {import("../../crates/panel/assets/messages").Operation} */
 const NOTHING = {
   voltage_rms_volt: null, current_rms_amp: null, frequency_hz: null, speed_rad_s: null, slip_percent: null, torque_nm: null, load_percent: null,
   current_unbalance_percent: null, voltage_unbalance_percent: null,

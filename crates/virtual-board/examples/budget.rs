@@ -1,8 +1,8 @@
 //! Measures what the firmware costs on a running motor, and fails beyond the budget: `budget ELF MOTOR.toml`.
 use monitor::RawSample;
 use motor::MotorFile;
-use sim_host::scenario::Scenario;
-use sim_host::simulate::Simulation;
+use scenario::Scenario;
+use scenario::simulate::Simulation;
 use virtual_board::{CORE_HZ, Inputs, Tally, VirtualBoard};
 
 /// Bytes of flash.

@@ -6,7 +6,7 @@ use common::{LAMP_TEST_S, Sensors, board, firmware, host_lamps, scenario, watch}
 use monitor::RawSample;
 use motor::load::Load;
 use motor::motor_file::Frame as MotorFrame;
-use sim_host::scenario::{Fault, Start};
+use scenario::{Fault, Start};
 use virtual_board::{Cause, Inputs, VirtualBoard};
 
 const RUN: usize = 0;

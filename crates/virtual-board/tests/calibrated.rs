@@ -4,7 +4,7 @@ mod common;
 
 use common::{Program, scenario, variant};
 use motor::motor_file::Frame;
-use sim_host::scenario::{Fault, Scenario};
+use scenario::{Fault, Scenario};
 
 /// The board has found the supply and knows the winding's temperature.
 const FAULT_FROM_S: f64 = 0.8;

@@ -7,7 +7,7 @@ use common::flash_image::FlashImage;
 use common::{INHIBITED, LAMP_TEST_S, Sensors, board as board_of, firmware, motor, scenario};
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::motor_file::Frame as MotorFrame;
-use sim_host::scenario::{Change, Fault, Scenario};
+use scenario::{Change, Fault, Scenario};
 use virtual_board::{Cause, Inputs, VirtualBoard};
 
 const HEALTHY: [bool; 9] = [true, false, false, false, false, false, false, false, false];

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Program, Seen, plain, variant};
 use motor::motor_file::Frame;
-use sim_host::scenario::{Fault, Scenario};
+use scenario::{Fault, Scenario};
 
 const END_S: f64 = 2.0;
 

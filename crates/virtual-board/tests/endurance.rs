@@ -7,7 +7,7 @@ use board::{Frame, LAMP_NAMES, Message};
 use common::{INHIBITED, LAMP_TEST_S, board as board_of, scenario};
 use monitor::Lamp;
 use motor::motor_file::Frame as MotorFrame;
-use sim_host::scenario::Fault;
+use scenario::Fault;
 
 /// Long enough for every ordinary run of the tests; an hour is asked for by ENDURANCE_S=3600.
 const DEFAULT_S: f64 = 60.0;

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Seen, motor, scenario, watch};
 use motor::motor_file::Frame;
-use sim_host::scenario::{Change, Fault, Piecewise, PlantKind, Scenario, Start};
+use scenario::{Change, Fault, Piecewise, PlantKind, Scenario, Start};
 
 const FAULT_FROM_S: f64 = 0.8;
 const END_S: f64 = 2.0;

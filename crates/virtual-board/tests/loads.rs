@@ -6,7 +6,7 @@
 mod common;
 
 use common::variant;
-use sim_host::scenario::{Piecewise, Scenario, Start};
+use scenario::{Piecewise, Scenario, Start};
 
 /// The supply comes after the board has found none.
 const SWITCH_ON_S: f64 = 0.3;

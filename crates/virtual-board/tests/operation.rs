@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Program, Seen, Sensors, plain, scenario, variant};
-use sim_host::scenario::Scenario;
+use scenario::Scenario;
 
 /// Order of the lamps on the wires: RUN, r1..r4, SENSOR, LINE, LOAD, FAULT.
 const SENSOR: usize = 5;

@@ -6,7 +6,7 @@ use board::{Frame, LAMP_NAMES, Message};
 use common::{INHIBITED, LAMP_TEST_S, board as board_of, motor, scenario};
 use monitor::{Monitor, MonitorConfig, MonitorState, Report};
 use motor::motor_file::Frame as MotorFrame;
-use sim_host::scenario::{Fault, Start};
+use scenario::{Fault, Start};
 
 fn host_reports(taken: &[monitor::RawSample]) -> Vec<Report> {
     let config = MonitorConfig::from_motor_file(&motor(), 1e-4);

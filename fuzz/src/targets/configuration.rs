@@ -1,11 +1,11 @@
 //! Files that people write: motor, scenario, campaign, sidecar.
 
+use campaign::Plan;
 use monitor::{Monitor, MonitorConfig};
 use motor::MotorFile;
 use recording::Sidecar;
-use sim_host::campaign::Plan;
-use sim_host::scenario::Scenario;
-use sim_host::simulate::Simulation;
+use scenario::Scenario;
+use scenario::simulate::Simulation;
 
 use crate::seeds::root;
 

@@ -7,7 +7,7 @@ use monitor::Monitor;
 use recording::{
     Error, Expectation, LoadTable, Mapping, Recording, Source, audit, read_any, read_stream,
 };
-use sim_host::replay::{Samples, replay, stand_in_config};
+use replay::{Samples, replay, stand_in_config};
 
 /// Samples that are replayed; more only take longer.
 const REPLAYED: usize = 4_000;

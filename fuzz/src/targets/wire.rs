@@ -2,8 +2,8 @@
 
 use board::modbus::{BoardStatus, Collector, Image, MAX_RESPONSE_BYTES, Slave, Status, UNLOCK_KEY};
 use board::{MAX_FRAME_BYTES, Message, crc32};
+use live::Decoder;
 use monitor::Report;
-use sim_host::live::Decoder;
 
 /// The first byte says how the rest arrives: in pieces of that many bytes, or from 128 on as contents that are framed
 /// and checksummed here, so that what is behind the checksum is reached.

@@ -7,8 +7,8 @@ use motor::MotorFile;
 use motor::motor_file::Frame;
 
 use super::DemoError;
-use crate::scenario::{Fault, PlantKind, Scenario, Start};
-use crate::simulate::{Measured, Simulation};
+use scenario::simulate::{Measured, Simulation};
+use scenario::{Fault, PlantKind, Scenario, Start};
 
 /// The fault is switched in and out at these times, s (theory, section 7).
 const FAULT_S: [f64; 2] = [2.0, 3.5];

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::DemoError;
 use super::case::Case;
-use crate::scenario::PlantKind;
+use scenario::PlantKind;
 
 /// Both directions of every row, percent.
 const CHANGES_PERCENT: [f64; 2] = [50.0, -50.0];

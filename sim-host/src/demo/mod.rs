@@ -11,8 +11,8 @@ use motor::MotorFile;
 use motor::motor_file::{FieldCurrent, Frame};
 use serde::Serialize;
 
-use crate::scenario::PlantKind;
-use crate::simulate::SimulationError;
+use scenario::PlantKind;
+use scenario::simulate::SimulationError;
 
 /// Loads at which the healthy motor is shown, percent of the motor file's friction torque.
 const LOADS_PERCENT: [f64; 4] = [10.0, 50.0, 100.0, 150.0];

@@ -1,4 +1,4 @@
-//! Slips in a motor file. `sim-host/tests/bad_input` reads this file too.
+//! Slips in a motor file. `crates/drivemon/tests/bad_input` reads this file too.
 
 /// One slip.
 pub struct Case {

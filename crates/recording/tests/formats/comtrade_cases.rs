@@ -1,4 +1,4 @@
-//! Slips in COMTRADE files. `sim-host/tests/bad_input` reads this file too.
+//! Slips in COMTRADE files. `crates/drivemon/tests/bad_input` reads this file too.
 
 /// What is replaced in the configuration, by what, the exit code, and words of the message.
 pub type Row = (&'static str, &'static str, u8, &'static [&'static str]);

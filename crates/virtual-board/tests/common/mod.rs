@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use monitor::{Lamp, Lamps, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
-use sim_host::scenario::Scenario;
-use sim_host::simulate::Simulation;
+use scenario::Scenario;
+use scenario::simulate::Simulation;
 use virtual_board::{Inputs, VirtualBoard};
 
 /// Blocks of 32 instants that the firmware throws away after power-up.

@@ -1,0 +1,151 @@
+//! `drivemon flash` with programs of its own in the place of the build and of probe-rs: what it runs, and how it fails.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A source tree with a build script, and a folder of programs, of this test alone.
+struct Place {
+    root: PathBuf,
+}
+
+impl Place {
+    fn new(name: &str) -> Self {
+        // Not below the build folder: that may itself lie in a source tree, which would be found instead.
+        let own = format!("drivemon-flash-{name}-{}", std::process::id());
+        let root = std::env::temp_dir().join(own);
+        let _ = fs::remove_dir_all(&root);
+        fs::create_dir_all(root.join("tree/tools")).expect("a folder");
+        fs::create_dir_all(root.join("bin")).expect("a folder");
+        Place { root }
+    }
+
+    /// A script that notes how it was called and ends with `code`.
+    fn program(&self, path: &str, code: u8) {
+        let path = self.root.join(path);
+        let log = self.root.join("log");
+        let text = format!(
+            "#!/bin/sh\necho \"$(basename \"$0\") $* motor=$DRIVE_MONITOR_MOTOR\" >> '{}'\nexit {code}\n",
+            log.display()
+        );
+        fs::write(&path, text).expect("a file");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("a mode");
+    }
+
+    fn run(&self, motor: &Path, more: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_drivemon"))
+            .args(["flash", "--motor"])
+            .arg(motor)
+            .args(more)
+            .current_dir(self.root.join("tree"))
+            .env(
+                "PATH",
+                format!("{}:/usr/bin:/bin", self.root.join("bin").display()),
+            )
+            .env_remove("CARGO_TARGET_DIR")
+            .output()
+            .expect("drivemon runs")
+    }
+
+    fn log(&self) -> Vec<String> {
+        let text = fs::read_to_string(self.root.join("log")).unwrap_or_default();
+        text.lines().map(str::to_owned).collect()
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.root);
+    }
+}
+
+fn motor() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motors/peer-2k2.toml")
+}
+
+fn error(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn it_builds_with_the_motor_then_writes_then_starts() {
+    let place = Place::new("whole");
+    place.program("tree/tools/thumb", 0);
+    place.program("bin/probe-rs", 0);
+    let output = place.run(&motor(), &[]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let log = place.log();
+    assert_eq!(log.len(), 3, "{log:?}");
+    assert!(
+        log[0].starts_with("thumb build --release -p drive-monitor motor=/"),
+        "{log:?}"
+    );
+    assert!(log[0].ends_with("peer-2k2.toml"), "{log:?}");
+    assert!(
+        log[1].starts_with("probe-rs download --chip STM32G474RETx /"),
+        "{log:?}"
+    );
+    assert!(
+        log[1].contains("target/thumbv7em-none-eabihf/release/drive-monitor "),
+        "{log:?}"
+    );
+    assert!(
+        log[2].starts_with("probe-rs reset --chip STM32G474RETx"),
+        "{log:?}"
+    );
+}
+
+#[test]
+fn a_dry_run_runs_nothing() {
+    let place = Place::new("dry");
+    place.program("tree/tools/thumb", 0);
+    let output = place.run(&motor(), &["--dry-run"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(said.matches("would run: ").count(), 3, "{said}");
+    assert!(place.log().is_empty());
+}
+
+#[test]
+fn a_motor_file_that_the_board_cannot_take_is_refused_before_the_build() {
+    let place = Place::new("bad-motor");
+    place.program("tree/tools/thumb", 0);
+    let text = fs::read_to_string(motor()).expect("a shipped motor file");
+    let bad = place.root.join("bad.toml");
+    fs::write(
+        &bad,
+        text.replace("stator_resistance_ohm", "stator_resistence_ohm"),
+    )
+    .expect("a file");
+    let message = error(&place.run(&bad, &[]));
+    assert!(
+        message.contains("bad.toml:") && message.contains("stator_resistence_ohm"),
+        "{message}"
+    );
+    assert!(place.log().is_empty());
+}
+
+#[test]
+fn each_thing_that_may_be_missing_is_named_with_its_remedy() {
+    let place = Place::new("missing");
+    let message = error(&place.run(&motor(), &[]));
+    assert!(message.contains("--source"), "{message}");
+    place.program("tree/tools/thumb", 2);
+    let message = error(&place.run(&motor(), &[]));
+    assert!(message.contains("was not built"), "{message}");
+    place.program("tree/tools/thumb", 0);
+    let message = error(&place.run(&motor(), &[]));
+    assert!(
+        message.contains("cargo install probe-rs-tools"),
+        "{message}"
+    );
+    place.program("bin/probe-rs", 1);
+    let message = error(&place.run(&motor(), &[]));
+    assert!(message.contains("probe-rs list"), "{message}");
+    let elsewhere = place.root.join("bin").display().to_string();
+    let message = error(&place.run(&motor(), &["--source", &elsewhere]));
+    assert!(message.contains("README.md"), "{message}");
+}

@@ -1,0 +1,74 @@
+/** What the workbench's routes send; the Rust side is crates/panel/src/workbench. */
+import type { Finding } from "../messages";
+
+export type Kind = "compare" | "explain" | "adopt";
+
+export interface Columns {
+  column: Record<string, string>;
+  unit: Record<string, string>;
+  scale: Record<string, string>;
+  offset: Record<string, string>;
+  delay: Record<string, string>;
+  sample_rate_hz: number | null;
+  delimiter: string;
+  decimal_comma: boolean;
+  line_voltages: boolean;
+  skip_missing: boolean;
+  pulses_per_revolution: number | null;
+}
+
+export type Summary =
+  | { kind: "recording"; samples: number; sample_rate_hz: number; duration_s: number; channels: string[]; notes: string[] }
+  | { kind: "load-table"; points: number; columns: string[] };
+
+export interface RecordingView {
+  id: number;
+  name: string;
+  sidecar: string | null;
+  preview: { columns: string[]; rows: string[][] } | null;
+  columns: Columns;
+  problem: string | null;
+  summary: Summary | null;
+  audit: { supported: boolean; findings: Finding[] } | null;
+  read_s: number;
+}
+
+export interface MotorView { name: string; file: string; effects: string[]; adopted: string[]; frequency_hz: number }
+
+export interface Job { id: number; kind: Kind | null; running: boolean; what: string; share: number; problem: string | null }
+
+export interface View {
+  recordings: (RecordingView | null)[];
+  motor: MotorView | null;
+  shipped: string[];
+  job: Job;
+  results: Kind[];
+  most_bytes: number;
+}
+
+export interface Traces { t: number[]; signals: unknown[] }
+export interface Block {
+  t: number;
+  load_percent: number | null;
+  voltage_percent: number;
+  slip_percent: number | null;
+  frequency_hz: number | null;
+  current_error_amp: number[];
+}
+export interface Band { quantity: "load" | "voltage" | "slip" | "frequency"; from_percent: number; to_percent: number }
+export interface Result {
+  overlay: { close: Traces; blocks: Block[] } | null;
+  regions?: { name: string; from_s: number; to_s: number }[];
+  bands?: Band[];
+  next?: { adopt: string | null };
+  steps?: { effect: string; tied_with: string[] }[];
+  ranking?: { effect: string }[];
+}
+export interface Answer { title: string; html: string; result: Result }
+
+export interface Figures { count: number; redraw(path: string): void; remove(): void }
+
+declare global {
+  /** crates/report/assets/report.js */
+  function drawFigures(root: ParentNode, result: Result): Figures;
+}

@@ -1,0 +1,159 @@
+//! Learning from healthy recordings what a motor and its instrument look like when nothing is wrong.
+//!
+//! One after another: relative gains from the zero sequences, parameters from the monitor's own residuals, then the
+//! statistics that decide how far a departure must go before FAULT lights.
+
+mod fit;
+mod gains;
+mod refuse;
+mod statistics;
+mod uncertainty;
+mod windows;
+
+use monitor::{Cause, Healthy, MonitorConfig};
+use motor::MotorFile;
+use motor::motor_file::HealthySettings;
+use recording::{Audit, Recording};
+
+pub use gains::Kind;
+pub use statistics::Surroundings;
+
+use crate::config_for;
+use windows::{Healthily, Observed};
+
+/// Why recordings cannot calibrate a motor.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{recording}: {reason}")]
+pub struct Refusal {
+    /// The recording, or all of them.
+    pub recording: String,
+    /// Reason and remedy.
+    pub reason: String,
+}
+
+impl Refusal {
+    fn new(recording: &str, reason: impl Into<String>) -> Self {
+        Refusal {
+            recording: recording.to_owned(),
+            reason: reason.into(),
+        }
+    }
+}
+
+/// A calibrated motor and how it was found.
+#[derive(Clone, Debug)]
+pub struct Calibrated {
+    /// The motor with parameters, gains, statistics and thresholds.
+    pub motor: MotorFile,
+    /// Steady windows that it was learnt from.
+    pub windows: usize,
+    /// Audits of the recordings.
+    pub audits: Vec<Audit>,
+    /// Parameters: change, a share of the believed value, and standard error with that of the instruments, a share of the
+    /// fitted value. Empty without voltages.
+    pub changes: Vec<(Cause, f64, f64)>,
+    /// Gains of the channels a, b, c that were found.
+    pub gains: Vec<(Kind, [f64; 3])>,
+    /// What remains of torque balance, `e_d`, `e_q`, percent of their scales.
+    pub misfit_percent: [f64; 3],
+    /// The statistics, as they stand in the motor file.
+    pub healthy: HealthySettings,
+}
+
+/// Calibrates `motor` from healthy recordings.
+///
+/// # Errors
+/// Recordings that are faulty, contradict each other or say too little.
+pub fn calibrate(
+    motor: &MotorFile,
+    recordings: &[Recording],
+    surroundings: &Surroundings,
+) -> Result<Calibrated, Refusal> {
+    let mut believed = motor.clone();
+    believed.healthy = None;
+    let sources = windows::audited(recordings, &believed)?;
+    let config_of = |motor: &MotorFile, k: usize| {
+        let mut config = config_for(motor, sources[k].recording);
+        config.healthy = Some(Healthy::unknown());
+        config
+    };
+    let mut observed = windows::observe(&sources, &believed)?;
+    let has_voltages = observed
+        .iter()
+        .all(|o| o.window.u_s.positive.norm_sqr() > 0.0);
+    let mut gains = Vec::new();
+    if has_voltages {
+        for kind in [Kind::Current, Kind::Voltage] {
+            correct_gains(
+                kind,
+                &sources,
+                &mut believed,
+                &mut observed,
+                &mut gains,
+                &config_of,
+            )?;
+        }
+    }
+    let (fitted, errors) = if has_voltages {
+        let beliefs = fit::Beliefs::new(&believed, &config_of);
+        let fitted = fit::fit(&beliefs, &observed, &config_of)?;
+        refuse::implausible(&beliefs, &fitted, recordings)?;
+        let errors = uncertainty::standard_errors(&beliefs, &fitted, &observed, &config_of)?;
+        (fitted, errors)
+    } else {
+        let nothing = fit::Fitted {
+            motor: believed,
+            coordinates: Vec::new(),
+            changes: Vec::new(),
+            seen_through: Vec::new(),
+            misfit: [0.0; 3],
+        };
+        (nothing, Vec::new())
+    };
+    let healthy = statistics::healthy(&fitted, &observed, surroundings, &config_of)?;
+    let mut motor = fitted.motor.clone();
+    motor.healthy = Some(healthy);
+    if has_voltages {
+        let config_of = |motor: &MotorFile, k: usize| config_for(motor, sources[k].recording);
+        motor.monitor.threshold_percent = statistics::thresholds(&motor, &observed, &config_of)?;
+    }
+    refuse::contradictions(&motor, &sources, &observed)?;
+    Ok(Calibrated {
+        motor,
+        windows: observed.len(),
+        audits: sources.into_iter().map(|source| source.audit).collect(),
+        changes: fit::Fitted::causes()
+            .zip(fitted.changes.iter().zip(errors))
+            .map(|(cause, (change, error))| (cause, *change, error))
+            .collect(),
+        gains,
+        misfit_percent: fitted.misfit.map(|x| 100.0 * x),
+        healthy,
+    })
+}
+
+/// Takes over the gains that the zero sequence implies, if the negative sequence balances better with them: a zero
+/// sequence of the supply itself would make it worse.
+fn correct_gains(
+    kind: Kind,
+    sources: &[Healthily<'_>],
+    motor: &mut MotorFile,
+    observed: &mut Vec<Observed>,
+    found: &mut Vec<(Kind, [f64; 3])>,
+    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+) -> Result<(), Refusal> {
+    let gains = gains::from_zero_sequence(gains::zero_ratio(observed, kind));
+    let Some(corrected) = gains::with_gains(motor, kind, gains) else {
+        return Ok(());
+    };
+    let again = windows::observe(sources, &corrected)?;
+    let before = refuse::negative_scatter(motor, observed, config_of);
+    let after = refuse::negative_scatter(&corrected, &again, config_of);
+    // Currents on three wires have no zero sequence of their own.
+    if kind == Kind::Current || after < before {
+        *motor = corrected;
+        *observed = again;
+        found.push((kind, gains));
+    }
+    Ok(())
+}

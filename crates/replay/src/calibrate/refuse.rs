@@ -1,0 +1,150 @@
+//! Recordings that must not be learnt from: faulty ones, and ones that contradict each other.
+
+use monitor::{Healthy, Monitor, MonitorConfig, Row, magnitude};
+use motor::MotorFile;
+use num_complex::Complex32;
+use recording::Recording;
+
+use super::Refusal;
+use super::fit::{Beliefs, Fitted};
+use super::windows::{Healthily, Observed};
+use crate::config_for;
+
+/// Largest change of `I_2/I_1` inside healthy recordings of unchanged supply: a tenth of the turns of a phase shorted
+/// moved a measured motor by 0.06 to 0.09, its healthy windows stay within 0.02.
+const LARGEST_UNBALANCE_CHANGE: f32 = 0.04;
+/// Share of windows that may stray: single disturbances. A few never count: lamps want three in a row.
+const STRAY_SHARE: f64 = 0.01;
+const FEW_STRAYS: usize = 2;
+
+fn strays_allowed(windows: usize) -> usize {
+    ((STRAY_SHARE * windows as f64) as usize).max(FEW_STRAYS)
+}
+
+/// Refuses a fit that changed a parameter beyond belief.
+pub fn implausible(
+    beliefs: &Beliefs<'_>,
+    fitted: &Fitted,
+    recordings: &[Recording],
+) -> Result<(), Refusal> {
+    let limits = beliefs.largest_changes();
+    let mut changes = Fitted::causes().zip(fitted.changes.iter().zip(limits));
+    match changes.find(|(_, (change, limit))| change.abs() > *limit) {
+        None => Ok(()),
+        Some((cause, (change, _))) => Err(Refusal::new(
+            &names(recordings),
+            format!(
+                "{} would have to change by {:+.0} %: the motor file does not describe this motor, or it is not healthy; \
+                 see what `drivemon explain` says",
+                cause.name(),
+                100.0 * change
+            ),
+        )),
+    }
+}
+
+fn names(recordings: &[Recording]) -> String {
+    let names: Vec<&str> = recordings.iter().map(Recording::name).collect();
+    names.join(", ")
+}
+
+/// How much the balance of the negative sequence scatters, a share of the voltage.
+pub fn negative_scatter(
+    motor: &MotorFile,
+    observed: &[Observed],
+    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+) -> f64 {
+    let unknown = Healthy::unknown();
+    let value = |o: &Observed| {
+        let monitor = Monitor::new(config_of(motor, o.recording)).ok()?;
+        let rows = monitor.evidence(&unknown, &o.window)?.departure;
+        let row = Row::Negative as usize;
+        Some([f64::from(rows[row]), f64::from(rows[row + 1])])
+    };
+    let square = |o: &Observed| value(o).map_or(0.0, |[re, im]| o.weight * (re * re + im * im));
+    observed.iter().map(square).sum()
+}
+
+/// Refuses recordings that the calibrated monitor would still call faulty: they differ from the others, or from themselves.
+pub fn contradictions(
+    motor: &MotorFile,
+    sources: &[Healthily<'_>],
+    observed: &[Observed],
+) -> Result<(), Refusal> {
+    changing_unbalance(sources, observed)?;
+    for source in sources {
+        let config = config_for(motor, source.recording);
+        let limit = config.healthy.map_or(f32::INFINITY, |h| h.significance);
+        let (mut judged, mut alarms) = (0, Vec::new());
+        source.monitored(config, &mut |t, report| {
+            if let Some(isolation) = &report.isolation {
+                judged += 1;
+                alarms.extend((isolation.significance > limit).then_some(t));
+            }
+            Ok(())
+        })?;
+        if alarms.len() > strays_allowed(judged) {
+            return Err(Refusal::new(
+                source.recording.name(),
+                format!(
+                    "{} of {judged} steady windows, first at {:.3} s, would light FAULT after calibration: this recording is not of \
+                     the same healthy motor as the others, or the model misses an effect: see what `drivemon explain` says of it",
+                    alarms.len(),
+                    alarms[0]
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The current's unbalance of a healthy motor follows its voltage's; with currents alone it must stand still within each
+/// recording, and from one to the next.
+fn changing_unbalance(sources: &[Healthily<'_>], observed: &[Observed]) -> Result<(), Refusal> {
+    let without_voltage = |o: &&Observed| o.window.u_s.positive.norm_sqr() == 0.0;
+    let all: Vec<&Observed> = observed.iter().filter(without_voltage).collect();
+    let of = |k: usize| all.iter().copied().filter(move |o| o.recording == k);
+    let middles: Vec<Complex32> = (0..sources.len())
+        .map(|k| middle(of(k).map(unbalance)))
+        .collect();
+    let common = middle(middles.iter().copied());
+    for (k, source) in sources.iter().enumerate() {
+        let astray = |from: Complex32| {
+            let beyond =
+                move |o: &&Observed| magnitude(unbalance(o) - from) > LARGEST_UNBALANCE_CHANGE;
+            let strays: Vec<&Observed> = of(k).filter(beyond).collect();
+            let many = strays.len() > strays_allowed(of(k).count());
+            strays.first().copied().filter(|_| many)
+        };
+        let from_others = magnitude(middles[k] - common) > LARGEST_UNBALANCE_CHANGE;
+        let from = if from_others { common } else { middles[k] };
+        if let Some(stray) = astray(from) {
+            return Err(not_one_state(source.recording.name(), stray, from));
+        }
+    }
+    Ok(())
+}
+
+fn unbalance(o: &Observed) -> Complex32 {
+    o.window.in_channels(o.window.i_s.unbalance())
+}
+
+/// Median of the real and of the imaginary parts.
+fn middle(values: impl Iterator<Item = Complex32> + Clone) -> Complex32 {
+    let median = |part: fn(&Complex32) -> f32| {
+        let mut sorted: Vec<f32> = values.clone().map(|x| part(&x)).collect();
+        sorted.sort_by(f32::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+    };
+    Complex32::new(median(|x| x.re), median(|x| x.im))
+}
+
+fn not_one_state(name: &str, stray: &Observed, middle: Complex32) -> Refusal {
+    let reason = format!(
+        "negative over positive sequence of the currents stands {:.1} % from its middle at {:.3} s: this is not one healthy \
+         state; calibrate from recordings without a fault in them",
+        100.0 * magnitude(unbalance(stray) - middle),
+        stray.t
+    );
+    Refusal::new(name, reason)
+}

@@ -1,0 +1,132 @@
+//! Replaying a recording through the very core that the board runs.
+
+mod alarm_causes;
+pub mod calibrate;
+pub mod causes;
+pub mod operating_points;
+mod rotor;
+mod samples;
+mod timeline;
+mod trace;
+pub mod words;
+
+pub use rotor::RotorSummary;
+pub use samples::{Samples, Timed};
+pub use timeline::{LampState, NotJudgedShare, SequenceSummary, Timeline, Verdict, VerdictState};
+pub use trace::{Trace, WindowOperation, WindowResiduals};
+
+use monitor::{
+    ActiveEffects, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor,
+    MonitorConfig, MonitorState,
+};
+use motor::{Mechanics, MotorFile, TParams};
+use recording::{LoadTorque, Recording};
+
+/// The configuration for a recording: the motor file's, with the sampling time and the load knowledge of the recording.
+pub fn config_for(motor: &MotorFile, recording: &Recording) -> MonitorConfig {
+    let mut config = MonitorConfig::from_motor_file(motor, recording.t_sample());
+    config.load = match recording.metadata.load_torque {
+        LoadTorque::Measured if recording.torque().is_some() => LoadKind::Measured,
+        LoadTorque::Measured | LoadTorque::Free => LoadKind::Free,
+        LoadTorque::Friction | LoadTorque::Undeclared => config.load,
+    };
+    config
+}
+
+/// A configuration for a recording of an unknown motor: it measures sequence components and judges nothing.
+///
+/// The scales come from the recording's own peaks; the parameters are those of a typical small motor on these
+/// scales, and no residual is ever formed from them because the speed is left out.
+pub fn stand_in_config(recording: &Recording) -> MonitorConfig {
+    let peak = |channels: Option<[&[f64]; 3]>| {
+        let values = channels.into_iter().flatten().flatten();
+        values.fold(0.0_f64, |peak, x| peak.max(x.abs())) as f32
+    };
+    let at_least = |x: f32| if x > 0.0 { x } else { 1.0 };
+    let volt = at_least(peak(recording.voltages()));
+    let amp = at_least(peak(recording.currents()));
+    let ohm = volt / amp;
+    MonitorConfig {
+        t_sample: recording.t_sample() as f32,
+        converter: Converter::bipolar(volt, amp, 12),
+        encoder_counts_per_revolution: 4096.0,
+        params: TParams {
+            r_s: 0.05 * ohm,
+            r_r: 0.05 * ohm,
+            l_ls: 0.1 * ohm / STAND_IN_OMEGA,
+            l_lr: 0.1 * ohm / STAND_IN_OMEGA,
+            l_m: 2.0 * ohm / STAND_IN_OMEGA,
+        },
+        effects: ActiveEffects::default(),
+        channel_gain: [1.0; monitor::CHANNELS],
+        mechanics: Mechanics {
+            n_p: 2.0,
+            inertia: 0.01,
+            friction: 0.0,
+            load_friction: 0.0,
+        },
+        rated_voltage: volt,
+        rated_current: amp,
+        rated_omega: STAND_IN_OMEGA,
+        rated_torque: 1.0,
+        frame: Frame::RotorFlux,
+        field: FieldCurrent::Live,
+        load: LoadKind::Free,
+        thresholds: [1.0; 4],
+        window_cycles: 5,
+        comparator: ComparatorConfig {
+            persistence: 3,
+            hysteresis: 0.8,
+        },
+        healthy: None,
+    }
+}
+
+/// 50 Hz, rad/s.
+const STAND_IN_OMEGA: f32 = 314.16;
+
+/// Runs every sample through the core; `progress` gets the number of samples done.
+pub fn replay(
+    monitor: &Monitor,
+    samples: &Samples<'_>,
+    progress: &mut dyn FnMut(usize),
+) -> Timeline {
+    let mut state = MonitorState::default();
+    let mut timeline = Timeline::new(monitor.config());
+    for (k, timed) in samples.iter().enumerate() {
+        if timed.after_gap {
+            state.resume_after_gap();
+        }
+        if let Some(report) = monitor.update(&mut state, &timed.sample) {
+            timeline.add(timed.t, &report);
+            progress(k + 1);
+        }
+    }
+    timeline.finish();
+    timeline
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use recording::Metadata;
+
+    fn load(declared: LoadTorque) -> LoadKind {
+        let text = include_str!("../../../motors/assumed-300w.toml");
+        let motor = MotorFile::parse(text, "motor").expect("it ships");
+        let metadata = Metadata {
+            load_torque: declared,
+            ..Metadata::default()
+        };
+        let recording = Recording::new("x", vec![0.0, 1e-4], metadata).expect("a clock");
+        config_for(&motor, &recording).load
+    }
+
+    #[test]
+    fn a_recording_that_declares_its_load_unknown_overrules_the_motor_file() {
+        assert_eq!(load(LoadTorque::default()), LoadKind::Friction);
+        assert_eq!(load(LoadTorque::Free), LoadKind::Free);
+        // Nothing was recorded of what is called measured.
+        assert_eq!(load(LoadTorque::Measured), LoadKind::Free);
+    }
+}

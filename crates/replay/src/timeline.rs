@@ -1,0 +1,474 @@
+//! What a whole recording came to: lamp changes, verdict, sequence components.
+
+use std::collections::BTreeMap;
+
+use monitor::{
+    Candidates, Channel, FAULTS, Known, Lamps, LoadKind, MonitorConfig, NotJudged, Report, Witness,
+};
+use num_complex::Complex64;
+use recording::Finding;
+use serde::Serialize;
+
+use super::alarm_causes::Causes;
+use super::rotor::{RotorHistory, RotorSummary};
+use super::trace::Trace;
+use crate::causes::{self, Candidate};
+use crate::words;
+
+/// The lamps from one moment on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LampState {
+    /// Time of the recording, s.
+    pub t: f64,
+    /// RUN.
+    pub run: &'static str,
+    /// Residual r1.
+    pub r1: &'static str,
+    /// Residual r2.
+    pub r2: &'static str,
+    /// Residual r3.
+    pub r3: &'static str,
+    /// Residual r4.
+    pub r4: &'static str,
+    /// SENSOR.
+    pub sensor: &'static str,
+    /// LINE.
+    pub line: &'static str,
+    /// LOAD.
+    pub load: &'static str,
+    /// FAULT.
+    pub fault: &'static str,
+    /// Why the window at this moment was not judged.
+    pub not_judged: Option<String>,
+}
+
+/// The outcome in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VerdictState {
+    /// Judged, and FAULT never lit.
+    Healthy,
+    /// FAULT lit.
+    Fault,
+    /// No window could be judged.
+    NotJudged,
+}
+
+/// Verdict over the whole recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// The outcome.
+    pub state: VerdictState,
+    /// Possible causes, likeliest first.
+    pub candidates: Vec<Candidate>,
+    /// How many of them, from the first, this recording cannot tell apart ([`monitor::TIE_RATIO`]); 1 where the first stands alone.
+    pub tied: usize,
+    /// What would tell them apart; empty without a tie.
+    pub separating_tests: Vec<&'static str>,
+}
+
+impl Verdict {
+    fn new(state: VerdictState, candidates: Vec<Candidate>) -> Self {
+        let tied = causes::tied(&candidates);
+        let separating_tests = match tied {
+            0 | 1 => Vec::new(),
+            _ => causes::tests(&candidates[..tied]),
+        };
+        Verdict {
+            state,
+            candidates,
+            tied,
+            separating_tests,
+        }
+    }
+}
+
+/// Sequence components over the recording. Angles refer to phase a.
+///
+/// The windows are averaged as complex ratios under a Hann weight over the recording, so that what was
+/// cut off at its beginning and end counts little; `largest` looks at single windows instead.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SequenceSummary {
+    /// Negative over positive sequence of the currents.
+    pub i2_over_i1: Option<f64>,
+    /// Angle of that ratio, degrees.
+    pub i2_over_i1_angle_deg: Option<f64>,
+    /// Negative over positive sequence of the voltages.
+    pub v2_over_v1: Option<f64>,
+    /// Zero over positive sequence of the currents.
+    pub i0_over_i1: Option<f64>,
+    /// Largest negative over positive sequence of the currents in a single window.
+    pub largest_i2_over_i1: Option<f64>,
+}
+
+/// How many windows one reason kept from being judged.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NotJudgedShare {
+    /// The reason in words.
+    pub reason: String,
+    /// Windows.
+    pub windows: u64,
+}
+
+/// Residuals over the judged windows, percent of their scales.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    windows: u64,
+    sum: [f64; 4],
+    square: [f64; 4],
+}
+
+/// The collected result of a replay.
+#[derive(Clone, Debug, Default)]
+pub struct Timeline {
+    /// Windows reported.
+    pub windows: u64,
+    /// Windows judged.
+    pub judged: u64,
+    /// Lamps at every change.
+    pub lamps: Vec<LampState>,
+    /// Time of the first FAULT, s.
+    pub first_alarm_s: Option<f64>,
+    /// Why windows were not judged, most frequent first.
+    pub not_judged: Vec<NotJudgedShare>,
+    /// Every window in the order of time.
+    pub trace: Trace,
+    reasons: BTreeMap<String, u64>,
+    shown: Option<(Lamps, Option<NotJudged>)>,
+    moments: Moments,
+    /// Residuals that would have lit their lamps, percent of scale, summed up over the windows that had any.
+    visible_sum: [f64; 4],
+    visible_windows: u64,
+    candidate_sum: [f64; FAULTS],
+    unknown_sum: f64,
+    candidate_windows: u64,
+    /// Channels that windows since the alarm found wrong, and how many windows did.
+    found: Vec<(Channel, u64)>,
+    /// Whether one of them was dead.
+    names_a_dead_sensor: bool,
+    since_alarm: u64,
+    sequences: Sequences,
+    /// Windows in which the field turned forwards and backwards.
+    turned: [u64; 2],
+    causes: Causes,
+    rotor: RotorHistory,
+    rated_current: f32,
+    load_friction: bool,
+    /// Resistance rise of the judged windows of a calibrated motor.
+    heating_sum: f64,
+    heating_windows: u64,
+}
+
+/// Ratios of the sequence components of each complete window.
+#[derive(Clone, Debug, Default)]
+struct Sequences {
+    current: Vec<CurrentRatios>,
+    voltage: Vec<(f64, Complex64)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct CurrentRatios {
+    t: f64,
+    negative: Complex64,
+    zero: Complex64,
+}
+
+impl Timeline {
+    /// For a monitor of this configuration.
+    pub fn new(config: &MonitorConfig) -> Self {
+        Timeline {
+            rated_current: config.rated_current,
+            load_friction: config.load == LoadKind::Friction,
+            ..Timeline::default()
+        }
+    }
+
+    /// Adds one report; `t` is the time of the window's end, s.
+    pub fn add(&mut self, t: f64, report: &Report) {
+        self.windows += 1;
+        if let Some(window) = &report.window {
+            self.turned[usize::from(window.backwards)] += 1;
+        }
+        self.note_visible(report);
+        self.note_judgement(report);
+        self.note_lamps(t, report);
+        self.rotor.add(&report.rotor);
+        self.note_causes(t, report);
+        self.sequences.add(t, report);
+        self.trace.add(t, report);
+    }
+
+    /// Sorts what has been collected.
+    pub fn finish(&mut self) {
+        let mut reasons: Vec<_> = std::mem::take(&mut self.reasons).into_iter().collect();
+        reasons.sort_by_key(|(_, windows)| std::cmp::Reverse(*windows));
+        self.not_judged = reasons
+            .into_iter()
+            .map(|(reason, windows)| NotJudgedShare { reason, windows })
+            .collect();
+    }
+
+    /// Says that the residuals lack the motor's parameters rather than its speed.
+    pub fn blame_missing_motor_file(&mut self) {
+        let no_speed = words::not_judged(NotJudged::NoSpeed);
+        let in_shares = self.not_judged.iter_mut().map(|share| &mut share.reason);
+        let in_lamps = self
+            .lamps
+            .iter_mut()
+            .filter_map(|lamps| lamps.not_judged.as_mut());
+        for reason in in_shares
+            .chain(in_lamps)
+            .filter(|reason| **reason == no_speed)
+        {
+            "no motor file was given (--motor M)".clone_into(reason);
+        }
+    }
+
+    fn note_visible(&mut self, report: &Report) {
+        let steady = matches!(report.not_judged, None | Some(NotJudged::Noise));
+        let Some(visible) = report.visible.filter(|_| steady) else {
+            return;
+        };
+        self.visible_windows += 1;
+        for (sum, visible) in self.visible_sum.iter_mut().zip(visible) {
+            *sum += 100.0 * f64::from(visible);
+        }
+    }
+
+    /// Residuals that light their lamps, percent of scale: thresholds with what noise and changes do, the mean over the
+    /// steady windows.
+    pub fn visible_percent(&self) -> Option<[f64; 4]> {
+        let n = self.visible_windows as f64;
+        (self.visible_windows > 0).then(|| self.visible_sum.map(|sum| sum / n))
+    }
+
+    fn note_judgement(&mut self, report: &Report) {
+        if let Some(reason) = report.not_judged {
+            *self.reasons.entry(words::not_judged(reason)).or_default() += 1;
+            return;
+        }
+        self.judged += 1;
+        if let Some(isolation) = &report.isolation {
+            self.heating_sum += f64::from(isolation.heating.rise);
+            self.heating_windows += 1;
+        }
+        let Some(residuals) = report.residuals else {
+            return;
+        };
+        self.moments.windows += 1;
+        for (k, r) in residuals.r.iter().enumerate() {
+            let percent = 100.0 * f64::from(*r);
+            self.moments.sum[k] += percent;
+            self.moments.square[k] += percent * percent;
+        }
+    }
+
+    fn note_lamps(&mut self, t: f64, report: &Report) {
+        let now = (report.lamps, report.not_judged);
+        if self.shown != Some(now) {
+            self.shown = Some(now);
+            self.lamps.push(lamp_state(t, report));
+        }
+    }
+
+    fn note_causes(&mut self, t: f64, report: &Report) {
+        let alarm = report.lamps.fault == monitor::Lamp::On;
+        if alarm && self.first_alarm_s.is_none() {
+            self.first_alarm_s = Some(t);
+        }
+        if self.first_alarm_s.is_none() {
+            return;
+        }
+        self.since_alarm += 1;
+        if let Some(candidates) = &report.candidates {
+            self.add_candidates(candidates);
+        }
+        // Bars shake every window: what a window says of other causes is then not asked.
+        if alarm && report.is_judged() && !report.rotor.is_broken {
+            self.causes.add(report, self.rated_current);
+        }
+        if let Some(finding) = report.sensor {
+            self.names_a_dead_sensor |= finding.is_dead();
+            self.add_found(Channel::of(finding));
+        }
+    }
+
+    fn add_candidates(&mut self, candidates: &Candidates) {
+        self.candidate_windows += 1;
+        self.unknown_sum += f64::from(candidates.unknown);
+        for (sum, p) in self.candidate_sum.iter_mut().zip(candidates.faults) {
+            *sum += f64::from(p);
+        }
+    }
+
+    fn add_found(&mut self, channel: Channel) {
+        match self.found.iter_mut().find(|(known, _)| *known == channel) {
+            Some((_, windows)) => *windows += 1,
+            None => self.found.push((channel, 1)),
+        }
+    }
+
+    /// The verdict over everything added so far; `audit` is what is known of the recording's channels beforehand.
+    pub fn verdict(&self, audit: &[Finding]) -> Verdict {
+        let state = match (self.first_alarm_s, self.judged) {
+            // A dead sensor is a finding of its own; signals that merely contradict each other, of which no window could be
+            // judged, are none.
+            (Some(_), 0) if !self.names_a_dead_sensor => VerdictState::NotJudged,
+            (Some(_), _) => VerdictState::Fault,
+            (None, 0) => VerdictState::NotJudged,
+            (None, _) => VerdictState::Healthy,
+        };
+        let candidates = self.first_alarm_s.map_or_else(Vec::new, |alarm_s| {
+            self.candidates(&causes::wrong_channels(audit, [alarm_s, f64::INFINITY]))
+        });
+        Verdict::new(state, candidates)
+    }
+
+    /// Each window since the alarm that says something has one voice.
+    fn candidates(&self, wrong: &[Channel]) -> Vec<Candidate> {
+        let (witness, voices) = self.witness();
+        let voices = voices + self.found.iter().map(|(_, windows)| windows).sum::<u64>();
+        let share = |windows: u64| windows as f32 / voices.max(1) as f32;
+        let found: Vec<_> = self
+            .found
+            .iter()
+            .map(|(channel, windows)| (*channel, share(*windows)))
+            .collect();
+        let known = Known {
+            found: &found,
+            witness,
+            wrong,
+        };
+        causes::listed(causes::candidates(&known, self.load_friction))
+    }
+
+    /// What the windows without a finding say, and how many they are.
+    fn witness(&self) -> (Witness, u64) {
+        if self.rotor.is_broken() {
+            let found: u64 = self.found.iter().map(|(_, windows)| windows).sum();
+            (Witness::Bars, self.since_alarm.saturating_sub(found))
+        } else if self.causes.windows() > 0 {
+            (self.causes.witness(), self.causes.windows())
+        } else if self.candidate_windows > 0 {
+            (Witness::Table(self.table()), self.candidate_windows)
+        } else {
+            (Witness::None, 0)
+        }
+    }
+
+    /// Mean over the windows.
+    fn table(&self) -> Candidates {
+        let mean = |sum: f64| (sum / self.candidate_windows.max(1) as f64) as f32;
+        Candidates {
+            faults: self.candidate_sum.map(mean),
+            unknown: mean(self.unknown_sum),
+        }
+    }
+
+    /// Relative rise of the resistances since the calibration, the mean over the judged windows; `None` without one.
+    pub fn resistance_rise(&self) -> Option<f64> {
+        (self.heating_windows > 0).then(|| self.heating_sum / self.heating_windows as f64)
+    }
+
+    /// What the sidebands of the current say about the rotor's bars.
+    pub fn rotor(&self) -> RotorSummary {
+        self.rotor.summary()
+    }
+
+    /// How the field turned: `forwards`, `backwards` or `both`; `None` without a complete window.
+    pub fn direction(&self) -> Option<&'static str> {
+        match self.turned {
+            [0, 0] => None,
+            [_, 0] => Some("forwards"),
+            [0, _] => Some("backwards"),
+            _ => Some("both"),
+        }
+    }
+
+    /// Mean sequence components.
+    pub fn sequence(&self) -> SequenceSummary {
+        self.sequences.summary()
+    }
+
+    /// Mean and standard deviation of r1..r4 over the judged windows, percent of scale; `None` where none could be computed.
+    pub fn residual_percent(&self) -> Option<([f64; 4], [f64; 4])> {
+        if self.moments.windows == 0 {
+            return None;
+        }
+        let n = self.moments.windows as f64;
+        let mean = self.moments.sum.map(|sum| sum / n);
+        let mut deviation = self.moments.square.map(|square| square / n);
+        for (square, mean) in deviation.iter_mut().zip(mean) {
+            *square = (*square - mean * mean).max(0.0).sqrt();
+        }
+        Some((mean, deviation))
+    }
+}
+
+fn lamp_state(t: f64, report: &Report) -> LampState {
+    let lamps = &report.lamps;
+    let [r1, r2, r3, r4] = lamps.r.map(|lamp| lamp.name());
+    LampState {
+        t,
+        run: lamps.run.name(),
+        r1,
+        r2,
+        r3,
+        r4,
+        sensor: lamps.sensor.name(),
+        line: lamps.line.name(),
+        load: lamps.load.name(),
+        fault: lamps.fault.name(),
+        not_judged: report.not_judged.map(words::not_judged),
+    }
+}
+
+impl Sequences {
+    /// `t` is the time of the window's end; what it measured belongs to its middle.
+    fn add(&mut self, t: f64, report: &Report) {
+        let Some(window) = &report.window else {
+            return;
+        };
+        let half_cycle = std::f64::consts::PI / f64::from(window.omega_sync);
+        let t = t - 0.5 * f64::from(window.span) - half_cycle;
+        let wide = |x: num_complex::Complex32| Complex64::new(f64::from(x.re), f64::from(x.im));
+        if window.i_s.positive.norm_sqr() > 0.0 {
+            self.current.push(CurrentRatios {
+                t,
+                negative: wide(window.i_s.unbalance()),
+                zero: wide(window.i_s.zero_ratio()),
+            });
+        }
+        if window.u_s.positive.norm_sqr() > 0.0 {
+            self.voltage.push((t, wide(window.u_s.unbalance())));
+        }
+    }
+
+    fn summary(&self) -> SequenceSummary {
+        let of_current = |part: fn(&CurrentRatios) -> Complex64| {
+            hann_mean(self.current.iter().map(|ratios| (ratios.t, part(ratios))))
+        };
+        let i2 = of_current(|ratios| ratios.negative);
+        let sizes = self.current.iter().map(|ratios| ratios.negative.norm());
+        SequenceSummary {
+            i2_over_i1: i2.map(Complex64::norm),
+            i2_over_i1_angle_deg: i2.map(|x| x.arg().to_degrees()),
+            v2_over_v1: hann_mean(self.voltage.iter().copied()).map(Complex64::norm),
+            i0_over_i1: of_current(|ratios| ratios.zero).map(Complex64::norm),
+            largest_i2_over_i1: sizes.max_by(f64::total_cmp),
+        }
+    }
+}
+
+/// Mean of values over time under a Hann weight that spans them; `None` without values.
+fn hann_mean(values: impl Iterator<Item = (f64, Complex64)> + Clone) -> Option<Complex64> {
+    let (first, _) = values.clone().next()?;
+    let (last, _) = values.clone().last()?;
+    // Half a step beyond either end, so that a single value has a weight.
+    let span = (last - first).max(f64::MIN_POSITIVE) * 1.001;
+    let weight = |t: f64| 1.0 - (std::f64::consts::TAU * ((t - first) / span + 0.0005)).cos();
+    let (sum, weights) = values.fold((Complex64::ZERO, 0.0), |(sum, weights), (t, x)| {
+        (sum + x * weight(t), weights + weight(t))
+    });
+    Some(sum / weights)
+}

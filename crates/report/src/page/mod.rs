@@ -1,0 +1,108 @@
+//! The result of a command as one self-contained HTML page: no network, the same JSON embedded.
+//!
+//! Every number on a page is taken from the JSON through a [`Place`], which remembers where it stands there;
+//! figures are drawn in the browser by an embedded chart library from the embedded JSON. So a page can show
+//! nothing that the JSON does not hold.
+
+mod adopt;
+mod audit;
+mod campaign;
+mod chart;
+mod compare;
+mod demo;
+mod explain;
+mod frame;
+mod load_table;
+mod models;
+mod monitor;
+mod number;
+mod overlay;
+mod parameters;
+mod place;
+mod scale;
+mod shell;
+mod table_overlay;
+
+pub use compare::AGREES;
+pub use number::{Style, decimals, significant};
+pub use place::Place;
+
+use serde::Serialize;
+
+/// Which command's result a page shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// `drivemon demo`.
+    Demo,
+    /// `drivemon monitor` on a recording.
+    Monitor,
+    /// `drivemon monitor` on a load-test table.
+    LoadTable,
+    /// `drivemon compare`.
+    Compare,
+    /// `drivemon explain`.
+    Explain,
+    /// `drivemon adopt`.
+    Adopt,
+    /// `drivemon campaign table`.
+    Campaign,
+}
+
+/// The page for a result, complete.
+///
+/// # Errors
+/// A result that is no JSON.
+pub fn page(subject: Subject, result: &impl Serialize) -> Result<String, serde_json::Error> {
+    let value = serde_json::to_value(result)?;
+    let (title, content) = content(subject, &value);
+    Ok(shell::page(
+        title,
+        &content,
+        &serde_json::to_string(&value)?,
+    ))
+}
+
+/// What a page holds between heading and footer, for pages that have their own.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fragment {
+    /// The heading.
+    pub title: &'static str,
+    /// HTML without scripts; figures are drawn by `report.js` from `result`.
+    pub html: String,
+    /// The result that every number comes from.
+    pub result: serde_json::Value,
+}
+
+/// The fragment for a result.
+///
+/// # Errors
+/// A result that is no JSON.
+pub fn fragment(subject: Subject, result: &impl Serialize) -> Result<Fragment, serde_json::Error> {
+    let result = serde_json::to_value(result)?;
+    let (title, content) = content(subject, &result);
+    Ok(Fragment {
+        title,
+        html: content.into_string(),
+        result,
+    })
+}
+
+/// Heading and content.
+fn content(subject: Subject, value: &serde_json::Value) -> (&'static str, maud::Markup) {
+    let place = Place::root(value);
+    match subject {
+        Subject::Demo => ("Table 1 on a simulated motor", demo::content(&place)),
+        Subject::Monitor => ("What the lamps would have shown", monitor::content(&place)),
+        Subject::LoadTable => (
+            "Operating points of a load test",
+            load_table::content(&place),
+        ),
+        Subject::Compare => ("Where the model fails", compare::content(&place)),
+        Subject::Explain => ("Which physics the model misses", explain::content(&place)),
+        Subject::Adopt => ("A model made better", adopt::content(&place)),
+        Subject::Campaign => (
+            "What the lamps can be trusted with",
+            campaign::content(&place),
+        ),
+    }
+}

@@ -1,0 +1,61 @@
+//! Compare, explain and adopt with everything that is shown of them: terminal, reports and panel hold the same.
+
+mod adopt;
+mod compare;
+mod explain;
+mod places;
+
+pub use adopt::Adopted;
+pub use compare::Compared;
+pub use explain::{Explained, Next, anything_off};
+pub use places::{Place, worst};
+
+use std::borrow::Cow;
+
+use discovery::SpeedScaleReport;
+use monitor::MAX_EFFECTS;
+use motor::MotorFile;
+use recording::Source;
+
+/// The name that adopts no effect, but the refitted parameters.
+pub const PARAMETERS: &str = "parameters";
+
+/// What a question is asked about.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The recordings' names as people know them, in the order of `sources`.
+    pub names: &'a [String],
+    /// The first is fitted, the others prove.
+    pub sources: &'a [Source],
+    /// What is believed of the motor.
+    pub motor: &'a MotorFile,
+}
+
+/// A source as figures show it: a speed of unknown scale in the scale that was fitted.
+pub fn in_fitted_scale<'a>(
+    source: &'a Source,
+    scale: Option<&SpeedScaleReport>,
+) -> Cow<'a, Source> {
+    match (source, scale) {
+        (Source::Recording(recording), Some(scale)) => Cow::Owned(Source::Recording(
+            recording
+                .clone()
+                .with_speed_scale(scale.factor, scale.at_rest_rad_s),
+        )),
+        _ => Cow::Borrowed(source),
+    }
+}
+
+/// Whether the core takes all effects of a motor file.
+///
+/// # Errors
+/// The file, how many there are, and the remedy.
+pub fn effects_fit(file: &str, motor: &MotorFile) -> Result<(), String> {
+    let count = motor.effects.len();
+    match count <= MAX_EFFECTS {
+        true => Ok(()),
+        false => Err(format!(
+            "{file}: effects: {count} of them, but the core takes at most {MAX_EFFECTS}; remove the smallest"
+        )),
+    }
+}

@@ -1,0 +1,211 @@
+//! The instruments: faults, noise, resolution and limits between the truth and the sample.
+
+use super::{Measured, Truth};
+use crate::{Change, DqSignal, Fault, Probe, Scenario, SensorSpec, SpeedSensor, Target};
+use motor::dynamic::{clarke, phases};
+use num_complex::Complex64;
+use rand::{Rng, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64;
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+/// An encoder's speed is its counts over this time, s.
+const ENCODER_WINDOW_S: f64 = 0.01;
+const COUNTS_PER_PULSE: f64 = 4.0;
+
+#[derive(Debug)]
+pub(super) struct Instruments {
+    spec: SensorSpec,
+    t_sample: f64,
+    random: Pcg64,
+    last_theta: Option<f64>,
+    encoder_angle: f64,
+    counts: VecDeque<i64>,
+}
+
+/// One analogue channel; corrected value = (raw - offset) * gain.
+struct Channel {
+    full_scale: f64,
+    bits: u32,
+    gain: f64,
+    offset: f64,
+}
+
+impl Channel {
+    fn step(&self) -> f64 {
+        2.0 * self.full_scale / f64::from(1_u32 << self.bits)
+    }
+
+    /// The ADC code of a raw value: 0 V or 0 A is the middle code.
+    fn code(&self, raw: f64) -> u16 {
+        let middle = f64::from(1_u32 << (self.bits - 1));
+        let code = (raw / self.step() + middle).round();
+        let largest = f64::from((1_u32 << self.bits) - 1);
+        // Clamped into the codes of at most 16 bits.
+        code.clamp(0.0, largest) as u16
+    }
+
+    fn raw_of(&self, code: u16) -> f64 {
+        let middle = f64::from(1_u32 << (self.bits - 1));
+        (f64::from(code) - middle) * self.step()
+    }
+}
+
+impl Instruments {
+    pub(super) fn new(scenario: &Scenario) -> Instruments {
+        Instruments {
+            spec: scenario.sensors.clone(),
+            t_sample: scenario.t_sample(),
+            random: Pcg64::seed_from_u64(scenario.seed),
+            last_theta: None,
+            encoder_angle: 0.0,
+            counts: VecDeque::new(),
+        }
+    }
+
+    pub(super) fn read(&mut self, t: f64, truth: &Truth, faults: &[Fault]) -> Measured {
+        let active: Vec<&Fault> = faults.iter().filter(|fault| fault.is_active(t)).collect();
+        let (u, i) = transformed(truth, &active);
+        let own = self.spec.instrument;
+        let (mut u_s_abc, mut i_s_abc) = ([0.0; 3], [0.0; 3]);
+        let (mut voltage_codes, mut current_codes) = ([0; 3], [0; 3]);
+        for k in 0..3 {
+            let channel = Channel {
+                full_scale: own.voltage_full_scale_volt,
+                bits: own.adc_bits,
+                gain: own.voltage_gain[k],
+                offset: own.voltage_offset_volt[k],
+            };
+            let x = probed(u[k], Probe::Voltage(k), &active);
+            (u_s_abc[k], voltage_codes[k]) = self.convert(&channel, x);
+        }
+        for k in 0..3 {
+            let channel = Channel {
+                full_scale: own.current_full_scale_amp,
+                bits: own.adc_bits,
+                gain: own.current_gain[k],
+                offset: own.current_offset_amp[k],
+            };
+            let x = probed(i[k], Probe::Current(k), &active);
+            (i_s_abc[k], current_codes[k]) = self.convert(&channel, x);
+        }
+        let count = self.count(truth, &active);
+        Measured {
+            u_s_abc,
+            i_s_abc,
+            omega_mech: self.speed(truth, count, &active),
+            tau_load: self.plain(truth.tau_load, own.torque_full_scale_nm),
+            voltage_codes,
+            current_codes,
+            // The hardware counter has 16 bits and wraps.
+            encoder_count: count as u16,
+        }
+    }
+
+    /// The calibrated value and the code of one channel.
+    fn convert(&mut self, channel: &Channel, x: f64) -> (f64, u16) {
+        let raw = x / channel.gain + channel.offset + self.noise(channel.full_scale);
+        let code = channel.code(raw);
+        let shown = if self.spec.quantise {
+            channel.raw_of(code)
+        } else {
+            raw
+        };
+        ((shown - channel.offset) * channel.gain, code)
+    }
+
+    /// A channel without calibration, such as the tachometer.
+    fn plain(&mut self, x: f64, full_scale: f64) -> f64 {
+        let channel = Channel {
+            full_scale,
+            bits: self.spec.instrument.adc_bits,
+            gain: 1.0,
+            offset: 0.0,
+        };
+        self.convert(&channel, x).0
+    }
+
+    fn noise(&mut self, full_scale: f64) -> f64 {
+        let sigma = self.spec.instrument.noise_sigma_fraction_of_full_scale * full_scale;
+        if sigma == 0.0 {
+            return 0.0;
+        }
+        let normal: f64 = self.random.sample(StandardNormal);
+        sigma * normal
+    }
+
+    /// Counts of the encoder since the beginning, four per pulse.
+    fn count(&mut self, truth: &Truth, active: &[&Fault]) -> i64 {
+        let turned = truth.theta_mech - self.last_theta.unwrap_or(truth.theta_mech);
+        self.last_theta = Some(truth.theta_mech);
+        let speed = probed(turned / self.t_sample, Probe::Speed, active);
+        self.encoder_angle += speed * self.t_sample;
+        let pulses = f64::from(self.spec.instrument.encoder_pulses_per_revolution);
+        // Far inside 64 bits: a day at 60000 rpm and a million pulses is 3e14 counts.
+        (self.encoder_angle / TAU * pulses * COUNTS_PER_PULSE).floor() as i64
+    }
+
+    fn speed(&mut self, truth: &Truth, count: i64, active: &[&Fault]) -> f64 {
+        match self.spec.speed {
+            SpeedSensor::None => 0.0,
+            SpeedSensor::Encoder => self.encoder_speed(count),
+            SpeedSensor::Tachometer => {
+                let omega = probed(truth.omega_mech, Probe::Speed, active);
+                self.plain(omega, self.spec.instrument.speed_full_scale_rad_s)
+            }
+        }
+    }
+
+    fn encoder_speed(&mut self, count: i64) -> f64 {
+        self.counts.push_back(count);
+        let window = (ENCODER_WINDOW_S / self.t_sample).round().max(1.0);
+        if self.counts.len() > window as usize + 1 {
+            self.counts.pop_front();
+        }
+        let intervals = self.counts.len() - 1;
+        if intervals == 0 {
+            return 0.0;
+        }
+        let counts = (count - self.counts[0]) as f64;
+        let pulses = f64::from(self.spec.instrument.encoder_pulses_per_revolution);
+        counts * TAU / (COUNTS_PER_PULSE * pulses) / (intervals as f64 * self.t_sample)
+    }
+}
+
+/// Phase voltages and currents behind the faults of d-q signals.
+fn transformed(truth: &Truth, active: &[&Fault]) -> ([f64; 3], [f64; 3]) {
+    let (mut u, mut i) = (truth.u_s_abc, truth.i_s_abc);
+    for fault in active {
+        let Target::Dq(signal, frame) = fault.target else {
+            continue;
+        };
+        let theta = truth.theta(frame);
+        match signal {
+            DqSignal::Vd | DqSignal::Vq => u = in_frame(u, theta, signal, fault),
+            DqSignal::Id | DqSignal::Iq => i = in_frame(i, theta, signal, fault),
+        }
+    }
+    (u, i)
+}
+
+fn in_frame(abc: [f64; 3], theta: f64, signal: DqSignal, fault: &Fault) -> [f64; 3] {
+    let turn = Complex64::from_polar(1.0, theta);
+    let mut dq = clarke(abc) * turn.conj();
+    match signal {
+        DqSignal::Id | DqSignal::Vd => dq.re = fault.apply(dq.re),
+        DqSignal::Iq | DqSignal::Vq => dq.im = fault.apply(dq.im),
+    }
+    phases(dq * turn)
+}
+
+/// A value behind the faults of its own sensor; a dead one shows its zero.
+fn probed(x: f64, probe: Probe, active: &[&Fault]) -> f64 {
+    active
+        .iter()
+        .filter(|fault| fault.target == Target::Probe(probe))
+        .fold(x, |x, fault| match fault.change {
+            Change::Factor(factor) => x * factor,
+            Change::Offset(offset) => x + offset,
+        })
+}
