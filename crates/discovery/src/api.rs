@@ -83,13 +83,13 @@ fn judged_frame(question: &Question, motor: &MotorFile, trial: &Trial) -> Option
     let study = &question.study;
     let all = std::iter::once(&study.fitted).chain(&study.proofs);
     let cases: Vec<&Case> = all.map(|s| &s.case).collect();
-    let fitted = trial.fit.hypothesis.plant(&study.belief);
+    let fitted = trial.fit.hypothesis.plant(&study.prior);
     if study.speed_scale.is_none() {
-        return frame::judge(motor, &study.belief, &fitted.motor, &cases);
+        return frame::judge(motor, &study.prior, &fitted.motor, &cases);
     }
     let scaled: Vec<Case> = cases.iter().map(|case| case.as_seen_by(&fitted)).collect();
     let cases: Vec<&Case> = scaled.iter().collect();
-    frame::judge(motor, &study.belief, &fitted.motor, &cases)
+    frame::judge(motor, &study.prior, &fitted.motor, &cases)
 }
 
 /// The scale of the speed that a trial found, where it was unknown.
@@ -98,7 +98,7 @@ pub(crate) fn speed_scale_report(study: &Study, trial: &Trial) -> Option<SpeedSc
     let uncertainty = Uncertainty::of(study, trial);
     Some(scale.report(
         &trial.fit.hypothesis,
-        &study.belief,
+        &study.prior,
         uncertainty.of_scale_and_source(),
     ))
 }
@@ -308,7 +308,7 @@ pub fn adopt(
     let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
     progress("refitting the parameters", 0.2);
-    let refitted = study.trial(&study.beliefs(), Effort::FULL);
+    let refitted = study.trial(&study.at_prior(), Effort::FULL);
     if effect == frame::NAME {
         return adopted_frame(&question, motor, &refitted);
     }
@@ -348,9 +348,9 @@ pub fn adopt(
 
 /// The motor file as it is: nothing is fitted, not even on the folds.
 fn as_believed(study: &Study) -> Trial {
-    let mut beliefs = study.beliefs();
-    beliefs.free.fill(false);
-    study.trial(&beliefs, Effort::NONE)
+    let mut priors = study.at_prior();
+    priors.free.fill(false);
+    study.trial(&priors, Effort::NONE)
 }
 
 /// Changes nothing but the frame in which the monitor forms its residuals.
@@ -435,12 +435,12 @@ fn is_open(entry: &EffectEntry) -> bool {
 
 /// The motor file with the parameters and effects of a trial.
 fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
-    let plant = with_nominals(trial, study.polished(trial)).plant(&study.belief);
+    let plant = with_nominals(trial, study.polished(trial)).plant(&study.prior);
     let mut file = motor.clone();
     file.parameters = plant.motor;
     file.mechanics = plant.mechanics;
     file.mechanics.load_friction = motor.mechanics.load_friction;
-    let mut added = trial.fit.hypothesis.configs(&study.belief.plant.rated);
+    let mut added = trial.fit.hypothesis.configs(&study.prior.plant.rated);
     // The scale of a sensor belongs to the recording, not to the motor.
     added.drain(..study.given_effects());
     // A formula with its fitted parameters replaces the open one.

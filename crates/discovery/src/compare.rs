@@ -6,7 +6,7 @@ use crate::data::channels::N_CHANNELS;
 use crate::data::question::{Error, Question};
 use crate::data::study::Study;
 use crate::fit::output_error::Effort;
-use crate::model::prediction::{Teacher, outputs, residual};
+use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::report::types::{
     BandReport, CompareReport, Inconclusive, OrderReport, Overall, RegionReport, SignalReport,
     SpeedScaleReport,
@@ -54,7 +54,7 @@ pub fn compare(
     progress("simulating", 0.5);
     let study = &question.study;
     let case = &study.fitted.case;
-    let model = outputs(case, &study.belief, &study.beliefs(), Teacher::Off);
+    let model = outputs(case, &study.prior, &study.at_prior(), SpeedObserver::Off);
     let r = residual(case, &model);
     let (speed_scale, cannot_be_concluded) = scale_of(study).unzip();
     progress("done", 1.0);
@@ -75,7 +75,7 @@ pub fn compare(
 /// The scale of the speed that suits the motor file as it is, where it was unknown, and what that leaves open.
 fn scale_of(study: &Study) -> Option<(SpeedScaleReport, Vec<Inconclusive>)> {
     study.speed_scale?;
-    let trial = study.trial(&study.beliefs(), Effort::NONE);
+    let trial = study.trial(&study.at_prior(), Effort::NONE);
     let open = inconclusive::list(study, &trial, &[]);
     Some((speed_scale_report(study, &trial)?, open))
 }
@@ -120,7 +120,7 @@ fn error_of(study: &Study, r: &[f64], blocks: &[Numbered]) -> f64 {
 /// State of the machine in one block: what it does, its load and voltage in percent.
 fn state(study: &Study, rows: &Range<usize>) -> String {
     let case = &study.fitted.case;
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let [load, voltage, slip, _] = percents(study, rows);
     let stride = case.between.stride() * case.decimation;
     let part = rows.start * stride..(rows.end * stride).min(case.inputs.u_s.len());
@@ -148,8 +148,8 @@ fn state(study: &Study, rows: &Range<usize>) -> String {
 fn load_torque(study: &Study, rows: Range<usize>) -> f64 {
     let case = &study.fitted.case;
     let stride = case.between.stride() * case.decimation;
-    let r_s = study.belief.plant.motor.r_s;
-    let n_p = study.belief.plant.rated.n_p;
+    let r_s = study.prior.plant.motor.r_s;
+    let n_p = study.prior.plant.rated.n_p;
     let torque = |row: usize| {
         let k = row * stride;
         if case.input_noise.torque > 0.0 {
@@ -167,7 +167,7 @@ fn load_torque(study: &Study, rows: Range<usize>) -> f64 {
 /// Load, voltage, slip and frequency of a block, percent of rated (slip: percent).
 fn percents(study: &Study, rows: &Range<usize>) -> [f64; 4] {
     let case = &study.fitted.case;
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let stride = case.between.stride() * case.decimation;
     let mean = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>() / rows.len() as f64;
     let sync = &case.timeline.omega_sync;

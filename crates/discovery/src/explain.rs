@@ -13,13 +13,13 @@ const MOST_EFFECTS: usize = 3;
 /// Share of the excess that accepted effects must explain to be named without adequacy.
 const NAMED_SHARE: f64 = 0.85;
 
-/// Relative error of a fit from another start that shows the first one to have been in a wrong valley.
+/// Relative error of a fit from another start that shows the first one to have been in a local minimum.
 const DEEPER: f64 = 0.98;
 /// Error over noise above which nothing is named, however large the explained share.
 const NAMED_ERROR: f64 = 1.25;
 /// Share of the first excess that a later effect explains at least, unless it makes the model adequate.
 const PATCH_SHARE: f64 = 0.03;
-/// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: beliefs are commonly
+/// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: priors are commonly
 /// wrong by a tenth.
 const WORTH_A_CABLE: f64 = 0.12;
 
@@ -64,16 +64,16 @@ pub(crate) fn explain(
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
     progress("refitting the parameters", 0.1);
-    let mut baseline = study.trial(&study.beliefs(), Effort::FULL);
+    let mut baseline = study.trial(&study.at_prior(), Effort::FULL);
     let mut steps: Vec<Step> = Vec::new();
     let mut first = None;
     let mut base = baseline.clone();
     for number in 0..MOST_EFFECTS {
         let share = 0.15 + 0.2 * number as f64;
         let mut tell = |what: &str| progress(what, share);
-        let mut found = round(study, &base, &at_beliefs(&base), excluded, &mut tell);
-        if let Some(deeper) = deeper_valley(study, &base, &found) {
-            found = round(study, &deeper, &at_beliefs(&deeper), excluded, &mut tell);
+        let mut found = round(study, &base, &at_prior(&base), excluded, &mut tell);
+        if let Some(deeper) = lower_minimum(study, &base, &found) {
+            found = round(study, &deeper, &at_prior(&deeper), excluded, &mut tell);
             base = deeper;
         }
         if steps.is_empty() {
@@ -116,8 +116,8 @@ pub(crate) fn explain(
 }
 
 /// The base once more from where its best candidate ended, if that is better without the candidate too: then the
-/// first fit had settled in a wrong valley.
-fn deeper_valley(study: &Study, base: &Trial, found: &Round) -> Option<Trial> {
+/// first fit had settled in a local minimum.
+fn lower_minimum(study: &Study, base: &Trial, found: &Round) -> Option<Trial> {
     let best = found.candidates.first()?;
     let error = combined(study, base);
     if best.error > DEEPER * error {
@@ -150,8 +150,8 @@ fn drop_patches(study: &Study, baseline: &Trial, steps: &mut Vec<Step>) {
     }
 }
 
-/// The effects of a trial with the nominals at their beliefs.
-fn at_beliefs(trial: &Trial) -> crate::model::prior::Hypothesis {
+/// The effects of a trial with the nominals at their priors.
+fn at_prior(trial: &Trial) -> crate::model::prior::Hypothesis {
     let mut h = trial.fit.hypothesis.clone();
     for k in (0..N_NOMINAL).filter(|&k| h.free[k]) {
         h.z[k] = 0.0;

@@ -1,4 +1,4 @@
-//! Plants that share no code with the library, beliefs wrong by 5 %, two recordings.
+//! Plants that share no code with the library, priors wrong by 5 %, two recordings.
 //!
 //! A cut of the whole table, which `cargo run --release -p discovery --example evidence` prints.
 
@@ -19,7 +19,7 @@ fn asked(name: &str, setting: Setting, seed: u64) -> Answer {
 }
 
 #[test]
-fn a_healthy_machine_with_wrong_beliefs_is_adequate() {
+fn a_healthy_machine_with_wrong_priors_is_adequate() {
     for setting in [Setting::CoastDown, Setting::Loads, Setting::Steady] {
         let answer = Question::healthy(setting, false, SEED).ask();
         println!("{}", answer.line());

@@ -91,7 +91,7 @@ fn apparent_power() -> f64 {
     3f64.sqrt() * 220.0 * 1.3
 }
 
-/// A table of a machine whose core takes 4 % of the rated apparent power, beside the belief that it takes none.
+/// A table of a machine whose core takes 4 % of the rated apparent power, beside the prior that it takes none.
 #[test]
 fn a_loss_that_the_model_misses_is_named_and_sized() {
     let mut told = Vec::new();

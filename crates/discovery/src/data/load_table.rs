@@ -219,7 +219,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     fn plant() -> Plant {
-        specimen::belief("").plant
+        specimen::prior("").plant
     }
 
     fn point_of(voltage: f64, drive: Drive) -> Point {

@@ -141,9 +141,9 @@ mod tests {
     use crate::tests::specimen;
 
     fn prepared() -> (Case, Plant) {
-        let belief = specimen::belief("");
-        let case = Case::new(&specimen::recording(0.5, |_| 1.0), &belief.plant.rated);
-        (case.expect("judged"), belief.plant)
+        let prior = specimen::prior("");
+        let case = Case::new(&specimen::recording(0.5, |_| 1.0), &prior.plant.rated);
+        (case.expect("judged"), prior.plant)
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::data::case::Case;
 use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
-use crate::model::prior::Belief;
+use crate::model::prior::Prior;
 use crate::model::speed_gain::EFFECT;
 use crate::model::speed_scale::FreeScale;
 use motor::MotorFile;
@@ -60,10 +60,10 @@ impl Question {
         let effects = from_motor_file(motor, &motor.name).map_err(Error::MotorFile)?;
         progress("auditing the recordings", 0.0);
         let audited = audit_of(first, motor);
-        let mut belief = Belief::new(motor, effects);
+        let mut prior = Prior::new(motor, effects);
         if sources.iter().any(measures_torque) {
             // A measured brake torque holds the friction of the load.
-            belief.plant.mechanics.load_friction = 0.0;
+            prior.plant.mechanics.load_friction = 0.0;
         }
         let refuse = |why| Error::Unsupported(Box::new(audited.clone()), why);
         let mut ready = Vec::new();
@@ -74,15 +74,15 @@ impl Question {
             }
             ready.push(sound(source, &audit));
         }
-        let scale = speed_scale_of(&ready, &belief)?.map(|start| start.map_err(refuse));
+        let scale = speed_scale_of(&ready, &prior)?.map(|start| start.map_err(refuse));
         let scale = scale.transpose()?;
-        let rated = &belief.plant.rated;
+        let rated = &prior.plant.rated;
         let prepared = |scale: Option<FreeScale>| {
             let case = |source: &Source| case_of(source, scale, rated).map_err(refuse);
             ready.iter().map(case).collect::<Result<Vec<Case>, Error>>()
         };
         let mut cases = prepared(scale)?;
-        let scale = scale.map(|start| start.fitted(&cases[0], &belief));
+        let scale = scale.map(|start| start.fitted(&cases[0], &prior));
         if scale.is_some() {
             cases = prepared(scale)?;
         }
@@ -97,7 +97,7 @@ impl Question {
         let fitted = cases.remove(0);
         Ok(Self {
             audit: audited,
-            study: Study::new(belief, fitted, cases, scale),
+            study: Study::new(prior, fitted, cases, scale),
         })
     }
 }
@@ -139,7 +139,7 @@ fn case_of(
 /// Recordings with known and unknown scales, or a motor file that holds the effect which is to be fitted.
 fn speed_scale_of(
     sources: &[Source],
-    belief: &Belief,
+    prior: &Prior,
 ) -> Result<Option<Result<FreeScale, Unsupported>>, Error> {
     let recordings: Vec<&Recording> = sources
         .iter()
@@ -157,14 +157,14 @@ fn speed_scale_of(
         }
         _ => {}
     }
-    let held = &belief.plant.effects;
+    let held = &prior.plant.effects;
     if held.iter().any(|e| e.effect.descriptor().name == EFFECT) {
         let message = format!(
             "the motor file holds `{EFFECT}`, and the scale of the speed is declared unknown; remove one of both"
         );
         return Err(Error::Recordings(message));
     }
-    Ok(Some(FreeScale::start(&recordings, &belief.plant.rated)))
+    Ok(Some(FreeScale::start(&recordings, &prior.plant.rated)))
 }
 
 /// Audit of a source; a load table has nothing to audit beyond its reading.

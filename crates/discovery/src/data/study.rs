@@ -4,8 +4,8 @@ use crate::data::case::Case;
 use crate::data::noise_floor::{Floor, floor};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, Fit, fit};
-use crate::model::prediction::{Teacher, outputs, residual};
-use crate::model::prior::{Belief, Hypothesis};
+use crate::model::prediction::{SpeedObserver, outputs, residual};
+use crate::model::prior::{Hypothesis, Prior};
 use crate::model::speed_scale::{self, FreeScale};
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
@@ -30,7 +30,7 @@ pub(crate) struct Subject {
 #[derive(Clone, Debug)]
 pub(crate) struct Study {
     /// What the user believes.
-    pub belief: Belief,
+    pub prior: Prior,
     /// Recording that is fitted.
     pub fitted: Subject,
     /// Recordings that prove.
@@ -57,14 +57,17 @@ pub(crate) struct Trial {
 }
 
 impl Subject {
-    fn new(case: Case, belief: &Belief) -> Self {
-        let floor = floor(&case, &belief.plant, SEED);
+    fn new(case: Case, prior: &Prior) -> Self {
+        let floor = floor(&case, &prior.plant, SEED);
         Self { case, floor }
     }
 
     /// Squared error of each block of a hypothesis.
-    pub fn errors(&self, belief: &Belief, h: &Hypothesis) -> Vec<f64> {
-        let r = residual(&self.case, &outputs(&self.case, belief, h, Teacher::Off));
+    pub fn errors(&self, prior: &Prior, h: &Hypothesis) -> Vec<f64> {
+        let r = residual(
+            &self.case,
+            &outputs(&self.case, prior, h, SpeedObserver::Off),
+        );
         let blocks = normal_equations::blocks(&self.case.blocks(), &r, &[]);
         blocks.iter().map(|b| b.sse).collect()
     }
@@ -73,29 +76,29 @@ impl Subject {
 impl Study {
     /// Prepares the floors.
     pub fn new(
-        belief: Belief,
+        prior: Prior,
         fitted: Case,
         proofs: Vec<Case>,
         speed_scale: Option<FreeScale>,
     ) -> Self {
-        let subject = |case| Subject::new(case, &belief);
+        let subject = |case| Subject::new(case, &prior);
         Self {
             fitted: subject(fitted),
             proofs: proofs.into_iter().map(subject).collect(),
-            belief,
+            prior,
             speed_scale,
         }
     }
 
-    /// Nothing added, beliefs as they are; a scale of the speed that nobody knows is free from the start.
-    pub fn beliefs(&self) -> Hypothesis {
-        let beliefs = match self.fitted.case.table {
-            Some(_) => Hypothesis::beliefs_of_table(),
-            None => Hypothesis::beliefs(self.fitted.case.speed_is_input),
+    /// Nothing added, priors as they are; a scale of the speed that nobody knows is free from the start.
+    pub fn at_prior(&self) -> Hypothesis {
+        let priors = match self.fitted.case.table {
+            Some(_) => Hypothesis::at_prior_of_table(),
+            None => Hypothesis::at_prior(self.fitted.case.speed_is_input),
         };
         match self.speed_scale {
-            Some(_) => speed_scale::free(&beliefs, &self.belief),
-            None => beliefs,
+            Some(_) => speed_scale::free(&priors, &self.prior),
+            None => priors,
         }
     }
 
@@ -106,12 +109,12 @@ impl Study {
 
     /// Fits a hypothesis and measures it.
     pub fn trial(&self, start: &Hypothesis, effort: Effort) -> Trial {
-        self.measured(fit(&self.fitted.case, &self.belief, start, effort))
+        self.measured(fit(&self.fitted.case, &self.prior, start, effort))
     }
 
     /// Measures a fit on what it has not seen.
     pub fn measured(&self, fit: Fit) -> Trial {
-        let errors = |s: &Subject| s.errors(&self.belief, &fit.hypothesis);
+        let errors = |s: &Subject| s.errors(&self.prior, &fit.hypothesis);
         Trial {
             folds: fit.held_out(),
             proof: self.proofs.iter().flat_map(errors).collect(),
@@ -143,7 +146,8 @@ impl Study {
     /// Whether the proving recordings cannot tell two trials apart: their predictions there differ by too little.
     pub fn proof_is_silent(&self, one: &Trial, other: &Trial) -> bool {
         let difference = |s: &Subject| {
-            let run = |t: &Trial| outputs(&s.case, &self.belief, &t.fit.hypothesis, Teacher::Off);
+            let run =
+                |t: &Trial| outputs(&s.case, &self.prior, &t.fit.hypothesis, SpeedObserver::Off);
             let squares = run(one)
                 .into_iter()
                 .zip(run(other))

@@ -95,11 +95,11 @@ fn mostly_explained_is_much_of_the_excess_and_little_left() {
 }
 
 #[test]
-fn fitted_nominals_go_back_to_their_beliefs_and_nothing_else() {
+fn fitted_nominals_go_back_to_their_priors_and_nothing_else() {
     let study = specimen::table_study(|_| ());
     let mut trial = specimen::trial_with(&study, &[("core-loss", 0.7)]);
     trial.fit.hypothesis.z[..N_NOMINAL].fill(0.1);
-    let back = at_beliefs(&trial);
+    let back = at_prior(&trial);
     assert_eq!(back.z[..4], [0.0; 4]);
     assert_eq!(back.z[4..N_NOMINAL], [0.1, 0.1], "a table fits neither");
     assert!((back.z[N_NOMINAL] - 0.7).abs() < 1e-12 && back.effects.len() == 1);
@@ -133,21 +133,21 @@ fn a_base_is_fitted_again_from_a_candidate_that_is_better() {
         }],
         ..Round::empty()
     };
-    let deeper = deeper_valley(&study, &base, &round(2.93)).expect("a better fit");
+    let deeper = lower_minimum(&study, &base, &round(2.93)).expect("a better fit");
     assert!(deeper.fit.hypothesis.effects.is_empty());
     assert!((deeper.fit.hypothesis.z[0] - 1.1f64.ln()).abs() < 0.02);
     assert!(
-        deeper_valley(&study, &base, &round(2.95)).is_none(),
+        lower_minimum(&study, &base, &round(2.95)).is_none(),
         "no better candidate"
     );
-    assert!(deeper_valley(&study, &base, &Round::empty()).is_none());
+    assert!(lower_minimum(&study, &base, &Round::empty()).is_none());
     // Fitted already: the same again is no deeper.
-    assert!(deeper_valley(&study, &deeper, &round(0.0)).is_none());
+    assert!(lower_minimum(&study, &deeper, &round(0.0)).is_none());
     let nearly = specimen::with_errors(&study, &deeper, 1.0, 1.0);
     let again = combined(&study, &deeper);
     let scaled = |factor: f64| specimen::with_errors(&study, &nearly, factor * again, 1.0);
-    assert!(deeper_valley(&study, &scaled(1.03), &round(0.0)).is_some());
-    assert!(deeper_valley(&study, &scaled(1.01), &round(0.0)).is_none());
+    assert!(lower_minimum(&study, &scaled(1.03), &round(0.0)).is_some());
+    assert!(lower_minimum(&study, &scaled(1.01), &round(0.0)).is_none());
 }
 
 /// Friction always, leakage from an eighth more on: a cable adds to it and takes nothing away.
@@ -190,7 +190,7 @@ fn friction_and_more_leakage_are_contested() {
 fn a_contest_is_won_by_what_is_proven_and_not_beaten() {
     let excluded = all_but(&["windage"]);
     let names_of = |study: &Study, error: Option<f64>| {
-        let mut start = study.beliefs();
+        let mut start = study.at_prior();
         start.free[FRICTION] = true;
         let last = study.trial(&start, Effort::FULL);
         let last = error.map_or(last.clone(), |e| specimen::with_errors(study, &last, e, e));

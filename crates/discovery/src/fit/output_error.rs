@@ -2,14 +2,14 @@
 
 use crate::data::case::Case;
 use crate::fit::normal_equations::{self, Block, Penalty};
-use crate::model::prediction::{Teacher, jacobian, outputs, residual};
-use crate::model::prior::{Belief, Hypothesis, N_NOMINAL};
+use crate::model::prediction::{SpeedObserver, jacobian, outputs, residual};
+use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
 use nalgebra::DVector;
 
 /// Limits of the inflation of the nominals' prior weight.
-pub(crate) const KAPPA: [f64; 2] = [30.0, 400.0];
+pub(crate) const INFLATION: [f64; 2] = [30.0, 400.0];
 /// The same for a load table, whose few points cannot be correlated over thousands of samples.
-const KAPPA_TABLE: [f64; 2] = [1.0, 30.0];
+const INFLATION_TABLE: [f64; 2] = [1.0, 30.0];
 
 /// Iterations after which a hopeless fit may be given up.
 const PATIENCE: usize = 4;
@@ -34,9 +34,9 @@ pub(crate) struct Fit {
     /// Weighted model outputs.
     pub outputs: Vec<f64>,
     /// Inflation of the nominals' prior weight: so many rows count as one.
-    pub kappa: f64,
+    pub inflation: f64,
     /// Treatment of the speed in this fit.
-    pub teacher: Teacher,
+    pub observer: SpeedObserver,
 }
 
 /// How hard to fit.
@@ -45,7 +45,7 @@ pub(crate) struct Effort {
     /// Most iterations.
     pub iterations: usize,
     /// Treatment of the speed.
-    pub teacher: Teacher,
+    pub observer: SpeedObserver,
     /// Give up when after [`PATIENCE`] iterations the squared error still exceeds this.
     pub abandon_above: f64,
 }
@@ -54,7 +54,7 @@ impl Effort {
     /// A complete fit of a freely running model.
     pub const FULL: Effort = Effort {
         iterations: 14,
-        teacher: Teacher::Off,
+        observer: SpeedObserver::Off,
         abandon_above: f64::INFINITY,
     };
 
@@ -78,10 +78,10 @@ impl Fit {
 }
 
 /// Weights of the priors and their pull at the present coordinates.
-fn penalty(belief: &Belief, h: &Hypothesis, free: &[usize], kappa: f64) -> Penalty {
+fn penalty(prior: &Prior, h: &Hypothesis, free: &[usize], inflation: f64) -> Penalty {
     let one = |&k: &usize| {
-        let (sd, centre) = h.prior(k, &belief.plant.rated);
-        let factor = if h.is_belief(k) { kappa } else { 1.0 };
+        let (sd, centre) = h.prior_of(k, &prior.plant.rated);
+        let factor = if h.is_prior(k) { inflation } else { 1.0 };
         (factor / (sd * sd), centre - h.z[k])
     };
     let (weight, pull): (Vec<_>, Vec<_>) = free.iter().map(one).unzip();
@@ -92,53 +92,54 @@ fn penalty(belief: &Belief, h: &Hypothesis, free: &[usize], kappa: f64) -> Penal
 }
 
 fn cost(r: &[f64], penalty: &Penalty) -> f64 {
-    let prior = penalty
+    let pulls = penalty
         .weight
         .iter()
         .zip(&penalty.pull)
         .map(|(w, p)| w * p * p);
-    let sum = normal_equations::dot(r, r) + prior.sum::<f64>();
+    let sum = normal_equations::dot(r, r) + pulls.sum::<f64>();
     if sum.is_finite() { sum } else { f64::INFINITY }
 }
 
 /// The hypothesis moved by `step` along its free coordinates, inside its bounds.
-fn moved(belief: &Belief, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> Hypothesis {
+fn moved(prior: &Prior, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> Hypothesis {
     let mut next = h.clone();
     for (&k, dz) in free.iter().zip(step.iter()) {
-        let [low, high] = h.bounds(k, belief);
+        let [low, high] = h.bounds(k, prior);
         next.z[k] = (h.z[k] + dz.clamp(-1.5, 1.5)).clamp(low, high);
     }
     next
 }
 
 /// Fits the free coordinates of `start` to a case.
-pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effort) -> Fit {
+pub(crate) fn fit(case: &Case, prior: &Prior, start: &Hypothesis, effort: Effort) -> Fit {
     let free: Vec<usize> = (0..start.z.len()).filter(|&k| start.free[k]).collect();
     let rows = case.blocks();
     let mut h = start.clone();
-    let mut out = outputs(case, belief, &h, effort.teacher);
+    let mut out = outputs(case, prior, &h, effort.observer);
     let mut damping = 1e-4;
     let mut linear = None;
     let limits = if case.table.is_some() {
-        KAPPA_TABLE
+        INFLATION_TABLE
     } else {
-        KAPPA
+        INFLATION
     };
-    let mut kappa = limits[0];
+    let mut inflation = limits[0];
     for iteration in 0..effort.iterations {
         let r = residual(case, &out);
         let sse = normal_equations::dot(&r, &r);
-        let j = jacobian(case, belief, &h, &out, effort.teacher);
+        let j = jacobian(case, prior, &h, &out, effort.observer);
         let blocks = normal_equations::blocks(&rows, &r, &j);
         let nominals = free.iter().filter(|&&k| k < N_NOMINAL).count();
-        kappa = normal_equations::score_inflation(&blocks, nominals).clamp(limits[0], limits[1]);
-        let here = penalty(belief, &h, &free, kappa);
+        inflation =
+            normal_equations::score_inflation(&blocks, nominals).clamp(limits[0], limits[1]);
+        let here = penalty(prior, &h, &free, inflation);
         let search = Search {
             case,
-            belief,
+            prior,
             free: &free,
-            kappa,
-            teacher: effort.teacher,
+            inflation,
+            observer: effort.observer,
         };
         let better = search.step(
             &h,
@@ -160,30 +161,30 @@ pub(crate) fn fit(case: &Case, belief: &Belief, start: &Hypothesis, effort: Effo
     }
     let (r, j, blocks) = linear.unwrap_or_else(|| {
         let r = residual(case, &out);
-        let j = jacobian(case, belief, &h, &out, effort.teacher);
+        let j = jacobian(case, prior, &h, &out, effort.observer);
         let blocks = normal_equations::blocks(&rows, &r, &j);
         (r, j, blocks)
     });
     Fit {
-        penalty: penalty(belief, &h, &free, kappa),
+        penalty: penalty(prior, &h, &free, inflation),
         hypothesis: h,
         free,
         residual: r,
         jacobian: j,
         blocks,
         outputs: out,
-        kappa,
-        teacher: effort.teacher,
+        inflation,
+        observer: effort.observer,
     }
 }
 
 /// One damped step of a fit.
 struct Search<'a> {
     case: &'a Case,
-    belief: &'a Belief,
+    prior: &'a Prior,
     free: &'a [usize],
-    kappa: f64,
-    teacher: Teacher,
+    inflation: f64,
+    observer: SpeedObserver,
 }
 
 impl Search<'_> {
@@ -200,7 +201,7 @@ impl Search<'_> {
         for _ in 0..3 {
             let mut again = false;
             for (i, &k) in self.free.iter().enumerate() {
-                let [low, high] = h.bounds(k, self.belief);
+                let [low, high] = h.bounds(k, self.prior);
                 let outward = (h.z[k] <= low && step[i] < 0.0) || (h.z[k] >= high && step[i] > 0.0);
                 if outward {
                     held.weight[i] = 1e9 * (normal.gram[(i, i)] + here.weight[i] + 1.0);
@@ -228,9 +229,9 @@ impl Search<'_> {
         let before = cost(r, here);
         for _ in 0..7 {
             if let Some(step) = self.inside(h, here, normal, *damping) {
-                let next = moved(self.belief, h, self.free, &step);
-                let out = outputs(self.case, self.belief, &next, self.teacher);
-                let there = penalty(self.belief, &next, self.free, self.kappa);
+                let next = moved(self.prior, h, self.free, &step);
+                let out = outputs(self.case, self.prior, &next, self.observer);
+                let there = penalty(self.prior, &next, self.free, self.inflation);
                 let after = cost(&residual(self.case, &out), &there);
                 if after < before {
                     *damping = (*damping * 0.2).max(1e-7);
@@ -254,8 +255,8 @@ mod tests {
         let study = specimen::table_study(|_| ());
         let fit = fit(
             &study.fitted.case,
-            &study.belief,
-            &study.beliefs(),
+            &study.prior,
+            &study.at_prior(),
             Effort::FULL,
         );
         assert!(
@@ -279,8 +280,8 @@ mod tests {
         });
         let fit = fit(
             &study.fitted.case,
-            &study.belief,
-            &study.beliefs(),
+            &study.prior,
+            &study.at_prior(),
             Effort::FULL,
         );
         for k in [0, 1, MAGNETIZING] {
@@ -292,9 +293,9 @@ mod tests {
         // What is returned belongs together: residual, outputs and columns at the best coordinates.
         let out = outputs(
             &study.fitted.case,
-            &study.belief,
+            &study.prior,
             &fit.hypothesis,
-            Teacher::Off,
+            SpeedObserver::Off,
         );
         assert_eq!(out, fit.outputs);
         assert_eq!(residual(&study.fitted.case, &out), fit.residual);
@@ -309,8 +310,8 @@ mod tests {
         let study = specimen::table_study(|plant| plant.motor.l_m *= 1.05);
         let fit = fit(
             &study.fitted.case,
-            &study.belief,
-            &study.beliefs(),
+            &study.prior,
+            &study.at_prior(),
             Effort::FULL,
         );
         let all = normal_equations::total(&fit.blocks);
@@ -321,13 +322,13 @@ mod tests {
         }
     }
 
-    /// Priors: one over the squared deviation, `kappa` times for nominals; the pull leads back to the belief.
+    /// Priors: one over the squared deviation, `inflation` times for nominals; the pull leads back to the prior.
     #[test]
     fn a_penalty_is_the_prior_seen_from_where_one_is() {
         let study = specimen::table_study(|_| ());
-        let mut h = study.beliefs();
+        let mut h = study.at_prior();
         h.z[1] = 0.25;
-        let p = penalty(&study.belief, &h, &[0, 1], 30.0);
+        let p = penalty(&study.prior, &h, &[0, 1], 30.0);
         assert!(
             (p.weight[0] - 30.0 / 0.01).abs() < 1e-9 && (p.weight[1] - 30.0 / 0.01).abs() < 1e-9
         );
@@ -340,10 +341,10 @@ mod tests {
     #[test]
     fn a_step_is_limited_and_stays_inside_the_bounds() {
         let study = specimen::table_study(|_| ());
-        let mut h = study.beliefs();
+        let mut h = study.at_prior();
         h.z[0] = 1.0;
         let step = DVector::from_column_slice(&[1.2, -9.0]);
-        let next = moved(&study.belief, &h, &[0, 1], &step);
+        let next = moved(&study.prior, &h, &[0, 1], &step);
         // A factor of e^1.6 at most, and 1.5 at a time.
         assert_eq!((next.z[0], next.z[1]), (1.6, -1.5));
         assert_eq!(next.z[2..], h.z[2..]);

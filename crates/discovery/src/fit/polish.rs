@@ -26,12 +26,12 @@ const INSTRUMENTS: [(&str, &[&str]); 2] = [
 /// how they differ, and nothing tells what all three have in common from the impedances of another motor.
 pub(crate) fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
     let h = &trial.fit.hypothesis;
-    let held = h.effects.iter().chain(&study.belief.plant.effects);
+    let held = h.effects.iter().chain(&study.prior.plant.effects);
     let names: Vec<&str> = held.map(|c| c.effect.descriptor().name).collect();
     if study.fitted.case.table.is_some() {
         return None;
     }
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let mut here = h.clone();
     let mut any = false;
     for (instrument, same) in INSTRUMENTS {
@@ -52,7 +52,7 @@ pub(crate) fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
     }
     let mut believed = here.clone();
     believed.z[..N_NOMINAL].fill(0.0);
-    // A trial whose nominals had to make up for the gains stands far up a bent valley: from the beliefs it is a few steps.
+    // A trial whose nominals had to make up for the gains starts far from the minimum; from the prior it takes a few steps.
     let polished = study.trial(&believed, Effort::FULL);
     if polished.fit.cost() <= trial.fit.cost() {
         return Some(polished);

@@ -41,7 +41,7 @@ pub(crate) fn covariance(study: &Study, fit: &Fit) -> DMatrix<f64> {
         .unwrap_or_else(|| DMatrix::zeros(n, n));
     let mut scores = &all.gram * rows_per_datum(study, fit) + priors(fit);
     if case.table.is_none() {
-        let plant = fit.hypothesis.plant(&study.belief);
+        let plant = fit.hypothesis.plant(&study.prior);
         scores += inputs(case, &plant, fit) + instruments(case, &plant, fit);
     }
     &inverse * scores * &inverse
@@ -50,7 +50,7 @@ pub(crate) fn covariance(study: &Study, fit: &Fit) -> DMatrix<f64> {
 /// So many values of the residual count as one, because neighbours go together.
 fn rows_per_datum(study: &Study, fit: &Fit) -> f64 {
     if study.fitted.case.table.is_some() {
-        return fit.kappa;
+        return fit.inflation;
     }
     let nominals = fit.free.iter().filter(|&&k| k < N_NOMINAL).count();
     let of = |&length: &usize| {
@@ -67,12 +67,12 @@ fn rows_per_datum(study: &Study, fit: &Fit) -> f64 {
     BATCHES.iter().map(of).fold(1.0, f64::max)
 }
 
-/// The pull of the priors on a motor that is not as believed: `W Sigma W` with the variances `Sigma` of the beliefs.
+/// The pull of the priors on a motor that is not as believed: `W Sigma W` with the variances `Sigma` of the priors.
 fn priors(fit: &Fit) -> DMatrix<f64> {
     let pull = |(&k, &weight): (&usize, &f64)| {
-        // Beliefs weigh `kappa` times their inverse variance in the fit.
-        let believed = fit.hypothesis.is_belief(k);
-        weight * if believed { fit.kappa } else { 1.0 }
+        // Priors weigh `inflation` times their inverse variance in the fit.
+        let believed = fit.hypothesis.is_prior(k);
+        weight * if believed { fit.inflation } else { 1.0 }
     };
     let all = fit.free.iter().zip(fit.penalty.weight.iter());
     DMatrix::from_diagonal(&DVector::from_iterator(fit.free.len(), all.map(pull)))

@@ -3,7 +3,7 @@
 use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
 use crate::data::load_table::{self, Point};
-use crate::model::prior::{Belief, Hypothesis};
+use crate::model::prior::{Hypothesis, Prior};
 use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
 use motor::steady_state::SteadyState;
 use num_complex::Complex64;
@@ -21,7 +21,7 @@ pub fn simulations() -> u64 {
 
 /// How the speed is treated in a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Teacher {
+pub(crate) enum SpeedObserver {
     /// The model runs freely.
     Off,
     /// The model's speed is drawn to the measured one at this rate, 1/s.
@@ -48,12 +48,19 @@ impl<'a> Drive<'a> {
 }
 
 /// Simulates a plant on what drives it.
-pub(crate) fn run(case: &Case, plant: &Plant, drive: &Drive<'_>, teacher: Teacher) -> Outputs {
+pub(crate) fn run(
+    case: &Case,
+    plant: &Plant,
+    drive: &Drive<'_>,
+    observer: SpeedObserver,
+) -> Outputs {
     SIMULATIONS.fetch_add(1, Ordering::Relaxed);
     let speeds = case.speeds(plant, &drive.speed);
-    let speed = match teacher {
+    let speed = match observer {
         _ if case.speed_is_input => SpeedSource::Imposed(&speeds.speed),
-        Teacher::On(rate) if !drive.speed.is_empty() => SpeedSource::Observed(&speeds.speed, rate),
+        SpeedObserver::On(rate) if !drive.speed.is_empty() => {
+            SpeedSource::Observed(&speeds.speed, rate)
+        }
         _ => SpeedSource::Free,
     };
     let run = Run {
@@ -103,17 +110,22 @@ fn steady(case: &Case, plant: &Plant, points: &[Point]) -> Vec<f64> {
 }
 
 /// Weighted outputs of a hypothesis.
-pub(crate) fn outputs(case: &Case, belief: &Belief, h: &Hypothesis, teacher: Teacher) -> Vec<f64> {
-    let plant = h.plant(belief);
+pub(crate) fn outputs(
+    case: &Case,
+    prior: &Prior,
+    h: &Hypothesis,
+    observer: SpeedObserver,
+) -> Vec<f64> {
+    let plant = h.plant(prior);
     match &case.table {
         Some(points) => steady(case, &plant, points),
-        None => weighted(case, &run(case, &plant, &Drive::of(case), teacher)),
+        None => weighted(case, &run(case, &plant, &Drive::of(case), observer)),
     }
 }
 
 /// Weighted outputs of a plant that something else drives (noise propagation).
 pub(crate) fn outputs_on(case: &Case, plant: &Plant, drive: &Drive<'_>) -> Vec<f64> {
-    weighted(case, &run(case, plant, drive, Teacher::Off))
+    weighted(case, &run(case, plant, drive, SpeedObserver::Off))
 }
 
 /// Residual: weighted measurement minus weighted model.
@@ -126,20 +138,20 @@ pub(crate) fn residual(case: &Case, model: &[f64]) -> Vec<f64> {
 /// Derivatives of the weighted outputs with respect to the free coordinates, in their order.
 pub(crate) fn jacobian(
     case: &Case,
-    belief: &Belief,
+    prior: &Prior,
     h: &Hypothesis,
     base: &[f64],
-    teacher: Teacher,
+    observer: SpeedObserver,
 ) -> Vec<Vec<f64>> {
     let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
     let column = |&k: &usize| {
         let mut step = h.step(k);
-        if h.z[k] + step > h.bounds(k, belief)[1] {
+        if h.z[k] + step > h.bounds(k, prior)[1] {
             step = -step;
         }
         let mut moved = h.clone();
         moved.z[k] += step;
-        let mut there = outputs(case, belief, &moved, teacher);
+        let mut there = outputs(case, prior, &moved, observer);
         there
             .iter_mut()
             .zip(base)
@@ -157,8 +169,8 @@ mod tests {
     #[test]
     fn the_believed_table_leaves_nothing() {
         let study = specimen::table_study(|_| ());
-        let (case, belief) = (&study.fitted.case, &study.belief);
-        let model = outputs(case, belief, &study.beliefs(), Teacher::Off);
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let model = outputs(case, prior, &study.at_prior(), SpeedObserver::Off);
         assert_eq!(model.len(), 12 * N_CHANNELS);
         assert!(residual(case, &model).iter().all(|r| r.abs() < 1e-4));
         // In units of the accuracy: one revolution per minute is one.
@@ -176,17 +188,17 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_the_outputs() {
         let study = specimen::table_study(|_| ());
-        let (case, belief) = (&study.fitted.case, &study.belief);
-        let h = study.beliefs();
-        let base = outputs(case, belief, &h, Teacher::Off);
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let h = study.at_prior();
+        let base = outputs(case, prior, &h, SpeedObserver::Off);
         let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
-        let columns = jacobian(case, belief, &h, &base, Teacher::Off);
+        let columns = jacobian(case, prior, &h, &base, SpeedObserver::Off);
         assert_eq!(columns.len(), free.len());
         for (column, k) in columns.iter().zip(free) {
             let at = |dz: f64| {
                 let mut moved = h.clone();
                 moved.z[k] += dz;
-                outputs(case, belief, &moved, Teacher::Off)
+                outputs(case, prior, &moved, SpeedObserver::Off)
             };
             let (up, down) = (at(1e-3), at(-1e-3));
             let size = column.iter().fold(0.0f64, |a, b| a.max(b.abs()));
@@ -204,14 +216,14 @@ mod tests {
     #[test]
     fn derivatives_stay_inside_the_bounds() {
         let study = specimen::table_study(|_| ());
-        let (case, belief) = (&study.fitted.case, &study.belief);
-        let mut h = study.beliefs();
-        h.z[0] = h.bounds(0, belief)[1];
-        let base = outputs(case, belief, &h, Teacher::Off);
-        let column = &jacobian(case, belief, &h, &base, Teacher::Off)[0];
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let mut h = study.at_prior();
+        h.z[0] = h.bounds(0, prior)[1];
+        let base = outputs(case, prior, &h, SpeedObserver::Off);
+        let column = &jacobian(case, prior, &h, &base, SpeedObserver::Off)[0];
         let mut moved = h.clone();
         moved.z[0] -= h.step(0);
-        let there = outputs(case, belief, &moved, Teacher::Off);
+        let there = outputs(case, prior, &moved, SpeedObserver::Off);
         for ((got, b), t) in column.iter().zip(&base).zip(&there) {
             assert!((got - (b - t) / h.step(0)).abs() < 1e-6 * (1.0 + got.abs()));
         }
@@ -221,9 +233,9 @@ mod tests {
     #[test]
     fn a_recording_is_simulated_row_by_row() {
         let study = specimen::study(1.0, |_| 1.0);
-        let (case, belief) = (&study.fitted.case, &study.belief);
+        let (case, prior) = (&study.fitted.case, &study.prior);
         let before = simulations();
-        let model = outputs(case, belief, &study.beliefs(), Teacher::Off);
+        let model = outputs(case, prior, &study.at_prior(), SpeedObserver::Off);
         assert!(simulations() > before);
         let row = case.measured.len() - 1;
         for k in 0..N_CHANNELS {
@@ -235,11 +247,11 @@ mod tests {
             );
         }
         // Drawn to the measured speed the start is over sooner.
-        let speed_error = |teacher| {
-            let model = outputs(case, belief, &study.beliefs(), teacher);
+        let speed_error = |observer| {
+            let model = outputs(case, prior, &study.at_prior(), observer);
             let rows = residual(case, &model);
             rows.chunks(N_CHANNELS).map(|r| r[3] * r[3]).sum::<f64>()
         };
-        assert!(speed_error(Teacher::On(200.0)) < 0.5 * speed_error(Teacher::Off));
+        assert!(speed_error(SpeedObserver::On(200.0)) < 0.5 * speed_error(SpeedObserver::Off));
     }
 }

@@ -34,27 +34,31 @@ pub(crate) struct Nominal {
     /// Unit.
     pub unit: &'static str,
     /// Prior standard deviation of its coordinate.
-    pub prior: f64,
+    pub prior_deviation: f64,
 }
 
 impl Nominal {
-    const fn new(name: &'static str, unit: &'static str, prior: f64) -> Self {
-        Self { name, unit, prior }
+    const fn new(name: &'static str, unit: &'static str, prior_deviation: f64) -> Self {
+        Self {
+            name,
+            unit,
+            prior_deviation,
+        }
     }
 }
 
 /// The motor as believed.
 #[derive(Clone, Debug)]
-pub(crate) struct Belief {
+pub(crate) struct Prior {
     /// Plant with the effects of the motor file.
     pub plant: Plant,
-    /// Formulas of the motor file whose parameters are all zero: candidates, not beliefs.
+    /// Formulas of the motor file whose parameters are all zero: candidates, not priors.
     pub formulas: Vec<&'static dyn Effect>,
     /// Friction that takes 1 % of rated torque at synchronous speed, N m s.
     pub friction_unit: f64,
 }
 
-impl Belief {
+impl Prior {
     /// From a motor file and its effects (already validated).
     pub fn new(file: &MotorFile, effects: Vec<EffectConfig>) -> Self {
         let rated = rated(file);
@@ -118,8 +122,8 @@ pub(crate) struct Hypothesis {
 }
 
 impl Hypothesis {
-    /// Beliefs, nothing added; the mechanical nominals are free unless the speed is given.
-    pub fn beliefs(speed_is_input: bool) -> Self {
+    /// Priors, nothing added; the mechanical nominals are free unless the speed is given.
+    pub fn at_prior(speed_is_input: bool) -> Self {
         let free = (0..N_NOMINAL).map(|k| k < 4 || !speed_is_input);
         Self {
             effects: Vec::new(),
@@ -130,10 +134,10 @@ impl Hypothesis {
         }
     }
 
-    /// Beliefs for a load table: inertia and friction cannot move. At one speed friction is one number with
+    /// Priors for a load table: inertia and friction cannot move. At one speed friction is one number with
     /// every other constant loss; as a loss it is looked for among the effects.
-    pub fn beliefs_of_table() -> Self {
-        let mut h = Self::beliefs(true);
+    pub fn at_prior_of_table() -> Self {
+        let mut h = Self::at_prior(true);
         h.free[FRICTION] = false;
         h
     }
@@ -171,25 +175,25 @@ impl Hypothesis {
         self
     }
 
-    /// Whether a coordinate of the instrument effect of this name is among the beliefs.
+    /// Whether a coordinate of the instrument effect of this name is among the priors.
     pub fn holds_instrument(&self, name: &str) -> bool {
         let mut names = self.instruments.iter().map(|&k| self.effects[k].effect);
         names.any(|effect| effect.descriptor().name == name)
     }
 
-    /// Whether coordinate `k` is a belief: of the motor file about the motor, or of the class about an instrument.
-    pub fn is_belief(&self, k: usize) -> bool {
+    /// Whether coordinate `k` is a prior: of the motor file about the motor, or of the class about an instrument.
+    pub fn is_prior(&self, k: usize) -> bool {
         k < N_NOMINAL || self.instruments.contains(&self.effect_of(k))
     }
 
     /// Prior standard deviation of a coordinate, and its centre.
-    pub fn prior(&self, k: usize, rated: &Rated<f64>) -> (f64, f64) {
+    pub fn prior_of(&self, k: usize, rated: &Rated<f64>) -> (f64, f64) {
         if k < N_NOMINAL {
-            return (NOMINALS[k].prior, 0.0);
+            return (NOMINALS[k].prior_deviation, 0.0);
         }
         let p = self.parameter(k);
         match p.role {
-            Role::Size if self.is_belief(k) => (CHANNEL_GAIN / p.typical, 0.0),
+            Role::Size if self.is_prior(k) => (CHANNEL_GAIN / p.typical, 0.0),
             Role::Size => (SIZE_PRIOR, 0.0),
             _ => (
                 SHAPE_PRIOR,
@@ -209,16 +213,16 @@ impl Hypothesis {
     }
 
     /// Lowest and highest coordinate.
-    pub fn bounds(&self, k: usize, belief: &Belief) -> [f64; 2] {
+    pub fn bounds(&self, k: usize, prior: &Prior) -> [f64; 2] {
         if k == FRICTION {
             // Total friction may not drive the shaft.
-            let mech = &belief.plant.mechanics;
-            return [-mech.total_friction() / belief.friction_unit, 1e3];
+            let mech = &prior.plant.mechanics;
+            return [-mech.total_friction() / prior.friction_unit, 1e3];
         }
         if k < N_NOMINAL {
             return [-1.6, 1.6];
         }
-        let (p, rated) = (self.parameter(k), &belief.plant.rated);
+        let (p, rated) = (self.parameter(k), &prior.plant.rated);
         p.range
             .map(|x| to_coordinate(p, x * p.scale.of(rated), rated))
     }
@@ -251,8 +255,8 @@ impl Hypothesis {
     }
 
     /// The plant of this hypothesis.
-    pub fn plant(&self, belief: &Belief) -> Plant {
-        let b = &belief.plant;
+    pub fn plant(&self, prior: &Prior) -> Plant {
+        let b = &prior.plant;
         let leakage = self.z[2].exp();
         let mut effects = b.effects.clone();
         effects.extend(self.configs(&b.rated));
@@ -266,7 +270,7 @@ impl Hypothesis {
             },
             mechanics: Mechanics {
                 inertia: b.mechanics.inertia * self.z[4].exp(),
-                friction: b.mechanics.friction + self.z[FRICTION] * belief.friction_unit,
+                friction: b.mechanics.friction + self.z[FRICTION] * prior.friction_unit,
                 ..b.mechanics
             },
             rated: b.rated,

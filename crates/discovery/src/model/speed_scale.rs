@@ -9,8 +9,8 @@ use crate::data::signal::estimated_sigma;
 use crate::data::unsupported::Unsupported;
 use crate::fit::normal_equations::dot;
 use crate::fit::output_error::{Effort, fit};
-use crate::model::prediction::{Teacher, outputs, residual};
-use crate::model::prior::{Belief, Hypothesis, N_NOMINAL};
+use crate::model::prediction::{SpeedObserver, outputs, residual};
+use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
 use crate::model::speed_gain::{EFFECT, gain_of};
 use crate::report::types::{AtRest, ErrorSource, SpeedScaleReport};
 use motor::dynamic::clarke;
@@ -116,12 +116,12 @@ impl FreeScale {
     }
 
     /// The same with its factor fitted to one recording, everything else as believed.
-    pub fn fitted(self, case: &Case, belief: &Belief) -> Self {
-        let mut h = free(&beliefs_frozen(), belief);
+    pub fn fitted(self, case: &Case, prior: &Prior) -> Self {
+        let mut h = free(&prior_frozen(), prior);
         let error = |z: f64| {
             let mut h = h.clone();
             h.z[N_NOMINAL] = z;
-            let r = residual(case, &outputs(case, belief, &h, Teacher::Off));
+            let r = residual(case, &outputs(case, prior, &h, SpeedObserver::Off));
             dot(&r, &r)
         };
         let typical = h.parameter(N_NOMINAL).typical;
@@ -130,8 +130,8 @@ impl FreeScale {
             .into_iter()
             .min_by(|a, b| error(*a).total_cmp(&error(*b)));
         h.z[N_NOMINAL] = best.unwrap_or(0.0);
-        let found = fit(case, belief, &h, Effort::FULL);
-        self.over(gain(&found.hypothesis, belief))
+        let found = fit(case, prior, &h, Effort::FULL);
+        self.over(gain(&found.hypothesis, prior))
     }
 
     fn over(self, gain: f64) -> Self {
@@ -145,10 +145,10 @@ impl FreeScale {
     pub fn report(
         &self,
         h: &Hypothesis,
-        belief: &Belief,
+        prior: &Prior,
         (error, source): (f64, ErrorSource),
     ) -> SpeedScaleReport {
-        let factor = self.over(gain(h, belief)).factor;
+        let factor = self.over(gain(h, prior)).factor;
         let unit = self.unknown.unit;
         let given = self.unknown.offset.unwrap_or(0.0);
         SpeedScaleReport {
@@ -165,23 +165,23 @@ impl FreeScale {
 }
 
 /// The hypothesis with the scale of the speed free.
-pub(crate) fn free(h: &Hypothesis, belief: &Belief) -> Hypothesis {
-    let rated = &belief.plant.rated;
+pub(crate) fn free(h: &Hypothesis, prior: &Prior) -> Hypothesis {
+    let rated = &prior.plant.rated;
     match find(EFFECT, "") {
         Some(effect) => h.with(EffectConfig::absent(effect, rated), rated),
         None => h.clone(),
     }
 }
 
-fn beliefs_frozen() -> Hypothesis {
-    let mut h = Hypothesis::beliefs(true);
+fn prior_frozen() -> Hypothesis {
+    let mut h = Hypothesis::at_prior(true);
     h.free.fill(false);
     h
 }
 
 /// What the channel shows over the truth, in a hypothesis.
-fn gain(h: &Hypothesis, belief: &Belief) -> f64 {
-    gain_of(&h.configs(&belief.plant.rated))
+fn gain(h: &Hypothesis, prior: &Prior) -> f64 {
+    gain_of(&h.configs(&prior.plant.rated))
 }
 
 /// Means over one period.
@@ -403,7 +403,7 @@ mod tests {
         let uncertainty = crate::search::inconclusive::Uncertainty::of(&study, &trial);
         let report = scale.report(
             &trial.fit.hypothesis,
-            &study.belief,
+            &study.prior,
             uncertainty.of_scale_and_source(),
         );
         assert!((report.offset - -10.0).abs() < 1e-12, "{report:?}");

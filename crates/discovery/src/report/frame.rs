@@ -5,7 +5,7 @@
 //! explain currents and speed it stays near zero in the right frame and grows with the load in the wrong one.
 
 use crate::data::case::{Case, RELATIVE_CURRENT};
-use crate::model::prior::Belief;
+use crate::model::prior::Prior;
 use crate::report::types::{FrameBand, FrameReport};
 use crate::search::proof::wilcoxon;
 use motor::dynamic::clarke;
@@ -52,7 +52,7 @@ struct Form {
 /// frame or too little runs steadily.
 pub(crate) fn judge(
     motor: &MotorFile,
-    belief: &Belief,
+    prior: &Prior,
     fitted: &TParams<f64>,
     cases: &[&Case],
 ) -> Option<FrameReport> {
@@ -71,7 +71,7 @@ pub(crate) fn judge(
         frame: Frame::RotorFlux,
         constant: None,
     };
-    let windows: Vec<Vec<Window>> = cases.iter().map(|c| windows(c, belief)).collect();
+    let windows: Vec<Vec<Window>> = cases.iter().map(|c| windows(c, prior)).collect();
     if windows.iter().any(|w| w.len() < LEAST_WINDOWS) {
         return None;
     }
@@ -87,7 +87,7 @@ pub(crate) fn judge(
         fitted_before: mean(&before.first).sqrt(),
         fitted_after: mean(&after.first).sqrt(),
         proven: after.beats(&before),
-        by_load: by_load(belief, &windows.concat(), [believed, right]),
+        by_load: by_load(prior, &windows.concat(), [believed, right]),
     })
 }
 
@@ -166,18 +166,18 @@ impl Form {
 }
 
 /// Windows of steady running of a recording.
-fn windows(case: &Case, belief: &Belief) -> Vec<Window> {
+fn windows(case: &Case, prior: &Prior) -> Vec<Window> {
     if case.table.is_some() || case.speed.is_empty() {
         return Vec::new();
     }
-    let rated = &belief.plant.rated;
+    let rated = &prior.plant.rated;
     let n = (PERIODS * std::f64::consts::TAU / rated.omega_sync / case.t_row()).round() as usize;
     let rows = case.measured.len() / n.max(1);
     let one = |k: usize| {
         let half = |from: usize| Means::of(case, from, n / 2);
         let (a, b) = (half(k * n)?, half(k * n + n / 2)?);
         let running = a.u.norm() > 0.3 * rated.voltage && a.omega > 0.3 * rated.speed();
-        (running && a.is_like(&b)).then(|| a.window(&b, case, belief, n))
+        (running && a.is_like(&b)).then(|| a.window(&b, case, prior, n))
     };
     (0..rows).filter_map(one).collect()
 }
@@ -228,10 +228,10 @@ impl Means {
             && (self.omega / other.omega - 1.0).abs() < STEADY[1]
     }
 
-    fn window(&self, other: &Self, case: &Case, belief: &Belief, n: usize) -> Window {
+    fn window(&self, other: &Self, case: &Case, prior: &Prior, n: usize) -> Window {
         let (u, i) = (0.5 * (self.u + other.u), 0.5 * (self.i + other.i));
         let axis = u / u.norm();
-        let n_p = belief.plant.mechanics.n_p;
+        let n_p = prior.plant.mechanics.n_p;
         let rows = (n as f64).sqrt();
         let of_channel = |k: usize| {
             let w = case.weight.iter().map(|w| w[k]).fold(0.0, f64::max);
@@ -254,8 +254,8 @@ impl Means {
 }
 
 /// Mean squares by load, with the parameters of the motor file.
-fn by_load(belief: &Belief, windows: &[Window], forms: [Form; 2]) -> Vec<FrameBand> {
-    let plant = &belief.plant;
+fn by_load(prior: &Prior, windows: &[Window], forms: [Form; 2]) -> Vec<FrameBand> {
+    let plant = &prior.plant;
     let load = |w: &Window| {
         let psi_s =
             (Complex64::new(w.u, 0.0) - w.i * plant.motor.r_s) / Complex64::new(0.0, w.omega_sync);

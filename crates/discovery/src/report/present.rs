@@ -24,7 +24,7 @@ pub(crate) fn coordinate_error(
 pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
     let z = &study.polished(trial).fit.hypothesis.z;
     let far = |&k: &usize| {
-        let limit = IMPLAUSIBLE * NOMINALS[k].prior;
+        let limit = IMPLAUSIBLE * NOMINALS[k].prior_deviation;
         let warm = if NOMINALS[k].unit == "ohm" {
             HOT_COPPER
         } else {
@@ -46,9 +46,9 @@ pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
         let change = if k == FRICTION { z } else { 100.0 * z.exp_m1() };
         NominalReport {
             name: NOMINALS[k].name.to_owned(),
-            believed: study.belief.nominal_value(k, 0.0),
-            value: study.belief.nominal_value(k, z),
-            std_error: study.belief.nominal_error(k, z, error),
+            believed: study.prior.nominal_value(k, 0.0),
+            value: study.prior.nominal_value(k, z),
+            std_error: study.prior.nominal_error(k, z, error),
             unit: NOMINALS[k].unit.to_owned(),
             off: study.off(trial).contains(&k),
             change_percent: change,
@@ -69,7 +69,7 @@ pub(crate) fn effect_parameters(
 ) -> Vec<ParameterReport> {
     let h = &trial.fit.hypothesis;
     let covariance = study.covariance(trial);
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let config = &h.configs(rated)[index];
     let descriptor = config.effect.descriptor();
     let error_of = |parameter: usize| {
@@ -108,7 +108,7 @@ pub(crate) fn kind_word(kind: Kind) -> &'static str {
 ///
 /// Core loss: `1.5 g |u|^2` behind the stator resistance, which is negligible here; torques: `tau w`.
 pub(crate) fn loss_watt(study: &Study, trial: &Trial, index: usize) -> Option<f64> {
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let config = &trial.fit.hypothesis.configs(rated)[index];
     let (size, speed) = (config.values[0], rated.speed());
     match config.effect.descriptor().name {

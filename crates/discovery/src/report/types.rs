@@ -36,7 +36,7 @@ pub struct NominalReport {
     pub unit: String,
     /// Whether it moved by more than three standard errors and 5 % (friction: 2 % of rated torque).
     pub off: bool,
-    /// Change against the belief, percent; friction: percent of rated torque at rated speed.
+    /// Change against the prior, percent; friction: percent of rated torque at rated speed.
     pub change_percent: f64,
 }
 

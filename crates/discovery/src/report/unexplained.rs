@@ -50,7 +50,7 @@ fn drivers(study: &Study) -> Vec<(&'static str, Vec<f64>)> {
         let one = |r: &std::ops::Range<usize>| r.clone().map(f).sum::<f64>() / r.len() as f64;
         blocks.iter().map(one).collect()
     };
-    let n_p = study.belief.plant.mechanics.n_p;
+    let n_p = study.prior.plant.mechanics.n_p;
     let inputs = &case.inputs;
     let mut all = vec![("time", mean(&|row| row as f64))];
     all.push(("current", mean(&|row| case.measured[row][0].abs())));
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn the_worst_channel_is_the_one_with_the_largest_mean_square() {
-        let rated = specimen::belief("").plant.rated;
+        let rated = specimen::prior("").plant.rated;
         let case = Case::new(&specimen::recording(0.5, |_| 1.0), &rated).expect("judged");
         let mut residual = vec![0.5; case.measured.len() * N_CHANNELS];
         for row in residual.chunks_exact_mut(N_CHANNELS) {

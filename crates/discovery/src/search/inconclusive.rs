@@ -5,8 +5,8 @@
 
 use crate::data::study::{Study, Trial};
 use crate::fit::normal_equations;
-use crate::fit::output_error::{Fit, KAPPA};
-use crate::model::prior::{Belief, FRICTION, N_NOMINAL, NOMINALS};
+use crate::fit::output_error::{Fit, INFLATION};
+use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS, Prior};
 use crate::model::speed_gain::EFFECT;
 use crate::report::types::{ErrorSource, Inconclusive};
 use crate::search::accept::adequate;
@@ -50,11 +50,11 @@ impl Uncertainty {
     pub fn of(study: &Study, trial: &Trial) -> Self {
         let fit = &trial.fit;
         let unit = fit.hypothesis.parameter(N_NOMINAL).typical;
-        let rated = &study.belief.plant.rated;
+        let rated = &study.prior.plant.rated;
         let rest = study
             .speed_scale
             .map_or(0.0, |scale| scale.error_of_rest(rated));
-        let physical = rated_slip(&study.belief) / 12f64.sqrt() / unit;
+        let physical = rated_slip(&study.prior) / 12f64.sqrt() / unit;
         let precision = precision(study, fit, physical);
         let at = fit.free.iter().position(|&k| k == N_NOMINAL).unwrap_or(0);
         let cross = precision.column(at).into_owned().remove_row(at);
@@ -113,27 +113,28 @@ impl Uncertainty {
 }
 
 /// Slip at rated torque and flux by the believed parameters, small against one.
-fn rated_slip(belief: &Belief) -> f64 {
-    let (plant, rated) = (&belief.plant, &belief.plant.rated);
+fn rated_slip(prior: &Prior) -> f64 {
+    let (plant, rated) = (&prior.plant, &prior.plant.rated);
     let power = 1.5 * rated.n_p * rated.flux().powi(2) * rated.omega_sync;
     rated.torque * plant.motor.r_r / power
 }
 
 fn precision(study: &Study, fit: &Fit, physical: f64) -> DMatrix<f64> {
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let nominals = fit.free.iter().filter(|&&k| k < N_NOMINAL).count();
-    let kappa = normal_equations::score_inflation(&fit.blocks, nominals).clamp(KAPPA[0], KAPPA[1]);
+    let inflation =
+        normal_equations::score_inflation(&fit.blocks, nominals).clamp(INFLATION[0], INFLATION[1]);
     let weight = |&k: &usize| {
         let sd = match k {
-            FRICTION => NOMINALS[FRICTION].prior,
+            FRICTION => NOMINALS[FRICTION].prior_deviation,
             0..N_NOMINAL => WEAK,
             N_NOMINAL => physical,
-            _ => fit.hypothesis.prior(k, rated).0,
+            _ => fit.hypothesis.prior_of(k, rated).0,
         };
         sd.powi(-2)
     };
-    let prior: Vec<f64> = fit.free.iter().map(weight).collect();
-    normal_equations::total(&fit.blocks).gram / kappa + DMatrix::from_diagonal(&prior.into())
+    let weights: Vec<f64> = fit.free.iter().map(weight).collect();
+    normal_equations::total(&fit.blocks).gram / inflation + DMatrix::from_diagonal(&weights.into())
 }
 
 /// Everything that the free scale leaves open; `screened` effects are asked whether they could still be seen.
@@ -186,7 +187,7 @@ fn parameter(uncertainty: &Uncertainty, k: usize) -> Option<Inconclusive> {
 
 /// The largest slip of steady running, as far as the scale leaves it open.
 fn slip(study: &Study, trial: &Trial, scale_error: f64) -> Option<Inconclusive> {
-    let plant = trial.fit.hypothesis.plant(&study.belief);
+    let plant = trial.fit.hypothesis.plant(&study.prior);
     let case = study.fitted.case.as_seen_by(&plant);
     let stride = case.between.stride() * case.decimation;
     let of_row = |row: usize| {

@@ -12,10 +12,10 @@ pub(crate) const SIGNIFICANT: f64 = 3.0;
 pub(crate) const RELEVANT: f64 = 0.05;
 /// ... or, for friction, by more than this per cent of rated torque, ...
 pub(crate) const RELEVANT_FRICTION: f64 = 2.0;
-/// ... where the recording leaves at most this share of the variance of the belief, ...
+/// ... where the recording leaves at most this share of the variance of the prior, ...
 const LEFT_OPEN: f64 = 0.1;
 
-/// Indices of the nominals that are off: moved far, known well, and with the parameter held at its belief and all others
+/// Indices of the nominals that are off: moved far, known well, and with the parameter held at its prior and all others
 /// refitted the data that were not fitted are explained significantly worse, or only by stranger parameters.
 pub(crate) fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
     let free = |k: &usize| trial.fit.free.contains(k);
@@ -29,18 +29,18 @@ pub(crate) fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
     candidates.filter(needed).collect()
 }
 
-/// How far the nominals of a trial are from their beliefs: sum of squares, in prior standard deviations.
+/// How far the nominals of a trial are from their priors: sum of squares, in prior standard deviations.
 ///
-/// One operating point never shows all of them: held at its belief, a parameter can be replaced by others. They do not
-/// explain the recording if they have to leave their beliefs further than the parameter itself.
+/// One operating point never shows all of them: held at its prior, a parameter can be replaced by others. They do not
+/// explain the recording if they have to leave their priors further than the parameter itself.
 fn strains(trial: &Trial) -> f64 {
     let nominals = trial.fit.hypothesis.z.iter().zip(&NOMINALS);
     nominals
-        .map(|(z, nominal)| (z / nominal.prior).powi(2))
+        .map(|(z, nominal)| (z / nominal.prior_deviation).powi(2))
         .sum()
 }
 
-/// The trial with one nominal held at its belief and everything else refitted.
+/// The trial with one nominal held at its prior and everything else refitted.
 pub(crate) fn held(study: &Study, trial: &Trial, k: usize) -> Trial {
     let mut frozen = trial.fit.hypothesis.clone();
     frozen.z[k] = 0.0;
@@ -62,7 +62,7 @@ fn moved(study: &Study, trial: &Trial, k: usize) -> bool {
         _ => z.exp_m1().abs() > RELEVANT,
     };
     let error = coordinate_error(trial, study.covariance(trial), k);
-    let known = error * error < LEFT_OPEN * NOMINALS[k].prior.powi(2);
+    let known = error * error < LEFT_OPEN * NOMINALS[k].prior_deviation.powi(2);
     relevant && known && z.abs() > SIGNIFICANT * error
 }
 

@@ -4,7 +4,7 @@ use crate::data::case::Case;
 use crate::data::study::{Study, Trial};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, Fit, fit};
-use crate::model::prediction::Teacher;
+use crate::model::prediction::SpeedObserver;
 use crate::model::prior::Hypothesis;
 use crate::search::accept::{adequate, explained};
 use crate::search::screen::{Screened, ranked, screen};
@@ -21,8 +21,8 @@ const STARTS: usize = 3;
 const HOPELESS: f64 = 0.97;
 /// Error above which a model is poor: hopeless refits are given up, unlikely ones are tried.
 const POOR: f64 = 1.1;
-/// Error above which a freely running fit may have settled in a wrong valley.
-const WRONG_VALLEY: f64 = 1.5;
+/// Error above which a freely running fit may have settled in a local minimum.
+const LOCAL_MINIMUM: f64 = 1.5;
 /// Rate at which the observer draws the modelled speed to the measured one, 1/s.
 const OBSERVER: f64 = 200.0;
 /// Screened gain of error below which nothing can pass the proofs.
@@ -33,7 +33,7 @@ const LIKELY: f64 = 0.6;
 /// Error below which no further candidates are looked for.
 const SOLVED: f64 = 1.05;
 
-/// Share of the excess that a candidate explains when no better valley is looked for.
+/// Share of the excess that a candidate explains when no lower minimum is looked for.
 const SETTLED_SHARE: f64 = 0.9;
 
 /// A candidate effect, refitted together with everything else.
@@ -71,14 +71,14 @@ impl Round {
 struct Start {
     hypothesis: Hypothesis,
     group: Vec<Screened>,
-    teacher: Teacher,
+    observer: SpeedObserver,
 }
 
 /// A short refit, to choose between starts.
-fn short(teacher: Teacher) -> Effort {
+fn short(observer: SpeedObserver) -> Effort {
     Effort {
         iterations: 3,
-        teacher,
+        observer,
         abandon_above: f64::INFINITY,
     }
 }
@@ -86,8 +86,8 @@ fn short(teacher: Teacher) -> Effort {
 /// Screens all effects on top of `base` and refits the most promising.
 ///
 /// `tell` hears which of the two is being done.
-/// `nominal` is the same hypothesis with the nominals at their beliefs, from which a fit that settled in a
-/// wrong valley starts again.
+/// `nominal` is the same hypothesis with the nominals at their priors, from which a fit that settled in a
+/// local minimum starts again.
 pub(crate) fn round(
     study: &Study,
     base: &Trial,
@@ -95,16 +95,16 @@ pub(crate) fn round(
     excluded: &[&str],
     tell: &mut dyn FnMut(&str),
 ) -> Round {
-    let (case, belief) = (&study.fitted.case, &study.belief);
+    let (case, prior) = (&study.fitted.case, &study.prior);
     tell("screening all effects");
-    let groups = ranked(&screen(case, belief, &base.fit, excluded), STARTS);
+    let groups = ranked(&screen(case, prior, &base.fit, excluded), STARTS);
     tell("refitting the likeliest");
     let error = study.fold_error(&base.folds);
     let (likely, rest) = promising(study, &base.fit, &groups, error);
     let mut candidates = confirm(study, base, &likely);
     if !candidates.first().is_some_and(|c| settled(study, base, c)) {
-        if may_be_in_wrong_valley(case, error) {
-            candidates.extend(retaught(study, base, nominal, excluded));
+        if may_be_local_minimum(case, error) {
+            candidates.extend(refitted_with_observer(study, base, nominal, excluded));
         }
         if candidates.iter().all(|c| c.error > SOLVED) {
             candidates.extend(confirm(study, base, &rest));
@@ -120,24 +120,24 @@ pub(crate) fn round(
     }
 }
 
-/// Whether no better valley needs to be looked for.
+/// Whether no lower minimum needs to be looked for.
 fn settled(study: &Study, base: &Trial, c: &Candidate) -> bool {
-    c.error < SOLVED || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < WRONG_VALLEY
+    c.error < SOLVED || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < LOCAL_MINIMUM
 }
 
 /// Whether a fit with this error may have gone astray, and a measured speed can lead it.
-fn may_be_in_wrong_valley(case: &Case, error: f64) -> bool {
-    error > WRONG_VALLEY && !case.speed.is_empty() && !case.speed_is_input
+fn may_be_local_minimum(case: &Case, error: f64) -> bool {
+    error > LOCAL_MINIMUM && !case.speed.is_empty() && !case.speed_is_input
 }
 
-/// Effects whose linear estimate has an impossible sign: from a base in a wrong valley that is no verdict.
+/// Effects whose linear estimate has an impossible sign: from a base in a local minimum that is no verdict.
 fn second_chances(fit: &Fit, groups: &[Vec<Screened>]) -> Vec<Start> {
     let impossible =
         |g: &&Vec<Screened>| !g[0].possible && !g[0].config.effect.descriptor().is_resonance();
     let start = |group: &Vec<Screened>| Start {
         hypothesis: fit.hypothesis.clone(),
         group: group.clone(),
-        teacher: fit.teacher,
+        observer: fit.observer,
     };
     groups.iter().filter(impossible).map(start).collect()
 }
@@ -145,7 +145,7 @@ fn second_chances(fit: &Fit, groups: &[Vec<Screened>]) -> Vec<Start> {
 /// Screens all effects and refits only those that may explain most of the excess.
 pub(crate) fn likely(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
     let groups = ranked(
-        &screen(&study.fitted.case, &study.belief, &base.fit, excluded),
+        &screen(&study.fitted.case, &study.prior, &base.fit, excluded),
         STARTS,
     );
     let (likely, _) = promising(study, &base.fit, &groups, study.fold_error(&base.folds));
@@ -155,17 +155,17 @@ pub(crate) fn likely(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
     }
 }
 
-/// Starts again from the beliefs with the speed drawn to the measured one.
-fn retaught(
+/// Starts again from the priors with the speed drawn to the measured one.
+fn refitted_with_observer(
     study: &Study,
     base: &Trial,
     nominal: &Hypothesis,
     excluded: &[&str],
 ) -> Vec<Candidate> {
-    let (case, belief) = (&study.fitted.case, &study.belief);
-    let taught = fit(case, belief, nominal, short(Teacher::On(OBSERVER)));
-    let groups = ranked(&screen(case, belief, &taught, excluded), STARTS);
-    let (likely, rest) = promising(study, &taught, &groups, f64::INFINITY);
+    let (case, prior) = (&study.fitted.case, &study.prior);
+    let observed = fit(case, prior, nominal, short(SpeedObserver::On(OBSERVER)));
+    let groups = ranked(&screen(case, prior, &observed, excluded), STARTS);
+    let (likely, rest) = promising(study, &observed, &groups, f64::INFINITY);
     let mut candidates = confirm(study, base, &likely);
     if candidates.first().is_none_or(|c| c.error > SOLVED) {
         candidates.extend(confirm(study, base, &rest));
@@ -183,7 +183,7 @@ fn promising(
     let start = |group: &Vec<Screened>| Start {
         hypothesis: fit.hypothesis.clone(),
         group: group.clone(),
-        teacher: fit.teacher,
+        observer: fit.observer,
     };
     let screened = |s: &Start| study.fold_error(&s.group[0].held_out);
     // Shapes move during a refit: a bad model may gain more than its secant promises.
@@ -216,13 +216,13 @@ fn best_of_each(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
 }
 
 fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let at = |s: &Screened| start.hypothesis.with(s.config.clone(), rated);
-    let (case, belief) = (&study.fitted.case, &study.belief);
-    let tried = |s: &Screened| fit(case, belief, &at(s), short(start.teacher));
+    let (case, prior) = (&study.fitted.case, &study.prior);
+    let tried = |s: &Screened| fit(case, prior, &at(s), short(start.observer));
     let sse = |f: &Fit| normal_equations::dot(&f.residual, &f.residual);
     let resonance = start.group[0].config.effect.descriptor().is_resonance();
-    let best = if !resonance && start.teacher == Teacher::Off {
+    let best = if !resonance && start.observer == SpeedObserver::Off {
         at(&start.group[0])
     } else {
         let tries = if resonance { start.group.len() } else { 1 };
@@ -245,27 +245,27 @@ fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
     }
 }
 
-/// Refits one effect, every form of it, from the present nominals and from the beliefs.
+/// Refits one effect, every form of it, from the present nominals and from the priors.
 pub(crate) fn only(study: &Study, base: &Trial, effect: &str) -> Vec<Candidate> {
-    let (case, belief) = (&study.fitted.case, &study.belief);
+    let (case, prior) = (&study.fitted.case, &study.prior);
     let all = names().into_iter().chain([expression::NAME]);
     let others: Vec<&str> = all.filter(|n| *n != effect).collect();
     let start = |fit: &Fit| {
-        let groups = ranked(&screen(case, belief, fit, &others), STARTS);
+        let groups = ranked(&screen(case, prior, fit, &others), STARTS);
         let one = |group: Vec<Screened>| Start {
             hypothesis: fit.hypothesis.clone(),
             group,
-            teacher: fit.teacher,
+            observer: fit.observer,
         };
         groups.into_iter().map(one).collect::<Vec<_>>()
     };
     let mut starts = start(&base.fit);
-    if may_be_in_wrong_valley(case, study.fold_error(&base.folds)) {
+    if may_be_local_minimum(case, study.fold_error(&base.folds)) {
         starts.extend(start(&fit(
             case,
-            belief,
-            &study.beliefs(),
-            short(Teacher::On(OBSERVER)),
+            prior,
+            &study.at_prior(),
+            short(SpeedObserver::On(OBSERVER)),
         )));
     }
     confirm(study, base, &starts)

@@ -4,7 +4,7 @@ use crate::data::case::Case;
 use crate::fit::normal_equations::{self, Block, Penalty};
 use crate::fit::output_error::Fit;
 use crate::model::prediction::outputs;
-use crate::model::prior::{Belief, N_NOMINAL};
+use crate::model::prior::{N_NOMINAL, Prior};
 use crate::model::speed_gain::EFFECT;
 use motor::effect::{Applies, Effect, EffectConfig, Parameter, Role, expression};
 use motor::effects::ALL;
@@ -27,7 +27,7 @@ pub(crate) struct Screened {
     pub config: EffectConfig,
     /// Held-out squared error of each block.
     pub held_out: Vec<f64>,
-    /// Whether physics allows the estimated sizes; linearised from a wrong valley a sign may be wrong.
+    /// Whether physics allows the estimated sizes; linearised from a local minimum a sign may be wrong.
     pub possible: bool,
     /// Mean squared signature of a typical size that the nominals cannot imitate, in noise units.
     pub visible: f64,
@@ -43,7 +43,7 @@ impl Screened {
 }
 
 /// Effects that can be asked about in this case and are not part of the model yet.
-fn askable(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<&'static dyn Effect> {
+fn askable(case: &Case, prior: &Prior, fit: &Fit, excluded: &[&str]) -> Vec<&'static dyn Effect> {
     let present = |e: &&'static dyn Effect| {
         let asked = e.descriptor();
         // Forms of one effect exclude each other; each formula is an effect of its own.
@@ -51,7 +51,7 @@ fn askable(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<&'
             let held = c.effect.descriptor();
             held.name == asked.name && (held.name != expression::NAME || held.form == asked.form)
         };
-        let mut known = fit.hypothesis.effects.iter().chain(&belief.plant.effects);
+        let mut known = fit.hypothesis.effects.iter().chain(&prior.plant.effects);
         known.any(same) || excluded.contains(&asked.name)
     };
     let applies = |e: &&'static dyn Effect| match e.descriptor().applies {
@@ -59,7 +59,7 @@ fn askable(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<&'
         Applies::Inverter => case.inverter,
         Applies::Samples => case.table.is_none(),
     };
-    let all = ALL.iter().chain(&belief.formulas);
+    let all = ALL.iter().chain(&prior.formulas);
     all.copied().filter(|e| !present(e) && applies(e)).collect()
 }
 
@@ -78,8 +78,8 @@ fn grid(p: &Parameter) -> Vec<f64> {
 }
 
 /// All points of an effect's shape grid, sizes zero.
-pub(crate) fn grid_points(effect: &'static dyn Effect, belief: &Belief) -> Vec<EffectConfig> {
-    let rated = &belief.plant.rated;
+pub(crate) fn grid_points(effect: &'static dyn Effect, prior: &Prior) -> Vec<EffectConfig> {
+    let rated = &prior.plant.rated;
     let mut points = vec![EffectConfig::absent(effect, rated)];
     for (k, p) in effect.descriptor().parameters.iter().enumerate() {
         let scale = p.scale.of(rated);
@@ -97,30 +97,30 @@ pub(crate) fn grid_points(effect: &'static dyn Effect, belief: &Belief) -> Vec<E
 }
 
 /// Effects at every point of their grids, in the order of the library.
-pub(crate) fn screen(case: &Case, belief: &Belief, fit: &Fit, excluded: &[&str]) -> Vec<Screened> {
-    let points: Vec<EffectConfig> = askable(case, belief, fit, excluded)
+pub(crate) fn screen(case: &Case, prior: &Prior, fit: &Fit, excluded: &[&str]) -> Vec<Screened> {
+    let points: Vec<EffectConfig> = askable(case, prior, fit, excluded)
         .into_iter()
-        .flat_map(|e| grid_points(e, belief))
+        .flat_map(|e| grid_points(e, prior))
         .collect();
     let rows = case.blocks();
     let one = |config: &EffectConfig| {
-        let columns = columns(case, belief, fit, config);
+        let columns = columns(case, prior, fit, config);
         if columns.iter().flatten().any(|x| !x.is_finite()) {
             return None;
         }
         let blocks =
             normal_equations::extended(&fit.blocks, &rows, &fit.residual, &fit.jacobian, &columns);
-        Some(judge(belief, fit, config, &blocks, columns.len()))
+        Some(judge(prior, fit, config, &blocks, columns.len()))
     };
     points.par_iter().filter_map(one).collect()
 }
 
 /// Secant columns: one per size, or the whole difference for a resonance.
-fn columns(case: &Case, belief: &Belief, fit: &Fit, config: &EffectConfig) -> Vec<Vec<f64>> {
-    let rated = &belief.plant.rated;
+fn columns(case: &Case, prior: &Prior, fit: &Fit, config: &EffectConfig) -> Vec<Vec<f64>> {
+    let rated = &prior.plant.rated;
     let difference = |config: EffectConfig, over: f64| {
         let h = fit.hypothesis.with(config, rated);
-        let mut there = outputs(case, belief, &h, fit.teacher);
+        let mut there = outputs(case, prior, &h, fit.observer);
         there
             .iter_mut()
             .zip(&fit.outputs)
@@ -142,26 +142,20 @@ fn columns(case: &Case, belief: &Belief, fit: &Fit, config: &EffectConfig) -> Ve
         .collect()
 }
 
-fn judge(
-    belief: &Belief,
-    fit: &Fit,
-    config: &EffectConfig,
-    blocks: &[Block],
-    n: usize,
-) -> Screened {
+fn judge(prior: &Prior, fit: &Fit, config: &EffectConfig, blocks: &[Block], n: usize) -> Screened {
     let penalty = extended_penalty(&fit.penalty, n);
     let all = normal_equations::total(blocks);
     let first = fit.free.len();
     let step = penalty.solve(&all, 0.0);
     let mut config = config.clone();
-    let possible = step.is_some_and(|s| estimate(belief, &mut config, &s.as_slice()[first..]));
+    let possible = step.is_some_and(|s| estimate(prior, &mut config, &s.as_slice()[first..]));
     let held_out = if possible {
         normal_equations::held_out(blocks, &penalty)
     } else {
         normal_equations::held_out(&fit.blocks, &fit.penalty)
     };
     if !possible {
-        make_small(belief, &mut config);
+        make_small(prior, &mut config);
     }
     Screened {
         config,
@@ -206,7 +200,7 @@ fn extended_penalty(base: &Penalty, n: usize) -> Penalty {
 }
 
 /// Writes the estimated sizes into `config`; false if physics forbids their sign.
-fn estimate(belief: &Belief, config: &mut EffectConfig, sizes: &[f64]) -> bool {
+fn estimate(prior: &Prior, config: &mut EffectConfig, sizes: &[f64]) -> bool {
     let descriptor = config.effect.descriptor();
     if descriptor.is_resonance() {
         return sizes[0] > 0.0;
@@ -215,7 +209,7 @@ fn estimate(belief: &Belief, config: &mut EffectConfig, sizes: &[f64]) -> bool {
     let mut possible = true;
     for ((k, p), size) in indices.filter(|(_, p)| p.role == Role::Size).zip(sizes) {
         possible &= p.range[0] < 0.0 || *size > 0.0;
-        let scale = p.scale.of(&belief.plant.rated);
+        let scale = p.scale.of(&prior.plant.rated);
         // A linear estimate may overshoot where the effect is curved.
         let limit = 6.0 * p.typical;
         config.values[k] =
@@ -225,12 +219,12 @@ fn estimate(belief: &Belief, config: &mut EffectConfig, sizes: &[f64]) -> bool {
 }
 
 /// Sizes from which a refit may find out by itself: a little of what cannot be negative, nothing of the rest.
-fn make_small(belief: &Belief, config: &mut EffectConfig) {
+fn make_small(prior: &Prior, config: &mut EffectConfig) {
     let parameters = config.effect.descriptor().parameters.iter().enumerate();
     for (k, p) in parameters.filter(|(_, p)| p.role == Role::Size) {
         let one_sided = p.range[0] >= 0.0;
         let share = if one_sided { SMALL } else { 0.0 };
-        config.values[k] = share * p.typical * p.scale.of(&belief.plant.rated);
+        config.values[k] = share * p.typical * p.scale.of(&prior.plant.rated);
     }
 }
 

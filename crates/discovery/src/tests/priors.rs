@@ -12,7 +12,7 @@ fn study() -> Study {
 
 fn saturation(study: &Study) -> EffectConfig {
     let effect = find("magnetizing-saturation", "").expect("in the library");
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let mut config = EffectConfig::absent(effect, rated);
     for (p, value) in effect
         .descriptor()
@@ -31,9 +31,9 @@ fn saturation(study: &Study) -> EffectConfig {
 #[test]
 fn values_go_through_coordinates_and_back() {
     let study = study();
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let config = saturation(&study);
-    let h = study.beliefs().with(config.clone(), rated);
+    let h = study.at_prior().with(config.clone(), rated);
     let back = h.configs(rated);
     assert_eq!(back.len(), 1);
     for (a, b) in back[0].values.iter().zip(&config.values) {
@@ -43,7 +43,7 @@ fn values_go_through_coordinates_and_back() {
     for k in N_NOMINAL..h.z.len() {
         assert!(h.free[k]);
         let p = h.parameter(k);
-        let (deviation, centre) = h.prior(k, rated);
+        let (deviation, centre) = h.prior_of(k, rated);
         if p.role == Role::Size {
             // Four typical sizes around nothing.
             assert_eq!((deviation, centre), (4.0, 0.0));
@@ -53,7 +53,7 @@ fn values_go_through_coordinates_and_back() {
             assert_eq!(deviation, 1.0);
             assert!((centre - (p.typical * p.scale.of(rated)).ln()).abs() < 1e-12);
         }
-        let [low, high] = h.bounds(k, &study.belief);
+        let [low, high] = h.bounds(k, &study.prior);
         let expected = p
             .range
             .map(|x| to_coordinate(p, x * p.scale.of(rated), rated));
@@ -64,9 +64,9 @@ fn values_go_through_coordinates_and_back() {
 #[test]
 fn nominals_are_factors_and_friction_is_added() {
     let study = study();
-    let mut h = study.beliefs();
+    let mut h = study.at_prior();
     h.z = vec![0.1, -0.1, 0.2, -0.2, 0.3, 2.0];
-    let (believed, plant) = (&study.belief.plant, h.plant(&study.belief));
+    let (believed, plant) = (&study.prior.plant, h.plant(&study.prior));
     let ratio = |a: f64, b: f64| (a / b).ln();
     let moved = [
         ratio(plant.motor.r_s, believed.motor.r_s),
@@ -90,7 +90,7 @@ fn nominals_are_factors_and_friction_is_added() {
         believed.mechanics.load_friction
     );
     for k in 0..N_NOMINAL {
-        let value = study.belief.nominal_value(k, h.z[k]);
+        let value = study.prior.nominal_value(k, h.z[k]);
         let all = [
             plant.motor.r_s,
             plant.motor.r_r,
@@ -100,8 +100,8 @@ fn nominals_are_factors_and_friction_is_added() {
             plant.mechanics.friction,
         ];
         assert!((value - all[k]).abs() < 1e-12 * (1.0 + value));
-        let error = study.belief.nominal_error(k, h.z[k], 0.01);
-        let slope = (study.belief.nominal_value(k, h.z[k] + 1e-6) - value) / 1e-6;
+        let error = study.prior.nominal_error(k, h.z[k], 0.01);
+        let slope = (study.prior.nominal_value(k, h.z[k] + 1e-6) - value) / 1e-6;
         assert!((error - 0.01 * slope).abs() < 1e-5 * error.abs(), "{k}");
     }
 }
@@ -110,17 +110,17 @@ fn nominals_are_factors_and_friction_is_added() {
 #[test]
 fn nominals_have_bounds() {
     let study = study();
-    let h = study.beliefs();
-    assert_eq!(h.bounds(0, &study.belief), [-1.6, 1.6]);
-    let [low, _] = h.bounds(FRICTION, &study.belief);
-    let least = study.belief.nominal_value(FRICTION, low);
-    assert!((least + study.belief.plant.mechanics.load_friction).abs() < 1e-12);
+    let h = study.at_prior();
+    assert_eq!(h.bounds(0, &study.prior), [-1.6, 1.6]);
+    let [low, _] = h.bounds(FRICTION, &study.prior);
+    let least = study.prior.nominal_value(FRICTION, low);
+    assert!((least + study.prior.plant.mechanics.load_friction).abs() < 1e-12);
 }
 
 #[test]
 fn what_cannot_be_seen_is_not_fitted() {
-    let table = study().beliefs();
+    let table = study().at_prior();
     assert_eq!(table.free, [true, true, true, true, false, false]);
-    let free = specimen::study(0.5, |_| 1.0).beliefs();
+    let free = specimen::study(0.5, |_| 1.0).at_prior();
     assert_eq!(free.free, [true; N_NOMINAL]);
 }

@@ -31,8 +31,8 @@ fn refitted(study: &Study, trial: &Trial) -> f64 {
         for rows in rows.iter().skip(fold).step_by(FOLDS) {
             rest.weight[rows.clone()].fill([0.0; 5]);
         }
-        let left_out = fit(&rest, &study.belief, &trial.fit.hypothesis, Effort::FULL);
-        let errors = subject.errors(&study.belief, &left_out.hypothesis);
+        let left_out = fit(&rest, &study.prior, &trial.fit.hypothesis, Effort::FULL);
+        let errors = subject.errors(&study.prior, &left_out.hypothesis);
         errors.into_iter().skip(fold).step_by(FOLDS).sum::<f64>()
     };
     study.fold_error(&(0..FOLDS).map(of_fold).collect::<Vec<_>>())
@@ -53,11 +53,11 @@ fn compare(study: &Study, start: &Hypothesis) {
 #[test]
 fn linearised_folds_agree_with_refitted_ones_where_the_model_fits() {
     let study = question("none").study;
-    compare(&study, &study.beliefs());
+    compare(&study, &study.at_prior());
 }
 
 #[test]
 fn and_where_an_effect_is_missing() {
     let study = question("windage").study;
-    compare(&study, &study.beliefs());
+    compare(&study, &study.at_prior());
 }

@@ -5,7 +5,7 @@ use crate::data::load_table::table_values;
 use crate::data::study::{Study, Subject, Trial};
 use crate::fit::normal_equations::{Block, Penalty};
 use crate::fit::output_error::Effort;
-use crate::model::prior::{Belief, Hypothesis};
+use crate::model::prior::{Hypothesis, Prior};
 use crate::model::speed_scale::FreeScale;
 use motor::MotorFile;
 use motor::effect::{EffectConfig, Plant, from_motor_file};
@@ -47,10 +47,10 @@ pub(crate) fn motor(rest: &str) -> MotorFile {
     MotorFile::parse(&format!("{MOTOR}{rest}"), "specimen.toml").expect("a valid motor file")
 }
 
-pub(crate) fn belief(rest: &str) -> Belief {
+pub(crate) fn prior(rest: &str) -> Prior {
     let file = motor(rest);
     let effects = from_motor_file(&file, "specimen.toml").expect("valid effects");
-    Belief::new(&file, effects)
+    Prior::new(&file, effects)
 }
 
 /// Sampling time, s.
@@ -61,7 +61,7 @@ pub(crate) const SIGMA: [f64; 4] = [0.4, 0.005, 0.2, 0.002];
 
 /// The motor's steady state at this brake torque, N m.
 pub(crate) fn point(torque: f64) -> OperatingPoint<f64> {
-    let plant = belief("").plant;
+    let plant = prior("").plant;
     let u = Complex64::new(plant.rated.voltage, 0.0);
     let curve = SteadyState::new(&plant.motor, plant.mechanics.n_p, u, plant.rated.omega_sync);
     let friction = plant.mechanics.total_friction();
@@ -123,18 +123,18 @@ pub(crate) fn recording(seconds: f64, torque: impl Fn(f64) -> f64) -> Recording 
 
 /// A study of one such recording.
 pub(crate) fn study(seconds: f64, torque: impl Fn(f64) -> f64) -> Study {
-    let belief = belief("");
-    let case = Case::new(&recording(seconds, torque), &belief.plant.rated).expect("judged");
-    Study::new(belief, case, Vec::new(), None)
+    let prior = prior("");
+    let case = Case::new(&recording(seconds, torque), &prior.plant.rated).expect("judged");
+    Study::new(prior, case, Vec::new(), None)
 }
 
-/// The beliefs of a study as they are, hardly fitted.
+/// The priors of a study as they are, hardly fitted.
 pub(crate) fn trial(study: &Study) -> Trial {
     let effort = Effort {
         iterations: 1,
         ..Effort::FULL
     };
-    study.trial(&study.beliefs(), effort)
+    study.trial(&study.at_prior(), effort)
 }
 
 /// Shaft powers of a table, W: from idling to rated power.
@@ -146,7 +146,7 @@ fn loads() -> Vec<f64> {
 /// than believed.
 fn table_at(watts: Vec<f64>, change: impl Fn(&mut Plant)) -> LoadTable {
     use recording::TableColumn::{Current, Efficiency, Power, PowerFactor, Speed};
-    let mut plant = belief("").plant;
+    let mut plant = prior("").plant;
     change(&mut plant);
     let asked = [
         (Power, watts.clone()),
@@ -174,39 +174,39 @@ pub(crate) fn table_source(change: impl Fn(&mut Plant)) -> Source {
 
 /// A load table of a machine other than believed, as a study.
 pub(crate) fn table_study(change: impl Fn(&mut Plant)) -> Study {
-    let belief = belief("");
-    let case = Case::of_table(&table_at(loads(), change), &belief.plant.rated);
-    Study::new(belief, case.expect("twelve points"), Vec::new(), None)
+    let prior = prior("");
+    let case = Case::of_table(&table_at(loads(), change), &prior.plant.rated);
+    Study::new(prior, case.expect("twelve points"), Vec::new(), None)
 }
 
 /// The same with a second table of the machine that proves.
 pub(crate) fn proven_table_study(change: impl Fn(&mut Plant)) -> Study {
-    let belief = belief("");
+    let prior = prior("");
     let between = loads().iter().map(|x| x + 11.0).collect();
     let [fitted, proof] = [loads(), between].map(|watts| {
-        Case::of_table(&table_at(watts, &change), &belief.plant.rated).expect("twelve points")
+        Case::of_table(&table_at(watts, &change), &prior.plant.rated).expect("twelve points")
     });
-    Study::new(belief, fitted, vec![proof], None)
+    Study::new(prior, fitted, vec![proof], None)
 }
 
 /// An effect with its first parameter so many typical sizes large.
 pub(crate) fn effect(name: &str, size: f64) -> EffectConfig {
-    let rated = belief("").plant.rated;
+    let rated = prior("").plant.rated;
     let mut config = EffectConfig::absent(find(name, "").expect("in the library"), &rated);
     let p = &config.effect.descriptor().parameters[0];
     config.values[0] = size * p.typical * p.scale.of(&rated);
     config
 }
 
-/// A trial with these effects on top of the beliefs, nothing moved.
+/// A trial with these effects on top of the priors, nothing moved.
 pub(crate) fn trial_with(study: &Study, effects: &[(&str, f64)]) -> Trial {
-    let rated = &study.belief.plant.rated;
+    let rated = &study.prior.plant.rated;
     let add = |h: Hypothesis, (name, size): &(&str, f64)| h.with(effect(name, *size), rated);
     let nothing_moved = Effort {
         iterations: 0,
         ..Effort::FULL
     };
-    study.trial(&effects.iter().fold(study.beliefs(), add), nothing_moved)
+    study.trial(&effects.iter().fold(study.at_prior(), add), nothing_moved)
 }
 
 /// Squared errors of so many blocks that make up an error over noise.
@@ -231,7 +231,7 @@ pub(crate) fn known_to(trial: &Trial, errors: &[f64]) -> Trial {
     assert_eq!(errors.len(), n, "one for each fitted coordinate");
     let precision = DVector::from_iterator(n, errors.iter().map(|e| e.powi(-2)));
     let mut known = trial.clone();
-    known.fit.kappa = 1.0;
+    known.fit.inflation = 1.0;
     known.fit.penalty = Penalty {
         weight: DVector::zeros(n),
         pull: DVector::zeros(n),
@@ -248,15 +248,15 @@ pub(crate) fn known_to(trial: &Trial, errors: &[f64]) -> Trial {
 
 /// A study of steady running whose speed channel shows `gain` times the speed, in a unit that nobody knows.
 pub(crate) fn scaled_study(seconds: f64, gain: f64) -> Study {
-    let belief = belief("");
-    let rated = &belief.plant.rated;
+    let prior = prior("");
+    let rated = &prior.plant.rated;
     let rec = unknown_speed(seconds, gain);
     let scale = FreeScale::start(&[&rec], rated).expect("it runs");
     let case = Case {
         speed_scale_is_free: true,
         ..Case::new(&scale.applied(&rec), rated).expect("judged")
     };
-    Study::new(belief, case, Vec::new(), Some(scale))
+    Study::new(prior, case, Vec::new(), Some(scale))
 }
 
 /// The recording of such a study, at the torque of 1 N m.

@@ -2,7 +2,7 @@
 
 use super::cases::{self, Case};
 use super::{
-    COAST, Course, Hidden, INVERTER, INVERTER_B, LOADS, Machine, STEADY, STEPS, beliefs, record,
+    COAST, Course, Hidden, INVERTER, INVERTER_B, LOADS, Machine, STEADY, STEPS, priors, record,
 };
 use discovery::{ExplainReport, explain_without};
 use recording::Source;
@@ -98,7 +98,7 @@ impl Question {
     }
 
     pub fn ask(&self) -> Answer {
-        let motor = beliefs(&Machine::of(self.seed), self.seed);
+        let motor = priors(&Machine::of(self.seed), self.seed);
         let (sources, quiet) = (self.sources(), &mut |_: &str, _: f64| {});
         let report = explain_without(&sources, &motor, &self.without, quiet);
         Answer {

@@ -154,7 +154,7 @@ impl Machine {
 }
 
 /// A motor file whose parameters are wrong by up to 5 % (friction 30 %).
-pub fn beliefs(machine: &Machine, seed: u64) -> MotorFile {
+pub fn priors(machine: &Machine, seed: u64) -> MotorFile {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut wrong = |x: f64, by: f64| x * (1.0 + by * rng.random_range(-1.0..1.0f64));
     let m = machine;

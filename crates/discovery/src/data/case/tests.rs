@@ -4,7 +4,7 @@ use crate::tests::specimen::{self, SIGMA, T_SAMPLE};
 use recording::{LoadTorque, Metadata};
 
 fn rated() -> Rated<f64> {
-    specimen::belief("").plant.rated
+    specimen::prior("").plant.rated
 }
 
 fn case_of(rec: &Recording) -> Case {
@@ -453,7 +453,7 @@ fn a_table_is_a_case_of_points() {
 fn a_free_scale_is_taken_out_of_everything_that_holds_the_speed() {
     let rec = specimen::recording(0.5, |_| 1.0);
     let mut case = case_of(&rec);
-    let mut plant = specimen::belief("").plant;
+    let mut plant = specimen::prior("").plant;
     let mut scale = specimen::effect("speed-scale", 1.0);
     scale.values[0] = 0.25;
     plant.effects.push(scale);

@@ -130,12 +130,12 @@ fn what_cannot_be_prepared_is_refused_with_the_first_audit() {
 
 /// A measured brake torque holds the friction of the load; friction alone, a table or no torque at all does not.
 #[test]
-fn a_measured_torque_takes_the_loads_friction_out_of_the_belief() {
+fn a_measured_torque_takes_the_loads_friction_out_of_the_prior() {
     let mut motor = specimen::motor("");
     motor.mechanics.load_friction = 3e-4;
     let friction = |sources: &[Source]| {
         let question = asked(sources, &motor).expect("judged");
-        question.study.belief.plant.mechanics.load_friction
+        question.study.prior.plant.mechanics.load_friction
     };
     let measured = steady(0.3);
     let mut declared = measured.clone();
@@ -179,7 +179,7 @@ fn a_clipping_probe_is_replaced_by_its_second() {
     assert!(matches!(kept, Source::LoadTable(table) if table.len() == 12));
 }
 
-/// The channel shows 0.4 times the speed: the factor is what undoes that, fitted with everything at its belief.
+/// The channel shows 0.4 times the speed: the factor is what undoes that, fitted with everything at its prior.
 #[test]
 fn an_unknown_scale_is_fitted_before_anything_is_asked() {
     let rec = specimen::unknown_speed(0.5, 0.4);

@@ -10,14 +10,14 @@ fn errors_are_the_squares_of_each_block() {
     for row in &mut study.fitted.case.measured {
         row[1] += 2.0 * std::f64::consts::TAU / 60.0;
     }
-    let errors = study.fitted.errors(&study.belief, &study.beliefs());
+    let errors = study.fitted.errors(&study.prior, &study.at_prior());
     assert_eq!(errors.len(), 12);
     assert!(errors.iter().all(|e| (e - 4.0).abs() < 1e-2), "{errors:?}");
 }
 
 #[test]
 fn a_table_cannot_move_inertia_and_friction() {
-    let free = specimen::table_study(|_| ()).beliefs().free;
+    let free = specimen::table_study(|_| ()).at_prior().free;
     assert_eq!(free, [true, true, true, true, false, false]);
 }
 
@@ -25,19 +25,19 @@ fn a_table_cannot_move_inertia_and_friction() {
 #[test]
 fn a_recording_moves_the_mechanics_if_its_speed_is_no_input() {
     let mut study = specimen::study(0.3, |_| 1.0);
-    assert_eq!(study.beliefs().free, [true; N_NOMINAL]);
+    assert_eq!(study.at_prior().free, [true; N_NOMINAL]);
     assert_eq!(study.given_effects(), 0);
     study.fitted.case.speed_is_input = true;
-    assert_eq!(study.beliefs().free[4..], [false, false]);
+    assert_eq!(study.at_prior().free[4..], [false, false]);
 }
 
 #[test]
 fn a_scale_that_nobody_knows_is_free_from_the_start() {
     let study = specimen::scaled_study(0.4, 1.0);
-    let beliefs = study.beliefs();
-    assert_eq!((beliefs.z.len(), study.given_effects()), (N_NOMINAL + 1, 1));
-    assert_eq!(beliefs.effects[0].effect.descriptor().name, "speed-scale");
-    assert!(beliefs.free[N_NOMINAL] && beliefs.z[N_NOMINAL] == 0.0);
+    let priors = study.at_prior();
+    assert_eq!((priors.z.len(), study.given_effects()), (N_NOMINAL + 1, 1));
+    assert_eq!(priors.effects[0].effect.descriptor().name, "speed-scale");
+    assert!(priors.free[N_NOMINAL] && priors.z[N_NOMINAL] == 0.0);
 }
 
 /// Folds are those of the fit, proof goes through the proving tables one after the other.
@@ -97,9 +97,9 @@ fn a_proof_is_silent_below_a_hundredth_of_its_floor() {
     let predicted = trials.clone().map(|t| {
         outputs(
             &subject.case,
-            &study.belief,
+            &study.prior,
             &t.fit.hypothesis,
-            Teacher::Off,
+            SpeedObserver::Off,
         )
     });
     let [without, with] = &predicted;

@@ -19,12 +19,12 @@ fn with_gains(rec: &Recording, gains: &[(Channel, f64)]) -> Recording {
 /// beside it the leakage is known as well as it says.
 #[test]
 fn the_error_of_a_channel_is_not_turned_into_leakage() {
-    let belief = specimen::belief("");
+    let prior = specimen::prior("");
     let rec = specimen::recording(2.0, |_| 1.0);
     let rec = with_gains(&rec, &[(Channel::VOLTAGES[0], 1.003)]);
-    let case = Case::new(&rec, &belief.plant.rated).expect("judged");
-    let study = Study::new(belief, case, Vec::new(), None);
-    let trial = study.trial(&study.beliefs(), Effort::FULL);
+    let case = Case::new(&rec, &prior.plant.rated).expect("judged");
+    let study = Study::new(prior, case, Vec::new(), None);
+    let trial = study.trial(&study.at_prior(), Effort::FULL);
     let beside = study.polished(&trial);
     let leakage = |t: &Trial| t.fit.hypothesis.z[LEAKAGE];
     assert!(leakage(&trial) > 0.05, "{}", leakage(&trial));
@@ -52,14 +52,14 @@ fn the_error_of_a_channel_is_not_turned_into_leakage() {
 /// what the currents show beside it is no leakage either.
 #[test]
 fn the_errors_of_current_channels_are_not_turned_into_leakage() {
-    let belief = specimen::belief("");
+    let prior = specimen::prior("");
     let rec = specimen::recording(4.0, |_| 1.0);
     let gains = [1.003, 0.998, 1.001, 0.997, 1.004, 1.0];
     let channels = Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS);
     let rec = with_gains(&rec, &channels.zip(gains).collect::<Vec<_>>());
-    let case = Case::new(&rec, &belief.plant.rated).expect("judged");
-    let study = Study::new(belief, case, Vec::new(), None);
-    let trial = study.trial(&study.beliefs(), Effort::FULL);
+    let case = Case::new(&rec, &prior.plant.rated).expect("judged");
+    let study = Study::new(prior, case, Vec::new(), None);
+    let trial = study.trial(&study.at_prior(), Effort::FULL);
     let beside = study.polished(&trial);
     let covariance = study.covariance(beside);
     for (at, &k) in beside.fit.free.iter().enumerate() {

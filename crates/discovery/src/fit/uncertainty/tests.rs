@@ -6,8 +6,8 @@ use crate::tests::specimen;
 #[test]
 fn white_residuals_leave_the_inverse_of_the_curvature() {
     let study = specimen::table_study(|_| ());
-    let mut fit = study.trial(&study.beliefs(), Effort::FULL).fit;
-    fit.kappa = 1.0;
+    let mut fit = study.trial(&study.at_prior(), Effort::FULL).fit;
+    fit.inflation = 1.0;
     fit.penalty.weight.fill(0.0);
     let found = covariance(&study, &fit);
     let expected = normal_equations::total(&fit.blocks)
@@ -17,18 +17,18 @@ fn white_residuals_leave_the_inverse_of_the_curvature() {
     assert!((&found - &expected).norm() < 1e-6 * expected.norm());
 }
 
-/// What the data say nothing about keeps the variance of the belief, whatever weight the prior has in the fit.
+/// What the data say nothing about keeps the variance of the prior, whatever weight the prior has in the fit.
 #[test]
-fn without_data_the_belief_is_left() {
+fn without_data_the_prior_is_left() {
     let study = specimen::table_study(|_| ());
-    let mut fit = study.trial(&study.beliefs(), Effort::FULL).fit;
+    let mut fit = study.trial(&study.at_prior(), Effort::FULL).fit;
     fit.blocks.iter_mut().for_each(|b| {
         b.gram.fill(0.0);
         b.score.fill(0.0);
     });
-    for kappa in [1.0, 30.0, 400.0] {
-        fit.kappa = kappa;
-        fit.penalty.weight = DVector::from_element(fit.free.len(), kappa / 0.01);
+    for inflation in [1.0, 30.0, 400.0] {
+        fit.inflation = inflation;
+        fit.penalty.weight = DVector::from_element(fit.free.len(), inflation / 0.01);
         let found = covariance(&study, &fit);
         for k in 0..fit.free.len() {
             assert!(
@@ -45,7 +45,7 @@ fn without_data_the_belief_is_left() {
 #[test]
 fn a_gain_of_the_currents_moves_the_fit_as_foretold() {
     let truth = specimen::study(1.0, |t| if t < 0.5 { 0.5 } else { 1.5 });
-    let fit = truth.trial(&truth.beliefs(), Effort::FULL).fit;
+    let fit = truth.trial(&truth.at_prior(), Effort::FULL).fit;
     let case = &truth.fitted.case;
     let all = normal_equations::total(&fit.blocks);
     let curvature = &all.gram + DMatrix::from_diagonal(&fit.penalty.weight);
@@ -58,7 +58,7 @@ fn a_gain_of_the_currents_moves_the_fit_as_foretold() {
     for row in &mut louder.fitted.case.measured {
         row[..3].iter_mut().for_each(|i| *i *= 1.002);
     }
-    let moved = louder.trial(&louder.beliefs(), Effort::FULL).fit;
+    let moved = louder.trial(&louder.at_prior(), Effort::FULL).fit;
     for (k, &at) in fit.free.iter().enumerate() {
         let step = moved.hypothesis.z[at] - fit.hypothesis.z[at];
         // Linear up to the squares of some tenths of a per cent.

@@ -22,7 +22,7 @@ fn window_of(point: &OperatingPoint<f64>) -> Window {
 }
 
 fn params() -> TParams<f64> {
-    specimen::belief("").plant.motor
+    specimen::prior("").plant.motor
 }
 
 /// (37) row 1 is zero at every load in the rotor-flux frame; in the voltage frame it is what the paper's signals give.
@@ -88,15 +88,15 @@ fn scatter_is_that_between_neighbours() {
 }
 
 fn case(seconds: f64, torque: impl Fn(f64) -> f64) -> Case {
-    let belief = specimen::belief("");
-    Case::new(&specimen::recording(seconds, torque), &belief.plant.rated).expect("judged")
+    let prior = specimen::prior("");
+    Case::new(&specimen::recording(seconds, torque), &prior.plant.rated).expect("judged")
 }
 
 /// Five periods of 60 Hz are 83 ms: eleven whole windows in a second, all of them steady.
 #[test]
 fn windows_hold_the_operating_point() {
-    let belief = specimen::belief("");
-    let found = windows(&case(1.0, |_| 1.0), &belief);
+    let prior = specimen::prior("");
+    let found = windows(&case(1.0, |_| 1.0), &prior);
     assert!((11..=12).contains(&found.len()), "{}", found.len());
     let expected = window_of(&specimen::point(1.0));
     for window in &found {
@@ -118,9 +118,9 @@ fn windows_hold_the_operating_point() {
 
 #[test]
 fn a_window_with_a_load_step_in_it_is_not_steady() {
-    let belief = specimen::belief("");
-    let steady = windows(&case(2.0, |_| 1.0), &belief).len();
-    let stepped = windows(&case(2.0, |t| if t < 1.04 { 0.5 } else { 1.5 }), &belief);
+    let prior = specimen::prior("");
+    let steady = windows(&case(2.0, |_| 1.0), &prior).len();
+    let stepped = windows(&case(2.0, |t| if t < 1.04 { 0.5 } else { 1.5 }), &prior);
     assert_eq!(stepped.len() + 1, steady);
     let light = stepped
         .iter()
@@ -136,9 +136,9 @@ fn stairs(t: f64) -> f64 {
 }
 
 fn judged(rest: &str, cases: &[Case]) -> Option<FrameReport> {
-    let belief = specimen::belief("");
+    let prior = specimen::prior("");
     let all: Vec<&Case> = cases.iter().collect();
-    judge(&specimen::motor(rest), &belief, &params(), &all)
+    judge(&specimen::motor(rest), &prior, &params(), &all)
 }
 
 #[test]

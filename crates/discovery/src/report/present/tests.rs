@@ -7,7 +7,7 @@ const R_S: usize = 0;
 const R_R: usize = 1;
 const INERTIA: usize = 4;
 
-/// The beliefs with nominals moved, each of the fitted ones known to `error`.
+/// The priors with nominals moved, each of the fitted ones known to `error`.
 fn moved(study: &Study, effects: &[(&str, f64)], z: &[(usize, f64)], error: f64) -> Trial {
     let mut trial = specimen::trial_with(study, effects);
     for &(k, z) in z {

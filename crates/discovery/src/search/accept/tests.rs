@@ -67,7 +67,7 @@ fn worse_means_by_more_than_the_lesser_gain() {
 #[test]
 fn an_effect_must_be_large_enough_to_be_named() {
     let study = specimen::table_study(|_| ());
-    let rated = study.belief.plant.rated;
+    let rated = study.prior.plant.rated;
     let with = |name: &str, size: f64| {
         let mut config = EffectConfig::absent(find(name, "").expect("in the library"), &rated);
         let p = &config.effect.descriptor().parameters[0];

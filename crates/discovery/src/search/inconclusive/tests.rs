@@ -46,7 +46,7 @@ fn close(got: f64, expected: f64) {
 
 #[test]
 fn the_slip_at_rated_torque_follows_from_the_rotor_resistance() {
-    close(rated_slip(&specimen::belief("")), expected_slip());
+    close(rated_slip(&specimen::prior("")), expected_slip());
 }
 
 /// Thirty rows count as one at least; priors are a factor of e for nominals, ten per cent of rated torque for friction,
@@ -58,10 +58,10 @@ fn precision_is_what_the_rows_tell_and_the_weak_priors() {
     let gram = DMatrix::from_element(n, n, 60.0);
     let trial = trial_of(&study, &[("core-loss", 1.0)], gram, 1.0);
     let got = precision(&study, &trial.fit, 2.0);
-    let prior = [1.0, 1.0, 1.0, 1.0, 1.0, 0.01, 0.25, 1.0 / 16.0];
+    let weights = [1.0, 1.0, 1.0, 1.0, 1.0, 0.01, 0.25, 1.0 / 16.0];
     for a in 0..n {
         for b in 0..n {
-            let expected = 2.0 + if a == b { prior[a] } else { 0.0 };
+            let expected = 2.0 + if a == b { weights[a] } else { 0.0 };
             assert!((got[(a, b)] - expected).abs() < 1e-12, "{a} {b}");
         }
     }

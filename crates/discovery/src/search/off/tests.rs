@@ -5,7 +5,7 @@ use crate::tests::specimen;
 const R_S: usize = 0;
 const R_R: usize = 1;
 
-/// The beliefs with nominals moved, each of the fitted ones known to `error`.
+/// The priors with nominals moved, each of the fitted ones known to `error`.
 fn moved(study: &Study, effects: &[(&str, f64)], z: &[(usize, f64)], error: f64) -> Trial {
     let mut trial = specimen::trial_with(study, effects);
     for &(k, z) in z {
@@ -70,7 +70,7 @@ fn beside_saturation_the_inductance_may_be_another() {
     assert_eq!(of("magnetizing-saturation"), [LEAKAGE]);
 }
 
-/// A tenth of the belief's variance: an error of 0.0316 beside a belief of 0.1.
+/// A tenth of the prior's variance: an error of 0.0316 beside a prior of 0.1.
 #[test]
 fn what_the_recording_leaves_open_is_not_off() {
     let study = specimen::table_study(|_| ());
@@ -83,18 +83,18 @@ fn what_the_recording_leaves_open_is_not_off() {
 #[test]
 fn a_parameter_that_the_data_need_is_off_and_the_others_are_not() {
     let study = specimen::table_study(|plant| plant.motor.r_r *= 1.25);
-    let trial = study.trial(&study.beliefs(), Effort::FULL);
+    let trial = study.trial(&study.at_prior(), Effort::FULL);
     assert_eq!(nominals(&study, &trial), [R_R]);
     let healthy = specimen::table_study(|_| ());
-    let trial = healthy.trial(&healthy.beliefs(), Effort::FULL);
+    let trial = healthy.trial(&healthy.at_prior(), Effort::FULL);
     assert!(nominals(&healthy, &trial).is_empty());
 }
 
-/// Held at its belief a parameter has not moved, and is not fitted; the others are.
+/// Held at its prior a parameter has not moved, and is not fitted; the others are.
 #[test]
-fn a_held_parameter_stays_at_its_belief() {
+fn a_held_parameter_stays_at_its_prior() {
     let study = specimen::table_study(|plant| plant.motor.r_r *= 1.25);
-    let trial = study.trial(&study.beliefs(), Effort::FULL);
+    let trial = study.trial(&study.at_prior(), Effort::FULL);
     let held = held(&study, &trial, R_R);
     assert_eq!(held.fit.hypothesis.z[R_R], 0.0);
     assert_eq!(held.fit.free, [R_S, LEAKAGE, MAGNETIZING]);

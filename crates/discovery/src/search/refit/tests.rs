@@ -32,8 +32,11 @@ fn found(candidates: &[Candidate]) -> BTreeSet<&'static str> {
 
 #[test]
 fn a_short_refit_takes_three_steps_and_is_never_given_up() {
-    let effort = short(Teacher::On(7.0));
-    assert_eq!((effort.iterations, effort.teacher), (3, Teacher::On(7.0)));
+    let effort = short(SpeedObserver::On(7.0));
+    assert_eq!(
+        (effort.iterations, effort.observer),
+        (3, SpeedObserver::On(7.0))
+    );
     assert_eq!(effort.abandon_above, f64::INFINITY);
 }
 
@@ -91,19 +94,19 @@ fn a_candidate_is_settled_when_it_fits_or_explains_nearly_all() {
     // (100 - 1.96)/99, (100 - 2.56)/99 and (9 - 1.96)/8 of the excess.
     assert!(is_settled(10.0, 1.4) && !is_settled(10.0, 1.6) && !is_settled(3.0, 1.4));
     assert!(!is_settled(3.0, 1.6));
-    assert!(!is_settled(1.1, SOLVED) && !is_settled(10.0, WRONG_VALLEY));
+    assert!(!is_settled(1.1, SOLVED) && !is_settled(10.0, LOCAL_MINIMUM));
 }
 
 #[test]
-fn a_wrong_valley_shows_in_the_error_and_needs_a_measured_speed() {
+fn a_local_minimum_shows_in_the_error_and_needs_a_measured_speed() {
     let mut case = specimen::study(0.3, |_| 1.0).fitted.case;
-    assert!(may_be_in_wrong_valley(&case, 1.6) && !may_be_in_wrong_valley(&case, 1.4));
-    assert!(!may_be_in_wrong_valley(&case, WRONG_VALLEY));
+    assert!(may_be_local_minimum(&case, 1.6) && !may_be_local_minimum(&case, 1.4));
+    assert!(!may_be_local_minimum(&case, LOCAL_MINIMUM));
     case.speed_is_input = true;
-    assert!(!may_be_in_wrong_valley(&case, 1.6));
+    assert!(!may_be_local_minimum(&case, 1.6));
     case.speed_is_input = false;
     case.speed.clear();
-    assert!(!may_be_in_wrong_valley(&case, 1.6));
+    assert!(!may_be_local_minimum(&case, 1.6));
 }
 
 #[test]
@@ -191,9 +194,9 @@ fn impossible(round: &Round) -> BTreeSet<&'static str> {
 #[test]
 fn a_round_that_settles_tries_no_further() {
     let study = specimen::table_study(with("speed-scale", 1.0));
-    let base = study.trial(&study.beliefs(), Effort::FULL);
+    let base = study.trial(&study.at_prior(), Effort::FULL);
     let mut told = Vec::new();
-    let round = round(&study, &base, &study.beliefs(), &[], &mut |what| {
+    let round = round(&study, &base, &study.at_prior(), &[], &mut |what| {
         told.push(what.to_owned());
     });
     assert_eq!(told, ["screening all effects", "refitting the likeliest"]);
@@ -211,9 +214,9 @@ fn a_round_that_settles_tries_no_further() {
 #[test]
 fn a_round_without_the_truth_tries_all_that_can_matter() {
     let study = specimen::table_study(with("speed-scale", 1.0));
-    let base = study.trial(&study.beliefs(), Effort::FULL);
+    let base = study.trial(&study.at_prior(), Effort::FULL);
     let excluded = ["speed-scale", "sample-delay", "deep-bar"];
-    let round = round(&study, &base, &study.beliefs(), &excluded, &mut |_| ());
+    let round = round(&study, &base, &study.at_prior(), &excluded, &mut |_| ());
     assert!(round.screened.iter().all(|s| !excluded.contains(&name(s))));
     let first: BTreeSet<_> = round.screened.iter().take(CONFIRMED).map(name).collect();
     let second = impossible(&round);
@@ -225,21 +228,21 @@ fn a_round_without_the_truth_tries_all_that_can_matter() {
 #[test]
 fn a_round_on_an_adequate_model_tries_only_what_gains() {
     let study = specimen::table_study(|_| ());
-    let base = study.trial(&study.beliefs(), Effort::FULL);
-    let round = round(&study, &base, &study.beliefs(), &[], &mut |_| ());
+    let base = study.trial(&study.at_prior(), Effort::FULL);
+    let round = round(&study, &base, &study.at_prior(), &[], &mut |_| ());
     assert!(round.screened.len() > CONFIRMED && round.candidates.len() <= CONFIRMED);
 }
 
 /// A current that jitters from row to row, which no motor does: what is asked about does not explain it, so that after
 /// the likely one the other is tried too.
 #[test]
-fn a_taught_fit_tries_the_rest_where_the_likely_do_not_suffice() {
+fn a_fit_with_an_observer_tries_the_rest_where_the_likely_do_not_suffice() {
     let mut study = specimen::study(0.3, |_| 1.0);
     let asked = ["coulomb-friction", "windage"];
     let excluded: Vec<&str> = names().into_iter().filter(|n| !asked.contains(n)).collect();
     let tried = |study: &Study| {
-        let base = study.trial(&study.beliefs(), short(Teacher::Off));
-        retaught(study, &base, &study.beliefs(), &excluded)
+        let base = study.trial(&study.at_prior(), short(SpeedObserver::Off));
+        refitted_with_observer(study, &base, &study.at_prior(), &excluded)
     };
     let healthy = tried(&study);
     assert!(!healthy.is_empty() && healthy[0].error < SOLVED);
@@ -255,7 +258,7 @@ fn a_taught_fit_tries_the_rest_where_the_likely_do_not_suffice() {
 #[test]
 fn only_the_effect_that_is_asked_for_is_fitted() {
     let study = specimen::table_study(with("core-loss", 2.0));
-    let base = study.trial(&study.beliefs(), Effort::FULL);
+    let base = study.trial(&study.at_prior(), Effort::FULL);
     let only = only(&study, &base, "core-loss");
     assert_eq!(
         only.iter().map(|c| c.name).collect::<Vec<_>>(),
@@ -270,14 +273,14 @@ fn only_the_effect_that_is_asked_for_is_fitted() {
 fn ringing(frequency_hz: f64) -> Study {
     let mut study = specimen::study(0.4, |t| if t < 0.1 { 0.3 } else { 1.3 });
     let shaft = vec![shaft(frequency_hz).config];
-    let mut plant = study.belief.plant.clone();
+    let mut plant = study.prior.plant.clone();
     plant.effects = shaft;
     let case = &mut study.fitted.case;
     let out = crate::model::prediction::run(
         case,
         &plant,
         &crate::model::prediction::Drive::of(case),
-        Teacher::Off,
+        SpeedObserver::Off,
     );
     for (row, measured) in case.measured.iter_mut().enumerate() {
         let [a, b, c] = out.i_s_abc[row * case.decimation];
@@ -305,16 +308,12 @@ fn a_resonance_starts_from_the_best_of_its_points() {
     let study = ringing(25.0);
     let base = specimen::trial_with(&study, &[]);
     let start = Start {
-        hypothesis: study.beliefs(),
+        hypothesis: study.at_prior(),
         group: vec![shaft(110.0), shaft(26.0)],
-        teacher: Teacher::Off,
+        observer: SpeedObserver::Off,
     };
     let found = super::candidate(&study, &base, &start);
-    let configs = found
-        .trial
-        .fit
-        .hypothesis
-        .configs(&study.belief.plant.rated);
+    let configs = found.trial.fit.hypothesis.configs(&study.prior.plant.rated);
     let frequency = configs[0].values[1];
     assert!((frequency - 25.0).abs() < 0.1, "{frequency}");
     assert!(found.error < 0.1, "{}", found.error);
@@ -326,21 +325,21 @@ fn a_resonance_starts_from_the_best_of_its_points() {
 fn a_hopeless_refit_of_a_poor_model_is_given_up() {
     let study = specimen::table_study(with("core-loss", 3.0));
     let start = Start {
-        hypothesis: study.beliefs(),
+        hypothesis: study.at_prior(),
         group: vec![Screened {
             config: specimen::effect("leakage-saturation", 1.0),
             ..screened(&study, "windage", 1.0)
         }],
-        teacher: Teacher::Off,
+        observer: SpeedObserver::Off,
     };
-    let (case, rated) = (&study.fitted.case, &study.belief.plant.rated);
-    let from = study.beliefs().with(start.group[0].config.clone(), rated);
+    let (case, rated) = (&study.fitted.case, &study.prior.plant.rated);
+    let from = study.at_prior().with(start.group[0].config.clone(), rated);
     let after = |iterations: usize| {
         let effort = Effort {
             iterations,
             ..Effort::FULL
         };
-        let found = fit(case, &study.belief, &from, effort);
+        let found = fit(case, &study.prior, &from, effort);
         (
             normal_equations::dot(&found.residual, &found.residual),
             found.hypothesis.z,

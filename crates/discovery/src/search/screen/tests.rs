@@ -42,8 +42,8 @@ fn a_resonance_is_scanned_finely_and_a_shape_on_its_own_grid() {
 /// Every combination of the grids, sizes zero.
 #[test]
 fn grid_points_are_all_combinations_without_size() {
-    let belief = specimen::belief("");
-    let points = grid_points(effect("magnetizing-saturation"), &belief);
+    let prior = specimen::prior("");
+    let points = grid_points(effect("magnetizing-saturation"), &prior);
     let parameters = effect("magnetizing-saturation").descriptor().parameters;
     let number: usize = parameters.iter().map(|p| grid(p).len()).product();
     assert_eq!(points.len(), number);
@@ -68,10 +68,10 @@ fn what_is_part_of_the_model_is_not_asked_about_again() {
     let rest = formula("k * omega", "k = 1e-6")
         + &formula("k * omega^2", "k = 0.0\nk_typical = 1e-6")
         + saturation;
-    let belief = specimen::belief(&rest);
+    let prior = specimen::prior(&rest);
     let study = specimen::table_study(|_| ());
     let fit = specimen::trial(&study).fit;
-    let asked = askable(&study.fitted.case, &belief, &fit, &["windage"]);
+    let asked = askable(&study.fitted.case, &prior, &fit, &["windage"]);
     let has = |name: &str| asked.iter().any(|e| e.descriptor().name == name);
     let formulas = asked.iter().map(|e| e.descriptor());
     let formulas: Vec<&str> = formulas
@@ -81,13 +81,13 @@ fn what_is_part_of_the_model_is_not_asked_about_again() {
     assert_eq!(formulas, ["k * omega^2"]);
     assert!(has("core-loss") && !has("windage") && !has("magnetizing-saturation"));
     let with = Fit {
-        hypothesis: study.beliefs().with(
-            EffectConfig::absent(belief.formulas[0], &belief.plant.rated),
-            &belief.plant.rated,
+        hypothesis: study.at_prior().with(
+            EffectConfig::absent(prior.formulas[0], &prior.plant.rated),
+            &prior.plant.rated,
         ),
         ..fit
     };
-    let asked = askable(&study.fitted.case, &belief, &with, &[]);
+    let asked = askable(&study.fitted.case, &prior, &with, &[]);
     assert!(
         asked
             .iter()
@@ -96,7 +96,7 @@ fn what_is_part_of_the_model_is_not_asked_about_again() {
 }
 
 fn absent(name: &str) -> EffectConfig {
-    EffectConfig::absent(effect(name), &specimen::belief("").plant.rated)
+    EffectConfig::absent(effect(name), &specimen::prior("").plant.rated)
 }
 
 fn screened(name: &str, held_out: f64) -> Screened {
@@ -130,19 +130,19 @@ fn points_are_ranked_within_their_effect_and_effects_by_their_best() {
 /// Sizes come in typical sizes; physics forbids a negative loss, and nothing is believed beyond six typical sizes.
 #[test]
 fn estimates_are_written_in_the_unit_of_the_effect() {
-    let belief = specimen::belief("");
+    let prior = specimen::prior("");
     let p = parameter("windage", "windage_nm_s2");
-    let unit = p.typical * p.scale.of(&belief.plant.rated);
+    let unit = p.typical * p.scale.of(&prior.plant.rated);
     let mut config = absent("windage");
-    assert!(estimate(&belief, &mut config, &[2.0]));
+    assert!(estimate(&prior, &mut config, &[2.0]));
     assert!((config.values[0] / (2.0 * unit) - 1.0).abs() < 1e-12);
-    assert!(estimate(&belief, &mut config, &[100.0]));
-    let most = p.range[1].min(6.0 * p.typical) * p.scale.of(&belief.plant.rated);
+    assert!(estimate(&prior, &mut config, &[100.0]));
+    let most = p.range[1].min(6.0 * p.typical) * p.scale.of(&prior.plant.rated);
     assert!((config.values[0] / most - 1.0).abs() < 1e-12);
-    assert!(!estimate(&belief, &mut config, &[-0.5]));
+    assert!(!estimate(&prior, &mut config, &[-0.5]));
     let mut gain = absent("current-gain");
     assert!(
-        estimate(&belief, &mut gain, &[-0.5]),
+        estimate(&prior, &mut gain, &[-0.5]),
         "a gain may be too small"
     );
     assert!(gain.values[0] < 0.0);
@@ -150,12 +150,12 @@ fn estimates_are_written_in_the_unit_of_the_effect() {
 
 #[test]
 fn a_refit_starts_small_where_a_size_cannot_be_negative() {
-    let belief = specimen::belief("");
+    let prior = specimen::prior("");
     let p = parameter("windage", "windage_nm_s2");
     let (mut loss, mut gain) = (absent("windage"), absent("current-gain"));
-    make_small(&belief, &mut loss);
-    make_small(&belief, &mut gain);
-    let expected = 0.3 * p.typical * p.scale.of(&belief.plant.rated);
+    make_small(&prior, &mut loss);
+    make_small(&prior, &mut gain);
+    let expected = 0.3 * p.typical * p.scale.of(&prior.plant.rated);
     assert!((loss.values[0] / expected - 1.0).abs() < 1e-12);
     assert_eq!(gain.values[0], 0.0);
 }
@@ -194,7 +194,7 @@ fn new_columns_carry_the_prior_of_an_effect() {
 
 fn names(study: &crate::data::study::Study, excluded: &[&str]) -> Vec<&'static str> {
     let trial = specimen::trial(study);
-    let all = askable(&study.fitted.case, &study.belief, &trial.fit, excluded);
+    let all = askable(&study.fitted.case, &study.prior, &trial.fit, excluded);
     all.iter().map(|e| e.descriptor().name).collect()
 }
 
@@ -214,7 +214,7 @@ fn only_what_applies_and_is_not_there_yet_is_asked_about() {
         }
     }
     let mut present = table.clone();
-    present.belief.plant.effects.push(absent("windage"));
+    present.prior.plant.effects.push(absent("windage"));
     assert!(!names(&present, &[]).contains(&"windage"));
 }
 
@@ -230,7 +230,7 @@ fn screening_finds_what_a_table_hides() {
     });
     let trial = specimen::trial(&study);
     let groups = ranked(
-        &screen(&study.fitted.case, &study.belief, &trial.fit, &[]),
+        &screen(&study.fitted.case, &study.prior, &trial.fit, &[]),
         1,
     );
     let base: f64 = trial.folds.iter().sum();
