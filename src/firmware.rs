@@ -260,7 +260,7 @@ impl Panel {
     }
 }
 
-/// There is nobody to read a message: start again, and the reset cause tells.
+/// No message could be read: start again, and the reset cause tells.
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     cortex_m::peripheral::SCB::sys_reset()

@@ -79,7 +79,7 @@ fn bench(criterion: &mut Criterion) {
     };
     show("all three", samples, shortest(RUNS, whole));
     for leftover in [path.clone(), path.with_extension("").with_extension("toml")] {
-        // A temporary file that cannot be removed disturbs nobody.
+        // A temporary file that cannot be removed does no harm.
         let _ = std::fs::remove_file(leftover);
     }
 }

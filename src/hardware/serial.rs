@@ -16,6 +16,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_io_async::{Read, Write};
+use heapless::Vec;
 
 /// The slave's address.
 const UNIT: u8 = 1;
@@ -57,10 +58,7 @@ type FrameLine = (
 );
 
 /// One frame on its way.
-struct Packet {
-    bytes: [u8; MAX_FRAME_BYTES],
-    length: usize,
-}
+type Packet = Vec<u8, MAX_FRAME_BYTES>;
 
 /// Two windows' worth: the line is faster than the frames come.
 static PACKETS: Channel<CriticalSectionRawMutex, Packet, 2> = Channel::new();
@@ -79,16 +77,11 @@ pub fn start(spawner: Spawner, lines: Lines) {
     }
 }
 
-/// Hands a frame to the line; dropped when two are waiting.
+/// Hands a frame to the line; dropped when two are waiting, or when it is longer than any frame is.
 pub fn send(frame: &[u8]) {
-    let mut packet = Packet {
-        bytes: [0; MAX_FRAME_BYTES],
-        length: frame.len().min(MAX_FRAME_BYTES),
-    };
-    for (place, byte) in packet.bytes.iter_mut().zip(frame) {
-        *place = *byte;
+    if let Ok(packet) = Packet::from_slice(frame) {
+        let _ = PACKETS.try_send(packet);
     }
-    let _ = PACKETS.try_send(packet);
 }
 
 /// Shows these registers from now on.
@@ -111,8 +104,7 @@ async fn send_frames(parts: FrameLine) {
     };
     loop {
         let packet = PACKETS.receive().await;
-        let bytes = packet.bytes.get(..packet.length).unwrap_or_default();
-        let _ = line.write(bytes).await;
+        let _ = line.write(&packet).await;
     }
 }
 

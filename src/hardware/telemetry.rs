@@ -8,7 +8,7 @@ use rtt_target::{UpChannel, rtt_init, set_defmt_channel};
 
 use super::serial;
 
-/// The channel of the frames. Neither it nor the log ever blocks: what nobody reads is dropped.
+/// The channel of the frames. Neither it nor the log ever blocks: frames that are not read are dropped.
 pub struct Telemetry {
     frames: UpChannel,
     sequence: u32,

@@ -3,6 +3,7 @@
 //! Every fourth instant, unfiltered: 2.5 kHz for a quarter of a second, which is what memory has room for and
 //! `drivemon compare` needs (twelve supply cycles).
 
+use heapless::Deque;
 use monitor::RawSample;
 use serde::{Deserialize, Serialize};
 
@@ -39,9 +40,7 @@ type Packed = [u8; 11];
 
 /// The ring.
 pub struct Capture {
-    instants: [Packed; CAPTURE_INSTANTS],
-    next: usize,
-    filled: u16,
+    instants: Deque<Packed, CAPTURE_INSTANTS>,
     after: u16,
     state: CaptureState,
     number: u8,
@@ -73,9 +72,7 @@ impl Capture {
     /// Armed and empty; all zeros, so that it costs no flash.
     pub const fn new() -> Self {
         Capture {
-            instants: [[0; 11]; CAPTURE_INSTANTS],
-            next: 0,
-            filled: 0,
+            instants: Deque::new(),
             after: 0,
             state: CaptureState::Armed,
             number: 0,
@@ -93,14 +90,13 @@ impl Capture {
         if self.state == CaptureState::Complete {
             return;
         }
-        if let Some(place) = self.instants.get_mut(self.next) {
-            *place = packed(raw);
+        if self.instants.is_full() {
+            self.instants.pop_front();
         }
-        self.next = (self.next + 1) % CAPTURE_INSTANTS;
-        self.filled = (self.filled + 1).min(CAPTURE_INSTANTS as u16);
+        let _ = self.instants.push_back(packed(raw));
         if self.state == CaptureState::Taking {
             self.after += 1;
-            if self.after >= AFTER && usize::from(self.filled) == CAPTURE_INSTANTS {
+            if self.after >= AFTER && self.instants.is_full() {
                 self.state = CaptureState::Complete;
             }
         }
@@ -119,7 +115,7 @@ impl Capture {
     /// Samples are missing: what was taken does not hang together.
     pub fn interrupt(&mut self) {
         if self.state != CaptureState::Complete {
-            (self.next, self.filled) = (0, 0);
+            self.instants.clear();
         }
     }
 
@@ -137,11 +133,11 @@ impl Capture {
         }
         let index = self.chunk;
         self.chunk = (index + 1) % CHUNKS;
-        let first = self.next + usize::from(index) * CHUNK;
+        let (older, newer) = self.instants.as_slices();
+        let piece = older.iter().chain(newer).skip(usize::from(index) * CHUNK);
         let mut instants = [[0; 7]; CHUNK];
-        for (k, instant) in instants.iter_mut().enumerate() {
-            let place = (first + k) % CAPTURE_INSTANTS;
-            *instant = self.instants.get(place).map(unpacked).unwrap_or_default();
+        for (instant, packed) in instants.iter_mut().zip(piece) {
+            *instant = unpacked(packed);
         }
         Some(CaptureChunk {
             schema: SCHEMA,

@@ -1,6 +1,7 @@
 //! The motor constants as they lie in flash: words with a schema version and a checksum, so that a
 //! corrupted constant is noticed at power-up instead of being computed with.
 
+use heapless::Vec;
 use monitor::{
     Abc, ActiveEffect, ActiveEffects, CHANNELS, ChannelScale, ComparatorConfig, Converter,
     FieldCurrent, Frame, Healthy, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MonitorConfig,
@@ -66,7 +67,11 @@ impl MotorImage {
         write_motor(&mut writer, config);
         write_judgement(&mut writer, config);
         write_effects(&mut writer, config);
-        let mut words = writer.words;
+        let mut words = [0; IMAGE_WORDS];
+        words
+            .iter_mut()
+            .zip(&writer.words)
+            .for_each(|(place, word)| *place = *word);
         words[IMAGE_WORDS - 1] = crc32_words(&words[..IMAGE_WORDS - 1]);
         MotorImage(words)
     }
@@ -281,26 +286,14 @@ fn choices(word: u32) -> Result<(Frame, LoadKind, usize), ImageError> {
 }
 
 /// Fills an image from the front; a word too many is dropped and shows in the round trip test.
+#[derive(Default)]
 struct Writer {
-    words: [u32; IMAGE_WORDS],
-    used: usize,
-}
-
-impl Default for Writer {
-    fn default() -> Self {
-        Writer {
-            words: [0; IMAGE_WORDS],
-            used: 0,
-        }
-    }
+    words: Vec<u32, IMAGE_WORDS>,
 }
 
 impl Writer {
     fn word(&mut self, word: u32) {
-        if let Some(place) = self.words.get_mut(self.used) {
-            *place = word;
-        }
-        self.used += 1;
+        let _ = self.words.push(word);
     }
 
     fn number(&mut self, x: f32) {

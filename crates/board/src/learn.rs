@@ -242,7 +242,7 @@ fn lit(report: &Report) -> Option<Refusal> {
 fn propose(factory: f32, mean: f32, deviation: f32) -> Result<f32, Refusal> {
     let [least, most] = SHARES.map(|share| share * factory);
     let wanted = mean.abs() + DEVIATIONS * deviation;
-    // Written so that a number that is none is refused too.
+    // Written so that NaN is refused too.
     if wanted <= most {
         Ok(wanted.max(least))
     } else {
@@ -256,7 +256,7 @@ fn trim(scale: &monitor::ChannelScale, shown: [f32; 3]) -> Result<ChannelTrim, R
     let most = OFFSET_SHARE * scale.unit_per_code * scale.zero_code;
     for ((offset, gain), shown) in trim.offset.iter_mut().zip(&trim.gain).zip(shown) {
         *offset += shown / gain;
-        // A number that is none is not sound either.
+        // NaN is not sound either.
         let sound = offset.abs() <= most;
         if !sound {
             return Err(Refusal::Offset);

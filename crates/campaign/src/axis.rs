@@ -214,7 +214,7 @@ impl Conditions {
         self.0[axis as usize]
     }
 
-    /// The value of an axis, or what stands in for one that the plan does not name.
+    /// The value of an axis, or the default of one that the plan does not name.
     pub fn or(&self, axis: Axis, otherwise: f64) -> f64 {
         let value = self.of(axis);
         if value.is_nan() { otherwise } else { value }

@@ -89,7 +89,7 @@ pub(super) fn sizes(section: &Section<'_>, kind: &FaultKind, sizes: &[f64]) -> O
     None
 }
 
-/// A campaign that nobody can wait for.
+/// A campaign that would take too long.
 pub(super) fn runs(root: &Section<'_>, plan: &Plan, most: u64) {
     let per_block = plan.blocks.iter().map(|block| {
         let cells = block.grids.iter().map(Grid::len).map(|len| len as f64);

@@ -78,7 +78,7 @@ impl About {
 }
 
 impl Results {
-    /// Whoever looks sees the old file, none, or the whole new one. The same rows give the same bytes.
+    /// A reader sees the old file, no file, or the whole new one. The same rows give the same bytes.
     ///
     /// # Errors
     /// A path that cannot be written.

@@ -1,4 +1,4 @@
-//! A measured recording whose tachometer nobody calibrated, through the binary. Skipped with a message where the
+//! A measured recording with an uncalibrated tachometer, through the binary. Skipped with a message where the
 //! recording is absent (docs/data.md).
 
 mod common;
@@ -154,7 +154,7 @@ fn an_idling_motor_says_nothing_about_its_rotor() {
     );
 }
 
-/// Nobody said that the scale is unknown: the audit does, and what to type.
+/// The scale is not declared unknown: the audit finds it, and says what to type.
 #[test]
 fn a_speed_that_cannot_be_one_is_told_with_the_flag() {
     let Some(recording) = laboratory("no_load") else {

@@ -76,7 +76,7 @@ pub fn single_mechanics(m: &Mechanics<f64>) -> Mechanics<f32> {
     }
 }
 
-/// The motor file's effects; whoever reads the file checks them with [`effect::from_motor_file`] and their number.
+/// The motor file's effects; the reader of the file checks them with [`effect::from_motor_file`], and how many they are.
 fn effects_of(file: &MotorFile) -> impl Iterator<Item = EffectConfig> {
     let configs = effect::from_motor_file(file, &file.name);
     configs.unwrap_or_default().into_iter()

@@ -123,7 +123,7 @@ const STEADY_SHARE: f32 = 0.25;
 pub(crate) const DERIVATIVE_DOUBT: f32 = 0.25;
 /// A step in the middle of five cycles lies 0.4 to 0.5 of itself off the straight line.
 const STEP_PER_BEND: f32 = 2.0;
-/// Standard deviations of the noise within which a change is none.
+/// Standard deviations of the noise within which a change does not count.
 const NOISE_DEVIATIONS: f32 = 4.0;
 /// A residual is too noisy when it must exceed so many thresholds to be seen.
 const NOISY: f32 = 10.0;
@@ -301,7 +301,7 @@ impl Monitor {
     /// Everything that one complete window can say, and whether thresholds may be applied to it.
     fn examine(&self, state: &mut MonitorState, window: &Window, report: &mut Report) {
         let measured @ [voltages, currents] = state.measured;
-        // What stands in for numbers that are none is no evidence of a dead sensor.
+        // Samples substituted for NaN cannot prove a dead sensor.
         let numbers = window.invalid_samples == 0;
         if numbers {
             report.sensor = self.check_channels(measured, window);

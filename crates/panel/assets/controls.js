@@ -94,7 +94,7 @@ export function tick(t) {
   if (!seeking) of("seek", HTMLInputElement).value = String(t);
 }
 
-/** Wires what stands in the page from the beginning. */
+/** Connects the controls that the page starts with. */
 export function start() {
   byId("faults-off").addEventListener("click", () => put([]));
   byId("pause").addEventListener("click", () => send("/api/pause", { paused: byId("pause").getAttribute("aria-pressed") !== "true" }));

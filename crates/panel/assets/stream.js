@@ -28,7 +28,7 @@ export function listen(handlers) {
     source.close();
     listen(handlers);
   };
-  // A cable that was pulled ends no connection: nobody would ever say so.
+  // A cable that was pulled does not end the connection: the page must notice it itself.
   const watch = setInterval(() => {
     if (performance.now() - heard < SILENCE_MS) return;
     handlers.connection("waiting");

@@ -23,7 +23,7 @@ const SPEEDS: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 /// Faults in force at once.
 const MOST_FAULTS: usize = 32;
 
-/// A request's body, or why it is none.
+/// A request's body, or why it cannot be read.
 type Body<T> = Result<Json<T>, JsonRejection>;
 
 /// Everything under `/api/` apart from the workbench.

@@ -136,13 +136,13 @@ impl Bench {
 }
 
 impl Shared {
-    /// Hands a message to whoever listens; never waits.
+    /// Hands a message to all listeners; never waits.
     pub(super) fn tell<T: Serialize>(&self, event: &'static str, message: &T) {
         if self.stream.receiver_count() == 0 {
             return;
         }
         if let Some(message) = Broadcast::of(event, message) {
-            // Whoever listened may have gone in this moment.
+            // The listener may have gone in this moment.
             let _ = self.stream.send(message);
         }
     }

@@ -1,6 +1,6 @@
 //! Connections: how many, and for how long one may say nothing.
 //!
-//! Whoever holds connections open without asking anything must not keep others out: a connection whose request head does
+//! A client that holds connections open without asking anything must not keep others out: a connection whose request head does
 //! not come is closed, a body that stops coming is given up, and when all places are taken the oldest connection that has
 //! not yet asked for anything makes room.
 

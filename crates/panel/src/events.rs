@@ -37,7 +37,7 @@ pub struct Event {
     pub causes: Vec<LikelyCause>,
     /// Findings of those windows, in words.
     pub findings: Vec<String>,
-    /// Who has seen it; `None` while nobody has.
+    /// Who acknowledged it; `None` before that.
     pub acknowledged: Option<Acknowledgement>,
     /// Samples that can be fetched.
     pub samples: usize,
@@ -212,7 +212,7 @@ impl Events {
         found.map(|(_, recording)| recording)
     }
 
-    /// Somebody has seen all that nobody had seen before.
+    /// Acknowledges all open events.
     pub fn acknowledge(&mut self, seen: &Acknowledgement) {
         for event in &mut self.list {
             event.acknowledged.get_or_insert_with(|| seen.clone());

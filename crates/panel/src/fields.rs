@@ -11,7 +11,7 @@ use toml_edit::{DocumentMut, Item, value};
 pub struct Field {
     /// Section and key in the motor file.
     pub key: &'static str,
-    /// What stands beside the input.
+    /// The unit beside the input.
     pub label: &'static str,
     /// Symbol of the field's literature.
     pub symbol: &'static str,

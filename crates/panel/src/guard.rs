@@ -1,4 +1,4 @@
-//! Who may talk to the server: nobody but the page that it serves itself, and on a network nobody without the token.
+//! Who may talk to the server: only the page that it serves itself, and on a network only with the token.
 //!
 //! A page of another site must not reach it through the visitor's browser: neither by a request (`Origin`) nor under a
 //! name that was pointed at this computer (DNS rebinding, `Host`).
@@ -78,7 +78,7 @@ impl Guard {
         }
     }
 
-    /// What stands behind the address in the link that is printed.
+    /// The part of the printed link behind the address.
     pub fn query(&self) -> String {
         let token = self.token.as_ref();
         token.map_or(String::new(), |Token(token)| format!("?{TOKEN}={token}"))

@@ -1,4 +1,4 @@
-//! What the source's thread does: samples through the core, windows to whoever listens.
+//! What the source's thread does: samples through the core, windows to all listeners.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -321,7 +321,7 @@ impl Mapping {
 }
 
 pub(crate) const COMMAND_LINE: &str = "command line";
-/// The word for a factor that nobody knows.
+/// The word for an unknown factor.
 pub(crate) const UNKNOWN: &str = "unknown";
 
 /// Why the factor of a target cannot be left open; `None` for the speed.

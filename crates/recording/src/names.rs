@@ -1,4 +1,4 @@
-//! The names of files: how they end, in any case, and what stands beside a recording.
+//! The names of files: how they end, in upper or lower case, and which files belong to a recording.
 
 use std::path::{Path, PathBuf};
 

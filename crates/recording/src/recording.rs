@@ -39,7 +39,7 @@ pub struct Recording {
     made: Box<Made>,
     /// What is known beside the samples.
     pub metadata: Metadata,
-    /// Set when nobody knows the factor of the speed: the channel then holds `unit(raw - offset)`.
+    /// Set when the factor of the speed is unknown: the channel then holds `unit(raw - offset)`.
     pub unknown_speed_scale: Option<Box<UnknownScale>>,
     /// What had to be assumed to read the file, one sentence each; a report shows them.
     pub assumptions: Vec<String>,

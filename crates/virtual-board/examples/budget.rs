@@ -11,7 +11,7 @@ const MOST_FLASH: f64 = 216.0 * 1024.0;
 const MOST_RAM: f64 = 64.0 * 1024.0;
 /// Instructions per sampling instant, everything included.
 const MOST_PER_SAMPLE: f64 = 800.0;
-/// Instructions of the dearest window: residuals, lamps, frame.
+/// Instructions of the longest window: residuals, lamps, frame.
 const MOST_PER_WINDOW: f64 = 60_000.0;
 /// Per cent of the core's cycles.
 const MOST_CPU: f64 = 5.0;
@@ -62,8 +62,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             MOST_PER_SAMPLE,
         ),
         (
-            "instructions of the dearest window",
-            dearest_window(&blocks),
+            "instructions of the longest window",
+            longest_window(&blocks),
             MOST_PER_WINDOW,
         ),
         (
@@ -101,12 +101,12 @@ fn instructions_by_block(board: &mut VirtualBoard) -> Result<Vec<f64>, Box<dyn s
     Ok(blocks)
 }
 
-/// Most blocks end no window; what the dearest one takes beyond the ordinary one is its window's.
-fn dearest_window(blocks: &[f64]) -> f64 {
+/// Most blocks end no window; what the longest one takes beyond the ordinary one is its window's.
+fn longest_window(blocks: &[f64]) -> f64 {
     let mut sorted = blocks.to_vec();
     sorted.sort_by(f64::total_cmp);
     let ordinary = sorted[sorted.len() / 2];
-    sorted.last().map_or(0.0, |dearest| dearest - ordinary)
+    sorted.last().map_or(0.0, |longest| longest - ordinary)
 }
 
 fn show_profile(board: &mut VirtualBoard, samples: u64) {

@@ -20,7 +20,7 @@ const CALIBRATION: u32 = FLASH + FLASH_SIZE - 2 * crate::flash::PAGE;
 const CALIBRATION_SIZE: u64 = 2 * crate::flash::PAGE as u64;
 pub(crate) const RAM: u32 = 0x2000_0000;
 pub(crate) const RAM_SIZE: u32 = 128 * 1024;
-/// What RAM holds at power-up. On silicon that is anything; here a word that nobody has written can be told.
+/// What RAM holds at power-up. On silicon that is anything; here a word that was never written can be told apart.
 pub(crate) const UNTOUCHED: u32 = 0xA5C3_965A;
 /// Page of the constants that the factory leaves.
 const FACTORY: u64 = 0x1FFF_7000;

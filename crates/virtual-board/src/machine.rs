@@ -95,7 +95,7 @@ pub(crate) struct Machine {
     pub inputs: Rc<RefCell<Box<dyn Inputs>>>,
     pub sample: RawSample,
     pub first_instant: Option<u64>,
-    /// Every instant whose conversion began, in order; `None` when nobody wants them.
+    /// Every instant whose conversion began, in order; `None` when they are not recorded.
     pub taken: Option<Vec<RawSample>>,
     /// Converter supply, mV.
     pub vdda_millivolt: u32,

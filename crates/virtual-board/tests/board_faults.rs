@@ -272,7 +272,7 @@ fn interrupts_within_the_arithmetic_change_nothing_and_the_model_of_exceptions_c
     // Without stacking of the floating-point registers an interrupt in the middle of the arithmetic destroys it.
     assert!(
         is_disturbed_by_interrupts(false),
-        "nobody noticed that floating-point registers were lost"
+        "lost floating-point registers went unnoticed"
     );
 }
 

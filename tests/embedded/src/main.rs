@@ -25,7 +25,7 @@ fn main() -> ! {
     loop {}
 }
 
-/// Which effect nobody knows before the program runs: all of them are part of it.
+/// The effect is chosen at run time: all of them are part of the program.
 fn with_any_effect() -> MonitorConfig {
     let active = |effect: &&'static _| ActiveEffect {
         effect: *effect,

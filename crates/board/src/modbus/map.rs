@@ -81,9 +81,10 @@ pub enum Field {
     Learning,
     LearnedWindows,
     Capture,
+    CurrentLag,
 }
 
-const FIELDS: usize = Field::Capture as usize + 1;
+const FIELDS: usize = Field::CurrentLag as usize + 1;
 
 /// Every input register, in order of address.
 pub const MAP: [Entry; FIELDS] = {
@@ -183,6 +184,12 @@ pub const MAP: [Entry; FIELDS] = {
             Word,
             "",
             "0 waiting for an alarm, 1 taking the samples around it, 2 complete",
+        ),
+        entry(
+            CurrentLag,
+            Float,
+            "degree",
+            "current behind voltage, positive sequence, within 0.2; a running motor shows 10 to 90, beyond that a clamp is reversed or phases are exchanged",
         ),
     ]
 };

@@ -1,6 +1,7 @@
 //! The protocol: requests in, answers out, and two commands behind an unlock.
 
 use crc::{CRC_16_MODBUS, Crc, NoTable};
+use heapless::Vec;
 
 use super::map::{Image, WORDS};
 
@@ -253,37 +254,18 @@ fn read(answer: &mut Answer<'_>, registers: &[u16]) -> Result<(), Exception> {
     Ok(())
 }
 
-/// Bytes between two silences. What is longer than a frame is none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Bytes between two silences. Longer ones are not frames.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Collector {
-    bytes: [u8; MAX_REQUEST_BYTES],
-    length: usize,
+    bytes: Vec<u8, MAX_REQUEST_BYTES>,
     too_long: bool,
-}
-
-impl Default for Collector {
-    fn default() -> Self {
-        Collector {
-            bytes: [0; MAX_REQUEST_BYTES],
-            length: 0,
-            too_long: false,
-        }
-    }
 }
 
 impl Collector {
     /// Takes bytes from the wire.
     #[inline(never)]
     pub fn push(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            match self.bytes.get_mut(self.length) {
-                Some(place) => {
-                    *place = *byte;
-                    self.length += 1;
-                }
-                None => self.too_long = true,
-            }
-        }
+        self.too_long |= self.bytes.extend_from_slice(bytes).is_err();
     }
 
     /// The frame that a silence ends; empty when there is none.
@@ -291,12 +273,13 @@ impl Collector {
         if self.too_long {
             return &[];
         }
-        self.bytes.get(..self.length).unwrap_or_default()
+        &self.bytes
     }
 
     /// Begins anew.
     pub fn clear(&mut self) {
-        (self.length, self.too_long) = (0, false);
+        self.bytes.clear();
+        self.too_long = false;
     }
 }
 

@@ -90,7 +90,7 @@ impl Study {
         }
     }
 
-    /// Nothing added, priors as they are; a scale of the speed that nobody knows is free from the start.
+    /// Nothing added, priors as they are; an unknown scale of the speed is free from the start.
     pub fn at_prior(&self) -> Hypothesis {
         let priors = match self.fitted.case.table {
             Some(_) => Hypothesis::at_prior_of_table(),

@@ -1,4 +1,4 @@
-//! A speed whose scale nobody knows: where its fit starts, and what came of it.
+//! A speed of unknown scale: where its fit starts, and its result.
 //!
 //! A running motor turns a little slower than its field. The reading of least slip lies therefore just below the
 //! synchronous speed; the reading at rest, where the recording holds one, is the offset; the sense of rotation is the

@@ -130,7 +130,7 @@ pub enum AtRest {
     Given,
     /// The recording holds the motor at rest.
     Measured,
-    /// Nobody knows it: zero.
+    /// Unknown: zero.
     Assumed,
 }
 

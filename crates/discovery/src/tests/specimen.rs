@@ -246,7 +246,7 @@ pub(crate) fn known_to(trial: &Trial, errors: &[f64]) -> Trial {
     known
 }
 
-/// A study of steady running whose speed channel shows `gain` times the speed, in a unit that nobody knows.
+/// A study of steady running whose speed channel shows `gain` times the speed, in an unknown unit.
 pub(crate) fn scaled_study(seconds: f64, gain: f64) -> Study {
     let prior = prior("");
     let rated = &prior.plant.rated;

@@ -138,7 +138,7 @@ impl RunArgs {
             return Ok(self.from..to);
         }
         Err(Failure::Usage(format!(
-            "--from {} --to {to}: the plan has runs 0..{runs}, of which these are none; give 0 <= from < to <= {runs}",
+            "--from {} --to {to}: the plan has runs 0..{runs}, none of them in this range; give 0 <= from < to <= {runs}",
             self.from
         )))
     }

@@ -122,7 +122,7 @@ pub fn spare_what_is_no_sidecar(recording: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Usage(format!(
-        "{}: its sidecar would overwrite {}, which is none; give the recording another name, or remove that file",
+        "{}: its sidecar would overwrite {}, which is no sidecar; give the recording another name, or remove that file",
         recording.display(),
         sidecar.display()
     )))

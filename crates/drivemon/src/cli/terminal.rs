@@ -30,13 +30,13 @@ pub(super) fn bytes(bytes: &[u8]) {
 /// Prints clap's answer: help and version to standard output, what is wrong with the command line to standard error.
 pub(super) fn page(answer: &clap::Error) {
     match answer.use_stderr() {
-        // Where even that fails there is nobody to be told.
+        // Where even that fails the message is lost.
         true => drop(answer.print()),
         false => put(|| answer.print()),
     }
 }
 
-/// Prints a line to standard error; where even that fails there is nobody to be told.
+/// Prints a line to standard error; where even that fails the message is lost.
 pub(super) fn complain(text: Arguments<'_>) {
     let _ = writeln!(anstream::stderr(), "{text}");
 }
@@ -46,7 +46,7 @@ pub(super) fn flush() {
     put(|| io::stdout().flush());
 }
 
-/// Whether nobody reads standard output any more, as behind `| head`.
+/// Whether the reader of standard output has gone, as behind `| head`.
 pub(super) fn is_closed() -> bool {
     failed().is_some()
 }

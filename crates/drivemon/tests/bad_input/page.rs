@@ -14,7 +14,7 @@ const HEAD: &str = "\
 Every input that is refused, what is printed first, and the test that proves it; at the end the faults of the board. A test of
 `crates/drivemon/tests/bad_input` gives each of these inputs to the program and writes this page: what is quoted is what is printed. Whatever the
 input, the program says file, place and remedy, ends with exit code 2 (bad input) or 3 (sound, but not usable), and does not panic;
-[fuzzing](fuzzing.md) looks for inputs that nobody thought of.
+[fuzzing](fuzzing.md) looks for inputs that the list below does not have.
 ";
 
 fn page() -> String {

@@ -266,7 +266,7 @@ mod tests {
             tau_load: Some(tau),
             ..sample(1.0, 1.0)
         };
-        // Two of the largest finite numbers have a sum that is none.
+        // The sum of two of the largest finite numbers is infinite.
         for bad in [f32::NAN, f32::NEG_INFINITY, f32::MAX] {
             state.admit(&with(1.0));
             state.admit(&with(bad));

@@ -211,7 +211,7 @@ fn acceleration_is_part_of_the_torque_balance() {
     assert!((got - expected).abs() < 1e-5, "{got} {expected}");
 }
 
-/// Changes weigh less than what stands: a rate that is untrue, as large as it may be, convinces by no more than one over the
+/// Changes weigh less than a lasting deviation: a rate that is untrue, as large as it may be, convinces by no more than one over the
 /// share of it that stays in doubt.
 #[test]
 fn a_change_convinces_less_than_what_stands() {

@@ -9,7 +9,7 @@ pub type Choice<'c, T> = [(&'c str, T)];
 /// One table of a [`Document`].
 ///
 /// Every getter records its key as known and reports what is wrong; [`Section::finish`] then reports
-/// the keys that nobody asked for and those that are missing.
+/// unknown keys and missing keys.
 #[derive(Debug)]
 pub struct Section<'d> {
     document: &'d Document,

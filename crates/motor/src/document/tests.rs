@@ -2,7 +2,7 @@ use super::{Bounds, Document, FileError, read_text};
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-/// A file of so many sections that nobody knows, read by somebody who knows eight keys.
+/// A file of so many unknown sections, read by a reader that knows eight keys.
 fn read(sections: usize) -> (FileError, Duration) {
     let mut text = String::new();
     for k in 0..sections {
@@ -15,7 +15,7 @@ fn read(sections: usize) -> (FileError, Duration) {
         let _ = root.optional_number(key, &Bounds::between(0.0, 1.0, ""));
     }
     root.finish();
-    let error = document.finish(Some(())).expect_err("nobody knows them");
+    let error = document.finish(Some(())).expect_err("unknown sections");
     (error, begin.elapsed())
 }
 

@@ -49,7 +49,7 @@ impl Target {
     ];
 }
 
-/// What stands at one place of the formula's argument list.
+/// One argument of the formula.
 #[derive(Clone, Copy, Debug)]
 enum Slot {
     Variable(usize),

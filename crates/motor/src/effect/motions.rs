@@ -1,4 +1,4 @@
-//! Whether a formula is a number at every motion of a motor: where it is none there is nothing to add, and to leave it out
+//! Whether a formula is a number at every motion of a motor: where it is not finite there is nothing to add, and to leave it out
 //! there would be another model than the one that was asked for.
 
 use crate::effect::expression::VARIABLES;
@@ -31,7 +31,7 @@ const LATER: [[f64; 2]; 3] = [[0.0, 0.0], [4.0, 1.0], [1e4, 3600.0]];
 /// Refuses a formula that is no number somewhere; `numbers` are its parameters and their typical sizes.
 ///
 /// # Errors
-/// The first motion at which it is none.
+/// The first motion at which it is not finite.
 pub(super) fn check(
     formula: &str,
     numbers: &[(String, f64)],

@@ -152,7 +152,7 @@ async fn place(bench: &Arc<Bench>, slot: usize, made: Slot, before: Option<u64>)
         // A panic would leave the recording without findings.
         let _ = tokio::task::spawn_blocking(move || shared.audit_missing()).await;
     }
-    // Nobody is shown what another page has put there meanwhile as the answer to what was sent.
+    // An upload's answer never shows a file that another page put there meanwhile.
     let done = done.and_then(|()| present(bench, slot, id).map(drop));
     answer(bench, done)
 }

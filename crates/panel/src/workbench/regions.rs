@@ -23,7 +23,7 @@ pub(super) struct Part {
     to_s: f64,
 }
 
-/// The scale of the speed that suits the motor file, where nobody knows it.
+/// The scale of the speed that fits the motor file, where it is unknown.
 fn fitted_scale(source: &Source, motor: &MotorFile) -> Option<SpeedScaleReport> {
     let unknown =
         matches!(source, Source::Recording(recording) if recording.unknown_speed_scale.is_some());

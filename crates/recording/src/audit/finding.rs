@@ -19,7 +19,7 @@ pub enum Code {
     PhaseOrder,
     /// A channel, or all currents, are inverted.
     Polarity,
-    /// A channel has a mean where there is none; value: the mean.
+    /// A channel has a mean that it should not have; value: the mean.
     Offset,
     /// Three channels do not add up to zero; value: percent of the positive sequence.
     ZeroSequence,

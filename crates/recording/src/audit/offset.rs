@@ -1,4 +1,4 @@
-//! Channels that show a mean where there is none.
+//! Channels that show a mean that they should not have.
 
 use super::context::Context;
 use super::finding::{Code, Finding};

@@ -43,12 +43,12 @@ fn gross(context: &Context<'_>) -> Option<Finding> {
     {
         format!(
             "It would fit a motor of {:.0} pole pairs instead of {pole_pairs}, or a speed given in electrical \
-             rad/s; correct pole_pairs, or the scale with --scale speed=FACTOR (speed=unknown if nobody knows it).",
+             rad/s; correct pole_pairs, or the scale with --scale speed=FACTOR (speed=unknown if it is unknown).",
             meant.round()
         )
     } else {
         "Scale and offset of the channel are wrong: correct them with --scale speed=FACTOR and --offset \
-         speed=RAW_AT_REST; if nobody knows them, --scale speed=unknown makes compare, explain and adopt fit them."
+         speed=RAW_AT_REST; if they are unknown, --scale speed=unknown makes compare, explain and adopt fit them."
             .to_owned()
     };
     Some(Finding::new(Code::SpeedImplausible, Channel::SPEED, 100.0 * slip, "%").detail(format!(

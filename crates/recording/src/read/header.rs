@@ -14,7 +14,7 @@ pub(super) struct Header {
     pub units: Vec<Option<String>>,
     /// What had to be assumed to read the file, one sentence each.
     pub notes: Vec<String>,
-    /// What the file holds and nobody can use: refused where it is asked for, named where it is not.
+    /// Columns that cannot be used: refused where they are asked for, named where they are not.
     pub unreadable: Vec<Unreadable>,
 }
 
@@ -38,7 +38,7 @@ impl Unreadable {
         }
     }
 
-    /// The sentence where nobody asked for it.
+    /// The sentence for a column that was not asked for.
     pub fn note(&self) -> String {
         format!("column {} is not used: {}", shown(&self.name), self.why)
     }

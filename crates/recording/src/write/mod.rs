@@ -143,7 +143,7 @@ pub fn sidecar_text(metadata: &Metadata) -> String {
     text
 }
 
-/// What the sidecar says of a speed whose scale nobody knows; the written column is free of a given offset.
+/// What the sidecar says of a speed of unknown scale; the written column is free of a given offset.
 fn scale_text(recording: &Recording) -> String {
     match recording.unknown_speed_scale.as_deref() {
         None => String::new(),

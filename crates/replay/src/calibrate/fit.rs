@@ -20,7 +20,7 @@ pub(super) const FITTED: [(Cause, f64); 5] = [
 ];
 /// Prior standard deviation of friction that is known, a share of it.
 const FRICTION_PRIOR: f64 = 0.5;
-/// Friction that nobody knows, a share of rated torque at synchronous speed: bearings and a fan take 0.5 to 3 %.
+/// Prior of an unknown friction, a share of rated torque at synchronous speed: bearings and a fan take 0.5 to 3 %.
 const FRICTION_GUESS: f64 = 0.01;
 /// Largest believable change of a parameter, a share of what is believed.
 const LARGEST_CHANGE: f64 = 0.8;

@@ -51,7 +51,7 @@ impl<'a> Place<'a> {
         text.unwrap_or_default()
     }
 
-    /// This value as text; empty when it is none.
+    /// This value as text; empty when it is not text.
     pub fn as_text(&self) -> &'a str {
         self.value.as_str().unwrap_or_default()
     }

@@ -1,5 +1,7 @@
 //! The slave against a master from elsewhere (`rmodbus`), and against a million frames of rubbish.
 
+use std::vec::Vec;
+
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rmodbus::ModbusProto;

@@ -60,7 +60,7 @@ fn friction_is_off_beyond_two_per_cent_of_rated_torque() {
     assert!(of(2.1, 0.71).is_empty());
 }
 
-/// With saturation the inductance is that of rated flux, which nobody believed anything about.
+/// With saturation the inductance is that of rated flux, about which there is no prior.
 #[test]
 fn beside_saturation_the_inductance_may_be_another() {
     let study = specimen::table_study(|_| ());

@@ -14,7 +14,7 @@ use crate::tests::motor_2200_watt::{self, AMPLITUDE, FRICTION, PARAMS};
 use crate::window::Window;
 use crate::{Evidence, Monitor};
 
-/// What stands between two perfect descriptions of one motor.
+/// The difference between two perfect descriptions of one motor.
 #[derive(Clone, Copy, Debug)]
 pub struct Plant {
     pub params: TParams<f64>,

@@ -12,7 +12,7 @@ const ROUNDING: f64 = 2e-3;
 pub(super) struct Clock {
     /// Time of each sample, s, from 0.
     pub seconds: Vec<f64>,
-    /// Why it is none: the rate and the time stamps say different things.
+    /// Why there is no clock: the rate and the time stamps contradict each other.
     pub contradiction: Option<Unreadable>,
 }
 

@@ -53,7 +53,7 @@ pub(super) enum Side {
     Primary,
     /// The secondary one; primary over secondary.
     Secondary(f64),
-    /// The secondary one, and the ratio, as it stands there, is none.
+    /// The secondary one, and the ratio, as written in the file, is not a number.
     Unknown(String),
 }
 

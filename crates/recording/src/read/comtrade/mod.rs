@@ -120,7 +120,7 @@ impl Analog {
         }
     }
 
-    /// Why nobody can use the values.
+    /// Why the values cannot be used.
     fn obstacle(&self, column: &str) -> Option<Unreadable> {
         let Side::Unknown(ratio) = &self.side else {
             return None;
