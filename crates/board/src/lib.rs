@@ -1,5 +1,16 @@
 #![cfg_attr(not(test), no_std)]
 //! What the board stores, shows and says: formats shared by the firmware and the host. No hardware.
+//!
+//! The map that a Modbus master reads, and a value in it:
+//!
+//! ```
+//! use board::modbus::{Field, Image, address};
+//!
+//! let mut image = Image::default();
+//! image.set_float(Field::Speed, 1_450.0);
+//! let words = image.range(address(Field::Speed), 2).expect("in the map");
+//! assert_eq!(f32::from_bits(u32::from(words[0]) << 16 | u32::from(words[1])), 1_450.0);
+//! ```
 
 mod button;
 mod calibration;

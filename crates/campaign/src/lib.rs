@@ -3,6 +3,15 @@
 //! A plan names motors, conditions and faults. Every run follows from its index alone: it is simulated, replayed
 //! through the core in ADC codes as the board sees it, and becomes one row. Rows become the table of what is detected,
 //! how small, how fast, and how often wrongly.
+//!
+//! ```
+//! use campaign::{Plan, Run};
+//!
+//! let plan = Plan::read("../../campaigns/healthy.toml").expect("a plan");
+//! let run = Run::new(&plan, 0).expect("the first of its runs");
+//! let outcome = run.outcome().expect("it can be simulated");
+//! assert!(outcome.windows > 0 && outcome.healthy_fault == 0);
+//! ```
 
 mod axis;
 mod cause;

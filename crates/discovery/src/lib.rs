@@ -3,6 +3,19 @@
 //! [`compare`] says where the model fails, [`explain`] which effect is missing and how sure that is, [`adopt`]
 //! adds one and shows the error fall on held-out data. The first source is fitted, further ones prove; a single
 //! one is proven by interleaved folds of 40 ms blocks. The same input gives the same report, byte for byte.
+//!
+//! ```
+//! use discovery::compare;
+//! use motor::MotorFile;
+//! use recording::{Mapping, Source, read_recording};
+//!
+//! let motor = MotorFile::read("../../tests/data/peer/windage/motor.toml").expect("a motor file");
+//! let file = "../../tests/data/peer/windage/recording.csv.gz".as_ref();
+//! let recording = read_recording(file, &Mapping::default(), &mut |_| {}).expect("readable");
+//! let report = compare(&[Source::Recording(recording)], &motor, &mut |_, _| {}).expect("comparable");
+//! let overall = report.overall.expect("a sound recording");
+//! assert!(overall.error_over_noise > 1.1); // A windage is missing in the motor file.
+//! ```
 
 mod api;
 mod compare;

@@ -1,4 +1,10 @@
 //! Listening to a running board: frames from a serial port or a debug probe.
+//!
+//! ```
+//! let mut decoder = live::Decoder::default();
+//! // Noise on the wire: no message, and no panic.
+//! assert!(decoder.take(&[7; 300]).is_empty());
+//! ```
 
 mod capture;
 mod decoder;

@@ -3,6 +3,34 @@
 //!
 //! One sample's way: [`Converter`] (codes to SI) -> [`SyncConfig`] (angle of the supply) ->
 //! phasors of whole cycles -> once per cycle: residuals -> thresholds -> signature -> lamps.
+//!
+//! Three voltages and currents of 50 Hz, sampled at 10 kHz, and what comes once per supply cycle:
+//!
+//! ```
+//! # #[cfg(feature = "motor-file")] {
+//! use monitor::{Abc, Lamp, Monitor, MonitorConfig, MonitorState, Sample};
+//! use motor::MotorFile;
+//!
+//! let motor = MotorFile::read("../../motors/peer-2k2.toml").expect("a motor file");
+//! let monitor = Monitor::new(MonitorConfig::from_motor_file(&motor, 1e-4)).expect("valid");
+//! let mut state = MonitorState::default();
+//! let phases = |amplitude: f32, angle: f32| {
+//!     let third = std::f32::consts::TAU / 3.0;
+//!     let [a, b, c] = [0.0, third, 2.0 * third].map(|shift| amplitude * (angle - shift).cos());
+//!     Abc { a, b, c }
+//! };
+//! let reports = (0..10_000).filter_map(|k| {
+//!     let angle = 314.16 * 1e-4 * k as f32;
+//!     let (u_s_abc, i_s_abc) = (phases(326.0, angle), phases(5.0, angle - 1.0));
+//!     let (u_s_abc, i_s_abc) = (Some(u_s_abc), Some(i_s_abc));
+//!     let sample = Sample { u_s_abc, i_s_abc, ..Sample::default() };
+//!     monitor.update(&mut state, &sample)
+//! });
+//! // Without a speed nothing is judged, and no lamp of a fault is lit.
+//! let last = reports.last().expect("fifty cycles");
+//! assert!(last.residuals.is_none() && last.lamps.fault == Lamp::Off);
+//! # }
+//! ```
 
 mod checks;
 mod config;

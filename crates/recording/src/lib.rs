@@ -3,6 +3,14 @@
 //! [`read_recording`] turns a `.csv` or `.csv.gz` file into a [`Recording`] in SI units, with every
 //! assumption that this took written down beside it. Whatever is wrong with an input becomes an
 //! [`Error`] that names file, line, column and remedy.
+//!
+//! ```
+//! use recording::{Mapping, read_recording};
+//!
+//! let file = "../../tests/data/peer/none/recording.csv.gz".as_ref();
+//! let recording = read_recording(file, &Mapping::default(), &mut |_| {}).expect("readable");
+//! assert!((recording.t_sample() - 1e-4).abs() < 1e-12);
+//! ```
 
 mod audit;
 mod channel;

@@ -1,4 +1,19 @@
 //! Replaying a recording through the very core that the board runs.
+//!
+//! ```
+//! use monitor::Monitor;
+//! use motor::MotorFile;
+//! use recording::{Expectation, Mapping, audit, read_recording};
+//! use replay::{Samples, config_for, replay};
+//!
+//! let motor = MotorFile::read("../../tests/data/peer/none/motor.toml").expect("a motor file");
+//! let file = "../../tests/data/peer/none/recording.csv.gz".as_ref();
+//! let recording = read_recording(file, &Mapping::default(), &mut |_| {}).expect("readable");
+//! let monitor = Monitor::new(config_for(&motor, &recording)).expect("a valid configuration");
+//! let audit = audit(&recording, &Expectation::from(&motor));
+//! let timeline = replay(&monitor, &Samples::new(&recording, &audit), &mut |_| {});
+//! assert_eq!(timeline.verdict(&audit.findings).state, replay::VerdictState::Healthy);
+//! ```
 
 mod alarm_causes;
 pub mod calibrate;

@@ -2,6 +2,16 @@
 //!
 //! A scenario names a motor file and says what the supply does, what the shaft drives, what breaks when
 //! and what the instruments are like. Everything except `motor` and `duration_s` has a default.
+//!
+//! ```
+//! use scenario::Scenario;
+//! use scenario::simulate::Simulation;
+//!
+//! let scenario = Scenario::read("../../sim-host/scenarios/healthy-300w.toml").expect("a scenario");
+//! let samples = Simulation::new(&scenario).expect("it can be simulated");
+//! let peak = samples.take(1000).map(|sample| sample.measured.i_s_abc[0].abs());
+//! assert!(peak.fold(0.0, f64::max) > 0.5); // ampere
+//! ```
 
 mod faults;
 mod load;

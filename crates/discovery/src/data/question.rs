@@ -3,9 +3,9 @@
 use crate::data::case::Case;
 use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
+use crate::model::free_scale::FreeScale;
 use crate::model::prior::Prior;
 use crate::model::speed_gain::EFFECT;
-use crate::model::speed_scale::FreeScale;
 use motor::MotorFile;
 use motor::effect::{Rated, from_motor_file};
 use recording::{Audit, Expectation, LoadTorque, Recording, Source, audit, with_sound_probes};

@@ -4,9 +4,9 @@ use crate::data::case::Case;
 use crate::data::noise_floor::{Floor, floor};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, Fit, fit};
+use crate::model::free_scale::{self, FreeScale};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, Prior};
-use crate::model::speed_scale::{self, FreeScale};
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
 
@@ -97,7 +97,7 @@ impl Study {
             None => Hypothesis::at_prior(self.fitted.case.speed_is_input),
         };
         match self.speed_scale {
-            Some(_) => speed_scale::free(&priors, &self.prior),
+            Some(_) => free_scale::free(&priors, &self.prior),
             None => priors,
         }
     }
