@@ -13,37 +13,20 @@
 //! assert!(outcome.windows > 0 && outcome.healthy_fault == 0);
 //! ```
 
-mod axis;
-mod cause;
-mod check;
-mod detection;
-mod fault;
-mod file;
-mod groups;
-mod markdown;
-mod outcome;
-mod pair;
-mod parts;
-mod plan;
-mod print;
-mod read;
-mod row;
-mod run;
-mod statistics;
-mod table;
-#[cfg(test)]
-mod table_tests;
+mod planned;
+mod results;
+mod runs;
 
-pub use axis::{AXES, Axis, Conditions, Grid};
-pub use detection::{DETECTED, Detection, Size};
-pub use fault::{FAULTS, FaultKind};
-pub use file::{About, Results, StoreError};
-pub use groups::Named;
-pub use markdown::page as markdown;
-pub use outcome::{Answer, LampsSeen, Outcome};
-pub use parts::{Done, run as run_range};
-pub use plan::{Block, Case, LoadKnowledge, MotorPair, Place, Plan, Target};
-pub use row::Row;
-pub use run::{Run, T_SAMPLE_S};
-pub use statistics::{RISK, Share};
-pub use table::{Alarm, Healthy, Table, conditions};
+pub use planned::axis::{AXES, Axis, Conditions, Grid};
+pub use planned::fault::{FAULTS, FaultKind};
+pub use planned::plan::{Block, Case, LoadKnowledge, MotorPair, Place, Plan, Target};
+pub use results::detection::{DETECTED, Detection, Size};
+pub use results::groups::Named;
+pub use results::markdown::page as markdown;
+pub use results::statistics::{RISK, Share};
+pub use results::table::{Alarm, Healthy, Table, conditions};
+pub use runs::file::{About, Results, StoreError};
+pub use runs::outcome::{Answer, LampsSeen, Outcome};
+pub use runs::parts::{Done, run as run_range};
+pub use runs::row::Row;
+pub use runs::run::{Run, T_SAMPLE_S};

@@ -4,27 +4,13 @@
 //! never waits for a reader. The server is one thread: it turns the channel into server-sent events, and requests into
 //! commands for the source's thread.
 
-mod api;
-mod assets;
-mod bench;
-mod connections;
-mod events;
-mod export;
-mod fields;
-mod guard;
-mod history;
-mod message;
-mod pace;
-mod server;
-mod session;
-mod shared;
 pub mod source;
-mod stream;
-mod wave;
 pub mod workbench;
-mod worker;
 
-pub use guard::{Guard, Token};
-pub use message::{LampsMessage, Operation, Plate, Vectors, WindowMessage};
-pub use server::{Options, PanelError, Running, bind};
-pub use session::{Session, start};
+mod http;
+mod running;
+
+pub use http::guard::{Guard, Token};
+pub use http::server::{Options, PanelError, Running, bind};
+pub use running::message::{LampsMessage, Operation, Plate, Vectors, WindowMessage};
+pub use running::session::{Session, start};

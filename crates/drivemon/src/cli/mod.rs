@@ -1,37 +1,14 @@
 //! The command line: one file per subcommand.
 
-mod adopt;
-mod answers;
-mod calibrate;
-mod campaign;
-mod compare;
-mod completions;
-mod demo;
-mod explain;
-mod failure;
-mod files;
-mod flash;
-mod input;
-mod lamp_symbol;
-mod live;
-mod monitor;
-mod output;
-mod paint;
-#[cfg(feature = "panel")]
-mod panel;
-mod places;
-mod progress;
-mod scale;
-mod shell;
-mod simulate;
-mod study;
-mod terminal;
+mod arguments;
+mod commands;
+mod printing;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-pub use failure::{Failure, Finding};
+pub use printing::failure::{Failure, Finding};
 
 /// Monitor a three-phase induction motor, and find out where its model is wrong.
 #[derive(Debug, Parser)]
@@ -66,26 +43,26 @@ A fault monitor is no protection device: it does not replace fuses, motor protec
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Demo(demo::Demo),
-    Simulate(simulate::Simulate),
-    Monitor(monitor::MonitorArgs),
-    Compare(compare::Compare),
-    Explain(explain::Explain),
-    Adopt(adopt::Adopt),
-    Campaign(campaign::Campaign),
-    Calibrate(calibrate::Calibrate),
+    Demo(commands::demo::Demo),
+    Simulate(commands::simulate::Simulate),
+    Monitor(commands::monitor::MonitorArgs),
+    Compare(commands::compare::Compare),
+    Explain(commands::explain::Explain),
+    Adopt(commands::adopt::Adopt),
+    Campaign(commands::campaign::Campaign),
+    Calibrate(commands::calibrate::Calibrate),
     #[cfg(feature = "panel")]
-    Panel(panel::Panel),
-    Flash(flash::Flash),
-    Completions(completions::Completions),
-    Man(completions::Man),
+    Panel(commands::panel::Panel),
+    Flash(commands::flash::Flash),
+    Completions(commands::completions::Completions),
+    Man(commands::completions::Man),
 }
 
 impl Cli {
     /// Shows the help, the version, or what is wrong with a command line; the exit code.
     pub fn answer(error: &clap::Error) -> ExitCode {
-        terminal::page(error);
-        match terminal::finish() {
+        printing::terminal::page(error);
+        match printing::terminal::finish() {
             Err(failure) => ExitCode::from(told(&failure)),
             Ok(()) => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
         }
@@ -114,7 +91,7 @@ impl Cli {
 
 /// Ends the output and says what failed; the exit code.
 fn concluded(outcome: Result<Finding, Failure>) -> u8 {
-    let shown = terminal::finish();
+    let shown = printing::terminal::finish();
     let failures = [outcome.as_ref().err(), shown.as_ref().err()];
     // 2, bad input or usage, outweighs 3.
     let code = failures.into_iter().flatten().map(told).min();
@@ -123,6 +100,9 @@ fn concluded(outcome: Result<Finding, Failure>) -> u8 {
 
 /// Prints what failed; the exit code.
 fn told(failure: &Failure) -> u8 {
-    terminal::complain(format_args!("{}{failure}", paint::error("error: ")));
+    printing::terminal::complain(format_args!(
+        "{}{failure}",
+        printing::paint::error("error: ")
+    ));
     failure.exit_code()
 }

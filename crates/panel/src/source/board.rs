@@ -7,7 +7,7 @@ use monitor::{Candidates, Lamp, MonitorConfig, Report};
 use motor::MotorFile;
 
 use super::{Can, Item, Source, SourceFailure, SourceInfo};
-use crate::message::{
+use crate::running::message::{
     LampsMessage, LikelyCause, Operation, WindowMessage, likely, rms, slip_percent,
 };
 use live::{Collector, Decoder, Source as Link, recording};

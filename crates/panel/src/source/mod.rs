@@ -13,7 +13,7 @@ use motor::MotorFile;
 use recording::Recording;
 use serde::{Deserialize, Serialize};
 
-use super::message::WindowMessage;
+use crate::running::message::WindowMessage;
 
 /// What a source is and what can be done with it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -10,8 +10,8 @@ use tempfile::TempDir;
 use super::motors::{self, Motor, MotorView};
 use super::slot::{Slot, SlotView};
 use super::upload::Budget;
-use crate::session::Session;
-use crate::shared::{Refusal, locked};
+use crate::running::session::Session;
+use crate::running::shared::{Refusal, locked};
 
 /// The recording that is fitted, and the one that proves.
 pub(super) const SLOTS: usize = 2;

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::answer;
 use super::desk::{Bench, Desk, Job, Kind};
 use super::motors::Motor;
-use crate::shared::Refusal;
+use crate::running::shared::Refusal;
 use report::study::{Adopted, Compared, Explained, Inputs};
 use report::{Subject, fragment};
 

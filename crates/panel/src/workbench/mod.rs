@@ -22,8 +22,8 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Json, Router};
 
-use super::session::Session;
-use super::shared::Refusal;
+use crate::running::session::Session;
+use crate::running::shared::Refusal;
 use desk::Kind;
 
 pub use desk::Bench;

@@ -14,7 +14,7 @@ use super::desk::Bench;
 use super::motors::{Motor, SHIPPED};
 use super::upload::harmless;
 use super::{answer, refused};
-use crate::shared::Refusal;
+use crate::running::shared::Refusal;
 
 /// A shipped motor file by its name; the panel's own without one.
 #[derive(Debug, Deserialize)]

@@ -3,8 +3,8 @@
 use motor::MotorFile;
 use serde::Serialize;
 
-use crate::fields::problems;
-use crate::shared::Refusal;
+use crate::running::fields::problems;
+use crate::running::shared::Refusal;
 use report::motor_text;
 use report::study::effects_fit;
 

@@ -16,7 +16,7 @@ use super::mapping::Columns;
 use super::slot::Slot;
 use super::upload::{harmless, store};
 use super::{answer, refused};
-use crate::shared::Refusal;
+use crate::running::shared::Refusal;
 
 /// What goes with a file.
 #[derive(Debug, Deserialize)]

@@ -12,7 +12,7 @@ use serde::Deserialize;
 
 use super::desk::Bench;
 use super::refused;
-use crate::shared::Refusal;
+use crate::running::shared::Refusal;
 use report::overlay::{Model, Overlay};
 use report::study::in_fitted_scale;
 

@@ -12,7 +12,7 @@ use axum::http::header::CONTENT_LENGTH;
 use tempfile::TempDir;
 use tokio_stream::StreamExt;
 
-use crate::shared::Refusal;
+use crate::running::shared::Refusal;
 
 /// Largest recording, bytes as it is sent.
 pub(super) const MOST_BYTES: u64 = 256 << 20;

@@ -1,0 +1,194 @@
+//! Flags that say how a recording is to be read, shared by all commands that read one.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use motor::MotorFile;
+use recording::{Mapping, Source};
+
+use crate::cli::printing::failure::Failure;
+use crate::cli::printing::output::DASH;
+use crate::cli::printing::progress;
+use crate::cli::printing::shell::quoted;
+use report::study::effects_fit;
+
+/// How the columns of the file become channels in SI units. A sidecar `x.toml` beside `x.csv.gz` says the same things.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "How to read the recording")]
+pub struct InputArgs {
+    /// Read a channel from another column, e.g. `ic=ic2` or `speed=speed_raw`
+    #[arg(long, value_name = "CHANNEL=COLUMN")]
+    column: Vec<String>,
+    /// Unit of a channel, e.g. `speed=rpm` or `ia=mA`
+    #[arg(long, value_name = "CHANNEL=UNIT")]
+    unit: Vec<String>,
+    /// Factor on a channel, applied after the offset: `scale x (raw - offset)`; `speed=unknown` lets compare, explain and
+    /// adopt fit it
+    #[arg(long, value_name = "CHANNEL=FACTOR")]
+    scale: Vec<String>,
+    /// Raw reading of a channel at zero
+    #[arg(long, value_name = "CHANNEL=VALUE", allow_hyphen_values = true)]
+    offset: Vec<String>,
+    /// How much later than its row a channel was sampled, e.g. `ia=11.55us` of a recorder that samples one channel after the
+    /// other; negative where a filter delays it
+    #[arg(long, value_name = "CHANNEL=TIME", allow_hyphen_values = true)]
+    delay: Vec<String>,
+    /// Sampling rate of a file without a time column, Hz
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    /// The columns va vb vc hold line voltages v_ab v_bc v_ca
+    #[arg(long)]
+    line_voltages: bool,
+    /// Leave out rows with empty or NaN cells instead of refusing the file
+    #[arg(long)]
+    skip_missing: bool,
+    /// What separates the columns, e.g. `;` or `tab`
+    #[arg(long, value_name = "CHARACTER")]
+    delimiter: Option<String>,
+    /// Numbers are written 3,7
+    #[arg(long)]
+    decimal_comma: bool,
+    /// Pulses of the encoder in one turn, where the speed column holds its counts
+    #[arg(long, value_name = "N")]
+    pulses_per_revolution: Option<u32>,
+    /// The sidecar to use instead of the one beside the recording
+    #[arg(long, value_name = "FILE")]
+    sidecar: Option<PathBuf>,
+}
+
+/// What errors call standard input.
+const STDIN: &str = "standard input";
+
+impl InputArgs {
+    /// The flags as they were typed, each with a blank before it: a command that reads the same file needs them too.
+    pub fn typed(&self) -> String {
+        let mut typed = String::new();
+        let mut add = |flag: &str, value: &str| {
+            typed += &format!(" {flag}");
+            if !value.is_empty() {
+                typed += &format!(" {}", quoted(value));
+            }
+        };
+        let lists = [
+            ("--column", &self.column),
+            ("--unit", &self.unit),
+            ("--scale", &self.scale),
+            ("--offset", &self.offset),
+            ("--delay", &self.delay),
+        ];
+        for (flag, values) in lists {
+            values.iter().for_each(|value| add(flag, value));
+        }
+        let text = |x: &PathBuf| x.display().to_string();
+        let values = [
+            ("--sample-rate", self.sample_rate.map(|x| x.to_string())),
+            ("--delimiter", self.delimiter.clone()),
+            (
+                "--pulses-per-revolution",
+                self.pulses_per_revolution.map(|x| x.to_string()),
+            ),
+            ("--sidecar", self.sidecar.as_ref().map(text)),
+        ];
+        for (flag, value) in values {
+            value.iter().for_each(|value| add(flag, value));
+        }
+        let switches = [
+            ("--line-voltages", self.line_voltages),
+            ("--skip-missing", self.skip_missing),
+            ("--decimal-comma", self.decimal_comma),
+        ];
+        for (flag, _) in switches.into_iter().filter(|(_, on)| *on) {
+            add(flag, "");
+        }
+        typed
+    }
+
+    fn mapping(&self) -> Result<Mapping, Failure> {
+        let mut mapping = Mapping {
+            line_voltages: self.line_voltages.then_some(true),
+            skip_missing: self.skip_missing.then_some(true),
+            decimal_comma: self.decimal_comma.then_some(true),
+            sidecar: self.sidecar.clone(),
+            ..Mapping::default()
+        };
+        self.column
+            .iter()
+            .try_for_each(|flag| mapping.set_column(flag))?;
+        self.unit
+            .iter()
+            .try_for_each(|flag| mapping.set_unit(flag))?;
+        self.scale
+            .iter()
+            .try_for_each(|flag| mapping.set_scale(flag))?;
+        self.offset
+            .iter()
+            .try_for_each(|flag| mapping.set_offset(flag))?;
+        self.delay
+            .iter()
+            .try_for_each(|flag| mapping.set_delay(flag))?;
+        if let Some(rate) = self.sample_rate {
+            mapping.set_sample_rate(rate)?;
+        }
+        if let Some(pulses) = self.pulses_per_revolution {
+            mapping.set_pulses(pulses)?;
+        }
+        if let Some(delimiter) = &self.delimiter {
+            mapping.set_delimiter(delimiter)?;
+        }
+        Ok(mapping)
+    }
+
+    /// The sidecar that is named instead of the one beside the recording.
+    pub fn sidecar(&self) -> Option<&PathBuf> {
+        self.sidecar.as_ref()
+    }
+
+    /// Reads a recording or load table with a progress bar; `-` is standard input.
+    ///
+    /// # Errors
+    /// Whatever is wrong with flags, file or sidecar.
+    pub fn read(&self, path: &Path) -> Result<Source, Failure> {
+        let mapping = self.mapping()?;
+        let bar = progress::bar("reading", 0);
+        let mut progress = progress::reading(&bar);
+        let source = match path.as_os_str() == DASH {
+            true => recording::read_stream(STDIN, std::io::stdin(), &mapping, &mut progress),
+            false => recording::read_any(path, &mapping, &mut progress),
+        }?;
+        bar.finish_and_clear();
+        Ok(source)
+    }
+}
+
+/// Reads and validates a motor file, its effects included.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn read_motor(path: &Path) -> Result<MotorFile, Failure> {
+    let motor = MotorFile::read(path)?;
+    effects_fit(&path.display().to_string(), &motor).map_err(Failure::Usage)?;
+    Ok(motor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Reading {
+        #[command(flatten)]
+        input: InputArgs,
+    }
+
+    #[test]
+    fn the_flags_are_repeated_as_they_were_typed() {
+        let line = "x --column ic=ic2 --column speed=n --unit speed=rpm --scale speed=unknown --offset va=-4.1 \
+                    --delay ia=11.55us --sample-rate 5000 --delimiter \";\" --pulses-per-revolution 1024 --sidecar a.toml --line-voltages \
+                    --skip-missing --decimal-comma";
+        let words = line.split(' ').map(|word| word.trim_matches('"'));
+        let typed = Reading::parse_from(words).input.typed();
+        assert_eq!(format!("x{typed}"), line);
+        assert_eq!(InputArgs::default().typed(), "");
+    }
+}

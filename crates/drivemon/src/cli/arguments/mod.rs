@@ -1,0 +1,5 @@
+//! What commands take: files, flags of recordings, sources of a study.
+
+pub(crate) mod files;
+pub(crate) mod input;
+pub(crate) mod study;

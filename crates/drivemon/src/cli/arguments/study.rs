@@ -1,0 +1,245 @@
+//! What compare, explain and adopt share: their inputs, their progress, and how they speak.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use discovery::{Error, Progress};
+use motor::MotorFile;
+use recording::{Audit, Source};
+
+use crate::cli::arguments::files::Files;
+use crate::cli::arguments::input::{InputArgs, read_motor};
+use crate::cli::printing::failure::Failure;
+use crate::cli::printing::output::OutputArgs;
+use crate::cli::printing::shell::quoted;
+use crate::cli::printing::terminal::say;
+use crate::cli::printing::{paint, progress};
+use report::study::Inputs;
+use report::{Style, decimals, significant};
+
+/// Recordings, the motor file, and where results go.
+#[derive(Debug, Args)]
+pub struct StudyArgs {
+    /// Recordings (.csv, .csv.gz) or load-test tables
+    #[arg(value_name = "REC", required = true)]
+    recordings: Vec<PathBuf>,
+    /// Motor file
+    #[arg(long, value_name = "M")]
+    motor: PathBuf,
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
+
+/// Steps of the progress bar.
+const STEPS: f64 = 1000.0;
+
+impl StudyArgs {
+    /// What the command reads and writes.
+    pub fn files(&self) -> Files {
+        Files::default()
+            .reads_recordings(&self.recordings, &self.input)
+            .reads("the motor file", &self.motor)
+            .writes_results(&self.output)
+    }
+
+    /// All recordings in the order given.
+    ///
+    /// # Errors
+    /// Whatever is wrong with flags, file or sidecar.
+    pub fn sources(&self) -> Result<Vec<Source>, Failure> {
+        let paths = self.recordings.iter();
+        paths.map(|path| self.input.read(path)).collect()
+    }
+
+    /// The motor file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn motor(&self) -> Result<MotorFile, Failure> {
+        read_motor(&self.motor)
+    }
+
+    /// The motor file's path.
+    pub fn motor_path(&self) -> &PathBuf {
+        &self.motor
+    }
+
+    /// The recordings' names.
+    pub fn names(&self) -> Vec<String> {
+        let names = self.recordings.iter();
+        names.map(|path| path.display().to_string()).collect()
+    }
+
+    /// What a question is asked about.
+    pub fn inputs<'a>(
+        &self,
+        names: &'a [String],
+        sources: &'a [Source],
+        motor: &'a MotorFile,
+    ) -> Inputs<'a> {
+        Inputs {
+            names,
+            sources,
+            motor,
+        }
+    }
+
+    /// The recordings, the motor file and the flags of reading as they are typed behind a subcommand.
+    pub fn typed(&self) -> String {
+        self.typed_with(&self.motor)
+    }
+
+    /// The same with another motor file.
+    pub fn typed_with(&self, motor: &Path) -> String {
+        let names: Vec<String> = self.names().iter().map(|name| quoted(name)).collect();
+        let motor = quoted(&motor.display().to_string());
+        format!("{} --motor {motor}{}", names.join(" "), self.input.typed())
+    }
+
+    /// A name for the motor file that holds `addition` too, beside the old one.
+    pub fn new_motor_file(&self, addition: &str) -> String {
+        let stem = self.motor.file_stem().unwrap_or_default();
+        let name = format!("{}-{addition}.toml", stem.to_string_lossy());
+        quoted(&self.motor.with_file_name(name).display().to_string())
+    }
+}
+
+/// Does some work behind a progress bar.
+///
+/// # Errors
+/// What the work ran into, as the command line says it.
+pub fn with_progress<T>(
+    work: impl FnOnce(&mut Progress<'_>) -> Result<T, Error>,
+) -> Result<T, Failure> {
+    let bar = progress::bar("starting", STEPS as u64);
+    let mut tell = |what: &str, share: f64| {
+        bar.set_message(what.to_owned());
+        bar.set_position((share * STEPS) as u64);
+    };
+    let done = work(&mut tell);
+    bar.finish_and_clear();
+    done.map_err(|error| match error {
+        Error::MotorFile(error) => Failure::File(error),
+        Error::Unsupported(..) => Failure::Unsupported(error.to_string()),
+        Error::Recordings(_) | Error::UnknownEffect(_) => Failure::Usage(error.to_string()),
+    })
+}
+
+/// Prints what the audit found.
+pub fn print_audit(audit: &Audit) {
+    for finding in &audit.findings {
+        say!("  {} {}", paint::caution("audit:"), finding.detail);
+    }
+}
+
+/// Prints what to do next, with the command to type where there is one.
+pub fn print_next(why: &str, command: Option<&str>) {
+    say!("\n{}", wrapped(why));
+    if let Some(command) = command {
+        say!("  {}", paint::strong(command));
+    }
+}
+
+/// Columns of a line of prose.
+const COLUMNS: usize = 110;
+
+/// Prose in lines that a terminal shows without breaking words; commands are never wrapped.
+pub fn wrapped(text: &str) -> String {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = &mut lines[0];
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > COLUMNS {
+            lines.insert(0, String::new());
+        }
+        let line = &mut lines[0];
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    lines.reverse();
+    lines.join("\n")
+}
+
+/// A number as the pages write it, with the minus that can be typed.
+pub fn plain(style: Style, x: f64) -> String {
+    style.text(x).replace('\u{2212}', "-")
+}
+
+/// A quantity of unknown size.
+pub fn quantity(x: f64) -> String {
+    plain(significant(5), x)
+}
+
+/// A value that was fitted, with its standard error, in columns.
+pub fn uncertain(value: f64, std_error: f64) -> String {
+    let error = match std_error > 0.0 {
+        true => format!("+- {}", plain(significant(2), std_error)),
+        false => "not fitted".to_owned(),
+    };
+    format!("{:>10} {error:<12}", quantity(value))
+}
+
+/// A change, percent.
+pub fn percent(x: f64) -> String {
+    plain(decimals(1).signed(), x)
+}
+
+/// A bar of `after`, and behind it what is gone of `before`, `width` characters long.
+pub fn fall(before: f64, after: f64, width: usize) -> String {
+    let rest = bar(after, before, width);
+    let gone = width - rest.chars().count();
+    rest + &"░".repeat(gone)
+}
+
+/// A bar of `value` out of `full`, at most `width` characters long.
+pub fn bar(value: f64, full: f64, width: usize) -> String {
+    let share = if full > 0.0 { value / full } else { 0.0 };
+    let length = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
+    "█".repeat(length.max(usize::from(value > 0.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_grow_with_their_value_and_never_vanish() {
+        assert_eq!(bar(1.0, 2.0, 10).chars().count(), 5);
+        assert_eq!(bar(5.0, 2.0, 10).chars().count(), 10);
+        assert_eq!(bar(1e-6, 2.0, 10).chars().count(), 1);
+        assert_eq!(bar(0.0, 2.0, 10), "");
+        assert_eq!(bar(1.0, 0.0, 10).chars().count(), 1);
+    }
+
+    #[test]
+    fn a_fall_shows_what_is_left_and_what_is_gone() {
+        assert_eq!(fall(4.0, 1.0, 4), "█░░░");
+        assert_eq!(fall(1.0, 1.1, 4), "████");
+    }
+
+    #[test]
+    fn quantities_have_five_digits_and_their_errors_two() {
+        assert_eq!(quantity(7.485e-5), "7.4850e-5");
+        assert_eq!(quantity(0.001_551_4), "0.0015514");
+        assert_eq!(quantity(264.159_157), "264.16");
+        assert_eq!(uncertain(-1.5, 0.012_34).trim(), "-1.5000 +- 0.012");
+        assert_eq!(uncertain(0.12, 0.0).trim(), "0.12000 not fitted");
+        assert_eq!(percent(-0.02), "0.0");
+    }
+
+    #[test]
+    fn prose_is_broken_between_words() {
+        let text = wrapped(&"word ".repeat(40));
+        assert!(text.lines().all(|line| line.chars().count() <= COLUMNS));
+        assert_eq!(text.split_whitespace().count(), 40);
+    }
+
+    #[test]
+    fn names_with_blanks_are_quoted() {
+        assert_eq!(quoted("a/b-1.csv.gz"), "a/b-1.csv.gz");
+        assert_eq!(quoted("my file.csv"), "\"my file.csv\"");
+    }
+}

@@ -1,0 +1,316 @@
+//! `drivemon calibrate`: what a healthy motor looks like.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use monitor::Cause;
+use motor::MotorFile;
+use motor::motor_file::HealthySettings;
+use recording::{Audit, Recording, Source};
+use serde::Serialize;
+
+use crate::cli::arguments::files::Files;
+use crate::cli::arguments::input::{InputArgs, read_motor};
+use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::output::{JsonArgs, write_text};
+use crate::cli::printing::terminal::say;
+use crate::cli::printing::{paint, progress};
+use replay::calibrate::{Calibrated, Kind, Refusal, Surroundings, calibrate};
+use report::motor_text;
+
+/// Learn a healthy motor: parameters, gains of the channels, statistics, thresholds.
+///
+/// Give recordings of the motor in good order, at several loads if it has them, at several supply voltages if it sees
+/// them. Steady parts are used, starts and load steps are passed over. With the new motor file FAULT follows the
+/// direction of the evidence instead of the lamps r1..r4, and names phases. Three currents alone are enough to watch for
+/// shorted turns. Recordings that are faulty themselves are refused, and nothing is written then.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Calibrate {
+    /// Recordings of the healthy motor (.csv, .csv.gz, .parquet, .mat, .cfg, .cff)
+    #[arg(value_name = "REC", required = true)]
+    recordings: Vec<PathBuf>,
+    /// Motor file with what is believed so far
+    #[arg(long, value_name = "M")]
+    motor: PathBuf,
+    /// Motor file to write
+    #[arg(short, long = "out", value_name = "M2")]
+    out: PathBuf,
+    /// How much warmer or colder than in the recordings the windings may become, K
+    #[arg(long, value_name = "K", default_value_t = 75.0)]
+    winding_kelvin: f64,
+    /// FAULT lamps per judged window that are accepted on a healthy motor
+    #[arg(long, value_name = "RATE", default_value_t = 1e-6)]
+    false_alarm_rate: f64,
+    #[command(flatten)]
+    json: JsonArgs,
+    #[command(flatten)]
+    input: InputArgs,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  drivemon calibrate idle.csv.gz half.csv.gz full.csv.gz --motor m.toml -o m-calibrated.toml
+  drivemon monitor today.csv.gz --motor m-calibrated.toml
+Exit codes: 0 calibrated, 2 bad input, 3 refused: the reason names the recording and what to do.";
+
+/// Everything that `drivemon calibrate` says.
+#[derive(Debug, Serialize)]
+struct CalibrateJson {
+    recordings: Vec<String>,
+    motor: String,
+    audits: Vec<Audit>,
+    windows: usize,
+    parameters: Vec<ParameterJson>,
+    gains: Vec<GainJson>,
+    misfit_percent: MisfitJson,
+    threshold_percent: [f64; 4],
+    false_alarm_rate: f64,
+    healthy: HealthyJson,
+    motor_file: String,
+}
+
+/// One parameter before and after.
+#[derive(Debug, Serialize)]
+struct ParameterJson {
+    name: &'static str,
+    unit: &'static str,
+    believed: f64,
+    value: f64,
+    std_error: f64,
+    change_percent: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct GainJson {
+    effect: &'static str,
+    gain: [f64; 3],
+}
+
+/// What remains after the fit, percent of each scale.
+#[derive(Debug, Serialize)]
+struct MisfitJson {
+    torque: f64,
+    e_d: f64,
+    e_q: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct HealthyJson {
+    significance: f64,
+    scatter_percent: [f64; 9],
+    mean_percent: [f64; 9],
+    i2_over_i1_percent: [f64; 2],
+    i2_over_i1_scatter_percent: f64,
+}
+
+impl Calibrate {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        self.check()?;
+        self.files().check()?;
+        let motor = read_motor(&self.motor)?;
+        let recordings = self.read()?;
+        let surroundings = Surroundings {
+            winding_kelvin: self.winding_kelvin,
+            false_alarm_rate: self.false_alarm_rate,
+        };
+        let spinner = progress::bar("calibrating", 0);
+        let calibrated = calibrate(&motor, &recordings, &surroundings);
+        spinner.finish_and_clear();
+        let calibrated = calibrated.map_err(refused)?;
+        self.write_motor(&calibrated.motor)?;
+        let result = self.result(&motor, &calibrated);
+        self.json.give(&result, || print(&result))?;
+        Ok(Finding::Nothing)
+    }
+
+    fn files(&self) -> Files {
+        Files::default()
+            .reads_recordings(&self.recordings, &self.input)
+            .reads("the motor file", &self.motor)
+            .writes("-o", &self.out)
+            .may_write("--json", self.json.file())
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        let rate = self.false_alarm_rate;
+        if !(1e-12..=0.01).contains(&rate) {
+            let message = format!("--false-alarm-rate {rate} is outside 1e-12..=0.01 per window");
+            return Err(Failure::Usage(message));
+        }
+        let kelvin = self.winding_kelvin;
+        if !(0.0..=200.0).contains(&kelvin) {
+            return Err(Failure::Usage(format!(
+                "--winding-kelvin {kelvin} is outside 0..=200 K"
+            )));
+        }
+        Ok(())
+    }
+
+    fn read(&self) -> Result<Vec<Recording>, Failure> {
+        let one = |path: &PathBuf| match self.input.read(path)? {
+            Source::Recording(recording) => Ok(recording),
+            Source::LoadTable(_) => Err(Failure::Usage(format!(
+                "{}: a load table has no waveforms to calibrate lamps from; its parameters come from `drivemon explain`",
+                path.display()
+            ))),
+        };
+        self.recordings.iter().map(one).collect()
+    }
+
+    fn write_motor(&self, motor: &MotorFile) -> Result<(), Failure> {
+        let old = std::fs::read_to_string(&self.motor).unwrap_or_default();
+        let text = motor_text::updated(&old, motor);
+        write_text(&self.out, &text)
+    }
+
+    fn result(&self, believed: &MotorFile, calibrated: &Calibrated) -> CalibrateJson {
+        let [torque, e_d, e_q] = calibrated.misfit_percent;
+        let gain = |(kind, gain): &(Kind, [f64; 3])| GainJson {
+            effect: kind.effect(),
+            gain: *gain,
+        };
+        CalibrateJson {
+            recordings: self
+                .recordings
+                .iter()
+                .map(|p| p.display().to_string())
+                .collect(),
+            motor: believed.name.clone(),
+            audits: calibrated.audits.clone(),
+            windows: calibrated.windows,
+            parameters: parameters(believed, calibrated),
+            gains: calibrated.gains.iter().map(gain).collect(),
+            misfit_percent: MisfitJson { torque, e_d, e_q },
+            threshold_percent: calibrated.motor.monitor.threshold_percent,
+            false_alarm_rate: self.false_alarm_rate,
+            healthy: healthy(&calibrated.healthy),
+            motor_file: self.out.display().to_string(),
+        }
+    }
+}
+
+fn refused(refusal: Refusal) -> Failure {
+    Failure::Unsupported(format!("not calibrated: {refusal}"))
+}
+
+fn healthy(settings: &HealthySettings) -> HealthyJson {
+    HealthyJson {
+        significance: settings.significance,
+        scatter_percent: settings.scatter_percent,
+        mean_percent: settings.mean_percent,
+        i2_over_i1_percent: settings.current_unbalance_percent,
+        i2_over_i1_scatter_percent: settings.current_unbalance_scatter_percent,
+    }
+}
+
+fn parameters(believed: &MotorFile, calibrated: &Calibrated) -> Vec<ParameterJson> {
+    let row = |(cause, change, error): &(Cause, f64, f64)| {
+        let (p, m) = (&believed.parameters, &believed.mechanics);
+        let (name, unit, value) = match cause {
+            Cause::StatorResistance => ("stator_resistance_ohm", "ohm", p.r_s),
+            Cause::RotorResistance => ("rotor_resistance_ohm", "ohm", p.r_r),
+            Cause::MagnetizingInductance => ("magnetizing_inductance_henry", "H", p.l_m),
+            Cause::Leakage => ("stator_leakage_henry", "H", p.l_ls),
+            _ => ("friction_nm_s", "N m s", m.total_friction()),
+        };
+        ParameterJson {
+            name,
+            unit,
+            believed: value,
+            value: value * (1.0 + change),
+            std_error: value * (1.0 + change) * error,
+            change_percent: 100.0 * change,
+        }
+    };
+    let changes = calibrated.changes.iter();
+    changes.map(row).filter(|row| row.believed > 0.0).collect()
+}
+
+fn print(result: &CalibrateJson) {
+    say!(
+        "{}: {} steady windows of {}",
+        paint::strong(&result.motor),
+        result.windows,
+        result.recordings.join(", ")
+    );
+    print_findings(result);
+    print_parameters(result);
+    for gain in &result.gains {
+        let [a, b, c] = gain.gain;
+        say!("  {:<30} a {a:.4}  b {b:.4}  c {c:.4}", gain.effect);
+    }
+    print_statistics(result);
+    say!("\n{} is written.", result.motor_file);
+    say!("  drivemon monitor REC --motor {}", result.motor_file);
+}
+
+/// What the audits found: once for all recordings where it is the same, else with the recording's name.
+fn print_findings(result: &CalibrateJson) {
+    let of_all = |detail: &str| {
+        result
+            .audits
+            .iter()
+            .all(|audit| audit.findings.iter().any(|f| f.detail == detail))
+    };
+    let word = paint::caution("audit:");
+    for (k, (name, audit)) in result.recordings.iter().zip(&result.audits).enumerate() {
+        for finding in &audit.findings {
+            match (of_all(&finding.detail), k) {
+                (true, 0) => say!("  {word} {}", finding.detail),
+                (true, _) => {}
+                (false, _) => say!("  {word} {name}: {}", finding.detail),
+            }
+        }
+    }
+}
+
+fn print_parameters(result: &CalibrateJson) {
+    if result.parameters.is_empty() {
+        say!("  currents alone: parameters stay as believed");
+        return;
+    }
+    say!(
+        "\n  {:<30} {:>12} {:>12}  change",
+        "parameter",
+        "believed",
+        "calibrated"
+    );
+    for row in &result.parameters {
+        say!(
+            "  {:<30} {:>12.5} {:>12.5}  {:+.1} % +- {:.1} % {}",
+            row.name,
+            row.believed,
+            row.value,
+            row.change_percent,
+            100.0 * row.std_error / row.believed,
+            paint::faint(row.unit),
+        );
+    }
+    let m = &result.misfit_percent;
+    say!(
+        "  what remains: torque balance {:.2} %, e_d {:.3} %, e_q {:.3} % of their scales",
+        m.torque,
+        m.e_d,
+        m.e_q
+    );
+}
+
+fn print_statistics(result: &CalibrateJson) {
+    let healthy = &result.healthy;
+    let [re, im] = healthy.i2_over_i1_percent;
+    say!(
+        "\n  healthy I2/I1 {:.2} % at {:.0} deg, scatter {:.2} %",
+        re.hypot(im),
+        im.atan2(re).to_degrees(),
+        healthy.i2_over_i1_scatter_percent
+    );
+    say!(
+        "  FAULT lights beyond {:.2} standard deviations: {:.0e} false alarms a window",
+        healthy.significance,
+        result.false_alarm_rate
+    );
+    let [r1, r2, r3, r4] = result.threshold_percent;
+    say!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
+}

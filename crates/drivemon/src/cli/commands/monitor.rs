@@ -1,0 +1,360 @@
+//! `drivemon monitor`: a recording through the board's core.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use monitor::{Monitor, MonitorConfig};
+use motor::MotorFile;
+use recording::{Audit, Expectation, audit};
+use recording::{LoadTable, Recording, Source};
+use serde::Serialize;
+
+use crate::cli::arguments::files::Files;
+use crate::cli::arguments::input::{InputArgs, read_motor};
+use crate::cli::commands::live::LiveArgs;
+use crate::cli::printing::answers::{self, Answers};
+use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::lamp_symbol::symbol;
+use crate::cli::printing::output::OutputArgs;
+use crate::cli::printing::terminal::say;
+use crate::cli::printing::{paint, progress};
+use replay::operating_points::OperatingPoints;
+use replay::words;
+use replay::{
+    self, LampState, NotJudgedShare, RotorSummary, Samples, SequenceSummary, Timeline, Verdict,
+    VerdictState, WindowOperation, WindowResiduals,
+};
+use report::Subject;
+
+/// Replay a recording through the very core that the board runs: lamps, verdict, probabilities.
+///
+/// Missing channels are no error in the file: without voltages or speed the motor is "not judged" (exit code 3), and the
+/// sequence components of the currents are still reported. A load-test table is printed as its operating points.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct MonitorArgs {
+    /// Recordings or load-test tables, each judged by itself (.csv, .csv.gz, .parquet, .mat, .cfg, .cff)
+    #[arg(value_name = "REC", required_unless_present_any = ["serial", "probe"])]
+    recordings: Vec<PathBuf>,
+    /// Motor file; without it only audit and sequence components are reported
+    #[arg(long, value_name = "M")]
+    motor: Option<PathBuf>,
+    #[command(flatten)]
+    live: LiveArgs,
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  drivemon monitor rec.csv.gz --motor motors/peer-2k2.toml
+  drivemon monitor lab.csv --motor m.toml --column ic=ic2 --column speed=speed_raw --unit speed=rpm --offset speed=-2.11 --scale speed=9.687
+  drivemon monitor currents.csv                                  three currents only: negative sequence and its angle
+  drivemon monitor --serial /dev/ttyACM0                         the lamps of a running board, until Ctrl-C
+  drivemon monitor --serial /dev/ttyACM0 --motor m.toml --capture alarm.csv     wait for an alarm and keep the samples around it
+Lamps:  ● on   ◐ blinking: waiting or not judged   ○ off";
+
+/// Everything that `drivemon monitor` says, as JSON.
+#[derive(Debug, Serialize)]
+struct MonitorJson<'a> {
+    recording: &'a str,
+    assumptions: &'a [String],
+    audit: &'a Audit,
+    windows: u64,
+    judged: u64,
+    not_judged: &'a [NotJudgedShare],
+    residual_percent: Option<ResidualPercent>,
+    lamps: &'a [LampState],
+    verdict: Verdict,
+    direction: Option<&'static str>,
+    first_alarm_s: Option<f64>,
+    sequence: SequenceSummary,
+    rotor: RotorSummary,
+    threshold_percent: Option<[f64; 4]>,
+    smallest_visible_percent: Option<[f64; 4]>,
+    residuals: &'a [WindowResiduals],
+    operation: &'a [WindowOperation],
+}
+
+/// Residuals over the judged windows, percent of their scales.
+#[derive(Debug, Serialize)]
+struct ResidualPercent {
+    mean: [f64; 4],
+    standard_deviation: [f64; 4],
+}
+
+impl MonitorArgs {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        if self.recordings.is_empty() {
+            return self.watch();
+        }
+        self.files().check()?;
+        let motor = self.motor.as_deref().map(read_motor).transpose()?;
+        let motor = motor.as_ref();
+        answers::each(&self.recordings, &self.output, |path, answers| {
+            match self.input.read(path)? {
+                Source::Recording(recording) => self.monitor(&recording, motor, answers),
+                Source::LoadTable(table) => show_table(&table, motor, answers),
+            }
+        })
+    }
+
+    fn files(&self) -> Files {
+        Files::default()
+            .reads_recordings(&self.recordings, &self.input)
+            .may_read("the motor file", self.motor.as_ref())
+            .writes_results(&self.output)
+    }
+
+    fn watch(&self) -> Result<Finding, Failure> {
+        if self.output.report.is_some() {
+            return Err(Failure::Usage(NO_LIVE_REPORT.to_owned()));
+        }
+        let files = self.files();
+        match self.live.capture() {
+            Some(path) => files.writes_recording("--capture", path).check(),
+            None => files.check(),
+        }?;
+        let quiet = self.output.json.takes_stdout();
+        let (watched, finding) = self.live.run(self.motor.as_deref(), quiet)?;
+        self.output.json.write(&watched)?;
+        Ok(finding)
+    }
+
+    fn monitor(
+        &self,
+        recording: &Recording,
+        motor: Option<&MotorFile>,
+        answers: &mut Answers<'_>,
+    ) -> Result<Finding, Failure> {
+        let expectation = motor.map_or_else(Expectation::default, Expectation::from);
+        let audit = audit(recording, &expectation);
+        let config = match motor {
+            Some(motor) => replay::config_for(motor, recording),
+            None => replay::stand_in_config(recording),
+        };
+        let timeline = if audit.supported {
+            self.replay(config, recording, &audit, motor.is_some())?
+        } else {
+            Timeline::default()
+        };
+        Self::tell(recording, motor, &audit, &timeline, answers)
+    }
+
+    fn replay(
+        &self,
+        config: MonitorConfig,
+        recording: &Recording,
+        audit: &Audit,
+        motor_known: bool,
+    ) -> Result<Timeline, Failure> {
+        let file = self.motor.as_deref().unwrap_or(Path::new("the recording"));
+        let monitor = Monitor::new(config).map_err(|error| Failure::Config {
+            file: file.display().to_string(),
+            error,
+        })?;
+        let mut samples = Samples::new(recording, audit);
+        if !motor_known {
+            samples.leave_out_speed();
+        }
+        let bar = progress::bar("monitoring", samples.len() as u64);
+        let mut timeline = replay::replay(&monitor, &samples, &mut |done| {
+            bar.set_position(done as u64)
+        });
+        bar.finish_and_clear();
+        if !motor_known {
+            timeline.blame_missing_motor_file();
+        }
+        Ok(timeline)
+    }
+
+    fn tell(
+        recording: &Recording,
+        motor: Option<&MotorFile>,
+        audit: &Audit,
+        timeline: &Timeline,
+        answers: &mut Answers<'_>,
+    ) -> Result<Finding, Failure> {
+        let verdict = timeline.verdict(&audit.findings);
+        let finding = match (audit.supported, verdict.state) {
+            (false, _) => Finding::Unsupported,
+            (true, VerdictState::Fault) => Finding::Something,
+            (true, VerdictState::Healthy) => Finding::Nothing,
+            (true, VerdictState::NotJudged) => Finding::Unsupported,
+        };
+        let result = MonitorJson {
+            recording: recording.name(),
+            assumptions: &recording.assumptions,
+            audit,
+            windows: timeline.windows,
+            judged: timeline.judged,
+            not_judged: &timeline.not_judged,
+            residual_percent: residual_percent(timeline),
+            lamps: &timeline.lamps,
+            verdict,
+            direction: timeline.direction(),
+            first_alarm_s: timeline.first_alarm_s,
+            sequence: timeline.sequence(),
+            rotor: timeline.rotor(),
+            threshold_percent: motor.map(|motor| motor.monitor.threshold_percent),
+            smallest_visible_percent: timeline.visible_percent(),
+            residuals: &timeline.trace.residuals,
+            operation: &timeline.trace.operation,
+        };
+        let show = || print(recording, audit, timeline, &result.verdict);
+        answers.give(Subject::Monitor, &result, show)?;
+        Ok(finding)
+    }
+}
+
+fn show_table(
+    table: &LoadTable,
+    motor: Option<&MotorFile>,
+    answers: &mut Answers<'_>,
+) -> Result<Finding, Failure> {
+    let points = OperatingPoints::new(table, motor);
+    answers.give(Subject::LoadTable, &points, || say!("{points}"))?;
+    Ok(Finding::Nothing)
+}
+
+fn residual_percent(timeline: &Timeline) -> Option<ResidualPercent> {
+    let (mean, standard_deviation) = timeline.residual_percent()?;
+    Some(ResidualPercent {
+        mean,
+        standard_deviation,
+    })
+}
+
+/// Frames hold lamps and residuals, not the samples that a page draws.
+const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board sends none: fetch its samples with \
+    --motor M --capture FILE.csv, then run drivemon monitor FILE.csv --motor M --report FILE.html";
+
+/// More lamp changes than this are left to the JSON.
+const LONGEST_TIMELINE: usize = 40;
+
+fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Verdict) {
+    say!(
+        "{}  {:.3} s at {:.0} Hz",
+        paint::strong(recording.name()),
+        recording.duration(),
+        1.0 / recording.t_sample()
+    );
+    for assumption in &recording.assumptions {
+        say!("  assumed: {assumption}");
+    }
+    for finding in &audit.findings {
+        say!("  {} {}", paint::caution("audit:"), finding.detail);
+    }
+    print_lamps(timeline);
+    print_windows(timeline);
+    print_sequence(&timeline.sequence());
+    say!("{}", words::rotor(&timeline.rotor()));
+    print_verdict(timeline, verdict);
+}
+
+pub(crate) fn print_lamps(timeline: &Timeline) {
+    if timeline.lamps.is_empty() {
+        return;
+    }
+    say!("\n    time s  RUN  r1 r2 r3 r4  SENSOR LINE LOAD FAULT");
+    for state in timeline.lamps.iter().take(LONGEST_TIMELINE) {
+        say!(
+            "{:>10.3}   {}   {}  {}  {}  {}     {}     {}    {}    {}    {}",
+            state.t,
+            symbol(state.run),
+            symbol(state.r1),
+            symbol(state.r2),
+            symbol(state.r3),
+            symbol(state.r4),
+            symbol(state.sensor),
+            symbol(state.line),
+            symbol(state.load),
+            symbol(state.fault),
+            paint::faint(state.not_judged.as_deref().unwrap_or("")),
+        );
+    }
+    let more = timeline.lamps.len().saturating_sub(LONGEST_TIMELINE);
+    if more > 0 {
+        say!("  ... and {more} more changes (--json FILE has them all)");
+    }
+}
+
+pub(crate) fn print_windows(timeline: &Timeline) {
+    say!(
+        "\n{} of {} windows judged",
+        timeline.judged,
+        timeline.windows
+    );
+    if let Some(direction @ ("backwards" | "both")) = timeline.direction() {
+        say!("  {}", words::direction(direction));
+    }
+    for share in &timeline.not_judged {
+        say!("  {} not judged: {}", share.windows, share.reason);
+    }
+    if let Some((mean, deviation)) = timeline.residual_percent() {
+        for (k, (mean, deviation)) in mean.iter().zip(deviation).enumerate() {
+            say!(
+                "  r{}  {mean:+8.3} % of scale, scatter {deviation:.3} %",
+                k + 1
+            );
+        }
+    }
+    if let Some([r1, r2, r3, r4]) = timeline.visible_percent() {
+        say!(
+            "  smallest that lights a lamp here: r1 {r1:.2}, r2 {r2:.2}, r3 {r3:.2}, r4 {r4:.2} % of scale"
+        );
+    }
+}
+
+pub(crate) fn print_sequence(sequence: &SequenceSummary) {
+    let percent =
+        |x: Option<f64>| x.map_or("not measured".to_owned(), |x| format!("{:.2} %", 100.0 * x));
+    let angle = sequence
+        .i2_over_i1_angle_deg
+        .map_or(String::new(), |angle| format!(" at {angle:.0} deg"));
+    say!(
+        "negative over positive sequence: current {}{angle}, voltage {}; zero sequence of the current {}",
+        percent(sequence.i2_over_i1),
+        percent(sequence.v2_over_v1),
+        percent(sequence.i0_over_i1),
+    );
+}
+
+pub(crate) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
+    match verdict.state {
+        VerdictState::Healthy => say!("{}", paint::good("healthy: no fault was lit")),
+        VerdictState::NotJudged => say!("{}", paint::caution("not judged")),
+        VerdictState::Fault => {
+            let t = timeline.first_alarm_s.unwrap_or_default();
+            say!(
+                "{}",
+                paint::error(format!("FAULT, first lit at {t:.3} s; possible causes:"))
+            );
+            for candidate in &verdict.candidates {
+                let phase = candidate
+                    .phase
+                    .map_or(String::new(), |phase| format!(", phase {phase}"));
+                let cause = words::fault(candidate.fault);
+                let percent = 100.0 * candidate.probability;
+                say!("  {percent:5.1} %  {:<3} {cause}{phase}", candidate.fault);
+            }
+            print_tie(verdict);
+        }
+    }
+}
+
+fn print_tie(verdict: &Verdict) {
+    if verdict.tied < 2 {
+        return;
+    }
+    say!(
+        "the first {} are tied: this recording does not tell them apart. What does:",
+        verdict.tied
+    );
+    for test in &verdict.separating_tests {
+        say!("  - {test}");
+    }
+}

@@ -1,0 +1,270 @@
+//! `drivemon panel`: the lamps in a browser.
+
+use std::net::IpAddr;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+use motor::MotorFile;
+use recording::{Audit, Expectation, Source as Read, audit};
+use tokio::sync::watch;
+
+use crate::cli::arguments::input::{InputArgs, read_motor};
+use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::terminal::say;
+use live::{open_probe, open_serial};
+use panel::source::{BoardSource, ReplayedSource, SimulatedSource, Source, built_in_motor};
+use panel::{self, Options, PanelError, Session};
+use scenario::Scenario;
+
+/// Show the panel in a browser: lamps, causes, residuals, signals, vectors; a simulated motor, a recording or a board.
+///
+/// Without a source a simulated motor runs whose faults are switched on the page. The address is printed; the server
+/// answers this computer only, and needs no network.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Panel {
+    /// Run a scenario; after its end it goes on as it then is
+    #[arg(long, value_name = "SCENARIO", group = "source")]
+    sim: Option<PathBuf>,
+    /// Play a recording: speed, pause and time are chosen on the page
+    #[arg(long, value_name = "REC", group = "source")]
+    replay: Option<PathBuf>,
+    /// Listen to a board on a serial port, e.g. /dev/ttyACM0 or COM3
+    #[arg(long, value_name = "PORT", group = "source")]
+    serial: Option<String>,
+    /// Listen to a board through a debug probe (needs a build with the feature `probe`)
+    #[arg(long, group = "source")]
+    probe: bool,
+    /// Speed of the serial port, bit/s
+    #[arg(
+        long,
+        value_name = "BAUD",
+        default_value_t = 115_200,
+        requires = "serial"
+    )]
+    baud: u32,
+    /// Motor file: the motor that runs when no source is named, and the one to judge with
+    #[arg(long, value_name = "M")]
+    motor: Option<PathBuf>,
+    /// Source seconds per second on the wall, to begin with
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed)]
+    speed: f64,
+    /// Port to listen on; 0 takes any that is free
+    #[arg(long, default_value_t = 8350, help_heading = "The server")]
+    port: u16,
+    /// Address to listen on; others than this computer's own need --allow-network
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        default_value = "127.0.0.1",
+        help_heading = "The server"
+    )]
+    host: IpAddr,
+    /// Let others who reach --host and have the printed link watch and switch
+    ///
+    /// A random token stands in the link; the browser keeps it as a cookie, and without it nothing is shown. It protects
+    /// against others on the network who do not have the link. It does not protect what is sent: there is no encryption
+    /// (TLS), so anyone who can listen on the network can read the token too. On a network that is not yours put the panel
+    /// behind a proxy with TLS and a login, and leave --host out.
+    #[arg(long, help_heading = "The server")]
+    allow_network: bool,
+    /// Answer to a further host name, e.g. that of a proxy
+    #[arg(long, value_name = "NAME", help_heading = "The server")]
+    allow_host: Vec<String>,
+    /// Open the page in the usual browser
+    #[arg(long, help_heading = "The server")]
+    open: bool,
+    #[command(flatten)]
+    input: InputArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  drivemon panel                                                   a simulated motor; switch faults on the page
+  drivemon panel --motor motors/peer-2k2.toml                      another motor, simulated
+  drivemon panel --sim sim-host/scenarios/sensor-faults.toml       a scenario
+  drivemon panel --replay rec.csv.gz --motor motors/peer-2k2.toml  a recording
+  drivemon panel --serial /dev/ttyACM0 --motor m.toml              a running board
+Ctrl-C ends it.";
+
+/// For a file that is being read when the panel ends.
+const LAST_WORK: std::time::Duration = std::time::Duration::from_secs(1);
+
+/// Until Ctrl-C is pressed or the system asks the process to end. Without such signals the server lives until the process
+/// is ended.
+async fn told_to_end() {
+    let pressed = async {
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    #[cfg(unix)]
+    let asked = async {
+        use tokio::signal::unix::{SignalKind, signal};
+        match signal(SignalKind::terminate()) {
+            Ok(mut terminate) => drop(terminate.recv().await),
+            Err(_) => std::future::pending().await,
+        }
+    };
+    #[cfg(not(unix))]
+    let asked = std::future::pending::<()>();
+    tokio::select! {
+        () = pressed => {}
+        () = asked => {}
+    }
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse::<f64>().map_err(|error| error.to_string())?;
+    match (0.01..=100.0).contains(&speed) {
+        true => Ok(speed),
+        false => Err("choose a factor from 0.01 to 100".into()),
+    }
+}
+
+impl Panel {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        let (source, motor) = self.source()?;
+        let name = self.motor_name();
+        let session = panel::start(source, motor, self.speed);
+        let session = session.map_err(|error| Failure::Config { file: name, error })?;
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .map_err(|error| Failure::Usage(format!("no server can be started: {error}")))?;
+        let served = runtime.block_on(self.serve(Arc::new(session)));
+        // A file that is still being read must not hold the end up.
+        runtime.shutdown_timeout(LAST_WORK);
+        served.map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(Finding::Nothing)
+    }
+
+    async fn serve(&self, session: Arc<Session>) -> Result<(), PanelError> {
+        let status = session.status();
+        let running = panel::bind(&self.options(), session).await?;
+        let url = running.url();
+        say!("{}: {}", status.source.kind, status.source.name);
+        say!("panel: {url}   (Ctrl-C ends it)");
+        if running.is_on_all_addresses() {
+            say!("from another computer: the same link with this computer's name or address");
+        }
+        if self.open {
+            open(&url);
+        }
+        let (end, ended) = watch::channel(false);
+        tokio::spawn(async move {
+            told_to_end().await;
+            let _ = end.send(true);
+        });
+        running.serve(ended).await;
+        Ok(())
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            host: self.host,
+            port: self.port,
+            allow_network: self.allow_network,
+            allow_hosts: self.allow_host.clone(),
+        }
+    }
+
+    fn motor_name(&self) -> String {
+        let path = self.motor.as_ref().or(self.sim.as_ref());
+        path.map_or("the built-in motor".into(), |path| {
+            path.display().to_string()
+        })
+    }
+
+    fn source(&self) -> Result<(Box<dyn Source>, Option<MotorFile>), Failure> {
+        let motor = self.motor.as_deref().map(read_motor).transpose()?;
+        match (&self.sim, &self.replay) {
+            (Some(scenario), _) => self.scenario(scenario, motor),
+            (_, Some(recording)) => self.recording(recording, motor),
+            _ if self.probe || self.serial.is_some() => self.board(motor),
+            _ => simulated(motor),
+        }
+    }
+
+    fn scenario(
+        &self,
+        path: &Path,
+        motor: Option<MotorFile>,
+    ) -> Result<(Box<dyn Source>, Option<MotorFile>), Failure> {
+        let scenario = Scenario::read(path)?;
+        let named = |error| Failure::Usage(format!("{}: {error}", path.display()));
+        let source = SimulatedSource::new(&scenario).map_err(named)?;
+        Ok((Box::new(source), motor.or(Some(scenario.motor))))
+    }
+
+    fn recording(
+        &self,
+        path: &Path,
+        motor: Option<MotorFile>,
+    ) -> Result<(Box<dyn Source>, Option<MotorFile>), Failure> {
+        let Read::Recording(recording) = self.input.read(path)? else {
+            let why = format!(
+                "{}: a load table has no samples to play: use `drivemon monitor`",
+                path.display()
+            );
+            return Err(Failure::Usage(why));
+        };
+        let expectation = motor
+            .as_ref()
+            .map_or_else(Expectation::default, Expectation::from);
+        let audit = audit(&recording, &expectation);
+        if !audit.supported {
+            return Err(Failure::Unsupported(why_not(path, &audit)));
+        }
+        let source = ReplayedSource::new(recording, audit, motor.is_some());
+        Ok((Box::new(source), motor))
+    }
+
+    fn board(
+        &self,
+        motor: Option<MotorFile>,
+    ) -> Result<(Box<dyn Source>, Option<MotorFile>), Failure> {
+        let link = match &self.serial {
+            Some(port) => open_serial(port, self.baud),
+            None => open_probe(),
+        };
+        let link = link.map_err(|error| Failure::Usage(error.to_string()))?;
+        let name = self.serial.clone().unwrap_or("debug probe".into());
+        Ok((Box::new(BoardSource::new(link, name, motor.clone())), motor))
+    }
+}
+
+fn simulated(motor: Option<MotorFile>) -> Result<(Box<dyn Source>, Option<MotorFile>), Failure> {
+    let motor = motor.map_or_else(built_in_motor, Ok)?;
+    let source = SimulatedSource::of_motor(motor.clone());
+    let source = source.map_err(|error| Failure::Usage(error.to_string()))?;
+    Ok((Box::new(source), Some(motor)))
+}
+
+/// What makes a recording unusable, in the words of its audit.
+fn why_not(path: &Path, audit: &Audit) -> String {
+    let refusing = audit.findings.iter().filter(|finding| finding.refuses);
+    let details: Vec<&str> = refusing.map(|finding| finding.detail.as_str()).collect();
+    format!("{}: {}", path.display(), details.join(" "))
+}
+
+/// Opens a page in the usual browser; where there is none, the printed address is enough.
+fn open(url: &str) {
+    let (program, arguments): (&str, &[&str]) = match std::env::consts::OS {
+        "windows" => ("rundll32", &["url.dll,FileProtocolHandler"]),
+        "macos" => ("open", &[]),
+        _ => ("xdg-open", &[]),
+    };
+    if std::process::Command::new(program)
+        .args(arguments)
+        .arg(url)
+        .spawn()
+        .is_err()
+    {
+        crate::cli::printing::terminal::complain(format_args!(
+            "no browser could be opened; open {url} yourself"
+        ));
+    }
+}
