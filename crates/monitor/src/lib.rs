@@ -1,8 +1,10 @@
 #![cfg_attr(not(test), no_std)]
 //! The monitor core: from ADC code to lamp. `no_std`, no allocation, f32, no hardware.
 //!
-//! One sample's way: [`Converter`] (codes to SI) -> [`SyncConfig`] (angle of the supply) ->
-//! phasors of whole cycles -> once per cycle: residuals -> thresholds -> signature -> lamps.
+//! One sample's way, folder by folder: `input` (blocks of codes on the board, SI on a computer; what is invalid is kept
+//! out) -> `sync` (angle of the supply, phasors of whole cycles, speed) -> `window` (some cycles as one measurement) ->
+//! `checks` (sensors, supply, rotor bars) -> `model` (operating point, effects, residuals) with `noise` -> `isolation` on
+//! a calibrated motor -> `lamps`. [`Monitor`] calls them in this order.
 //!
 //! Three voltages and currents of 50 Hz, sampled at 10 kHz, and what comes once per supply cycle:
 //!
