@@ -1,8 +1,8 @@
 //! Every effect of the library: consistent with itself, absent at zero, the same in dynamics and steady state.
 
 use motor::effect::{
-    At, Between, EffectConfig, EffectError, Inputs, MAX_PARAMETERS, Outputs, Plant, Rated, Role,
-    Run, SpeedSource, SteadyPoint, Timeline, simulate,
+    At, Between, EffectConfig, EffectError, Inputs, MAX_FILE_STATES, MAX_PARAMETERS, Outputs,
+    Plant, Rated, Role, Run, SpeedSource, SteadyPoint, Timeline, extra_states, simulate,
 };
 use motor::effects::ALL;
 use motor::{Mechanics, TParams};
@@ -143,6 +143,19 @@ fn an_absent_effect_changes_nothing_and_a_typical_one_does() {
 }
 
 /// Fundamental of the last ten periods, in a frame turning with the supply.
+/// A motor file may name them all: four resonances and cages need ten states.
+#[test]
+fn all_effects_with_states_run_together() {
+    let rated = plant().rated;
+    let resonant = ALL.iter().filter(|effect| effect.extra_states() > 0);
+    let effects: Vec<_> = resonant
+        .map(|effect| EffectConfig::typical(*effect, &rated))
+        .collect();
+    assert_eq!(extra_states(&effects), MAX_FILE_STATES);
+    let shown = outputs(&Plant { effects, ..plant() }, &inputs(0.1), Between::Held);
+    assert!(shown.omega_mech.iter().all(|x| x.is_finite()));
+}
+
 fn phasor(outputs: &Outputs) -> Complex64 {
     let n = outputs.i_s_abc.len();
     let period = (0.2 / outputs.t_sample).round() as usize;

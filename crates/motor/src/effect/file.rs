@@ -3,7 +3,7 @@
 use crate::MotorFile;
 use crate::document::{Document, FileError};
 use crate::effect::config::known_effect;
-use crate::effect::{Descriptor, EffectConfig, EffectError, Rated};
+use crate::effect::{Descriptor, EffectConfig, EffectError, MAX_FILE_STATES, Rated};
 use crate::effect::{expression, motions};
 use crate::motor_file::{EffectEntry, EffectParameter, EffectValue, Nameplate};
 
@@ -49,10 +49,21 @@ pub fn from_motor_file(file: &MotorFile, label: &str) -> Result<Vec<EffectConfig
 /// Reports every entry that the library refuses, with its line and key.
 pub(crate) fn check(document: &Document, plate: &Nameplate, entries: &[EffectEntry]) {
     let rated = rated_by(plate);
+    let mut states = 0;
     for entry in entries {
-        if let Err(error) = from_entry(entry, &rated) {
-            let (line, key) = (entry.line_of(error.key()), entry.path_of(error.key()));
-            document.report(line, &key, error.to_string());
+        let report = |key: &str, message: String| {
+            document.report(entry.line_of(key), &entry.path_of(key), message);
+        };
+        match from_entry(entry, &rated) {
+            Ok(config) => states += config.effect.extra_states(),
+            Err(error) => report(error.key(), error.to_string()),
+        }
+        if states > MAX_FILE_STATES {
+            report(
+                "name",
+                format!("all effects together need more than {MAX_FILE_STATES} states: remove one"),
+            );
+            return;
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, phases};
 use crate::effect::{
-    EffectConfig, EffectStack, Hook, Inputs, Outputs, Rated, Timeline, extra_states,
+    EffectConfig, EffectStack, Hook, Inputs, MAX_FILE_STATES, Outputs, Rated, Timeline,
+    extra_states,
 };
 use crate::{Mechanics, TParams};
 use num_complex::Complex64;
@@ -145,7 +146,9 @@ fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &I
             transient,
         );
     }
-    let stack = EffectStack::<8>::new(&plant.effects, motor, &plant.rated, timeline);
+    // Those of a motor file, and the library's once more: what `explain` may add to them.
+    let stack =
+        EffectStack::<{ 2 * MAX_FILE_STATES }>::new(&plant.effects, motor, &plant.rated, timeline);
     let model = Dynamic::with_effects(motor, mechanics, stack);
     integrate(
         &model,

@@ -68,6 +68,9 @@ pub struct EffectStack<const N: usize> {
     finish: Vec<Active>,
 }
 
+/// Extra states that the effects of a motor file may need: as many as the library, each effect once.
+pub const MAX_FILE_STATES: usize = 10;
+
 /// Number of extra states that a list of effects needs.
 pub fn extra_states(effects: &[EffectConfig]) -> usize {
     effects.iter().map(|e| e.effect.extra_states()).sum()

@@ -36,7 +36,7 @@ const LAST: &str = "load_friction_nm_s = 0.0\n";
 
 /// Each of them is refused.
 #[rustfmt::skip]
-pub const CASES: [Case; 60] = [
+pub const CASES: [Case; 61] = [
     case("negative resistance", (R_S, "stator_resistance_ohm = -3.7"), 11, "parameters.stator_resistance_ohm", "above 0 and at most 100000 ohm"),
     case("zero resistance", (R_S, "stator_resistance_ohm = 0"), 11, "parameters.stator_resistance_ohm", "0 is out of range: write above 0"),
     case("not a number", (R_S, "stator_resistance_ohm = nan"), 11, "parameters.stator_resistance_ohm", "not a finite number: write above 0"),
@@ -97,4 +97,5 @@ pub const CASES: [Case; 60] = [
     case("formula that is no number", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k/(omega-omega)\"\nadds_to = \"torque\"\nk = 1.0"), 21, "effects.expression.formula", "it is no finite number at omega = "),
     case("formula that is no number at rest", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k/omega\"\nadds_to = \"torque\"\nk = 1.0"), 21, "effects.expression.formula", "it is no finite number at omega = 0"),
     case("size of no parameter", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"expression\"\nformula = \"k * omega\"\nadds_to = \"torque\"\nk = 1.0\nj_typical = 1.0"), 21, "effects.expression.formula", "add `j = 0.0`"),
+    case("effects of too many states", (LAST, "load_friction_nm_s = 0\n[[effects]]\nname = \"series-inductance\"\nform = \"lc-filter\"\nseries_inductance_henry = 0.001\nfilter_resonance_hz = 1000.0\n[[effects]]\nname = \"series-inductance\"\nform = \"lc-filter\"\nseries_inductance_henry = 0.001\nfilter_resonance_hz = 1000.0\n[[effects]]\nname = \"series-inductance\"\nform = \"lc-filter\"\nseries_inductance_henry = 0.001\nfilter_resonance_hz = 1000.0"), 30, "effects.series-inductance.name", "remove one"),
 ];

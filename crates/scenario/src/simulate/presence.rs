@@ -3,7 +3,7 @@
 use crate::{Asymmetry, Fault, Target};
 
 /// As many states as effects may add to one motor.
-pub(super) const EXTRA_STATES: usize = 8;
+pub(super) const EXTRA_STATES: usize = motor::effect::MAX_FILE_STATES;
 
 /// Which faults are present, remembered so that the motor is rebuilt only when that changes.
 #[derive(Debug, Default)]
