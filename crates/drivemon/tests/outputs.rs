@@ -116,7 +116,7 @@ fn a_sidecar_is_written_over_a_sidecar_only() {
     let done = within(&folder, &["simulate", "s.toml", "-o", "other.csv"]);
     assert_eq!(done.status.code(), Some(2), "{}", stderr(&done));
     assert!(
-        stderr(&done).contains("other.toml, which is none"),
+        stderr(&done).contains("other.toml, which is no sidecar"),
         "{}",
         stderr(&done)
     );
