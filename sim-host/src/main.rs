@@ -1,6 +1,7 @@
 //! `sim-host demo`: the method at work on a simulated motor, without what reads recordings.
 
 use std::error::Error;
+use std::ffi::OsString;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -16,6 +17,8 @@ use sim_host::demo;
 #[command(version, about, arg_required_else_help = true)]
 enum Command {
     Demo(Demo),
+    #[command(external_subcommand)]
+    Other(Vec<OsString>),
 }
 
 /// Show the published method at work: healthy motor and every fault of Table 1, through the board's core.
@@ -29,45 +32,59 @@ struct Demo {
     /// Seed of the sensor noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Write every number as JSON
+    /// Write every number as JSON into a new file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
-/// The assumed motor of the published bench.
-const ASSUMED_MOTOR: &str = include_str!("../../motors/assumed-300w.toml");
-
 impl Demo {
     fn run(&self) -> Result<(), Box<dyn Error>> {
-        let motor = self
-            .motor
-            .as_deref()
-            .map_or_else(assumed_motor, motor_file)?;
+        let motor = match &self.motor {
+            Some(path) => MotorFile::read(path)?,
+            None => demo::assumed_motor()?,
+        };
         let experiments = Some(demo::EXPERIMENTS as u64);
         let bar = ProgressBar::with_draw_target(experiments, ProgressDrawTarget::stderr());
         let result = demo::run(&motor, self.seed, || bar.inc(1))?;
         bar.finish_and_clear();
         if let Some(path) = &self.json {
-            let text = serde_json::to_string_pretty(&result)? + "\n";
-            fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+            write_new(path, &(serde_json::to_string_pretty(&result)? + "\n"))?;
         }
-        Ok(write!(io::stdout().lock(), "{result}")?)
+        match write!(io::stdout().lock(), "{result}") {
+            // The reader has seen enough, as `head` does.
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+            _ => Ok(()),
+        }
     }
 }
 
-fn assumed_motor() -> Result<MotorFile, Box<dyn Error>> {
-    Ok(MotorFile::parse(ASSUMED_MOTOR, "motors/assumed-300w.toml")?)
+/// Never writes over what is there: it may be the motor file.
+fn write_new(path: &Path, text: &str) -> Result<(), String> {
+    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => {
+            format!(
+                "{}: exists; name another file, or remove it",
+                path.display()
+            )
+        }
+        _ => format!("{}: {error}", path.display()),
+    })
 }
 
-fn motor_file(path: &Path) -> Result<MotorFile, Box<dyn Error>> {
-    let name = path.display().to_string();
-    let text = fs::read_to_string(path).map_err(|error| format!("{name}: {error}"))?;
-    Ok(MotorFile::parse(&text, &name)?)
+/// What to type for a command that this program does not have.
+fn elsewhere(words: &[OsString]) -> String {
+    let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    let words = words.join(" ");
+    format!("this program has `demo` only; for the others: cargo drivemon {words}")
 }
 
 fn main() -> ExitCode {
-    let Command::Demo(demo) = Command::parse();
-    match demo.run() {
+    let outcome = match Command::parse() {
+        Command::Demo(demo) => demo.run(),
+        Command::Other(words) => Err(elsewhere(&words).into()),
+    };
+    match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let _ = writeln!(io::stderr(), "error: {error}");

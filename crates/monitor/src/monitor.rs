@@ -8,7 +8,6 @@ use crate::checks::rotor_bars::{RotorState, Sidebands};
 use crate::checks::sensors::{HealthConfig, SensorFinding};
 use crate::checks::supply::{SupplyConfig, SupplyFinding};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
-use crate::frames::magnitude;
 use crate::input::codes::{Axes, Codes};
 use crate::input::sample::{CHANNELS, Sample};
 use crate::input::validity::{
@@ -18,16 +17,15 @@ use crate::isolation::Temperature;
 use crate::lamps::logic::{PanelConfig, PanelState};
 use crate::model::effects::{Corrected, correct};
 use crate::model::operating_point::{Frame, OperatingPoint};
-use crate::model::residuals::{RESIDUALS, ResidualModel, Residuals};
+use crate::model::residuals::ResidualModel;
 use crate::model::settled::settled;
-use crate::noise::allowance::{Allowance, CycleScatter};
-use crate::noise::trend::{frequency_rate_noise, rate_noise};
+use crate::noise::allowance::CycleScatter;
 use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
 use crate::sync::encoder::{EncoderConfig, EncoderState};
 use crate::sync::phasor::{CyclePhasors, PhasorState, Unit};
 use crate::sync::pll::{SyncConfig, SyncState, SyncTick};
-use crate::window::{Cycle, CycleNoise, RateNoise, Rates, Window, WindowState};
+use crate::window::{Cycle, Window, WindowState};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +39,7 @@ pub struct Monitor {
     /// What a peak keeps of itself from one sample to the next.
     pub(crate) peak_keep: f32,
     pub(crate) model: ResidualModel,
-    health: HealthConfig,
+    pub(crate) health: HealthConfig,
     supply: SupplyConfig,
     panel: PanelConfig,
     rated: Rated<f32>,
@@ -115,28 +113,6 @@ const IDLE_REPORT_S: f32 = 0.1;
 const VOLTAGE_RANGE: [f32; 2] = [0.75, 1.2];
 /// Negative-sequence voltage beyond which IEC 60034-26 and NEMA MG 1 14.36 derate heavily.
 const MAX_UNBALANCE: f32 = 0.03;
-/// Share of synchronous speed that voltages and currents of a running motor imply at the least: a braked one's imply none.
-const LEAST_RUNNING: f32 = 0.5;
-/// A window counts as steady when what is left of the derivative terms stays below this share of the threshold.
-const STEADY_SHARE: f32 = 0.25;
-/// Share of the derivative terms that stays in doubt: parameters and inertia are only roughly known.
-pub(crate) const DERIVATIVE_DOUBT: f32 = 0.25;
-/// A step in the middle of five cycles lies 0.4 to 0.5 of itself off the straight line.
-const STEP_PER_BEND: f32 = 2.0;
-/// Standard deviations of the noise within which a change does not count.
-const NOISE_DEVIATIONS: f32 = 4.0;
-/// A residual is too noisy when it must exceed so many thresholds to be seen.
-const NOISY: f32 = 10.0;
-
-/// How a window changes.
-#[derive(Clone, Copy, Debug)]
-struct Movement {
-    /// What stays in doubt of the derivative terms in r1..r4.
-    doubt: [f32; RESIDUALS],
-    is_steady: bool,
-    /// The shaft turns against the field, and voltages and currents agree.
-    is_plugged: bool,
-}
 
 impl Monitor {
     /// Prepares a monitor.
@@ -397,36 +373,6 @@ impl Monitor {
         currents && healthy.is_some_and(|healthy| healthy.current_unbalance_scatter > 0.0)
     }
 
-    #[inline(never)]
-    fn evaluate(
-        &self,
-        rehearsal: &Rehearsal,
-        window: &Window,
-        movement: &Movement,
-        noise: &Allowance,
-        report: &mut Report,
-    ) {
-        let Some(point) = self.operating_point(self.config.frame, rehearsal, window) else {
-            return;
-        };
-        let tau_load = self.tau_load(window);
-        let residuals = self.model.evaluate(&point, tau_load);
-        report.point = Some(point);
-        report.residuals = Some(residuals);
-        let visible = self.visible(movement, noise);
-        report.visible = Some(visible);
-        report.normalised = Some(self.normalise(&residuals, &visible, tau_load.is_some()));
-        if movement.is_plugged {
-            report.not_judged = report.not_judged.or(Some(NotJudged::Reversing));
-        } else if !movement.is_steady {
-            report.not_judged = report.not_judged.or(Some(NotJudged::Transient));
-        } else if self.is_too_noisy(&visible) {
-            report.not_judged = report.not_judged.or(Some(NotJudged::Noise));
-        } else if window.invalid_samples == 0 {
-            report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
-        }
-    }
-
     /// The brake torque, where the motor file says that it is measured.
     pub(crate) fn tau_load(&self, window: &Window) -> Option<f32> {
         let is_measured = self.config.load == LoadKind::Measured;
@@ -481,147 +427,5 @@ impl Monitor {
         let omega_el = corrected.omega_mech * config.mechanics.n_p;
         OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)
             .map(|point| point.rehearse(rehearsal))
-    }
-
-    /// Residuals that light their lamps: the thresholds, or what the noise of this window can do where that is more (a
-    /// threshold holds the noise with which it was derived), and what its changes leave in doubt.
-    fn visible(&self, movement: &Movement, noise: &Allowance) -> [f32; RESIDUALS] {
-        let mut visible = self.config.thresholds;
-        let more = movement.doubt.iter().zip(noise.residuals);
-        for (x, (doubt, noise)) in visible.iter_mut().zip(more) {
-            *x = x.max(noise) + doubt;
-        }
-        visible
-    }
-
-    fn is_too_noisy(&self, [visible, ..]: &[f32; RESIDUALS]) -> bool {
-        let [threshold, ..] = self.config.thresholds;
-        *visible > NOISY * threshold
-    }
-
-    /// Over what lights the lamps: noise stands in it already. What an undeclared load makes meaningless becomes NaN, which
-    /// no comparator counts.
-    pub(crate) fn normalise(
-        &self,
-        residuals: &Residuals,
-        visible: &[f32; RESIDUALS],
-        torque_known: bool,
-    ) -> [f32; RESIDUALS] {
-        let load_known = self.config.load == LoadKind::Friction || torque_known;
-        let mut normalised = residuals.r;
-        for (x, visible) in normalised.iter_mut().zip(visible) {
-            *x /= visible;
-        }
-        if !load_known {
-            normalised.iter_mut().skip(1).for_each(|x| *x = f32::NAN);
-        }
-        normalised
-    }
-
-    /// In the rotor-flux frame whatever frame is shown: only there do voltages and currents imply a speed.
-    fn check_speed(&self, rehearsal: &Rehearsal, window: &Window) -> Option<SensorFinding> {
-        let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
-        let implied = self.model.implied_speed(&point);
-        self.health
-            .check_speed(point.omega_sync, point.omega_el, implied)
-    }
-
-    /// Whether the shaft turns against the field and voltages and currents agree that it does: where they show the small
-    /// slip of a running motor, it is the sign of the speed that is wrong.
-    fn is_plugged(&self, rehearsal: &Rehearsal, window: &Window) -> bool {
-        let against = window.omega_mech.is_some_and(|omega| omega < 0.0);
-        let point = || self.operating_point(Frame::RotorFlux, rehearsal, window);
-        against
-            && point().is_some_and(|point| {
-                let implied = self.model.implied_speed(&point);
-                implied < LEAST_RUNNING * point.omega_sync
-            })
-    }
-
-    /// How this window changes; `None` where there is no operating point.
-    #[inline(never)]
-    fn movement(&self, rehearsal: &Rehearsal, window: &Window) -> Option<Movement> {
-        let point = self.operating_point(self.config.frame, rehearsal, window)?;
-        let mut noise = window.cycle_noise(self.config.t_sample);
-        noise.speed += self.speed_resolution(window);
-        let doubt = self.doubt(rehearsal, window, &window.rates)?;
-        let beyond = window.rates.beyond(&self.noise_of_rates(window, &noise));
-        let [doubt_1, doubt_2, ..] = self.doubt(rehearsal, window, &beyond)?;
-        let [r1, r2, ..] = self
-            .config
-            .thresholds
-            .map(|threshold| STEADY_SHARE * threshold);
-        let [bend_1, bend_2] = self.bend(window, &noise, &point);
-        let is_steady = doubt_1 < r1 && doubt_2 < r2 && bend_1 < r1 && bend_2 < r2;
-        Some(Movement {
-            doubt,
-            is_steady,
-            is_plugged: self.is_plugged(rehearsal, window),
-        })
-    }
-
-    /// Standard deviation of a cycle's speed by the encoder's counts: one of them more or less in a cycle, evenly spread,
-    /// rad/s.
-    fn speed_resolution(&self, window: &Window) -> f32 {
-        /// One over the root of twelve.
-        const EVENLY_SPREAD: f32 = 0.289;
-        let counts = self.config.encoder_counts_per_revolution.max(1.0);
-        EVENLY_SPREAD * window.omega_sync / counts
-    }
-
-    /// What stays in doubt of the derivative terms at these rates: a share of what they move.
-    fn doubt(
-        &self,
-        rehearsal: &Rehearsal,
-        window: &Window,
-        rates: &Rates,
-    ) -> Option<[f32; RESIDUALS]> {
-        let moving = self.moving_at(0.0, window)?;
-        let omega_sync = window.omega_sync;
-        let still = settled(&moving, rates, omega_sync, &self.config.mechanics);
-        let without = self.residuals_at(&moving, rehearsal, window)?;
-        let mut doubt = self.residuals_at(&still, rehearsal, window)?;
-        for (x, without) in doubt.iter_mut().zip(without) {
-            *x = DERIVATIVE_DOUBT * (*x - without).abs();
-        }
-        Some(doubt)
-    }
-
-    fn residuals_at(
-        &self,
-        measured: &Corrected,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<[f32; RESIDUALS]> {
-        let omega_el = measured.omega_mech * self.config.mechanics.n_p;
-        let point = OperatingPoint::new(measured, self.config.frame, window.omega_sync, omega_el)?;
-        let residuals = self
-            .model
-            .evaluate(&point.rehearse(rehearsal), self.tau_load(window));
-        Some(residuals.r)
-    }
-
-    /// What noise alone may make of each rate: whatever the model makes of it, right or wrong, it is no movement.
-    fn noise_of_rates(&self, window: &Window, noise: &CycleNoise) -> RateNoise {
-        let length = self.config.window_cycles;
-        let rate = NOISE_DEVIATIONS * rate_noise(length, window.span);
-        let volt = magnitude(window.u_s.positive).max(f32::MIN_POSITIVE);
-        let angle = noise.voltage / volt;
-        RateNoise {
-            voltage: rate * noise.voltage,
-            current: rate * noise.current,
-            speed: rate * noise.speed,
-            supply: NOISE_DEVIATIONS * frequency_rate_noise(length, window.span) * angle,
-        }
-    }
-
-    /// What no straight line explains, beyond what noise bends.
-    fn bend(&self, window: &Window, noise: &CycleNoise, point: &OperatingPoint) -> [f32; 2] {
-        let beyond = |bend: f32, noise: f32| (bend - NOISE_DEVIATIONS * noise).max(0.0);
-        let current = beyond(window.current_bend, noise.current);
-        let speed = beyond(window.speed_bend, noise.speed);
-        let per_second = STEP_PER_BEND / window.span;
-        self.model
-            .unsteadiness(point, current * per_second, speed * per_second)
     }
 }

@@ -8,11 +8,21 @@ pub use case::{Case, CaseResult};
 pub use matrix::{FaultMatrix, FaultRow, HealthyRow};
 
 use motor::MotorFile;
+use motor::document::FileError;
 use motor::motor_file::{FieldCurrent, Frame};
 use serde::Serialize;
 
 use scenario::PlantKind;
 use scenario::simulate::SimulationError;
+
+/// The assumed motor of the published bench.
+///
+/// # Errors
+/// None as long as the shipped motor file is valid, which its tests hold.
+pub fn assumed_motor() -> Result<MotorFile, FileError> {
+    let text = include_str!("../../../motors/assumed-300w.toml");
+    MotorFile::parse(text, "motors/assumed-300w.toml")
+}
 
 /// Loads at which the healthy motor is shown, percent of the motor file's friction torque.
 const LOADS_PERCENT: [f64; 4] = [10.0, 50.0, 100.0, 150.0];

@@ -189,7 +189,7 @@ pub const MAP: [Entry; FIELDS] = {
             CurrentLag,
             Float,
             "degree",
-            "current behind voltage, positive sequence, within 0.2; a running motor shows 10 to 90, beyond that a clamp is reversed or phases are exchanged",
+            "current behind voltage, positive sequence, -180 to 180, to 0.2; beyond 90 the machine gives power, or its currents are measured the wrong way round",
         ),
     ]
 };

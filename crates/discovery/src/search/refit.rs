@@ -22,7 +22,7 @@ const HOPELESS: f64 = 0.97;
 /// Error above which a model is poor: hopeless refits are given up, unlikely ones are tried.
 const POOR: f64 = 1.1;
 /// Error above which a freely running fit may have settled in a local minimum.
-const LOCAL_MINIMUM: f64 = 1.5;
+const LOCAL_MINIMUM_ERROR: f64 = 1.5;
 /// Rate at which the observer draws the modelled speed to the measured one, 1/s.
 const OBSERVER: f64 = 200.0;
 /// Screened gain of error below which nothing can pass the proofs.
@@ -122,12 +122,13 @@ pub(crate) fn round(
 
 /// Whether no lower minimum needs to be looked for.
 fn settled(study: &Study, base: &Trial, c: &Candidate) -> bool {
-    c.error < SOLVED || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < LOCAL_MINIMUM
+    c.error < SOLVED
+        || explained(study, base, &c.trial) > SETTLED_SHARE && c.error < LOCAL_MINIMUM_ERROR
 }
 
 /// Whether a fit with this error may have gone astray, and a measured speed can lead it.
 fn may_be_local_minimum(case: &Case, error: f64) -> bool {
-    error > LOCAL_MINIMUM && !case.speed.is_empty() && !case.speed_is_input
+    error > LOCAL_MINIMUM_ERROR && !case.speed.is_empty() && !case.speed_is_input
 }
 
 /// Effects whose linear estimate has an impossible sign: from a base in a local minimum that is no verdict.

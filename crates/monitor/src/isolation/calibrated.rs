@@ -5,9 +5,10 @@ use crate::frames::magnitude;
 use crate::isolation::{
     Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS, Temperature,
 };
+use crate::model::movement::DERIVATIVE_DOUBT;
 use crate::model::operating_point::OperatingPoint;
 use crate::model::residuals::{FieldCurrent, ResidualModel, Residuals};
-use crate::monitor::{DERIVATIVE_DOUBT, Monitor, MonitorState};
+use crate::monitor::{Monitor, MonitorState};
 use crate::noise::allowance::Allowance;
 use crate::rehearsal::Rehearsal;
 use crate::report::Report;

@@ -1,6 +1,8 @@
-//! The motor model: operating point, effects, residuals.
+//! The motor model: operating point, effects, residuals, and how they are judged.
 
 pub(crate) mod effects;
+mod judgement;
+pub(crate) mod movement;
 pub(crate) mod operating_point;
 pub(crate) mod residuals;
 pub(crate) mod settled;

@@ -94,14 +94,14 @@ fn a_candidate_is_settled_when_it_fits_or_explains_nearly_all() {
     // (100 - 1.96)/99, (100 - 2.56)/99 and (9 - 1.96)/8 of the excess.
     assert!(is_settled(10.0, 1.4) && !is_settled(10.0, 1.6) && !is_settled(3.0, 1.4));
     assert!(!is_settled(3.0, 1.6));
-    assert!(!is_settled(1.1, SOLVED) && !is_settled(10.0, LOCAL_MINIMUM));
+    assert!(!is_settled(1.1, SOLVED) && !is_settled(10.0, LOCAL_MINIMUM_ERROR));
 }
 
 #[test]
 fn a_local_minimum_shows_in_the_error_and_needs_a_measured_speed() {
     let mut case = specimen::study(0.3, |_| 1.0).fitted.case;
     assert!(may_be_local_minimum(&case, 1.6) && !may_be_local_minimum(&case, 1.4));
-    assert!(!may_be_local_minimum(&case, LOCAL_MINIMUM));
+    assert!(!may_be_local_minimum(&case, LOCAL_MINIMUM_ERROR));
     case.speed_is_input = true;
     assert!(!may_be_local_minimum(&case, 1.6));
     case.speed_is_input = false;

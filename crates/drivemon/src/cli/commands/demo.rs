@@ -1,9 +1,8 @@
 //! `drivemon demo`: the method at work, without hardware.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use motor::MotorFile;
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::read_motor;
@@ -32,9 +31,6 @@ pub struct Demo {
     output: OutputArgs,
 }
 
-/// The assumed motor of the published bench.
-const ASSUMED_MOTOR: &str = include_str!("../../../../../motors/assumed-300w.toml");
-
 impl Demo {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
@@ -42,10 +38,10 @@ impl Demo {
             .may_read("the motor file", self.motor.as_ref())
             .writes_results(&self.output)
             .check()?;
-        let motor = self
-            .motor
-            .as_deref()
-            .map_or_else(assumed_motor, |path: &Path| read_motor(path))?;
+        let motor = match &self.motor {
+            Some(path) => read_motor(path)?,
+            None => demo::assumed_motor()?,
+        };
         let bar = progress::bar("simulating", demo::EXPERIMENTS as u64);
         let result = demo::run(&motor, self.seed, || bar.inc(1));
         bar.finish_and_clear();
@@ -53,8 +49,4 @@ impl Demo {
         self.output.give(Subject::Demo, &demo, || say!("{demo}"))?;
         Ok(Finding::Nothing)
     }
-}
-
-fn assumed_motor() -> Result<MotorFile, Failure> {
-    Ok(MotorFile::parse(ASSUMED_MOTOR, "motors/assumed-300w.toml")?)
 }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::driver::Driver;
 
 /// Longest wait for anything.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(25);
 
 /// A tab.
 #[derive(Clone)]

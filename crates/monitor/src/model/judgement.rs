@@ -1,0 +1,90 @@
+//! Residuals of a window against what lights their lamps, or the reason why they are not judged.
+
+use crate::checks::sensors::SensorFinding;
+use crate::config::LoadKind;
+use crate::model::movement::Movement;
+use crate::model::operating_point::Frame;
+use crate::model::residuals::{RESIDUALS, Residuals};
+use crate::monitor::Monitor;
+use crate::noise::allowance::Allowance;
+use crate::rehearsal::Rehearsal;
+use crate::report::{NotJudged, Report};
+use crate::window::Window;
+
+/// A residual is too noisy when it must exceed so many thresholds to be seen.
+const NOISY: f32 = 10.0;
+
+impl Monitor {
+    #[inline(never)]
+    pub(crate) fn evaluate(
+        &self,
+        rehearsal: &Rehearsal,
+        window: &Window,
+        movement: &Movement,
+        noise: &Allowance,
+        report: &mut Report,
+    ) {
+        let Some(point) = self.operating_point(self.config.frame, rehearsal, window) else {
+            return;
+        };
+        let tau_load = self.tau_load(window);
+        let residuals = self.model.evaluate(&point, tau_load);
+        report.point = Some(point);
+        report.residuals = Some(residuals);
+        let visible = self.visible(movement, noise);
+        report.visible = Some(visible);
+        report.normalised = Some(self.normalise(&residuals, &visible, tau_load.is_some()));
+        if movement.is_plugged {
+            report.not_judged = report.not_judged.or(Some(NotJudged::Reversing));
+        } else if !movement.is_steady {
+            report.not_judged = report.not_judged.or(Some(NotJudged::Transient));
+        } else if self.is_too_noisy(&visible) {
+            report.not_judged = report.not_judged.or(Some(NotJudged::Noise));
+        } else if window.invalid_samples == 0 {
+            report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
+        }
+    }
+
+    /// Residuals that light their lamps: the thresholds, or what the noise of this window can do where that is more (a
+    /// threshold holds the noise with which it was derived), and what its changes leave in doubt.
+    fn visible(&self, movement: &Movement, noise: &Allowance) -> [f32; RESIDUALS] {
+        let mut visible = self.config.thresholds;
+        let more = movement.doubt.iter().zip(noise.residuals);
+        for (x, (doubt, noise)) in visible.iter_mut().zip(more) {
+            *x = x.max(noise) + doubt;
+        }
+        visible
+    }
+
+    fn is_too_noisy(&self, [visible, ..]: &[f32; RESIDUALS]) -> bool {
+        let [threshold, ..] = self.config.thresholds;
+        *visible > NOISY * threshold
+    }
+
+    /// Over what lights the lamps: noise stands in it already. What an undeclared load makes meaningless becomes NaN, which
+    /// no comparator counts.
+    pub(crate) fn normalise(
+        &self,
+        residuals: &Residuals,
+        visible: &[f32; RESIDUALS],
+        torque_known: bool,
+    ) -> [f32; RESIDUALS] {
+        let load_known = self.config.load == LoadKind::Friction || torque_known;
+        let mut normalised = residuals.r;
+        for (x, visible) in normalised.iter_mut().zip(visible) {
+            *x /= visible;
+        }
+        if !load_known {
+            normalised.iter_mut().skip(1).for_each(|x| *x = f32::NAN);
+        }
+        normalised
+    }
+
+    /// In the rotor-flux frame whatever frame is shown: only there do voltages and currents imply a speed.
+    fn check_speed(&self, rehearsal: &Rehearsal, window: &Window) -> Option<SensorFinding> {
+        let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
+        let implied = self.model.implied_speed(&point);
+        self.health
+            .check_speed(point.omega_sync, point.omega_el, implied)
+    }
+}
