@@ -3,8 +3,8 @@
 mod common;
 
 use common::{in_project, monitored, motor, read};
-use motor::MotorFile;
 use motor::motor_file::{EffectEntry, LoadKind};
+use motor::{FaultId, MotorFile};
 use recording::{Channel, Mapping, Recording, Signal};
 use replay::calibrate::{Calibrated, Refusal, Surroundings, calibrate};
 use replay::{Verdict, VerdictState};
@@ -54,7 +54,8 @@ mod shorted_turns {
             for repetition in REPETITIONS {
                 let verdict = verdict(&recorded(state, repetition), &motor);
                 let first = verdict.candidates.first();
-                let right = first.is_some_and(|c| c.fault == "turns" && c.phase == Some(phase));
+                let right =
+                    first.is_some_and(|c| c.fault == FaultId::Turns && c.phase == Some(phase));
                 if verdict.state == VerdictState::Fault && right {
                     named += 1;
                 } else {

@@ -1,6 +1,6 @@
 //! One window's result on its way to a computer.
 
-use monitor::{Lamp, NotJudged, RESIDUALS, Report};
+use monitor::{Lamp, RESIDUALS, Report};
 use serde::{Deserialize, Serialize};
 
 use crate::display::LAMPS;
@@ -26,7 +26,7 @@ pub struct Frame {
     pub omega_sync_rad_s: f32,
     /// Mechanical speed, rad/s, negative backwards; `None` without a sensor.
     pub omega_mech_rad_s: Option<f32>,
-    /// Why the window was not judged; 0 when it was. Order of [`NotJudged`], from 1.
+    /// Number of the reason why the window was not judged ([`monitor::Reason`]); 0 when it was.
     pub not_judged: u8,
     /// Supply of the converters, mV.
     pub vdda_millivolt: u16,
@@ -50,7 +50,7 @@ impl Frame {
                 false => window.omega_sync,
             },
             omega_mech_rad_s: window.shaft_speed(),
-            not_judged: report.not_judged.map_or(0, reason),
+            not_judged: report.not_judged.map_or(0, |why| why.reason().number()),
             vdda_millivolt,
         }
     }
@@ -79,24 +79,6 @@ pub(crate) fn packed(report: &Report) -> u32 {
         Lamp::Blink => 2,
     });
     (0..LAMPS).fold(0, |bits, k| bits | codes[k] << (2 * k))
-}
-
-pub(crate) fn reason(not_judged: NotJudged) -> u8 {
-    match not_judged {
-        NotJudged::NotLocked => 1,
-        NotJudged::Settling => 2,
-        NotJudged::Clipped => 3,
-        NotJudged::Invalid => 4,
-        NotJudged::NoVoltages => 5,
-        NotJudged::NoCurrents => 6,
-        NotJudged::NoSpeed => 7,
-        NotJudged::Supply(_) => 8,
-        NotJudged::Sensor(_) => 9,
-        NotJudged::Transient => 10,
-        NotJudged::NoLoadCurrent => 11,
-        NotJudged::Reversing => 12,
-        NotJudged::Noise => 13,
-    }
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ fn table() -> String {
             Kind::Float => "float32",
         };
         let (first, words) = (address(entry.field), entry.kind.words());
-        let (field, unit, meaning) = (entry.field, entry.unit, entry.meaning);
+        let (field, unit, meaning) = (entry.field, entry.unit, &entry.meaning);
         format!("| {first} | {words} | {kind} | {field:?} | {unit} | {meaning} |\n")
     };
     head.to_owned() + &MAP.iter().map(row).collect::<String>()

@@ -45,6 +45,7 @@ mod lamps;
 mod model;
 mod monitor;
 mod noise;
+mod reason;
 mod rehearsal;
 mod report;
 mod sync;
@@ -65,7 +66,7 @@ pub use isolation::{
 };
 pub use lamps::lamp::{Lamp, Lamps};
 pub use lamps::likely_cause::{Channel, Known, Suspect, Suspicion, TIE_RATIO, Witness, likely};
-pub use lamps::signature::{Candidates, FAULTS, Fault, TABLE_1};
+pub use lamps::signature::{Candidates, FAULTS, TABLE_1};
 pub use lamps::threshold::{ComparatorConfig, ComparatorState};
 pub use model::effects::{
     ActiveEffect, ActiveEffects, Corrected, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, correct,
@@ -73,6 +74,8 @@ pub use model::effects::{
 pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
+pub use motor::FaultId;
+pub use reason::Reason;
 pub use rehearsal::Rehearsal;
 pub use report::{NotJudged, Report};
 pub use sync::encoder::{EncoderConfig, EncoderState, SpeedReading};

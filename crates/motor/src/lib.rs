@@ -27,6 +27,7 @@ pub mod document;
 pub mod dynamic;
 pub mod effect;
 pub mod effects;
+mod fault;
 #[cfg(feature = "std")]
 pub mod linear_plant;
 #[cfg(feature = "std")]
@@ -39,6 +40,7 @@ pub mod parity;
 pub mod steady_state;
 pub mod temperature;
 
+pub use fault::FaultId;
 #[cfg(feature = "file")]
 pub use motor_file::MotorFile;
 pub use params::{GammaParams, InvGammaParams, Mechanics, TParams};

@@ -2,11 +2,9 @@
 //!
 //! Terminal, report, panel and campaign all ask here, and the board asks the same function of the core.
 
-use monitor::{Channel, Fault, Known, Lamp, Phase, Report, Suspicion, likely};
+use monitor::{Channel, FaultId, Known, Lamp, Phase, Report, Suspicion, likely};
 use recording::{Code, Finding};
-use serde::Serialize;
-
-use crate::words;
+use serde::{Serialize, Serializer};
 
 /// Causes less likely than this are not listed.
 const LEAST_PROBABILITY: f64 = 0.01;
@@ -14,8 +12,9 @@ const LEAST_PROBABILITY: f64 = 0.01;
 /// One possible cause.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Candidate {
-    /// Row of Table 1 (`Rs` .. `wr`), a cause that only a calibrated motor shows, `bars`, or `unknown`.
-    pub fault: &'static str,
+    /// What is wrong.
+    #[serde(serialize_with = "by_name")]
+    pub fault: FaultId,
     /// The phase, where it is known.
     pub phase: Option<&'static str>,
     /// Probability, 0..=1.
@@ -23,6 +22,10 @@ pub struct Candidate {
     /// Change that explains the windows best, percent of the healthy value, on a calibrated motor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_percent: Option<f64>,
+}
+
+fn by_name<S: Serializer>(fault: &FaultId, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(fault.name())
 }
 
 /// Candidates in the order of probability; `load_friction` splits friction between motor and load, whose sum alone
@@ -64,12 +67,15 @@ pub fn listed(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
 
 /// Where the load is friction, motor and load share what the direction of the evidence says of their sum.
 fn split_friction(all: &mut Vec<Candidate>) {
-    let Some(sum) = all.iter_mut().find(|candidate| candidate.fault == "B") else {
+    let Some(sum) = all
+        .iter_mut()
+        .find(|candidate| candidate.fault == FaultId::Friction)
+    else {
         return;
     };
     sum.probability *= 0.5;
     let load = Candidate {
-        fault: "Bl",
+        fault: FaultId::LoadFriction,
         ..sum.clone()
     };
     all.push(load);
@@ -78,7 +84,7 @@ fn split_friction(all: &mut Vec<Candidate>) {
 impl Candidate {
     fn of(suspicion: &Suspicion) -> Candidate {
         Candidate {
-            fault: suspicion.suspect.name(),
+            fault: suspicion.suspect.fault(),
             phase: suspicion.suspect.phase().map(Phase::letter),
             probability: f64::from(suspicion.probability),
             size_percent: suspicion.size.map(|size| 100.0 * f64::from(size)),
@@ -98,12 +104,9 @@ pub fn tied(candidates: &[Candidate]) -> usize {
 /// whether it is merely warm: the calibration knows heat.
 pub fn todo(causes: &[Candidate], calibrated: bool) -> Vec<&'static str> {
     let mut steps = Vec::new();
-    if !calibrated
-        && causes
-            .iter()
-            .any(|cause| matches!(cause.fault, "Rs" | "Rr"))
-    {
-        steps.push("first heat: is the motor hotter than its motor file says?");
+    if !calibrated {
+        let first = causes.iter().find_map(|cause| cause.fault.first_advice());
+        steps.extend(first);
     }
     steps.extend(tests(causes));
     if steps.is_empty() && !causes.is_empty() {
@@ -115,7 +118,7 @@ pub fn todo(causes: &[Candidate], calibrated: bool) -> Vec<&'static str> {
 /// What would prove or clear each of these causes, each test once.
 pub fn tests(candidates: &[Candidate]) -> Vec<&'static str> {
     let mut tests = Vec::new();
-    for test in candidates.iter().filter_map(|c| words::proof(c.fault)) {
+    for test in candidates.iter().filter_map(|c| c.fault.separating_test()) {
         if !tests.contains(&test) {
             tests.push(test);
         }
@@ -144,7 +147,7 @@ pub fn wrong_channels(findings: &[Finding], [from_s, to_s]: [f64; 2]) -> Vec<Cha
 fn wrong_channel(finding: &Finding) -> Option<Channel> {
     match finding.code {
         Code::ZeroSequence => channel(finding.suspect.as_deref().unwrap_or(&finding.channel))
-            .filter(|channel| channel.row == Fault::CurrentSensor || finding.suspect.is_some()),
+            .filter(|channel| channel.row == FaultId::CurrentSensor || finding.suspect.is_some()),
         Code::Stuck | Code::Held | Code::Polarity | Code::SpeedImplausible => {
             channel(&finding.channel)
         }
@@ -158,9 +161,9 @@ fn channel(names: &str) -> Option<Channel> {
     let (first, more) = (each.next()?, each.next().is_some());
     let (quantity, phase) = first.split_at_checked(1)?;
     let row = match (first, quantity) {
-        ("speed", _) => Fault::SpeedSensor,
-        (_, "i") => Fault::CurrentSensor,
-        (_, "v") => Fault::VoltageSensor,
+        ("speed", _) => FaultId::SpeedSensor,
+        (_, "i") => FaultId::CurrentSensor,
+        (_, "v") => FaultId::VoltageSensor,
         _ => return None,
     };
     let phase = Phase::ALL.into_iter().find(|known| known.letter() == phase);
@@ -189,7 +192,11 @@ mod tests {
         let mut report = report([3.0, 0.0, 0.1, 3.0]);
         let causes = of_report(&report, &[], true);
         let names: Vec<_> = causes[..tied(&causes)].iter().map(|c| c.fault).collect();
-        assert_eq!(names, ["Rs", "Rr"], "{causes:?}");
+        assert_eq!(
+            names,
+            [FaultId::StatorResistance, FaultId::RotorResistance],
+            "{causes:?}"
+        );
         assert!((0.45..0.5).contains(&causes[0].probability));
         report.lamps.fault = Lamp::Off;
         assert!(of_report(&report, &[], true).is_empty());
@@ -198,7 +205,10 @@ mod tests {
     #[test]
     fn a_row_of_its_own_is_no_tie() {
         let causes = of_report(&report([3.0, 3.0, 3.0, 0.0]), &[], true);
-        assert_eq!((causes[0].fault, tied(&causes)), ("Iq", 1));
+        assert_eq!(
+            (causes[0].fault, tied(&causes)),
+            (FaultId::CurrentSensor, 1)
+        );
     }
 
     #[test]
@@ -209,17 +219,20 @@ mod tests {
         };
         report.lamps.fault = Lamp::On;
         let causes = of_report(&report, &[], true);
-        assert_eq!((causes[0].fault, causes[0].phase), ("Iq", Some("a")));
+        assert_eq!(
+            (causes[0].fault, causes[0].phase),
+            (FaultId::CurrentSensor, Some("a"))
+        );
         assert_eq!((causes.len(), causes[0].probability), (1, 1.0));
     }
 
     #[test]
     fn channels_are_found_by_their_names() {
         let of = |names| channel(names).map(|channel| (channel.row, channel.phase));
-        assert_eq!(of("ia"), Some((Fault::CurrentSensor, Some(Phase::A))));
-        assert_eq!(of("ia ib ic"), Some((Fault::CurrentSensor, None)));
-        assert_eq!(of("vc"), Some((Fault::VoltageSensor, Some(Phase::C))));
-        assert_eq!(of("speed"), Some((Fault::SpeedSensor, None)));
+        assert_eq!(of("ia"), Some((FaultId::CurrentSensor, Some(Phase::A))));
+        assert_eq!(of("ia ib ic"), Some((FaultId::CurrentSensor, None)));
+        assert_eq!(of("vc"), Some((FaultId::VoltageSensor, Some(Phase::C))));
+        assert_eq!(of("speed"), Some((FaultId::SpeedSensor, None)));
         assert_eq!((of("torque"), of("")), (None, None));
     }
 }

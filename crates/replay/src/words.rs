@@ -1,7 +1,7 @@
 //! What the core's findings are called in front of people.
 
 use crate::RotorSummary;
-use monitor::{NotJudged, SensorFinding, Sidebands, SupplyFinding};
+use monitor::{NotJudged, Reason, SensorFinding, Sidebands, SupplyFinding};
 
 /// Why a window was not judged, with what to do about it.
 pub fn not_judged(reason: NotJudged) -> String {
@@ -39,24 +39,25 @@ pub fn direction(name: &str) -> &'static str {
 
 /// The reason that a board's frame gives by its number; `None` for a judged window.
 pub fn reason(number: u8) -> Option<String> {
-    let words = match number {
-        0 => return None,
-        1 => not_judged(NotJudged::NotLocked),
-        2 => not_judged(NotJudged::Settling),
-        3 => not_judged(NotJudged::Clipped),
-        4 => not_judged(NotJudged::Invalid),
-        5 => not_judged(NotJudged::NoVoltages),
-        6 => not_judged(NotJudged::NoCurrents),
-        7 => not_judged(NotJudged::NoSpeed),
-        8 => "the supply is missing".to_owned(),
-        9 => "a sensor is dead or contradicts the others".to_owned(),
-        10 => not_judged(NotJudged::Transient),
-        11 => not_judged(NotJudged::NoLoadCurrent),
-        12 => not_judged(NotJudged::Reversing),
-        13 => not_judged(NotJudged::Noise),
-        _ => "a reason that this version does not know".to_owned(),
+    let Some(reason) = Reason::from_number(number) else {
+        return (number != 0).then(|| "a reason that this version does not know".to_owned());
     };
-    Some(words)
+    Some(match reason {
+        Reason::NotLocked => not_judged(NotJudged::NotLocked),
+        Reason::Settling => not_judged(NotJudged::Settling),
+        Reason::Clipped => not_judged(NotJudged::Clipped),
+        Reason::Invalid => not_judged(NotJudged::Invalid),
+        Reason::NoVoltages => not_judged(NotJudged::NoVoltages),
+        Reason::NoCurrents => not_judged(NotJudged::NoCurrents),
+        Reason::NoSpeed => not_judged(NotJudged::NoSpeed),
+        // The frame does not say which finding.
+        Reason::Supply => "the supply is missing".to_owned(),
+        Reason::Sensor => "a sensor is dead or contradicts the others".to_owned(),
+        Reason::Transient => not_judged(NotJudged::Transient),
+        Reason::NoLoadCurrent => not_judged(NotJudged::NoLoadCurrent),
+        Reason::Reversing => not_judged(NotJudged::Reversing),
+        Reason::Noise => not_judged(NotJudged::Noise),
+    })
 }
 
 /// A finding about the supply.
@@ -103,49 +104,4 @@ pub fn rotor(summary: &RotorSummary) -> String {
             100.0 * Sidebands::LARGEST_SLIP
         ),
     }
-}
-
-/// A row of Table 1, or a cause that only a calibrated motor shows, in plain words.
-pub fn fault(name: &str) -> &'static str {
-    match name {
-        "Rs" => "stator resistance",
-        "Rr" => "rotor resistance",
-        "Ls" => "stator inductance",
-        "Lr" => "rotor inductance",
-        "B" => "friction of the motor",
-        "Bl" => "friction of the load",
-        "Iq" => "current sensor",
-        "Vq" => "voltage sensor",
-        "wr" => "speed sensor",
-        "Lm" => "magnetizing inductance",
-        "leakage" => "leakage inductance",
-        "turns" => "shorted turns",
-        "bars" => "broken rotor bars",
-        _ => "none of the faults in the table",
-    }
-}
-
-/// The measurement that would prove or clear one cause; `None` for what is in no table.
-pub fn proof(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "Rs" => "measure the windings' DC resistance, phase by phase",
-        "Rr" => {
-            "record without load: the rotor's resistance no longer shows, a wrong speed still does"
-        }
-        "wr" => "hold a strobe or a second tachometer to the shaft",
-        "Lm" => "record without load, where the magnetizing inductance alone decides the current",
-        "Ls" | "Lr" | "leakage" => {
-            "record near rated load, where leakage weighs most, and without load, where it weighs least"
-        }
-        "B" | "Bl" => {
-            "let the motor coast down with the load uncoupled: what slows it then is its own friction"
-        }
-        "Iq" => "clamp a second ammeter around each lead",
-        "Vq" => "hold a second voltmeter to the terminals",
-        "turns" => "compare the windings' resistances and inductances phase by phase, at rest",
-        "bars" => {
-            "record at another load: the sidebands of broken bars move with the slip, those of a swinging load do not"
-        }
-        _ => return None,
-    })
 }

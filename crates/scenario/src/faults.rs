@@ -1,6 +1,7 @@
 //! `[[faults]]`: what breaks, how far, and when.
 
 use super::PlantKind;
+use motor::FaultId;
 use motor::document::{Bounds, Section};
 use motor::motor_file::Frame;
 
@@ -85,8 +86,6 @@ pub enum Change {
 /// One fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Its name in files, tables and reports, `Rs`, `Iq`, `va`.
-    pub name: &'static str,
     /// What breaks.
     pub target: Target,
     /// How.
@@ -97,17 +96,42 @@ pub struct Fault {
     pub to_s: f64,
 }
 
+impl Target {
+    /// What to break for a fault of the catalogue, d-q signals in `frame`; `None` for one that cannot be simulated as one
+    /// change.
+    pub const fn of(fault: FaultId, frame: Frame) -> Option<Target> {
+        Some(match fault {
+            FaultId::StatorResistance => Target::Parameter(Parameter::Rs),
+            FaultId::RotorResistance => Target::Parameter(Parameter::Rr),
+            FaultId::StatorInductance => Target::Parameter(Parameter::Ls),
+            FaultId::RotorInductance => Target::Parameter(Parameter::Lr),
+            FaultId::MagnetizingInductance => Target::Parameter(Parameter::Lm),
+            FaultId::Friction => Target::Parameter(Parameter::B),
+            FaultId::LoadFriction => Target::Parameter(Parameter::Bl),
+            FaultId::Bars => Target::Asymmetry(Asymmetry::RotorBars),
+            FaultId::CurrentSensor => Target::Dq(DqSignal::Iq, frame),
+            FaultId::VoltageSensor => Target::Dq(DqSignal::Vq, frame),
+            FaultId::SpeedSensor => Target::Probe(Probe::Speed),
+            FaultId::Leakage | FaultId::Turns | FaultId::Unknown => return None,
+        })
+    }
+}
+
 impl Fault {
     /// A fault by its name, with a change in percent, from the beginning to the end; d-q signals in `frame`.
     pub fn percent(name: &str, change_percent: f64, frame: Frame) -> Option<Fault> {
-        let (name, target) = NAMES.iter().find(|(known, _)| *known == name)?;
-        Some(Fault {
-            name,
-            target: in_frame(*target, frame),
+        let (_, target) = NAMES.iter().find(|(known, _)| *known == name)?;
+        Some(Fault::of(in_frame(*target, frame), change_percent))
+    }
+
+    /// A change of a target in percent, from the beginning to the end.
+    pub fn of(target: Target, change_percent: f64) -> Fault {
+        Fault {
+            target,
             change: Change::Factor(1.0 + change_percent / 100.0),
             from_s: 0.0,
             to_s: f64::INFINITY,
-        })
+        }
     }
 
     /// Whether the fault is present at time `t`, s.
@@ -132,26 +156,26 @@ impl Fault {
     }
 }
 
-/// Every fault by its name; d-q signals stand with the paper's frame until the file says otherwise.
+/// Every fault by its name in files; d-q signals stand with the paper's frame until the file says otherwise.
 const NAMES: [(&str, Target); 25] = [
-    ("Rs", Target::Parameter(Parameter::Rs)),
-    ("Rr", Target::Parameter(Parameter::Rr)),
-    ("Ls", Target::Parameter(Parameter::Ls)),
-    ("Lr", Target::Parameter(Parameter::Lr)),
+    known(FaultId::StatorResistance),
+    known(FaultId::RotorResistance),
+    known(FaultId::StatorInductance),
+    known(FaultId::RotorInductance),
     ("Lls", Target::Parameter(Parameter::Lls)),
     ("Llr", Target::Parameter(Parameter::Llr)),
-    ("Lm", Target::Parameter(Parameter::Lm)),
-    ("B", Target::Parameter(Parameter::B)),
-    ("Bl", Target::Parameter(Parameter::Bl)),
+    known(FaultId::MagnetizingInductance),
+    known(FaultId::Friction),
+    known(FaultId::LoadFriction),
     ("Rsa", Target::Asymmetry(Asymmetry::Series(0))),
     ("Rsb", Target::Asymmetry(Asymmetry::Series(1))),
     ("Rsc", Target::Asymmetry(Asymmetry::Series(2))),
-    ("bars", Target::Asymmetry(Asymmetry::RotorBars)),
+    known(FaultId::Bars),
     ("Id", Target::Dq(DqSignal::Id, Frame::Voltage)),
-    ("Iq", Target::Dq(DqSignal::Iq, Frame::Voltage)),
+    known(FaultId::CurrentSensor),
     ("Vd", Target::Dq(DqSignal::Vd, Frame::Voltage)),
-    ("Vq", Target::Dq(DqSignal::Vq, Frame::Voltage)),
-    ("wr", Target::Probe(Probe::Speed)),
+    known(FaultId::VoltageSensor),
+    known(FaultId::SpeedSensor),
     ("va", Target::Probe(Probe::Voltage(0))),
     ("vb", Target::Probe(Probe::Voltage(1))),
     ("vc", Target::Probe(Probe::Voltage(2))),
@@ -160,6 +184,14 @@ const NAMES: [(&str, Target); 25] = [
     ("ic", Target::Probe(Probe::Current(2))),
     ("speed", Target::Probe(Probe::Speed)),
 ];
+
+/// A fault of the catalogue under its name there.
+const fn known(fault: FaultId) -> (&'static str, Target) {
+    match Target::of(fault, Frame::Voltage) {
+        Some(target) => (fault.name(), target),
+        None => panic!("not one change of the motor"),
+    }
+}
 
 const FRAMES: [(&str, Frame); 2] = [
     ("voltage", Frame::Voltage),
@@ -196,7 +228,6 @@ fn read_fault(section: Section<'_>, plant: PlantKind) -> Option<Fault> {
     }
     section.finish();
     Some(Fault {
-        name: NAMES[index?].0,
         target: target?,
         change: change?,
         from_s: from?,

@@ -40,7 +40,10 @@ fn the_published_experiment_has_the_published_times() {
     assert_eq!(scenario.record_from_s, 0.5);
     assert_eq!(scenario.data_interval_s, 0.02);
     let fault = &scenario.faults[0];
-    assert_eq!((fault.name, fault.change), ("Rs", Change::Factor(1.5)));
+    assert_eq!(
+        (fault.target, fault.change),
+        (Target::Parameter(Parameter::Rs), Change::Factor(1.5))
+    );
     assert_eq!(
         [1.9999, 2.0, 3.4999, 3.5].map(|t| fault.is_active(t)),
         [false, true, true, false]

@@ -1,14 +1,14 @@
 //! One experiment on the published timeline: start, fault in, fault out.
 
 use monitor::{
-    Candidates, Lamps, Monitor, MonitorConfig, MonitorState, RawSample, Rehearsal, Report,
+    Candidates, FaultId, Lamps, Monitor, MonitorConfig, MonitorState, RawSample, Rehearsal, Report,
 };
 use motor::MotorFile;
 use motor::motor_file::Frame;
 
 use super::DemoError;
 use scenario::simulate::{Measured, Simulation};
-use scenario::{Fault, PlantKind, Scenario, Start};
+use scenario::{Fault, PlantKind, Scenario, Start, Target};
 
 /// The fault is switched in and out at these times, s (theory, section 7).
 const FAULT_S: [f64; 2] = [2.0, 3.5];
@@ -25,7 +25,7 @@ pub struct Case<'m> {
     /// What is simulated.
     pub plant: PlantKind,
     /// Row of Table 1 and change in percent; `None` for the healthy motor.
-    pub fault: Option<(&'static str, f64)>,
+    pub fault: Option<(FaultId, f64)>,
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -71,17 +71,21 @@ impl Case<'_> {
     }
 
     fn scenario(&self) -> Scenario {
-        let motor_fault = self.fault.filter(|(name, _)| sensor_gain(name).is_none());
+        let motor_fault = self
+            .fault
+            .filter(|(fault, _)| sensor_gain(*fault).is_none());
         Scenario {
             plant: self.plant,
             start: Start::Standstill,
             seed: self.seed,
             faults: motor_fault
-                .and_then(|(name, percent)| Fault::percent(name, percent, Frame::RotorFlux))
-                .map(|fault| Fault {
-                    from_s: FAULT_S[0],
-                    to_s: FAULT_S[1],
-                    ..fault
+                .and_then(|(fault, percent)| {
+                    let target = Target::of(fault, Frame::RotorFlux)?;
+                    Some(Fault {
+                        from_s: FAULT_S[0],
+                        to_s: FAULT_S[1],
+                        ..Fault::of(target, percent)
+                    })
                 })
                 .into_iter()
                 .collect(),
@@ -94,23 +98,23 @@ impl Case<'_> {
         let present = (FAULT_S[0]..FAULT_S[1]).contains(&t);
         self.fault
             .filter(|_| present)
-            .and_then(|(name, percent)| Some(sensor_gain(name)?(1.0 + percent as f32 / 100.0)))
+            .and_then(|(fault, percent)| Some(sensor_gain(fault)?(1.0 + percent as f32 / 100.0)))
             .unwrap_or_default()
     }
 }
 
 /// How a sensor row of Table 1 is rehearsed with a given gain.
-fn sensor_gain(name: &str) -> Option<fn(f32) -> Rehearsal> {
-    match name {
-        "Iq" => Some(|gain| Rehearsal {
+fn sensor_gain(fault: FaultId) -> Option<fn(f32) -> Rehearsal> {
+    match fault {
+        FaultId::CurrentSensor => Some(|gain| Rehearsal {
             current_q_gain: gain,
             ..Rehearsal::default()
         }),
-        "Vq" => Some(|gain| Rehearsal {
+        FaultId::VoltageSensor => Some(|gain| Rehearsal {
             voltage_gain: gain,
             ..Rehearsal::default()
         }),
-        "wr" => Some(|gain| Rehearsal {
+        FaultId::SpeedSensor => Some(|gain| Rehearsal {
             speed_gain: gain,
             ..Rehearsal::default()
         }),

@@ -106,7 +106,7 @@ impl FaultRow {
         let result = Case {
             motor,
             plant,
-            fault: Some((fault.name(), change_percent)),
+            fault: Some((fault, change_percent)),
             seed,
         }
         .run()?;

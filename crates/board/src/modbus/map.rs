@@ -1,5 +1,9 @@
 //! The register map: one table, from which addresses follow and against which docs/modbus.md is tested.
 
+use core::fmt;
+
+use monitor::{FaultId, Reason};
+
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -31,7 +35,42 @@ pub struct Entry {
     /// Unit, empty where there is none.
     pub unit: &'static str,
     /// What it says.
-    pub meaning: &'static str,
+    pub meaning: Meaning,
+}
+
+/// What a value says.
+#[derive(Clone, Copy, Debug)]
+pub enum Meaning {
+    /// In words.
+    Words(&'static str),
+    /// Number of a [`Reason`].
+    Reasons,
+    /// Number of a [`FaultId`].
+    Faults,
+}
+
+impl fmt::Display for Meaning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Meaning::Words(words) => f.write_str(words),
+            Meaning::Reasons => {
+                f.write_str("0 judged")?;
+                let mut all = Reason::ALL.into_iter();
+                all.try_for_each(|why| write!(f, ", {} {}", why.number(), why.label()))
+            }
+            Meaning::Faults => {
+                f.write_str("likeliest cause while FAULT is lit: ")?;
+                let named = FaultId::ALL.into_iter().filter(|fault| fault.number() > 0);
+                for fault in named {
+                    let before = if fault.number() > 1 { ", " } else { "" };
+                    write!(f, "{before}{} {fault}", fault.number())?;
+                }
+                f.write_str(
+                    "; 0 none of them; causes of the same pattern are tied, the first is named",
+                )
+            }
+        }
+    }
 }
 
 const fn entry(field: Field, kind: Kind, unit: &'static str, meaning: &'static str) -> Entry {
@@ -39,6 +78,15 @@ const fn entry(field: Field, kind: Kind, unit: &'static str, meaning: &'static s
         field,
         kind,
         unit,
+        meaning: Meaning::Words(meaning),
+    }
+}
+
+const fn numbered(field: Field, meaning: Meaning) -> Entry {
+    Entry {
+        field,
+        kind: Kind::Word,
+        unit: "",
         meaning,
     }
 }
@@ -115,19 +163,9 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "two bits per lamp from the lowest, in the order RUN r1 r2 r3 r4 SENSOR LINE LOAD FAULT: 0 off, 1 on, 2 blinking",
         ),
-        entry(
-            NotJudged,
-            Word,
-            "",
-            "0 judged, 1 no supply found, 2 settling, 3 clipped, 4 invalid, 5 no voltages, 6 no currents, 7 no speed, 8 supply, 9 sensor, 10 transient, 11 no load current, 12 braking or reversing, 13 noise",
-        ),
+        numbered(NotJudged, Meaning::Reasons),
         entry(Verdict, Word, "", "0 not judged yet, 1 healthy, 2 fault"),
-        entry(
-            LikelyFault,
-            Word,
-            "",
-            "likeliest cause while FAULT is lit: 1 Rs, 2 Rr, 3 Ls, 4 Lr, 5 B, 6 Bl, 7 Iq, 8 Vq, 9 wr, 10 Lm, 11 leakage, 12 turns, 13 bars; 0 none of them; causes of the same pattern are tied, the first is named",
-        ),
+        numbered(LikelyFault, Meaning::Faults),
         entry(FaultProbability, Word, "per mille", "its probability"),
         entry(Windows, Long, "", "windows since the start"),
         entry(WindowsJudged, Long, "", "of these judged"),

@@ -3,11 +3,11 @@
 use core::f32::consts::{SQRT_2, TAU};
 
 use micromath::F32Ext;
-use monitor::{CHANNELS, Report, Suspect, Suspicion, TABLE_1, Window, likely, magnitude};
+use monitor::{CHANNELS, Report, Suspicion, Window, likely, magnitude};
 
 use super::map::{Field, Image};
 use crate::calibration::CalibrationSource;
-use crate::frame::{packed, reason};
+use crate::frame::packed;
 use crate::learn::LearnState;
 
 /// Rad/s of one turn per minute.
@@ -107,7 +107,9 @@ fn put_report(image: &mut Image, report: &Report) {
     image.set_long(Field::Lamps, packed(report));
     image.set_word(
         Field::NotJudged,
-        report.not_judged.map_or(0, |why| u16::from(reason(why))),
+        report
+            .not_judged
+            .map_or(0, |why| u16::from(why.reason().number())),
     );
     let (fault, probability) = likeliest(report);
     image.set_word(Field::LikelyFault, fault);
@@ -130,26 +132,11 @@ fn likeliest(report: &Report) -> (u16, f32) {
                                       ..
                                   }| {
             if probability > best.1 {
-                best = (number(suspect), probability);
+                best = (suspect.fault().number(), probability);
             }
         });
     }
     best
-}
-
-/// Rows of Table 1 from 1 on, then what only a calibrated motor or its sidebands show.
-fn number(suspect: Suspect) -> u16 {
-    let row = TABLE_1
-        .iter()
-        .position(|(fault, _)| fault.name() == suspect.name());
-    match (row, suspect.name()) {
-        (Some(row), _) => row as u16 + 1,
-        (None, "Lm") => 10,
-        (None, "leakage") => 11,
-        (None, "turns") => 12,
-        (None, "bars") => 13,
-        _ => 0,
-    }
 }
 
 /// Angle of the current behind the voltage in degrees, NaN where one of them is missing. It is for people: an

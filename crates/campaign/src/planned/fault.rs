@@ -3,9 +3,8 @@
 use crate::planned::pair::{
     Pair, ROTOR_RESISTANCE, STATOR_INDUCTANCE, STATOR_RESISTANCE, VOLTAGE_SENSORS, against,
 };
-use motor::MotorFile;
-use motor::motor_file::Frame;
-use scenario::Fault;
+use motor::{FaultId, MotorFile};
+use scenario::{Asymmetry, Fault, Parameter, Probe, Target};
 
 /// A fault by the name that plans and tables use.
 #[derive(Debug)]
@@ -14,15 +13,15 @@ pub struct FaultKind {
     pub name: &'static str,
     /// In words.
     pub words: &'static str,
-    /// Faults of a scenario that make it up: all of them, or one of three where it has a phase.
-    parts: &'static [&'static str],
+    /// What breaks: all of these, or one of three where it has a phase.
+    parts: &'static [Target],
     /// Whether it strikes one phase only.
     pub has_phase: bool,
     /// Whether it is a sensor and may be dead.
     pub is_sensor: bool,
     /// Causes by which the monitor may call it. Where several stand here physics makes them one (B and B_l are only ever
     /// seen as a sum), or the monitor's words are coarser than the plan's.
-    answers: &'static [&'static str],
+    answers: &'static [FaultId],
     /// What Table 1 of the paper cannot tell it from.
     pub pair: Option<Pair>,
 }
@@ -30,8 +29,8 @@ pub struct FaultKind {
 const fn motor(
     name: &'static str,
     words: &'static str,
-    parts: &'static [&'static str],
-    answers: &'static [&'static str],
+    parts: &'static [Target],
+    answers: &'static [FaultId],
 ) -> FaultKind {
     FaultKind {
         name,
@@ -47,8 +46,8 @@ const fn motor(
 const fn sensor(
     name: &'static str,
     words: &'static str,
-    parts: &'static [&'static str],
-    answers: &'static [&'static str],
+    parts: &'static [Target],
+    answers: &'static [FaultId],
 ) -> FaultKind {
     FaultKind {
         is_sensor: true,
@@ -70,78 +69,141 @@ const fn in_one_phase(kind: FaultKind) -> FaultKind {
     }
 }
 
+/// A fault of the motor under its name and words of the catalogue.
+const fn listed(
+    fault: FaultId,
+    parts: &'static [Target],
+    answers: &'static [FaultId],
+) -> FaultKind {
+    motor(fault.name(), fault.words(), parts, answers)
+}
+
+const STATOR_LEAKAGE: Target = Target::Parameter(Parameter::Lls);
+const ROTOR_LEAKAGE: Target = Target::Parameter(Parameter::Llr);
+const VOLTAGES: &[Target] = &[
+    Target::Probe(Probe::Voltage(0)),
+    Target::Probe(Probe::Voltage(1)),
+    Target::Probe(Probe::Voltage(2)),
+];
+const CURRENTS: &[Target] = &[
+    Target::Probe(Probe::Current(0)),
+    Target::Probe(Probe::Current(1)),
+    Target::Probe(Probe::Current(2)),
+];
+const JOINTS: &[Target] = &[
+    Target::Asymmetry(Asymmetry::Series(0)),
+    Target::Asymmetry(Asymmetry::Series(1)),
+    Target::Asymmetry(Asymmetry::Series(2)),
+];
+const OF_MAGNETIZING: &[FaultId] = &[
+    FaultId::MagnetizingInductance,
+    FaultId::StatorInductance,
+    FaultId::RotorInductance,
+];
+const OF_LEAKAGE: &[FaultId] = &[
+    FaultId::Leakage,
+    FaultId::StatorInductance,
+    FaultId::RotorInductance,
+];
+const OF_FRICTION: &[FaultId] = &[FaultId::Friction, FaultId::LoadFriction];
+
 /// Every fault of a campaign.
 pub const FAULTS: [FaultKind; 15] = [
     paired(
-        against("Rr", [STATOR_RESISTANCE, ROTOR_RESISTANCE]),
-        motor("Rs", "stator resistance", &["Rs"], &["Rs"]),
+        against(
+            FaultId::RotorResistance.name(),
+            [STATOR_RESISTANCE, ROTOR_RESISTANCE],
+        ),
+        listed(
+            FaultId::StatorResistance,
+            &[Target::Parameter(Parameter::Rs)],
+            STATOR_RESISTANCE,
+        ),
     ),
     paired(
-        against("Rs", [ROTOR_RESISTANCE, STATOR_RESISTANCE]),
-        motor("Rr", "rotor resistance", &["Rr"], &["Rr"]),
+        against(
+            FaultId::StatorResistance.name(),
+            [ROTOR_RESISTANCE, STATOR_RESISTANCE],
+        ),
+        listed(
+            FaultId::RotorResistance,
+            &[Target::Parameter(Parameter::Rr)],
+            ROTOR_RESISTANCE,
+        ),
     ),
     paired(
         against("V", [STATOR_INDUCTANCE, VOLTAGE_SENSORS]),
-        motor("Lm", "magnetizing inductance", &["Lm"], &["Lm", "Ls", "Lr"]),
+        listed(
+            FaultId::MagnetizingInductance,
+            &[Target::Parameter(Parameter::Lm)],
+            OF_MAGNETIZING,
+        ),
     ),
-    motor(
-        "Lls",
-        "stator leakage",
-        &["Lls"],
-        &["Lls", "leakage", "Ls", "Lr"],
-    ),
-    motor(
-        "Llr",
-        "rotor leakage",
-        &["Llr"],
-        &["Llr", "leakage", "Ls", "Lr"],
-    ),
+    motor("Lls", "stator leakage", &[STATOR_LEAKAGE], OF_LEAKAGE),
+    motor("Llr", "rotor leakage", &[ROTOR_LEAKAGE], OF_LEAKAGE),
     paired(
         against("V", [STATOR_INDUCTANCE, VOLTAGE_SENSORS]),
         motor(
-            "leakage",
+            FaultId::Leakage.name(),
             "both leakages",
-            &["Lls", "Llr"],
-            &["leakage", "Lls", "Llr", "Ls", "Lr"],
+            &[STATOR_LEAKAGE, ROTOR_LEAKAGE],
+            OF_LEAKAGE,
         ),
     ),
-    motor("B", "friction of the motor", &["B"], &["B", "Bl"]),
-    motor("Bl", "friction of the load", &["Bl"], &["B", "Bl"]),
+    listed(
+        FaultId::Friction,
+        &[Target::Parameter(Parameter::B)],
+        OF_FRICTION,
+    ),
+    listed(
+        FaultId::LoadFriction,
+        &[Target::Parameter(Parameter::Bl)],
+        OF_FRICTION,
+    ),
     in_one_phase(motor(
         "Rs-phase",
         "resistance in series with one phase",
-        &["Rsa", "Rsb", "Rsc"],
-        &["Rs-phase", "Rs"],
+        JOINTS,
+        STATOR_RESISTANCE,
     )),
-    motor("bars", "broken rotor bars", &["bars"], &["bars"]),
+    listed(
+        FaultId::Bars,
+        &[Target::Asymmetry(Asymmetry::RotorBars)],
+        &[FaultId::Bars],
+    ),
     in_one_phase(sensor(
         "i",
         "gain of one current sensor",
-        &["ia", "ib", "ic"],
-        &["Iq", "i"],
+        CURRENTS,
+        &[FaultId::CurrentSensor],
     )),
     in_one_phase(sensor(
         "v",
         "gain of one voltage sensor",
-        &["va", "vb", "vc"],
-        &["Vq", "v"],
+        VOLTAGES,
+        VOLTAGE_SENSORS,
     )),
     sensor(
         "i-all",
         "gain of all current sensors",
-        &["ia", "ib", "ic"],
-        &["Iq", "i"],
+        CURRENTS,
+        &[FaultId::CurrentSensor],
     ),
     paired(
         against("L_s", [VOLTAGE_SENSORS, STATOR_INDUCTANCE]),
         sensor(
             "v-all",
             "gain of all voltage sensors",
-            &["va", "vb", "vc"],
-            &["Vq", "v"],
+            VOLTAGES,
+            VOLTAGE_SENSORS,
         ),
     ),
-    sensor("speed", "speed sensor", &["speed"], &["wr", "speed"]),
+    sensor(
+        "speed",
+        FaultId::SpeedSensor.words(),
+        &[Target::Probe(Probe::Speed)],
+        &[FaultId::SpeedSensor],
+    ),
 ];
 
 impl FaultKind {
@@ -156,25 +218,25 @@ impl FaultKind {
             true => &self.parts[phase..=phase],
             false => self.parts,
         };
-        let fault = |name: &&str| {
-            let fault = Fault::percent(name, percent, Frame::RotorFlux)?;
-            Some(Fault { from_s, ..fault })
+        let fault = |target: &Target| Fault {
+            from_s,
+            ..Fault::of(*target, percent)
         };
-        parts.iter().filter_map(fault).collect()
+        parts.iter().map(fault).collect()
     }
 
     /// Whether the monitor names this fault when it says `cause`.
-    pub fn is_named_by(&self, cause: &str) -> bool {
+    pub fn is_named_by(&self, cause: FaultId) -> bool {
         self.answers.contains(&cause)
     }
 
     /// Why a motor cannot have this fault.
     pub fn obstacle(&self, motor: &MotorFile, load_is_free: bool) -> Option<&'static str> {
-        match self.name {
-            "Bl" if load_is_free => {
+        match self.parts {
+            [Target::Parameter(Parameter::Bl)] if load_is_free => {
                 Some("changes nothing where load_kind = \"free\": the load is whatever it is")
             }
-            "B" if motor.mechanics.friction == 0.0 => {
+            [Target::Parameter(Parameter::B)] if motor.mechanics.friction == 0.0 => {
                 Some("changes nothing on a motor whose friction_nm_s is 0")
             }
             _ => None,
@@ -185,7 +247,7 @@ impl FaultKind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scenario::{Change, Probe, Target};
+    use scenario::Change;
 
     #[test]
     fn every_fault_breaks_something_in_every_phase_that_it_has() {

@@ -1,16 +1,23 @@
 //! Pairs of faults that share a row of the paper's Table 1: what they are called, and which side an answer takes.
 
-pub(crate) const STATOR_RESISTANCE: &[&str] = &["Rs"];
-pub(crate) const ROTOR_RESISTANCE: &[&str] = &["Rr"];
-/// The paper's `L_s` is magnetizing inductance and leakage in one.
-pub(crate) const STATOR_INDUCTANCE: &[&str] = &["Lm", "leakage", "Lls", "Llr", "Ls", "Lr"];
-pub(crate) const VOLTAGE_SENSORS: &[&str] = &["Vq", "v"];
+use motor::FaultId;
 
-/// Two sides of a row of the paper's Table 1, by the names that the monitor may give to each.
+pub(crate) const STATOR_RESISTANCE: &[FaultId] = &[FaultId::StatorResistance];
+pub(crate) const ROTOR_RESISTANCE: &[FaultId] = &[FaultId::RotorResistance];
+/// The paper's `L_s` is magnetizing inductance and leakage in one.
+pub(crate) const STATOR_INDUCTANCE: &[FaultId] = &[
+    FaultId::MagnetizingInductance,
+    FaultId::Leakage,
+    FaultId::StatorInductance,
+    FaultId::RotorInductance,
+];
+pub(crate) const VOLTAGE_SENSORS: &[FaultId] = &[FaultId::VoltageSensor];
+
+/// Two sides of a row of the paper's Table 1, by what the monitor may call each.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair {
-    own: &'static [&'static str],
-    other: &'static [&'static str],
+    own: &'static [FaultId],
+    other: &'static [FaultId],
     /// The other side, as the tables call it.
     pub rival: &'static str,
 }
@@ -25,9 +32,9 @@ pub struct Sides {
 }
 
 impl Pair {
-    /// `named`: causes from the likeliest on, joined by `|`.
-    pub fn sides(&self, named: &str) -> Sides {
-        let place = |side: &[&str]| named.split('|').position(|name| side.contains(&name));
+    /// `named`: causes from the likeliest on.
+    pub fn sides(&self, named: &[FaultId]) -> Sides {
+        let place = |side: &[FaultId]| named.iter().position(|fault| side.contains(fault));
         let (own, other) = (place(self.own), place(self.other));
         Sides {
             right: own.is_some_and(|own| other.is_none_or(|other| own < other)),
@@ -37,10 +44,7 @@ impl Pair {
 }
 
 /// A pair by its two sides, and what tables call the other one.
-pub(crate) const fn against(
-    rival: &'static str,
-    [own, other]: [&'static [&'static str]; 2],
-) -> Pair {
+pub(crate) const fn against(rival: &'static str, [own, other]: [&'static [FaultId]; 2]) -> Pair {
     Pair { own, other, rival }
 }
 
@@ -51,8 +55,11 @@ mod tests {
     #[test]
     fn an_answer_takes_the_side_of_its_likeliest_name() {
         let pair = against("V", [STATOR_INDUCTANCE, VOLTAGE_SENSORS]);
+        let faults = |named: &str| -> Vec<FaultId> {
+            named.split('|').filter_map(FaultId::from_name).collect()
+        };
         let sides = |named: &str| {
-            let Sides { right, apart } = pair.sides(named);
+            let Sides { right, apart } = pair.sides(&faults(named));
             (right, apart)
         };
         assert_eq!(sides("Lm"), (true, true));

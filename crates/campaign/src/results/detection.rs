@@ -235,7 +235,7 @@ fn rival(group: &[&Row], percent: f64) -> Option<Rival> {
     let sides: Vec<Sides> = group
         .iter()
         .filter(is_counted)
-        .map(|row| pair.sides(&row.named))
+        .map(|row| pair.sides(&row.faults()))
         .collect();
     Some(Rival {
         cause: pair.rival,

@@ -115,7 +115,7 @@ impl Outcome {
         Answer {
             named: first
                 .iter()
-                .map(|cause| cause.fault)
+                .map(|cause| cause.fault.name())
                 .collect::<Vec<_>>()
                 .join("|"),
             phase: first

@@ -1,5 +1,6 @@
 //! One run as one row of a table that other programs can read.
 
+use motor::FaultId;
 use parquet_derive::{ParquetRecordReader, ParquetRecordWriter};
 
 use crate::planned::axis::Axis;
@@ -130,6 +131,12 @@ impl Row {
 
     fn is_faulty(&self) -> bool {
         !self.fault.is_empty() && self.not_run.is_empty()
+    }
+
+    /// [`Row::named`], from the likeliest on.
+    pub fn faults(&self) -> Vec<FaultId> {
+        let names = self.named.split('|');
+        names.filter_map(FaultId::from_name).collect()
     }
 
     /// Whether fault and phase were named rightly.

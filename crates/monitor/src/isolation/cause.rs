@@ -1,7 +1,7 @@
 //! What can be wrong with a calibrated motor, as the evidence tells it apart.
 
 use crate::checks::sensors::Phase;
-use crate::lamps::signature::Fault;
+use motor::FaultId;
 
 /// One cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,18 +62,18 @@ pub const ALL_CAUSES: [Cause; CAUSES] = [
 ];
 
 impl Cause {
-    /// Short name as in Table 1 where there is a row for it.
-    pub const fn name(self) -> &'static str {
+    /// The fault of the catalogue that it is, in all phases or in one.
+    pub const fn fault(self) -> FaultId {
         match self {
-            Cause::StatorResistance | Cause::SeriesResistance(_) => "Rs",
-            Cause::RotorResistance => "Rr",
-            Cause::MagnetizingInductance => "Lm",
-            Cause::Leakage => "leakage",
-            Cause::Friction => "B",
-            Cause::AllCurrents | Cause::CurrentChannel(_) => "Iq",
-            Cause::AllVoltages | Cause::VoltageChannel(_) => "Vq",
-            Cause::SpeedGain => "wr",
-            Cause::Turns(_) => "turns",
+            Cause::StatorResistance | Cause::SeriesResistance(_) => FaultId::StatorResistance,
+            Cause::RotorResistance => FaultId::RotorResistance,
+            Cause::MagnetizingInductance => FaultId::MagnetizingInductance,
+            Cause::Leakage => FaultId::Leakage,
+            Cause::Friction => FaultId::Friction,
+            Cause::AllCurrents | Cause::CurrentChannel(_) => FaultId::CurrentSensor,
+            Cause::AllVoltages | Cause::VoltageChannel(_) => FaultId::VoltageSensor,
+            Cause::SpeedGain => FaultId::SpeedSensor,
+            Cause::Turns(_) => FaultId::Turns,
         }
     }
 
@@ -88,19 +88,9 @@ impl Cause {
         }
     }
 
-    /// The sensor row of Table 1 for a cause that lies in the instrument; `None` for one in the motor.
-    pub const fn sensor_row(self) -> Option<Fault> {
-        match self {
-            Cause::AllCurrents | Cause::CurrentChannel(_) => Some(Fault::CurrentSensor),
-            Cause::AllVoltages | Cause::VoltageChannel(_) => Some(Fault::VoltageSensor),
-            Cause::SpeedGain => Some(Fault::SpeedSensor),
-            _ => None,
-        }
-    }
-
     /// Whether the cause lies in the instrument, not in the motor.
     pub const fn is_sensor(self) -> bool {
-        self.sensor_row().is_some()
+        self.fault().is_sensor()
     }
 
     /// A typical size as a share of the healthy value: it weighs a cause that explains much with little against others.
@@ -161,7 +151,7 @@ mod tests {
                 Cause::VoltageChannel(p) => ("Vq", true, Some(p), false),
             };
             assert_eq!(
-                (cause.name(), cause.is_sensor()),
+                (cause.fault().name(), cause.is_sensor()),
                 (name, sensor),
                 "{cause:?}"
             );

@@ -3,8 +3,9 @@
 
 use crate::checks::sensors::{Phase, SensorFinding};
 use crate::isolation::{ALL_CAUSES, CAUSES, Cause, Isolation};
-use crate::lamps::signature::{Candidates, Fault, TABLE_1};
+use crate::lamps::signature::{Candidates, TABLE_1};
 use crate::report::Report;
+use motor::FaultId;
 
 /// Causes whose probability is at least the likeliest one's divided by this are tied with it: half a decade is not worth
 /// more than a bare mention (Jeffreys, Theory of Probability, appendix B).
@@ -14,7 +15,7 @@ pub const TIE_RATIO: f32 = 3.162_277_7;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Suspect {
     /// A row of Table 1.
-    Row(Fault),
+    Row(FaultId),
     /// A cause that the direction of the evidence names.
     Cause(Cause),
     /// A channel that was found wrong.
@@ -29,7 +30,7 @@ pub enum Suspect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel {
     /// `CurrentSensor`, `VoltageSensor` or `SpeedSensor`.
-    pub row: Fault,
+    pub row: FaultId,
     /// The phase.
     pub phase: Option<Phase>,
 }
@@ -91,25 +92,25 @@ impl Channel {
     /// The channel that a finding is about.
     pub const fn of(finding: SensorFinding) -> Channel {
         let (row, phase) = match finding {
-            SensorFinding::DeadVoltage(phase) => (Fault::VoltageSensor, Some(phase)),
-            SensorFinding::VoltagesMissing => (Fault::VoltageSensor, None),
-            SensorFinding::DeadCurrent(phase) => (Fault::CurrentSensor, Some(phase)),
-            SensorFinding::CurrentSum => (Fault::CurrentSensor, None),
-            SensorFinding::SpeedImplausible => (Fault::SpeedSensor, None),
+            SensorFinding::DeadVoltage(phase) => (FaultId::VoltageSensor, Some(phase)),
+            SensorFinding::VoltagesMissing => (FaultId::VoltageSensor, None),
+            SensorFinding::DeadCurrent(phase) => (FaultId::CurrentSensor, Some(phase)),
+            SensorFinding::CurrentSum => (FaultId::CurrentSensor, None),
+            SensorFinding::SpeedImplausible => (FaultId::SpeedSensor, None),
         };
         Channel { row, phase }
     }
 }
 
 impl Suspect {
-    /// Short name: as in Table 1 where there is a row for it.
-    pub const fn name(self) -> &'static str {
+    /// The fault of the catalogue that it is.
+    pub const fn fault(self) -> FaultId {
         match self {
-            Suspect::Row(fault) => fault.name(),
-            Suspect::Cause(cause) => cause.name(),
-            Suspect::Channel(channel) => channel.row.name(),
-            Suspect::Bars => "bars",
-            Suspect::Unknown => "unknown",
+            Suspect::Row(fault) => fault,
+            Suspect::Cause(cause) => cause.fault(),
+            Suspect::Channel(channel) => channel.row,
+            Suspect::Bars => FaultId::Bars,
+            Suspect::Unknown => FaultId::Unknown,
         }
     }
 
@@ -124,13 +125,12 @@ impl Suspect {
 
     /// Whether both name the same thing in the same place.
     fn is(self, channel: Channel) -> bool {
-        let same_name = match self {
-            Suspect::Row(fault) => fault == channel.row,
-            Suspect::Cause(cause) => cause.sensor_row() == Some(channel.row),
+        let same_fault = match self {
+            Suspect::Row(_) | Suspect::Cause(_) => self.fault() == channel.row,
             Suspect::Channel(_) | Suspect::Bars | Suspect::Unknown => false,
         };
         // A row of the table knows no phase: it is the same channel, said less exactly.
-        same_name && (matches!(self, Suspect::Row(_)) || self.phase() == channel.phase)
+        same_fault && (matches!(self, Suspect::Row(_)) || self.phase() == channel.phase)
     }
 }
 
@@ -293,7 +293,7 @@ mod tests {
     use std::vec::Vec;
 
     const CURRENT_A: Channel = Channel {
-        row: Fault::CurrentSensor,
+        row: FaultId::CurrentSensor,
         phase: Some(Phase::A),
     };
     /// The pattern of a rotor inductance: all four residuals.
@@ -301,7 +301,8 @@ mod tests {
 
     fn weighed(known: &Known<'_>) -> Vec<(&'static str, Option<Phase>, f32)> {
         let mut all = Vec::new();
-        known.weigh(&mut |s| all.push((s.suspect.name(), s.suspect.phase(), s.probability)));
+        known
+            .weigh(&mut |s| all.push((s.suspect.fault().name(), s.suspect.phase(), s.probability)));
         all.sort_by(|a, b| b.2.total_cmp(&a.2));
         let sum: f32 = all.iter().map(|(.., p)| p).sum();
         assert!((sum - 1.0).abs() < 1e-4, "{sum}: {all:?}");

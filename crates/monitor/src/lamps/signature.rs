@@ -1,69 +1,26 @@
 //! The fault signature matrix (Table 1) and the probability of each fault (seventh and eighth stage).
 
 use crate::model::residuals::RESIDUALS;
-
-/// The rows of Table 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// Stator resistance.
-    StatorResistance,
-    /// Rotor resistance.
-    RotorResistance,
-    /// Stator inductance.
-    StatorInductance,
-    /// Rotor inductance.
-    RotorInductance,
-    /// Friction of the motor.
-    Friction,
-    /// Friction that stands for the load.
-    LoadFriction,
-    /// Current measurement (`I_q`).
-    CurrentSensor,
-    /// Voltage measurement (`V_q`).
-    VoltageSensor,
-    /// Speed measurement.
-    SpeedSensor,
-}
+use motor::FaultId;
 
 /// Number of rows.
 pub const FAULTS: usize = 9;
 
-/// Table 1 of the paper: which of r1..r4 each fault lights.
-pub const TABLE_1: [(Fault, [bool; RESIDUALS]); FAULTS] = [
-    (Fault::StatorResistance, [true, false, false, true]),
-    (Fault::RotorResistance, [true, false, false, true]),
-    (Fault::StatorInductance, [true, false, true, true]),
-    (Fault::RotorInductance, [true, true, true, true]),
-    (Fault::Friction, [false, true, true, true]),
-    (Fault::LoadFriction, [false, true, true, true]),
-    (Fault::CurrentSensor, [true, true, true, false]),
-    (Fault::VoltageSensor, [true, false, true, true]),
-    (Fault::SpeedSensor, [true, true, false, true]),
-];
+/// Table 1 of the paper: which of r1..r4 each fault lights, in the order of the catalogue.
+pub const TABLE_1: [(FaultId, [bool; RESIDUALS]); FAULTS] = table_1();
 
-impl Fault {
-    /// Short name as in the paper's table, used in files and tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Fault::StatorResistance => "Rs",
-            Fault::RotorResistance => "Rr",
-            Fault::StatorInductance => "Ls",
-            Fault::RotorInductance => "Lr",
-            Fault::Friction => "B",
-            Fault::LoadFriction => "Bl",
-            Fault::CurrentSensor => "Iq",
-            Fault::VoltageSensor => "Vq",
-            Fault::SpeedSensor => "wr",
+const fn table_1() -> [(FaultId, [bool; RESIDUALS]); FAULTS] {
+    let mut table = [(FaultId::Unknown, [false; RESIDUALS]); FAULTS];
+    let (mut row, mut k) = (0, 0);
+    while k < FaultId::ALL.len() {
+        if let Some(pattern) = FaultId::ALL[k].published_pattern() {
+            table[row] = (FaultId::ALL[k], pattern);
+            row += 1;
         }
+        k += 1;
     }
-
-    /// Whether the fault lies in the instrument, not in the motor.
-    pub const fn is_sensor(self) -> bool {
-        matches!(
-            self,
-            Fault::CurrentSensor | Fault::VoltageSensor | Fault::SpeedSensor
-        )
-    }
+    assert!(row == FAULTS, "a row of Table 1 is missing");
+    table
 }
 
 /// Probability of each row of Table 1 and of "none of them"; the sum is 1.
@@ -141,7 +98,7 @@ fn chance_on(normalised: f32) -> f32 {
 mod tests {
     use super::*;
 
-    fn probability(normalised: [f32; 4], fault: Fault) -> f32 {
+    fn probability(normalised: [f32; 4], fault: FaultId) -> f32 {
         let candidates = Candidates::from_normalised(&normalised);
         TABLE_1
             .iter()
@@ -168,7 +125,7 @@ mod tests {
 
     #[test]
     fn stator_and_rotor_resistance_are_an_honest_tie() {
-        let p = probability([3.0, 0.0, 0.1, 3.0], Fault::StatorResistance);
+        let p = probability([3.0, 0.0, 0.1, 3.0], FaultId::StatorResistance);
         assert!((0.45..0.5).contains(&p), "{p}");
     }
 
@@ -190,8 +147,8 @@ mod tests {
     #[test]
     fn residuals_that_say_nothing_leave_all_rows_with_the_same_r1_equal() {
         let p = |fault| probability([3.0, f32::NAN, f32::NAN, f32::NAN], fault);
-        assert_eq!(p(Fault::StatorResistance), p(Fault::SpeedSensor));
-        assert!(p(Fault::Friction) < 0.01 * p(Fault::SpeedSensor));
+        assert_eq!(p(FaultId::StatorResistance), p(FaultId::SpeedSensor));
+        assert!(p(FaultId::Friction) < 0.01 * p(FaultId::SpeedSensor));
     }
 
     #[test]

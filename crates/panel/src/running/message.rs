@@ -67,8 +67,8 @@ pub(crate) fn likely(
         .into_iter()
         .enumerate()
         .map(|(k, candidate)| LikelyCause {
-            name: candidate.fault,
-            words: words::fault(candidate.fault),
+            name: candidate.fault.name(),
+            words: candidate.fault.words(),
             phase: candidate.phase,
             probability_percent: 100.0 * candidate.probability,
             size_percent: candidate.size_percent,

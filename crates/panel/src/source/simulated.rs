@@ -1,6 +1,6 @@
 //! A simulated motor that runs for ever and whose faults are switched from the page.
 
-use monitor::{MonitorConfig, RawSample, Rehearsal, TABLE_1};
+use monitor::{FaultId, MonitorConfig, RawSample, Rehearsal, TABLE_1};
 use motor::MotorFile;
 use motor::document::FileError;
 use motor::motor_file::Frame;
@@ -59,7 +59,7 @@ pub const PANEL_FAULTS: fn() -> [PanelFault; SWITCHES] = || {
     std::array::from_fn(|k| match TABLE_1.get(k) {
         Some((fault, pattern)) => PanelFault {
             name: fault.name(),
-            words: replay::words::fault(fault.name()),
+            words: fault.words(),
             table_1: Some(*pattern),
             least_percent: if fault.is_sensor() { -100.0 } else { -95.0 },
         },
@@ -193,10 +193,10 @@ fn check(fault: &SwitchedFault) -> Result<(), SourceFailure> {
 /// Sensor rows of Table 1 are switched on the d-q signals, as the published bench does.
 fn rehearsed(rehearsal: &mut Rehearsal, fault: &SwitchedFault) -> bool {
     let gain = (1.0 + fault.change_percent / 100.0) as f32;
-    match fault.name.as_str() {
-        "Iq" => rehearsal.current_q_gain = gain,
-        "Vq" => rehearsal.voltage_gain = gain,
-        "wr" => rehearsal.speed_gain = gain,
+    match FaultId::from_name(&fault.name) {
+        Some(FaultId::CurrentSensor) => rehearsal.current_q_gain = gain,
+        Some(FaultId::VoltageSensor) => rehearsal.voltage_gain = gain,
+        Some(FaultId::SpeedSensor) => rehearsal.speed_gain = gain,
         _ => return false,
     }
     true

@@ -36,7 +36,7 @@ pub fn implausible(
             format!(
                 "{} would have to change by {:+.0} %: the motor file does not describe this motor, or it is not healthy; \
                  see what `drivemon explain` says",
-                cause.name(),
+                cause.fault().name(),
                 100.0 * change
             ),
         )),

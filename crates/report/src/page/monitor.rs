@@ -7,7 +7,7 @@ use super::chart::{Chart, Kind, Series};
 use super::number::{decimals, shown, significant};
 use super::place::Place;
 use super::shell::{Mood, cards, verdict};
-use replay::words;
+use motor::FaultId;
 
 /// Everything between heading and footer.
 pub fn content(result: &Place<'_>) -> Markup {
@@ -114,11 +114,12 @@ fn tie(result: &Place<'_>) -> Markup {
 
 fn candidate(row: &Place<'_>) -> Markup {
     let name = row.text("fault");
+    let fault = FaultId::from_name(name).unwrap_or(FaultId::Unknown);
     let share = 100.0 * row.number("probability").unwrap_or_default();
     html! {
         tr {
             th scope="row" {
-                (words::fault(name)) " (" (name) ")"
+                (fault.words()) " (" (name) ")"
                 @if row.get("phase").is_some() { ", phase " (row.text("phase")) }
                 @if row.get("size_percent").is_some() {
                     ", " (shown(row, "size_percent", decimals(0).signed())) " %"

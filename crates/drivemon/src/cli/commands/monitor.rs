@@ -337,7 +337,7 @@ pub(crate) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
                 let phase = candidate
                     .phase
                     .map_or(String::new(), |phase| format!(", phase {phase}"));
-                let cause = words::fault(candidate.fault);
+                let cause = candidate.fault.words();
                 let percent = 100.0 * candidate.probability;
                 say!("  {percent:5.1} %  {:<3} {cause}{phase}", candidate.fault);
             }
