@@ -64,6 +64,11 @@ impl Frame {
         }
     }
 
+    /// FAULT, the last of the lamps.
+    pub fn fault(&self) -> Lamp {
+        self.lamp(LAMPS - 1)
+    }
+
     /// The bytes to send, zero byte included; empty if they did not fit, which a test rules out.
     #[inline(never)]
     pub fn encode<'a>(&self, buffer: &'a mut [u8; MAX_FRAME_BYTES]) -> &'a [u8] {

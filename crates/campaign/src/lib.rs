@@ -20,7 +20,7 @@ mod runs;
 pub use planned::axis::{AXES, Axis, Conditions, Grid};
 pub use planned::fault::{FAULTS, FaultKind};
 pub use planned::plan::{Block, Case, LoadKnowledge, MotorPair, Place, Plan, Target};
-pub use results::detection::{DETECTED, Detection, Size};
+pub use results::detection::{DETECTED, Detection, Direction, Size};
 pub use results::groups::Named;
 pub use results::markdown::page as markdown;
 pub use results::statistics::{RISK, Share};

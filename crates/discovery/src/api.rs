@@ -28,7 +28,7 @@ use recording::Source;
 pub type Progress<'a> = dyn FnMut(&str, f64) + 'a;
 
 /// Name under which [`adopt`] takes over refitted parameters without any effect.
-const PARAMETERS: &str = "parameters";
+pub const PARAMETERS: &str = "parameters";
 
 /// Which effect is missing. The first source is fitted, the others prove; with one source block folds prove.
 ///

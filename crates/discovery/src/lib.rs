@@ -28,7 +28,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-pub use api::{Progress, adopt, explain, explain_without};
+pub use api::{PARAMETERS, Progress, adopt, explain, explain_without};
 pub use compare::compare;
 pub use data::instrument_class;
 pub use data::load_table::table_values;

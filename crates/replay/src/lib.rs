@@ -18,6 +18,7 @@
 mod alarm_causes;
 pub mod calibrate;
 pub mod causes;
+mod judgement;
 pub mod operating_points;
 mod rotor;
 mod samples;
@@ -25,9 +26,10 @@ mod timeline;
 mod trace;
 pub mod words;
 
+pub use judgement::{Direction, NotJudgedShare, Unjudged};
 pub use rotor::RotorSummary;
 pub use samples::{Samples, Timed};
-pub use timeline::{LampState, NotJudgedShare, SequenceSummary, Timeline, Verdict, VerdictState};
+pub use timeline::{LampState, SequenceSummary, Timeline, Verdict, VerdictState};
 pub use trace::{Trace, WindowOperation, WindowResiduals};
 
 use monitor::{

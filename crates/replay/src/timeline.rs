@@ -1,19 +1,18 @@
 //! What a whole recording came to: lamp changes, verdict, sequence components.
 
-use std::collections::BTreeMap;
-
 use monitor::{
-    Candidates, Channel, FAULTS, Known, Lamps, LoadKind, MonitorConfig, NotJudged, Report, Witness,
+    Candidates, Channel, FAULTS, Known, Lamp, Lamps, LoadKind, MonitorConfig, NotJudged, Report,
+    Witness,
 };
 use num_complex::Complex64;
 use recording::Finding;
-use serde::Serialize;
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::alarm_causes::Causes;
 use super::rotor::{RotorHistory, RotorSummary};
 use super::trace::Trace;
 use crate::causes::{self, Candidate};
-use crate::words;
+use crate::judgement::{Direction, NotJudgedShare, Reasons, Unjudged};
 
 /// The lamps from one moment on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,29 +20,38 @@ pub struct LampState {
     /// Time of the recording, s.
     pub t: f64,
     /// RUN.
-    pub run: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub run: Lamp,
     /// Residual r1.
-    pub r1: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r1: Lamp,
     /// Residual r2.
-    pub r2: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r2: Lamp,
     /// Residual r3.
-    pub r3: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r3: Lamp,
     /// Residual r4.
-    pub r4: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r4: Lamp,
     /// SENSOR.
-    pub sensor: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub sensor: Lamp,
     /// LINE.
-    pub line: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub line: Lamp,
     /// LOAD.
-    pub load: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub load: Lamp,
     /// FAULT.
-    pub fault: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub fault: Lamp,
     /// Why the window at this moment was not judged.
-    pub not_judged: Option<String>,
+    pub not_judged: Option<Unjudged>,
 }
 
 /// The outcome in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VerdictState {
     /// Judged, and FAULT never lit.
@@ -101,15 +109,6 @@ pub struct SequenceSummary {
     pub largest_i2_over_i1: Option<f64>,
 }
 
-/// How many windows one reason kept from being judged.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NotJudgedShare {
-    /// The reason in words.
-    pub reason: String,
-    /// Windows.
-    pub windows: u64,
-}
-
 /// Residuals over the judged windows, percent of their scales.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
@@ -133,7 +132,7 @@ pub struct Timeline {
     pub not_judged: Vec<NotJudgedShare>,
     /// Every window in the order of time.
     pub trace: Trace,
-    reasons: BTreeMap<String, u64>,
+    reasons: Reasons,
     shown: Option<(Lamps, Option<NotJudged>)>,
     moments: Moments,
     /// Residuals that would have lit their lamps, percent of scale, summed up over the windows that had any.
@@ -200,27 +199,17 @@ impl Timeline {
 
     /// Sorts what has been collected.
     pub fn finish(&mut self) {
-        let mut reasons: Vec<_> = std::mem::take(&mut self.reasons).into_iter().collect();
-        reasons.sort_by_key(|(_, windows)| std::cmp::Reverse(*windows));
-        self.not_judged = reasons
-            .into_iter()
-            .map(|(reason, windows)| NotJudgedShare { reason, windows })
-            .collect();
+        self.not_judged = std::mem::take(&mut self.reasons).ranked();
     }
 
     /// Says that the residuals lack the motor's parameters rather than its speed.
     pub fn blame_missing_motor_file(&mut self) {
-        let no_speed = words::not_judged(NotJudged::NoSpeed);
+        let no_speed = Unjudged::ByCore(NotJudged::NoSpeed);
         let in_shares = self.not_judged.iter_mut().map(|share| &mut share.reason);
-        let in_lamps = self
-            .lamps
-            .iter_mut()
-            .filter_map(|lamps| lamps.not_judged.as_mut());
-        for reason in in_shares
-            .chain(in_lamps)
-            .filter(|reason| **reason == no_speed)
-        {
-            "no motor file was given (--motor M)".clone_into(reason);
+        let in_lamps = self.lamps.iter_mut();
+        let in_lamps = in_lamps.filter_map(|lamps| lamps.not_judged.as_mut());
+        for reason in in_shares.chain(in_lamps).filter(|why| **why == no_speed) {
+            *reason = Unjudged::NoMotorFile;
         }
     }
 
@@ -244,7 +233,7 @@ impl Timeline {
 
     fn note_judgement(&mut self, report: &Report) {
         if let Some(reason) = report.not_judged {
-            *self.reasons.entry(words::not_judged(reason)).or_default() += 1;
+            self.reasons.add(reason);
             return;
         }
         self.judged += 1;
@@ -272,7 +261,7 @@ impl Timeline {
     }
 
     fn note_causes(&mut self, t: f64, report: &Report) {
-        let alarm = report.lamps.fault == monitor::Lamp::On;
+        let alarm = report.lamps.fault == Lamp::On;
         if alarm && self.first_alarm_s.is_none() {
             self.first_alarm_s = Some(t);
         }
@@ -375,13 +364,13 @@ impl Timeline {
         self.rotor.summary()
     }
 
-    /// How the field turned: `forwards`, `backwards` or `both`; `None` without a complete window.
-    pub fn direction(&self) -> Option<&'static str> {
+    /// How the field turned; `None` without a complete window.
+    pub fn direction(&self) -> Option<Direction> {
         match self.turned {
             [0, 0] => None,
-            [_, 0] => Some("forwards"),
-            [0, _] => Some("backwards"),
-            _ => Some("both"),
+            [_, 0] => Some(Direction::Forwards),
+            [0, _] => Some(Direction::Backwards),
+            _ => Some(Direction::Both),
         }
     }
 
@@ -405,21 +394,25 @@ impl Timeline {
     }
 }
 
+fn by_name<S: Serializer>(lamp: &Lamp, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(lamp.name())
+}
+
 fn lamp_state(t: f64, report: &Report) -> LampState {
     let lamps = &report.lamps;
-    let [r1, r2, r3, r4] = lamps.r.map(|lamp| lamp.name());
+    let [r1, r2, r3, r4] = lamps.r;
     LampState {
         t,
-        run: lamps.run.name(),
+        run: lamps.run,
         r1,
         r2,
         r3,
         r4,
-        sensor: lamps.sensor.name(),
-        line: lamps.line.name(),
-        load: lamps.load.name(),
-        fault: lamps.fault.name(),
-        not_judged: report.not_judged.map(words::not_judged),
+        sensor: lamps.sensor,
+        line: lamps.line,
+        load: lamps.load,
+        fault: lamps.fault,
+        not_judged: report.not_judged.map(Unjudged::ByCore),
     }
 }
 

@@ -24,19 +24,6 @@ pub fn not_judged(reason: NotJudged) -> String {
     }
 }
 
-/// How a field that does not only turn forwards is told.
-pub fn direction(name: &str) -> &'static str {
-    match name {
-        "backwards" => {
-            "the field turns backwards, phases a, c, b: the motor was judged as its mirror image"
-        }
-        "both" => {
-            "the field turns in both directions: where it turns backwards the motor was judged as its mirror image"
-        }
-        _ => "the field turns forwards",
-    }
-}
-
 /// The reason that a board's frame gives by its number; `None` for a judged window.
 pub fn reason(number: u8) -> Option<String> {
     let Some(reason) = Reason::from_number(number) else {

@@ -22,7 +22,7 @@ pub struct Detection {
     /// The fault.
     pub fault: String,
     /// `+`, `-`, or `dead` for a sensor that shows nothing.
-    pub direction: &'static str,
+    pub direction: Direction,
     /// Runs that say nothing because FAULT was lit before the fault came.
     pub lit_before: Share,
     /// Runs that say nothing because the motor stalled or swung with the fault and was never judged.
@@ -124,11 +124,25 @@ pub(crate) fn detection(results: &Results) -> Vec<Detection> {
     all
 }
 
-fn direction(row: &Row) -> &'static str {
+/// Which way a fault moves what it breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub enum Direction {
+    /// Upwards.
+    #[serde(rename = "+")]
+    More,
+    /// Downwards.
+    #[serde(rename = "-")]
+    Less,
+    /// A sensor that shows nothing.
+    #[serde(rename = "dead")]
+    Dead,
+}
+
+fn direction(row: &Row) -> Direction {
     match row.change_percent {
-        x if x > 0.0 => "+",
-        x if x > DEAD_PERCENT => "-",
-        _ => "dead",
+        x if x > 0.0 => Direction::More,
+        x if x > DEAD_PERCENT => Direction::Less,
+        _ => Direction::Dead,
     }
 }
 
@@ -146,7 +160,7 @@ fn one_fault(about: &About, group: &[&Row]) -> Detection {
     let direction = direction(first);
     let isolation = smallest.and_then(|smallest| at_least_twice(&sizes, smallest));
     let target_percent = target.and_then(|target| target.percent).map(|percent| {
-        if direction == "dead" {
+        if direction == Direction::Dead {
             -DEAD_PERCENT
         } else {
             percent
@@ -161,7 +175,7 @@ fn one_fault(about: &About, group: &[&Row]) -> Detection {
         lit_before: Share::count(group.iter().map(|row| row.lit_before)),
         unsteady: Share::count(group.iter().map(|row| row.is_unsteady())),
         smallest_percent: smallest,
-        or_smaller: direction != "dead"
+        or_smaller: direction != Direction::Dead
             && sizes.first().map(|size| size.change_percent) == smallest,
         target_percent,
         target_met: target_percent.map(met),

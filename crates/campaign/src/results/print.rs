@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-use crate::results::detection::{Detection, Size};
+use crate::results::detection::{Detection, Direction, Size};
 use crate::results::groups::Named;
 use crate::results::statistics::Share;
 use crate::results::table::Table;
@@ -120,7 +120,7 @@ fn one(f: &mut Formatter<'_>, row: &Detection) -> Result {
 pub(crate) fn size_of(row: &Detection) -> String {
     let percent = row.smallest_percent.unwrap_or(f64::NAN);
     match (row.direction, row.or_smaller) {
-        ("dead", _) => "dead".to_owned(),
+        (Direction::Dead, _) => "dead".to_owned(),
         (_, true) => format!("<= {percent:+} %"),
         (_, false) => format!("{percent:+} %"),
     }

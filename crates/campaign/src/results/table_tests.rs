@@ -1,6 +1,7 @@
 //! Counting, on rows made up by hand.
 
 use crate::planned::plan::Target;
+use crate::results::detection::Direction;
 use crate::results::table::Table;
 use crate::runs::file::{About, Results};
 use crate::runs::row::Row;
@@ -78,14 +79,14 @@ fn directions_and_dead_sensors_stand_apart() {
         .chain(many(2.0, 4, 0))
         .chain(many(-100.0, 4, 4));
     let table = Table::of(&results(rows.collect()));
-    let found = |direction: &str| {
+    let found = |direction: Direction| {
         let mut rows = table.detection.iter();
         let row = rows.find(|row| row.direction == direction).expect("a row");
         (row.smallest_percent, row.target_percent, row.or_smaller)
     };
-    assert_eq!(found("-"), (Some(-2.0), Some(5.0), true));
-    assert_eq!(found("+"), (None, Some(5.0), false));
-    assert_eq!(found("dead"), (Some(-100.0), Some(100.0), false));
+    assert_eq!(found(Direction::Less), (Some(-2.0), Some(5.0), true));
+    assert_eq!(found(Direction::More), (None, Some(5.0), false));
+    assert_eq!(found(Direction::Dead), (Some(-100.0), Some(100.0), false));
 }
 
 #[test]

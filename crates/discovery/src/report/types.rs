@@ -1,10 +1,10 @@
 //! What the user gets, with the stable keys of the JSON interface.
 
 use recording::Audit;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The answer of an explanation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The model explains the recording; parameters may have moved.
@@ -123,7 +123,7 @@ pub struct Unexplained {
 }
 
 /// Where the reading at rest comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AtRest {
     /// The user gave it.
@@ -135,7 +135,7 @@ pub enum AtRest {
 }
 
 /// Where the standard error of a fitted scale comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ErrorSource {
     /// The recording, which the model explains.

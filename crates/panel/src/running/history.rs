@@ -82,7 +82,7 @@ impl HistoryRow {
             r4_percent: r[3],
             significance_sigma: window.significance_sigma,
             judged: window.not_judged.is_none(),
-            fault: window.lamps.fault == "on",
+            fault: window.lamps.fault == monitor::Lamp::On,
             lit: window.lamps.lit().join(" "),
             voltage_rms_volt: operation.voltage_rms_volt,
             current_rms_amp: operation.current_rms_amp,

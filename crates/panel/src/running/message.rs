@@ -3,7 +3,7 @@
 use monitor::{Frame, Lamp, Lamps, Report, Window};
 use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use replay::causes::{self, Candidate};
 use replay::words;
@@ -81,23 +81,32 @@ pub(crate) fn likely(
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct LampsMessage {
     /// RUN.
-    pub run: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub run: Lamp,
     /// r1.
-    pub r1: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r1: Lamp,
     /// r2.
-    pub r2: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r2: Lamp,
     /// r3.
-    pub r3: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r3: Lamp,
     /// r4.
-    pub r4: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub r4: Lamp,
     /// SENSOR.
-    pub sensor: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub sensor: Lamp,
     /// LINE.
-    pub line: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub line: Lamp,
     /// LOAD.
-    pub load: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub load: Lamp,
     /// FAULT.
-    pub fault: &'static str,
+    #[serde(serialize_with = "by_name")]
+    pub fault: Lamp,
 }
 
 /// The operating point of one window; what was not measured is `None`.
@@ -193,6 +202,10 @@ fn findings(report: &Report) -> Vec<String> {
     sensor.into_iter().chain(supply).collect()
 }
 
+fn by_name<S: Serializer>(lamp: &Lamp, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(lamp.name())
+}
+
 impl LampsMessage {
     /// The names of the lamps' states.
     pub fn of(lamps: &Lamps) -> LampsMessage {
@@ -212,7 +225,7 @@ impl LampsMessage {
 
     /// From lamps in the order of [`board::LAMP_NAMES`].
     pub fn from_order(lamps: [Lamp; board::LAMPS]) -> LampsMessage {
-        let [run, r1, r2, r3, r4, sensor, line, load, fault] = lamps.map(Lamp::name);
+        let [run, r1, r2, r3, r4, sensor, line, load, fault] = lamps;
         LampsMessage {
             run,
             r1,
@@ -238,7 +251,7 @@ impl LampsMessage {
             ("load", self.load),
             ("fault", self.fault),
         ];
-        let lit = all.into_iter().filter(|(_, state)| *state == "on");
+        let lit = all.into_iter().filter(|(_, state)| *state == Lamp::On);
         lit.map(|(name, _)| name).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant as WallTime};
 
-use ::board::{self, Frame, Message};
+use ::board::{Frame, Message};
 use monitor::{Candidates, Lamp, MonitorConfig, Report};
 use motor::MotorFile;
 
@@ -76,7 +76,7 @@ impl BoardSource {
             .as_ref()
             .is_some_and(|motor| motor.healthy.is_none());
         let lit = (1..=4).any(|k| frame.lamp(k) == Lamp::On);
-        let fault = frame.lamp(board::LAMPS - 1);
+        let fault = frame.fault();
         let candidates = normalised.filter(|_| by_table && lit && frame.not_judged == 0);
         let mut report = Report {
             candidates: candidates.as_ref().map(Candidates::from_normalised),

@@ -10,6 +10,7 @@ use super::parameters::{Bar, NOISE, bars, nominals, of_effect};
 use super::place::Place;
 use super::scale;
 use super::shell::{Mood, cards, next, verdict};
+use discovery::PARAMETERS;
 
 /// Everything between heading and footer.
 pub fn content(result: &Place<'_>) -> Markup {
@@ -100,7 +101,7 @@ fn errors(result: &Place<'_>) -> Markup {
     };
     let rows: Vec<Bar<'_>> = ERRORS.into_iter().filter_map(row).collect();
     let before = match result.text("effect") {
-        "parameters" => " Before: the motor file as it is; after: all parameters refitted.",
+        PARAMETERS => " Before: the motor file as it is; after: all parameters refitted.",
         _ => " Before and after, all parameters are refitted.",
     };
     html! {

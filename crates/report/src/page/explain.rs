@@ -10,6 +10,7 @@ use super::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
 use super::place::Place;
 use super::scale;
 use super::shell::{Mood, cards, next, verdict};
+use discovery::Verdict;
 
 /// Key of the error on data that was not fitted.
 const HELD_OUT: &str = "held_out_error_over_noise";
@@ -36,29 +37,29 @@ pub fn content(result: &Place<'_>) -> Markup {
 
 fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
     let names: Vec<&str> = steps.iter().map(|step| step.text("effect")).collect();
-    let (mood, text) = match result.text("verdict") {
-        "adequate" if any_off(result) => (
+    let (mood, text) = match result.read("verdict").unwrap_or(Verdict::Unsupported) {
+        Verdict::Adequate if any_off(result) => (
             Mood::Caution,
             "The model is adequate, but parameters are off".to_owned(),
         ),
-        "adequate" => (Mood::Good, "The model is adequate".to_owned()),
-        "effect" => (Mood::Bad, format!("Missing: {}", names.join(" and "))),
-        "ambiguous" => (
+        Verdict::Adequate => (Mood::Good, "The model is adequate".to_owned()),
+        Verdict::Effect => (Mood::Bad, format!("Missing: {}", names.join(" and "))),
+        Verdict::Ambiguous => (
             Mood::Caution,
             format!(
                 "Missing: {}",
                 steps.iter().map(with_ties).collect::<Vec<_>>().join("; ")
             ),
         ),
-        "unknown" => (
+        Verdict::Unknown => (
             Mood::Caution,
             "Something is missing that the library does not hold".to_owned(),
         ),
-        "implausible" => (
+        Verdict::Implausible => (
             Mood::Bad,
             "Only parameters that no such motor has explain the recording".to_owned(),
         ),
-        _ => (
+        Verdict::Unsupported => (
             Mood::Caution,
             "The data do not support an answer".to_owned(),
         ),

@@ -8,6 +8,7 @@ use super::number::{decimals, shown, significant};
 use super::place::Place;
 use super::shell::{Mood, cards, verdict};
 use motor::FaultId;
+use replay::VerdictState;
 
 /// Everything between heading and footer.
 pub fn content(result: &Place<'_>) -> Markup {
@@ -25,20 +26,19 @@ pub fn content(result: &Place<'_>) -> Markup {
 }
 
 fn answer(result: &Place<'_>) -> Markup {
-    let (mood, text) = match (
-        result.is_true("audit/supported"),
-        result.text("verdict/state"),
-    ) {
+    let state = result.read("verdict/state");
+    let state = state.unwrap_or(VerdictState::NotJudged);
+    let (mood, text) = match (result.is_true("audit/supported"), state) {
         (false, _) => (
             Mood::Caution,
             html! { "The audit refused this recording: nothing was judged" },
         ),
-        (true, "fault") => (
+        (true, VerdictState::Fault) => (
             Mood::Bad,
             html! { "Fault, first lit at " (shown(result, "first_alarm_s", decimals(3))) " s" },
         ),
-        (true, "healthy") => (Mood::Good, html! { "Healthy: no fault was lit" }),
-        (true, _) => (
+        (true, VerdictState::Healthy) => (Mood::Good, html! { "Healthy: no fault was lit" }),
+        (true, VerdictState::NotJudged) => (
             Mood::Caution,
             html! { "Not judged: no window met the conditions" },
         ),

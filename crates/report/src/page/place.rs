@@ -1,5 +1,6 @@
 //! A place in a JSON result that knows its own address.
 
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// A value inside a result, with the JSON pointer (RFC 6901) that leads to it.
@@ -49,6 +50,11 @@ impl<'a> Place<'a> {
     pub fn text(&self, path: &str) -> &'a str {
         let text = self.get(path).and_then(|place| place.value.as_str());
         text.unwrap_or_default()
+    }
+
+    /// The value under `path` as one of a type's own; `None` when it is absent or of no such kind.
+    pub fn read<T: DeserializeOwned>(&self, path: &str) -> Option<T> {
+        T::deserialize(self.get(path)?.value).ok()
     }
 
     /// This value as text; empty when it is not text.

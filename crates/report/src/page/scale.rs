@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::number::{decimals, shown, significant};
 use super::place::Place;
+use discovery::{AtRest, ErrorSource};
 
 /// The fitted scale and what cannot be concluded beside it; nothing where every scale is known.
 pub fn section(result: &Place<'_>) -> Markup {
@@ -18,8 +19,8 @@ pub fn section(result: &Place<'_>) -> Markup {
                 "It was declared unknown and is a free parameter of every model here. Fitted: speed = ("
                 (shown(&scale, "factor", significant(5))) " ± " (shown(&scale, "std_error", significant(2))) ") "
                 (scale.text("unit")) " × (column − " (shown(&scale, "offset", significant(5))) @if scale.number("offset_std_error") > Some(0.0) { " ± " (shown(&scale, "offset_std_error", significant(2))) } "), the reading at rest "
-                (origin(scale.text("offset_is"))) "."
-                @if scale.text("std_error_is") == "physics" {
+                (origin(scale.read("offset_is").unwrap_or(AtRest::Assumed))) "."
+                @if scale.read("std_error_is") == Some(ErrorSource::Physics) {
                     " No model here explains the recording, so the factor is only as sure as physics makes it: the least slip lies between none and that of rated load."
                 }
             }
@@ -45,10 +46,10 @@ fn percent(row: &Place<'_>, key: &str) -> Markup {
     }
 }
 
-fn origin(word: &str) -> &'static str {
-    match word {
-        "given" => "as given",
-        "measured" => "read while the motor stood",
-        _ => "assumed, because the recording does not hold the motor at rest",
+fn origin(at_rest: AtRest) -> &'static str {
+    match at_rest {
+        AtRest::Given => "as given",
+        AtRest::Measured => "read while the motor stood",
+        AtRest::Assumed => "assumed, because the recording does not hold the motor at rest",
     }
 }

@@ -12,13 +12,11 @@ pub use places::{Place, worst};
 
 use std::borrow::Cow;
 
+pub use discovery::PARAMETERS;
 use discovery::SpeedScaleReport;
 use monitor::MAX_EFFECTS;
 use motor::MotorFile;
 use recording::Source;
-
-/// The name that adopts no effect, but the refitted parameters.
-pub const PARAMETERS: &str = "parameters";
 
 /// What a question is asked about.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use board::{Frame, LAMP_NAMES, LAMPS, Message};
+use board::{Frame, LAMPS, Message};
 use clap::Args;
 use monitor::Lamp;
 use motor::MotorFile;
@@ -167,8 +167,7 @@ impl Watch<'_> {
         self.watched.windows += 1;
         self.watched.judged += u64::from(frame.not_judged == 0);
         let lamps: [Lamp; LAMPS] = std::array::from_fn(|k| frame.lamp(k));
-        let fault = LAMP_NAMES.iter().position(|name| *name == "fault");
-        self.watched.fault |= fault.is_some_and(|k| lamps[k] == Lamp::On);
+        self.watched.fault |= frame.fault() == Lamp::On;
         if self.lamps != Some(lamps) && !self.quiet {
             if self.lamps.is_none() {
                 say!("    time s  RUN  r1 r2 r3 r4  SENSOR LINE LOAD FAULT");
@@ -212,7 +211,7 @@ impl Watch<'_> {
 
 fn print_lamps(frame: &Frame, lamps: &[Lamp; LAMPS]) {
     let [run, r1, r2, r3, r4, sensor, line, load, fault] =
-        lamps.map(|lamp| crate::cli::printing::lamp_symbol::symbol(lamp.name()));
+        lamps.map(|lamp| crate::cli::printing::lamp_symbol::symbol(lamp));
     // The board samples at 10 kHz.
     let t = frame.sample_index as f64 * 1e-4;
     say!("{t:>10.3}   {run}   {r1}  {r2}  {r3}  {r4}     {sensor}     {line}    {load}    {fault}");

@@ -21,8 +21,8 @@ use crate::cli::printing::{paint, progress};
 use replay::operating_points::OperatingPoints;
 use replay::words;
 use replay::{
-    self, LampState, NotJudgedShare, RotorSummary, Samples, SequenceSummary, Timeline, Verdict,
-    VerdictState, WindowOperation, WindowResiduals,
+    self, Direction, LampState, NotJudgedShare, RotorSummary, Samples, SequenceSummary, Timeline,
+    Verdict, VerdictState, WindowOperation, WindowResiduals,
 };
 use report::Subject;
 
@@ -68,7 +68,7 @@ struct MonitorJson<'a> {
     residual_percent: Option<ResidualPercent>,
     lamps: &'a [LampState],
     verdict: Verdict,
-    direction: Option<&'static str>,
+    direction: Option<Direction>,
     first_alarm_s: Option<f64>,
     sequence: SequenceSummary,
     rotor: RotorSummary,
@@ -273,7 +273,11 @@ pub(crate) fn print_lamps(timeline: &Timeline) {
             symbol(state.line),
             symbol(state.load),
             symbol(state.fault),
-            paint::faint(state.not_judged.as_deref().unwrap_or("")),
+            paint::faint(
+                state
+                    .not_judged
+                    .map_or(String::new(), |why| why.to_string())
+            ),
         );
     }
     let more = timeline.lamps.len().saturating_sub(LONGEST_TIMELINE);
@@ -288,8 +292,8 @@ pub(crate) fn print_windows(timeline: &Timeline) {
         timeline.judged,
         timeline.windows
     );
-    if let Some(direction @ ("backwards" | "both")) = timeline.direction() {
-        say!("  {}", words::direction(direction));
+    if let Some(direction) = timeline.direction().filter(|turned| turned.is_mirrored()) {
+        say!("  {direction}");
     }
     for share in &timeline.not_judged {
         say!("  {} not judged: {}", share.windows, share.reason);

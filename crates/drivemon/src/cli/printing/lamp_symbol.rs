@@ -1,10 +1,12 @@
 //! A lamp in one character.
 
-/// Of a lamp that is `on`, `blink` or `off`.
-pub(crate) fn symbol(lamp: &str) -> &'static str {
+use monitor::Lamp;
+
+/// Full, half or empty.
+pub(crate) fn symbol(lamp: Lamp) -> &'static str {
     match lamp {
-        "on" => "●",
-        "blink" => "◐",
-        _ => "○",
+        Lamp::On => "●",
+        Lamp::Blink => "◐",
+        Lamp::Off => "○",
     }
 }
