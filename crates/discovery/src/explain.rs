@@ -6,7 +6,7 @@ use crate::model::prior::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::search::accept::{adequate, beats, explained, proven};
 use crate::search::off;
 use crate::search::refit::{Candidate, Round, combined, likely, round};
-use motor::effect::Kind;
+use motor::effect::Nominal;
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
@@ -195,14 +195,14 @@ fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Cand
 /// for a cable or filter in series.
 pub(crate) fn stands_for(k: usize, candidate: &Candidate) -> bool {
     let effects = &candidate.trial.fit.hypothesis.effects;
-    let Some(descriptor) = effects.last().map(|e| e.effect.descriptor()) else {
-        return false;
+    let nominal = match k {
+        FRICTION => Nominal::Friction,
+        LEAKAGE => Nominal::Leakage,
+        _ => return false,
     };
-    match k {
-        FRICTION => descriptor.kind == Kind::Physics,
-        LEAKAGE => descriptor.name == "series-inductance",
-        _ => false,
-    }
+    effects
+        .last()
+        .is_some_and(|last| last.effect.is_taken_for(nominal))
 }
 
 /// Name of a nominal.

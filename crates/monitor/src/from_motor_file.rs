@@ -1,7 +1,7 @@
 //! The monitor's configuration from a motor file (feature `motor-file`; hosts and build scripts only).
 
 use motor::effect;
-use motor::effect::{EffectConfig, SteadyEffect};
+use motor::effect::{EffectConfig, Instrument, SteadyEffect};
 use motor::motor_file::{self, HealthySettings, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
 
@@ -95,19 +95,18 @@ fn active_effects(file: &MotorFile) -> ActiveEffects {
     active
 }
 
-/// Effects that name single channels leave the positive sequence to the channel itself.
-const CHANNEL_EFFECTS: [(&str, usize); 2] = [("phase-voltage-gain", 0), ("phase-current-gain", 3)];
-
-/// What brings each channel back to the truth: one over the gain that a channel effect found.
+/// What brings each channel back to the truth: one over the gain that an effect found in it. Such effects leave the positive
+/// sequence to the channel itself.
 fn channel_gain(file: &MotorFile) -> [f32; CHANNELS] {
     let mut gains = [1.0; CHANNELS];
     for config in effects_of(file) {
-        let name = config.effect.descriptor().name;
-        let first = CHANNEL_EFFECTS.iter().find(|(known, _)| *known == name);
-        if let Some((_, first)) = first {
-            for (gain, value) in gains.iter_mut().skip(*first).zip(&config.values) {
-                *gain = (1.0 / (1.0 + value)) as f32;
-            }
+        let first = match config.effect.gain_of() {
+            Some(Instrument::Voltages) => 0,
+            Some(Instrument::Currents) => 3,
+            Some(Instrument::Speed) | None => continue,
+        };
+        for (gain, value) in gains.iter_mut().skip(first).zip(&config.values) {
+            *gain = (1.0 / (1.0 + value)) as f32;
         }
     }
     gains

@@ -1,10 +1,10 @@
 //! Every effect of the library: consistent with itself, absent at zero, the same in dynamics and steady state.
 
 use motor::effect::{
-    At, Between, EffectConfig, EffectError, Inputs, MAX_FILE_STATES, MAX_PARAMETERS, Outputs,
-    Plant, Rated, Role, Run, SpeedSource, SteadyPoint, Timeline, extra_states, simulate,
+    At, Between, EffectConfig, EffectError, Inputs, Instrument, MAX_FILE_STATES, MAX_PARAMETERS,
+    Outputs, Plant, Rated, Role, Run, SpeedSource, SteadyPoint, Timeline, extra_states, simulate,
 };
-use motor::effects::ALL;
+use motor::effects::{ALL, gain_of};
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
 use std::collections::BTreeSet;
@@ -154,6 +154,47 @@ fn all_effects_with_states_run_together() {
     assert_eq!(extra_states(&effects), MAX_FILE_STATES);
     let shown = outputs(&Plant { effects, ..plant() }, &inputs(0.1), Between::Held);
     assert!(shown.omega_mech.iter().all(|x| x.is_finite()));
+}
+
+/// At rated voltage and synchronous speed without a current of its own, all power is that of the effect: what its current takes
+/// from the terminals and its torque from the shaft.
+#[test]
+fn a_loss_is_the_power_that_its_current_and_torque_take() {
+    let rated = plant().rated;
+    let mut losses = Vec::new();
+    for &effect in ALL {
+        let config = EffectConfig::typical(effect, &rated);
+        let Some(watt) = effect.loss_watt(&config.values, &rated) else {
+            continue;
+        };
+        let mut point = SteadyPoint {
+            omega_mech: rated.speed(),
+            u_s: rated.voltage.into(),
+            i_s: 0.0.into(),
+            ..example_point()
+        };
+        effect.correct_f64(&config.values, &mut point);
+        let taken = -1.5 * rated.voltage * point.i_s.re + point.tau_extra * rated.speed();
+        let name = effect.descriptor().name;
+        assert!((taken - watt).abs() < 1e-9 * watt, "{name}: {taken} {watt}");
+        losses.push(name);
+    }
+    assert!(losses.contains(&"core-loss") && losses.contains(&"windage"));
+}
+
+#[test]
+fn the_gain_of_each_instrument_is_one_effect_that_hides_it() {
+    for instrument in [
+        Instrument::Voltages,
+        Instrument::Currents,
+        Instrument::Speed,
+    ] {
+        let gains = ALL.iter().filter(|e| e.gain_of() == Some(instrument));
+        assert_eq!(gains.count(), 1, "{instrument:?}");
+        let found = gain_of(instrument).expect("counted");
+        assert_eq!(found.hides_gain_of(), Some(instrument));
+        assert!(found.is_of_instruments());
+    }
 }
 
 fn phasor(outputs: &Outputs) -> Complex64 {

@@ -5,7 +5,7 @@ use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
 use crate::model::free_scale::FreeScale;
 use crate::model::prior::Prior;
-use crate::model::speed_gain::EFFECT;
+use crate::model::speed_gain::{is_scale, name};
 use motor::MotorFile;
 use motor::effect::{Rated, from_motor_file};
 use recording::{Audit, Expectation, LoadTorque, Recording, Source, audit, with_sound_probes};
@@ -158,9 +158,10 @@ fn speed_scale_of(
         _ => {}
     }
     let held = &prior.plant.effects;
-    if held.iter().any(|e| e.effect.descriptor().name == EFFECT) {
+    if held.iter().any(|e| is_scale(e.effect)) {
         let message = format!(
-            "the motor file holds `{EFFECT}`, and the scale of the speed is declared unknown; remove one of both"
+            "the motor file holds `{}`, and the scale of the speed is declared unknown; remove one of both",
+            name()
         );
         return Err(Error::Recordings(message));
     }

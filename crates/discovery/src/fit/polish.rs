@@ -8,18 +8,11 @@
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
 use crate::model::prior::N_NOMINAL;
-use motor::effect::EffectConfig;
-use motor::effects::find;
+use motor::effect::{EffectConfig, Instrument};
+use motor::effects::gain_of;
 
-/// The effect that holds the gains of the voltage channels ...
-pub(crate) const VOLTAGES: &str = "phase-voltage-gain";
-/// ... and that of the current channels.
-pub(crate) const CURRENTS: &str = "phase-current-gain";
-/// Each with the effects that a gain of one channel cannot be told from.
-const INSTRUMENTS: [(&str, &[&str]); 2] = [
-    (VOLTAGES, &[VOLTAGES, "voltage-asymmetry"]),
-    (CURRENTS, &[CURRENTS]),
-];
+/// The instruments whose gains are fitted.
+const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents];
 
 /// The trial refitted beside the gains of the channels; `None` where they cannot be fitted: a load table, or a motor file that
 /// holds an unbalance of voltages and currents already. Gains that were found are held to their class, too: the data tell
@@ -27,21 +20,21 @@ const INSTRUMENTS: [(&str, &[&str]); 2] = [
 pub(crate) fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
     let h = &trial.fit.hypothesis;
     let held = h.effects.iter().chain(&study.prior.plant.effects);
-    let names: Vec<&str> = held.map(|c| c.effect.descriptor().name).collect();
     if study.fitted.case.table.is_some() {
         return None;
     }
     let rated = &study.prior.plant.rated;
     let mut here = h.clone();
     let mut any = false;
-    for (instrument, same) in INSTRUMENTS {
-        let of_name = |c: &EffectConfig| c.effect.descriptor().name == instrument;
-        let found = h.effects.iter().position(of_name);
+    for instrument in INSTRUMENTS {
+        let is_gain = |c: &EffectConfig| c.effect.gain_of() == Some(instrument);
+        let hides = |c: &EffectConfig| c.effect.hides_gain_of() == Some(instrument);
+        let found = h.effects.iter().position(is_gain);
         here = match found {
             Some(found) => here.taken_for_instrument(found),
-            None if names.iter().any(|name| same.contains(name)) => continue,
+            None if held.clone().any(hides) => continue,
             None => {
-                let gains = EffectConfig::absent(find(instrument, "")?, rated);
+                let gains = EffectConfig::absent(gain_of(instrument)?, rated);
                 here.with_instrument(gains, rated)
             }
         };

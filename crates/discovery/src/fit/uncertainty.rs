@@ -12,10 +12,9 @@ use crate::data::noise_floor::noise_draws;
 use crate::data::study::Study;
 use crate::fit::normal_equations::{self, Block, dot};
 use crate::fit::output_error::Fit;
-use crate::fit::polish::{CURRENTS, VOLTAGES};
 use crate::model::prediction::{Drive, outputs_on};
 use crate::model::prior::N_NOMINAL;
-use motor::effect::Plant;
+use motor::effect::{Instrument, Plant};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
@@ -118,12 +117,12 @@ fn instruments(case: &Case, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
         )
     };
     let mut sum = DMatrix::zeros(n, n);
-    if !fit.hypothesis.holds_instrument(CURRENTS) {
+    if !fit.hypothesis.holds_instrument(Instrument::Currents) {
         for current in 0..3 {
             sum += outer(&measured(current), CHANNEL_GAIN.powi(2));
         }
     }
-    if !fit.hypothesis.holds_instrument(VOLTAGES) {
+    if !fit.hypothesis.holds_instrument(Instrument::Voltages) {
         // What all three share of their gains: the rest is unbalance and zero sequence.
         sum += outer(&driven(louder_voltage(case)), CHANNEL_GAIN.powi(2) / 3.0);
     }

@@ -11,11 +11,11 @@ use crate::fit::normal_equations::dot;
 use crate::fit::output_error::{Effort, fit};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
-use crate::model::speed_gain::{EFFECT, gain_of};
+use crate::model::speed_gain::gain_of;
 use crate::report::types::{AtRest, ErrorSource, SpeedScaleReport};
 use motor::dynamic::clarke;
-use motor::effect::{EffectConfig, Rated};
-use motor::effects::find;
+use motor::effect::{EffectConfig, Instrument, Rated};
+use motor::effects;
 use recording::{Recording, StartsFrom, UnknownScale};
 use std::ops::Range;
 
@@ -167,7 +167,7 @@ impl FreeScale {
 /// The hypothesis with the scale of the speed free.
 pub(crate) fn free(h: &Hypothesis, prior: &Prior) -> Hypothesis {
     let rated = &prior.plant.rated;
-    match find(EFFECT, "") {
+    match effects::gain_of(Instrument::Speed) {
         Some(effect) => h.with(EffectConfig::absent(effect, rated), rated),
         None => h.clone(),
     }

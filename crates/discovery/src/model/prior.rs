@@ -1,7 +1,9 @@
 //! What the user believes, and hypotheses about how it is wrong.
 
 use crate::data::instrument_class::CHANNEL_GAIN;
-use motor::effect::{Effect, EffectConfig, Parameter, Plant, Rated, Role, expression, rated};
+use motor::effect::{
+    Effect, EffectConfig, Instrument, Parameter, Plant, Rated, Role, expression, rated,
+};
 use motor::{Mechanics, MotorFile, TParams};
 
 /// Nominal parameters in the order of a hypothesis.
@@ -175,10 +177,10 @@ impl Hypothesis {
         self
     }
 
-    /// Whether a coordinate of the instrument effect of this name is among the priors.
-    pub fn holds_instrument(&self, name: &str) -> bool {
-        let mut names = self.instruments.iter().map(|&k| self.effects[k].effect);
-        names.any(|effect| effect.descriptor().name == name)
+    /// Whether gains of this instrument are among the priors.
+    pub fn holds_instrument(&self, instrument: Instrument) -> bool {
+        let mut effects = self.instruments.iter().map(|&k| self.effects[k].effect);
+        effects.any(|effect| effect.gain_of() == Some(instrument))
     }
 
     /// Whether coordinate `k` is a prior: of the motor file about the motor, or of the class about an instrument.

@@ -1,14 +1,20 @@
 //! The free scale of a speed channel, as an effect.
 
-use motor::effect::EffectConfig;
+use motor::effect::{Effect, EffectConfig, Instrument};
+use motor::effects;
 
-/// The effect that holds what the starting value leaves open.
-pub(crate) const EFFECT: &str = "speed-scale";
+/// Whether an effect holds what the starting value leaves open.
+pub(crate) fn is_scale(effect: &dyn Effect) -> bool {
+    effect.gain_of() == Some(Instrument::Speed)
+}
+
+/// Name of that effect.
+pub(crate) fn name() -> &'static str {
+    effects::gain_of(Instrument::Speed).map_or("", |effect| effect.descriptor().name)
+}
 
 /// What the speed channel shows over the truth, with these effects.
 pub(crate) fn gain_of(effects: &[EffectConfig]) -> f64 {
-    let scale = effects
-        .iter()
-        .find(|c| c.effect.descriptor().name == EFFECT);
+    let scale = effects.iter().find(|c| is_scale(c.effect));
     1.0 + scale.map_or(0.0, |c| c.values[0])
 }

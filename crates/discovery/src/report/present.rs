@@ -105,18 +105,10 @@ pub(crate) fn kind_word(kind: Kind) -> &'static str {
 }
 
 /// Power of a loss at rated voltage and synchronous speed, W; `None` for an effect that is no loss.
-///
-/// Core loss: `1.5 g |u|^2` behind the stator resistance, which is negligible here; torques: `tau w`.
 pub(crate) fn loss_watt(study: &Study, trial: &Trial, index: usize) -> Option<f64> {
     let rated = &study.prior.plant.rated;
     let config = &trial.fit.hypothesis.configs(rated)[index];
-    let (size, speed) = (config.values[0], rated.speed());
-    match config.effect.descriptor().name {
-        "core-loss" => Some(1.5 * size * rated.voltage * rated.voltage),
-        "coulomb-friction" => Some(size * speed),
-        "windage" => Some(size * speed.powi(3)),
-        _ => None,
-    }
+    config.effect.loss_watt(&config.values, rated)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::data::study::{Study, Trial};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Fit, INFLATION};
 use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS, Prior};
-use crate::model::speed_gain::EFFECT;
+use crate::model::speed_gain::name;
 use crate::report::types::{ErrorSource, Inconclusive};
 use crate::search::accept::adequate;
 use crate::search::off::{RELEVANT, RELEVANT_FRICTION, SIGNIFICANT};
@@ -221,7 +221,7 @@ fn slip(study: &Study, trial: &Trial, scale_error: f64) -> Option<Inconclusive> 
 /// The sensor itself: what is fitted cannot be judged too.
 fn sensor() -> Inconclusive {
     Inconclusive {
-        name: EFFECT.to_owned(),
+        name: name().to_owned(),
         kind: "effect".to_owned(),
         std_error_percent: None,
         std_error_with_known_scale_percent: None,

@@ -5,6 +5,7 @@ use crate::fit::output_error::Effort;
 use crate::model::prior::{FRICTION, MAGNETIZING, N_NOMINAL, NOMINALS};
 use crate::report::present::coordinate_error;
 use crate::search::accept::worse;
+use motor::effect::Nominal;
 
 /// A parameter is off when it moved by more than so many standard errors ...
 pub(crate) const SIGNIFICANT: f64 = 3.0;
@@ -50,10 +51,9 @@ pub(crate) fn held(study: &Study, trial: &Trial, k: usize) -> Trial {
 
 /// Whether nominal `k` moved relevantly and significantly, and is known from the recording.
 fn moved(study: &Study, trial: &Trial, k: usize) -> bool {
-    // With saturation the magnetizing inductance is that of rated flux, another number than the believed one.
     let mut effects = trial.fit.hypothesis.effects.iter();
-    let saturated = effects.any(|e| e.effect.descriptor().name == "magnetizing-saturation");
-    if k == MAGNETIZING && saturated {
+    let redefined = effects.any(|e| e.effect.redefines() == Some(Nominal::Magnetizing));
+    if k == MAGNETIZING && redefined {
         return false;
     }
     let z = trial.fit.hypothesis.z[k];

@@ -5,7 +5,7 @@ use crate::fit::normal_equations::{self, Block, Penalty};
 use crate::fit::output_error::Fit;
 use crate::model::prediction::outputs;
 use crate::model::prior::{N_NOMINAL, Prior};
-use crate::model::speed_gain::EFFECT;
+use crate::model::speed_gain::is_scale;
 use motor::effect::{Applies, Effect, EffectConfig, Parameter, Role, expression};
 use motor::effects::ALL;
 use nalgebra::DVector;
@@ -68,7 +68,7 @@ fn grid(p: &Parameter) -> Vec<f64> {
     if p.role == Role::Size {
         return vec![0.0];
     }
-    if p.role == Role::Form || !p.name.ends_with("_hz") {
+    if p.role == Role::Form || !p.is_resonance {
         return p.grid.to_vec();
     }
     let (first, last) = (p.grid[0], p.grid[p.grid.len() - 1]);
@@ -172,9 +172,8 @@ fn judge(prior: &Prior, fit: &Fit, config: &EffectConfig, blocks: &[Block], n: u
 /// Position of a free scale of the speed among the fitted coordinates.
 fn known_scale(fit: &Fit) -> Option<usize> {
     let h = &fit.hypothesis;
-    let is_scale =
-        |&k: &usize| k >= N_NOMINAL && h.effects[h.effect_of(k)].effect.descriptor().name == EFFECT;
-    fit.free.iter().position(is_scale)
+    let scales = |&k: &usize| k >= N_NOMINAL && is_scale(h.effects[h.effect_of(k)].effect);
+    fit.free.iter().position(scales)
 }
 
 /// Normal equations without one coordinate: its value is known.

@@ -111,6 +111,8 @@ pub struct Parameter {
     pub typical: f64,
     /// Values of a shape or form that a screen tries; empty for sizes.
     pub grid: &'static [f64],
+    /// Whether it is a resonance frequency, between the lines of whose grid a screen has to look too.
+    pub is_resonance: bool,
 }
 
 impl Parameter {
@@ -125,6 +127,7 @@ impl Parameter {
             range: [-25.0 * typical, 25.0 * typical],
             typical,
             grid: &[],
+            is_resonance: false,
         }
     }
 
@@ -158,6 +161,7 @@ impl Parameter {
             range,
             typical,
             grid,
+            is_resonance: false,
         }
     }
 
@@ -166,6 +170,12 @@ impl Parameter {
         let mut parameter = Self::shape(name, "-", Scale::Own, range, grid[0], grid);
         parameter.role = Role::Form;
         parameter
+    }
+
+    /// The same shape as a resonance frequency.
+    pub const fn resonance(mut self) -> Self {
+        self.is_resonance = true;
+        self
     }
 
     /// The same parameter, written differently in files.

@@ -2,7 +2,7 @@
 
 use crate::TParams;
 use crate::dynamic::{Flow, Terminal, Winding};
-use crate::effect::{Inputs, Outputs, Rated, SteadyEffect};
+use crate::effect::{Inputs, Kind, Outputs, Rated, SteadyEffect};
 use num_complex::Complex64;
 
 /// A second rotor circuit beside the first.
@@ -89,6 +89,28 @@ pub enum Hook {
     Outputs,
 }
 
+/// Instruments whose gain an effect may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Instrument {
+    /// Each voltage channel; the parameters are those of the phases a, b, c.
+    Voltages,
+    /// Each current channel; the parameters are those of the phases a, b, c.
+    Currents,
+    /// The speed channel.
+    Speed,
+}
+
+/// Parameters of the motor file that an effect may be taken for, or means otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nominal {
+    /// Leakage inductances.
+    Leakage,
+    /// Magnetizing inductance.
+    Magnetizing,
+    /// Viscous friction.
+    Friction,
+}
+
 /// A physical effect. Stateless: parameters come as a slice in the order of the descriptor.
 pub trait Effect: SteadyEffect {
     /// Hooks in which this effect takes part.
@@ -105,6 +127,39 @@ pub trait Effect: SteadyEffect {
             "" => Vec::new(),
             form => vec![("form", form)],
         }
+    }
+
+    /// Power that it takes at rated voltage and synchronous speed, W; `None` for an effect that is no loss.
+    fn loss_watt(&self, _p: &[f64], _rated: &Rated<f64>) -> Option<f64> {
+        None
+    }
+
+    /// The instrument whose gain this effect is: each parameter is one channel's relative error.
+    fn gain_of(&self) -> Option<Instrument> {
+        None
+    }
+
+    /// The instrument whose gains no recording tells from this effect.
+    fn hides_gain_of(&self) -> Option<Instrument> {
+        self.gain_of()
+    }
+
+    /// Whether a fit without this effect may move a parameter of the motor file in its place. Friction stands for every
+    /// physics that takes power.
+    fn is_taken_for(&self, nominal: Nominal) -> bool {
+        nominal == Nominal::Friction && self.descriptor().kind == Kind::Physics
+    }
+
+    /// The parameter that means something else with this effect than without it.
+    fn redefines(&self) -> Option<Nominal> {
+        None
+    }
+
+    /// Whether it changes what instruments show rather than the motor: a sample-by-sample simulation of the motor leaves it
+    /// to the instruments, which need whole signals.
+    fn is_of_instruments(&self) -> bool {
+        let mut hooks = self.hooks().iter();
+        hooks.any(|hook| matches!(hook, Hook::Inputs | Hook::Outputs))
     }
 
     /// Turns measured inputs into the true ones.

@@ -220,6 +220,7 @@ fn descriptor(formula: &'static str, parameters: &[(&str, f64)], typical: &[f64]
         range: [-1e6 * typical, 1e6 * typical],
         typical,
         grid: &[],
+        is_resonance: false,
     };
     let all: Vec<Parameter> = parameters.iter().zip(typical).map(one).collect();
     Descriptor {

@@ -34,11 +34,16 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::CoreLoss;
     use crate::dynamic::{Terminal, Winding};
-    use crate::effect::{At, Effect, Hook};
+    use crate::effect::{At, Effect, Hook, Rated};
 
     impl Effect for CoreLoss {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Terminal]
+        }
+
+        /// `1.5 g |u|^2` behind the stator resistance, which is negligible here.
+        fn loss_watt(&self, p: &[f64], rated: &Rated<f64>) -> Option<f64> {
+            Some(1.5 * p[0] * rated.voltage * rated.voltage)
         }
 
         fn terminal(&self, p: &[f64], _at: &At<'_>, winding: &Winding, terminal: &mut Terminal) {

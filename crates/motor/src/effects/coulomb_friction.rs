@@ -38,11 +38,15 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::{CoulombFriction, torque};
     use crate::dynamic::Flow;
-    use crate::effect::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rated, Rates};
 
     impl Effect for CoulombFriction {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Finish]
+        }
+
+        fn loss_watt(&self, p: &[f64], rated: &Rated<f64>) -> Option<f64> {
+            Some(p[0] * rated.speed())
         }
 
         fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {

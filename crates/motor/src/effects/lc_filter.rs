@@ -24,7 +24,8 @@ static DESCRIPTOR: Descriptor = Descriptor {
             [200.0, 2500.0],
             1000.0,
             &[400.0, 700.0, 1000.0, 1400.0, 2000.0],
-        ),
+        )
+        .resonance(),
     ],
     symptom: "leakage seems larger than it is, ringing at the filter resonance",
     look_alikes: &["stator_leakage_henry"],

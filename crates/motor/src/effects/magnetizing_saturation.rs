@@ -59,11 +59,16 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::{MagnetizingSaturation, relocated};
     use crate::TParams;
-    use crate::effect::{Effect, Hook, Rated};
+    use crate::effect::{Effect, Hook, Nominal, Rated};
 
     impl Effect for MagnetizingSaturation {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Motor, Hook::Magnetizing]
+        }
+
+        /// With saturation the magnetizing inductance is that of rated flux, another number than the believed one.
+        fn redefines(&self) -> Option<Nominal> {
+            Some(Nominal::Magnetizing)
         }
 
         fn motor(&self, p: &[f64], _rated: &Rated<f64>, motor: &mut TParams<f64>) {

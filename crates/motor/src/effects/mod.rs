@@ -2,9 +2,9 @@
 //!
 //! What an effect is and may change says [`crate::effect`].
 
-#[cfg(feature = "std")]
-use crate::effect::Effect;
 use crate::effect::SteadyEffect;
+#[cfg(feature = "std")]
+use crate::effect::{Effect, Instrument};
 
 /// Registers effects: the file and the type in it.
 macro_rules! effects {
@@ -82,6 +82,13 @@ pub fn find_steady(name: &str, form: &str) -> Option<&'static dyn SteadyEffect> 
         d.name == name && (form.is_empty() || d.form == form)
     };
     STEADY.iter().find(fits).copied()
+}
+
+/// The effect that is the gain of an instrument; each has exactly one, which the tests of the library hold.
+#[cfg(feature = "std")]
+pub fn gain_of(instrument: Instrument) -> Option<&'static dyn Effect> {
+    let is_gain = |e: &&&'static dyn Effect| e.gain_of() == Some(instrument);
+    ALL.iter().find(is_gain).copied()
 }
 
 /// Names of all effects, each once.

@@ -27,11 +27,15 @@ steady_effect!(PhaseCurrentGain, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::PhaseCurrentGain;
-    use crate::effect::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Instrument, Outputs, Rated};
 
     impl Effect for PhaseCurrentGain {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Outputs]
+        }
+
+        fn gain_of(&self) -> Option<Instrument> {
+            Some(Instrument::Currents)
         }
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {

@@ -28,7 +28,7 @@ steady_effect!(PhaseVoltageGain, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::PhaseVoltageGain;
     use crate::dynamic::{clarke, phases};
-    use crate::effect::{Effect, Hook, Inputs, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Instrument, Outputs, Rated};
     use num_complex::Complex64;
 
     /// Zero sequence that wrong channels show for a star without zero sequence.
@@ -43,6 +43,10 @@ mod dynamic {
     impl Effect for PhaseVoltageGain {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Inputs, Hook::Outputs]
+        }
+
+        fn gain_of(&self) -> Option<Instrument> {
+            Some(Instrument::Voltages)
         }
 
         fn inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) {

@@ -34,11 +34,15 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::SeriesInductance;
     use crate::TParams;
-    use crate::effect::{Effect, Hook, Rated};
+    use crate::effect::{Effect, Hook, Nominal, Rated};
 
     impl Effect for SeriesInductance {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Motor]
+        }
+
+        fn is_taken_for(&self, nominal: Nominal) -> bool {
+            matches!(nominal, Nominal::Leakage | Nominal::Friction)
         }
 
         fn motor(&self, p: &[f64], _rated: &Rated<f64>, motor: &mut TParams<f64>) {

@@ -24,7 +24,8 @@ static DESCRIPTOR: Descriptor = Descriptor {
             [5.0, 250.0],
             45.0,
             &[10.0, 14.0, 20.0, 28.0, 40.0, 57.0, 80.0, 113.0],
-        ),
+        )
+        .resonance(),
         Parameter::shape(
             "damping_ratio",
             "-",

@@ -28,11 +28,15 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 #[cfg(feature = "std")]
 mod dynamic {
     use super::SpeedScale;
-    use crate::effect::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Instrument, Outputs, Rated};
 
     impl Effect for SpeedScale {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Outputs]
+        }
+
+        fn gain_of(&self) -> Option<Instrument> {
+            Some(Instrument::Speed)
         }
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {

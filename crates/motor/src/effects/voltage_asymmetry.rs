@@ -26,12 +26,16 @@ steady_effect!(VoltageAsymmetry, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::VoltageAsymmetry;
-    use crate::effect::{Effect, Hook, Inputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Instrument, Rated};
     use num_complex::Complex64;
 
     impl Effect for VoltageAsymmetry {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Inputs]
+        }
+
+        fn hides_gain_of(&self) -> Option<Instrument> {
+            Some(Instrument::Voltages)
         }
 
         fn inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) {

@@ -34,11 +34,15 @@ fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::Windage;
     use crate::dynamic::Flow;
-    use crate::effect::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rated, Rates};
 
     impl Effect for Windage {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Finish]
+        }
+
+        fn loss_watt(&self, p: &[f64], rated: &Rated<f64>) -> Option<f64> {
+            Some(p[0] * rated.speed().powi(3))
         }
 
         fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {

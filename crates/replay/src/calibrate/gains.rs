@@ -1,6 +1,8 @@
 //! Relative gains of the channels of one kind, from the zero sequence that three wires cannot carry.
 
 use motor::MotorFile;
+use motor::effect::{Descriptor, SteadyEffect};
+use motor::effects::types::{PhaseCurrentGain, PhaseVoltageGain};
 use motor::motor_file::{EffectEntry, EffectValue};
 use num_complex::Complex64;
 
@@ -16,19 +18,17 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The effect that carries the gains.
-    pub fn effect(self) -> &'static str {
-        match self {
-            Kind::Voltage => "phase-voltage-gain",
-            Kind::Current => "phase-current-gain",
-        }
+    /// The effect that carries the gains, one parameter for each phase.
+    pub fn effect(self) -> &'static Descriptor {
+        let effect: &'static dyn SteadyEffect = match self {
+            Kind::Voltage => &PhaseVoltageGain,
+            Kind::Current => &PhaseCurrentGain,
+        };
+        effect.descriptor()
     }
 
-    fn keys(self) -> [&'static str; 3] {
-        match self {
-            Kind::Voltage => ["voltage_gain_a", "voltage_gain_b", "voltage_gain_c"],
-            Kind::Current => ["current_gain_a", "current_gain_b", "current_gain_c"],
-        }
+    fn keys(self) -> impl Iterator<Item = &'static str> {
+        self.effect().parameters.iter().map(|p| p.name)
     }
 }
 
@@ -64,10 +64,13 @@ pub fn with_gains(motor: &MotorFile, kind: Kind, gains: [f64; 3]) -> Option<Moto
         return None;
     }
     let mut motor = motor.clone();
-    let known = motor.effects.iter_mut().find(|e| e.name == kind.effect());
+    let known = motor
+        .effects
+        .iter_mut()
+        .find(|e| e.name == kind.effect().name);
     match known {
         Some(entry) => {
-            for (key, gain) in kind.keys().into_iter().zip(gains) {
+            for (key, gain) in kind.keys().zip(gains) {
                 let old = entry.number(key).unwrap_or(1.0);
                 let place = entry.parameters.iter_mut().find(|p| p.key == key);
                 if let Some(parameter) = place {
@@ -76,8 +79,8 @@ pub fn with_gains(motor: &MotorFile, kind: Kind, gains: [f64; 3]) -> Option<Moto
             }
         }
         None => motor.effects.push(EffectEntry::with_numbers(
-            kind.effect(),
-            kind.keys().into_iter().zip(gains),
+            kind.effect().name,
+            kind.keys().zip(gains),
         )),
     }
     Some(motor)

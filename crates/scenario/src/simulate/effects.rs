@@ -7,7 +7,11 @@ use super::waveform::Waveform;
 use crate::{Asymmetry, Fault, Scenario, Target};
 use motor::MotorFile;
 use motor::dynamic::Dynamic;
-use motor::effect::{EffectConfig, EffectStack, Hook, Timeline, extra_states, from_entry, rated};
+use motor::effect::{
+    Descriptor, EffectConfig, EffectStack, Hook, SteadyEffect, Timeline, extra_states, from_entry,
+    rated,
+};
+use motor::effects::types::{RotorAsymmetry, StatorAsymmetry};
 use motor::motor_file::EffectEntry;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -19,20 +23,15 @@ const TIMELINE_S: f64 = 1e-3;
 /// Effects inside the motor or between it and the supply.
 pub(super) fn inside(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
     let mut effects = configs(scenario)?;
-    effects.retain(|effect| !is_of_instruments(effect));
+    effects.retain(|config| !config.effect.is_of_instruments());
     Ok(effects)
 }
 
 /// Effects on the instruments.
 pub(super) fn of_instruments(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
     let mut effects = configs(scenario)?;
-    effects.retain(is_of_instruments);
+    effects.retain(|config| config.effect.is_of_instruments());
     Ok(effects)
-}
-
-fn is_of_instruments(config: &EffectConfig) -> bool {
-    let mut hooks = config.effect.hooks().iter();
-    hooks.any(|hook| matches!(hook, Hook::Inputs | Hook::Outputs))
 }
 
 /// All effects in force, those of the motor file first.
@@ -84,20 +83,21 @@ pub(super) fn of_faults(scenario: &Scenario) -> Result<Vec<EffectConfig>, Simula
 
 /// Faults of symmetry as effects.
 fn broken_symmetry(faults: &[&Fault]) -> Vec<EffectEntry> {
-    let sum = |name: &'static str, part: fn(Asymmetry, f64) -> Option<Complex64>| {
+    let sum = |effect: &'static dyn SteadyEffect, part: fn(Asymmetry, f64) -> Option<Complex64>| {
         let parts = faults.iter().filter_map(|fault| match fault.target {
             Target::Asymmetry(asymmetry) => part(asymmetry, fault.share()),
             _ => None,
         });
         let k: Complex64 = parts.sum();
-        (k.norm_sqr() > 0.0).then_some((name, k))
+        (k.norm_sqr() > 0.0).then_some((effect.descriptor(), k))
     };
     // Relative to the resistance that `common_series` has raised already.
-    let stator = sum("stator-asymmetry", series_in_phase)
-        .map(|(name, k)| (name, k / (1.0 + common_series(faults))));
-    let rotor = sum("rotor-asymmetry", bars);
-    let entry = |(name, k): (&str, Complex64)| {
-        EffectEntry::with_numbers(name, [("asymmetry_re", k.re), ("asymmetry_im", k.im)])
+    let stator = sum(&StatorAsymmetry, series_in_phase)
+        .map(|(effect, k)| (effect, k / (1.0 + common_series(faults))));
+    let rotor = sum(&RotorAsymmetry, bars);
+    let entry = |(effect, k): (&'static Descriptor, Complex64)| {
+        let keys = effect.parameters.iter().map(|parameter| parameter.name);
+        EffectEntry::with_numbers(effect.name, keys.zip([k.re, k.im]))
     };
     stator.into_iter().chain(rotor).map(entry).collect()
 }

@@ -75,10 +75,10 @@ fn tables_and_models_with_an_unbalance_are_left_as_they_are() {
     let table = specimen::table_study(|_| ());
     assert!(polished(&table, &specimen::trial_with(&table, &[])).is_none());
     let study = specimen::study(0.5, |_| 1.0);
-    for (voltages, held_to_class) in [(VOLTAGES, true), ("voltage-asymmetry", false)] {
+    for (voltages, held_to_class) in [("phase-voltage-gain", true), ("voltage-asymmetry", false)] {
         let one = polished(&study, &specimen::trial_with(&study, &[(voltages, 0.1)]));
         let held = one.expect("beside the currents' gains").fit.hypothesis;
-        assert!(held.holds_instrument(CURRENTS));
-        assert_eq!(held.holds_instrument(VOLTAGES), held_to_class);
+        assert!(held.holds_instrument(Instrument::Currents));
+        assert_eq!(held.holds_instrument(Instrument::Voltages), held_to_class);
     }
 }

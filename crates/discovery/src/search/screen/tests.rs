@@ -24,7 +24,7 @@ fn a_resonance_is_scanned_finely_and_a_shape_on_its_own_grid() {
         .descriptor()
         .parameters
         .iter()
-        .find(|p| p.role == Role::Shape && p.name.ends_with("_hz"));
+        .find(|p| p.role == Role::Shape && p.is_resonance);
     let p = p.expect("a resonance has a frequency");
     let scan = grid(p);
     let (first, last) = (p.grid[0], p.grid[p.grid.len() - 1]);
