@@ -57,7 +57,7 @@ fn motor_path(here: &Path) -> PathBuf {
 
 fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
     let file = MotorFile::read(path)?;
-    let config = MonitorConfig::from_motor_file(&file, T_SAMPLE);
+    let config = MonitorConfig::from_motor_file(&file, T_SAMPLE)?;
     Monitor::new(config).map_err(|error| format!("{}: {error}", path.display()))?;
     let terms = effect_terms(&file).map_err(|error| format!("{}: {error}", path.display()))?;
     let words = MotorImage::new(&config).0;

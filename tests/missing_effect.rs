@@ -20,11 +20,8 @@ fn watch(plant: &MotorFile, believed: &MotorFile, faults: Vec<Fault>) -> Report 
         faults,
         ..Scenario::of(plant.clone(), 1.0)
     };
-    let monitor = Monitor::new(MonitorConfig::from_motor_file(
-        believed,
-        scenario.t_sample(),
-    ))
-    .expect("valid");
+    let config = MonitorConfig::from_motor_file(believed, scenario.t_sample()).expect("valid");
+    let monitor = Monitor::new(config).expect("valid");
     let mut state = MonitorState::default();
     let mut last = Report::default();
     for sample in Simulation::new(&scenario).expect("the motor runs") {

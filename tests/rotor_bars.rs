@@ -28,7 +28,8 @@ fn scenario(bars_percent: f64) -> Scenario {
 
 /// Samples, and what a monitor that knows nothing of bars in its motor file says about them.
 fn run(scenario: &Scenario) -> (Vec<SimSample>, Vec<Report>) {
-    let config = MonitorConfig::from_motor_file(&motor(MOTOR), scenario.t_sample());
+    let config =
+        MonitorConfig::from_motor_file(&motor(MOTOR), scenario.t_sample()).expect("shipped");
     let monitor = Monitor::new(config).expect("valid");
     let mut state = MonitorState::default();
     let samples: Vec<SimSample> = Simulation::new(scenario).expect("the motor runs").collect();

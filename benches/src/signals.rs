@@ -44,7 +44,7 @@ impl Signals {
             plate.omega_sync(),
         );
         let point = curve.at_torque(plate.torque_nm).expect("below breakdown");
-        let config = MonitorConfig::from_motor_file(&motor, T_SAMPLE_S);
+        let config = MonitorConfig::from_motor_file(&motor, T_SAMPLE_S).expect("shipped");
         let raw: Vec<_> = (0..SAMPLES).map(|k| codes(&config, &point, k)).collect();
         Signals {
             samples: raw

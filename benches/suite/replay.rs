@@ -47,7 +47,7 @@ fn bench(criterion: &mut Criterion) {
     let expectation = Expectation::from(&motor);
     let findings = audit(&recording, &expectation);
     assert!(findings.supported);
-    let monitor = Monitor::new(config_for(&motor, &recording)).expect("shipped");
+    let monitor = Monitor::new(config_for(&motor, &recording).expect("shipped")).expect("shipped");
 
     let mut group = criterion.benchmark_group("replay_of_4_s");
     group.throughput(Throughput::Elements(recording.len() as u64));

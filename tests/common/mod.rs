@@ -40,7 +40,8 @@ pub fn read(path: &Path, mapping: &Mapping) -> Recording {
 /// Audits a recording and replays it through the core, as `drivemon monitor` does.
 pub fn monitored(recording: &Recording, motor: &MotorFile) -> (Audit, Timeline) {
     let audit = audit(recording, &Expectation::from(motor));
-    let monitor = Monitor::new(replay::config_for(motor, recording)).expect("a valid motor file");
+    let config = replay::config_for(motor, recording).expect("effects of the library");
+    let monitor = Monitor::new(config).expect("a valid motor file");
     let timeline = replay::replay(&monitor, &Samples::new(recording, &audit), &mut |_| {});
     (audit, timeline)
 }

@@ -38,7 +38,7 @@ fn recorded(scenario: &Scenario) -> Recording {
 /// What `drivemon monitor` makes of a recording.
 fn monitored(recording: &Recording, motor: &MotorFile) -> (Audit, Timeline) {
     let audit = audit(recording, &Expectation::from(motor));
-    let config = replay::config_for(motor, recording);
+    let config = replay::config_for(motor, recording).expect("effects of the library");
     let monitor = Monitor::new(config).expect("a sound configuration");
     let timeline = replay::replay(&monitor, &Samples::new(recording, &audit), &mut |_| {});
     (audit, timeline)

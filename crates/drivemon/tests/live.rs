@@ -31,7 +31,7 @@ fn codes(scenario: &Scenario) -> impl Iterator<Item = RawSample> {
 /// What the board sends about a stator that heats after half a second: frames, and the samples around the alarm.
 fn sent(seconds: f64) -> Vec<u8> {
     let motor = MotorFile::read(motor_path()).expect("a shipped motor file");
-    let config = MonitorConfig::from_motor_file(&motor, 1e-4);
+    let config = MonitorConfig::from_motor_file(&motor, 1e-4).expect("shipped");
     let image = MotorImage::new(&config);
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut scenario = Scenario::of(motor, seconds);

@@ -377,7 +377,7 @@ fn reread(case: &Case, number: usize, recording: &Recording) -> Recording {
 }
 
 fn monitored(recording: &Recording, motor: &MotorFile, audit: &Audit) -> VerdictState {
-    let config = replay::config_for(motor, recording);
+    let config = replay::config_for(motor, recording).expect("effects of the library");
     let monitor = Monitor::new(config).expect("a sound configuration");
     replay::replay(&monitor, &Samples::new(recording, audit), &mut |_| {})
         .verdict(&[])

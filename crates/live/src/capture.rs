@@ -38,6 +38,9 @@ pub enum CaptureError {
         "the board was flashed with other motor constants than those in this motor file; name the file that it was flashed with"
     )]
     OtherMotor,
+    /// The motor file has effects that the core cannot take.
+    #[error(transparent)]
+    Motor(#[from] motor::document::FileError),
     /// The samples do not make a recording.
     #[error(transparent)]
     Recording(#[from] recording::Error),
@@ -73,7 +76,7 @@ impl Collector {
 /// # Errors
 /// A motor file that the board was not flashed with.
 pub fn recording(fetched: &Fetched, motor: &MotorFile) -> Result<Recording, CaptureError> {
-    let config = MonitorConfig::from_motor_file(motor, T_SAMPLE);
+    let config = MonitorConfig::from_motor_file(motor, T_SAMPLE)?;
     if MotorImage::new(&config).identification() != fetched.motor {
         return Err(CaptureError::OtherMotor);
     }

@@ -1,5 +1,9 @@
 //! The monitor's configuration from a motor file (feature `motor-file`; hosts and build scripts only).
 
+use std::format;
+use std::vec::Vec;
+
+use motor::document::FileError;
 use motor::effect;
 use motor::effect::{EffectConfig, Instrument, SteadyEffect};
 use motor::motor_file::{self, HealthySettings, MotorFile, Sensors};
@@ -20,17 +24,22 @@ const COUNTS_PER_PULSE: f32 = 4.0;
 
 impl MonitorConfig {
     /// For samples every `t_sample` seconds. Still to be checked by [`crate::Monitor::new`].
-    pub fn from_motor_file(file: &MotorFile, t_sample: f64) -> Self {
+    ///
+    /// # Errors
+    /// Effects that the library refuses, or more than [`MAX_EFFECTS`]: in a motor made by a program only, since a file is
+    /// checked when it is read.
+    pub fn from_motor_file(file: &MotorFile, t_sample: f64) -> Result<Self, FileError> {
+        let effects = effects_of(file)?;
         let plate = &file.nameplate;
         let settings = &file.monitor;
-        MonitorConfig {
+        Ok(MonitorConfig {
             t_sample: t_sample as f32,
             converter: converter(&file.sensors),
             encoder_counts_per_revolution: COUNTS_PER_PULSE
                 * file.sensors.encoder_pulses_per_revolution as f32,
             params: single(&file.parameters),
-            effects: active_effects(file),
-            channel_gain: channel_gain(file),
+            effects: active_effects(&effects),
+            channel_gain: channel_gain(&effects),
             mechanics: single_mechanics(&file.mechanics),
             rated_voltage: plate.phase_voltage_amplitude() as f32,
             rated_current: plate.current_amplitude() as f32,
@@ -51,7 +60,7 @@ impl MonitorConfig {
                 hysteresis: settings.hysteresis as f32,
             },
             healthy: file.healthy.as_ref().map(healthy),
-        }
+        })
     }
 }
 
@@ -76,15 +85,23 @@ pub fn single_mechanics(m: &Mechanics<f64>) -> Mechanics<f32> {
     }
 }
 
-/// The motor file's effects; the reader of the file checks them with [`effect::from_motor_file`], and how many they are.
-fn effects_of(file: &MotorFile) -> impl Iterator<Item = EffectConfig> {
-    let configs = effect::from_motor_file(file, &file.name);
-    configs.unwrap_or_default().into_iter()
+fn effects_of(file: &MotorFile) -> Result<Vec<EffectConfig>, FileError> {
+    let effects = effect::from_motor_file(file, &file.name)?;
+    let count = effects.len();
+    match effects.get(MAX_EFFECTS) {
+        None => Ok(effects),
+        Some(_) => Err(FileError::whole(
+            &file.name,
+            format!(
+                "has {count} effects, but the core takes at most {MAX_EFFECTS}: remove the smallest"
+            ),
+        )),
+    }
 }
 
-fn active_effects(file: &MotorFile) -> ActiveEffects {
+fn active_effects(effects: &[EffectConfig]) -> ActiveEffects {
     let mut active = [None; MAX_EFFECTS];
-    for (slot, config) in active.iter_mut().zip(effects_of(file)) {
+    for (slot, config) in active.iter_mut().zip(effects) {
         let mut parameters = [0.0; MAX_EFFECT_PARAMETERS];
         for (parameter, value) in parameters.iter_mut().zip(&config.values) {
             *parameter = *value as f32;
@@ -97,9 +114,9 @@ fn active_effects(file: &MotorFile) -> ActiveEffects {
 
 /// What brings each channel back to the truth: one over the gain that an effect found in it. Such effects leave the positive
 /// sequence to the channel itself.
-fn channel_gain(file: &MotorFile) -> [f32; CHANNELS] {
+fn channel_gain(effects: &[EffectConfig]) -> [f32; CHANNELS] {
     let mut gains = [1.0; CHANNELS];
-    for config in effects_of(file) {
+    for config in effects {
         let first = match config.effect.gain_of() {
             Some(Instrument::Voltages) => 0,
             Some(Instrument::Currents) => 3,
@@ -183,6 +200,7 @@ fn field(file: &MotorFile) -> FieldCurrent {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use motor::motor_file::EffectEntry;
 
     const MOTOR: &str = r#"
 name = "test"
@@ -207,7 +225,7 @@ load_friction_nm_s = 0.0035
 
     fn config(rest: &str) -> MonitorConfig {
         let file = MotorFile::parse(&format!("{MOTOR}{rest}"), "test.toml").expect("a valid file");
-        MonitorConfig::from_motor_file(&file, 1e-4)
+        MonitorConfig::from_motor_file(&file, 1e-4).expect("effects of the library")
     }
 
     /// Amplitudes of the star phase: line to line over the root of 3, rms times the root of 2.
@@ -288,10 +306,8 @@ load_friction_nm_s = 0.0035
         let mut file = MotorFile::parse(MOTOR, "test.toml").expect("a valid file");
         (file.mechanics.friction, file.mechanics.load_friction) = (0.0, 0.0);
         file.load = motor_file::LoadKind::Friction;
-        assert_eq!(
-            MonitorConfig::from_motor_file(&file, 1e-4).load,
-            LoadKind::Free
-        );
+        let load = MonitorConfig::from_motor_file(&file, 1e-4).map(|config| config.load);
+        assert_eq!(load, Ok(LoadKind::Free));
     }
 
     /// A channel that shows 1.25 times the truth is brought back by 0.8; other effects leave the channels alone.
@@ -310,6 +326,26 @@ load_friction_nm_s = 0.0035
         assert_eq!(names[..3], expected.map(Some));
         assert_eq!(names[3], None);
         assert_eq!(config.effects[0].map(|e| e.parameters[0]), Some(1e-5));
+    }
+
+    /// A motor that a program changed: nothing of it is left out in silence.
+    #[test]
+    fn effects_that_the_core_cannot_take_are_an_error() {
+        let motor = MotorFile::parse(MOTOR, "test.toml").expect("a valid file");
+        let windage = |size| EffectEntry::with_numbers("windage", [("windage_nm_s2", size)]);
+        let refused = |effects| {
+            let motor = MotorFile {
+                effects,
+                ..motor.clone()
+            };
+            let config = MonitorConfig::from_motor_file(&motor, 1e-4);
+            config.err().map(|error| error.to_string())
+        };
+        assert_eq!(refused(std::vec![windage(1e-5); MAX_EFFECTS]), None);
+        let many = refused(std::vec![windage(1e-5); MAX_EFFECTS + 1]).expect("one too many");
+        assert!(many.contains("at most"), "{many}");
+        let large = refused(std::vec![windage(1e3)]).expect("out of range");
+        assert!(large.contains("windage_nm_s2"), "{large}");
     }
 
     #[test]

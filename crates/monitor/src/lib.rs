@@ -14,7 +14,8 @@
 //! use motor::MotorFile;
 //!
 //! let motor = MotorFile::read("../../motors/peer-2k2.toml").expect("a motor file");
-//! let monitor = Monitor::new(MonitorConfig::from_motor_file(&motor, 1e-4)).expect("valid");
+//! let config = MonitorConfig::from_motor_file(&motor, 1e-4).expect("effects of the library");
+//! let monitor = Monitor::new(config).expect("valid");
 //! let mut state = MonitorState::default();
 //! let phases = |amplitude: f32, angle: f32| {
 //!     let third = std::f32::consts::TAU / 3.0;
@@ -33,6 +34,10 @@
 //! assert!(last.residuals.is_none() && last.lamps.fault == Lamp::Off);
 //! # }
 //! ```
+
+// A motor file is read on a host.
+#[cfg(all(feature = "motor-file", not(test)))]
+extern crate std;
 
 mod checks;
 mod config;

@@ -12,5 +12,6 @@ mod running;
 
 pub use http::guard::{Guard, Token};
 pub use http::server::{Options, PanelError, Running, bind};
+pub use running::bench::MotorError;
 pub use running::message::{LampsMessage, Operation, Plate, Vectors, WindowMessage};
 pub use running::session::{Session, start};

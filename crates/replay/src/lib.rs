@@ -9,7 +9,8 @@
 //! let motor = MotorFile::read("../../tests/data/peer/none/motor.toml").expect("a motor file");
 //! let file = "../../tests/data/peer/none/recording.csv.gz".as_ref();
 //! let recording = read_recording(file, &Mapping::default(), &mut |_| {}).expect("readable");
-//! let monitor = Monitor::new(config_for(&motor, &recording)).expect("a valid configuration");
+//! let config = config_for(&motor, &recording).expect("effects of the library");
+//! let monitor = Monitor::new(config).expect("a valid configuration");
 //! let audit = audit(&recording, &Expectation::from(&motor));
 //! let timeline = replay(&monitor, &Samples::new(&recording, &audit), &mut |_| {});
 //! assert_eq!(timeline.verdict(&audit.findings).state, replay::VerdictState::Healthy);
@@ -36,18 +37,22 @@ use monitor::{
     ActiveEffects, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor,
     MonitorConfig, MonitorState,
 };
+use motor::document::FileError;
 use motor::{Mechanics, MotorFile, TParams};
 use recording::{LoadTorque, Recording};
 
 /// The configuration for a recording: the motor file's, with the sampling time and the load knowledge of the recording.
-pub fn config_for(motor: &MotorFile, recording: &Recording) -> MonitorConfig {
-    let mut config = MonitorConfig::from_motor_file(motor, recording.t_sample());
+///
+/// # Errors
+/// As [`MonitorConfig::from_motor_file`].
+pub fn config_for(motor: &MotorFile, recording: &Recording) -> Result<MonitorConfig, FileError> {
+    let mut config = MonitorConfig::from_motor_file(motor, recording.t_sample())?;
     config.load = match recording.metadata.load_torque {
         LoadTorque::Measured if recording.torque().is_some() => LoadKind::Measured,
         LoadTorque::Measured | LoadTorque::Free => LoadKind::Free,
         LoadTorque::Friction | LoadTorque::Undeclared => config.load,
     };
-    config
+    Ok(config)
 }
 
 /// A configuration for a recording of an unknown motor: it measures sequence components and judges nothing.
@@ -136,7 +141,7 @@ mod tests {
             ..Metadata::default()
         };
         let recording = Recording::new("x", vec![0.0, 1e-4], metadata).expect("a clock");
-        config_for(&motor, &recording).load
+        config_for(&motor, &recording).expect("it ships").load
     }
 
     #[test]

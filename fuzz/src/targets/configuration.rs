@@ -21,7 +21,11 @@ pub(crate) fn motor_file(bytes: &[u8]) {
         Ok(motor) => motor,
         Err(error) => return assert!(error.to_string().contains("m.toml")),
     };
-    let _ = Monitor::new(MonitorConfig::from_motor_file(&motor, 1e-4));
+    match MonitorConfig::from_motor_file(&motor, 1e-4).map(Monitor::new) {
+        Ok(Ok(_)) => {}
+        Ok(Err(error)) => assert!(!error.to_string().is_empty()),
+        Err(error) => assert!(error.to_string().contains("effects")),
+    }
     let written = motor.to_toml();
     if let Err(error) = MotorFile::parse(&written, "again.toml") {
         panic!("{error}\n{written}");

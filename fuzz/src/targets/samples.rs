@@ -21,7 +21,8 @@ fn monitors() -> &'static [Monitor; 2] {
         ];
         texts.map(|text| {
             let motor = MotorFile::parse(text, "m.toml").expect("it ships");
-            Monitor::new(MonitorConfig::from_motor_file(&motor, T_SAMPLE)).expect("it ships")
+            let config = MonitorConfig::from_motor_file(&motor, T_SAMPLE).expect("it ships");
+            Monitor::new(config).expect("it ships")
         })
     })
 }

@@ -54,7 +54,7 @@ impl Case<'_> {
     pub fn run(&self) -> Result<CaseResult, DemoError> {
         let simulation = Simulation::new(&self.scenario())?;
         let t_sample = simulation.scenario().t_sample();
-        let config = MonitorConfig::from_motor_file(self.motor, t_sample);
+        let config = MonitorConfig::from_motor_file(self.motor, t_sample)?;
         let monitor = Monitor::new(config)?;
         let mut state = MonitorState::default();
         let mut result = CaseResult::default();

@@ -67,6 +67,9 @@ pub enum DemoError {
     /// A value of the motor file lies outside the core's ranges.
     #[error(transparent)]
     Monitor(#[from] monitor::ConfigError),
+    /// Effects of the motor file that the core cannot take.
+    #[error(transparent)]
+    Effects(#[from] motor::document::FileError),
 }
 
 /// Runs the demonstration on a motor; `progress` is called once after each experiment.

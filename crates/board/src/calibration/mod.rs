@@ -159,7 +159,7 @@ pub(crate) mod tests {
             "/../../motors/assumed-300w.toml"
         );
         let file = motor::motor_file::MotorFile::read(path).expect("a shipped motor file");
-        let factory = MonitorConfig::from_motor_file(&file, 1e-4);
+        let factory = MonitorConfig::from_motor_file(&file, 1e-4).expect("no effects");
         let mut config = factory;
         assert!(example(0).apply_checked(&mut config) && config != factory);
         let breakages: [fn(&mut Calibration); 3] = [

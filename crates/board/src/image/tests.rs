@@ -5,7 +5,7 @@ use proptest::prelude::*;
 fn shipped(name: &str) -> MonitorConfig {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../motors/");
     let file = MotorFile::read(format!("{folder}{name}")).expect("a shipped motor file");
-    MonitorConfig::from_motor_file(&file, 1e-4)
+    MonitorConfig::from_motor_file(&file, 1e-4).expect("effects of the library")
 }
 
 fn image(config: &MonitorConfig) -> MotorImage {

@@ -14,7 +14,7 @@ fn present() -> MonitorConfig {
         "/../../motors/assumed-300w.toml"
     );
     let file = MotorFile::read(path).expect("a shipped motor file");
-    MonitorConfig::from_motor_file(&file, 1e-4)
+    MonitorConfig::from_motor_file(&file, 1e-4).expect("no effects")
 }
 
 fn judged(r: [f32; 4], offsets: [f32; CHANNELS]) -> Report {

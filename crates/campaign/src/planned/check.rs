@@ -18,13 +18,15 @@ pub(crate) fn motor(section: &Section<'_>, pair: &MotorPair) {
             "has {count} effects, but the core takes at most {MAX_EFFECTS}: remove the smallest"
         );
         section.report("file", message);
-    }
-    let config = MonitorConfig::from_motor_file(&pair.monitor, T_SAMPLE_S);
-    if let Err(error) = Monitor::new(config) {
-        section.report(
-            "file",
-            format!("{error}: change the value in the motor file"),
-        );
+    } else {
+        match MonitorConfig::from_motor_file(&pair.monitor, T_SAMPLE_S).map(Monitor::new) {
+            Ok(Ok(_)) => {}
+            Ok(Err(error)) => section.report(
+                "file",
+                format!("{error}: change the value in the motor file"),
+            ),
+            Err(error) => section.report("file", error.to_string()),
+        }
     }
     let scenario = Scenario::of(pair.plant.clone(), 1.0);
     if let Err(error @ SimulationError::Effect { .. }) = Simulation::new(&scenario) {

@@ -291,7 +291,8 @@ impl<'p> Run<'p> {
     pub fn replay(&self, mut each: impl FnMut(f64, &Report)) -> Result<(), String> {
         let simulation = Simulation::new(&self.scenario()).map_err(|error| error.to_string())?;
         let t_sample = 1.0 / self.sample_rate_hz();
-        let config = MonitorConfig::from_motor_file(&self.monitor_file(), t_sample);
+        let config = MonitorConfig::from_motor_file(&self.monitor_file(), t_sample)
+            .map_err(|error| error.to_string())?;
         let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
         let mut state = MonitorState::default();
         for sample in simulation {

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant as WallTime};
 
 use monitor::{ConfigError, LoadKind, Monitor, MonitorState, Rehearsal, Report};
 use motor::MotorFile;
+use motor::document::FileError;
 use recording::{LoadTorque, Sensors};
 use serde::Serialize;
 
@@ -16,6 +17,17 @@ use crate::source::{Instant, Item, Reading, Source};
 
 /// Between two waveforms.
 const WAVE: Duration = Duration::from_millis(200);
+
+/// Why a motor cannot be judged.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum MotorError {
+    /// A value outside the core's range.
+    #[error(transparent)]
+    Value(#[from] ConfigError),
+    /// Effects that the core cannot take.
+    #[error(transparent)]
+    Effects(#[from] FileError),
+}
 
 /// Everything that judges.
 pub(crate) struct Bench {
@@ -36,12 +48,13 @@ impl Bench {
         source: &dyn Source,
         motor: Option<&MotorFile>,
         shared: Arc<Shared>,
-    ) -> Result<Bench, ConfigError> {
-        let config = source.config(motor);
+    ) -> Result<Bench, MotorError> {
+        let config = source.config(motor)?;
         let monitor = config.map(Monitor::new).transpose()?;
+        let plate = plate(source, monitor.as_ref(), motor.is_some());
         Ok(Bench {
-            plate: plate(source, monitor.as_ref(), motor.is_some()),
-            belief: belief(source, motor),
+            belief: belief(source, motor, plate.load_friction),
+            plate,
             monitor,
             state: MonitorState::default(),
             sequence: 0,
@@ -54,7 +67,7 @@ impl Bench {
     /// Judges with another motor; the supply is found anew.
     pub fn judge_with(&mut self, source: &dyn Source, motor: &MotorFile, monitor: Monitor) {
         self.plate = plate(source, Some(&monitor), true);
-        self.belief = belief(source, Some(motor));
+        self.belief = belief(source, Some(motor), self.plate.load_friction);
         self.monitor = Some(monitor);
         self.state = MonitorState::default();
     }
@@ -160,9 +173,7 @@ fn plate(source: &dyn Source, monitor: Option<&Monitor>, known: bool) -> Plate {
     }
 }
 
-fn belief(source: &dyn Source, motor: Option<&MotorFile>) -> Belief {
-    let config = source.config(motor);
-    let friction = config.is_some_and(|config| config.load == LoadKind::Friction);
+fn belief(source: &dyn Source, motor: Option<&MotorFile>, friction: bool) -> Belief {
     let sensors = motor.map(|motor| Sensors {
         voltage_full_scale_volt: Some(motor.sensors.voltage_full_scale_volt),
         current_full_scale_amp: Some(motor.sensors.current_full_scale_amp),

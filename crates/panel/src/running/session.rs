@@ -6,6 +6,7 @@ use std::thread::JoinHandle;
 use motor::MotorFile;
 use tokio::sync::{broadcast, oneshot};
 
+use crate::running::bench::MotorError;
 use crate::running::events::Event;
 use crate::running::history::HistoryRow;
 use crate::running::shared::{Broadcast, Command, Refusal, Request, Shared, Status, locked};
@@ -32,7 +33,7 @@ pub fn start(
     source: Box<dyn Source>,
     motor: Option<MotorFile>,
     speed: f64,
-) -> Result<Session, monitor::ConfigError> {
+) -> Result<Session, MotorError> {
     let shared = Arc::new(Shared {
         status: Mutex::new(Status::new(source.as_ref(), motor.as_ref(), speed)),
         history: Mutex::default(),

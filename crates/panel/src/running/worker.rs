@@ -5,10 +5,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
 
-use monitor::{ConfigError, Monitor};
+use monitor::Monitor;
 use motor::MotorFile;
 
-use crate::running::bench::Bench;
+use crate::running::bench::{Bench, MotorError};
 use crate::running::pace::Pace;
 use crate::running::shared::{Command, Refusal, Request, Shared, locked};
 use crate::source::Source;
@@ -38,7 +38,7 @@ impl Worker {
         source: Box<dyn Source>,
         motor: Option<MotorFile>,
         shared: Arc<Shared>,
-    ) -> Result<Worker, ConfigError> {
+    ) -> Result<Worker, MotorError> {
         let bench = Bench::new(source.as_ref(), motor.as_ref(), shared.clone())?;
         let pace = Pace::new(source.now_s(), locked(&shared.status).speed);
         Ok(Worker {
@@ -162,7 +162,8 @@ impl Worker {
     }
 
     fn judge_with(&mut self, motor: MotorFile) -> Result<(), Refusal> {
-        let Some(config) = self.source.config(Some(&motor)) else {
+        let config = self.source.config(Some(&motor));
+        let Some(config) = config.map_err(|error| Refusal::of(error.to_string()))? else {
             return Err(Refusal::of(
                 "this board judges with the motor file that it was flashed with: flash it with the new one",
             ));

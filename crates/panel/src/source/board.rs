@@ -5,6 +5,7 @@ use std::time::{Duration, Instant as WallTime};
 use ::board::{Frame, Message};
 use monitor::{Candidates, Lamp, MonitorConfig, Report};
 use motor::MotorFile;
+use motor::document::FileError;
 
 use super::{Can, Item, Source, SourceFailure, SourceInfo};
 use crate::running::message::{
@@ -149,8 +150,8 @@ impl Source for BoardSource {
         Ok(true)
     }
 
-    fn config(&self, _: Option<&MotorFile>) -> Option<MonitorConfig> {
-        None
+    fn config(&self, _: Option<&MotorFile>) -> Result<Option<MonitorConfig>, FileError> {
+        Ok(None)
     }
 }
 
@@ -251,6 +252,6 @@ mod tests {
     #[test]
     fn no_other_parameters_can_be_tried_on_a_board() {
         let source = BoardSource::new(Box::new(Canned(Vec::new())), "port".into(), None);
-        assert!(source.config(None).is_none() && !source.info().can.parameters);
+        assert!(source.config(None) == Ok(None) && !source.info().can.parameters);
     }
 }

@@ -10,6 +10,7 @@ pub use simulated::{PANEL_FAULTS, PanelFault, SimulatedSource, built_in_motor};
 
 use monitor::{MonitorConfig, RawSample, Rehearsal, Sample};
 use motor::MotorFile;
+use motor::document::FileError;
 use recording::Recording;
 use serde::{Deserialize, Serialize};
 
@@ -107,7 +108,10 @@ pub trait Source: Send {
     fn advance(&mut self, until_s: f64, take: &mut dyn FnMut(Item)) -> Result<bool, SourceFailure>;
 
     /// The monitor's configuration for a motor file on this source, or for an unknown motor; `None` where a board judges.
-    fn config(&self, motor: Option<&MotorFile>) -> Option<MonitorConfig>;
+    ///
+    /// # Errors
+    /// Effects of the motor file that the core cannot take.
+    fn config(&self, motor: Option<&MotorFile>) -> Result<Option<MonitorConfig>, FileError>;
 
     /// Exactly these faults are in force from now on.
     ///

@@ -2,6 +2,7 @@
 
 use monitor::MonitorConfig;
 use motor::MotorFile;
+use motor::document::FileError;
 use recording::{Audit, Recording};
 
 use super::{Can, Instant, Item, Reading, Source, SourceFailure, SourceInfo};
@@ -68,12 +69,13 @@ impl Source for ReplayedSource {
         Ok(self.next < samples.len())
     }
 
-    fn config(&self, motor: Option<&MotorFile>) -> Option<MonitorConfig> {
+    fn config(&self, motor: Option<&MotorFile>) -> Result<Option<MonitorConfig>, FileError> {
         let recording = &self.recording;
-        Some(motor.map_or_else(
-            || stand_in_config(recording),
+        let config = motor.map_or_else(
+            || Ok(stand_in_config(recording)),
             |motor| config_for(motor, recording),
-        ))
+        );
+        config.map(Some)
     }
 
     fn seek(&mut self, t_s: f64) -> Result<(), SourceFailure> {

@@ -145,9 +145,10 @@ impl Source for SimulatedSource {
         Ok(true)
     }
 
-    fn config(&self, motor: Option<&MotorFile>) -> Option<MonitorConfig> {
+    fn config(&self, motor: Option<&MotorFile>) -> Result<Option<MonitorConfig>, FileError> {
         let t_sample = self.simulation.scenario().t_sample();
-        motor.map(|motor| MonitorConfig::from_motor_file(motor, t_sample))
+        let config = motor.map(|motor| MonitorConfig::from_motor_file(motor, t_sample));
+        config.transpose()
     }
 
     fn switch_faults(&mut self, faults: &[SwitchedFault]) -> Result<(), SourceFailure> {

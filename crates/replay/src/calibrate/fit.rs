@@ -3,12 +3,12 @@
 //! Gauss-Newton on the torque balance, `e_d` and `e_q`, with the very directions that the monitor isolates faults by:
 //! what remains after it is what the lamps will see of the healthy motor.
 
-use monitor::{Cause, Evidence, Healthy, LoadKind, Monitor, MonitorConfig};
+use monitor::{Cause, Evidence, Healthy, LoadKind, Monitor};
 use motor::MotorFile;
 use nalgebra::{DMatrix, DVector};
 
-use super::Refusal;
 use super::windows::Observed;
+use super::{MonitorOf, Refusal};
 
 /// What is fitted, with its prior standard deviation: of logarithms, and of the friction's coordinate (see [`Beliefs`]).
 pub(super) const FITTED: [(Cause, f64); 5] = [
@@ -65,21 +65,21 @@ impl Fitted {
     }
 }
 
-/// Fits; `config_of` gives the monitor's configuration for a recording's number.
+/// Fits; `monitor_of` gives the monitor for a recording's number.
 ///
 /// # Errors
 /// Parameters that the core does not take.
 pub(super) fn fit(
     beliefs: &Beliefs<'_>,
     observed: &[Observed],
-    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> Result<Fitted, Refusal> {
     let mut z = DVector::<f64>::zeros(FITTED.len());
     let mut misfit = [0.01; ROWS];
     let mut covariance = DMatrix::identity(FITTED.len(), FITTED.len());
     for _ in 0..ITERATIONS {
         let motor = beliefs.changed(z.as_slice());
-        let evidence = evidence(&motor, observed, config_of)?;
+        let evidence = evidence(&motor, observed, monitor_of)?;
         misfit = root_mean_square(&evidence, observed);
         let relative = beliefs.relative(z.as_slice());
         let (step, posterior) = step(&evidence, observed, &misfit, &z, &relative);
@@ -102,22 +102,19 @@ pub(super) fn fit(
 }
 
 impl<'a> Beliefs<'a> {
-    /// `config_of` as for [`fit`].
-    pub(super) fn new(
-        motor: &'a MotorFile,
-        config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
-    ) -> Self {
+    /// `monitor_of` as for [`fit`].
+    pub(super) fn new(motor: &'a MotorFile, monitor_of: &MonitorOf<'_>) -> Result<Self, Refusal> {
         let (m, plate) = (&motor.mechanics, &motor.nameplate);
-        let seen = match config_of(motor, 0).load {
+        let seen = match monitor_of(motor, 0)?.config().load {
             LoadKind::Friction => m.total_friction(),
             _ => m.friction,
         };
         let synchronous = plate.omega_sync() / f64::from(plate.pole_pairs);
         let guess = FRICTION_GUESS * plate.torque_nm / synchronous;
-        Beliefs {
+        Ok(Beliefs {
             motor,
             friction_guess: if seen > 0.0 { guess / seen } else { 0.0 },
-        }
+        })
     }
 
     fn friction_step(&self) -> f64 {
@@ -176,12 +173,11 @@ impl<'a> Beliefs<'a> {
 pub(super) fn evidence(
     motor: &MotorFile,
     observed: &[Observed],
-    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> Result<Vec<Option<Evidence>>, Refusal> {
     let last = observed.iter().map(|o| o.recording).max().unwrap_or(0);
-    let monitors = (0..=last).map(|k| Monitor::new(config_of(motor, k)));
-    let monitors: Result<Vec<Monitor>, _> = monitors.collect();
-    let monitors = monitors.map_err(|error| Refusal::new(&motor.name, error.to_string()))?;
+    let monitors = (0..=last).map(|k| monitor_of(motor, k));
+    let monitors = monitors.collect::<Result<Vec<Monitor>, _>>()?;
     let unknown = Healthy::unknown();
     let one = |o: &Observed| monitors[o.recording].evidence(&unknown, &o.window);
     Ok(observed.iter().map(one).collect())

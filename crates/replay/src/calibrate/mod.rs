@@ -10,7 +10,7 @@ mod statistics;
 mod uncertainty;
 mod windows;
 
-use monitor::{Cause, Healthy, MonitorConfig};
+use monitor::{Cause, Healthy, Monitor, MonitorConfig};
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
 use recording::{Audit, Recording};
@@ -60,6 +60,17 @@ pub struct Calibrated {
     pub healthy: HealthySettings,
 }
 
+/// The monitor of a motor for a recording's number.
+type MonitorOf<'a> = dyn Fn(&MotorFile, usize) -> Result<Monitor, Refusal> + 'a;
+
+fn configured(motor: &MotorFile, recording: &Recording) -> Result<MonitorConfig, Refusal> {
+    config_for(motor, recording).map_err(|error| Refusal::new(&motor.name, error.to_string()))
+}
+
+fn monitor(motor: &MotorFile, config: MonitorConfig) -> Result<Monitor, Refusal> {
+    Monitor::new(config).map_err(|error| Refusal::new(&motor.name, error.to_string()))
+}
+
 /// Calibrates `motor` from healthy recordings.
 ///
 /// # Errors
@@ -72,10 +83,10 @@ pub fn calibrate(
     let mut believed = motor.clone();
     believed.healthy = None;
     let sources = windows::audited(recordings, &believed)?;
-    let config_of = |motor: &MotorFile, k: usize| {
-        let mut config = config_for(motor, sources[k].recording);
+    let monitor_of = |motor: &MotorFile, k: usize| {
+        let mut config = configured(motor, sources[k].recording)?;
         config.healthy = Some(Healthy::unknown());
-        config
+        monitor(motor, config)
     };
     let mut observed = windows::observe(&sources, &believed)?;
     let has_voltages = observed
@@ -90,15 +101,15 @@ pub fn calibrate(
                 &mut believed,
                 &mut observed,
                 &mut gains,
-                &config_of,
+                &monitor_of,
             )?;
         }
     }
     let (fitted, errors) = if has_voltages {
-        let beliefs = fit::Beliefs::new(&believed, &config_of);
-        let fitted = fit::fit(&beliefs, &observed, &config_of)?;
+        let beliefs = fit::Beliefs::new(&believed, &monitor_of)?;
+        let fitted = fit::fit(&beliefs, &observed, &monitor_of)?;
         refuse::implausible(&beliefs, &fitted, recordings)?;
-        let errors = uncertainty::standard_errors(&beliefs, &fitted, &observed, &config_of)?;
+        let errors = uncertainty::standard_errors(&beliefs, &fitted, &observed, &monitor_of)?;
         (fitted, errors)
     } else {
         let nothing = fit::Fitted {
@@ -110,12 +121,13 @@ pub fn calibrate(
         };
         (nothing, Vec::new())
     };
-    let healthy = statistics::healthy(&fitted, &observed, surroundings, &config_of)?;
+    let healthy = statistics::healthy(&fitted, &observed, surroundings, &monitor_of)?;
     let mut motor = fitted.motor.clone();
     motor.healthy = Some(healthy);
     if has_voltages {
-        let config_of = |motor: &MotorFile, k: usize| config_for(motor, sources[k].recording);
-        motor.monitor.threshold_percent = statistics::thresholds(&motor, &observed, &config_of)?;
+        let monitor_of =
+            |motor: &MotorFile, k: usize| monitor(motor, configured(motor, sources[k].recording)?);
+        motor.monitor.threshold_percent = statistics::thresholds(&motor, &observed, &monitor_of)?;
     }
     refuse::contradictions(&motor, &sources, &observed)?;
     Ok(Calibrated {
@@ -140,15 +152,15 @@ fn correct_gains(
     motor: &mut MotorFile,
     observed: &mut Vec<Observed>,
     found: &mut Vec<(Kind, [f64; 3])>,
-    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> Result<(), Refusal> {
     let gains = gains::from_zero_sequence(gains::zero_ratio(observed, kind));
     let Some(corrected) = gains::with_gains(motor, kind, gains) else {
         return Ok(());
     };
     let again = windows::observe(sources, &corrected)?;
-    let before = refuse::negative_scatter(motor, observed, config_of);
-    let after = refuse::negative_scatter(&corrected, &again, config_of);
+    let before = refuse::negative_scatter(motor, observed, monitor_of);
+    let after = refuse::negative_scatter(&corrected, &again, monitor_of);
     // Currents on three wires have no zero sequence of their own.
     if kind == Kind::Current || after < before {
         *motor = corrected;

@@ -1,14 +1,13 @@
 //! Recordings that must not be learnt from: faulty ones, and ones that contradict each other.
 
-use monitor::{Healthy, Monitor, MonitorConfig, Row, magnitude};
+use monitor::{Healthy, Row, magnitude};
 use motor::MotorFile;
 use num_complex::Complex32;
 use recording::Recording;
 
-use super::Refusal;
 use super::fit::{Beliefs, Fitted};
 use super::windows::{Healthily, Observed};
-use crate::config_for;
+use super::{MonitorOf, Refusal, configured};
 
 /// Largest change of `I_2/I_1` inside healthy recordings of unchanged supply: a tenth of the turns of a phase shorted
 /// moved a measured motor by 0.06 to 0.09, its healthy windows stay within 0.02.
@@ -52,11 +51,11 @@ fn names(recordings: &[Recording]) -> String {
 pub fn negative_scatter(
     motor: &MotorFile,
     observed: &[Observed],
-    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> f64 {
     let unknown = Healthy::unknown();
     let value = |o: &Observed| {
-        let monitor = Monitor::new(config_of(motor, o.recording)).ok()?;
+        let monitor = monitor_of(motor, o.recording).ok()?;
         let rows = monitor.evidence(&unknown, &o.window)?.departure;
         let row = Row::Negative as usize;
         Some([f64::from(rows[row]), f64::from(rows[row + 1])])
@@ -73,7 +72,7 @@ pub fn contradictions(
 ) -> Result<(), Refusal> {
     changing_unbalance(sources, observed)?;
     for source in sources {
-        let config = config_for(motor, source.recording);
+        let config = configured(motor, source.recording)?;
         let limit = config.healthy.map_or(f32::INFINITY, |h| h.significance);
         let (mut judged, mut alarms) = (0, Vec::new());
         source.monitored(config, &mut |t, report| {

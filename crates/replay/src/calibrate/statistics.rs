@@ -1,14 +1,14 @@
 //! What the calibrated motor still shows: means, scatter, thresholds.
 
-use monitor::{Evidence, Healthy, Monitor, MonitorConfig, ROWS, Rehearsal, Row};
+use monitor::{Evidence, Healthy, Monitor, ROWS, Rehearsal, Row};
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
 use num_complex::Complex64;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::Refusal;
 use super::fit::Fitted;
 use super::windows::Observed;
+use super::{MonitorOf, Refusal};
 
 /// Least scatter of a row, percent: linearity of transformers and dividers.
 const LEAST_SCATTER_PERCENT: f64 = 0.02;
@@ -37,9 +37,9 @@ pub fn healthy(
     fitted: &Fitted,
     observed: &[Observed],
     surroundings: &Surroundings,
-    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> Result<HealthySettings, Refusal> {
-    let monitors = monitors(&fitted.motor, observed, config_of)?;
+    let monitors = monitors(&fitted.motor, observed, monitor_of)?;
     let unknown = Healthy::unknown();
     let one = |o: &Observed| {
         Some((
@@ -79,12 +79,10 @@ const COPPER_PER_KELVIN: f64 = 0.003_93;
 fn monitors(
     motor: &MotorFile,
     observed: &[Observed],
-    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> Result<Vec<Monitor>, Refusal> {
     let last = observed.iter().map(|o| o.recording).max().unwrap_or(0);
-    let monitors = (0..=last).map(|k| Monitor::new(config_of(motor, k)));
-    let monitors: Result<Vec<Monitor>, _> = monitors.collect();
-    monitors.map_err(|error| Refusal::new(&motor.name, error.to_string()))
+    (0..=last).map(|k| monitor_of(motor, k)).collect()
 }
 
 /// Mean and scatter of every row, percent; 0 where a row is not known.
@@ -158,9 +156,9 @@ pub fn significance(rate: f64) -> f64 {
 pub fn thresholds(
     motor: &MotorFile,
     observed: &[Observed],
-    config_of: &dyn Fn(&MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> Result<[f64; 4], Refusal> {
-    let monitors = monitors(motor, observed, config_of)?;
+    let monitors = monitors(motor, observed, monitor_of)?;
     let mut largest = [0.0_f64; 4];
     for gains in drifted() {
         for o in observed {

@@ -5,12 +5,12 @@
 //! gain. With the covariance of noise and beliefs, the covariance is `H^-1 (J' W J + P S P) H^-1 + sum sigma^2 s s'`.
 
 use discovery::instrument_class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
-use monitor::{MonitorConfig, Window};
+use monitor::Window;
 use nalgebra::{DMatrix, DVector, SVector};
 
-use super::Refusal;
 use super::fit::{Beliefs, FITTED, Fitted, ROWS, evidence};
 use super::windows::Observed;
+use super::{MonitorOf, Refusal};
 
 const N: usize = FITTED.len();
 /// Step of a coordinate or a gain: large against single precision (1e-6), small against the curvature of a residual.
@@ -63,10 +63,10 @@ pub fn standard_errors(
     beliefs: &Beliefs<'_>,
     fitted: &Fitted,
     observed: &[Observed],
-    config_of: &dyn Fn(&motor::MotorFile, usize) -> MonitorConfig,
+    monitor_of: &MonitorOf<'_>,
 ) -> Result<Vec<f64>, Refusal> {
     let at = |motor: &motor::MotorFile, observed: &[Observed]| {
-        let evidence = evidence(motor, observed, config_of)?;
+        let evidence = evidence(motor, observed, monitor_of)?;
         let rows = |e: &monitor::Evidence| SVector::from_fn(|row, _| f64::from(e.departure[row]));
         Ok::<Vec<Residual>, Refusal>(evidence.iter().map(|e| e.as_ref().map(rows)).collect())
     };

@@ -6,9 +6,9 @@ use monitor::{Healthy, Monitor, MonitorConfig, MonitorState, Report, Window};
 use motor::MotorFile;
 use recording::{Audit, Expectation, Recording, audit};
 
-use super::Refusal;
+use super::{Refusal, configured};
+use crate::Samples;
 use crate::words;
-use crate::{Samples, config_for};
 
 /// One steady window.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +95,7 @@ fn observe_one(
     all: &mut Vec<Observed>,
     reasons: &mut Reasons,
 ) -> Result<(), Refusal> {
-    let mut config = config_for(motor, source.recording);
+    let mut config = configured(motor, source.recording)?;
     config.healthy = Some(Healthy::unknown());
     let name = source.recording.name();
     source.monitored(config, &mut |t, report| {

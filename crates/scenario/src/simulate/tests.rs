@@ -162,7 +162,7 @@ fn codes_and_values_agree_with_the_boards_converter() {
     scenario.motor.sensors.voltage_gain = [1.0, 1.02, 0.97];
     scenario.motor.sensors.current_offset_amp = [0.2, 0.0, -0.3];
     scenario.sensors = SensorSpec::of(&scenario.motor);
-    let config = monitor::MonitorConfig::from_motor_file(&scenario.motor, 1e-4);
+    let config = monitor::MonitorConfig::from_motor_file(&scenario.motor, 1e-4).expect("shipped");
     let converter: Converter = config.converter;
     for sample in run(&scenario) {
         let shown = sample.measured;

@@ -139,7 +139,7 @@ pub fn host_lamps(taken: &[RawSample]) -> Vec<Lamps> {
 }
 
 fn host_lamps_of(motor: &MotorFile, taken: &[RawSample]) -> Vec<Lamps> {
-    let config = MonitorConfig::from_motor_file(motor, 1e-4);
+    let config = MonitorConfig::from_motor_file(motor, 1e-4).expect("effects of the library");
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut state = MonitorState::default();
     let mut lamps = Lamps {

@@ -75,7 +75,7 @@ impl Flash {
     fn check(&self) -> Result<String, Failure> {
         let file = self.motor.display().to_string();
         let motor = read_motor(&self.motor)?;
-        let config = MonitorConfig::from_motor_file(&motor, T_SAMPLE);
+        let config = MonitorConfig::from_motor_file(&motor, T_SAMPLE)?;
         Monitor::new(config).map_err(|error| Failure::Config {
             file: file.clone(),
             error,

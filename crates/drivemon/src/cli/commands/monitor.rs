@@ -133,7 +133,7 @@ impl MonitorArgs {
         let expectation = motor.map_or_else(Expectation::default, Expectation::from);
         let audit = audit(recording, &expectation);
         let config = match motor {
-            Some(motor) => replay::config_for(motor, recording),
+            Some(motor) => replay::config_for(motor, recording)?,
             None => replay::stand_in_config(recording),
         };
         let timeline = if audit.supported {

@@ -14,7 +14,7 @@ use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::say;
 use live::{open_probe, open_serial};
 use panel::source::{BoardSource, ReplayedSource, SimulatedSource, Source, built_in_motor};
-use panel::{self, Options, PanelError, Session};
+use panel::{self, MotorError, Options, PanelError, Session};
 use scenario::Scenario;
 
 /// Show the panel in a browser: lamps, causes, residuals, signals, vectors; a simulated motor, a recording or a board.
@@ -129,7 +129,10 @@ impl Panel {
         let (source, motor) = self.source()?;
         let name = self.motor_name();
         let session = panel::start(source, motor, self.speed);
-        let session = session.map_err(|error| Failure::Config { file: name, error })?;
+        let session = session.map_err(|error| match error {
+            MotorError::Value(error) => Failure::Config { file: name, error },
+            MotorError::Effects(error) => Failure::File(error),
+        })?;
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .build()
