@@ -9,10 +9,12 @@ pub mod contradiction;
 mod estimate;
 pub mod fit;
 mod interval;
+mod motor_text;
 pub mod physical;
 pub mod plate;
 pub mod prior;
 
 pub use estimate::{COLUMN_KEYS, COLUMNS, Estimate};
 pub use interval::Interval;
+pub use motor_text::motor_text;
 pub use plate::Plate;

@@ -29,6 +29,7 @@ const AFTER_HELP: &str = "\
 First steps:
   drivemon demo                                        the whole method on a simulated motor, in seconds
   drivemon simulate SCENARIO.toml -o rec.csv.gz        make a recording with a fault in it
+  drivemon motor new --ask -o motor.toml               a motor file from a nameplate
   drivemon monitor rec.csv.gz --motor motor.toml       see what the lamps would have shown
   drivemon compare rec.csv.gz --motor motor.toml       where the model fails
   drivemon explain rec.csv.gz --motor motor.toml       which physical effect it misses
@@ -51,6 +52,7 @@ enum Command {
     Adopt(commands::adopt::Adopt),
     Campaign(commands::campaign::Campaign),
     Calibrate(commands::calibrate::Calibrate),
+    Motor(commands::motor::Motor),
     #[cfg(feature = "panel")]
     Panel(commands::panel::Panel),
     Flash(commands::flash::Flash),
@@ -79,6 +81,7 @@ impl Cli {
             Command::Adopt(adopt) => adopt.run(),
             Command::Campaign(campaign) => campaign.run(),
             Command::Calibrate(calibrate) => calibrate.run(),
+            Command::Motor(motor) => motor.run(),
             #[cfg(feature = "panel")]
             Command::Panel(panel) => panel.run(),
             Command::Flash(flash) => flash.run(),

@@ -8,6 +8,7 @@ mod monitor;
 mod nameplate;
 mod parameters;
 mod sensors;
+mod uncertainty;
 mod write;
 
 #[cfg(test)]
@@ -22,6 +23,7 @@ pub use healthy::{EVIDENCE_ROWS, HealthySettings};
 pub use monitor::{FieldCurrent, Frame, LoadKind, MonitorSettings};
 pub use nameplate::{Connection, Nameplate};
 pub use sensors::Sensors;
+pub use uncertainty::{Correlation, ParameterInterval, Uncertainty};
 
 use crate::document::{Document, FileError, Section, read_text};
 use crate::{Mechanics, TParams};
@@ -50,6 +52,8 @@ pub struct MotorFile {
     pub healthy: Option<HealthySettings>,
     /// Physical effects beyond the T model, in the order of the file.
     pub effects: Vec<EffectEntry>,
+    /// Intervals of parameters that were not measured on this motor.
+    pub uncertainty: Option<Uncertainty>,
 }
 
 impl MotorFile {
@@ -112,6 +116,7 @@ fn read_document(document: &Document) -> Option<MotorFile> {
     if let (Some(plate), Some(effects)) = (&nameplate, &effects) {
         crate::effect::check(document, plate, effects);
     }
+    let uncertainty = uncertainty::read(&root, effects.as_deref().unwrap_or_default());
     root.finish();
     let electrical = electrical?;
     Some(MotorFile {
@@ -125,5 +130,6 @@ fn read_document(document: &Document) -> Option<MotorFile> {
         monitor: monitor?,
         healthy: healthy?,
         effects: effects?,
+        uncertainty: uncertainty?,
     })
 }

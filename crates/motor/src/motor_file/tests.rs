@@ -231,3 +231,60 @@ fn shared_data() -> Option<std::path::PathBuf> {
     let path = std::env::var_os("DRIVE_MONITOR_SHARED_DATA").map_or_else(beside, Into::into);
     path.join("peer").is_dir().then_some(path)
 }
+
+const INTERVALS: &str = "
+[[effects]]
+name = \"windage\"
+windage_nm_s2 = 1e-5
+
+[uncertainty]
+stator_resistance_ohm = [3.0, 4.5]
+windage_nm_s2 = [1e-6, 1e-4]
+
+[[uncertainty.correlation]]
+first = \"stator_resistance_ohm\"
+second = \"windage_nm_s2\"
+value = -0.5
+";
+
+#[test]
+fn intervals_survive_writing_and_reading() {
+    let text = format!("{}{INTERVALS}", smallest().to_toml());
+    let motor = MotorFile::parse(&text, "m.toml").unwrap();
+    let again = MotorFile::parse(&motor.to_toml(), "m.toml").unwrap();
+    assert_eq!(without_lines(motor.clone()), without_lines(again));
+    let deviation = motor
+        .uncertainty
+        .unwrap()
+        .log_deviation("stator_resistance_ohm");
+    // ln(1.5) is 3.92 standard deviations wide.
+    assert!((deviation.unwrap() - 1.5f64.ln() / 3.919_928).abs() < 1e-6);
+}
+
+#[test]
+fn wrong_intervals_are_named() {
+    let wrong = [
+        ("[3.0, 4.5]", "[4.5, 3.0]", "upside down"),
+        ("[3.0, 4.5]", "[-3.0, 4.5]", "stator_resistance_ohm"),
+        (
+            "\nstator_resistance_ohm = [3",
+            "\nstator_resistence = [3",
+            "no parameter of this motor",
+        ),
+        (
+            "second = \"windage_nm_s2\"",
+            "second = \"friction_nm_s\"",
+            "has no interval",
+        ),
+        ("value = -0.5", "value = -1.5", "value"),
+    ];
+    for (old, new, told) in wrong {
+        let text = format!(
+            "{}{}",
+            smallest().to_toml(),
+            INTERVALS.replacen(old, new, 1)
+        );
+        let error = MotorFile::parse(&text, "m.toml").unwrap_err().to_string();
+        assert!(error.contains(told), "{new}: {error}");
+    }
+}

@@ -3,7 +3,7 @@
 use super::monitor::{FIELD_CURRENTS, FRAMES, LOADS};
 use super::{
     Connection, EffectEntry, EffectValue, HealthySettings, MonitorSettings, MotorFile, Nameplate,
-    Sensors,
+    Sensors, Uncertainty,
 };
 use std::fmt::Write;
 
@@ -21,6 +21,9 @@ pub(super) fn to_toml(motor: &MotorFile) -> String {
     }
     for effect in &motor.effects {
         write_effect(&mut text, effect);
+    }
+    if let Some(settings) = &motor.uncertainty {
+        uncertainty(&mut text, settings);
     }
     text.0
 }
@@ -150,6 +153,19 @@ fn healthy(text: &mut Text, settings: &HealthySettings) {
     }
     text.number("turns_angle_deg", settings.turns_angle_deg);
     text.number("significance", settings.significance);
+}
+
+fn uncertainty(text: &mut Text, settings: &Uncertainty) {
+    text.header("[uncertainty]");
+    for interval in &settings.intervals {
+        text.numbers(&interval.key, &[interval.low, interval.high]);
+    }
+    for correlation in &settings.correlations {
+        text.header("[[uncertainty.correlation]]");
+        text.words("first", &correlation.first);
+        text.words("second", &correlation.second);
+        text.number("value", correlation.value);
+    }
 }
 
 fn write_effect(text: &mut Text, effect: &EffectEntry) {

@@ -21,6 +21,7 @@ mod point;
 pub use breakdown::breakdown_slip;
 pub use cages::Cages;
 pub use parameters::{Circuit, Logs, PARAMETERS, Place};
+pub(crate) use point::REFERENCE_CURRENT;
 pub use point::{Point, Winding};
 
 /// The rated point on which a circuit in per unit stands.

@@ -1,12 +1,15 @@
 //! What the plate or a catalogue's row prints, and what follows from it.
 
+mod code_letter;
 mod completed;
+mod file;
 mod printed;
 mod problem;
 mod synchronous;
 mod values;
 
 pub use completed::Completed;
+pub use file::{EXTRA_KEYS, HORSEPOWER_KW, PlateFile};
 pub use printed::{NotANumber, Printed};
 pub use problem::Problem;
 pub use values::{VALUES, Value, Values};

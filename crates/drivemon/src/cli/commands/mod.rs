@@ -10,6 +10,7 @@ pub(crate) mod explain;
 pub(crate) mod flash;
 pub(crate) mod live;
 pub(crate) mod monitor;
+pub(crate) mod motor;
 #[cfg(feature = "panel")]
 pub(crate) mod panel;
 pub(crate) mod simulate;

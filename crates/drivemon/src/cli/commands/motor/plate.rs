@@ -1,0 +1,231 @@
+//! A nameplate from a file, flags and questions.
+
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::PathBuf;
+
+use clap::Args;
+use nameplate::plate::PlateFile;
+
+use crate::cli::printing::failure::Failure;
+
+/// The nameplate: from a file, from flags, which win over the file, or from questions.
+#[derive(Debug, Args)]
+pub struct PlateArgs {
+    /// Plate as TOML: power_kw = 5.5, voltage_volt = 400, ... (the flags below without their dashes)
+    #[arg(long, value_name = "PLATE.toml")]
+    plate: Option<PathBuf>,
+    /// Rated shaft power, kW
+    #[arg(long, value_name = "KW", conflicts_with = "power_hp")]
+    power_kw: Option<String>,
+    /// Rated shaft power, hp
+    #[arg(long, value_name = "HP")]
+    power_hp: Option<String>,
+    /// Line voltage, V rms
+    #[arg(long, value_name = "V")]
+    voltage_volt: Option<String>,
+    /// Frequency, Hz
+    #[arg(long, value_name = "HZ")]
+    frequency_hz: Option<String>,
+    /// Rated speed, rpm
+    #[arg(long, value_name = "RPM")]
+    speed_rpm: Option<String>,
+    /// Rated line current, A rms
+    #[arg(long, value_name = "A")]
+    current_amp: Option<String>,
+    /// Power factor (cos phi) at rated load
+    #[arg(long, value_name = "PF")]
+    power_factor: Option<String>,
+    /// Efficiency at rated load, percent
+    #[arg(long, value_name = "PERCENT")]
+    efficiency_percent: Option<String>,
+    /// Breakdown torque over rated torque (Mk/Mn, Tmax/Tn)
+    #[arg(long, value_name = "RATIO")]
+    breakdown_torque_ratio: Option<String>,
+    /// Locked-rotor torque over rated torque (Ma/Mn, Tst/Tn)
+    #[arg(long, value_name = "RATIO")]
+    locked_rotor_torque_ratio: Option<String>,
+    /// Locked-rotor current over rated current (Ia/In, Ist/In)
+    #[arg(long, value_name = "RATIO")]
+    locked_rotor_current_ratio: Option<String>,
+    /// NEMA code letter, which is the locked-rotor current
+    #[arg(
+        long,
+        value_name = "LETTER",
+        conflicts_with = "locked_rotor_current_ratio"
+    )]
+    nema_code: Option<String>,
+    /// Connection at this voltage: star or delta
+    #[arg(long, value_name = "star|delta")]
+    connection: Option<String>,
+    /// Inertia of everything on the shaft, kg m2
+    #[arg(long, value_name = "KG_M2")]
+    inertia_kg_m2: Option<String>,
+    /// What people call the motor
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Ask for every number that is not given
+    #[arg(long)]
+    ask: bool,
+}
+
+/// What is asked, in this order: key, question, usual range, and what a missing answer costs.
+const QUESTIONS: [(&str, &str, &str, &str); 11] = [
+    ("power_kw", "Rated power, kW", "0.05 to 2000", "needed"),
+    ("voltage_volt", "Line voltage, V", "200 to 11000", "needed"),
+    (
+        "frequency_hz",
+        "Frequency, Hz",
+        "50 or 60",
+        "follows from the speed",
+    ),
+    (
+        "speed_rpm",
+        "Rated speed, rpm",
+        "below 3000, 1500, 1000, 750 at 50 Hz",
+        "rotor resistance is then known to a factor of two",
+    ),
+    (
+        "current_amp",
+        "Rated current, A",
+        "about 2 per kW at 400 V",
+        "follows from efficiency and power factor",
+    ),
+    (
+        "power_factor",
+        "Power factor (cos phi)",
+        "0.6 to 0.93",
+        "follows from current and efficiency",
+    ),
+    (
+        "efficiency_percent",
+        "Efficiency, percent",
+        "60 to 97",
+        "follows from current and power factor",
+    ),
+    (
+        "breakdown_torque_ratio",
+        "Breakdown torque / rated torque",
+        "1.8 to 4",
+        "known to 50 % from motors of this size",
+    ),
+    (
+        "locked_rotor_torque_ratio",
+        "Locked-rotor torque / rated torque",
+        "0.7 to 4",
+        "known to 70 %",
+    ),
+    (
+        "locked_rotor_current_ratio",
+        "Locked-rotor current / rated current",
+        "3.5 to 10",
+        "known to 40 %",
+    ),
+    (
+        "connection",
+        "Connection, star or delta",
+        "as wired",
+        "star: the circuit is the same, per equivalent star phase",
+    ),
+];
+
+impl PlateArgs {
+    /// The plate; questions go to the terminal where nothing at all was given, or `--ask` was.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a number that is none, with the flag or the line.
+    pub fn read(&self) -> Result<PlateFile, Failure> {
+        let mut file = match &self.plate {
+            Some(path) => {
+                let label = path.display().to_string();
+                let text = motor::document::read_text(path)?;
+                PlateFile::parse(&text, &label).map_err(Failure::Usage)?
+            }
+            None => PlateFile::default(),
+        };
+        for (key, text) in self.flags() {
+            if let Some(text) = text {
+                let flag = key.replace('_', "-");
+                file.set(key, text)
+                    .map_err(|problem| Failure::Usage(format!("--{flag}: {problem}")))?;
+            }
+        }
+        let nothing = file == PlateFile::default();
+        if self.ask || (nothing && std::io::stdin().is_terminal()) {
+            ask(&mut file)?;
+        } else if nothing {
+            return Err(Failure::Usage(
+                "no plate: give --plate PLATE.toml, flags such as --power-kw 5.5, or --ask"
+                    .to_owned(),
+            ));
+        }
+        Ok(file)
+    }
+
+    /// Files that are read.
+    pub fn file(&self) -> Option<&PathBuf> {
+        self.plate.as_ref()
+    }
+
+    /// Keys and texts; the code letter last, since it needs power, voltage and current.
+    fn flags(&self) -> [(&'static str, Option<&String>); 15] {
+        [
+            ("name", self.name.as_ref()),
+            ("power_kw", self.power_kw.as_ref()),
+            ("power_hp", self.power_hp.as_ref()),
+            ("voltage_volt", self.voltage_volt.as_ref()),
+            ("frequency_hz", self.frequency_hz.as_ref()),
+            ("speed_rpm", self.speed_rpm.as_ref()),
+            ("current_amp", self.current_amp.as_ref()),
+            ("power_factor", self.power_factor.as_ref()),
+            ("efficiency_percent", self.efficiency_percent.as_ref()),
+            (
+                "breakdown_torque_ratio",
+                self.breakdown_torque_ratio.as_ref(),
+            ),
+            (
+                "locked_rotor_torque_ratio",
+                self.locked_rotor_torque_ratio.as_ref(),
+            ),
+            (
+                "locked_rotor_current_ratio",
+                self.locked_rotor_current_ratio.as_ref(),
+            ),
+            ("connection", self.connection.as_ref()),
+            ("inertia_kg_m2", self.inertia_kg_m2.as_ref()),
+            ("nema_code", self.nema_code.as_ref()),
+        ]
+    }
+}
+
+/// Asks for what is missing; an empty answer leaves it out, a wrong one is asked again.
+fn ask(file: &mut PlateFile) -> Result<(), Failure> {
+    let mut lines = std::io::stdin().lock().lines();
+    for (key, question, range, missing) in QUESTIONS {
+        if has(file, key) {
+            continue;
+        }
+        loop {
+            eprint!("{question} [{range}; empty: {missing}]: ");
+            let _ = std::io::stderr().flush();
+            let Some(answer) = lines.next().transpose().unwrap_or(None) else {
+                return Ok(());
+            };
+            let answer = answer.trim().replace(',', ".");
+            if answer.is_empty() {
+                break;
+            }
+            match file.set(key, &answer) {
+                Ok(()) => break,
+                Err(problem) => eprintln!("  {problem}"),
+            }
+        }
+    }
+    Ok(())
+}
+
+fn has(file: &PlateFile, key: &str) -> bool {
+    let place = nameplate::COLUMN_KEYS
+        .iter()
+        .position(|known| *known == key);
+    place.is_some_and(|place| file.plate.numbers()[place].is_some())
+}
