@@ -13,35 +13,28 @@
 //! ```
 
 mod audit;
-mod channel;
 mod contained;
+mod data;
 mod error;
-mod load_table;
 mod mapping;
-mod metadata;
 mod names;
 mod read;
-mod recording;
 mod seal;
-mod sidecar;
-mod source;
 mod suggest;
-mod units;
 mod write;
 
 pub use audit::{Audit, Circuit, Code, Expectation, Finding, audit, with_sound_probes};
-pub use channel::{Channel, Quantity, Signal};
+pub use data::channel::{Channel, Quantity, Signal};
+pub use data::load_table::{LoadPoint, LoadTable, TableColumn};
+pub use data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
+pub use data::recording::{Bridged, Recording, UnknownScale};
+pub use data::units::{UNITS, Unit};
 pub use error::{Class, Error, Problem};
-pub use load_table::{LoadPoint, LoadTable, TableColumn};
+pub use mapping::sidecar::Sidecar;
 pub use mapping::{ColumnMap, Factor, Mapping, Origin, Target};
-pub use metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use names::{companions, sidecar_path};
 pub use read::{
-    Preview, Source, preview, read_any, read_load_table, read_recording, read_stream,
+    Preview, Progress, Source, preview, read_any, read_load_table, read_recording, read_stream,
     with_most_numbers,
 };
-pub use recording::{Bridged, Recording, UnknownScale};
-pub use sidecar::Sidecar;
-pub use source::Progress;
-pub use units::{UNITS, Unit};
 pub use write::{sidecar_text, write_csv, write_parquet, write_recording, write_whole};

@@ -1,11 +1,11 @@
 //! What all checks look at.
 
-use super::blocks::{Block, Three, blocks};
-use super::clipped::{Clipped, clipped};
-use super::expectation::Expectation;
-use super::statistics::median;
-use crate::channel::Channel;
-use crate::recording::Recording;
+use crate::audit::expectation::Expectation;
+use crate::audit::levels::clipped::{Clipped, clipped};
+use crate::audit::measure::blocks::{Block, Three, blocks};
+use crate::audit::measure::statistics::median;
+use crate::data::channel::Channel;
+use crate::data::recording::Recording;
 use num_complex::Complex64;
 use std::collections::BTreeSet;
 

@@ -1,6 +1,6 @@
 //! What an audit says.
 
-use crate::channel::Channel;
+use crate::data::channel::Channel;
 use serde::Serialize;
 
 /// The kinds of finding; the names are stable in JSON.

@@ -3,44 +3,25 @@
 //! Every check is a file. A check that finds channels whose phasors mean nothing says so in the
 //! [`Context`], and later checks leave them alone: one mistake gives one finding.
 
-mod blocks;
-mod clipped;
-mod clipping;
-mod clock;
 mod context;
-mod dead;
-mod drift;
 mod expectation;
 mod finding;
-mod fit;
-mod frozen;
-mod gap;
-mod held;
-mod missing;
-mod not_locked;
-mod offset;
-mod probes;
-mod refresh;
-mod rms_values;
-mod scale;
-mod sequence;
-mod skew;
-mod speed;
-mod spikes;
-mod statistics;
-mod stuck;
-mod supply;
-mod track;
-mod unit;
+mod levels;
+mod measure;
+mod silent;
+mod timing;
 mod wiring;
-mod zero_sequence;
 
 pub use expectation::{Circuit, Expectation};
 pub use finding::{Audit, Code, Finding};
-pub use probes::with_sound_probes;
+pub use wiring::probes::with_sound_probes;
 
-use crate::recording::Recording;
+use crate::data::recording::Recording;
 use context::Context;
+use levels::{clipping, offset, rms_values, scale, spikes, unit};
+use silent::{frozen, held, missing, stuck};
+use timing::{clock, drift, gap, not_locked, skew};
+use wiring::{phases, speed, supply, zero_sequence};
 
 /// Audits a recording against what the nameplate lets one expect.
 ///
@@ -65,7 +46,7 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
     findings.extend(scale::check(&mut context));
     let drift = drift::check(&mut context);
     if drift.is_none() {
-        findings.extend(wiring::check(&mut context));
+        findings.extend(phases::check(&mut context));
     }
     findings.extend(drift);
     findings.extend(unit::check(&mut context));

@@ -4,7 +4,7 @@ use super::budget::{most_numbers, too_large};
 use super::header::Header;
 use super::table_file::{Row, TableFile, missing, not_finite};
 use crate::error::Error;
-use crate::source::Progress;
+use crate::read::text::source::Progress;
 
 /// Named columns of equal length; NaN where a sample is missing.
 pub(super) struct Columns {

@@ -1,13 +1,13 @@
 //! The formats that are read; one entry registers one.
 
 use super::budget::{most_numbers, too_large};
-use super::csv_file::CsvFile;
 use super::table_file::TableFile;
+use super::text::csv_file::CsvFile;
 use super::{comtrade, mat, parquet};
 use crate::error::Error;
 use crate::mapping::Mapping;
 use crate::names::extension;
-use crate::source;
+use crate::read::text::source;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;

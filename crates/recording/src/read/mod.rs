@@ -1,32 +1,28 @@
 //! Reading recordings and load tables from files.
 
 mod budget;
-mod clock;
 mod columns;
 mod comtrade;
-mod csv_file;
-mod delay;
-mod encoder;
-mod finish;
+mod convert;
 mod format;
 mod header;
 mod mat;
 mod parquet;
 mod plan;
 mod preview;
-mod spikes;
 mod table;
 mod table_file;
+mod text;
 
+use crate::data::load_table::LoadTable;
+use crate::data::metadata::Metadata;
+use crate::data::recording::Recording;
 use crate::error::Error;
-use crate::load_table::LoadTable;
+use crate::mapping::sidecar::Sidecar;
 use crate::mapping::{Mapping, Target};
-use crate::metadata::Metadata;
 use crate::names;
-use crate::recording::Recording;
-use crate::sidecar::Sidecar;
-use crate::source::Progress;
 pub use budget::with_most_numbers;
+use convert::finish;
 use header::Header;
 use plan::Plan;
 pub use preview::{Preview, preview};
@@ -36,6 +32,7 @@ use std::io::Read;
 use std::path::Path;
 use table::Kind;
 use table_file::{Row, TableFile};
+pub use text::source::Progress;
 
 /// What a file turned out to hold.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! Which column of a file becomes which channel.
 
 use super::header::{Header, Unreadable, shown};
-use crate::channel::{Channel, Signal};
+use crate::data::channel::{Channel, Signal};
+use crate::data::units::Unit;
 use crate::error::{Error, Problem};
 use crate::mapping::{Mapping, Origin, Target};
 use crate::suggest::closest;
-use crate::units::Unit;
 use std::collections::BTreeMap;
 
 /// The columns of a file by target.

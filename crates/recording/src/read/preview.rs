@@ -4,7 +4,7 @@ use super::format;
 use super::table_file::Row;
 use crate::error::Error;
 use crate::mapping::Mapping;
-use crate::source;
+use crate::read::text::source;
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;

@@ -3,10 +3,10 @@
 use super::header::{Header, Unreadable, shown};
 use super::plan::list;
 use super::table_file::TableFile;
+use crate::data::load_table::{LoadTable, TableColumn, sufficient};
 use crate::error::Error;
-use crate::load_table::{LoadTable, TableColumn, sufficient};
 use crate::mapping::{Mapping, Target};
-use crate::source::Progress;
+use crate::read::text::source::Progress;
 use crate::suggest::closest;
 use std::collections::BTreeMap;
 

@@ -2,7 +2,7 @@
 
 use super::header::Header;
 use crate::error::Error;
-use crate::source::Progress;
+use crate::read::text::source::Progress;
 
 /// A file of which the header has been read.
 pub(super) trait TableFile {

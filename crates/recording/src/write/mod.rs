@@ -4,11 +4,11 @@ mod pages;
 mod parquet;
 mod whole;
 
-use crate::channel::Channel;
+use crate::data::channel::Channel;
+use crate::data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
+use crate::data::recording::{Recording, UnknownScale};
 use crate::error::Error;
-use crate::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 use crate::names::{ends_in, sidecar_path};
-use crate::recording::{Recording, UnknownScale};
 use flate2::{Compression, GzBuilder};
 use std::fmt::Write as _;
 use std::fs::File;

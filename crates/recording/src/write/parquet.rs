@@ -2,7 +2,7 @@
 
 use super::columns;
 use super::pages::Pages;
-use crate::recording::Recording;
+use crate::data::recording::Recording;
 use crate::seal;
 use bytes::Bytes;
 use parquet::basic::{Compression, Repetition, Type as Physical, ZstdLevel};
