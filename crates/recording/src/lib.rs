@@ -28,13 +28,15 @@ pub use data::channel::{Channel, Quantity, Signal};
 pub use data::load_table::{LoadPoint, LoadTable, TableColumn};
 pub use data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use data::recording::{Bridged, Recording, UnknownScale};
-pub use data::units::{UNITS, Unit};
+pub use data::units::{Period, UNITS, Unit};
 pub use error::{Class, Error, Problem};
 pub use mapping::sidecar::Sidecar;
-pub use mapping::{ColumnMap, Factor, Mapping, Origin, Target};
+pub use mapping::{ColumnMap, DateOrder, Factor, Mapping, Origin, Sensor, Target};
 pub use names::{companions, sidecar_path};
 pub use read::{
     Preview, Progress, Source, preview, read_any, read_load_table, read_recording, read_stream,
     with_most_numbers,
 };
-pub use write::{sidecar_text, write_csv, write_parquet, write_recording, write_whole};
+pub use write::{
+    reading_text, sidecar_text, write_csv, write_parquet, write_recording, write_whole,
+};

@@ -189,3 +189,51 @@ fn a_speed_of_unknown_scale_is_left_alone() {
     assert_eq!(declared.unusable, ["speed"]);
     assert!(declared.supported);
 }
+
+/// A clamp's volts are proposed with the evidence where the nameplate allows one, and nothing is changed.
+#[test]
+fn the_output_of_a_sensor_is_proposed() {
+    let clamp = audited(|s| each(&mut s.i, |x| 0.1 * x));
+    assert_codes(&clamp, &[Code::SensorScale]);
+    let finding = &clamp.findings[0];
+    for words in [
+        "a clamp of 100mV/A",
+        "Nothing was changed",
+        "--sensor i=100mV/A",
+    ] {
+        assert!(finding.detail.contains(words), "{}", finding.detail);
+    }
+    assert!(clamp.supported);
+    let probe = audited(|s| each(&mut s.v, |x| x / 100.0));
+    let said: Vec<&str> = probe
+        .findings
+        .iter()
+        .map(|finding| finding.detail.as_str())
+        .collect();
+    assert!(
+        said.iter()
+            .any(|detail| detail.contains("a probe of 100:1")),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn a_sensor_that_the_nameplate_contradicts_is_not_proposed() {
+    // A fifth of the rated current is a motor without load; three times more than any clamp gives is no clamp.
+    for factor in [0.5, 3.0] {
+        let audit = audited(|s| each(&mut s.i, |x| factor * x));
+        let codes: Vec<Code> = audit.findings.iter().map(|finding| finding.code).collect();
+        assert!(!codes.contains(&Code::SensorScale), "{codes:?}");
+    }
+    let far = audited(|s| each(&mut s.i, |x| 1e-6 * x));
+    let unit = far
+        .findings
+        .iter()
+        .find(|finding| finding.code == Code::Unit)
+        .unwrap();
+    assert!(
+        !unit.detail.contains("kA") && !unit.detail.contains("clamp"),
+        "{}",
+        unit.detail
+    );
+}

@@ -172,9 +172,10 @@ fn speed_scale_of(
 pub(crate) fn audit_of(source: &Source, motor: &MotorFile) -> Audit {
     match source {
         Source::Recording(recording) => audit(recording, &Expectation::from(motor)),
-        Source::LoadTable(_) => Audit {
+        Source::LoadTable(table) => Audit {
             supported: true,
             findings: Vec::new(),
+            assumptions: table.assumptions.clone(),
             unusable: Vec::new(),
         },
     }

@@ -41,6 +41,8 @@ pub enum Code {
     SpeedImplausible,
     /// The scale of a channel was declared unknown; value: 1.
     ScaleUnknown,
+    /// Channels look like the output of a sensor whose scale was not said; value: ratio to the rated amplitude.
+    SensorScale,
     /// A channel that judging needs is absent.
     ChannelMissing,
     /// Samples far off their neighbours were bridged; value: how many.
@@ -88,6 +90,8 @@ pub struct Audit {
     pub supported: bool,
     /// What was found, in a fixed order.
     pub findings: Vec<Finding>,
+    /// What had to be assumed to read the file, one sentence each.
+    pub assumptions: Vec<String>,
     /// Channels that must not be used, though the recording can be: dead, implausible.
     pub unusable: Vec<String>,
 }

@@ -18,7 +18,7 @@ pub use wiring::probes::with_sound_probes;
 
 use crate::data::recording::Recording;
 use context::Context;
-use levels::{clipping, offset, rms_values, scale, spikes, unit};
+use levels::{clipping, offset, rms_values, scale, sensor, spikes, unit};
 use silent::{frozen, held, missing, stuck};
 use timing::{clock, drift, gap, not_locked, skew};
 use wiring::{phases, speed, supply, zero_sequence};
@@ -50,6 +50,7 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
     }
     findings.extend(drift);
     findings.extend(unit::check(&mut context));
+    propose_sensors(&mut findings, sensor::check(&context));
     findings.extend(offset::check(&context));
     let skew = skew::check(&context);
     if skew.is_none() {
@@ -64,7 +65,21 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
     Audit {
         supported: findings.iter().all(|finding| !finding.refuses),
         findings,
+        assumptions: recording.assumptions.clone(),
         unusable: context.unsound.iter().map(ToString::to_string).collect(),
+    }
+}
+
+/// Proposals of sensors: beside the other findings, or within that of a unit of the same channels.
+fn propose_sensors(findings: &mut Vec<Finding>, proposals: Vec<Finding>) {
+    for proposal in proposals {
+        let same = |finding: &&mut Finding| {
+            finding.code == Code::Unit && finding.channel == proposal.channel
+        };
+        match findings.iter_mut().find(same) {
+            Some(unit) => unit.detail = format!("{} Or: {}", unit.detail, proposal.detail),
+            None => findings.push(proposal),
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use crate::data::channel::Channel;
 use crate::data::metadata::Metadata;
 use crate::data::units::Unit;
 use crate::error::Error;
+use crate::mapping::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -43,6 +44,8 @@ pub struct Recording {
     pub unknown_speed_scale: Option<Box<UnknownScale>>,
     /// What had to be assumed to read the file, one sentence each; a report shows them.
     pub assumptions: Vec<String>,
+    /// How the file was read, every column named: what a sidecar says for it to be read again without flags.
+    pub reading: Box<Mapping>,
 }
 
 /// What was made of channels when they were read.
@@ -69,6 +72,7 @@ impl Recording {
             metadata,
             unknown_speed_scale: None,
             assumptions: Vec::new(),
+            reading: Box::default(),
         })
     }
 
@@ -217,6 +221,7 @@ impl Recording {
         cut.unknown_speed_scale
             .clone_from(&self.unknown_speed_scale);
         cut.assumptions.clone_from(&self.assumptions);
+        cut.reading.clone_from(&self.reading);
         Ok(cut)
     }
 }

@@ -15,6 +15,17 @@ pub struct Unit {
     pub zero: f64,
     /// Whether the column is a running count of encoder edges, to be differentiated.
     pub counts: bool,
+    /// Whether the column is the time from one pulse of the encoder to the next, or of a whole turn.
+    pub period: Option<Period>,
+}
+
+/// What a measured period spans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Period {
+    /// From one pulse of an encoder's track to the next.
+    Pulse,
+    /// One turn of the shaft.
+    Turn,
 }
 
 use std::f64::consts::TAU;
@@ -26,11 +37,19 @@ const fn unit(name: &'static str, quantity: Quantity, factor: f64) -> Unit {
         factor,
         zero: 0.0,
         counts: false,
+        period: None,
+    }
+}
+
+const fn period(name: &'static str, seconds: f64, of: Period) -> Unit {
+    Unit {
+        period: Some(of),
+        ..unit(name, Quantity::Speed, seconds)
     }
 }
 
 /// Every unit that a file may use; the first of a quantity is SI.
-pub const UNITS: [Unit; 26] = [
+pub const UNITS: [Unit; 31] = [
     unit("s", Quantity::Time, 1.0),
     unit("ms", Quantity::Time, 1e-3),
     unit("us", Quantity::Time, 1e-6),
@@ -66,6 +85,11 @@ pub const UNITS: [Unit; 26] = [
         ..unit("degF", Quantity::Temperature, 5.0 / 9.0)
     },
     unit("min", Quantity::Time, 60.0),
+    period("s/pulse", 1.0, Period::Pulse),
+    period("ms/pulse", 1e-3, Period::Pulse),
+    period("us/pulse", 1e-6, Period::Pulse),
+    period("ms/rev", 1e-3, Period::Turn),
+    period("us/rev", 1e-6, Period::Turn),
 ];
 
 impl Unit {
@@ -87,16 +111,7 @@ impl Unit {
     /// # Errors
     /// The units that the quantity does take, as text for a message.
     pub fn declared(quantity: Quantity, name: &str) -> Result<Unit, String> {
-        let name = name.trim();
-        let usual = match name {
-            "v" | "Volt" | "Volts" | "volt" | "volts" => "V",
-            "a" | "Amp" | "Amps" | "amp" | "amps" | "Ampere" => "A",
-            "kv" | "KV" | "Kv" => "kV",
-            "ka" | "KA" | "Ka" => "kA",
-            "N.m" | "N m" | "N*m" => "Nm",
-            "r/min" | "RPM" | "1/min" | "min-1" => "rpm",
-            other => other,
-        };
+        let usual = usual(name.trim());
         Unit::parse(quantity, usual)
     }
 
@@ -111,6 +126,41 @@ impl Unit {
         self.factor * x + self.zero
     }
 }
+
+/// Our name for what instruments call a unit.
+fn usual(name: &str) -> &str {
+    match name {
+        "v" | "Volt" | "Volts" | "volt" | "volts" | "VOLT" | "Vdc" | "Vac" => "V",
+        "a" | "Amp" | "Amps" | "amp" | "amps" | "Ampere" | "ampere" | "AMP" => "A",
+        "mv" | "millivolt" | "Millivolt" => "mV",
+        "ma" | "milliampere" => "mA",
+        "kv" | "KV" | "Kv" => "kV",
+        "ka" | "KA" | "Ka" => "kA",
+        "N.m" | "N m" | "N*m" | "N-m" | "N\u{b7}m" | "NM" | "nm" => "Nm",
+        "r/min" | "RPM" | "1/min" | "min-1" | "min^-1" | "min\u{207b}\u{b9}" | "U/min" | "Upm"
+        | "tr/min" | "Rpm" => "rpm",
+        "1/s" | "rps" | "U/s" => "rev/s",
+        "rad/sec" | "rad s-1" | "rad/s^1" => "rad/s",
+        "S" | "sec" | "Sec" | "second" | "Second" | "seconds" | "Seconds" | "Sekunden" => "s",
+        "msec" | "mS" | "milliseconds" | "millisecond" => "ms",
+        "\u{b5}s" | "\u{3bc}s" | "usec" | "uS" | "microseconds" => "us",
+        "\u{b0}C" | "\u{2103}" | "Cel" | "deg C" => "degC",
+        "\u{b0}F" => "degF",
+        other => other,
+    }
+}
+
+/// Whether a word is the unit of any quantity, as instruments write it.
+pub(crate) fn is_unit(name: &str) -> bool {
+    let name = usual(name.trim());
+    UNITS.iter().any(|unit| unit.name == name) || OTHERS.contains(&name)
+}
+
+/// Units of columns that are not used.
+const OTHERS: [&str; 16] = [
+    "W", "kW", "VA", "kVA", "var", "kvar", "%", "deg", "bar", "g", "Wh", "kWh", "kHz", "MHz",
+    "kS/s", "S/s",
+];
 
 #[cfg(test)]
 mod tests {
@@ -146,6 +196,9 @@ mod tests {
     #[test]
     fn a_unit_of_another_quantity_is_refused_with_the_list() {
         let known = Unit::parse(Quantity::Speed, "V").unwrap_err();
-        assert_eq!(known, "rad/s, rpm, rev/s, Hz, deg/s, counts");
+        assert_eq!(
+            known,
+            "rad/s, rpm, rev/s, Hz, deg/s, counts, s/pulse, ms/pulse, us/pulse, ms/rev, us/rev"
+        );
     }
 }

@@ -1,12 +1,14 @@
 //! The sidecar of a recording: `x.toml` beside `x.csv.gz`.
 
+use super::flags::{
+    DATE_ORDERS, DELIMITERS, LARGEST_DELAY_S, THOUSANDS, UNKNOWN, all_of, check_names, date_order,
+    delimiter, refused_unknown, thousands,
+};
+use super::{ColumnMap, Factor, LINE, Mapping, Origin, Sensor, Slot, Target};
+use crate::data::channel::{Channel, Quantity};
 use crate::data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 use crate::data::units::Unit;
 use crate::error::{Error, Problem};
-use crate::mapping::{
-    ColumnMap, DELIMITERS, Factor, LARGEST_DELAY_S, Mapping, Origin, Target, UNKNOWN, delimiter,
-    refused_unknown,
-};
 use crate::names::sidecar_path;
 use motor::document::{Bounds, Document, FileError, Section, Value, read_text};
 use std::path::Path;
@@ -100,8 +102,9 @@ const STARTS: [(&str, StartsFrom); 5] = [
 ];
 
 fn sidecar(root: Section<'_>) -> Option<Sidecar> {
-    let metadata = metadata(&root);
-    let mapping = mapping(&root);
+    let mut scales = Mapping::default();
+    let metadata = metadata(&root, &mut scales);
+    let mapping = mapping(&root, scales);
     root.finish();
     Some(Sidecar {
         metadata: metadata?,
@@ -109,14 +112,14 @@ fn sidecar(root: Section<'_>) -> Option<Sidecar> {
     })
 }
 
-fn metadata(root: &Section<'_>) -> Option<Metadata> {
+fn metadata(root: &Section<'_>, scales: &mut Mapping) -> Option<Metadata> {
     let voltage = root.choice_or("voltage", &VOLTAGE, VoltageKind::default());
     let supply = root.choice_or("supply", &SUPPLY, Supply::default());
     let belief = root.optional_text("supply_belief");
     let load_torque = root.choice_or("load_torque", &LOAD, LoadTorque::default());
     let starts_from = root.choice_or("starts_from", &STARTS, StartsFrom::default());
     let sensors = match root.optional_section("sensors")? {
-        Some(section) => sensors(section)?,
+        Some(section) => sensors(section, scales)?,
         None => Sensors::default(),
     };
     Some(Metadata {
@@ -140,7 +143,39 @@ const DELAY_US: Bounds = Bounds::between(-1e6 * LARGEST_DELAY_S, 1e6 * LARGEST_D
 const EDGES: [(f64, u32); 3] = [(1.0, 1), (2.0, 2), (4.0, 4)];
 const RATE: Bounds = Bounds::between(0.1, 1e8, "Hz");
 
-fn sensors(section: Section<'_>) -> Option<Sensors> {
+/// `ia = "100 mV/A"` in `[sensors]`; `i` and `v` mean all currents and all voltages.
+fn scales(section: &Section<'_>, mapping: &mut Mapping) -> Option<()> {
+    let groups = ["v", "i"]
+        .into_iter()
+        .filter_map(|name| Some((name, all_of(name)?)));
+    for (name, quantity) in groups {
+        if let Some(sensor) = sensor(section, name, quantity)? {
+            mapping.sensors.insert(quantity, sensor);
+        }
+    }
+    for channel in Channel::all() {
+        if let Some(sensor) = sensor(section, &channel.to_string(), channel.quantity())? {
+            let map = mapping.entry(Target::Channel(channel));
+            map.sensor = Some(sensor);
+            map.origin = Origin::Sidecar;
+        }
+    }
+    Some(())
+}
+
+fn sensor(section: &Section<'_>, key: &str, quantity: Quantity) -> Option<Option<Sensor>> {
+    let Some(text) = section.optional_text(key)? else {
+        return Some(None);
+    };
+    let sensor = Sensor::parse(quantity, &text);
+    if let Err(why) = &sensor {
+        section.report(key, format!("{why}: {}", super::sensor::WAYS));
+    }
+    sensor.ok().map(Some)
+}
+
+fn sensors(section: Section<'_>, mapping: &mut Mapping) -> Option<Sensors> {
+    let scales = scales(&section, mapping);
     let number = |key, bounds| section.optional_number(key, bounds);
     let voltage = number("voltage_full_scale_volt", &VOLT);
     let current = number("current_full_scale_amp", &AMP);
@@ -152,6 +187,7 @@ fn sensors(section: Section<'_>) -> Option<Sensors> {
     let counter_bits = whole(&section, "encoder_counter_bits", &BITS);
     let edges = edges(&section);
     section.finish();
+    scales?;
     Some(Sensors {
         voltage_full_scale_volt: voltage?,
         current_full_scale_amp: current?,
@@ -185,19 +221,25 @@ fn edges(section: &Section<'_>) -> Option<Option<u32>> {
     found.map(|(_, edges)| Some(*edges))
 }
 
-fn mapping(root: &Section<'_>) -> Option<Mapping> {
+fn mapping(root: &Section<'_>, scales: Mapping) -> Option<Mapping> {
     let line_voltages = flag(root, "line_voltages");
     let skip_missing = flag(root, "skip_missing");
     let decimal_comma = flag(root, "decimal_comma");
     let sample_rate_hz = root.optional_number("sample_rate_hz", &RATE);
-    let delimiter = separator(root);
+    let delimiter = word(root, "delimiter", delimiter, DELIMITERS);
+    let thousands = word(root, "thousands", thousands, THOUSANDS);
+    let date_order = word(root, "date_order", date_order, DATE_ORDERS);
+    let names = names(root);
     let mut mapping = Mapping {
         line_voltages: line_voltages?,
         skip_missing: skip_missing?,
         decimal_comma: decimal_comma?,
         sample_rate_hz: sample_rate_hz?,
         delimiter: delimiter?,
-        ..Mapping::default()
+        thousands: thousands?,
+        date_order: date_order?,
+        names: names?,
+        ..scales
     };
     if let Some(section) = root.optional_section("columns")? {
         columns(section, &mut mapping)?;
@@ -210,27 +252,54 @@ fn flag(section: &Section<'_>, key: &str) -> Option<Option<bool>> {
     Some(section.has(key).then_some(value))
 }
 
-fn separator(root: &Section<'_>) -> Option<Option<u8>> {
-    let Some(text) = root.optional_text("delimiter")? else {
+/// A key that takes one of a few words.
+fn word<T>(
+    root: &Section<'_>,
+    key: &str,
+    parse: fn(&str) -> Option<T>,
+    words: &str,
+) -> Option<Option<T>> {
+    let Some(text) = root.optional_text(key)? else {
         return Some(None);
     };
-    let byte = delimiter(&text);
-    if byte.is_none() {
-        root.report(
-            "delimiter",
-            format!("\"{text}\" does not separate columns: {DELIMITERS}"),
-        );
+    let found = parse(&text);
+    if found.is_none() {
+        root.report(key, format!("\"{text}\" is not known: {words}"));
     }
-    byte.map(Some)
+    found.map(Some)
+}
+
+/// `column_order = "t,va,vb,-,ia"`.
+fn names(root: &Section<'_>) -> Option<Option<Vec<String>>> {
+    let key = "column_order";
+    let Some(text) = root.optional_text(key)? else {
+        return Some(None);
+    };
+    let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
+    match check_names(&names) {
+        Ok(()) => Some(Some(names)),
+        Err((message, remedy)) => {
+            root.report(key, format!("{message}: {remedy}"));
+            None
+        }
+    }
 }
 
 /// `[columns]`: `ic = "ic2"`, or `speed = { name = "n", unit = "rpm", scale = 1.02, offset = -2.1 }`.
 fn columns(section: Section<'_>, mapping: &mut Mapping) -> Option<()> {
     let mut sound = Some(());
-    for target in Target::all() {
-        let key = target.to_string();
-        match column(&section, &key, target) {
-            Some(Some(map)) => *mapping.entry(target) = map,
+    let names = Target::all().map(|target| target.to_string());
+    let lines = LINE.iter().map(|(name, ..)| (*name).to_owned());
+    for key in names.chain(lines) {
+        let Some(slot) = Slot::parse(&key) else {
+            continue;
+        };
+        match column(&section, &key, slot.target, mapping.raw(slot.target)) {
+            Some(Some(map)) => {
+                let sensor = mapping.entry(slot.target).sensor.take();
+                *mapping.entry(slot.target) = ColumnMap { sensor, ..map };
+                mapping.note_line(slot);
+            }
             Some(None) => {}
             None => sound = None,
         }
@@ -239,7 +308,12 @@ fn columns(section: Section<'_>, mapping: &mut Mapping) -> Option<()> {
     sound
 }
 
-fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<ColumnMap>> {
+fn column(
+    section: &Section<'_>,
+    key: &str,
+    target: Target,
+    holds: Quantity,
+) -> Option<Option<ColumnMap>> {
     let entry = section.entries().iter().find(|entry| entry.key == key);
     if !matches!(entry.map(|entry| &entry.value), Some(Value::Table(_))) {
         let name = section.optional_text(key)?;
@@ -251,7 +325,7 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
     }
     let table = section.optional_section(key)??;
     let name = table.optional_text("name");
-    let unit = unit(&table, target);
+    let unit = unit(&table, target, holds);
     let scale = scale(&table, target);
     let offset = table.optional_number("offset", &Bounds::between(-1e12, 1e12, ""));
     // The clock cannot be late against itself: there the key is an unknown one.
@@ -264,6 +338,7 @@ fn column(section: &Section<'_>, key: &str, target: Target) -> Option<Option<Col
         origin: Origin::Sidecar,
         name: name?,
         unit: unit?,
+        sensor: None,
         scale: scale?,
         offset: offset?,
         delay: delay_us?.map(|delay_us| 1e-6 * delay_us),
@@ -291,11 +366,11 @@ fn scale(table: &Section<'_>, target: Target) -> Option<Option<Factor>> {
     Some(factor.map(Factor::Known))
 }
 
-fn unit(table: &Section<'_>, target: Target) -> Option<Option<Unit>> {
+fn unit(table: &Section<'_>, target: Target, holds: Quantity) -> Option<Option<Unit>> {
     let Some(name) = table.optional_text("unit")? else {
         return Some(None);
     };
-    match Unit::parse(target.quantity(), &name) {
+    match Unit::parse(holds, &name) {
         Ok(unit) => Some(Some(unit)),
         Err(known) => {
             table.report(
@@ -310,7 +385,6 @@ fn unit(table: &Section<'_>, target: Target) -> Option<Option<Unit>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::channel::Channel;
 
     #[test]
     fn every_key_is_read() {

@@ -3,7 +3,7 @@
 use super::budget::{most_numbers, too_large};
 use super::table_file::TableFile;
 use super::text::csv_file::CsvFile;
-use super::{comtrade, mat, parquet};
+use super::{comtrade, mat, parquet, wav, xlsx};
 use crate::error::Error;
 use crate::mapping::Mapping;
 use crate::names::extension;
@@ -24,33 +24,47 @@ struct Format {
     /// Whether the first bytes of a file are this format's and no other's.
     is: fn(&[u8]) -> bool,
     /// Reads a file of this name.
-    open: fn(&Path) -> Opened,
+    open: fn(&Path, &Mapping) -> Opened,
     /// Reads what was in a stream of this name.
-    of_bytes: fn(&str, Vec<u8>) -> Opened,
+    of_bytes: fn(&str, Vec<u8>, &Mapping) -> Opened,
 }
 
 /// Every format but CSV, which is what remains.
-const FORMATS: [Format; 3] = [
+const FORMATS: [Format; 5] = [
     Format {
         name: "a Parquet file",
         extensions: &["parquet"],
         is: parquet::is,
-        open: parquet::open,
-        of_bytes: parquet::of_bytes,
+        open: |path, _| parquet::open(path),
+        of_bytes: |name, bytes, _| parquet::of_bytes(name, bytes),
     },
     Format {
         name: "a MAT-file",
         extensions: &["mat"],
         is: mat::is,
-        open: mat::open,
-        of_bytes: mat::of_bytes,
+        open: |path, _| mat::open(path),
+        of_bytes: |name, bytes, _| mat::of_bytes(name, bytes),
     },
     Format {
         name: "a COMTRADE recording",
         extensions: &["cff", "cfg", "dat"],
         is: comtrade::is,
-        open: comtrade::open,
-        of_bytes: comtrade::of_bytes,
+        open: |path, _| comtrade::open(path),
+        of_bytes: |name, bytes, _| comtrade::of_bytes(name, bytes),
+    },
+    Format {
+        name: "an Excel workbook",
+        extensions: &["xlsx", "xlsm"],
+        is: xlsx::is,
+        open: xlsx::open,
+        of_bytes: xlsx::of_bytes,
+    },
+    Format {
+        name: "a WAV file",
+        extensions: &["wav"],
+        is: wav::is,
+        open: |path, _| wav::open(path),
+        of_bytes: |name, bytes, _| wav::of_bytes(name, bytes),
     },
 ];
 
@@ -102,7 +116,7 @@ pub(super) fn open(path: &Path, mapping: &Mapping) -> Result<Box<dyn TableFile>,
             Err(misnamed(path, content))
         }
         (None, Some(content)) => Err(misnamed(path, content)),
-        (Some(format), _) => (format.open)(path),
+        (Some(format), _) => (format.open)(path, mapping),
         (None, None) => Ok(Box::new(CsvFile::open(path, mapping)?)),
     }
 }
@@ -128,7 +142,7 @@ pub(super) fn open_stream(
     rest.read_to_end(&mut bytes).map_err(broken)?;
     match bytes.len() as u64 > most_bytes() {
         true => Err(too_large(name)),
-        false => (format.of_bytes)(name, bytes),
+        false => (format.of_bytes)(name, bytes, mapping),
     }
 }
 

@@ -1,6 +1,9 @@
 //! The names of a file's columns.
 
+use crate::data::load_table::TableColumn;
+use crate::data::units::is_unit;
 use crate::error::Error;
+use crate::mapping::{Target, aliases};
 
 /// What a file says about its columns before the first sample.
 pub(super) struct Header {
@@ -10,12 +13,27 @@ pub(super) struct Header {
     pub line: u64,
     /// The column names, trimmed and without quotes; none is empty or stands there twice.
     pub names: Vec<String>,
+    /// The names without the units that stand in them: `Ua` of `Ua [V]`.
+    pub stems: Vec<String>,
     /// The unit that the file declares for each column; empty when it declares none at all.
     pub units: Vec<Option<String>>,
+    /// What is to be said of a column that is used: how its cells are read.
+    pub remarks: Vec<Option<String>>,
+    /// Samples per second, where the file declares them beside its columns.
+    pub rate: Option<DeclaredRate>,
     /// What had to be assumed to read the file, one sentence each.
     pub notes: Vec<String>,
     /// Columns that cannot be used: refused where they are asked for, named where they are not.
     pub unreadable: Vec<Unreadable>,
+}
+
+/// A rate that a file declares, for a file without a clock.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DeclaredRate {
+    /// Samples per second.
+    pub hz: f64,
+    /// The sentence that says where it stands.
+    pub note: String,
 }
 
 /// A column that is there and cannot be read.
@@ -50,13 +68,20 @@ impl Header {
     /// # Errors
     /// Names that are empty, stand there twice, or are numbers.
     pub fn new(file: String, line: u64, names: Vec<String>) -> Result<Header, Error> {
-        check(&file, line, &names)?;
+        let mut names = names;
+        let notes = name_all(&file, line, &mut names)?;
+        let parts = names.iter().map(|name| name_and_unit(name));
+        let (stems, units): (Vec<String>, Vec<_>) =
+            parts.map(|(stem, unit)| (stem.to_owned(), unit)).unzip();
         Ok(Header {
             file,
             line,
+            remarks: vec![None; names.len()],
             names,
-            units: Vec::new(),
-            notes: Vec::new(),
+            stems,
+            units,
+            rate: None,
+            notes,
             unreadable: Vec::new(),
         })
     }
@@ -67,31 +92,108 @@ impl Header {
     }
 }
 
-fn check(file: &str, line: u64, names: &[String]) -> Result<(), Error> {
-    let bad = |message: String, remedy: &str| Err(Error::at(file, line, "", message, remedy));
+/// The name of a column without one, counted from 0.
+pub(super) fn column_name(k: usize) -> String {
+    format!("column {}", k + 1)
+}
+
+/// Gives every column a name of its own; says what was given.
+fn name_all(file: &str, line: u64, names: &mut [String]) -> Result<Vec<String>, Error> {
     if names.iter().all(|name| name.parse::<f64>().is_ok()) {
-        let message = "the first line holds numbers, not column names".to_owned();
-        return bad(
-            message,
-            "put a line such as t,va,vb,vc,ia,ib,ic,speed before it",
-        );
+        let message = "the first line holds numbers, not column names";
+        let remedy = "put a line such as t,va,vb,vc,ia,ib,ic,speed before it, or name the columns in their order: --columns t,va,vb,vc,ia,ib,ic";
+        return Err(Error::at(file, line, "", message, remedy));
     }
-    for (k, name) in names.iter().enumerate() {
-        if name.is_empty() {
-            return bad(
-                format!("column {} has no name", k + 1),
-                "name it, or remove it",
-            );
+    let mut notes = Vec::new();
+    for k in 0..names.len() {
+        if names[k].is_empty() {
+            names[k] = column_name(k);
+            notes.push(format!("column {} has no name", k + 1));
         }
-        if names[..k].contains(name) {
-            let message = format!("column `{}` stands there twice", shown(name));
-            return bad(message, "rename or remove one of the two");
+        if !names[..k].contains(&names[k]) {
+            continue;
         }
+        let twice = shown(&names[k]);
+        if aliases::is_known(name_and_unit(&names[k]).0) {
+            let message = format!("column `{twice}` stands there twice");
+            let remedy = "rename or remove one of the two, or name the columns in their order with --columns";
+            return Err(Error::at(file, line, "", message, remedy));
+        }
+        names[k] = format!("{} #{}", names[k], k + 1);
+        notes.push(format!(
+            "column `{twice}` stands there twice: the second is called {}",
+            shown(&names[k])
+        ));
     }
-    Ok(())
+    Ok(notes)
+}
+
+/// Ends of a name that are units: `speed_rpm`.
+const SUFFIXES: [&str; 14] = [
+    "_rpm", "_V", "_mV", "_kV", "_A", "_mA", "_kA", "_s", "_ms", "_us", "_ns", "_Nm", "_degC",
+    "_rad_s",
+];
+
+/// The name of a column and the unit that stands in it: `Ua [V]`, `I1 (A)`, `n in 1/min`, `U1/V`, `speed_rpm`.
+pub(super) fn name_and_unit(name: &str) -> (&str, Option<String>) {
+    let name = name.trim();
+    if Target::parse(name).is_some() || TableColumn::parse(name).is_some() {
+        return (name, None);
+    }
+    let bracketed = [('[', ']'), ('(', ')')].iter().find_map(|(open, close)| {
+        let (stem, rest) = name.split_once(*open)?;
+        let (unit, _) = rest.split_once(*close)?;
+        Some((stem, unit)).filter(|(_, unit)| is_unit(unit))
+    });
+    let split = |mark: &str| name.rsplit_once(mark).filter(|(_, unit)| is_unit(unit));
+    let named = bracketed
+        .or_else(|| name.split_once(" in ").filter(|(_, unit)| is_unit(unit)))
+        .or_else(|| name.split_once('/').filter(|(_, unit)| is_unit(unit)))
+        .or_else(|| split(", "))
+        .or_else(|| split(" "))
+        .or_else(|| {
+            SUFFIXES
+                .iter()
+                .find_map(|end| Some((name.strip_suffix(end)?, &end[1..])))
+        });
+    match named {
+        Some((stem, unit)) if !stem.trim().is_empty() => {
+            let unit = if unit == "rad_s" { "rad/s" } else { unit };
+            (stem.trim(), Some(unit.trim().to_owned()))
+        }
+        _ => (name, None),
+    }
 }
 
 /// A name from a file, cut to what fits a message.
 pub(super) fn shown(name: &str) -> String {
     name.chars().take(40).filter(|c| !c.is_control()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_unit_may_stand_in_the_name() {
+        for (name, stem, unit) in [
+            ("Ua [V]", "Ua", Some("V")),
+            ("I1 (mA)", "I1", Some("mA")),
+            ("Time(s)", "Time", Some("s")),
+            ("n [1/min]", "n", Some("1/min")),
+            ("Drehzahl in U/min", "Drehzahl", Some("U/min")),
+            ("U1/V", "U1", Some("V")),
+            ("speed_rpm", "speed_rpm", None),
+            ("motor_speed_rpm", "motor_speed", Some("rpm")),
+            ("speed (probe 2)", "speed (probe 2)", None),
+            ("ia", "ia", None),
+            ("[V]", "[V]", None),
+        ] {
+            assert_eq!(
+                name_and_unit(name),
+                (stem, unit.map(str::to_owned)),
+                "{name}"
+            );
+        }
+    }
 }

@@ -13,6 +13,8 @@ mod preview;
 mod table;
 mod table_file;
 mod text;
+mod wav;
+mod xlsx;
 
 use crate::data::load_table::LoadTable;
 use crate::data::metadata::Metadata;
@@ -131,12 +133,12 @@ pub fn read_stream(
 fn refuse_others(path: &Path, is_folder: bool) -> Result<(), Error> {
     let name = path.display().to_string();
     if is_folder {
-        let remedy = "name a .csv, .csv.gz, .parquet, .mat, .cfg or .cff file in it";
+        let remedy = "name a .csv, .csv.gz, .xlsx, .parquet, .mat, .wav, .cfg or .cff file in it";
         return Err(Error::bad(&name, "is a folder", remedy));
     }
     if names::extension(path) == "toml" {
         let message = "is a motor file, a scenario or a sidecar by its name, no recording";
-        let remedy = "name the recording: .csv, .csv.gz, .parquet, .mat, .cfg or .cff";
+        let remedy = "name the recording: .csv, .csv.gz, .xlsx, .parquet, .mat, .wav, .cfg or .cff";
         return Err(Error::bad(&name, message, remedy));
     }
     Ok(())
@@ -164,9 +166,18 @@ fn recording_of(
     mapping: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Recording, Error> {
-    let plan = Plan::new(file.header(), mapping)?;
+    let mut plan = Plan::new(file.header(), mapping)?;
+    let rate = file.header().rate.as_ref().filter(|_| !plan.has_clock());
+    if let Some(rate) = rate {
+        plan.mapping.sample_rate_hz = Some(rate.hz);
+        plan.rate_is_declared = true;
+        plan.notes.push(rate.note.clone());
+    }
     plan_is_sufficient(file.header(), &plan)?;
     let raw = read_columns(file, &plan, progress)?;
+    plan.notes.extend(file.notes());
+    plan.reading.sample_rate_hz = plan.mapping.sample_rate_hz;
+    plan.reading = plan.reading.over(file.layout());
     finish::recording(&file.header().file, raw, plan, metadata)
 }
 
@@ -175,10 +186,10 @@ fn plan_is_sufficient(header: &Header, plan: &Plan) -> Result<(), Error> {
     if !plan.columns.keys().any(electrical) {
         let names = plan::list(&header.names);
         let message = format!("has neither currents nor voltages among {names}");
-        let remedy = "name the columns ia ib ic, va vb vc, or map them: --column ia=NAME";
+        let remedy = "name the columns ia ib ic, va vb vc, or map them: --column ia=NAME, or all in their order: --columns t,va,vb,-,ia";
         return Err(header.error("", message, remedy));
     }
-    if !plan.columns.contains_key(&Target::Time) && plan.mapping.sample_rate_hz.is_none() {
+    if !plan.has_clock() {
         let message = "the file has no clock";
         let remedy =
             "name the time column t, map it with --column t=NAME, or declare --sample-rate HZ";

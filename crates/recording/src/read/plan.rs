@@ -1,10 +1,11 @@
 //! Which column of a file becomes which channel.
 
 use super::header::{Header, Unreadable, shown};
-use crate::data::channel::{Channel, Signal};
+use crate::data::channel::{Channel, Quantity, Signal};
 use crate::data::units::Unit;
 use crate::error::{Error, Problem};
-use crate::mapping::{Mapping, Origin, Target};
+use crate::mapping::aliases::{self, Three};
+use crate::mapping::{Factor, Mapping, Origin, Slot, Target};
 use crate::suggest::closest;
 use std::collections::BTreeMap;
 
@@ -15,18 +16,15 @@ pub(crate) struct Plan {
     pub columns: BTreeMap<Target, usize>,
     /// Whether `va vb vc` hold v_ab, v_bc, v_ca.
     pub line_voltages: bool,
+    /// Whether the file itself says the rate.
+    pub rate_is_declared: bool,
     /// The user's mapping, completed by the units that the file declares.
     pub mapping: Mapping,
+    /// The same with every column named: what a sidecar would say.
+    pub reading: Mapping,
     /// What had to be assumed, one sentence each.
     pub notes: Vec<String>,
 }
-
-/// Names that are taken for line voltages without being told.
-const LINE: [(&str, Signal); 3] = [
-    ("vab", Signal::Va),
-    ("vbc", Signal::Vb),
-    ("vca", Signal::Vc),
-];
 
 impl Plan {
     /// Assigns columns to targets: the mapping first, then the columns of known names.
@@ -35,21 +33,176 @@ impl Plan {
         let (file, line, units) = (&header.file, header.line, &header.units);
         let mut notes = header.notes.clone();
         notes.extend(header.unreadable.iter().map(Unreadable::note));
+        let whole = header;
         let header = &header.names;
         let mut plan = Plan {
             columns: BTreeMap::new(),
             line_voltages: mapping.line_voltages.unwrap_or(false),
+            rate_is_declared: false,
             mapping: mapping.clone(),
+            reading: Mapping::default(),
             notes,
         };
-        plan.assign_mapped(file, line, header, mapping)?;
-        plan.assign_named(header);
-        plan.assign_line_voltages(header);
+        plan.assign_listed(whole, mapping)?;
+        plan.assign_mapped(file, line, header, &whole.stems, mapping)?;
+        if mapping.names.is_none() {
+            plan.assign_named(&whole.stems);
+            plan.assign_line_voltages(&whole.stems);
+            plan.assign_aliases(whole)?;
+        }
+        plan.assign_sensors();
         plan.require_mapped(file, line, mapping)?;
         plan.adopt_units(file, line, header, units)?;
+        plan.reading = plan.resolved(header);
         plan.note_conversions(header);
+        plan.note_remarks(whole);
         plan.account_for_the_rest(file, line, header)?;
         Ok(plan)
+    }
+
+    /// The columns in the order that the user says.
+    fn assign_listed(&mut self, header: &Header, mapping: &Mapping) -> Result<(), Error> {
+        let Some(names) = &mapping.names else {
+            return Ok(());
+        };
+        if names.len() > header.names.len() {
+            let (said, has) = (names.len(), header.names.len());
+            let message = format!("--columns names {said} columns, the file has {has}");
+            let remedy = "name them in their order, with `-` for one that is not used";
+            return Err(header.error("", message, remedy));
+        }
+        let slots = names.iter().enumerate();
+        for (column, slot) in slots.filter_map(|(k, name)| Some((k, Slot::parse(name)?))) {
+            self.assign(slot.target, column, slot.line);
+            self.notes.push(format!(
+                "{} is {}, user's assumption",
+                shown(&header.names[column]),
+                names[column]
+            ));
+        }
+        Ok(())
+    }
+
+    fn assign(&mut self, target: Target, column: usize, line: Option<bool>) {
+        self.columns.insert(target, column);
+        self.line_voltages |= line.is_some();
+        if line == Some(true) {
+            let map = self.mapping.entry(target);
+            let factor = match map.scale {
+                Some(Factor::Known(factor)) => factor,
+                _ => 1.0,
+            };
+            map.scale = Some(Factor::Known(-factor));
+        }
+    }
+
+    /// Columns that have another recorder's names, where no column has ours.
+    fn assign_aliases(&mut self, header: &Header) -> Result<(), Error> {
+        for signals in [Channel::VOLTAGES, Channel::CURRENTS] {
+            let taken = |channel: &Channel| self.columns.contains_key(&Target::Channel(*channel));
+            if !signals.iter().any(taken) {
+                self.assign_three(header, signals)?;
+            }
+        }
+        let singles: Vec<(usize, Target)> = (0..header.names.len())
+            .filter(|column| !self.is_taken(*column))
+            .filter_map(|column| Some((column, single(header, column)?)))
+            .filter(|(_, target)| {
+                !self.columns.contains_key(target) && !self.replaced(target, &self.mapping)
+            })
+            .collect();
+        for (k, (column, target)) in singles.iter().enumerate() {
+            if let Some((other, _)) = singles[..k].iter().find(|(_, same)| same == target) {
+                return Err(could_both(header, &[*other, *column], &target.to_string()));
+            }
+            self.assign(*target, *column, None);
+            self.note_alias(header, *column, &target.to_string());
+            if let Some(unit) = aliases::unit_in(&header.stems[*column]) {
+                let map = self.mapping.entry(*target);
+                map.origin = Origin::File;
+                map.unit = map.unit.or(Unit::declared(target.quantity(), unit).ok());
+            }
+        }
+        Ok(())
+    }
+
+    fn assign_three(&mut self, header: &Header, channels: [Channel; 3]) -> Result<(), Error> {
+        let sets: Vec<Three> = aliases::threes(&header.stems)
+            .into_iter()
+            .filter(|three| three.signals == channels.map(|channel| channel.signal))
+            .collect();
+        let phases = sets.iter().filter(|three| !three.is_line);
+        let phases: Vec<&Three> = phases.collect();
+        let candidates = if phases.is_empty() {
+            sets.iter().collect()
+        } else {
+            phases
+        };
+        let Some(first) = candidates.first() else {
+            return Ok(());
+        };
+        if let Some(other) = candidates.get(1) {
+            let both = [first, other].map(|three| three.columns.iter().flatten().map(|(k, _)| *k));
+            let both: Vec<usize> = both.into_iter().flatten().collect();
+            return Err(could_both(header, &both, &channels[0].to_string()));
+        }
+        for (channel, column) in channels.into_iter().zip(first.columns) {
+            let Some((column, is_reversed)) = column.filter(|(column, _)| !self.is_taken(*column))
+            else {
+                continue;
+            };
+            self.assign(
+                Target::Channel(channel),
+                column,
+                first.is_line.then_some(is_reversed),
+            );
+            let name = match (first.is_line, is_reversed) {
+                (true, _) => line_name(channel, is_reversed),
+                (false, _) => channel.to_string(),
+            };
+            self.note_alias(header, column, &name);
+        }
+        Ok(())
+    }
+
+    fn note_alias(&mut self, header: &Header, column: usize, name: &str) {
+        let note = format!(
+            "column {} is {name}, by its name",
+            shown(&header.names[column])
+        );
+        self.notes.push(note);
+    }
+
+    /// Sensors of all voltages or currents, where a column has none of its own.
+    fn assign_sensors(&mut self) {
+        let channels: Vec<Target> = self.columns.keys().copied().collect();
+        for target in channels {
+            let Some(sensor) = self.mapping.sensors.get(&target.quantity()).cloned() else {
+                continue;
+            };
+            let map = self.mapping.entry(target);
+            map.sensor = map.sensor.take().or(Some(sensor));
+        }
+    }
+
+    fn resolved(&self, header: &[String]) -> Mapping {
+        let mut reading = self.mapping.clone();
+        reading.sidecar = None;
+        reading.line_voltages = self.line_voltages.then_some(true);
+        for (target, column) in &self.columns {
+            let name = &header[*column];
+            if reading.names.is_none() && *name != target.to_string() {
+                reading.entry(*target).name = Some(name.clone());
+            }
+        }
+        reading
+    }
+
+    /// What the cells of the used columns take to be read.
+    fn note_remarks(&mut self, header: &Header) {
+        let time = self.columns.get(&Target::Time);
+        let remark = time.and_then(|column| header.remarks[*column].clone());
+        self.notes.extend(remark);
     }
 
     fn assign_mapped(
@@ -57,11 +210,16 @@ impl Plan {
         file: &str,
         line: u64,
         header: &[String],
+        stems: &[String],
         mapping: &Mapping,
     ) -> Result<(), Error> {
         for (target, map) in &mapping.columns {
             let Some(name) = &map.name else { continue };
-            let Some(column) = header.iter().position(|column| column == name) else {
+            let by_stem = |(column, stem): (usize, &String)| {
+                (stem == name && !header.contains(name)).then_some(column)
+            };
+            let named = header.iter().position(|column| column == name);
+            let Some(column) = named.or_else(|| stems.iter().enumerate().find_map(by_stem)) else {
                 let remedy = match closest(name, header.iter().map(String::as_str)) {
                     Some(meant) => format!("did you mean `{}`?", shown(meant)),
                     None => format!("the file has {}", list(header)),
@@ -96,19 +254,21 @@ impl Plan {
         }
     }
 
-    fn assign_line_voltages(&mut self, header: &[String]) {
+    fn assign_line_voltages(&mut self, stems: &[String]) {
         let phase = Channel::VOLTAGES.map(Target::Channel);
         if phase.iter().any(|target| self.columns.contains_key(target)) {
             return;
         }
-        let found = LINE.iter().filter_map(|(name, signal)| {
-            let column = header.iter().position(|column| column == name)?;
-            Some((Target::Channel(Channel::first(*signal)), column))
+        let slots = stems.iter().enumerate().filter_map(|(column, stem)| {
+            let slot = Slot::parse(stem)?;
+            slot.line
+                .map(|is_reversed| (slot.target, column, is_reversed))
         });
-        let found: Vec<_> = found.collect();
+        let found: Vec<_> = slots.collect();
         if found.len() >= 2 {
-            self.columns.extend(found);
-            self.line_voltages = true;
+            for (target, column, is_reversed) in found {
+                self.assign(target, column, Some(is_reversed));
+            }
         }
     }
 
@@ -149,13 +309,14 @@ impl Plan {
             if said.is_some_and(|map| map.unit.is_some()) {
                 continue;
             }
-            let unit = Unit::declared(target.quantity(), name).map_err(|known| {
+            let holds = said.map_or(target.quantity(), |map| map.raw(target.quantity()));
+            let unit = Unit::declared(holds, name).map_err(|known| {
                 foreign_unit(file, line, *target, &header[column], name, &known)
             })?;
-            if unit != Unit::si(target.quantity()) {
+            if unit != Unit::si(holds) {
                 let map = self.mapping.entry(*target);
                 map.unit = Some(unit);
-                if (&map.name, map.scale, map.offset) == (&None, None, None) {
+                if (&map.name, map.scale, map.offset, &map.sensor) == (&None, None, None, &None) {
                     map.origin = Origin::File;
                 }
             }
@@ -195,11 +356,12 @@ impl Plan {
             .enumerate()
             .filter(|(column, _)| !self.is_taken(*column));
         let (mut notes, mut problems) = (Vec::new(), Vec::new());
+        let is_listed = self.mapping.names.is_some();
         for (_, name) in unused {
-            let absent = absent.iter().map(String::as_str);
+            let absent = absent.iter().map(String::as_str).filter(|_| !is_listed);
             match closest(name, absent).filter(|_| Target::parse(name).is_none()) {
                 Some(meant) => problems.push(misspelt(file, line, name, meant)),
-                None => notes.push(format!("column {} is not used", shown(name))),
+                None => notes.push(format!("{} is not used", called(name))),
             }
         }
         self.notes.extend(notes);
@@ -207,6 +369,11 @@ impl Plan {
             true => Ok(()),
             false => Err(Error::of(problems)),
         }
+    }
+
+    /// Whether the rows have times: a column of them, or a rate.
+    pub fn has_clock(&self) -> bool {
+        self.columns.contains_key(&Target::Time) || self.mapping.sample_rate_hz.is_some()
     }
 
     fn is_taken(&self, column: usize) -> bool {
@@ -248,7 +415,7 @@ fn is_wanted(name: &str, header: &Header, mapping: &Mapping) -> bool {
         None => {
             let phases = Channel::VOLTAGES.map(Target::Channel);
             let phase = |target: &Target| has(&target.to_string()) || named(target).is_some();
-            LINE.iter().any(|(line, _)| *line == name) && !phases.iter().any(phase)
+            Slot::parse(name).is_some() && !phases.iter().any(phase)
         }
     }
 }
@@ -265,8 +432,42 @@ fn foreign_unit(
         "the file declares `{}`, which is not a unit of {target}",
         shown(unit)
     );
-    let remedy = format!("say what the numbers are: --unit {target}=UNIT, one of {known}");
+    let electrical = matches!(target, Target::Channel(channel) if channel.is_electrical());
+    let sensor = match electrical && Unit::declared(Quantity::Voltage, unit).is_ok() {
+        true => format!("; of a clamp say its scale: --sensor {target}=100mV/A"),
+        false => String::new(),
+    };
+    let remedy = format!("say what the numbers are: --unit {target}=UNIT, one of {known}{sensor}");
     Error::at(file, line, &shown(column), message, remedy)
+}
+
+/// The single channel that a column means by its name and unit.
+fn single(header: &Header, column: usize) -> Option<Target> {
+    let unit = header.units.get(column).and_then(Option::as_deref);
+    let has_unit_of =
+        |target: Target| unit.is_some_and(|unit| Unit::declared(target.quantity(), unit).is_ok());
+    aliases::single(&header.stems[column], has_unit_of)
+}
+
+/// The name of the line voltage that is kept where a phase voltage is.
+fn line_name(channel: Channel, is_reversed: bool) -> String {
+    let [first, second] = match channel.signal {
+        Signal::Va => ["a", "b"],
+        Signal::Vb => ["b", "c"],
+        _ => ["c", "a"],
+    };
+    if is_reversed {
+        format!("v{second}{first}")
+    } else {
+        format!("v{first}{second}")
+    }
+}
+
+fn could_both(header: &Header, columns: &[usize], target: &str) -> Error {
+    let names: Vec<String> = columns.iter().map(|k| header.names[*k].clone()).collect();
+    let message = format!("{} could each be {target}", list(&names));
+    let remedy = format!("say which: --column {target}={}", shown(&names[0]));
+    header.error(target, message, &remedy)
 }
 
 fn misspelt(file: &str, line: u64, name: &str, meant: &str) -> Problem {
@@ -279,6 +480,14 @@ fn misspelt(file: &str, line: u64, name: &str, meant: &str) -> Problem {
         field: name,
         message: "is not a known column".to_owned(),
         remedy,
+    }
+}
+
+/// A column in a sentence; one without a name is called by its number.
+fn called(name: &str) -> String {
+    match name.starts_with("column ") {
+        true => shown(name),
+        false => format!("column {}", shown(name)),
     }
 }
 

@@ -29,6 +29,9 @@ pub(super) fn kind(header: &Header, mapping: &Mapping) -> Result<Kind, Error> {
             .values()
             .any(|map| map.name.as_ref() == Some(name))
     };
+    if mapping.names.is_some() {
+        return Ok(Kind::Recording);
+    }
     let electrical = |name: &String| matches!(Target::parse(name), Some(Target::Channel(channel)) if channel.is_electrical());
     let of_recording = header
         .names

@@ -2,6 +2,7 @@
 
 use super::header::Header;
 use crate::error::Error;
+use crate::mapping::Mapping;
 use crate::read::text::source::Progress;
 
 /// A file of which the header has been read.
@@ -18,6 +19,16 @@ pub(super) trait TableFile {
         progress: &mut dyn FnMut(Progress),
         row: &mut dyn FnMut(&dyn Row) -> Result<(), Error>,
     ) -> Result<(), Error>;
+
+    /// How the file is laid out, in the words of a sidecar.
+    fn layout(&self) -> Mapping {
+        Mapping::default()
+    }
+
+    /// What the rows took to be read, one sentence each; complete after the last row.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// One row of a file.

@@ -2,11 +2,11 @@
 
 mod pages;
 mod parquet;
+mod sidecar;
 mod whole;
 
 use crate::data::channel::Channel;
-use crate::data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
-use crate::data::recording::{Recording, UnknownScale};
+use crate::data::recording::Recording;
 use crate::error::Error;
 use crate::names::{ends_in, sidecar_path};
 use flate2::{Compression, GzBuilder};
@@ -15,6 +15,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+pub use sidecar::{reading_text, sidecar_text};
 pub use whole::write_whole;
 
 /// How the name of a recording ends, and what is written then.
@@ -37,7 +38,7 @@ pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), Error> 
         return Err(Error::bad(&name, "is not the name of a recording", remedy));
     };
     whole(path, |file| write(recording, file))?;
-    let text = sidecar_text(&recording.metadata) + &scale_text(recording);
+    let text = sidecar_text(&recording.metadata) + &sidecar::scale_text(recording);
     whole(&sidecar_path(path), |file| file.write_all(text.as_bytes()))
 }
 
@@ -122,101 +123,4 @@ fn is_implied(recording: &Recording, channel: Channel) -> bool {
             .filter(|other| measured(other))
             .count()
             == 2
-}
-
-/// A sidecar that reads back to the same metadata.
-pub fn sidecar_text(metadata: &Metadata) -> String {
-    let mut text = String::new();
-    let mut word = |key: &str, value: &str| {
-        let _ = writeln!(text, "{key} = {}", toml::Value::from(value));
-    };
-    word("voltage", voltage_word(metadata.voltage));
-    word("supply", supply_word(metadata.supply));
-    if !metadata.supply_belief.trim().is_empty() {
-        word("supply_belief", &metadata.supply_belief);
-    }
-    if let Some(load) = load_word(metadata.load_torque) {
-        word("load_torque", load);
-    }
-    word("starts_from", starts_word(metadata.starts_from));
-    sensors_text(&mut text, &metadata.sensors);
-    text
-}
-
-/// What the sidecar says of a speed of unknown scale; the written column is free of a given offset.
-fn scale_text(recording: &Recording) -> String {
-    match recording.unknown_speed_scale.as_deref() {
-        None => String::new(),
-        Some(UnknownScale { offset: None, .. }) => {
-            "\n[columns.speed]\nscale = \"unknown\"\n".into()
-        }
-        Some(_) => "\n[columns.speed]\nscale = \"unknown\"\noffset = 0.0\n".into(),
-    }
-}
-
-fn sensors_text(text: &mut String, sensors: &Sensors) {
-    if *sensors == Sensors::default() {
-        return;
-    }
-    text.push_str("\n[sensors]\n");
-    let numbers = [
-        ("voltage_full_scale_volt", sensors.voltage_full_scale_volt),
-        ("current_full_scale_amp", sensors.current_full_scale_amp),
-        ("speed_full_scale_rad_s", sensors.speed_full_scale_rad_s),
-        ("torque_full_scale_nm", sensors.torque_full_scale_nm),
-        (
-            "noise_sigma_fraction_of_full_scale",
-            sensors.noise_sigma_fraction_of_full_scale,
-        ),
-    ];
-    for (key, value) in numbers {
-        if let Some(value) = value {
-            let _ = writeln!(text, "{key} = {}", toml::Value::from(value));
-        }
-    }
-    let counts = [
-        ("adc_bits", sensors.adc_bits),
-        (
-            "encoder_pulses_per_revolution",
-            sensors.encoder_pulses_per_revolution,
-        ),
-        ("encoder_edges_per_pulse", sensors.encoder_edges_per_pulse),
-        ("encoder_counter_bits", sensors.encoder_counter_bits),
-    ];
-    for (key, value) in counts {
-        if let Some(value) = value {
-            let _ = writeln!(text, "{key} = {value}");
-        }
-    }
-}
-
-fn voltage_word(voltage: VoltageKind) -> &'static str {
-    match voltage {
-        VoltageKind::Instantaneous => "instantaneous",
-        VoltageKind::Hold => "hold",
-    }
-}
-
-fn supply_word(supply: Supply) -> &'static str {
-    match supply {
-        Supply::Grid => "grid",
-        Supply::Inverter => "inverter",
-    }
-}
-
-fn load_word(load: LoadTorque) -> Option<&'static str> {
-    match load {
-        LoadTorque::Measured => Some("measured"),
-        LoadTorque::Friction => Some("friction"),
-        LoadTorque::Free => Some("free"),
-        LoadTorque::Undeclared => None,
-    }
-}
-
-fn starts_word(starts: StartsFrom) -> &'static str {
-    match starts {
-        StartsFrom::Standstill => "standstill",
-        StartsFrom::Running => "running",
-        StartsFrom::Unknown => "unknown",
-    }
 }

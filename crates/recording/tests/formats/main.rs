@@ -10,6 +10,8 @@ mod comtrade_cases;
 mod comtrade_damaged;
 mod mat;
 mod parquet;
+mod wav;
+mod workbook;
 
 use common::quiet;
 use recording::{Channel, Error, Mapping, Recording, read_recording};

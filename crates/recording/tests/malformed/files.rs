@@ -67,25 +67,18 @@ pub fn files() -> Vec<Case> {
             gzip(&gzip(b"t,ia\n0,1\n")),
             &["compressed twice"],
         ),
+        case(utf16("t,ia\n", true), &["a header, but no samples"]),
         case(
-            utf16("t,ia\n0,1\n1,2\n", false),
-            &["UTF-16", "save it as UTF-8"],
-        ),
-        case(
-            utf16("t,ia\n0,1\n1,2\n", true),
-            &["UTF-16", "save it as UTF-8"],
-        ),
-        case(
-            b"t\0,\0i\0a\0".to_vec(),
-            &["zero byte at offset 1", "UTF-8"],
+            b"t\0,\0i\0a\0\n\0\x000,1".to_vec(),
+            &["zero byte at offset 1", "export it as text"],
         ),
         case(
             b"t,ia\n0,1\n1,\xC3\x28\n".to_vec(),
-            &["x.csv:3: ia", "not UTF-8"],
+            &["x.csv:3: ia", "is not a number"],
         ),
         case(
             b"t,i\xFFa\n0,1\n1,2\n".to_vec(),
-            &["x.csv:1", "header is not UTF-8"],
+            &["x.csv:1", "neither currents nor voltages"],
         ),
         case(
             format!("t,ia\n0,1\n1,{}\n", "9".repeat(100_000)),
@@ -104,7 +97,7 @@ pub fn files() -> Vec<Case> {
             b"MATLAB 5.0 MAT-file, Platform".to_vec(),
             &["is a MAT-file", "rename it to", "x.mat"],
         ),
-        unsupported(b"PK\x03\x04".to_vec(), &["zip archive", "export it"]),
+        case(b"PK\x03\x04".to_vec(), &["is an Excel workbook", "x.xlsx"]),
     ]
 }
 
@@ -113,21 +106,57 @@ pub fn headers() -> Vec<Case> {
     vec![
         case(
             "0,1,2\n1,2,3\n",
-            &["x.csv:1", "numbers, not column names", "put a line such as"],
+            &[
+                "x.csv:1",
+                "numbers, not column names",
+                "put a line such as",
+                "--columns t,va",
+            ],
         ),
         case(
-            "t;ia;ib\n0;1;2\n",
-            &["x.csv:1", "separated by ';'", "--delimiter ';'"],
+            "t;ia;ib\n0;1,234;5,678\n1;1,345;5,789\n",
+            &[
+                "x.csv:2: ia: `1,234` is 1234 or 1.234",
+                "--thousands ','",
+                "--decimal-comma",
+            ],
         ),
         case(
-            "t\tia\tib\n0\t1\t2\n",
-            &["x.csv:1", "separated by '\\t'", "--delimiter 'tab'"],
+            "t;ia\n0;1.234\n1;-2.345\n",
+            &["x.csv:2: ia: `1.234` is 1234 or 1.234", "--thousands none"],
+        ),
+        case(
+            "t;ia\n0,5;1,5\n1,5;1.234\n2,5;0.5\n",
+            &["x.csv:3: ia: `1.234` is not a number", "--thousands ."],
+        ),
+        case(
+            "time;ia\n3/4/2024 23:59:59.9;1\n3/4/2024 23:59:59.95;2\n4/4/2024 00:00:00;3\n",
+            &["x.csv:4: time", "day or month first", "--date-order dmy"],
+        ),
+        case(
+            "time;ia\n12:00:00;1\n12:00:01;2\nnoon;3\n",
+            &["x.csv:4: time", "`noon` is not a date or time of day"],
+        ),
+        case(
+            "t,Ia,Ib,I1,I2\n0,1,2,3,4\n1,1,2,3,4\n",
+            &[
+                "x.csv:1: ia",
+                "Ia Ib I1 I2 could each be ia",
+                "--column ia=Ia",
+            ],
+        ),
+        case(
+            "t,ia [V]\n0,1\n1,2\n",
+            &["x.csv:1: ia [V]", "declares `V`", "--sensor ia=100mV/A"],
         ),
         case(
             "t,ia,ia\n0,1,2\n",
             &["x.csv:1", "`ia` stands there twice", "rename or remove"],
         ),
-        case("t,ia,\n0,1,2\n", &["x.csv:1", "column 3 has no name"]),
+        case(
+            "t,ia,\n0,1,2\n",
+            &["x.csv:2", "has 3 columns, the header has 2"],
+        ),
         case(
             "t,ia,spead\n0,1,2\n",
             &[
@@ -136,7 +165,7 @@ pub fn headers() -> Vec<Case> {
                 "--column speed=spead",
             ],
         ),
-        case("T,Ia\n0,1\n1,2\n", &["x.csv:1: T", "did you mean `t`"]),
+        case("Tt,ia\n0,1\n1,2\n", &["x.csv:1: t", "no clock"]),
         case(
             "ia,ib,ic\n1,2,3\n",
             &["x.csv:1: t", "no clock", "--sample-rate"],

@@ -36,6 +36,7 @@ fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) ->
         audit: Audit {
             supported: true,
             findings: Vec::new(),
+            assumptions: Vec::new(),
             unusable: Vec::new(),
         },
         verdict,

@@ -1,5 +1,6 @@
 //! Flags that say how a recording is to be read, shared by all commands that read one.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,16 +11,26 @@ use crate::cli::printing::failure::Failure;
 use crate::cli::printing::output::DASH;
 use crate::cli::printing::progress;
 use crate::cli::printing::shell::quoted;
+use crate::cli::printing::terminal::complain;
 use report::study::effects_fit;
 
 /// How the columns of the file become channels in SI units. A sidecar `x.toml` beside `x.csv.gz` says the same things.
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "How to read the recording")]
 pub struct InputArgs {
-    /// Read a channel from another column, e.g. `ic=ic2` or `speed=speed_raw`
+    /// Read a channel from another column, e.g. `ic=ic2` or `speed=speed_raw`; line voltages are `vab=U12`, or `vba=U21` the
+    /// other way round
     #[arg(long, value_name = "CHANNEL=COLUMN")]
     column: Vec<String>,
-    /// Unit of a channel, e.g. `speed=rpm` or `ia=mA`
+    /// The columns in their order, with `-` for one that is not used, e.g. `t,va,vb,vc,-,ia`; for a file without names, or
+    /// with names that mean nothing (CH1)
+    #[arg(long, value_name = "CHANNEL,...", allow_hyphen_values = true)]
+    columns: Option<String>,
+    /// The sensor behind a column, as its plate says: `ia=100mV/A`, `va=1000:1`, `speed=60V/1000rpm`; `i=` means all currents,
+    /// `v=` all voltages. The column then holds volts, or what --unit says
+    #[arg(long, value_name = "CHANNEL=SCALE")]
+    sensor: Vec<String>,
+    /// Unit of a channel, e.g. `speed=rpm` or `ia=mA`; `speed=us/pulse` for the time between pulses of an encoder
     #[arg(long, value_name = "CHANNEL=UNIT")]
     unit: Vec<String>,
     /// Factor on a channel, applied after the offset: `scale x (raw - offset)`; `speed=unknown` lets compare, explain and
@@ -42,18 +53,27 @@ pub struct InputArgs {
     /// Leave out rows with empty or NaN cells instead of refusing the file
     #[arg(long)]
     skip_missing: bool,
-    /// What separates the columns, e.g. `;` or `tab`
+    /// What separates the columns, where the file does not show it: `,` `;` `|` `tab` `space`
     #[arg(long, value_name = "CHARACTER")]
     delimiter: Option<String>,
-    /// Numbers are written 3,7
+    /// Numbers are written 3,7, where the file does not show it
     #[arg(long)]
     decimal_comma: bool,
-    /// Pulses of the encoder in one turn, where the speed column holds its counts
+    /// What stands between thousands, where `1,234` or `1.234` could be two numbers: `.` `,` `'` `space` `none`
+    #[arg(long, value_name = "CHARACTER")]
+    thousands: Option<String>,
+    /// Order of day and month in dates such as 3/4/2024: `dmy` or `mdy`
+    #[arg(long, value_name = "ORDER")]
+    date_order: Option<String>,
+    /// Pulses of the encoder in one turn, where the speed column holds its counts or the time between them
     #[arg(long, value_name = "N")]
     pulses_per_revolution: Option<u32>,
     /// The sidecar to use instead of the one beside the recording
     #[arg(long, value_name = "FILE")]
     sidecar: Option<PathBuf>,
+    /// Write how the file was read into the sidecar beside it, so that no flag is needed the next time; an existing one is kept
+    #[arg(long)]
+    write_sidecar: bool,
 }
 
 /// What errors call standard input.
@@ -71,6 +91,7 @@ impl InputArgs {
         };
         let lists = [
             ("--column", &self.column),
+            ("--sensor", &self.sensor),
             ("--unit", &self.unit),
             ("--scale", &self.scale),
             ("--offset", &self.offset),
@@ -82,7 +103,10 @@ impl InputArgs {
         let text = |x: &PathBuf| x.display().to_string();
         let values = [
             ("--sample-rate", self.sample_rate.map(|x| x.to_string())),
+            ("--columns", self.columns.clone()),
             ("--delimiter", self.delimiter.clone()),
+            ("--thousands", self.thousands.clone()),
+            ("--date-order", self.date_order.clone()),
             (
                 "--pulses-per-revolution",
                 self.pulses_per_revolution.map(|x| x.to_string()),
@@ -114,6 +138,10 @@ impl InputArgs {
         self.column
             .iter()
             .try_for_each(|flag| mapping.set_column(flag))?;
+        // A unit is one of what the sensor gives out.
+        self.sensor
+            .iter()
+            .try_for_each(|flag| mapping.set_sensor(flag))?;
         self.unit
             .iter()
             .try_for_each(|flag| mapping.set_unit(flag))?;
@@ -134,6 +162,15 @@ impl InputArgs {
         }
         if let Some(delimiter) = &self.delimiter {
             mapping.set_delimiter(delimiter)?;
+        }
+        if let Some(columns) = &self.columns {
+            mapping.set_columns(columns)?;
+        }
+        if let Some(thousands) = &self.thousands {
+            mapping.set_thousands(thousands)?;
+        }
+        if let Some(order) = &self.date_order {
+            mapping.set_date_order(order)?;
         }
         Ok(mapping)
     }
@@ -156,8 +193,51 @@ impl InputArgs {
             false => recording::read_any(path, &mapping, &mut progress),
         }?;
         bar.finish_and_clear();
+        tell_assumptions(&source);
+        if self.write_sidecar {
+            write_sidecar(path, &source)?;
+        }
         Ok(source)
     }
+}
+
+/// One line on standard error for each thing that was assumed: standard output is the answer's.
+fn tell_assumptions(source: &Source) {
+    let (name, assumptions) = match source {
+        Source::Recording(recording) => (recording.name(), &recording.assumptions),
+        Source::LoadTable(table) => (table.name(), &table.assumptions),
+    };
+    for assumption in assumptions {
+        complain(format_args!("{name}: assumed: {assumption}"));
+    }
+}
+
+/// Writes the sidecar of a recording, where it has none.
+fn write_sidecar(path: &Path, source: &Source) -> Result<(), Failure> {
+    let usage = |message: String| Err(Failure::Usage(message));
+    let Source::Recording(recording) = source else {
+        return usage("--write-sidecar: a load table has no sidecar".to_owned());
+    };
+    if path.as_os_str() == DASH {
+        return usage(
+            "--write-sidecar: standard input has no place for a sidecar; name a file".to_owned(),
+        );
+    }
+    let sidecar = recording::sidecar_path(path);
+    if sidecar.exists() {
+        let name = sidecar.display();
+        return usage(format!(
+            "--write-sidecar: {name} exists and is kept; rename or remove it first"
+        ));
+    }
+    let text = recording::reading_text(recording);
+    let written = recording::write_whole(&sidecar, |file| file.write_all(text.as_bytes()));
+    written.or_else(|error| {
+        usage(format!(
+            "--write-sidecar: {} cannot be written: {error}",
+            sidecar.display()
+        ))
+    })
 }
 
 /// Reads and validates a motor file, its effects included.
@@ -183,8 +263,8 @@ mod tests {
 
     #[test]
     fn the_flags_are_repeated_as_they_were_typed() {
-        let line = "x --column ic=ic2 --column speed=n --unit speed=rpm --scale speed=unknown --offset va=-4.1 \
-                    --delay ia=11.55us --sample-rate 5000 --delimiter \";\" --pulses-per-revolution 1024 --sidecar a.toml --line-voltages \
+        let line = "x --column ic=ic2 --column speed=n --sensor i=100mV/A --unit speed=rpm --scale speed=unknown --offset va=-4.1 \
+                    --delay ia=11.55us --sample-rate 5000 --columns t,va,-,ia --delimiter \";\" --thousands none --date-order dmy --pulses-per-revolution 1024 --sidecar a.toml --line-voltages \
                     --skip-missing --decimal-comma";
         let words = line.split(' ').map(|word| word.trim_matches('"'));
         let typed = Reading::parse_from(words).input.typed();

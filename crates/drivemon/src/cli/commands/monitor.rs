@@ -242,9 +242,6 @@ fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Ve
         recording.duration(),
         1.0 / recording.t_sample()
     );
-    for assumption in &recording.assumptions {
-        say!("  assumed: {assumption}");
-    }
     for finding in &audit.findings {
         say!("  {} {}", paint::caution("audit:"), finding.detail);
     }

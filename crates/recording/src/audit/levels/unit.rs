@@ -29,6 +29,9 @@ pub(in crate::audit) fn check(context: &mut Context<'_>) -> Vec<Finding> {
     found.into_iter().flatten().collect()
 }
 
+/// Measured over rated amplitude, times the factor of a unit, that a running motor can have.
+const PLAUSIBLE: Range<f64> = 0.1..10.0;
+
 /// Ratio of an amplitude to a rated one, in words of a unit: the factor's decimal prefix.
 fn prefix(ratio: f64, unit: &str) -> String {
     if ratio > 1.0 {
@@ -92,11 +95,20 @@ fn wrong(channels: &[Channel], ratio: f64, unit: &str, rated: &str) -> Finding {
         .iter()
         .map(|channel| format!("--unit {channel}={unit}"))
         .collect();
+    let scaled = if ratio > 1.0 {
+        1e-3 * ratio
+    } else {
+        1e3 * ratio
+    };
+    // A unit that the nameplate contradicts is not proposed.
+    let remedy = match PLAUSIBLE.contains(&scaled) || channels == [Channel::TORQUE] {
+        true => format!("the unit is probably {unit}. Add {}.", flags.join(" ")),
+        false => "no decimal unit makes it fit. Look at the scale of the sensor (--sensor) and at the nameplate.".to_owned(),
+    };
     Finding::new(Code::Unit, names(channels), ratio, "x")
         .detail(format!(
-            "{} are {ratio:.3e} times the {rated}: the unit is probably {unit}. Add {}.",
-            names(channels),
-            flags.join(" ")
+            "{} are {ratio:.3e} times the {rated}: {remedy}",
+            names(channels)
         ))
         .refusing()
 }

@@ -1,6 +1,7 @@
 //! Shaft speed from a running count of encoder edges.
 
 use crate::data::metadata::Sensors;
+use crate::data::units::Period;
 use crate::error::Error;
 use std::f64::consts::TAU;
 
@@ -18,16 +19,47 @@ pub(in crate::read) fn speed(
     counts: &[f64],
     sensors: &Sensors,
 ) -> Result<Vec<f64>, Error> {
-    let Some(pulses) = sensors.encoder_pulses_per_revolution else {
-        let message = "is a count of edges, but the encoder is not declared";
-        let remedy = "add encoder_pulses_per_revolution to [sensors], or --pulses-per-revolution N";
-        return Err(Error::at(file, 0, "speed", message, remedy));
-    };
-    let edges = f64::from(pulses) * f64::from(sensors.encoder_edges_per_pulse.unwrap_or(4));
+    let pulses = pulses(file, sensors, "is a count of edges")?;
+    let edges = pulses * f64::from(sensors.encoder_edges_per_pulse.unwrap_or(4));
     let counts = unwrapped(counts, sensors.encoder_counter_bits);
     Ok((0..t.len())
         .map(|k| TAU / edges * slope(t, &counts, k))
         .collect())
+}
+
+/// Speed in rad/s from the time between two pulses, or of a turn, s; 0 says that no pulse came, at standstill.
+///
+/// # Errors
+/// An encoder whose pulses per revolution are not declared, and a negative time.
+pub(in crate::read) fn speed_of_periods(
+    file: &str,
+    periods: &[f64],
+    of: Period,
+    sensors: &Sensors,
+) -> Result<Vec<f64>, Error> {
+    let per_turn = match of {
+        Period::Turn => 1.0,
+        Period::Pulse => pulses(file, sensors, "is the time between pulses")?,
+    };
+    if let Some(x) = periods.iter().find(|x| **x < 0.0) {
+        let message = format!("a period of {x} s is negative");
+        let remedy = "a period is a time between two pulses; map another column with --column";
+        return Err(Error::at(file, 0, "speed", message, remedy));
+    }
+    let speed = |x: &f64| if *x > 0.0 { TAU / (per_turn * x) } else { 0.0 };
+    Ok(periods.iter().map(speed).collect())
+}
+
+fn pulses(file: &str, sensors: &Sensors, what: &str) -> Result<f64, Error> {
+    sensors
+        .encoder_pulses_per_revolution
+        .map(f64::from)
+        .ok_or_else(|| {
+            let message = format!("{what}, but the encoder is not declared");
+            let remedy =
+                "add encoder_pulses_per_revolution to [sensors], or --pulses-per-revolution N";
+            Error::at(file, 0, "speed", message, remedy)
+        })
 }
 
 fn slope(t: &[f64], counts: &[f64], k: usize) -> f64 {
@@ -85,6 +117,16 @@ mod tests {
         );
         let mean = speed.iter().sum::<f64>() / 20_000.0;
         assert!((mean - exact).abs() < 1e-3 * exact, "{mean}");
+    }
+
+    #[test]
+    fn a_period_is_a_speed_and_none_is_standstill() {
+        let periods = [1.0 / (25.0 * 1024.0), 0.0];
+        let pulses = speed_of_periods("x.csv", &periods, Period::Pulse, &encoder()).unwrap();
+        assert!((pulses[0] - 25.0 * TAU).abs() < 1e-9 && pulses[1] == 0.0);
+        let turn = speed_of_periods("x.csv", &[0.04], Period::Turn, &Sensors::default()).unwrap();
+        assert!((turn[0] - 25.0 * TAU).abs() < 1e-9);
+        assert!(speed_of_periods("x.csv", &[-1.0], Period::Turn, &encoder()).is_err());
     }
 
     #[test]

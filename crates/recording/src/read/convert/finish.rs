@@ -20,8 +20,9 @@ pub(in crate::read) fn recording(
     let t = clock::clock(file, &mut raw, mapping)?;
     let mut recording = Recording::new(file, t, metadata)?;
     recording.assumptions = plan.notes;
+    recording.reading = Box::new(plan.reading);
     recording.unknown_speed_scale = unknown_speed_scale(file, mapping)?;
-    note_clock(&mut recording, &raw, mapping);
+    note_clock(&mut recording, &raw, mapping, plan.rate_is_declared);
     for (target, values) in raw.columns {
         if let Target::Channel(channel) = target {
             let values = converted(&recording, channel, values, mapping)?;
@@ -59,8 +60,8 @@ fn unknown_speed_scale(file: &str, mapping: &Mapping) -> Result<Option<Box<Unkno
     })))
 }
 
-fn note_clock(recording: &mut Recording, raw: &Raw, mapping: &Mapping) {
-    if let Some(rate_hz) = mapping.sample_rate_hz {
+fn note_clock(recording: &mut Recording, raw: &Raw, mapping: &Mapping, rate_is_declared: bool) {
+    if let Some(rate_hz) = mapping.sample_rate_hz.filter(|_| !rate_is_declared) {
         let note = format!("one sample every 1/{rate_hz} s, user's assumption");
         recording.assumptions.push(note);
     }
@@ -83,14 +84,18 @@ fn converted(
         return Ok(values);
     };
     let quantity = channel.quantity();
-    if !map.unit.is_some_and(|unit| unit.counts) {
+    let period = map.unit.and_then(|unit| unit.period);
+    if period.is_none() && !map.unit.is_some_and(|unit| unit.counts) {
         return Ok(values.into_iter().map(|x| map.to_si(quantity, x)).collect());
     }
     let mut sensors = recording.metadata.sensors.clone();
     let pulses = mapping.encoder_pulses_per_revolution;
     sensors.encoder_pulses_per_revolution = pulses.or(sensors.encoder_pulses_per_revolution);
     let scaled: Vec<f64> = values.into_iter().map(|x| map.to_si(quantity, x)).collect();
-    encoder::speed(recording.name(), recording.t(), &scaled, &sensors)
+    match period {
+        Some(of) => encoder::speed_of_periods(recording.name(), &scaled, of, &sensors),
+        None => encoder::speed(recording.name(), recording.t(), &scaled, &sensors),
+    }
 }
 
 /// The values at the rows' times, free of spikes.

@@ -1,28 +1,46 @@
-//! A CSV file with its header, row by row.
+//! A text file with its header, row by row.
 
+use super::blanks::Blanks;
+use super::body::Cells;
+use super::cells::{Separator, unquoted};
+use super::clocks::Clock;
+use super::head::peek;
+use super::layout::{Layout, layout};
+use super::rows::comment;
+use super::source::{self, Progress, Source};
 use crate::error::Error;
 use crate::mapping::Mapping;
 use crate::read::budget::{most_numbers, too_large};
-use crate::read::header::Header;
-use crate::read::table_file::{Row, TableFile, missing, not_finite};
-use crate::read::text::source::{self, Progress, Source};
+use crate::read::header::{DeclaredRate, Header};
+use crate::read::table_file::{Row, TableFile};
 use csv::ByteRecord;
 use std::cell::Cell;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::rc::Rc;
 
-/// A CSV file of which the header has been read.
+/// A text file of which the header has been read.
 pub(in crate::read) struct CsvFile {
     header: Header,
-    decimal_comma: bool,
-    reader: csv::Reader<Box<dyn std::io::Read>>,
+    layout: Layout,
+    reader: csv::Reader<Box<dyn Read>>,
     bytes_read: Rc<Cell<u64>>,
     bytes_total: u64,
+    left_out: LeftOut,
+}
+
+/// Rows that are no samples.
+#[derive(Clone, Copy, Debug, Default)]
+struct LeftOut {
+    headers: u64,
+    comments: u64,
+    empty: u64,
 }
 
 /// Rows between two calls of the progress callback: about 10 ms of work.
 const ROWS_PER_CALL: u64 = 8192;
+/// Bytes by which the layout is found.
+const HEAD: u64 = 1 << 16;
 
 impl CsvFile {
     /// Opens a file and reads its header.
@@ -40,44 +58,48 @@ impl CsvFile {
     }
 
     fn of(name: String, source: Source, mapping: &Mapping) -> Result<CsvFile, Error> {
-        let Source {
-            reader,
-            bytes_read,
-            bytes_total,
-        } = source;
-        let delimiter = mapping.delimiter.unwrap_or(b',');
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .quoting(false)
-            .comment(Some(b'#'))
-            .delimiter(delimiter)
-            .from_reader(reader);
-        let mut first = ByteRecord::new();
-        let found = reader
-            .read_byte_record(&mut first)
-            .map_err(|error| csv_error(&name, 1, &error))?;
-        if !found {
-            let remedy = "the first line names the columns, for example t,va,vb,vc,ia,ib,ic,speed";
-            return Err(Error::bad(&name, "holds no header", remedy));
+        let (head, mut whole) = peek(source.reader, HEAD);
+        if head.is_empty() {
+            let read = whole.read(&mut [0]);
+            read.map_err(|error| source::broken(&name, 0, &error))?;
         }
-        let header_line = line_before(&reader);
-        let names = names(&name, header_line, &first)?;
-        check_delimiter(&name, header_line, &names, delimiter)?;
+        let mut layout = layout(&name, whole_lines(&head), mapping)?;
+        if let Some(order) = mapping.date_order {
+            let clocks = layout.clocks.iter_mut().flatten();
+            clocks.for_each(|clock| {
+                if let Clock::Stamps(stamps) = clock {
+                    stamps.ordered(order);
+                }
+            });
+        }
+        let mut header = header(&name, &layout, mapping)?;
+        if let Some(encoding) = source.encoding {
+            header
+                .notes
+                .insert(0, format!("the text is {}", encoding.name()));
+        }
+        let body = body(whole, layout.titles.first_sample, &name)?;
         Ok(CsvFile {
-            header: Header::new(name, header_line, names)?,
-            decimal_comma: mapping.decimal_comma.unwrap_or(false),
-            reader,
-            bytes_read,
-            bytes_total,
+            header,
+            reader: reader(body, &layout),
+            layout,
+            bytes_read: source.bytes_read,
+            bytes_total: source.bytes_total,
+            left_out: LeftOut::default(),
         })
     }
 
-    fn check_row(&self, k: u64, line: u64, record: &ByteRecord) -> Result<(), Error> {
+    /// The same with more to be said of the file.
+    pub fn with_notes(mut self, notes: Vec<String>) -> CsvFile {
+        self.header.notes.splice(0..0, notes);
+        self
+    }
+
+    fn check_row(&self, k: u64, line: u64, cells: usize) -> Result<(), Error> {
         let width = self.header.names.len();
-        if record.len() != width {
-            let message = format!("has {} columns, the header has {width}", record.len());
-            let remedy = if record.len() == 2 * width {
+        if cells > width || cells < width.min(self.layout.width.max(1)) {
+            let message = format!("has {cells} columns, the header has {width}");
+            let remedy = if cells == 2 * width {
                 "write decimals with a point, not with a comma"
             } else {
                 "complete the row or remove it"
@@ -96,6 +118,121 @@ impl CsvFile {
             bytes_total: self.bytes_total,
         }
     }
+
+    /// The line of the record that was just read: the source ends every line by a line feed.
+    fn line(&self) -> u64 {
+        let before = self.layout.titles.first_sample.saturating_sub(1);
+        before + self.reader.position().line().saturating_sub(1)
+    }
+
+    /// Whether a record is no row of samples: a comment, the header once more, nothing but separators.
+    fn leave_out(&mut self, record: &ByteRecord) -> bool {
+        let first = record.get(0).unwrap_or_default();
+        let is_end = record.len() == 1 && first.trim_ascii().eq_ignore_ascii_case(b"EOF");
+        if is_end || std::str::from_utf8(first).is_ok_and(|text| comment(text).is_some()) {
+            self.left_out.comments += 1;
+        } else if record.iter().all(|cell| cell.trim_ascii().is_empty()) {
+            if record.len() < 2 && self.header.names.len() < 2 {
+                return false;
+            }
+            self.left_out.empty += 1;
+        } else if self.is_header(record) {
+            self.left_out.headers += 1;
+        } else {
+            return false;
+        }
+        true
+    }
+
+    fn is_header(&self, record: &ByteRecord) -> bool {
+        // Names begin with no digit: a look at one byte spares comparing every row.
+        let first = record.get(0).and_then(|cell| cell.trim_ascii().first());
+        if first.is_none_or(|byte| byte.is_ascii_digit() || *byte == b'-') {
+            return false;
+        }
+        let text = |cell| std::str::from_utf8(cell).map_or("", unquoted);
+        let names = self.layout.titles.names.iter().map(String::as_str);
+        let units = self
+            .header
+            .units
+            .iter()
+            .map(|unit| unit.as_deref().unwrap_or(""));
+        let bare = |cell| text(cell).trim_matches(['[', ']', '(', ')']);
+        record.iter().map(text).eq(names.take(record.len()))
+            || record.iter().map(bare).eq(units.take(record.len()))
+    }
+}
+
+/// The lines of the head that are whole, as text.
+fn whole_lines(head: &[u8]) -> &str {
+    let end = match (head.len() as u64) < HEAD {
+        true => head.len(),
+        false => head
+            .iter()
+            .rposition(|byte| *byte == b'\n')
+            .map_or(head.len(), |at| at + 1),
+    };
+    let lines = &head[..end];
+    // A byte that is no text ends what the layout is found by; reading meets it again.
+    let sound = std::str::from_utf8(lines).map_or_else(|error| error.valid_up_to(), str::len);
+    std::str::from_utf8(&lines[..sound]).unwrap_or_default()
+}
+
+/// The stream from the first row of samples on.
+fn body(
+    whole: Box<dyn Read>,
+    first_sample: u64,
+    name: &str,
+) -> Result<BufReader<Box<dyn Read>>, Error> {
+    let mut body = BufReader::with_capacity(HEAD as usize, whole);
+    for line in 1..first_sample {
+        let mut skipped = Vec::new();
+        let read = body.read_until(b'\n', &mut skipped);
+        read.map_err(|error| source::broken(name, line, &error))?;
+    }
+    Ok(body)
+}
+
+fn reader(body: BufReader<Box<dyn Read>>, layout: &Layout) -> csv::Reader<Box<dyn Read>> {
+    let (body, delimiter): (Box<dyn Read>, u8) = match layout.separator {
+        Separator::Byte(byte) => (Box::new(body), byte),
+        Separator::Blanks => (Box::new(Blanks::new(body)), b'\t'),
+    };
+    csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .quoting(layout.is_quoted)
+        .comment(Some(b'#'))
+        .delimiter(delimiter)
+        .from_reader(body)
+}
+
+fn header(name: &str, layout: &Layout, mapping: &Mapping) -> Result<Header, Error> {
+    let titles = &layout.titles;
+    let named_by_flag =
+        mapping.names.is_some() || mapping.columns.values().any(|map| map.name.is_some());
+    if titles.line == 0 && !named_by_flag {
+        let numbers = vec!["0".to_owned(); layout.width];
+        return Header::new(name.to_owned(), titles.first_sample, numbers);
+    }
+    let mut header = Header::new(name.to_owned(), titles.line.max(1), titles.names.clone())?;
+    let declared = titles.units.iter().zip(&mut header.units);
+    declared.for_each(|(unit, slot)| *slot = unit.clone().or(slot.take()));
+    for (k, clock) in layout.clocks.iter().enumerate().take(header.names.len()) {
+        if let Some(clock) = clock {
+            header.units[k] = Some(clock.unit().to_owned());
+            header.remarks[k] = Some(clock.remark(&header.names[k]));
+        }
+    }
+    header.rate = layout.rate.as_ref().map(|rate| DeclaredRate {
+        hz: rate.hz,
+        note: format!(
+            "{} samples a second, as `{}` in line {} says",
+            rate.hz, rate.label, rate.line
+        ),
+    });
+    header.notes.splice(0..0, layout.notes.iter().cloned());
+    Ok(header)
 }
 
 impl TableFile for CsvFile {
@@ -115,13 +252,17 @@ impl TableFile for CsvFile {
             if !more.map_err(|error| csv_error(&self.header.file, line + 1, &error))? {
                 break;
             }
-            line = line_before(&self.reader);
-            self.check_row(k, line, &record)?;
+            line = self.line();
+            if self.leave_out(&record) {
+                continue;
+            }
+            trim(&mut record, self.header.names.len());
+            self.check_row(k, line, record.len())?;
             row(&Cells {
                 file: &self.header.file,
                 line,
                 record: &record,
-                decimal_comma: self.decimal_comma,
+                layout: &self.layout,
             })?;
             if k % ROWS_PER_CALL == 0 {
                 progress(self.progress());
@@ -130,122 +271,42 @@ impl TableFile for CsvFile {
         progress(self.progress());
         Ok(())
     }
-}
 
-/// The cells of one row.
-struct Cells<'r> {
-    file: &'r str,
-    line: u64,
-    record: &'r ByteRecord,
-    decimal_comma: bool,
-}
-
-impl Row for Cells<'_> {
-    fn line(&self) -> u64 {
-        self.line
-    }
-
-    fn number(&self, column: usize, name: &str) -> Result<Option<f64>, Error> {
-        let text = self.text(column, name)?;
-        if is_missing(text) {
-            return Ok(None);
-        }
-        let parsed = if self.decimal_comma && text.contains(',') {
-            text.replacen(',', ".", 1).parse()
-        } else {
-            text.parse::<f64>()
-        };
-        match parsed {
-            Ok(x) => Ok(Some(x)),
-            Err(_) => Err(self.not_a_number(name, text)),
+    fn layout(&self) -> Mapping {
+        let numbers = self.layout.numbers;
+        Mapping {
+            delimiter: Some(self.layout.separator.byte()),
+            decimal_comma: Some(numbers.decimal_comma),
+            thousands: Some(numbers.thousands),
+            ..Mapping::default()
         }
     }
 
-    fn missing(&self, name: &str) -> Error {
-        missing(self.file, self.line, name)
-    }
-
-    fn not_finite(&self, column: usize, name: &str, x: f64) -> Error {
-        let text = self.text(column, name).unwrap_or_default();
-        not_finite(self.file, self.line, name, text, x)
-    }
-}
-
-impl Cells<'_> {
-    fn text(&self, column: usize, name: &str) -> Result<&str, Error> {
-        let bytes = self.record.get(column).unwrap_or_default();
-        match std::str::from_utf8(bytes) {
-            Ok(text) => Ok(unquoted(text)),
-            Err(_) => {
-                let message = "the cell is not UTF-8 text";
-                Err(Error::at(
-                    self.file,
-                    self.line,
-                    name,
-                    message,
-                    "save the file as UTF-8",
-                ))
-            }
-        }
-    }
-
-    fn not_a_number(&self, name: &str, text: &str) -> Error {
-        let shown: String = text.chars().take(40).collect();
-        let remedy = if text.contains(',') {
-            "write decimals with a point, or read the file with --decimal-comma"
-        } else {
-            "write one number per cell, the unit only in the header or the mapping"
-        };
-        Error::at(
-            self.file,
-            self.line,
-            name,
-            format!("`{shown}` is not a number"),
-            remedy,
-        )
+    fn notes(&self) -> Vec<String> {
+        let LeftOut {
+            headers,
+            comments,
+            empty,
+        } = self.left_out;
+        let counts = [
+            (headers, "repeat the header"),
+            (comments, "are comments or say EOF"),
+            (empty, "have empty cells only"),
+        ];
+        let told = counts.iter().filter(|(count, _)| *count > 0);
+        told.map(|(count, what)| format!("{count} lines among the samples {what} and are left out"))
+            .collect()
     }
 }
 
-fn is_missing(text: &str) -> bool {
-    text.is_empty()
-        || ["nan", "-nan", "+nan", "na", "n/a", "null"]
-            .iter()
-            .any(|word| text.eq_ignore_ascii_case(word))
-}
-
-fn unquoted(text: &str) -> &str {
-    let text = text.trim();
-    text.strip_prefix('"')
-        .and_then(|rest| rest.strip_suffix('"'))
-        .unwrap_or(text)
-        .trim()
-}
-
-fn names(file: &str, line: u64, record: &ByteRecord) -> Result<Vec<String>, Error> {
-    let cells = record.iter().map(std::str::from_utf8);
-    let names = cells.map(|cell| cell.map(|text| unquoted(text).to_owned()));
-    names.collect::<Result<_, _>>().map_err(|_| {
-        let remedy = "save the file as UTF-8 text";
-        Error::at(file, line, "", "the header is not UTF-8 text", remedy)
-    })
-}
-
-fn check_delimiter(file: &str, line: u64, names: &[String], delimiter: u8) -> Result<(), Error> {
-    let [name] = names else { return Ok(()) };
-    let others = [(';', ";"), ('\t', "tab"), ('|', "|"), (',', ",")];
-    let Some((found, other)) = others.iter().find(|(c, _)| name.contains(*c)) else {
-        return Ok(());
-    };
-    let delimiter = char::from(delimiter);
-    let message = format!("the columns are separated by {found:?}, not {delimiter:?}");
-    let remedy =
-        format!("add --delimiter '{other}', and --decimal-comma if numbers are written 3,7");
-    Err(Error::at(file, line, "", message, remedy))
-}
-
-/// The line of the record that was just read: the source ends every line by a line feed.
-fn line_before<R: std::io::Read>(reader: &csv::Reader<R>) -> u64 {
-    reader.position().line().saturating_sub(1)
+/// Drops empty cells behind the last column.
+fn trim(record: &mut ByteRecord, width: usize) {
+    let is_empty = |cell: &[u8]| cell.trim_ascii().is_empty();
+    let mut kept = record.len();
+    while kept > width && record.get(kept - 1).is_some_and(is_empty) {
+        kept -= 1;
+    }
+    record.truncate(kept);
 }
 
 fn csv_error(file: &str, line: u64, error: &csv::Error) -> Error {

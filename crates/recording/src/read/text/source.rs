@@ -1,7 +1,11 @@
 //! A file's bytes as text, unpacked, with everything that is not a table named for what it is.
 
+use super::encoding::other_than_utf8;
+use super::head::peek;
 use crate::error::Error;
 use crate::names::ends_in;
+use encoding_rs::{Encoding, WINDOWS_1252};
+use encoding_rs_io::DecodeReaderBytesBuilder;
 use flate2::read::MultiGzDecoder;
 use std::cell::Cell;
 use std::fs::File;
@@ -21,6 +25,8 @@ pub struct Progress {
 /// An opened file, ready to be parsed as text.
 pub(crate) struct Source {
     pub reader: Box<dyn Read>,
+    /// The alphabet, where it is not UTF-8.
+    pub encoding: Option<&'static Encoding>,
     pub bytes_read: Rc<Cell<u64>>,
     pub bytes_total: u64,
 }
@@ -38,13 +44,15 @@ pub(crate) fn open(path: &Path) -> Result<Source, Error> {
         return Err(Error::bad(
             &name,
             "is a folder",
-            "name a .csv, .csv.gz, .parquet, .mat, .cfg or .cff file in it",
+            "name a .csv, .csv.gz, .xlsx, .parquet, .mat, .wav, .cfg or .cff file in it",
         ));
     }
     let file = File::open(path).map_err(|error| Error::io(path, &error))?;
     let (packed, bytes_read) = counted(file);
+    let (reader, encoding) = text(packed, &name, Some(ends_in(path, ".gz")))?;
     Ok(Source {
-        reader: text(packed, &name, Some(ends_in(path, ".gz")))?,
+        reader,
+        encoding,
         bytes_read,
         bytes_total: if metadata.is_file() {
             metadata.len()
@@ -57,8 +65,10 @@ pub(crate) fn open(path: &Path) -> Result<Source, Error> {
 /// The same of a stream, which is unpacked if it is gzip, whatever it is called.
 pub(crate) fn stream(name: &str, stream: impl Read + 'static) -> Result<Source, Error> {
     let (packed, bytes_read) = counted(stream);
+    let (reader, encoding) = text(packed, name, None)?;
     Ok(Source {
-        reader: text(packed, name, None)?,
+        reader,
+        encoding,
         bytes_read,
         bytes_total: 0,
     })
@@ -78,15 +88,12 @@ fn text<R: Read + 'static>(
     mut packed: BufReader<R>,
     name: &str,
     is_named_gzip: Option<bool>,
-) -> Result<Box<dyn Read>, Error> {
+) -> Result<Decoded, Error> {
     let head = packed.fill_buf().map_err(|error| broken(name, 0, &error))?;
     let is_gzip = head.starts_with(&GZIP);
     match (is_gzip, is_named_gzip.unwrap_or(is_gzip)) {
-        (true, true) => plain(
-            BufReader::with_capacity(BUFFER, MultiGzDecoder::new(packed)),
-            name,
-        ),
-        (false, false) => plain(packed, name),
+        (true, true) => plain(Box::new(MultiGzDecoder::new(packed)), name),
+        (false, false) => plain(Box::new(packed), name),
         (true, false) => {
             let remedy = format!("rename it to {name}.gz");
             Err(Error::bad(
@@ -107,16 +114,60 @@ fn text<R: Read + 'static>(
     }
 }
 
-fn plain<R: BufRead + 'static>(mut reader: R, name: &str) -> Result<Box<dyn Read>, Error> {
-    let head = reader.fill_buf().map_err(|error| broken(name, 0, &error))?;
+/// Lines of UTF-8 text, and what they were before.
+type Decoded = (Box<dyn Read>, Option<&'static Encoding>);
+
+fn plain(stream: Box<dyn Read>, name: &str) -> Result<Decoded, Error> {
+    let (head, mut whole) = peek(stream, BUFFER as u64);
     if head.is_empty() {
-        return Err(empty(name));
+        let mut first = [0];
+        let read = whole.read(&mut first);
+        return Err(read.map_or_else(|error| broken(name, 0, &error), |_| empty(name)));
     }
-    refuse_foreign(head, name)?;
-    if head.starts_with(b"\xEF\xBB\xBF") {
-        reader.consume(3);
+    refuse_foreign(&head, name)?;
+    let encoding = other_than_utf8(&head);
+    if encoding.is_none_or(|encoding| encoding == WINDOWS_1252) {
+        refuse_binary(&head, name)?;
     }
-    Ok(Box::new(Lines::new(reader)))
+    Ok((Box::new(Lines::new(decoded(whole, encoding))), encoding))
+}
+
+/// The stream as UTF-8 without a byte order mark.
+fn decoded(stream: Box<dyn Read>, encoding: Option<&'static Encoding>) -> Box<dyn Read> {
+    match encoding {
+        None => Box::new(WithoutMark {
+            stream,
+            began: false,
+        }),
+        some => Box::new(
+            DecodeReaderBytesBuilder::new()
+                .encoding(some)
+                .strip_bom(true)
+                .build(stream),
+        ),
+    }
+}
+
+/// UTF-8 text, of which a byte order mark at the beginning is dropped.
+struct WithoutMark {
+    stream: Box<dyn Read>,
+    began: bool,
+}
+
+const MARK: [u8; 3] = *b"\xEF\xBB\xBF";
+
+impl Read for WithoutMark {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let n = self.stream.read(buffer)?;
+        if std::mem::replace(&mut self.began, true) || !buffer[..n].starts_with(&MARK) {
+            return Ok(n);
+        }
+        buffer.copy_within(MARK.len()..n, 0);
+        match n - MARK.len() {
+            0 => self.stream.read(buffer),
+            rest => Ok(rest),
+        }
+    }
 }
 
 fn empty(name: &str) -> Error {
@@ -134,7 +185,10 @@ const FORMATS: [(&[u8], &str); 5] = [
         "an HDF5 file (also MAT-file, version 7.3)",
     ),
     (b"TDSm", "a TDMS file"),
-    (b"PK\x03\x04", "a zip archive (also a spreadsheet)"),
+    (
+        b"PK\x03\x04",
+        "a zip archive (also a spreadsheet) within gzip",
+    ),
 ];
 
 fn refuse_foreign(head: &[u8], name: &str) -> Result<(), Error> {
@@ -143,7 +197,7 @@ fn refuse_foreign(head: &[u8], name: &str) -> Result<(), Error> {
         return Err(Error::unsupported(
             name,
             message,
-            "export it as .csv, .parquet, or .mat of version 7",
+            "export it as .csv, .xlsx, .parquet, or .mat of version 7",
         ));
     }
     if head.starts_with(&GZIP) {
@@ -153,16 +207,17 @@ fn refuse_foreign(head: &[u8], name: &str) -> Result<(), Error> {
             "unpack it once",
         ));
     }
-    if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") {
-        return Err(Error::bad(name, "is UTF-16 text", "save it as UTF-8 text"));
-    }
+    Ok(())
+}
+
+fn refuse_binary(head: &[u8], name: &str) -> Result<(), Error> {
     match head.iter().position(|&byte| byte == 0) {
         Some(at) => {
-            let message = format!("holds a zero byte at offset {at}: it is binary or UTF-16");
+            let message = format!("holds a zero byte at offset {at}: it is binary");
             Err(Error::bad(
                 name,
                 message,
-                "save it as UTF-8 text with comma-separated columns",
+                "export it as text, .parquet, or .mat of version 7",
             ))
         }
         None => Ok(()),
