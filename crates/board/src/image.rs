@@ -3,9 +3,9 @@
 
 use heapless::Vec;
 use monitor::{
-    Abc, ActiveEffect, ActiveEffects, CHANNELS, ChannelScale, ComparatorConfig, Converter,
+    Abc, ActiveEffect, ActiveEffects, CHANNELS, CIRCUIT, ChannelScale, ComparatorConfig, Converter,
     FieldCurrent, Frame, Healthy, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MonitorConfig,
-    ROWS, Uncertainty,
+    ParameterDoubt, ROWS, Uncertainty,
 };
 use motor::effect::SteadyEffect;
 use motor::effects::STEADY;
@@ -15,13 +15,13 @@ use crate::checksum::crc32_words;
 
 /// Words of an image, version and checksum included.
 pub const IMAGE_WORDS: usize =
-    42 + HEALTHY_WORDS + CHANNELS + MAX_EFFECTS * (1 + MAX_EFFECT_PARAMETERS);
+    42 + HEALTHY_WORDS + CIRCUIT + CHANNELS + MAX_EFFECTS * (1 + 2 * MAX_EFFECT_PARAMETERS);
 
 /// Words of the healthy motor's statistics.
 const HEALTHY_WORDS: usize = 6 + 2 * ROWS + 10;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0003;
+const SCHEMA: u32 = 0x444D_0004;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,6 +139,24 @@ fn write_judgement(w: &mut Writer, config: &MonitorConfig) {
     w.word(u32::from(config.comparator.persistence));
     w.number(config.comparator.hysteresis);
     write_healthy(w, config.healthy.as_ref());
+    w.numbers(&config.doubt.circuit);
+    config
+        .doubt
+        .effects
+        .iter()
+        .for_each(|sigmas| w.numbers(sigmas));
+}
+
+fn read_doubt(r: &mut Reader<'_>) -> ParameterDoubt {
+    let circuit = r.numbers();
+    let mut doubt = ParameterDoubt {
+        circuit,
+        ..ParameterDoubt::default()
+    };
+    for sigmas in &mut doubt.effects {
+        *sigmas = r.numbers();
+    }
+    doubt
 }
 
 /// A significance is positive, so 0 stands for a motor that was not calibrated.
@@ -259,6 +277,7 @@ fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
             hysteresis: r.number(),
         },
         healthy: read_healthy(r),
+        doubt: read_doubt(r),
     })
 }
 

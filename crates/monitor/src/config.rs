@@ -6,6 +6,7 @@ use crate::input::converter::Converter;
 use crate::input::sample::CHANNELS;
 use crate::isolation::Healthy;
 use crate::lamps::threshold::ComparatorConfig;
+use crate::model::doubt::ParameterDoubt;
 use crate::model::effects::ActiveEffects;
 use crate::model::operating_point::Frame;
 use crate::model::residuals::{FieldCurrent, RESIDUALS};
@@ -62,6 +63,8 @@ pub struct MonitorConfig {
     pub comparator: ComparatorConfig,
     /// Statistics of the healthy motor; without them FAULT follows the thresholds of r1..r4.
     pub healthy: Option<Healthy>,
+    /// What is not known of the parameters.
+    pub doubt: ParameterDoubt,
 }
 
 /// A parameter outside its range.

@@ -15,12 +15,22 @@ use crate::input::converter::{ChannelScale, Converter};
 use crate::input::sample::CHANNELS;
 use crate::isolation::{Healthy, Uncertainty};
 use crate::lamps::threshold::ComparatorConfig;
+use crate::model::doubt::{CIRCUIT, DEVIATIONS, ParameterDoubt};
 use crate::model::effects::{ActiveEffect, ActiveEffects, MAX_EFFECT_PARAMETERS, MAX_EFFECTS};
 use crate::model::operating_point::Frame;
 use crate::model::residuals::FieldCurrent;
 
 /// Quadrature counts per encoder pulse.
 const COUNTS_PER_PULSE: f32 = 4.0;
+
+/// Keys of the T model's parameters, in the order of [`ParameterDoubt::circuit`].
+const CIRCUIT_KEYS: [&str; CIRCUIT] = [
+    "stator_resistance_ohm",
+    "rotor_resistance_ohm",
+    "stator_leakage_henry",
+    "rotor_leakage_henry",
+    "magnetizing_inductance_henry",
+];
 
 impl MonitorConfig {
     /// For samples every `t_sample` seconds. Still to be checked by [`crate::Monitor::new`].
@@ -60,6 +70,7 @@ impl MonitorConfig {
                 hysteresis: settings.hysteresis as f32,
             },
             healthy: file.healthy.as_ref().map(healthy),
+            doubt: doubt(file, &effects),
         })
     }
 }
@@ -110,6 +121,30 @@ fn active_effects(effects: &[EffectConfig]) -> ActiveEffects {
         *slot = Some(ActiveEffect { effect, parameters });
     }
     active
+}
+
+/// Standard deviations of the logarithms of the parameters that have an interval.
+fn doubt(file: &MotorFile, effects: &[EffectConfig]) -> ParameterDoubt {
+    // A calibrated motor was measured: its statistics say what is in doubt.
+    let (Some(uncertainty), None) = (&file.uncertainty, &file.healthy) else {
+        return ParameterDoubt::default();
+    };
+    let deviation = |key: &str| uncertainty.log_deviation(key).unwrap_or(0.0) as f32;
+    let mut doubt = ParameterDoubt {
+        circuit: CIRCUIT_KEYS.map(deviation),
+        ..ParameterDoubt::default()
+    };
+    let rated = effect::rated(file);
+    for (sigmas, config) in doubt.effects.iter_mut().zip(effects) {
+        let parameters = config.effect.descriptor().parameters.iter();
+        for ((sigma, parameter), value) in sigmas.iter_mut().zip(parameters).zip(&config.values) {
+            // Beyond its range an effect's law says nothing.
+            let highest = parameter.range[1] * parameter.scale.of(&rated);
+            let room = (highest / value.abs().max(f64::MIN_POSITIVE)).ln().max(0.0) as f32;
+            *sigma = deviation(parameter.name).min(room / DEVIATIONS);
+        }
+    }
+    doubt
 }
 
 /// What brings each channel back to the truth: one over the gain that an effect found in it. Such effects leave the positive

@@ -73,6 +73,7 @@ pub use lamps::lamp::{Lamp, Lamps};
 pub use lamps::likely_cause::{Channel, Known, Suspect, Suspicion, TIE_RATIO, Witness, likely};
 pub use lamps::signature::{Candidates, FAULTS, TABLE_1};
 pub use lamps::threshold::{ComparatorConfig, ComparatorState};
+pub use model::doubt::{CIRCUIT, ParameterDoubt};
 pub use model::effects::{
     ActiveEffect, ActiveEffects, Corrected, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, correct,
 };

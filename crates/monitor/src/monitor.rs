@@ -15,7 +15,7 @@ use crate::input::validity::{
 };
 use crate::isolation::Temperature;
 use crate::lamps::logic::{PanelConfig, PanelState};
-use crate::model::effects::{Corrected, correct};
+use crate::model::effects::{ActiveEffects, Corrected, correct};
 use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::ResidualModel;
 use crate::model::settled::settled;
@@ -406,10 +406,19 @@ impl Monitor {
             r_r: config.params.r_r * (1.0 + rise),
             ..config.params
         };
+        self.moving(&params, &config.effects, window)
+    }
+
+    fn moving(
+        &self,
+        params: &TParams<f32>,
+        effects: &ActiveEffects,
+        window: &Window,
+    ) -> Option<Corrected> {
         Some(correct(
-            &config.effects,
+            effects,
             self.rated,
-            &params,
+            params,
             [window.u_s.positive, window.i_s.positive],
             [window.omega_sync, window.omega_mech?],
         ))
@@ -422,10 +431,33 @@ impl Monitor {
         rehearsal: &Rehearsal,
         window: &Window,
     ) -> Option<OperatingPoint> {
-        let config = &self.config;
-        let corrected = self.corrected(window)?;
-        let omega_el = corrected.omega_mech * config.mechanics.n_p;
-        OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)
+        self.point_at(&self.corrected(window)?, frame, rehearsal, window)
+    }
+
+    /// The operating point as another motor would have it.
+    pub(crate) fn operating_point_of(
+        &self,
+        params: &TParams<f32>,
+        effects: &ActiveEffects,
+        rehearsal: &Rehearsal,
+        window: &Window,
+    ) -> Option<OperatingPoint> {
+        let moving = self.moving(params, effects, window)?;
+        let mechanics = &self.config.mechanics;
+        let corrected = settled(&moving, &window.rates, window.omega_sync, mechanics);
+        self.point_at(&corrected, self.config.frame, rehearsal, window)
+    }
+
+    #[inline(never)]
+    fn point_at(
+        &self,
+        corrected: &Corrected,
+        frame: Frame,
+        rehearsal: &Rehearsal,
+        window: &Window,
+    ) -> Option<OperatingPoint> {
+        let omega_el = corrected.omega_mech * self.config.mechanics.n_p;
+        OperatingPoint::new(corrected, frame, window.omega_sync, omega_el)
             .map(|point| point.rehearse(rehearsal))
     }
 }

@@ -4,7 +4,8 @@ use std::f32::consts::TAU;
 
 use monitor::{
     Abc, CHANNELS, ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind,
-    MAX_EFFECTS, Monitor, MonitorConfig, MonitorState, NotJudged, RawBlock, RawSample, Report,
+    MAX_EFFECTS, Monitor, MonitorConfig, MonitorState, NotJudged, ParameterDoubt, RawBlock,
+    RawSample, Report,
 };
 use motor::{Mechanics, TParams};
 use proptest::prelude::*;
@@ -66,6 +67,7 @@ fn config() -> MonitorConfig {
             hysteresis: 0.8,
         },
         healthy: None,
+        doubt: ParameterDoubt::default(),
     }
 }
 

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use monitor::{
     Abc, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor, MonitorConfig,
-    MonitorState, RawSample, Report, Sample, SpeedSample,
+    MonitorState, ParameterDoubt, RawSample, Report, Sample, SpeedSample,
 };
 use motor::steady_state::{OperatingPoint, SteadyState};
 use motor::{Mechanics, TParams};
@@ -83,6 +83,7 @@ impl Machine {
                 hysteresis: 0.8,
             },
             healthy: None,
+            doubt: ParameterDoubt::default(),
         }
     }
 }

@@ -35,7 +35,7 @@ pub use trace::{Trace, WindowOperation, WindowResiduals};
 
 use monitor::{
     ActiveEffects, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor,
-    MonitorConfig, MonitorState,
+    MonitorConfig, MonitorState, ParameterDoubt,
 };
 use motor::document::FileError;
 use motor::{Mechanics, MotorFile, TParams};
@@ -101,6 +101,7 @@ pub fn stand_in_config(recording: &Recording) -> MonitorConfig {
             hysteresis: 0.8,
         },
         healthy: None,
+        doubt: ParameterDoubt::default(),
     }
 }
 

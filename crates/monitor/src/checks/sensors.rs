@@ -120,20 +120,27 @@ impl HealthConfig {
         dead.or(Some(SensorFinding::CurrentSum))
     }
 
-    /// Checks the electrical speed against the one that voltages and currents imply, all in rad/s.
+    /// Checks the electrical speed against the one that voltages and currents imply, all in rad/s. `doubt` is the standard
+    /// deviation of the rotor resistance's logarithm: the implied slip is known no better.
     pub fn check_speed(
         &self,
         omega_sync: f32,
         measured: f32,
         implied: f32,
+        doubt: f32,
     ) -> Option<SensorFinding> {
         let (slip, implied_slip) = (omega_sync - measured, omega_sync - implied);
-        let warm = implied_slip * HOT_ROTOR;
-        let off = (implied_slip.min(warm) - slip).max(slip - implied_slip.max(warm));
+        let factor = libm::expf(DOUBTED * doubt);
+        let warm = implied_slip * HOT_ROTOR * factor;
+        let cold = implied_slip / factor;
+        let off = (cold.min(warm) - slip).max(slip - cold.max(warm));
         let contradiction = off > SPEED_CONTRADICTION * omega_sync;
         contradiction.then_some(SensorFinding::SpeedImplausible)
     }
 }
+
+/// Standard deviations of a parameter that no contradiction may be made of.
+const DOUBTED: f32 = 4.5;
 
 /// Fundamental amplitudes of three channels from `first` on.
 fn amplitudes(window: &Window, first: usize) -> [f32; 3] {

@@ -8,7 +8,7 @@ use num_complex::Complex32;
 use crate::rehearsal::Rehearsal;
 
 /// Most effects that one motor file may switch on.
-pub const MAX_EFFECTS: usize = 4;
+pub const MAX_EFFECTS: usize = 8;
 
 /// One effect with its parameters.
 #[derive(Clone, Copy)]

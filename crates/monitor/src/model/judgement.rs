@@ -31,14 +31,19 @@ impl Monitor {
         let residuals = self.model.evaluate(&point, tau_load);
         report.point = Some(point);
         report.residuals = Some(residuals);
-        let visible = self.visible(movement, noise);
+        let mut visible = self.visible(movement, noise);
+        let noisy = self.is_too_noisy(&visible);
+        let doubt = self.parameter_doubt(rehearsal, window, &residuals);
+        for (visible, doubt) in visible.iter_mut().zip(doubt) {
+            *visible += doubt;
+        }
         report.visible = Some(visible);
         report.normalised = Some(self.normalise(&residuals, &visible, tau_load.is_some()));
         if movement.is_plugged {
             report.not_judged = report.not_judged.or(Some(NotJudged::Reversing));
         } else if !movement.is_steady {
             report.not_judged = report.not_judged.or(Some(NotJudged::Transient));
-        } else if self.is_too_noisy(&visible) {
+        } else if noisy {
             report.not_judged = report.not_judged.or(Some(NotJudged::Noise));
         } else if window.invalid_samples == 0 {
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
@@ -84,7 +89,8 @@ impl Monitor {
     fn check_speed(&self, rehearsal: &Rehearsal, window: &Window) -> Option<SensorFinding> {
         let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
         let implied = self.model.implied_speed(&point);
+        let [_, rotor_resistance, ..] = self.config.doubt.circuit;
         self.health
-            .check_speed(point.omega_sync, point.omega_el, implied)
+            .check_speed(point.omega_sync, point.omega_el, implied, rotor_resistance)
     }
 }

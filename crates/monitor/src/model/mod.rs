@@ -1,5 +1,6 @@
 //! The motor model: operating point, effects, residuals, and how they are judged.
 
+pub(crate) mod doubt;
 pub(crate) mod effects;
 mod judgement;
 pub(crate) mod movement;
