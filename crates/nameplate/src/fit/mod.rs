@@ -22,6 +22,9 @@ use crate::circuit::Logs;
 pub const MEETS: f64 = 0.002;
 /// A start whose worst error is below is good enough.
 const GOOD: f64 = 0.005;
+/// Sum of squares, in prior standard deviations, that most catalogue motors stay below; a stranger circuit may be a local
+/// minimum.
+const USUAL: f64 = 10.0;
 /// Starts: the first from the values, the others drawn from the prior around it.
 const STARTS: usize = 6;
 
@@ -36,7 +39,7 @@ pub fn solve_with_starts(targets: &Targets, meets: &Misfits, seed: u64, starts: 
     let mut best = problem.descend(&problem.centre);
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     for _ in 1..starts {
-        if best.worst < GOOD {
+        if best.worst < GOOD && best.cost < USUAL {
             break;
         }
         let draw = Logs::from_fn(|k, _| {
