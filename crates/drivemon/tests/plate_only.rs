@@ -61,16 +61,7 @@ fn recorded(motor: &MotorFile, number: usize, fault: &str) -> Recording {
 
 fn state(recording: &Recording, motor: &MotorFile) -> (bool, VerdictState) {
     let audit = audit(recording, &Expectation::from(motor));
-    let monitor = Monitor::new(replay::config_for(motor, recording)).unwrap();
-    if std::env::var("SHOW").is_ok() {
-        let mut st = monitor::MonitorState::default();
-        let samples = Samples::new(recording, &audit);
-        for timed in samples.iter() {
-            if let Some(r) = monitor.update(&mut st, &timed.sample) {
-                println!("{:.2} {:?} {:?} {:?} {:?} {:?}", timed.t, r.residuals.map(|r| r.r), r.visible, r.normalised, r.not_judged, r.sensor);
-            }
-        }
-    }
+    let monitor = Monitor::new(replay::config_for(motor, recording).unwrap()).unwrap();
     let timeline = replay::replay(&monitor, &Samples::new(recording, &audit), &mut |_| {});
     (audit.supported, timeline.verdict(&[]).state)
 }
@@ -83,7 +74,6 @@ fn healthy_motors_known_by_their_plate_stay_dark() {
     for number in 0..cases.unwrap_or(30) {
         // A stride that visits all sizes and makers.
         let (truth, known) = &motors[number * 61 % motors.len()];
-        if std::env::var("ONLY").is_ok_and(|n| n != number.to_string()) { continue; }
         let (supported, state) = state(&recorded(truth, number, ""), known);
         match state {
             VerdictState::Healthy => healthy += 1,
