@@ -43,7 +43,8 @@ fn file(plate: &Plate, estimate: &Estimate) -> MotorFile {
 
 /// The true motor at a load, as a recorder of 12 bits and 0.2 % noise shows it.
 fn recorded(motor: &MotorFile, number: usize, fault: &str) -> Recording {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("plate-only-{number}-{}", fault.len()));
+    let folder =
+        Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("plate-only-{number}-{}", fault.len()));
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("motor.toml"), motor.to_toml()).unwrap();
     let text = format!(

@@ -80,7 +80,7 @@ impl Fit {
 /// Weights of the priors and their pull at the present coordinates.
 fn penalty(prior: &Prior, h: &Hypothesis, free: &[usize], inflation: f64) -> Penalty {
     let one = |&k: &usize| {
-        let (sd, centre) = h.prior_of(k, &prior.plant.rated);
+        let (sd, centre) = h.prior_of(k, prior);
         let factor = if h.is_prior(k) { inflation } else { 1.0 };
         (factor / (sd * sd), centre - h.z[k])
     };

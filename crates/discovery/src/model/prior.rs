@@ -4,6 +4,7 @@ use crate::data::instrument_class::CHANNEL_GAIN;
 use motor::effect::{
     Effect, EffectConfig, Instrument, Parameter, Plant, Rated, Role, expression, rated,
 };
+use motor::motor_file::Uncertainty;
 use motor::{Mechanics, MotorFile, TParams};
 
 /// Nominal parameters in the order of a hypothesis.
@@ -58,6 +59,8 @@ pub(crate) struct Prior {
     pub formulas: Vec<&'static dyn Effect>,
     /// Friction that takes 1 % of rated torque at synchronous speed, N m s.
     pub friction_unit: f64,
+    /// Prior standard deviations of the nominals' coordinates: the motor file's intervals where it has them.
+    pub deviations: [f64; N_NOMINAL],
 }
 
 impl Prior {
@@ -77,6 +80,7 @@ impl Prior {
         Self {
             friction_unit: 0.01 * rated.torque / rated.speed(),
             formulas: formulas.iter().map(|e| e.effect).collect(),
+            deviations: deviations(file),
             plant,
         }
     }
@@ -100,6 +104,34 @@ impl Prior {
             error * self.nominal_value(k, z)
         }
     }
+}
+
+/// Standard deviations of the nominals: of a motor file's intervals, else those of a motor that was measured.
+fn deviations(file: &MotorFile) -> [f64; N_NOMINAL] {
+    let mut deviations = NOMINALS.map(|nominal| nominal.prior_deviation);
+    let Some(uncertainty) = &file.uncertainty else {
+        return deviations;
+    };
+    for (deviation, nominal) in deviations.iter_mut().zip(&NOMINALS).take(FRICTION) {
+        *deviation = uncertainty
+            .log_deviation(nominal.name)
+            .unwrap_or(*deviation);
+    }
+    deviations[LEAKAGE] = leakage_deviation(file, uncertainty).unwrap_or(deviations[LEAKAGE]);
+    deviations
+}
+
+/// Both leakages are one coordinate: the deviation of their sum's logarithm.
+fn leakage_deviation(file: &MotorFile, uncertainty: &Uncertainty) -> Option<f64> {
+    let keys = ["stator_leakage_henry", "rotor_leakage_henry"];
+    let (l_ls, l_lr) = (file.parameters.l_ls, file.parameters.l_lr);
+    let [stator, rotor] = [
+        l_ls * uncertainty.log_deviation(keys[0])?,
+        l_lr * uncertainty.log_deviation(keys[1])?,
+    ];
+    let correlation = uncertainty.correlation(keys);
+    let variance = stator * stator + rotor * rotor + 2.0 * correlation * stator * rotor;
+    Some(variance.max(0.0).sqrt() / (l_ls + l_lr))
 }
 
 /// One coordinate of an effect.
@@ -189,9 +221,10 @@ impl Hypothesis {
     }
 
     /// Prior standard deviation of a coordinate, and its centre.
-    pub fn prior_of(&self, k: usize, rated: &Rated<f64>) -> (f64, f64) {
+    pub fn prior_of(&self, k: usize, prior: &Prior) -> (f64, f64) {
+        let rated = &prior.plant.rated;
         if k < N_NOMINAL {
-            return (NOMINALS[k].prior_deviation, 0.0);
+            return (prior.deviations[k], 0.0);
         }
         let p = self.parameter(k);
         match p.role {

@@ -24,7 +24,7 @@ pub(crate) fn coordinate_error(
 pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
     let z = &study.polished(trial).fit.hypothesis.z;
     let far = |&k: &usize| {
-        let limit = IMPLAUSIBLE * NOMINALS[k].prior_deviation;
+        let limit = IMPLAUSIBLE * study.prior.deviations[k];
         let warm = if NOMINALS[k].unit == "ohm" {
             HOT_COPPER
         } else {

@@ -120,16 +120,15 @@ fn rated_slip(prior: &Prior) -> f64 {
 }
 
 fn precision(study: &Study, fit: &Fit, physical: f64) -> DMatrix<f64> {
-    let rated = &study.prior.plant.rated;
     let nominals = fit.free.iter().filter(|&&k| k < N_NOMINAL).count();
     let inflation =
         normal_equations::score_inflation(&fit.blocks, nominals).clamp(INFLATION[0], INFLATION[1]);
     let weight = |&k: &usize| {
         let sd = match k {
-            FRICTION => NOMINALS[FRICTION].prior_deviation,
+            FRICTION => study.prior.deviations[FRICTION],
             0..N_NOMINAL => WEAK,
             N_NOMINAL => physical,
-            _ => fit.hypothesis.prior_of(k, rated).0,
+            _ => fit.hypothesis.prior_of(k, &study.prior).0,
         };
         sd.powi(-2)
     };

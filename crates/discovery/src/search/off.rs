@@ -16,6 +16,9 @@ pub(crate) const RELEVANT_FRICTION: f64 = 2.0;
 /// ... where the recording leaves at most this share of the variance of the prior, ...
 const LEFT_OPEN: f64 = 0.1;
 
+/// 95 % of a normal distribution lie within so many standard deviations.
+const TWO_SIDED_95: f64 = 1.96;
+
 /// Indices of the nominals that are off: moved far, known well, and with the parameter held at its prior and all others
 /// refitted the data that were not fitted are explained significantly worse, or only by stranger parameters.
 pub(crate) fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
@@ -23,9 +26,11 @@ pub(crate) fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
     let candidates = (0..N_NOMINAL)
         .filter(free)
         .filter(|&k| moved(study, trial, k));
+    let deviations = &study.prior.deviations;
     let needed = |&k: &usize| {
         let held = held(study, trial, k);
-        worse(study, &held, trial) || strains(&held) > strains(trial) + SIGNIFICANT.powi(2)
+        worse(study, &held, trial)
+            || strains(&held, deviations) > strains(trial, deviations) + SIGNIFICANT.powi(2)
     };
     candidates.filter(needed).collect()
 }
@@ -34,11 +39,9 @@ pub(crate) fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
 ///
 /// One operating point never shows all of them: held at its prior, a parameter can be replaced by others. They do not
 /// explain the recording if they have to leave their priors further than the parameter itself.
-fn strains(trial: &Trial) -> f64 {
-    let nominals = trial.fit.hypothesis.z.iter().zip(&NOMINALS);
-    nominals
-        .map(|(z, nominal)| (z / nominal.prior_deviation).powi(2))
-        .sum()
+fn strains(trial: &Trial, deviations: &[f64; N_NOMINAL]) -> f64 {
+    let nominals = trial.fit.hypothesis.z.iter().zip(deviations);
+    nominals.map(|(z, deviation)| (z / deviation).powi(2)).sum()
 }
 
 /// The trial with one nominal held at its prior and everything else refitted.
@@ -62,8 +65,14 @@ fn moved(study: &Study, trial: &Trial, k: usize) -> bool {
         _ => z.exp_m1().abs() > RELEVANT,
     };
     let error = coordinate_error(trial, study.covariance(trial), k);
-    let known = error * error < LEFT_OPEN * NOMINALS[k].prior_deviation.powi(2);
-    relevant && known && z.abs() > SIGNIFICANT * error
+    let known = error * error < LEFT_OPEN * study.prior.deviations[k].powi(2);
+    relevant && known && z.abs() > SIGNIFICANT * error && !expected(study, k, z)
+}
+
+/// Whether the motor file holds the parameter in an interval with this value inside: learnt, not off.
+fn expected(study: &Study, k: usize, z: f64) -> bool {
+    let deviation = study.prior.deviations[k];
+    deviation > NOMINALS[k].prior_deviation && z.abs() < TWO_SIDED_95 * deviation
 }
 
 #[cfg(test)]

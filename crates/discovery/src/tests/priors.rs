@@ -43,7 +43,7 @@ fn values_go_through_coordinates_and_back() {
     for k in N_NOMINAL..h.z.len() {
         assert!(h.free[k]);
         let p = h.parameter(k);
-        let (deviation, centre) = h.prior_of(k, rated);
+        let (deviation, centre) = h.prior_of(k, &study.prior);
         if p.role == Role::Size {
             // Four typical sizes around nothing.
             assert_eq!((deviation, centre), (4.0, 0.0));

@@ -50,6 +50,13 @@ impl Uncertainty {
         self.intervals.iter().find(|interval| interval.key == key)
     }
 
+    /// Correlation of the logarithms of two parameters, 0 where none is written.
+    pub fn correlation(&self, [a, b]: [&str; 2]) -> f64 {
+        let of =
+            |c: &&Correlation| (c.first == a && c.second == b) || (c.first == b && c.second == a);
+        self.correlations.iter().find(of).map_or(0.0, |c| c.value)
+    }
+
     /// Standard deviation of a parameter's logarithm.
     pub fn log_deviation(&self, key: &str) -> Option<f64> {
         self.of(key).map(ParameterInterval::log_deviation)

@@ -98,7 +98,7 @@ fn a_held_parameter_stays_at_its_prior() {
     let held = held(&study, &trial, R_R);
     assert_eq!(held.fit.hypothesis.z[R_R], 0.0);
     assert_eq!(held.fit.free, [R_S, LEAKAGE, MAGNETIZING]);
-    assert!(strains(&held) > 0.0);
+    assert!(strains(&held, &study.prior.deviations) > 0.0);
 }
 
 /// Prior deviations: 0.1 for windings and iron, 0.2 for the inertia, 10 % of rated torque for friction.
@@ -111,5 +111,5 @@ fn strain_is_counted_in_prior_deviations() {
         &[(R_S, 0.3), (4, 0.4), (FRICTION, -10.0)],
         0.01,
     );
-    assert!((strains(&trial) - (9.0 + 4.0 + 1.0)).abs() < 1e-12);
+    assert!((strains(&trial, &study.prior.deviations) - (9.0 + 4.0 + 1.0)).abs() < 1e-12);
 }
