@@ -347,7 +347,7 @@ pub fn adopt(
 }
 
 /// The motor file as it is: nothing is fitted, not even on the folds.
-fn as_believed(study: &Study) -> Trial {
+pub(crate) fn as_believed(study: &Study) -> Trial {
     let mut priors = study.at_prior();
     priors.free.fill(false);
     study.trial(&priors, Effort::NONE)
@@ -414,7 +414,7 @@ fn fitted(study: &Study, before: &Trial, effect: &str) -> Result<Trial, Error> {
         .ok_or_else(|| Error::UnknownEffect(format!("`{effect}` does not apply to this recording")))
 }
 
-fn errors(study: &Study, trial: &Trial) -> ErrorReport {
+pub(crate) fn errors(study: &Study, trial: &Trial) -> ErrorReport {
     let r = &trial.fit.residual;
     ErrorReport {
         error_over_noise: study.fold_error(&[dot(r, r)]),
@@ -434,7 +434,7 @@ fn is_open(entry: &EffectEntry) -> bool {
 }
 
 /// The motor file with the parameters and effects of a trial.
-fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
+pub(crate) fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     let plant = with_nominals(trial, study.polished(trial)).plant(&study.prior);
     let mut file = motor.clone();
     file.parameters = plant.motor;
@@ -442,7 +442,14 @@ fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorFile {
     file.mechanics.load_friction = motor.mechanics.load_friction;
     let mut added = trial.fit.hypothesis.configs(&study.prior.plant.rated);
     // The scale of a sensor belongs to the recording, not to the motor.
-    added.drain(..study.given_effects());
+    let of_the_file = added.drain(..study.given_effects());
+    for config in of_the_file.skip(usize::from(study.speed_scale.is_some())) {
+        let fitted = to_entry(&config);
+        let same = |entry: &&mut EffectEntry| entry.name == fitted.name;
+        for entry in file.effects.iter_mut().filter(same) {
+            entry.take_numbers(&fitted);
+        }
+    }
     // A formula with its fitted parameters replaces the open one.
     let is_new = |text: &str| added.iter().any(|c| c.effect.descriptor().form == text);
     let fitted =

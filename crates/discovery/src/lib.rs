@@ -22,6 +22,7 @@ mod compare;
 mod data;
 mod explain;
 mod fit;
+mod identify;
 mod model;
 mod report;
 mod search;
@@ -34,6 +35,7 @@ pub use data::instrument_class;
 pub use data::load_table::table_values;
 pub use data::question::Error;
 pub use data::unsupported::Unsupported;
+pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use model::prediction::simulations;
 pub use report::types::{
     AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,

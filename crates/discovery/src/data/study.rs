@@ -96,15 +96,16 @@ impl Study {
             Some(_) => Hypothesis::at_prior_of_table(),
             None => Hypothesis::at_prior(self.fitted.case.speed_is_input),
         };
-        match self.speed_scale {
+        let priors = match self.speed_scale {
             Some(_) => free_scale::free(&priors, &self.prior),
             None => priors,
-        }
+        };
+        priors.with_uncertain(&self.prior)
     }
 
     /// Effects that every hypothesis holds: they are no finding.
     pub fn given_effects(&self) -> usize {
-        usize::from(self.speed_scale.is_some())
+        usize::from(self.speed_scale.is_some()) + self.prior.uncertain.len()
     }
 
     /// Fits a hypothesis and measures it.

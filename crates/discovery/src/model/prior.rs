@@ -61,6 +61,30 @@ pub(crate) struct Prior {
     pub friction_unit: f64,
     /// Prior standard deviations of the nominals' coordinates: the motor file's intervals where it has them.
     pub deviations: [f64; N_NOMINAL],
+    /// Effects of the motor file whose parameters have intervals: every hypothesis refits them.
+    pub uncertain: Vec<UncertainEffect>,
+}
+
+/// An effect of the motor file that was not measured on this motor.
+#[derive(Clone, Debug)]
+pub(crate) struct UncertainEffect {
+    /// As the motor file has it.
+    pub config: EffectConfig,
+    /// Standard deviation of each parameter's logarithm, where it has an interval.
+    pub deviations: Vec<Option<f64>>,
+}
+
+impl UncertainEffect {
+    /// Prior standard deviation and centre of a parameter's coordinate; `None` for one that is held.
+    fn prior_of(&self, parameter: usize, rated: &Rated<f64>) -> Option<(f64, f64)> {
+        let p = &self.config.effect.descriptor().parameters[parameter];
+        let centre = to_coordinate(p, self.config.values[parameter], rated);
+        let deviation = self.deviations[parameter]?;
+        match p.role {
+            Role::Size => Some((deviation * centre.abs(), centre)),
+            _ => Some((deviation, centre)),
+        }
+    }
 }
 
 impl Prior {
@@ -71,6 +95,7 @@ impl Prior {
             e.effect.descriptor().name == expression::NAME && e.values.iter().all(|&x| x == 0.0)
         };
         let (formulas, effects): (Vec<_>, Vec<_>) = effects.into_iter().partition(open);
+        let (uncertain, effects) = uncertain(file, effects);
         let plant = Plant {
             motor: file.parameters,
             mechanics: file.mechanics,
@@ -81,6 +106,7 @@ impl Prior {
             friction_unit: 0.01 * rated.torque / rated.speed(),
             formulas: formulas.iter().map(|e| e.effect).collect(),
             deviations: deviations(file),
+            uncertain,
             plant,
         }
     }
@@ -121,6 +147,30 @@ fn deviations(file: &MotorFile) -> [f64; N_NOMINAL] {
     deviations
 }
 
+/// The effects whose parameters have intervals, and the others.
+fn uncertain(
+    file: &MotorFile,
+    effects: Vec<EffectConfig>,
+) -> (Vec<UncertainEffect>, Vec<EffectConfig>) {
+    let deviation = |key: &str| file.uncertainty.as_ref()?.log_deviation(key);
+    let described = |config: EffectConfig| {
+        let parameters = config.effect.descriptor().parameters.iter();
+        let deviations = parameters.map(|p| deviation(p.name).filter(|sd| *sd > 0.0));
+        UncertainEffect {
+            deviations: deviations.collect(),
+            config,
+        }
+    };
+    let (uncertain, known): (Vec<_>, Vec<_>) = effects
+        .into_iter()
+        .map(described)
+        .partition(|effect| effect.deviations.iter().any(Option::is_some));
+    (
+        uncertain,
+        known.into_iter().map(|effect| effect.config).collect(),
+    )
+}
+
 /// Both leakages are one coordinate: the deviation of their sum's logarithm.
 fn leakage_deviation(file: &MotorFile, uncertainty: &Uncertainty) -> Option<f64> {
     let keys = ["stator_leakage_henry", "rotor_leakage_henry"];
@@ -153,6 +203,8 @@ pub(crate) struct Hypothesis {
     coordinates: Vec<Coordinate>,
     /// The effects by which instruments may be off within their class: no finding, a nuisance.
     instruments: Vec<usize>,
+    /// The effects of the motor file that are refitted, in the order of [`Prior::uncertain`].
+    uncertain: Vec<usize>,
 }
 
 impl Hypothesis {
@@ -165,6 +217,7 @@ impl Hypothesis {
             free: free.collect(),
             coordinates: Vec::new(),
             instruments: Vec::new(),
+            uncertain: Vec::new(),
         }
     }
 
@@ -195,6 +248,28 @@ impl Hypothesis {
         more
     }
 
+    /// The same with the effects of the motor file whose parameters are uncertain.
+    pub fn with_uncertain(&self, prior: &Prior) -> Self {
+        let rated = &prior.plant.rated;
+        let mut more = self.clone();
+        for effect in &prior.uncertain {
+            let first = more.z.len();
+            more.uncertain.push(more.effects.len());
+            more = more.with(effect.config.clone(), rated);
+            for k in first..more.z.len() {
+                more.free[k] = effect.deviations[more.parameter_of(k)].is_some();
+            }
+        }
+        more
+    }
+
+    /// The uncertain effect of the motor file behind coordinate `k`.
+    fn uncertain_of<'p>(&self, k: usize, prior: &'p Prior) -> Option<&'p UncertainEffect> {
+        let effect = self.effect_of(k);
+        let place = self.uncertain.iter().position(|&index| index == effect)?;
+        prior.uncertain.get(place)
+    }
+
     /// The same with an effect by which an instrument may be off within its class.
     pub fn with_instrument(&self, effect: EffectConfig, rated: &Rated<f64>) -> Self {
         let mut more = self.with(effect, rated);
@@ -217,7 +292,9 @@ impl Hypothesis {
 
     /// Whether coordinate `k` is a prior: of the motor file about the motor, or of the class about an instrument.
     pub fn is_prior(&self, k: usize) -> bool {
-        k < N_NOMINAL || self.instruments.contains(&self.effect_of(k))
+        k < N_NOMINAL
+            || self.instruments.contains(&self.effect_of(k))
+            || self.uncertain.contains(&self.effect_of(k))
     }
 
     /// Prior standard deviation of a coordinate, and its centre.
@@ -225,6 +302,12 @@ impl Hypothesis {
         let rated = &prior.plant.rated;
         if k < N_NOMINAL {
             return (prior.deviations[k], 0.0);
+        }
+        let believed = self
+            .uncertain_of(k, prior)
+            .and_then(|effect| effect.prior_of(self.parameter_of(k), rated));
+        if let Some(believed) = believed {
+            return believed;
         }
         let p = self.parameter(k);
         match p.role {

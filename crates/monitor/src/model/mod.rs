@@ -1,6 +1,7 @@
 //! The motor model: operating point, effects, residuals, and how they are judged.
 
 pub(crate) mod doubt;
+mod doubted;
 pub(crate) mod effects;
 mod judgement;
 pub(crate) mod movement;

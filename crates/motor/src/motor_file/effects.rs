@@ -57,6 +57,15 @@ impl EffectEntry {
         }
     }
 
+    /// Takes over the numbers of another entry of the same effect; keys, order and form stay.
+    pub fn take_numbers(&mut self, other: &EffectEntry) {
+        for parameter in &mut self.parameters {
+            if let Some(number) = other.number(&parameter.key) {
+                parameter.value = EffectValue::Number(number);
+            }
+        }
+    }
+
     /// A numeric parameter by its key.
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.parameter(key)?.value {

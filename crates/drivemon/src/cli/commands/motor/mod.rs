@@ -1,6 +1,7 @@
 //! `drivemon motor`: motor files from plates, tables and tests.
 
 mod catalogue;
+pub(crate) mod identify;
 mod new;
 mod plate;
 
@@ -19,6 +20,7 @@ pub struct Motor {
 enum Command {
     New(new::New),
     Catalogue(catalogue::Catalogue),
+    Identify(identify::Identify),
 }
 
 impl Motor {
@@ -27,6 +29,7 @@ impl Motor {
         match &self.command {
             Command::New(new) => new.run(),
             Command::Catalogue(catalogue) => catalogue.run(),
+            Command::Identify(identify) => identify.run(),
         }
     }
 }

@@ -1,0 +1,117 @@
+//! `drivemon motor identify`: parameters from recordings.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use discovery::{IdentifiedParameter, IdentifyReport};
+use motor::MotorFile;
+use serde::Serialize;
+
+use crate::cli::arguments::study::{StudyArgs, print_audit, quantity, with_progress};
+use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::output::write_text;
+use crate::cli::printing::paint;
+use crate::cli::printing::terminal::say;
+use report::motor_text;
+
+/// Learn a motor's parameters from recordings of it in good order.
+///
+/// The intervals of the motor file are the prior: `drivemon motor new` writes them. What the recordings tell gets a narrower
+/// interval; what they cannot tell keeps its own, and the answer says which recording would tell it. A start and two loads
+/// tell nearly everything.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Identify {
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Motor file to write
+    #[arg(short, long = "out", value_name = "M2")]
+    out: PathBuf,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  drivemon motor new --plate pump-plate.toml -o pump.toml
+  drivemon motor identify start.csv full-load.csv --motor pump.toml -o pump-2.toml
+Exit codes: 0 written, 1 written, but the model does not fit the recordings (drivemon explain says what is missing),
+2 bad input, 3 the data do not support an answer.";
+
+/// An error over noise from here on is no noise.
+const MISFIT: f64 = 1.5;
+
+#[derive(Debug, Serialize)]
+struct IdentifyJson<'a> {
+    #[serde(flatten)]
+    report: &'a IdentifyReport,
+    motor_file: String,
+}
+
+impl Identify {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        self.study.files().writes("-o", &self.out).check()?;
+        let motor = self.study.motor()?;
+        let sources = self.study.sources()?;
+        let (report, identified) =
+            with_progress(|progress| discovery::identify(&sources, &motor, progress))?;
+        self.write(&identified)?;
+        let result = IdentifyJson {
+            report: &report,
+            motor_file: self.out.display().to_string(),
+        };
+        let fits = report.after.held_out_error_over_noise < MISFIT;
+        self.study
+            .output
+            .json
+            .give(&result, || self.print(&report, fits))?;
+        Ok(if fits {
+            Finding::Nothing
+        } else {
+            Finding::Something
+        })
+    }
+
+    fn write(&self, motor: &MotorFile) -> Result<(), Failure> {
+        let old = std::fs::read_to_string(self.study.motor_path()).unwrap_or_default();
+        write_text(&self.out, &motor_text::updated(&old, motor))
+    }
+
+    fn print(&self, report: &IdentifyReport, fits: bool) {
+        print_audit(&report.audit);
+        print_table(&report.parameters);
+        say!(
+            "\n  error over noise on data that was not fitted: {:.2} before, {:.2} after",
+            report.before.held_out_error_over_noise,
+            report.after.held_out_error_over_noise
+        );
+        if !fits {
+            let typed = self.study.typed_with(&self.out);
+            say!("  {} the model misses something:", paint::caution("note:"));
+            say!("  drivemon explain {typed}");
+        }
+        say!("\n{} is written.", self.out.display());
+    }
+}
+
+/// Every parameter: told by the recordings, or what would tell it.
+pub(crate) fn print_table(parameters: &[IdentifiedParameter]) {
+    say!(
+        "  {:<30} {:>14} {:>14}  {:<28} to learn it, record",
+        "parameter",
+        "believed",
+        "found",
+        "95 % interval"
+    );
+    for p in parameters {
+        let interval = format!("{} .. {}", quantity(p.low), quantity(p.high));
+        let tell = p.would_tell.as_deref().unwrap_or("-");
+        say!(
+            "  {:<30} {:>14} {:>14}  {:<28} {}",
+            p.name,
+            quantity(p.believed),
+            format!("{} {}", quantity(p.value), p.unit),
+            interval,
+            paint::faint(tell)
+        );
+    }
+}
