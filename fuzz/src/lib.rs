@@ -36,7 +36,7 @@ const fn target(
 }
 
 /// Every target.
-pub const TARGETS: [Target; 14] = [
+pub const TARGETS: [Target; 16] = [
     target(
         "motor-file",
         targets::motor_file,
@@ -52,6 +52,8 @@ pub const TARGETS: [Target; 14] = [
     target("parquet", targets::parquet, seeds::parquet, 10_000),
     target("mat", targets::mat, seeds::mat, 10_000),
     target("comtrade", targets::comtrade, seeds::comtrade, 5_000),
+    target("workbook", targets::workbook, seeds::workbooks, 5_000),
+    target("wav", targets::wav, seeds::wav, 10_000),
     target("stream", targets::stream, seeds::streams, 5_000),
     target("telemetry", targets::telemetry, seeds::telemetry, 200_000),
     target("modbus", targets::modbus, seeds::modbus, 200_000),

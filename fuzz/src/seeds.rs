@@ -1,11 +1,13 @@
 //! Inputs to begin with: what ships, and the small files of other people's writers.
 
-use std::io::Write;
+use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use board::{Frame, MAX_FRAME_BYTES};
 use flate2::{Compression, write::GzEncoder};
 use monitor::Report;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 /// A seed is at most this long: a mutation of a long file mostly changes one more of many equal rows.
 const LONGEST: usize = 1 << 14;
@@ -65,10 +67,83 @@ pub(crate) fn csv() -> Vec<Vec<u8>> {
         "t;ia\n0,0;1,5\n",
         "# bench\r\n\"t\", \"vab\", \"vbc\", \"ia\"\r\n0,1,2,3\r\n0.1,2,3,4\r\n",
         "t,ia,ib,ic,torque,temperature,ic2\n0,1,2,-3,9,20,-3\n1,1,2,-3,9,20,-3\n",
+        "sep=;\nBench;3\nZeit (ms);Ua [V];Ub [V];I1;I2\n0,0;1.234,5;2;3;4\n0,1;-1.234,5;1;2;3\n;;;;\n",
+        "Sample Interval,1e-4\nI1 (mA),I2 (mA)\n\"1,234.5\",2\n\"-1,234.5\",3\n",
+        "# t ia ib\n0.1  1  2\n0.2  3  4\n% note\nEOF\n",
+        "Timestamp,U12,U32,n (rpm)\n3/4/2024 11:59:59.9 AM,1,2,3\n3/4/2024 12:00:00.0 PM,1,2,3\n",
+        "\"TraceName\",\"Ia\",\"Ib\"\n\"VUnit\",\"mA\",\"mA\"\n\"HResolution\",1e-4,1e-4\n,1,2\n,3,4\n",
+        "time,i_l1,i_l2\n1709290800000000000,1,2\n1709290800000100000,2,3\n",
     ];
+    let utf16 = small[1].encode_utf16().flat_map(u16::to_le_bytes).collect();
     std::iter::once(wave.into_bytes())
         .chain(small.map(|text| text.as_bytes().to_vec()))
+        .chain([utf16, b"Zeit (\xB5s);ia\n0;1,5\n1;2,5\n".to_vec()])
         .collect()
+}
+
+/// A workbook of one sheet, packed and as it is.
+pub(crate) fn workbooks() -> Vec<Vec<u8>> {
+    const RELATIONS: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    let relation = |kind: &str, target: &str| {
+        format!(
+            "<Relationships><Relationship Id=\"r1\" Type=\"{RELATIONS}/{kind}\" Target=\"{target}\"/></Relationships>"
+        )
+    };
+    let workbook = format!(
+        "<workbook xmlns:r=\"{RELATIONS}\"><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"r1\"/></sheets></workbook>"
+    );
+    let sheet = "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"str\"><v>t</v></c><c r=\"B1\" t=\"str\"><v>ia</v></c></row>\
+                 <row r=\"2\"><c r=\"A2\"><v>0</v></c><c r=\"B2\"><v>1.5</v></c></row>\
+                 <row r=\"3\"><c r=\"A3\"><v>1</v></c><c r=\"B3\"><v>2.5</v></c></row></sheetData></worksheet>";
+    let parts = [
+        ("_rels/.rels", relation("officeDocument", "xl/workbook.xml")),
+        ("xl/workbook.xml", workbook),
+        (
+            "xl/_rels/workbook.xml.rels",
+            relation("worksheet", "worksheets/sheet1.xml"),
+        ),
+        ("xl/worksheets/sheet1.xml", sheet.to_owned()),
+    ];
+    let methods = [CompressionMethod::Stored, CompressionMethod::Deflated];
+    methods
+        .into_iter()
+        .filter_map(|method| archive(&parts, method).ok())
+        .collect()
+}
+
+fn archive(parts: &[(&str, String)], method: CompressionMethod) -> zip::result::ZipResult<Vec<u8>> {
+    let options = SimpleFileOptions::default().compression_method(method);
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, content) in parts {
+        archive.start_file(*name, options)?;
+        archive.write_all(content.as_bytes())?;
+    }
+    Ok(archive.finish()?.into_inner())
+}
+
+/// Sixteen bits and 32 bit float, three channels.
+pub(crate) fn wav() -> Vec<Vec<u8>> {
+    let samples: Vec<u8> = (0..=255).cycle().take(240).collect();
+    let head = |format: u16, bits: u16| {
+        let (block, size) = (3 * bits / 8, samples.len() as u32);
+        [
+            &b"RIFF"[..],
+            &(36 + size).to_le_bytes(),
+            b"WAVEfmt ",
+            &16u32.to_le_bytes(),
+            &format.to_le_bytes(),
+            &3u16.to_le_bytes(),
+            &8000u32.to_le_bytes(),
+            &(8000 * u32::from(block)).to_le_bytes(),
+            &block.to_le_bytes(),
+            &bits.to_le_bytes(),
+            b"data",
+            &size.to_le_bytes(),
+            &samples,
+        ]
+        .concat()
+    };
+    vec![head(1, 16), head(3, 32)]
 }
 
 pub(crate) fn csv_gz() -> Vec<Vec<u8>> {
@@ -88,7 +163,16 @@ pub(crate) fn load_tables() -> Vec<Vec<u8>> {
 
 /// One of everything that a stream may hold.
 pub(crate) fn streams() -> Vec<Vec<u8>> {
-    let all = [csv(), csv_gz(), load_tables(), parquet(), mat(), comtrade()];
+    let all = [
+        csv(),
+        csv_gz(),
+        load_tables(),
+        parquet(),
+        mat(),
+        comtrade(),
+        workbooks(),
+        wav(),
+    ];
     all.into_iter().flatten().collect()
 }
 

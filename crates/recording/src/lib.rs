@@ -31,7 +31,7 @@ pub use data::recording::{Bridged, Recording, UnknownScale};
 pub use data::units::{Period, UNITS, Unit};
 pub use error::{Class, Error, Problem};
 pub use mapping::sidecar::Sidecar;
-pub use mapping::{ColumnMap, DateOrder, Factor, Mapping, Origin, Sensor, Target};
+pub use mapping::{ColumnMap, DateOrder, Factor, Mapping, Origin, Said, Sensor, Target};
 pub use names::{companions, sidecar_path};
 pub use read::{
     Preview, Progress, Source, preview, read_any, read_load_table, read_recording, read_stream,

@@ -6,6 +6,6 @@ mod samples;
 mod wire;
 
 pub(crate) use configuration::{campaign, motor_file, scenario, sidecar};
-pub(crate) use recordings::{comtrade, csv, csv_gz, mat, parquet, stream};
+pub(crate) use recordings::{comtrade, csv, csv_gz, mat, parquet, stream, wav, workbook};
 pub(crate) use samples::monitor;
 pub(crate) use wire::{modbus, telemetry};

@@ -107,6 +107,16 @@ pub(crate) fn mat(bytes: &[u8]) {
     read("x.mat", bytes, &mapping());
 }
 
+pub(crate) fn workbook(bytes: &[u8]) {
+    read("x.xlsx", bytes, &mapping());
+}
+
+pub(crate) fn wav(bytes: &[u8]) {
+    let mut columns = mapping();
+    columns.set_columns("ia,ib,ic").expect("known channels");
+    read("x.wav", bytes, &columns);
+}
+
 /// The recorder's names are mapped where they are those of the seeds.
 pub(crate) fn comtrade(bytes: &[u8]) {
     let mut names = mapping();

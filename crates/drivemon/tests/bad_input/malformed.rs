@@ -167,7 +167,18 @@ pub fn bad_recordings() -> Vec<Malformed> {
             &["r.csv.gz"],
         ),
         malformed("binary", "r.csv", vec![0_u8, 1, 2, 255, 0, 7], &["r.csv"]),
-        malformed("UTF-16", "r.csv", utf16(&rows(20)), &["r.csv", "UTF-8"]),
+        malformed(
+            "WAV without samples",
+            "r.wav",
+            b"RIFF\x24\0\0\0WAVE".to_vec(),
+            &["r.wav", "no sound WAV file"],
+        ),
+        malformed(
+            "workbook cut short",
+            "r.xlsx",
+            b"PK\x03\x04\x14\0".to_vec(),
+            &["r.xlsx", "no sound workbook"],
+        ),
         csv(
             "NaN",
             with_row("0.0020,NaN,1,1,1,1,1,150"),
@@ -220,9 +231,14 @@ pub fn bad_recordings() -> Vec<Malformed> {
             &["r.csv", "ia"],
         ),
         csv(
-            "semicolons",
-            rows(20).replace(',', ";"),
-            &["r.csv", "--delimiter"],
+            "numbers that could be two",
+            "t;ia;ib\n0;1,234;5,678\n1;1,345;5,789\n".to_owned(),
+            &["r.csv:2", "ia", "--decimal-comma", "--thousands"],
+        ),
+        csv(
+            "two sets of currents",
+            "t,Ia,Ib,I1,I2\n0,1,2,3,4\n1,1,2,3,4\n".to_owned(),
+            &["r.csv:1", "could each be ia", "--column ia=Ia"],
         ),
         csv(
             "huge line",

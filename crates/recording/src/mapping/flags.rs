@@ -1,7 +1,7 @@
 //! The flags that say how a file is to be read.
 
 use super::sensor::{self, Sensor};
-use super::{DateOrder, Factor, Mapping, Slot, Target};
+use super::{DateOrder, Factor, Mapping, Origin, Said, Slot, Target};
 use crate::data::channel::{Channel, Quantity};
 use crate::data::units::Unit;
 use crate::error::Error;
@@ -115,7 +115,7 @@ impl Mapping {
             .columns
             .get(&target)
             .and_then(|map| map.sensor.as_ref());
-        own.or_else(|| self.sensors.get(&quantity))
+        own.or_else(|| self.sensors.get(&quantity).map(|said| &said.what))
             .map_or(quantity, Sensor::raw)
     }
 
@@ -128,7 +128,14 @@ impl Mapping {
         if let Some((name, text)) = flag.split_once('=') {
             if let Some(quantity) = all_of(name) {
                 let sensor = Sensor::parse(quantity, text).map_err(wrong)?;
-                self.sensors.insert(quantity, sensor);
+                let origin = Origin::User;
+                self.sensors.insert(
+                    quantity,
+                    Said {
+                        what: sensor,
+                        origin,
+                    },
+                );
                 return Ok(());
             }
         }
@@ -147,7 +154,10 @@ impl Mapping {
         check_names(&names).map_err(|(message, remedy)| {
             Error::at(COMMAND_LINE, 0, "--columns", message, remedy)
         })?;
-        self.names = Some(names);
+        self.names = Some(Said {
+            what: names,
+            origin: Origin::User,
+        });
         Ok(())
     }
 

@@ -136,6 +136,26 @@ pub enum Origin {
     File,
 }
 
+impl Origin {
+    /// The end of a sentence.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Origin::User => "user's assumption",
+            Origin::Sidecar => "as the sidecar declares",
+            Origin::File => "as the file declares",
+        }
+    }
+}
+
+/// Something that was said, and by whom.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Said<T> {
+    /// What was said.
+    pub what: T,
+    /// Who said so.
+    pub origin: Origin,
+}
+
 impl ColumnMap {
     /// The SI value of a raw reading.
     pub fn to_si(&self, quantity: Quantity, raw: f64) -> f64 {
@@ -163,11 +183,7 @@ impl ColumnMap {
         {
             return None;
         }
-        let who = match self.origin {
-            Origin::User => "user's assumption",
-            Origin::Sidecar => "as the sidecar declares",
-            Origin::File => "as the file declares",
-        };
+        let who = self.origin.words();
         let unit = self
             .unit
             .unwrap_or_else(|| Unit::si(self.raw(target.quantity())));
@@ -226,9 +242,9 @@ pub struct Mapping {
     /// Whether day or month comes first in dates that leave it open.
     pub date_order: Option<DateOrder>,
     /// The columns in their order, by the names of channels; `-` for one that is not used.
-    pub names: Option<Vec<String>>,
+    pub names: Option<Said<Vec<String>>>,
     /// The sensors of all voltages or all currents that have none of their own.
-    pub sensors: BTreeMap<Quantity, Sensor>,
+    pub sensors: BTreeMap<Quantity, Said<Sensor>>,
     /// Pulses per turn of the encoder behind a column of counts.
     pub encoder_pulses_per_revolution: Option<u32>,
     /// The sidecar to read instead of the one beside the recording.

@@ -4,7 +4,7 @@ use super::flags::{
     DATE_ORDERS, DELIMITERS, LARGEST_DELAY_S, THOUSANDS, UNKNOWN, all_of, check_names, date_order,
     delimiter, refused_unknown, thousands,
 };
-use super::{ColumnMap, Factor, LINE, Mapping, Origin, Sensor, Slot, Target};
+use super::{ColumnMap, Factor, LINE, Mapping, Origin, Said, Sensor, Slot, Target};
 use crate::data::channel::{Channel, Quantity};
 use crate::data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 use crate::data::units::Unit;
@@ -150,7 +150,14 @@ fn scales(section: &Section<'_>, mapping: &mut Mapping) -> Option<()> {
         .filter_map(|name| Some((name, all_of(name)?)));
     for (name, quantity) in groups {
         if let Some(sensor) = sensor(section, name, quantity)? {
-            mapping.sensors.insert(quantity, sensor);
+            let origin = Origin::Sidecar;
+            mapping.sensors.insert(
+                quantity,
+                Said {
+                    what: sensor,
+                    origin,
+                },
+            );
         }
     }
     for channel in Channel::all() {
@@ -238,7 +245,10 @@ fn mapping(root: &Section<'_>, scales: Mapping) -> Option<Mapping> {
         delimiter: delimiter?,
         thousands: thousands?,
         date_order: date_order?,
-        names: names?,
+        names: names?.map(|what| Said {
+            what,
+            origin: Origin::Sidecar,
+        }),
         ..scales
     };
     if let Some(section) = root.optional_section("columns")? {

@@ -2,9 +2,10 @@
 
 use super::format;
 use super::table_file::Row;
+use super::text::first_rows;
+use super::text::source;
 use crate::error::Error;
 use crate::mapping::Mapping;
-use crate::read::text::source;
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
@@ -31,12 +32,12 @@ pub struct Preview {
 /// A file that cannot be opened, or a binary one that is damaged.
 pub fn preview(path: &Path, flags: &Mapping, rows: usize) -> Result<Preview, Error> {
     match format::is_text(path)? {
-        true => of_text(path, flags.delimiter.unwrap_or(b','), rows),
+        true => of_text(path, flags, rows),
         false => of_table(path, flags, rows),
     }
 }
 
-fn of_text(path: &Path, delimiter: u8, rows: usize) -> Result<Preview, Error> {
+fn of_text(path: &Path, flags: &Mapping, rows: usize) -> Result<Preview, Error> {
     let mut bytes = Vec::new();
     // A damaged end does not hide a sound beginning.
     let _ = source::open(path)?
@@ -44,17 +45,13 @@ fn of_text(path: &Path, delimiter: u8, rows: usize) -> Result<Preview, Error> {
         .take(MOST_BYTES)
         .read_to_end(&mut bytes);
     let text = String::from_utf8_lossy(&bytes);
-    let cells = |line: &str| {
-        let cells = line.split(char::from(delimiter)).take(MOST_COLUMNS);
-        cells
-            .map(|cell| short(cell.trim_matches(['"', ' ', '\r', '\u{feff}'])))
-            .collect()
-    };
-    let written = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
-    let mut lines = text.lines().filter(written).map(cells);
+    let mut cut = first_rows(&text, flags, rows + 1).into_iter().map(|cells| {
+        let shown = cells.into_iter().take(MOST_COLUMNS);
+        shown.map(|cell| short(&cell)).collect()
+    });
     Ok(Preview {
-        columns: lines.next().unwrap_or_default(),
-        rows: lines.take(rows).collect(),
+        columns: cut.next().unwrap_or_default(),
+        rows: cut.collect(),
     })
 }
 

@@ -84,7 +84,10 @@ fn layout_text(reading: &Mapping) -> String {
     );
     key(
         "column_order",
-        reading.names.as_ref().map(|names| word(names.join(","))),
+        reading
+            .names
+            .as_ref()
+            .map(|names| word(names.what.join(","))),
     );
     text
 }

@@ -108,9 +108,13 @@ fn by_names(text: &str) -> Separator {
 
 fn first_line(rows: &[Row<'_>]) -> Titles {
     let row = &rows[0];
+    let width = match row.width() {
+        0 => row.cells.len(),
+        width => width,
+    };
     Titles {
         line: row.line,
-        names: row.cells[..row.width()]
+        names: row.cells[..width]
             .iter()
             .map(|cell| (*cell).to_owned())
             .collect(),

@@ -1,11 +1,16 @@
 //! Which column of a file becomes which channel.
 
-use super::header::{Header, Unreadable, shown};
-use crate::data::channel::{Channel, Quantity, Signal};
+mod names;
+mod words;
+
+pub(crate) use words::list;
+use words::{called, foreign_unit, misspelt};
+
+use crate::data::channel::Channel;
 use crate::data::units::Unit;
-use crate::error::{Error, Problem};
-use crate::mapping::aliases::{self, Three};
-use crate::mapping::{Factor, Mapping, Origin, Slot, Target};
+use crate::error::Error;
+use crate::mapping::{Mapping, Origin, Slot, Target};
+use crate::read::header::{Header, Unreadable, shown};
 use crate::suggest::closest;
 use std::collections::BTreeMap;
 
@@ -60,128 +65,19 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The columns in the order that the user says.
-    fn assign_listed(&mut self, header: &Header, mapping: &Mapping) -> Result<(), Error> {
-        let Some(names) = &mapping.names else {
-            return Ok(());
-        };
-        if names.len() > header.names.len() {
-            let (said, has) = (names.len(), header.names.len());
-            let message = format!("--columns names {said} columns, the file has {has}");
-            let remedy = "name them in their order, with `-` for one that is not used";
-            return Err(header.error("", message, remedy));
-        }
-        let slots = names.iter().enumerate();
-        for (column, slot) in slots.filter_map(|(k, name)| Some((k, Slot::parse(name)?))) {
-            self.assign(slot.target, column, slot.line);
-            self.notes.push(format!(
-                "{} is {}, user's assumption",
-                shown(&header.names[column]),
-                names[column]
-            ));
-        }
-        Ok(())
-    }
-
-    fn assign(&mut self, target: Target, column: usize, line: Option<bool>) {
-        self.columns.insert(target, column);
-        self.line_voltages |= line.is_some();
-        if line == Some(true) {
-            let map = self.mapping.entry(target);
-            let factor = match map.scale {
-                Some(Factor::Known(factor)) => factor,
-                _ => 1.0,
-            };
-            map.scale = Some(Factor::Known(-factor));
-        }
-    }
-
-    /// Columns that have another recorder's names, where no column has ours.
-    fn assign_aliases(&mut self, header: &Header) -> Result<(), Error> {
-        for signals in [Channel::VOLTAGES, Channel::CURRENTS] {
-            let taken = |channel: &Channel| self.columns.contains_key(&Target::Channel(*channel));
-            if !signals.iter().any(taken) {
-                self.assign_three(header, signals)?;
-            }
-        }
-        let singles: Vec<(usize, Target)> = (0..header.names.len())
-            .filter(|column| !self.is_taken(*column))
-            .filter_map(|column| Some((column, single(header, column)?)))
-            .filter(|(_, target)| {
-                !self.columns.contains_key(target) && !self.replaced(target, &self.mapping)
-            })
-            .collect();
-        for (k, (column, target)) in singles.iter().enumerate() {
-            if let Some((other, _)) = singles[..k].iter().find(|(_, same)| same == target) {
-                return Err(could_both(header, &[*other, *column], &target.to_string()));
-            }
-            self.assign(*target, *column, None);
-            self.note_alias(header, *column, &target.to_string());
-            if let Some(unit) = aliases::unit_in(&header.stems[*column]) {
-                let map = self.mapping.entry(*target);
-                map.origin = Origin::File;
-                map.unit = map.unit.or(Unit::declared(target.quantity(), unit).ok());
-            }
-        }
-        Ok(())
-    }
-
-    fn assign_three(&mut self, header: &Header, channels: [Channel; 3]) -> Result<(), Error> {
-        let sets: Vec<Three> = aliases::threes(&header.stems)
-            .into_iter()
-            .filter(|three| three.signals == channels.map(|channel| channel.signal))
-            .collect();
-        let phases = sets.iter().filter(|three| !three.is_line);
-        let phases: Vec<&Three> = phases.collect();
-        let candidates = if phases.is_empty() {
-            sets.iter().collect()
-        } else {
-            phases
-        };
-        let Some(first) = candidates.first() else {
-            return Ok(());
-        };
-        if let Some(other) = candidates.get(1) {
-            let both = [first, other].map(|three| three.columns.iter().flatten().map(|(k, _)| *k));
-            let both: Vec<usize> = both.into_iter().flatten().collect();
-            return Err(could_both(header, &both, &channels[0].to_string()));
-        }
-        for (channel, column) in channels.into_iter().zip(first.columns) {
-            let Some((column, is_reversed)) = column.filter(|(column, _)| !self.is_taken(*column))
-            else {
-                continue;
-            };
-            self.assign(
-                Target::Channel(channel),
-                column,
-                first.is_line.then_some(is_reversed),
-            );
-            let name = match (first.is_line, is_reversed) {
-                (true, _) => line_name(channel, is_reversed),
-                (false, _) => channel.to_string(),
-            };
-            self.note_alias(header, column, &name);
-        }
-        Ok(())
-    }
-
-    fn note_alias(&mut self, header: &Header, column: usize, name: &str) {
-        let note = format!(
-            "column {} is {name}, by its name",
-            shown(&header.names[column])
-        );
-        self.notes.push(note);
-    }
-
     /// Sensors of all voltages or currents, where a column has none of its own.
     fn assign_sensors(&mut self) {
         let channels: Vec<Target> = self.columns.keys().copied().collect();
         for target in channels {
-            let Some(sensor) = self.mapping.sensors.get(&target.quantity()).cloned() else {
+            let Some(said) = self.mapping.sensors.get(&target.quantity()).cloned() else {
                 continue;
             };
+            let is_new = !self.mapping.columns.contains_key(&target);
             let map = self.mapping.entry(target);
-            map.sensor = map.sensor.take().or(Some(sensor));
+            map.sensor = map.sensor.take().or(Some(said.what));
+            if is_new {
+                map.origin = said.origin;
+            }
         }
     }
 
@@ -241,35 +137,6 @@ impl Plan {
             self.columns.insert(*target, column);
         }
         Ok(())
-    }
-
-    fn assign_named(&mut self, header: &[String]) {
-        for (column, name) in header.iter().enumerate() {
-            let Some(target) = Target::parse(name) else {
-                continue;
-            };
-            if !self.columns.contains_key(&target) && !self.is_taken(column) {
-                self.columns.insert(target, column);
-            }
-        }
-    }
-
-    fn assign_line_voltages(&mut self, stems: &[String]) {
-        let phase = Channel::VOLTAGES.map(Target::Channel);
-        if phase.iter().any(|target| self.columns.contains_key(target)) {
-            return;
-        }
-        let slots = stems.iter().enumerate().filter_map(|(column, stem)| {
-            let slot = Slot::parse(stem)?;
-            slot.line
-                .map(|is_reversed| (slot.target, column, is_reversed))
-        });
-        let found: Vec<_> = slots.collect();
-        if found.len() >= 2 {
-            for (target, column, is_reversed) in found {
-                self.assign(target, column, Some(is_reversed));
-            }
-        }
     }
 
     /// A unit or scale for a channel that no column feeds is a slip.
@@ -418,81 +285,4 @@ fn is_wanted(name: &str, header: &Header, mapping: &Mapping) -> bool {
             Slot::parse(name).is_some() && !phases.iter().any(phase)
         }
     }
-}
-
-fn foreign_unit(
-    file: &str,
-    line: u64,
-    target: Target,
-    column: &str,
-    unit: &str,
-    known: &str,
-) -> Error {
-    let message = format!(
-        "the file declares `{}`, which is not a unit of {target}",
-        shown(unit)
-    );
-    let electrical = matches!(target, Target::Channel(channel) if channel.is_electrical());
-    let sensor = match electrical && Unit::declared(Quantity::Voltage, unit).is_ok() {
-        true => format!("; of a clamp say its scale: --sensor {target}=100mV/A"),
-        false => String::new(),
-    };
-    let remedy = format!("say what the numbers are: --unit {target}=UNIT, one of {known}{sensor}");
-    Error::at(file, line, &shown(column), message, remedy)
-}
-
-/// The single channel that a column means by its name and unit.
-fn single(header: &Header, column: usize) -> Option<Target> {
-    let unit = header.units.get(column).and_then(Option::as_deref);
-    let has_unit_of =
-        |target: Target| unit.is_some_and(|unit| Unit::declared(target.quantity(), unit).is_ok());
-    aliases::single(&header.stems[column], has_unit_of)
-}
-
-/// The name of the line voltage that is kept where a phase voltage is.
-fn line_name(channel: Channel, is_reversed: bool) -> String {
-    let [first, second] = match channel.signal {
-        Signal::Va => ["a", "b"],
-        Signal::Vb => ["b", "c"],
-        _ => ["c", "a"],
-    };
-    if is_reversed {
-        format!("v{second}{first}")
-    } else {
-        format!("v{first}{second}")
-    }
-}
-
-fn could_both(header: &Header, columns: &[usize], target: &str) -> Error {
-    let names: Vec<String> = columns.iter().map(|k| header.names[*k].clone()).collect();
-    let message = format!("{} could each be {target}", list(&names));
-    let remedy = format!("say which: --column {target}={}", shown(&names[0]));
-    header.error(target, message, &remedy)
-}
-
-fn misspelt(file: &str, line: u64, name: &str, meant: &str) -> Problem {
-    let name = shown(name);
-    let remedy =
-        format!("did you mean `{meant}`? Rename the column, or add --column {meant}={name}");
-    Problem {
-        file: file.to_owned(),
-        line,
-        field: name,
-        message: "is not a known column".to_owned(),
-        remedy,
-    }
-}
-
-/// A column in a sentence; one without a name is called by its number.
-fn called(name: &str) -> String {
-    match name.starts_with("column ") {
-        true => shown(name),
-        false => format!("column {}", shown(name)),
-    }
-}
-
-/// Column names for a message.
-pub(crate) fn list(header: &[String]) -> String {
-    let names: Vec<String> = header.iter().take(20).map(|name| shown(name)).collect();
-    names.join(" ")
 }
