@@ -9,13 +9,15 @@ fn plain(name: &str) -> String {
     letters.flat_map(char::to_lowercase).collect()
 }
 
+/// The phases of some countries.
+const RST: [&str; 3] = ["r", "s", "t"];
 /// Names of the phases a, b, c, one row each.
 const PHASES: [[&str; 3]; 6] = [
     ["a", "b", "c"],
     ["1", "2", "3"],
     ["l1", "l2", "l3"],
     ["u", "v", "w"],
-    ["r", "s", "t"],
+    RST,
     ["phasea", "phaseb", "phasec"],
 ];
 /// Names of the pairs of phases ab, bc, ca.
@@ -122,6 +124,8 @@ pub(crate) struct Three {
     pub signals: [Signal; 3],
     /// Whether these are line voltages.
     pub is_line: bool,
+    /// Whether two of the names could mean something else: `ir` and `is` are rotor and stator as well.
+    takes_all: bool,
 }
 
 impl Three {
@@ -149,6 +153,7 @@ pub(crate) fn threes(stems: &[String]) -> Vec<Three> {
                 columns,
                 signals,
                 is_line: false,
+                takes_all: phases == RST,
             });
         }
     }
@@ -164,9 +169,10 @@ pub(crate) fn threes(stems: &[String]) -> Vec<Three> {
             columns,
             signals: VOLTAGES,
             is_line: true,
+            takes_all: false,
         });
     }
-    found.retain(|three| three.count() >= 2);
+    found.retain(|three| three.count() >= if three.takes_all { 3 } else { 2 });
     found.dedup_by(|a, b| a.columns == b.columns);
     found
 }
@@ -268,6 +274,8 @@ mod tests {
         }
         assert_eq!(columns(&["I U", "I V", "I W"])[0].signals, CURRENTS);
         assert_eq!(columns(&["I1"]), []);
+        assert_eq!(columns(&["ir", "is"]), []);
+        assert_eq!(columns(&["ir", "is", "it"]).len(), 1);
     }
 
     #[test]

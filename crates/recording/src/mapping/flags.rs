@@ -125,19 +125,14 @@ impl Mapping {
     /// Text that is not `CHANNEL=SCALE`, an unknown channel, or no scale of such a sensor.
     pub fn set_sensor(&mut self, flag: &str) -> Result<(), Error> {
         let wrong = |message| Error::at(COMMAND_LINE, 0, "--sensor", message, sensor::WAYS);
-        if let Some((name, text)) = flag.split_once('=') {
-            if let Some(quantity) = all_of(name) {
-                let sensor = Sensor::parse(quantity, text).map_err(wrong)?;
-                let origin = Origin::User;
-                self.sensors.insert(
-                    quantity,
-                    Said {
-                        what: sensor,
-                        origin,
-                    },
-                );
-                return Ok(());
-            }
+        let named = flag.split_once('=');
+        if let Some((quantity, text)) = named.and_then(|(name, text)| Some((all_of(name)?, text))) {
+            let said = Said {
+                what: Sensor::parse(quantity, text).map_err(wrong)?,
+                origin: Origin::User,
+            };
+            self.sensors.insert(quantity, said);
+            return Ok(());
         }
         let (target, text) = target_of("--sensor", flag)?;
         let sensor = Sensor::parse(target.quantity(), text).map_err(wrong)?;
@@ -262,7 +257,7 @@ pub(crate) fn date_order(text: &str) -> Option<DateOrder> {
 }
 
 /// The quantity of all voltages or all currents.
-pub(super) fn all_of(name: &str) -> Option<Quantity> {
+pub(in crate::mapping) fn all_of(name: &str) -> Option<Quantity> {
     match name {
         "v" => Some(Quantity::Voltage),
         "i" => Some(Quantity::Current),
@@ -271,7 +266,7 @@ pub(super) fn all_of(name: &str) -> Option<Quantity> {
 }
 
 /// Refuses names of columns that are no channels; message and remedy.
-pub(super) fn check_names(names: &[String]) -> Result<(), (String, String)> {
+pub(in crate::mapping) fn check_names(names: &[String]) -> Result<(), (String, String)> {
     let used = names.iter().filter(|name| *name != "-");
     for (k, name) in names.iter().enumerate().filter(|(_, name)| *name != "-") {
         let Some(slot) = Slot::parse(name) else {

@@ -135,7 +135,7 @@ const SUFFIXES: [&str; 14] = [
 ];
 
 /// The name of a column and the unit that stands in it: `Ua [V]`, `I1 (A)`, `n in 1/min`, `U1/V`, `speed_rpm`.
-pub(super) fn name_and_unit(name: &str) -> (&str, Option<String>) {
+pub(super) fn name_and_unit<'n>(name: &'n str) -> (&'n str, Option<String>) {
     let name = name.trim();
     if Target::parse(name).is_some() || TableColumn::parse(name).is_some() {
         return (name, None);
@@ -145,16 +145,19 @@ pub(super) fn name_and_unit(name: &str) -> (&str, Option<String>) {
         let (unit, _) = rest.split_once(*close)?;
         Some((stem, unit)).filter(|(_, unit)| is_unit(unit))
     });
-    let split = |mark: &str| name.rsplit_once(mark).filter(|(_, unit)| is_unit(unit));
+    // `Current A` and `I_V` are phases, not units.
+    let is_whole = bracketed.is_none() && aliases::is_known(name);
+    let split =
+        |(stem, unit): (&'n str, &'n str)| (!is_whole && is_unit(unit)).then_some((stem, unit));
     let named = bracketed
-        .or_else(|| name.split_once(" in ").filter(|(_, unit)| is_unit(unit)))
-        .or_else(|| name.split_once('/').filter(|(_, unit)| is_unit(unit)))
-        .or_else(|| split(", "))
-        .or_else(|| split(" "))
+        .or_else(|| name.split_once(" in ").and_then(split))
+        .or_else(|| name.split_once('/').and_then(split))
+        .or_else(|| name.rsplit_once(", ").and_then(split))
+        .or_else(|| name.rsplit_once(' ').and_then(split))
         .or_else(|| {
-            SUFFIXES
-                .iter()
-                .find_map(|end| Some((name.strip_suffix(end)?, &end[1..])))
+            let ends = SUFFIXES.iter();
+            let of = |end: &&'static str| Some((name.strip_suffix(*end)?, &end[1..]));
+            ends.filter(|_| !is_whole).find_map(of)
         });
     match named {
         Some((stem, unit)) if !stem.trim().is_empty() => {
@@ -187,6 +190,12 @@ mod tests {
             ("motor_speed_rpm", "motor_speed", Some("rpm")),
             ("speed (probe 2)", "speed (probe 2)", None),
             ("ia", "ia", None),
+            ("Current A", "Current A", None),
+            ("I_A", "I_A", None),
+            ("U_V", "U_V", None),
+            ("I1 A", "I1", Some("A")),
+            ("I_u_A", "I_u", Some("A")),
+            ("Time / s", "Time", Some("s")),
             ("[V]", "[V]", None),
         ] {
             assert_eq!(

@@ -120,10 +120,10 @@ impl Stamps {
                 number(day)? - number(self.first.day)?
             }
         };
-        Ok(self.from_first(days.saturating_mul(DAY).saturating_add(ns)))
+        Ok(self.since_first(days.saturating_mul(DAY).saturating_add(ns)))
     }
 
-    fn from_first(&self, ns: i64) -> f64 {
+    fn since_first(&self, ns: i64) -> f64 {
         (ns - self.first.ns.unwrap_or(0)) as f64 / SECOND as f64
     }
 
@@ -134,7 +134,7 @@ impl Stamps {
             days += 1;
         }
         self.last.set((ns, days));
-        self.from_first(days.saturating_mul(DAY).saturating_add(ns))
+        self.since_first(days.saturating_mul(DAY).saturating_add(ns))
     }
 }
 

@@ -86,7 +86,7 @@ fn is_units(row: &Row<'_>) -> bool {
     let known = |cell: &&str| is_unit(bare(cell)) || WORDS.contains(cell);
     let units = filled().filter(|cell| is_unit(bare(cell))).count();
     units > 0
-        && filled().all(|cell| known(&cell) || cell.parse::<f64>().is_ok())
+        && filled().all(|cell| known(cell) || cell.parse::<f64>().is_ok())
         && 2 * filled().count() >= row.cells.len()
 }
 
