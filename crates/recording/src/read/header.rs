@@ -4,6 +4,7 @@ use crate::data::load_table::TableColumn;
 use crate::data::units::is_unit;
 use crate::error::Error;
 use crate::mapping::{Target, aliases};
+use std::collections::HashSet;
 
 /// What a file says about its columns before the first sample.
 pub(super) struct Header {
@@ -105,24 +106,25 @@ fn name_all(file: &str, line: u64, names: &mut [String]) -> Result<Vec<String>, 
         return Err(Error::at(file, line, "", message, remedy));
     }
     let mut notes = Vec::new();
-    for k in 0..names.len() {
-        if names[k].is_empty() {
-            names[k] = column_name(k);
+    let mut known = HashSet::new();
+    for (k, name) in names.iter_mut().enumerate() {
+        if name.is_empty() {
+            *name = column_name(k);
             notes.push(format!("column {} has no name", k + 1));
         }
-        if !names[..k].contains(&names[k]) {
+        if known.insert(name.clone()) {
             continue;
         }
-        let twice = shown(&names[k]);
-        if aliases::is_known(name_and_unit(&names[k]).0) {
+        let twice = shown(name);
+        if aliases::is_known(name_and_unit(name).0) {
             let message = format!("column `{twice}` stands there twice");
             let remedy = "rename or remove one of the two, or name the columns in their order with --columns";
             return Err(Error::at(file, line, "", message, remedy));
         }
-        names[k] = format!("{} #{}", names[k], k + 1);
+        *name = format!("{name} #{}", k + 1);
         notes.push(format!(
             "column `{twice}` stands there twice: the second is called {}",
-            shown(&names[k])
+            shown(name)
         ));
     }
     Ok(notes)

@@ -160,7 +160,7 @@ fn a_small_workbook_does_not_unpack_to_gigabytes() {
         ("xl/workbook.xml", WORKBOOK),
         ("xl/sharedStrings.xml", &text),
     ];
-    assert_refused("x.xlsx", &packed(&parts), 3, &["holds more than"]);
+    assert_refused("x.xlsx", &packed(&parts), 3, &["unpacks to more than"]);
     let long = " ".repeat(2 << 20);
     let parts = [
         ("xl/workbook.xml", WORKBOOK),

@@ -97,7 +97,7 @@ pub fn files() -> Vec<Case> {
             b"MATLAB 5.0 MAT-file, Platform".to_vec(),
             &["is a MAT-file", "rename it to", "x.mat"],
         ),
-        case(b"PK\x03\x04".to_vec(), &["is an Excel workbook", "x.xlsx"]),
+        unsupported(b"PK\x03\x04".to_vec(), &["zip archive", "export it"]),
     ]
 }
 

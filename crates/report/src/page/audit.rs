@@ -10,7 +10,7 @@ pub fn section(result: &Place<'_>) -> Markup {
     html! {
         section aria-labelledby="audit" {
             h2 id="audit" { "The recording itself" }
-            @for assumption in result.items("assumptions") {
+            @for assumption in result.items("audit/assumptions") {
                 p { "Assumed: " (assumption.as_text()) }
             }
             @if findings.is_empty() {

@@ -165,7 +165,7 @@ fn could_be_two(file: &str, titles: &Titles, ambiguous: &Ambiguous) -> Error {
     let whole: String = text.chars().filter(|c| !matches!(c, ',' | '.')).collect();
     let decimal = text.replace(',', ".");
     let message = format!(
-        "`{}` is {whole} or {decimal}, and no cell before tells which",
+        "`{}` is {whole} or {decimal}, and nothing at the beginning of the file tells which",
         shown(text)
     );
     let remedy = match is_comma {

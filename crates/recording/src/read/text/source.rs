@@ -185,10 +185,7 @@ const FORMATS: [(&[u8], &str); 5] = [
         "an HDF5 file (also MAT-file, version 7.3)",
     ),
     (b"TDSm", "a TDMS file"),
-    (
-        b"PK\x03\x04",
-        "a zip archive (also a spreadsheet) within gzip",
-    ),
+    (b"PK\x03\x04", "a zip archive (also a spreadsheet)"),
 ];
 
 fn refuse_foreign(head: &[u8], name: &str) -> Result<(), Error> {

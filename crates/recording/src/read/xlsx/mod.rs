@@ -12,9 +12,14 @@ use calamine::{Reader, Xlsx, XlsxError};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Whether a file begins as zip archives do, which a workbook is.
+/// Names of the parts with which the archive of a workbook begins.
+const FIRST_PARTS: [&[u8]; 4] = [b"[Content_Types].xml", b"_rels/", b"xl/", b"docProps/"];
+
+/// Whether a file begins as workbooks do: zip archives of such parts.
 pub(super) fn is(head: &[u8]) -> bool {
-    head.starts_with(b"PK\x03\x04")
+    // A local header of 30 bytes stands before the name of the first part.
+    let first = head.get(30..).unwrap_or_default();
+    head.starts_with(b"PK\x03\x04") && FIRST_PARTS.iter().any(|part| first.starts_with(part))
 }
 
 /// Reads the workbook of a file.

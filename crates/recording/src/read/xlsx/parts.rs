@@ -8,6 +8,8 @@ use zip::ZipArchive;
 
 /// Bytes of texts, styles and whatever else is no sheet: they are kept in memory.
 const MOST_BESIDE: u64 = 64 << 20;
+/// Bytes of a sheet: about 20 million cells.
+const MOST_OF_A_SHEET: u64 = 1 << 30;
 /// Bytes of a sheet for each number that a file may hold.
 const BYTES_A_CELL: u64 = 64;
 /// Bytes between two marks of a sheet's XML: one cell's text.
@@ -30,7 +32,7 @@ pub(super) fn check(name: &str, bytes: &[u8]) -> Result<(), Error> {
         let part = archive.by_index(k).map_err(wrong)?;
         let is_sheet = part.name().map_err(wrong)?.starts_with("xl/worksheets/");
         let limit = match is_sheet {
-            true => BYTES_A_CELL.saturating_mul(most_numbers()),
+            true => MOST_OF_A_SHEET.min(BYTES_A_CELL.saturating_mul(most_numbers())),
             false => beside,
         };
         let size = size(name, part, limit)?;
@@ -64,7 +66,17 @@ fn size(name: &str, part: impl Read, limit: u64) -> Result<u64, Error> {
             }
         }
         if size > limit {
-            return Err(too_large(name));
+            return Err(unpacks(name, limit));
         }
     }
+}
+
+fn unpacks(name: &str, limit: u64) -> Error {
+    let few_numbers = BYTES_A_CELL.saturating_mul(most_numbers());
+    if limit == few_numbers {
+        return too_large(name);
+    }
+    let message = format!("unpacks to more than {} MiB", limit.div_ceil(1 << 20));
+    let remedy = "cut the recording, or save it as .csv or .parquet";
+    Error::unsupported(name, message, remedy)
 }

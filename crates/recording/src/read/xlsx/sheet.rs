@@ -12,6 +12,8 @@ use time::{Date, Duration, Month, PrimitiveDateTime, Time};
 pub(super) const SEPARATOR: u8 = b'\t';
 /// Cells of a row; Excel has more columns than any recorder has channels.
 const MOST_COLUMNS: u32 = 1024;
+/// Bytes of text that a sheet may show.
+const MOST_TEXT: u64 = 256 << 20;
 /// Bytes of text that a number takes at most.
 const BYTES_A_NUMBER: u64 = 24;
 
@@ -44,7 +46,7 @@ pub(super) fn lines(
         text.extend((column..to_column).map(|_| char::from(SEPARATOR)));
         column = to_column;
         text += &shown;
-        if text.len() as u64 > BYTES_A_NUMBER.saturating_mul(most_numbers()) {
+        if text.len() as u64 > MOST_TEXT.min(BYTES_A_NUMBER.saturating_mul(most_numbers())) {
             return Err(too_large(name));
         }
     }
