@@ -449,6 +449,13 @@ pub(crate) fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorF
         for entry in file.effects.iter_mut().filter(same) {
             entry.take_numbers(&fitted);
         }
+        // Of a size of nothing, a resistance without bound: the recordings show none of it.
+        let absent = fitted
+            .parameters
+            .iter()
+            .any(|p| fitted.number(&p.key).is_some_and(|x| !x.is_finite()));
+        file.effects
+            .retain(|entry| !(absent && entry.name == fitted.name));
     }
     // A formula with its fitted parameters replaces the open one.
     let is_new = |text: &str| added.iter().any(|c| c.effect.descriptor().form == text);

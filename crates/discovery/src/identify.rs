@@ -181,7 +181,10 @@ fn intervals(old: &MotorFile, file: &MotorFile, parameters: &[IdentifiedParamete
             high: high.max(LEAST),
         });
     };
-    for p in parameters.iter().filter(|p| p.high > 0.0) {
+    for p in parameters
+        .iter()
+        .filter(|p| p.high > 0.0 && p.value.is_finite())
+    {
         if p.name == NOMINALS[LEAKAGE].name {
             let (l_ls, l_lr) = (file.parameters.l_ls, file.parameters.l_lr);
             for (key, leakage) in [
@@ -194,5 +197,17 @@ fn intervals(old: &MotorFile, file: &MotorFile, parameters: &[IdentifiedParamete
             set(&p.name, p.low, p.high);
         }
     }
+    let of_effect = |key: &str| {
+        file.effects
+            .iter()
+            .any(|effect| effect.number(key).is_some())
+    };
     uncertainty
+        .intervals
+        .retain(|interval| is_nominal(&interval.key) || of_effect(&interval.key));
+    uncertainty
+}
+
+fn is_nominal(key: &str) -> bool {
+    key == "rotor_leakage_henry" || NOMINALS.iter().any(|nominal| nominal.name == key)
 }

@@ -70,6 +70,7 @@ impl Estimate {
         let spread = Spread::of(&completed, &fit);
         let (mut parameters, correlations) = spread.intervals(physical);
         parameters[PHYSICAL - 1] = completed.inertia;
+        parameters[0].high = parameters[0].high.max(all_in_copper_ohm(&completed));
         for (interval, range) in parameters.iter_mut().zip(RANGES) {
             *interval = interval.inside(range);
         }
@@ -86,6 +87,14 @@ impl Estimate {
             completed,
         })
     }
+}
+
+/// Stator resistance of a motor without any loss but copper's: makers do not print how the others divide.
+fn all_in_copper_ohm(completed: &Completed) -> f64 {
+    let rating = completed.targets.rating();
+    let loss = completed.targets.power_factor - rating.power;
+    let rotor = rating.slip * rating.torque();
+    (loss - rotor).max(0.0) * completed.base_impedance_ohm()
 }
 
 /// Meets printed and expected values alike; where no circuit does, the expected ones give way within their spread.

@@ -8,7 +8,7 @@ use crate::circuit::REFERENCE_CURRENT;
 use crate::estimate::Estimate;
 use crate::interval::Interval;
 use crate::physical::{KEYS, PHYSICAL};
-use crate::plate::{PlateFile, VALUES, Value};
+use crate::plate::PlateFile;
 
 /// Correlations from here on are written.
 const STRONG: f64 = 0.5;
@@ -153,16 +153,8 @@ impl<'e> Text<'e> {
         ));
     }
 
-    /// Whether the plate says anything about the motor at standstill.
     fn knows_standstill(&self) -> bool {
-        let known: [bool; VALUES] = self.estimate.completed.known;
-        [
-            Value::Breakdown,
-            Value::LockedRotorTorque,
-            Value::LockedRotorCurrent,
-        ]
-        .into_iter()
-        .any(|value| known[value as usize])
+        self.estimate.completed.knows_standstill()
     }
 
     fn written_part(&self, k: usize) -> bool {

@@ -20,7 +20,7 @@ pub const KEYS: [&str; PHYSICAL] = [
     "leakage_drop",
     "core_loss_resistance_ohm",
     "windage_nm_s2",
-    "stray_load_loss_watt",
+    "stray_load_torque_nm",
     "inertia_kg_m2",
 ];
 
@@ -40,6 +40,15 @@ pub const RANGES: [[f64; 2]; PHYSICAL] = [
     [1e-9, 1e6],
 ];
 
+/// Rotor resistance, both leakages and magnetizing inductance with equal leakages: the same machine at its terminals, rotor
+/// quantities referred by `a^2 = L_s/L_r`.
+pub fn with_equal_leakages([r_r, l_ls, l_lr, l_m]: [f64; 4]) -> [f64; 4] {
+    let squared = (l_ls + l_m) / (l_lr + l_m);
+    let magnetizing = squared.sqrt() * l_m;
+    let leakage = l_ls + l_m - magnetizing;
+    [squared * r_r, leakage, leakage, magnetizing]
+}
+
 /// Parameters of an equivalent star phase in the order of [`KEYS`]; inductances without current, resistances at rated load's
 /// temperature.
 pub fn physical(circuit: &Circuit, completed: &Completed) -> [f64; PHYSICAL] {
@@ -50,18 +59,30 @@ pub fn physical(circuit: &Circuit, completed: &Completed) -> [f64; PHYSICAL] {
     let rating = completed.targets.rating();
     let speed = omega / f64::from(completed.pole_pairs) * (1.0 - rating.slip * circuit.slip_ratio);
     let torque = 1000.0 * completed.power_kw / speed;
-    [
-        circuit.stator_resistance * ohm,
+    let machine = [
         cages.rotor_resistance * ohm,
         circuit.leakage * henry,
         cages.rotor_leakage * henry,
         circuit.magnetizing * ohm / omega,
+    ];
+    // One cage: the leakages' split is convention, and equal ones are the usual one.
+    let [r_r, l_ls, l_lr, l_m] = if completed.knows_standstill() {
+        machine
+    } else {
+        with_equal_leakages(machine)
+    };
+    [
+        circuit.stator_resistance * ohm,
+        r_r,
+        l_ls,
+        l_lr,
+        l_m,
         cages.second_cage_share,
         cages.second_cage_leakage_ratio,
         circuit.leakage_drop().max(1e-9),
         ohm / circuit.core_conductance,
         circuit.windage * torque / (speed * speed),
-        circuit.stray * 1000.0 * completed.power_kw,
+        circuit.stray * torque,
         completed.inertia.value,
     ]
 }

@@ -6,6 +6,8 @@ use super::{Circuit, Rating};
 
 /// Current at which the library's leakage saturation reaches half of its drop, in rated currents.
 pub(crate) const REFERENCE_CURRENT: f64 = 3.0;
+/// Share of rated speed below which a shaft hardly turns.
+const STANDSTILL: f64 = 0.02;
 /// Iterations of the current that its own leakage depends on; the secant needs four to six.
 const ROUNDS: usize = 40;
 /// Relative change of the current at which the iteration ends: far below the differences a Jacobian is made of.
@@ -50,7 +52,9 @@ impl Circuit {
         let speed = (1.0 - slip) / (1.0 - rating.slip * self.slip_ratio);
         Point {
             torque: air_gap_torque
-                - rated_torque * speed * (self.windage * speed + self.stray * current * current),
+                - rated_torque
+                    * (self.windage * speed * speed
+                        + self.stray * current * current * turning(speed)),
             current,
             active: flow.current.re,
             reactive: -flow.current.im,
@@ -126,6 +130,11 @@ impl Circuit {
             rotor_admittance,
         }
     }
+}
+
+/// The effect `stray-load-loss` brakes a turning shaft with the same torque at every speed, and a standing one not at all.
+fn turning(speed: f64) -> f64 {
+    (speed / STANDSTILL).min(1.0)
 }
 
 /// `x^2/(1 + x^2)` of the effect `leakage-saturation`.

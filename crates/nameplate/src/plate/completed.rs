@@ -93,6 +93,16 @@ impl Completed {
         )
     }
 
+    /// Whether the plate says anything of breakdown or standstill: only there do two cages differ from one.
+    pub fn knows_standstill(&self) -> bool {
+        let values = [
+            Value::Breakdown,
+            Value::LockedRotorTorque,
+            Value::LockedRotorCurrent,
+        ];
+        values.into_iter().any(|value| self.known[value as usize])
+    }
+
     /// Base impedance of the circuit in per unit, ohm per equivalent star phase.
     pub fn base_impedance_ohm(&self) -> f64 {
         self.voltage_volt / (SQRT_3 * self.base_current_amp())
