@@ -19,6 +19,7 @@
 mod alarm_causes;
 pub mod calibrate;
 pub mod causes;
+pub mod check;
 mod judgement;
 pub mod operating_points;
 mod rotor;

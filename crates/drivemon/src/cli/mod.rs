@@ -29,6 +29,7 @@ const AFTER_HELP: &str = "\
 First steps:
   drivemon demo                                        the whole method on a simulated motor, in seconds
   drivemon simulate SCENARIO.toml -o rec.csv.gz        make a recording with a fault in it
+  drivemon check rec.csv --plate plate.toml            is it in good order? From a nameplate and a recording
   drivemon motor new --ask -o motor.toml               a motor file from a nameplate
   drivemon monitor rec.csv.gz --motor motor.toml       see what the lamps would have shown
   drivemon compare rec.csv.gz --motor motor.toml       where the model fails
@@ -52,6 +53,7 @@ enum Command {
     Adopt(commands::adopt::Adopt),
     Campaign(commands::campaign::Campaign),
     Calibrate(commands::calibrate::Calibrate),
+    Check(commands::check::Check),
     Motor(commands::motor::Motor),
     #[cfg(feature = "panel")]
     Panel(commands::panel::Panel),
@@ -81,6 +83,7 @@ impl Cli {
             Command::Adopt(adopt) => adopt.run(),
             Command::Campaign(campaign) => campaign.run(),
             Command::Calibrate(calibrate) => calibrate.run(),
+            Command::Check(check) => check.run(),
             Command::Motor(motor) => motor.run(),
             #[cfg(feature = "panel")]
             Command::Panel(panel) => panel.run(),

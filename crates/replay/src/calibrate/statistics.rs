@@ -29,6 +29,16 @@ pub struct Surroundings {
     pub false_alarm_rate: f64,
 }
 
+impl Default for Surroundings {
+    /// 75 K, the rise of a class-B winding, and one false alarm in a million windows.
+    fn default() -> Self {
+        Surroundings {
+            winding_kelvin: 75.0,
+            false_alarm_rate: 1e-6,
+        }
+    }
+}
+
 /// Statistics of the healthy motor over all windows.
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 pub(crate) mod adopt;
 pub(crate) mod calibrate;
 pub(crate) mod campaign;
+pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod demo;

@@ -3,7 +3,7 @@
 mod catalogue;
 pub(crate) mod identify;
 mod new;
-mod plate;
+pub(crate) mod plate;
 
 use clap::{Args, Subcommand};
 

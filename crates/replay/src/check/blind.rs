@@ -1,0 +1,63 @@
+//! What a recording and a motor file cannot show.
+
+use motor::FaultId;
+use motor::MotorFile;
+use motor::motor_file::LoadKind;
+use recording::{Channel, Recording};
+use serde::Serialize;
+
+use crate::Verdict;
+
+/// Something that cannot be seen, and what would show it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct BlindSpot {
+    /// What cannot be seen.
+    pub unseen: &'static str,
+    /// What would show it.
+    pub needs: &'static str,
+}
+
+/// What these channels and this motor file leave dark.
+pub fn blind_spots(
+    recording: &Recording,
+    motor: &MotorFile,
+    speed_is_estimated: bool,
+) -> Vec<BlindSpot> {
+    let mut spots = Vec::new();
+    let mut add = |missing: bool, unseen, needs| {
+        if missing {
+            spots.push(BlindSpot { unseen, needs });
+        }
+    };
+    let voltages = recording.voltages().is_some();
+    let currents = recording.currents().is_some();
+    add(
+        !voltages,
+        "resistances, inductances and the supply",
+        "three voltages",
+    );
+    add(!currents, "unbalance and shorted turns", "three currents");
+    add(
+        speed_is_estimated || recording.speed().is_none(),
+        "the rotor's resistance, and the speed sensor itself",
+        "the speed from an encoder",
+    );
+    add(
+        recording.channel(Channel::TORQUE).is_none() && motor.load != LoadKind::Friction,
+        "friction and the load",
+        "the shaft torque",
+    );
+    add(
+        motor.healthy.is_none(),
+        "which phase is at fault, and faults smaller than the plate's uncertainty",
+        "a recording of the motor in good order (--healthy)",
+    );
+    spots
+}
+
+/// A speed that was computed from voltages and currents accuses neither the speed sensor nor the rotor.
+pub(super) fn forget_speed(verdict: &mut Verdict) {
+    let told = |fault: FaultId| !matches!(fault, FaultId::SpeedSensor | FaultId::RotorResistance);
+    verdict.candidates.retain(|candidate| told(candidate.fault));
+    verdict.tied = crate::causes::tied(&verdict.candidates);
+}

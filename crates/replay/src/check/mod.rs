@@ -1,0 +1,120 @@
+//! From recordings and what is known of a motor to an answer on which a technician can act.
+
+mod blind;
+mod knowledge;
+mod severity;
+mod slip;
+
+pub use blind::{BlindSpot, blind_spots};
+pub use knowledge::{Knowledge, Learnt, learn};
+pub use severity::Severity;
+pub use slip::{EstimatedSpeed, with_estimated_speed};
+
+use monitor::Monitor;
+use motor::MotorFile;
+use recording::{Audit, Expectation, Recording, audit};
+use serde::Serialize;
+
+use crate::{Samples, Timeline, Verdict, VerdictState, causes, config_for, replay, words};
+
+/// What one recording says of a motor.
+#[derive(Clone, Debug, Serialize)]
+pub struct Checked {
+    /// Audit of the recording.
+    pub audit: Audit,
+    /// State and possible causes.
+    pub verdict: Verdict,
+    /// How bad the likeliest cause is, where its size is known.
+    pub severity: Option<Severity>,
+    /// What to do, in order.
+    pub todo: Vec<String>,
+    /// Windows judged, of all.
+    pub windows: [u64; 2],
+    /// Why windows were not judged.
+    pub not_judged: Vec<String>,
+    /// Smallest r1..r4 that would have lit a lamp, percent of their scales.
+    pub visible_percent: Option<[f64; 4]>,
+    /// The speed, where it was estimated.
+    pub speed: Option<EstimatedSpeed>,
+    /// The rotor bars in words.
+    pub rotor: String,
+    /// Negative over positive sequence of the currents, percent.
+    pub current_unbalance_percent: Option<f64>,
+    /// What cannot be seen.
+    pub blind: Vec<BlindSpot>,
+}
+
+/// Checks one recording against a motor.
+///
+/// # Errors
+/// A motor file or a recording that the core cannot take, in words.
+pub fn check(
+    recording: &Recording,
+    motor: &MotorFile,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Checked, String> {
+    let (estimated, speed) = match with_estimated_speed(recording, motor) {
+        Some((with_speed, speed)) => (Some(with_speed), Some(speed)),
+        None => (None, None),
+    };
+    let shown = estimated.as_ref().unwrap_or(recording);
+    let audit = audit(shown, &Expectation::from(motor));
+    let config = config_for(motor, shown).map_err(|error| error.to_string())?;
+    let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
+    let timeline = replay(&monitor, &Samples::new(shown, &audit), progress);
+    Ok(answer(motor, shown, audit, &timeline, speed))
+}
+
+fn answer(
+    motor: &MotorFile,
+    recording: &Recording,
+    audit: Audit,
+    timeline: &Timeline,
+    speed: Option<EstimatedSpeed>,
+) -> Checked {
+    let mut verdict = timeline.verdict(&audit.findings);
+    if speed.is_some() {
+        blind::forget_speed(&mut verdict);
+    }
+    if !audit.supported {
+        verdict.state = VerdictState::NotJudged;
+    }
+    let share =
+        |share: &crate::NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
+    Checked {
+        severity: severity::of(&verdict),
+        todo: todo(motor, &verdict),
+        windows: [timeline.judged, timeline.windows],
+        not_judged: timeline.not_judged.iter().map(share).collect(),
+        visible_percent: timeline.visible_percent(),
+        rotor: words::rotor(&timeline.rotor()),
+        current_unbalance_percent: timeline.sequence().i2_over_i1.map(|x| 100.0 * x),
+        blind: blind_spots(recording, motor, speed.is_some()),
+        verdict,
+        audit,
+        speed,
+    }
+}
+
+/// Steps for the causes that cannot be told apart, or what makes a dark answer worth more.
+fn todo(motor: &MotorFile, verdict: &Verdict) -> Vec<String> {
+    let calibrated = motor.healthy.is_some();
+    let tied = &verdict.candidates[..verdict.tied.min(verdict.candidates.len())];
+    let mut steps: Vec<String> = match verdict.state {
+        VerdictState::Fault => causes::todo(tied, calibrated)
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
+        VerdictState::Healthy => Vec::new(),
+        VerdictState::NotJudged => {
+            vec!["record ten seconds of steady running with three voltages, three currents and, if there is one, the speed".to_owned()]
+        }
+    };
+    if !calibrated {
+        steps.push(
+            "record ten seconds while the motor is known to be in good order and give them with --healthy: smaller faults show then"
+                .to_owned(),
+        );
+    }
+    steps
+}

@@ -1,0 +1,66 @@
+//! The size of a cause in words.
+
+use serde::Serialize;
+
+use crate::Verdict;
+
+/// How bad a cause is, by the change of its quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// Below 5 %.
+    Small,
+    /// 5 to 20 %.
+    Clear,
+    /// Above 20 %.
+    Large,
+}
+
+/// Change, percent, from which on a cause is clear, and large.
+const BOUNDS_PERCENT: [f64; 2] = [5.0, 20.0];
+
+impl Severity {
+    fn of_percent(change: f64) -> Severity {
+        match change.abs() {
+            x if x < BOUNDS_PERCENT[0] => Severity::Small,
+            x if x < BOUNDS_PERCENT[1] => Severity::Clear,
+            _ => Severity::Large,
+        }
+    }
+
+    /// The severity in words, with what it means for the plant.
+    pub fn words(self) -> &'static str {
+        match self {
+            Severity::Small => "small (below 5 %): watch its trend",
+            Severity::Clear => "clear (5 to 20 %): plan the repair",
+            Severity::Large => {
+                "large (above 20 %): take the motor out of service as soon as the plant allows"
+            }
+        }
+    }
+}
+
+/// Of the likeliest cause, where a calibrated motor gives its size.
+pub(super) fn of(verdict: &Verdict) -> Option<Severity> {
+    let first = verdict.candidates.first()?;
+    first.size_percent.map(Severity::of_percent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_go_with_sizes() {
+        let of = |percent| Severity::of_percent(percent);
+        assert_eq!(
+            [of(-4.9), of(5.0), of(-19.9), of(20.0)],
+            [
+                Severity::Small,
+                Severity::Clear,
+                Severity::Clear,
+                Severity::Large
+            ]
+        );
+    }
+}
