@@ -2,9 +2,10 @@
 
 use motor::effect::{
     At, Between, EffectConfig, EffectError, Inputs, Instrument, MAX_FILE_STATES, MAX_PARAMETERS,
-    Outputs, Plant, Rated, Role, Run, SpeedSource, SteadyPoint, Timeline, extra_states, simulate,
+    Outputs, Plant, Rated, Role, Run, Side, SpeedSource, SteadyPoint, Timeline, extra_states,
+    simulate,
 };
-use motor::effects::{ALL, gain_of};
+use motor::effects::{ALL, asymmetry_of, gain_of};
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
 use std::collections::BTreeSet;
@@ -194,6 +195,16 @@ fn the_gain_of_each_instrument_is_one_effect_that_hides_it() {
         let found = gain_of(instrument).expect("counted");
         assert_eq!(found.hides_gain_of(), Some(instrument));
         assert!(found.is_of_instruments());
+    }
+}
+
+#[test]
+fn the_symmetry_of_each_winding_is_broken_by_one_effect() {
+    for side in [Side::Stator, Side::Rotor] {
+        let breaks = ALL.iter().filter(|e| e.asymmetry_of() == Some(side));
+        assert_eq!(breaks.count(), 1, "{side:?}");
+        let parts = asymmetry_of(side).expect("counted").descriptor().parameters;
+        assert_eq!(parts.len(), 2, "{side:?}");
     }
 }
 

@@ -97,6 +97,35 @@ fn nothing_but_its_own_file_and_one_line_names_an_effect() {
     }
 }
 
+/// Code asks an effect what it is; tests may say which one they mean.
+#[test]
+fn no_code_asks_for_an_effect_by_its_name() {
+    let is_test = |path: &Path| {
+        let parts = path
+            .components()
+            .map(|part| part.as_os_str().to_string_lossy());
+        let mut names = parts.collect::<Vec<_>>().into_iter().rev();
+        names
+            .next()
+            .is_some_and(|file| file.contains("tests") || file.starts_with("malformed"))
+            || names.any(|folder| folder == "tests")
+    };
+    let own = root().join(EFFECTS);
+    let folders = CODE.iter().map(|folder| root().join(folder));
+    for path in folders.flat_map(|folder| rust_files(&folder)) {
+        let inside = path.strip_prefix(root()).expect("in the source tree");
+        if is_test(inside) || path.starts_with(&own) {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("UTF-8");
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        for name in motor::effects::names() {
+            let asks = code.contains(&format!("\"{name}\""));
+            assert!(!asks, "{} names {name}", path.display());
+        }
+    }
+}
+
 #[test]
 fn every_effect_of_the_folder_is_in_the_list_once() {
     let list = source(LIST);

@@ -100,6 +100,15 @@ pub enum Instrument {
     Speed,
 }
 
+/// Windings whose symmetry may be broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The stator's three phases.
+    Stator,
+    /// The rotor's bars.
+    Rotor,
+}
+
 /// Parameters of the motor file that an effect may be taken for, or means otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nominal {
@@ -142,6 +151,11 @@ pub trait Effect: SteadyEffect {
     /// The instrument whose gains no recording tells from this effect.
     fn hides_gain_of(&self) -> Option<Instrument> {
         self.gain_of()
+    }
+
+    /// The winding whose broken symmetry this effect is: its parameters are the real and the imaginary part of the asymmetry.
+    fn asymmetry_of(&self) -> Option<Side> {
+        None
     }
 
     /// Whether a fit without this effect may move a parameter of the motor file in its place. Friction stands for every

@@ -31,7 +31,7 @@ pub(crate) mod steady;
 pub use config::{EffectConfig, EffectError};
 pub use descriptor::{Applies, Descriptor, Kind, Parameter, Rated, Role, Scale, Written};
 #[cfg(feature = "std")]
-pub use effect::{At, Cage, Effect, Hook, Instantaneous, Instrument, Nominal, Rates};
+pub use effect::{At, Cage, Effect, Hook, Instantaneous, Instrument, Nominal, Rates, Side};
 #[cfg(feature = "file")]
 pub(crate) use file::check;
 #[cfg(feature = "file")]

@@ -4,7 +4,7 @@
 
 use crate::effect::SteadyEffect;
 #[cfg(feature = "std")]
-use crate::effect::{Effect, Instrument};
+use crate::effect::{Effect, Instrument, Side};
 
 /// Registers effects: the file and the type in it.
 macro_rules! effects {
@@ -89,6 +89,13 @@ pub fn find_steady(name: &str, form: &str) -> Option<&'static dyn SteadyEffect> 
 pub fn gain_of(instrument: Instrument) -> Option<&'static dyn Effect> {
     let is_gain = |e: &&&'static dyn Effect| e.gain_of() == Some(instrument);
     ALL.iter().find(is_gain).copied()
+}
+
+/// The effect that breaks the symmetry of a winding; each has exactly one, which the tests of the library hold.
+#[cfg(feature = "std")]
+pub fn asymmetry_of(side: Side) -> Option<&'static dyn Effect> {
+    let breaks = |e: &&&'static dyn Effect| e.asymmetry_of() == Some(side);
+    ALL.iter().find(breaks).copied()
 }
 
 /// Names of all effects, each once.

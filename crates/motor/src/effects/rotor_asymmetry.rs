@@ -27,12 +27,16 @@ steady_effect!(RotorAsymmetry, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::RotorAsymmetry;
     use crate::dynamic::Flow;
-    use crate::effect::{At, Effect, Hook, Rates};
+    use crate::effect::{At, Effect, Hook, Rates, Side};
     use num_complex::Complex64;
 
     impl Effect for RotorAsymmetry {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Finish]
+        }
+
+        fn asymmetry_of(&self) -> Option<Side> {
+            Some(Side::Rotor)
         }
 
         fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {

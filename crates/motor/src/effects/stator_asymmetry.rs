@@ -27,12 +27,16 @@ steady_effect!(StatorAsymmetry, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::StatorAsymmetry;
     use crate::dynamic::{Terminal, Winding};
-    use crate::effect::{At, Effect, Hook};
+    use crate::effect::{At, Effect, Hook, Side};
     use num_complex::Complex64;
 
     impl Effect for StatorAsymmetry {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Terminal]
+        }
+
+        fn asymmetry_of(&self) -> Option<Side> {
+            Some(Side::Stator)
         }
 
         fn terminal(&self, p: &[f64], _at: &At<'_>, winding: &Winding, terminal: &mut Terminal) {

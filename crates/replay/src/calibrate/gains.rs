@@ -1,8 +1,8 @@
 //! Relative gains of the channels of one kind, from the zero sequence that three wires cannot carry.
 
 use motor::MotorFile;
-use motor::effect::{Descriptor, SteadyEffect};
-use motor::effects::types::{PhaseCurrentGain, PhaseVoltageGain};
+use motor::effect::{Descriptor, Instrument};
+use motor::effects::gain_of;
 use motor::motor_file::{EffectEntry, EffectValue};
 use num_complex::Complex64;
 
@@ -18,17 +18,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The effect that carries the gains, one parameter for each phase.
-    pub fn effect(self) -> &'static Descriptor {
-        let effect: &'static dyn SteadyEffect = match self {
-            Kind::Voltage => &PhaseVoltageGain,
-            Kind::Current => &PhaseCurrentGain,
+    /// The effect that carries the gains, one parameter for each phase; `None` in a library without it.
+    pub fn effect(self) -> Option<&'static Descriptor> {
+        let instrument = match self {
+            Kind::Voltage => Instrument::Voltages,
+            Kind::Current => Instrument::Currents,
         };
-        effect.descriptor()
-    }
-
-    fn keys(self) -> impl Iterator<Item = &'static str> {
-        self.effect().parameters.iter().map(|p| p.name)
+        gain_of(instrument).map(|effect| effect.descriptor())
     }
 }
 
@@ -63,14 +59,13 @@ pub fn with_gains(motor: &MotorFile, kind: Kind, gains: [f64; 3]) -> Option<Moto
     if gains.iter().all(|gain| (gain - 1.0).abs() < LEAST) {
         return None;
     }
+    let effect = kind.effect()?;
+    let keys = || effect.parameters.iter().map(|p| p.name);
     let mut motor = motor.clone();
-    let known = motor
-        .effects
-        .iter_mut()
-        .find(|e| e.name == kind.effect().name);
+    let known = motor.effects.iter_mut().find(|e| e.name == effect.name);
     match known {
         Some(entry) => {
-            for (key, gain) in kind.keys().zip(gains) {
+            for (key, gain) in keys().zip(gains) {
                 let old = entry.number(key).unwrap_or(1.0);
                 let place = entry.parameters.iter_mut().find(|p| p.key == key);
                 if let Some(parameter) = place {
@@ -78,10 +73,9 @@ pub fn with_gains(motor: &MotorFile, kind: Kind, gains: [f64; 3]) -> Option<Moto
                 }
             }
         }
-        None => motor.effects.push(EffectEntry::with_numbers(
-            kind.effect().name,
-            kind.keys().zip(gains),
-        )),
+        None => motor
+            .effects
+            .push(EffectEntry::with_numbers(effect.name, keys().zip(gains))),
     }
     Some(motor)
 }

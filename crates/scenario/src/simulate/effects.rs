@@ -8,10 +8,9 @@ use crate::{Asymmetry, Fault, Scenario, Target};
 use motor::MotorFile;
 use motor::dynamic::Dynamic;
 use motor::effect::{
-    Descriptor, EffectConfig, EffectStack, Hook, SteadyEffect, Timeline, extra_states, from_entry,
-    rated,
+    Descriptor, EffectConfig, EffectStack, Hook, Side, Timeline, extra_states, from_entry, rated,
 };
-use motor::effects::types::{RotorAsymmetry, StatorAsymmetry};
+use motor::effects::asymmetry_of;
 use motor::motor_file::EffectEntry;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -83,18 +82,19 @@ pub(super) fn of_faults(scenario: &Scenario) -> Result<Vec<EffectConfig>, Simula
 
 /// Faults of symmetry as effects.
 fn broken_symmetry(faults: &[&Fault]) -> Vec<EffectEntry> {
-    let sum = |effect: &'static dyn SteadyEffect, part: fn(Asymmetry, f64) -> Option<Complex64>| {
+    let sum = |side: Side, part: fn(Asymmetry, f64) -> Option<Complex64>| {
         let parts = faults.iter().filter_map(|fault| match fault.target {
             Target::Asymmetry(asymmetry) => part(asymmetry, fault.share()),
             _ => None,
         });
         let k: Complex64 = parts.sum();
+        let effect = asymmetry_of(side)?;
         (k.norm_sqr() > 0.0).then_some((effect.descriptor(), k))
     };
     // Relative to the resistance that `common_series` has raised already.
-    let stator = sum(&StatorAsymmetry, series_in_phase)
+    let stator = sum(Side::Stator, series_in_phase)
         .map(|(effect, k)| (effect, k / (1.0 + common_series(faults))));
-    let rotor = sum(&RotorAsymmetry, bars);
+    let rotor = sum(Side::Rotor, bars);
     let entry = |(effect, k): (&'static Descriptor, Complex64)| {
         let keys = effect.parameters.iter().map(|parameter| parameter.name);
         EffectEntry::with_numbers(effect.name, keys.zip([k.re, k.im]))

@@ -168,7 +168,7 @@ impl Calibrate {
     fn result(&self, believed: &MotorFile, calibrated: &Calibrated) -> CalibrateJson {
         let [torque, e_d, e_q] = calibrated.misfit_percent;
         let gain = |(kind, gain): &(Kind, [f64; 3])| GainJson {
-            effect: kind.effect().name,
+            effect: kind.effect().map_or("", |effect| effect.name),
             gain: *gain,
         };
         CalibrateJson {
