@@ -9,11 +9,8 @@ mod encoding;
 mod head;
 mod layout;
 mod number;
-mod preamble;
-mod rows;
 pub(crate) mod source;
 mod stamp;
-mod titles;
 
 use crate::mapping::Mapping;
 
@@ -22,7 +19,7 @@ pub(super) fn first_rows(text: &str, said: &Mapping, count: usize) -> Vec<Vec<St
     let owned = |cells: Vec<&str>| cells.into_iter().map(str::to_owned).collect();
     match layout::layout("", text, said) {
         Ok(found) => {
-            let rows = rows::rows(text, found.separator).into_iter();
+            let rows = layout::rows::rows(text, found.separator).into_iter();
             let samples = rows.filter(|row| row.line >= found.titles.first_sample);
             let cells = samples.map(|row| owned(row.cells));
             std::iter::once(found.titles.names)

@@ -1,18 +1,22 @@
 //! How a text file is laid out: separator, way of writing numbers, names, units, clock.
 
-use super::cells::{Kind, Separator, is_missing};
-use super::clocks::{Clock, clock};
-use super::number::{Ambiguous, Evidence, Numbers, Place, THOUSANDS};
-use super::preamble::{Rate, rate, said_separator};
-use super::rows::{Row, longest_run, rows, separator};
-use super::titles::{self, Titles, titles};
+mod preamble;
+pub(super) mod rows;
+mod titles;
+
+use self::preamble::{Rate, rate, said_separator};
+use self::rows::{Row, longest_run, rows, separator};
+use self::titles::{Titles, titles};
 use crate::error::Error;
 use crate::mapping::Mapping;
 use crate::read::header::shown;
+use crate::read::text::cells::{Kind, Separator, is_missing};
+use crate::read::text::clocks::{Clock, clock};
+use crate::read::text::number::{Ambiguous, Evidence, Numbers, Place, THOUSANDS};
 
 /// The layout of a file, and what was assumed to find it.
 #[derive(Clone, Debug)]
-pub(super) struct Layout {
+pub(in crate::read::text) struct Layout {
     pub separator: Separator,
     /// Whether cells stand between quotes that hide separators.
     pub is_quoted: bool,
@@ -30,7 +34,11 @@ pub(super) struct Layout {
 ///
 /// # Errors
 /// No line with a cell, and cells that could be two numbers.
-pub(super) fn layout(file: &str, text: &str, said: &Mapping) -> Result<Layout, Error> {
+pub(in crate::read::text) fn layout(
+    file: &str,
+    text: &str,
+    said: &Mapping,
+) -> Result<Layout, Error> {
     let told = said.delimiter.map(Separator::from_said);
     let separator = told
         .or_else(|| said_separator(text))

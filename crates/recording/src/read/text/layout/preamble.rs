@@ -1,9 +1,9 @@
 //! What the lines above the table say about the clock.
 
-use super::cells::{Kind, Separator, cells, kind};
 use super::rows::{Row, numbered};
 use crate::data::channel::Quantity;
 use crate::data::units::Unit;
+use crate::read::text::cells::{Kind, Separator, cells, kind};
 
 /// A rate that a file declares.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ const RATES: [&str; 7] = [
 ];
 
 /// The rate that rows above the samples declare: `Sample Interval,1e-4`, or a column `Increment` with its value below.
-pub(super) fn rate(rows: &[Row<'_>], before: u64) -> Option<Rate> {
+pub(in crate::read::text) fn rate(rows: &[Row<'_>], before: u64) -> Option<Rate> {
     let above = || rows.iter().take_while(|row| row.line < before);
     above().find_map(in_row).or_else(|| {
         let pairs = above().zip(above().skip(1));
@@ -109,7 +109,7 @@ fn hertz(unit: Option<&str>) -> f64 {
 }
 
 /// What a line `sep=;` at the beginning says.
-pub(super) fn said_separator(text: &str) -> Option<Separator> {
+pub(in crate::read::text) fn said_separator(text: &str) -> Option<Separator> {
     let (_, first) = numbered(text).next()?;
     let said = unquoted_line(first).strip_prefix("sep=")?;
     match said.as_bytes() {

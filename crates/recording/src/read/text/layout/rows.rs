@@ -1,11 +1,11 @@
 //! The first lines of a file as rows of cells, and where the samples begin.
 
-use super::cells::{Kind, Separator, cells, kind};
+use crate::read::text::cells::{Kind, Separator, cells, kind};
 use std::cmp::Reverse;
 
 /// A line of the file that is neither empty nor a comment.
 #[derive(Clone, Debug)]
-pub(super) struct Row<'h> {
+pub(in crate::read::text) struct Row<'h> {
     /// Counted from 1.
     pub line: u64,
     pub cells: Vec<&'h str>,
@@ -42,7 +42,7 @@ impl<'h> Row<'h> {
 const COMMENTS: [&str; 3] = ["#", "%", "//"];
 
 /// The text of a comment.
-pub(super) fn comment(line: &str) -> Option<&str> {
+pub(in crate::read::text) fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     COMMENTS
         .iter()
@@ -51,12 +51,12 @@ pub(super) fn comment(line: &str) -> Option<&str> {
 }
 
 /// The lines of a text, numbered from 1.
-pub(super) fn numbered(text: &str) -> impl Iterator<Item = (u64, &str)> {
+pub(in crate::read::text) fn numbered(text: &str) -> impl Iterator<Item = (u64, &str)> {
     (1..).zip(text.lines())
 }
 
 /// The rows of a text.
-pub(super) fn rows(text: &str, separator: Separator) -> Vec<Row<'_>> {
+pub(in crate::read::text) fn rows(text: &str, separator: Separator) -> Vec<Row<'_>> {
     let written =
         numbered(text).filter(|(_, line)| !line.trim().is_empty() && comment(line).is_none());
     written
@@ -65,7 +65,7 @@ pub(super) fn rows(text: &str, separator: Separator) -> Vec<Row<'_>> {
 }
 
 /// The longest run of rows of samples of one width, as indices.
-pub(super) fn longest_run(rows: &[Row<'_>]) -> std::ops::Range<usize> {
+pub(in crate::read::text) fn longest_run(rows: &[Row<'_>]) -> std::ops::Range<usize> {
     let mut best = 0..0;
     let mut first = 0;
     for k in 0..=rows.len() {
@@ -84,7 +84,7 @@ pub(super) fn longest_run(rows: &[Row<'_>]) -> std::ops::Range<usize> {
 }
 
 /// What separates the cells: that which makes the longest table, of those the one with the fewest words, then the widest.
-pub(super) fn separator(text: &str) -> Option<Separator> {
+pub(in crate::read::text) fn separator(text: &str) -> Option<Separator> {
     let bytes = [b',', b';', b'\t', b'|'].map(Separator::Byte);
     let candidates = bytes.into_iter().chain([Separator::Blanks]);
     let scored = candidates.filter_map(|separator| {

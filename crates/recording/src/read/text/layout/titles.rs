@@ -1,14 +1,14 @@
 //! Which line names the columns, and which their units.
 
-use super::cells::{Kind, Separator, cells};
 use super::rows::{Row, comment, numbered};
 use crate::data::units::is_unit;
 use crate::mapping::aliases;
 use crate::read::header::{column_name, name_and_unit};
+use crate::read::text::cells::{Kind, Separator, cells};
 
 /// What stands above the samples.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Titles {
+pub(in crate::read::text) struct Titles {
     /// Line of the names, counted from 1; 0 where there are none.
     pub line: u64,
     pub names: Vec<String>,
@@ -22,7 +22,7 @@ pub(super) struct Titles {
 }
 
 /// Finds names and units above the rows of `run`.
-pub(super) fn titles(
+pub(in crate::read::text) fn titles(
     text: &str,
     rows: &[Row<'_>],
     run: std::ops::Range<usize>,
@@ -183,7 +183,7 @@ fn in_comment(text: &str, before: u64, width: usize, separator: Separator) -> Op
 }
 
 /// Names for columns without any: all of a file without titles, and single ones.
-pub(super) fn fill(names: &mut Vec<String>, width: usize) {
+pub(in crate::read::text) fn fill(names: &mut Vec<String>, width: usize) {
     if names.is_empty() {
         names.resize(width, String::new());
     }
