@@ -83,7 +83,7 @@ impl Load {
             }),
             _ => Err(Unsupported::new(
                 "the recording has neither speed nor torque: what the motor carries is not known",
-                "record `speed` (rad/s), or `torque` (N m) at the shaft; if the load is the friction of the motor file                  alone, write `load_torque = \"friction\"` into the sidecar",
+                "record `speed` (rad/s), or `torque` (N m) at the shaft; if the load is the friction of the motor file alone, write `load_torque = \"friction\"` into the sidecar",
             )),
         }
     }

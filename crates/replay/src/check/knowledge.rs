@@ -5,6 +5,7 @@ use motor::MotorFile;
 use recording::{Recording, Source};
 use serde::Serialize;
 
+use super::slip::with_estimated_speed;
 use crate::calibrate::{Surroundings, calibrate};
 
 /// How well a motor is known.
@@ -50,7 +51,7 @@ pub fn learn(
     if healthy.is_empty() {
         return learnt;
     }
-    if motor.uncertainty.is_some() {
+    if motor.uncertainty.is_some() && healthy.iter().all(|recording| recording.speed().is_some()) {
         learnt.identify(healthy, progress);
     }
     learnt.calibrate(healthy);
@@ -79,8 +80,14 @@ impl Learnt {
         self.notes.push(format!("{what}: {error}"));
     }
 
+    /// Without an encoder the speed is estimated here as it will be when the motor is checked.
     fn calibrate(&mut self, healthy: &[Recording]) {
-        match calibrate(&self.motor, healthy, &Surroundings::default()) {
+        let with_speed = |recording: &Recording| {
+            with_estimated_speed(recording, &self.motor)
+                .map_or_else(|| recording.clone(), |(with_speed, _)| with_speed)
+        };
+        let healthy: Vec<Recording> = healthy.iter().map(with_speed).collect();
+        match calibrate(&self.motor, &healthy, &Surroundings::default()) {
             Ok(calibrated) => {
                 (self.motor, self.knowledge) = (calibrated.motor, Knowledge::Calibrated);
             }

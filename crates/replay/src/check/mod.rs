@@ -12,7 +12,7 @@ pub use slip::{EstimatedSpeed, with_estimated_speed};
 
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::{Audit, Expectation, Recording, audit};
+use recording::{Audit, Expectation, Recording};
 use serde::Serialize;
 
 use crate::{Samples, Timeline, Verdict, VerdictState, causes, config_for, replay, words};
@@ -49,20 +49,25 @@ pub struct Checked {
 /// # Errors
 /// A motor file or a recording that the core cannot take, in words.
 pub fn check(
-    recording: &Recording,
+    recorded: &Recording,
     motor: &MotorFile,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Checked, String> {
-    let (estimated, speed) = match with_estimated_speed(recording, motor) {
+    let (estimated, speed) = match with_estimated_speed(recorded, motor) {
         Some((with_speed, speed)) => (Some(with_speed), Some(speed)),
         None => (None, None),
     };
-    let shown = estimated.as_ref().unwrap_or(recording);
-    let audit = audit(shown, &Expectation::from(motor));
+    let shown = estimated.as_ref().unwrap_or(recorded);
+    let audit = recording::audit(shown, &Expectation::from(motor));
     let config = config_for(motor, shown).map_err(|error| error.to_string())?;
     let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
     let timeline = replay(&monitor, &Samples::new(shown, &audit), progress);
-    Ok(answer(motor, shown, audit, &timeline, speed))
+    let mut answer = answer(motor, shown, audit, &timeline, speed);
+    if answer.speed.is_some() {
+        // An estimate is no channel of the recorder: the audit is about what was recorded.
+        answer.audit = recording::audit(recorded, &Expectation::from(motor));
+    }
+    Ok(answer)
 }
 
 fn answer(

@@ -60,12 +60,9 @@ pub fn with_estimated_speed(
     }
     let mean = known.iter().sum::<f64>() / known.len() as f64;
     let synchronous = omega / f64::from(motor.nameplate.pole_pairs);
-    let speeds = held(&slips, mean)
-        .into_iter()
-        .map(|slip| synchronous * (1.0 - slip));
-    let samples = speeds
-        .flat_map(|speed| std::iter::repeat_n(speed, block))
-        .take(u.len());
+    let slips = held(&slips, mean);
+    let samples =
+        (0..u.len()).map(|k| synchronous * (1.0 - between(&slips, k as f64 / block as f64)));
     let estimated = EstimatedSpeed {
         mean_rpm: synchronous * (1.0 - mean) * 60.0 / TAU,
         slip_percent: 100.0 * mean,
@@ -85,6 +82,14 @@ fn relative_half_width(motor: &MotorFile) -> f64 {
     deviation
         .map_or(WARM, |sd| (1.96 * sd).exp() - 1.0)
         .max(WARM)
+}
+
+/// Between the middles of two blocks, linearly; `place` in blocks from the start of the first.
+fn between(slips: &[f64], place: f64) -> f64 {
+    let at = (place - 0.5).clamp(0.0, (slips.len() - 1) as f64);
+    let first = at.floor() as usize;
+    let second = (first + 1).min(slips.len() - 1);
+    slips[first] + (at - first as f64) * (slips[second] - slips[first])
 }
 
 /// A block without a slip takes that of the block before.
