@@ -40,6 +40,7 @@ effects! {
     double_cage: DoubleCage,
     coulomb_friction: CoulombFriction,
     windage: Windage,
+    stray_load_loss: StrayLoadLoss,
     load_pulsation: LoadPulsation,
     shaft_compliance: ShaftCompliance,
     voltage_asymmetry: VoltageAsymmetry,
