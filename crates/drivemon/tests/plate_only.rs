@@ -51,7 +51,7 @@ fn recorded(motor: &MotorFile, number: usize, fault: &str) -> Recording {
         "motor = \"motor.toml\"\nstart = \"running\"\nduration_s = 1.5\nseed = {number}\n[load]\nfriction_percent = 0\n\
          active = true\nconstant_percent = {}\n[sensors]\nnoise_sigma_fraction_of_full_scale = 0.002\ntorque = {}\n{fault}",
         (number * 37) % 111,
-        number % 2 == 0,
+        number.is_multiple_of(2),
     );
     let scenario = Scenario::parse(&text, "scenario.toml", &folder)
         .unwrap_or_else(|error| panic!("{error}\n{text}"));

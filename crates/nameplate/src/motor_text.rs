@@ -21,8 +21,6 @@ enum Part {
     Standstill,
     /// Losses beside the copper's.
     Loss,
-    /// Nothing in a motor file says it.
-    Unwritten,
 }
 
 const PARTS: [Part; PHYSICAL] = [
@@ -36,7 +34,7 @@ const PARTS: [Part; PHYSICAL] = [
     Part::Standstill,
     Part::Loss,
     Part::Loss,
-    Part::Unwritten,
+    Part::Loss,
     Part::Parameter,
 ];
 
@@ -160,7 +158,6 @@ impl<'e> Text<'e> {
     fn written_part(&self, k: usize) -> bool {
         match PARTS[k] {
             Part::Standstill => self.knows_standstill(),
-            Part::Unwritten => false,
             Part::Parameter | Part::Loss => true,
         }
     }
@@ -174,6 +171,7 @@ impl<'e> Text<'e> {
         }
         self.effect("core-loss", Some("air-gap"), &[8]);
         self.effect("windage", None, &[9]);
+        self.effect("stray-load-loss", None, &[10]);
     }
 
     fn effect(&mut self, name: &str, form: Option<&str>, keys: &[usize]) {
@@ -205,13 +203,12 @@ impl<'e> Text<'e> {
     }
 
     fn correlations(&mut self) {
-        for a in 0..PHYSICAL - 1 {
-            for b in 0..a {
+        for (b, second) in KEYS.iter().enumerate().take(PHYSICAL - 1) {
+            for (a, first) in KEYS.iter().enumerate().take(b) {
                 let value = self.estimate.correlations[(a, b)];
                 if value.abs() >= STRONG && self.written_part(a) && self.written_part(b) {
                     self.line(format_args!(
-                        "\n[[uncertainty.correlation]]\nfirst = \"{}\"\nsecond = \"{}\"\nvalue = {value:.2}",
-                        KEYS[b], KEYS[a]
+                        "\n[[uncertainty.correlation]]\nfirst = \"{first}\"\nsecond = \"{second}\"\nvalue = {value:.2}"
                     ));
                 }
             }

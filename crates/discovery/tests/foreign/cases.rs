@@ -129,7 +129,6 @@ pub fn single(seed: u64) -> Vec<Case> {
         &|h, d| h.speed_delay = d.positive(3e-3),
         false,
     );
-    add("stray-load-loss", &|h, d| h.stray = d.positive(0.04), false);
     all
 }
 

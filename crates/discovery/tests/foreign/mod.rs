@@ -1,7 +1,7 @@
 //! Motors written a second time, in other forms than the library's, with their own integration and instruments.
 //!
 //! Flux is solved by bisection, saturation is a rational function, the cage is a ladder of three bar layers, friction
-//! has a Stribeck bump, windage another exponent, stray-load loss the load's part of the current, heating is a straight line, leakage saturation another curve, dead
+//! has a Stribeck bump, windage another exponent, heating is a straight line, leakage saturation another curve, dead
 //! time a clipped line: a fit cannot be exact.
 
 pub mod cases;
@@ -37,8 +37,6 @@ pub struct Hidden {
     pub coulomb: f64,
     /// Windage at synchronous speed, share of rated torque.
     pub windage: f64,
-    /// Stray-load torque at rated current, share of rated torque.
-    pub stray: f64,
     /// Torque once per turn, share of rated torque.
     pub pulsation: f64,
     /// Torsional frequency, Hz; 0: stiff.

@@ -130,14 +130,6 @@ impl Plant {
         m.b * w + h.coulomb * m.torque * stribeck * (w / (0.004 * m.speed())).tanh() + windage
     }
 
-    /// As IEEE 112 has it: with the square of what the current exceeds that without load by, `I^2 - I_0^2`.
-    fn stray(&self, w: f64, i: Complex64) -> f64 {
-        let (m, h) = (&self.m, &self.h);
-        let idle = (U / (OMEGA * (m.l_m + m.l_l))).powi(2);
-        let load = (i.norm_sqr() - idle).max(0.0) / (m.current * m.current - idle);
-        h.stray * m.torque * load * (w / (0.01 * m.speed())).tanh()
-    }
-
     /// Voltage at the terminals for what an inverter commands.
     fn delivered(&self, commanded: Complex64, i: Complex64) -> Complex64 {
         let knee = 0.02 * self.m.current;
@@ -187,7 +179,6 @@ impl Plant {
         };
         let shaft = 1.5 * m.n_p * (s.psi_s.conj() * i_s).im
             - self.friction(s.w)
-            - self.stray(s.w, i_t)
             - h.pulsation * m.torque * (s.theta + 0.4).cos();
         let d = self.turning(s, shaft, load);
         (State { psi_s, psi_r, ..d }, i_t, v)

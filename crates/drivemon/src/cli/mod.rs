@@ -43,6 +43,8 @@ Exit codes: 0 fine or healthy, 1 a finding (a fault was lit), 2 bad input or usa
 Colour is left out when NO_COLOR is set or the output is not a terminal.
 A fault monitor is no protection device: it does not replace fuses, motor protection switches or safety relays.";
 
+// One of them exists in a run of the program.
+#[allow(clippy::large_enum_variant)]
 #[derive(Debug, Subcommand)]
 enum Command {
     Demo(commands::demo::Demo),

@@ -239,10 +239,10 @@ mod tests {
 
     #[test]
     fn a_lost_encoder_is_told_from_a_locked_rotor() {
-        assert!(CONFIG.check_speed(314.0, 0.0, 300.0).is_some());
-        assert!(CONFIG.check_speed(314.0, 0.0, 60.0).is_none());
+        assert!(CONFIG.check_speed(314.0, 0.0, 300.0, 0.0).is_some());
+        assert!(CONFIG.check_speed(314.0, 0.0, 60.0, 0.0).is_none());
         // Stalled and hot: the cold resistance implies two thirds of the slip.
-        assert!(CONFIG.check_speed(314.0, 10.0, 314.0 * 0.42).is_none());
+        assert!(CONFIG.check_speed(314.0, 10.0, 314.0 * 0.42, 0.0).is_none());
     }
 
     #[test]
@@ -295,7 +295,7 @@ mod tests {
     fn a_contradiction_is_counted_from_the_hot_rotor_on() {
         let found = |slip: f32, implied: f32| {
             CONFIG
-                .check_speed(100.0, 100.0 - slip, 100.0 - implied)
+                .check_speed(100.0, 100.0 - slip, 100.0 - implied, 0.0)
                 .is_some()
         };
         // Implied slip 10, hot 15: implausible beyond 55 and below -30.

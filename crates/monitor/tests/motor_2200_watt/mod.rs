@@ -58,7 +58,7 @@ pub fn config() -> MonitorConfig {
             hysteresis: 0.8,
         },
         healthy: None,
-        doubt: monitor::ParameterDoubt::default(),
+        doubt: Default::default(),
     }
 }
 

@@ -35,7 +35,7 @@ pub struct Fit {
     pub worst: f64,
     /// Slip of the greatest torque.
     pub breakdown_slip: f64,
-    pub cost: f64,
+    pub(crate) cost: f64,
 }
 
 /// Targets, how closely each is to be met, prior and bounds.

@@ -211,7 +211,7 @@ impl Watch<'_> {
 
 fn print_lamps(frame: &Frame, lamps: &[Lamp; LAMPS]) {
     let [run, r1, r2, r3, r4, sensor, line, load, fault] =
-        lamps.map(|lamp| crate::cli::printing::lamp_symbol::symbol(lamp));
+        lamps.map(crate::cli::printing::lamp_symbol::symbol);
     // The board samples at 10 kHz.
     let t = frame.sample_index as f64 * 1e-4;
     say!("{t:>10.3}   {run}   {r1}  {r2}  {r3}  {r4}     {sensor}     {line}    {load}    {fault}");
