@@ -45,6 +45,10 @@ pub const CONFIG: MonitorConfig = MonitorConfig {
         hysteresis: 0.8,
     },
 healthy: None,
+    doubt: monitor::ParameterDoubt {
+        circuit: [0.0; monitor::CIRCUIT],
+        effects: [[0.0; monitor::MAX_EFFECT_PARAMETERS]; monitor::MAX_EFFECTS],
+    },
 };
 
 const CHANNEL: monitor::ChannelScale = monitor::ChannelScale {
