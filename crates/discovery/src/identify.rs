@@ -49,6 +49,8 @@ pub struct IdentifiedParameter {
 
 /// An interval narrowed to less than this share of the prior's was told by the recordings.
 const TOLD: f64 = 0.5;
+/// Logarithms with a greater standard deviation are as good as unknown.
+const WIDEST: f64 = 1.5;
 /// 95 % of a normal distribution lie within so many standard deviations.
 const TWO_SIDED_95: f64 = 1.959_964;
 
@@ -146,13 +148,16 @@ struct Found {
 fn identified(found: Found) -> IdentifiedParameter {
     let told = found.error < TOLD * found.prior;
     let relative = found.error / found.value.abs().max(f64::MIN_POSITIVE);
+    let half = TWO_SIDED_95 * found.error;
     // What is above zero has an interval of its logarithm; friction may be nothing.
-    let (low, high) = if found.value > 0.0 && relative < 1.0 {
-        let factor = (TWO_SIDED_95 * relative).exp();
-        (found.value / factor, found.value * factor)
+    let (low, high) = if found.value > 0.0 {
+        let factor = (TWO_SIDED_95 * relative.min(WIDEST)).exp();
+        (
+            found.value / factor,
+            (found.value * factor).max(found.value + half),
+        )
     } else {
-        let half = TWO_SIDED_95 * found.error;
-        ((found.value - half).max(0.0), found.value + half)
+        (0.0, half)
     };
     IdentifiedParameter {
         name: found.name,

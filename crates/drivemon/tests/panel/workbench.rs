@@ -204,7 +204,7 @@ fn foreign_columns_are_mapped_and_the_audit_speaks() {
         let i = |phase: f64| 4000.0 * (314.159 * t - 2.0944 * phase).cos();
         format!("{t};{:.3};{:.3};{:.3}\n", i(0.0), i(1.0), i(2.0)).replace('.', ",")
     };
-    let text: String = std::iter::once("zeit;I1;I2;I3\n".to_owned())
+    let text: String = std::iter::once("laufnr;kanalx;kanaly;kanalz\n".to_owned())
         .chain((0..5000).map(sample))
         .collect();
     let sent = upload(
@@ -219,7 +219,7 @@ fn foreign_columns_are_mapped_and_the_audit_speaks() {
             .is_some_and(|words| words.starts_with("foreign.csv:1"))
     );
     let columns = json!({
-        "column": {"t": "zeit", "ia": "I1", "ib": "I2", "ic": "I3"}, "unit": {"ia": "mA", "ib": "mA", "ic": "mA"},
+        "column": {"t": "laufnr", "ia": "kanalx", "ib": "kanaly", "ic": "kanalz"}, "unit": {"ia": "mA", "ib": "mA", "ic": "mA"},
         "delimiter": ";", "decimal_comma": true,
     });
     let mapping = format!(
@@ -231,7 +231,7 @@ fn foreign_columns_are_mapped_and_the_audit_speaks() {
     assert_eq!(read["problem"], Value::Null);
     assert_eq!(
         read["preview"]["columns"],
-        json!(["zeit", "I1", "I2", "I3"])
+        json!(["laufnr", "kanalx", "kanaly", "kanalz"])
     );
     assert_eq!(read["summary"]["samples"], 5000);
     let findings = read["audit"]["findings"].as_array().expect("findings");

@@ -113,7 +113,7 @@ async fn a_bad_file_is_answered(page: &Page) {
     let rows = (0..40).map(|k| format!("{},{},{},{}\n", f64::from(k) / 1000.0, k, 2 * k, -3 * k));
     std::fs::write(
         &file,
-        format!("zeit,I1,I2,I3\n{}", rows.collect::<String>()),
+        format!("laufnr,kanalx,kanaly,kanalz\n{}", rows.collect::<String>()),
     )
     .expect("written");
     page.choose("#file-0", &[file]).await;
@@ -124,7 +124,12 @@ async fn a_bad_file_is_answered(page: &Page) {
     .await;
     let said = page.text("[data-slot='0'] .problem").await;
     assert!(said.contains("foreign.csv:1"), "{said}");
-    for (channel, column) in [("t", "zeit"), ("ia", "I1"), ("ib", "I2"), ("ic", "I3")] {
+    for (channel, column) in [
+        ("t", "laufnr"),
+        ("ia", "kanalx"),
+        ("ib", "kanaly"),
+        ("ic", "kanalz"),
+    ] {
         page.run(&format!(
             "document.querySelector('#slot-0-column-{channel}').value = '{column}'"
         ))
