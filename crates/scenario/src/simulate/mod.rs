@@ -1,38 +1,25 @@
 //! Runs a scenario: a stream of samples, each with what was true and what the instruments showed.
 
-mod effects;
-mod full;
-mod linear;
+mod instruments;
 mod plant;
-mod presence;
 #[cfg(feature = "recording")]
 mod record;
-mod sensing;
-#[cfg(feature = "recording")]
-mod shown;
 mod side_by_side;
-mod waveform;
 
-#[cfg(test)]
-mod asymmetry_tests;
-#[cfg(test)]
-mod instrument_tests;
-#[cfg(test)]
-mod switching_tests;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use effects::check_entry;
+pub(crate) use plant::effects::check_entry;
 #[cfg(feature = "recording")]
 pub use record::{RecordError, record};
 pub use side_by_side::{DataPair, SideBySide};
 
 use crate::{Fault, Scenario};
+use instruments::Instruments;
 use motor::motor_file::Frame;
 use motor::steady_state::{DqPoint, NoOperatingPoint};
 use num_complex::Complex64;
-use plant::Plant;
-use sensing::Instruments;
+use plant::{Plant, effects};
 
 /// What was so at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

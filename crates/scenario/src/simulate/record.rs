@@ -1,6 +1,8 @@
 //! A whole experiment as a recording.
 
-use super::{SimSample, Simulation, SimulationError, effects, shown};
+use super::instruments::shown;
+use super::plant::effects;
+use super::{SimSample, Simulation, SimulationError};
 use crate::{Scenario, SpeedSensor, Start};
 use motor::motor_file::LoadKind;
 use recording::{
@@ -39,7 +41,7 @@ pub fn record(
     if effects.is_empty() {
         samples.for_each(|sample| columns.push(&sample));
     } else {
-        let shown = shown::shown(scenario, &effects, samples.collect())?;
+        let shown = shown(scenario, &effects, samples.collect())?;
         shown.iter().for_each(|sample| columns.push(sample));
     }
     progress(1.0);

@@ -2,15 +2,15 @@
 //!
 //! Its q axis lies on the voltage, so that voltage frame and rotor-flux frame are one and the same.
 
-use super::Truth;
 use super::presence::Presence;
 use super::waveform::Waveform;
+use crate::simulate::Truth;
 use crate::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::phases;
 use motor::linear_plant::{LinearParams, LinearState, LinearStep};
 use num_complex::Complex64;
 
-pub(super) struct Linear {
+pub(in crate::simulate) struct Linear {
     healthy: LinearParams,
     params: LinearParams,
     step: LinearStep,

@@ -1,14 +1,19 @@
 //! The motor of a scenario, whichever equations stand in for it.
 
-use super::effects;
-use super::full::Full;
-use super::linear::Linear;
-use super::presence::EXTRA_STATES;
+pub(super) mod effects;
+mod full;
+mod linear;
+mod presence;
+mod waveform;
+
 use super::{SimulationError, Truth};
 use crate::{Fault, PlantKind, Scenario};
+use full::Full;
+use linear::Linear;
 use motor::dynamic::{Dynamic, NoEffects};
 use motor::effect::EffectStack;
 use motor::{Mechanics, TParams};
+use presence::EXTRA_STATES;
 use std::fmt;
 
 pub(super) enum Plant {

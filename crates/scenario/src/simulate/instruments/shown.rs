@@ -1,7 +1,7 @@
 //! Effects on the instruments: what they would have shown, from whole signals that were true.
 
 use super::sensing::Instruments;
-use super::{SimSample, SimulationError, Truth};
+use crate::simulate::{SimSample, SimulationError, Truth};
 use crate::{Scenario, SpeedSensor};
 use motor::dynamic::{clarke, phases};
 use motor::effect::{EffectConfig, Hook, Inputs, Outputs, Rated, rated};
@@ -17,7 +17,7 @@ const CONVERGED: f64 = 1e-13;
 ///
 /// # Errors
 /// An effect on the speed while an encoder counts edges, which such an effect leaves alone.
-pub(super) fn shown(
+pub(in crate::simulate) fn shown(
     scenario: &Scenario,
     effects: &[EffectConfig],
     mut samples: Vec<SimSample>,

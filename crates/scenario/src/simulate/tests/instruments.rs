@@ -1,7 +1,7 @@
 //! Effects on the instruments change what is recorded, and only that.
 
-use super::{Simulation, record};
 use crate::Scenario;
+use crate::simulate::{Simulation, record};
 use crate::tests::parse;
 use recording::{Channel, Recording};
 

@@ -1,12 +1,12 @@
 //! Faults that are switched while a simulation runs.
 
-use super::Simulation;
+use crate::simulate::Simulation;
 use crate::{Fault, Scenario};
 use motor::MotorFile;
 use motor::motor_file::Frame;
 
 fn scenario() -> Scenario {
-    let text = include_str!("../../../../motors/assumed-300w.toml");
+    let text = include_str!("../../../../../motors/assumed-300w.toml");
     Scenario::of(MotorFile::parse(text, "motor").expect("it ships"), 0.4)
 }
 

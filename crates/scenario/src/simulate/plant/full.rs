@@ -2,7 +2,7 @@
 
 use super::presence::{Presence, common_series};
 use super::waveform::Waveform;
-use super::{SimulationError, Truth};
+use crate::simulate::{SimulationError, Truth};
 use crate::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::{Dynamic, DynamicState, Extra, Hooks, phases};
 use motor::load::Load;
@@ -21,7 +21,7 @@ const STANDSTILL_RAD_S: f64 = 0.1;
 pub(super) type Make<H> =
     Box<dyn Fn(&TParams<f64>, &Mechanics<f64>, &[&Fault]) -> Dynamic<H> + Send>;
 
-pub(super) struct Full<H: Hooks> {
+pub(in crate::simulate) struct Full<H: Hooks> {
     healthy: (TParams<f64>, Mechanics<f64>),
     make: Make<H>,
     model: Dynamic<H>,

@@ -1,3 +1,9 @@
+//! The simulated motor and its instruments against what the scenario says.
+
+mod asymmetry;
+mod instruments;
+mod switching;
+
 use super::*;
 use crate::tests::{folder, parse};
 use crate::{Fault, PlantKind, Scenario, SensorSpec, Start};

@@ -1,9 +1,9 @@
 //! The effects of a motor file and of a scenario inside the simulated motor.
 
-use super::SimulationError;
 use super::full::Make;
 use super::presence::{EXTRA_STATES, common_series};
 use super::waveform::Waveform;
+use crate::simulate::SimulationError;
 use crate::{Asymmetry, Fault, Scenario, Target};
 use motor::MotorFile;
 use motor::dynamic::Dynamic;
@@ -27,7 +27,9 @@ pub(super) fn inside(scenario: &Scenario) -> Result<Vec<EffectConfig>, Simulatio
 }
 
 /// Effects on the instruments.
-pub(super) fn of_instruments(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
+pub(in crate::simulate) fn of_instruments(
+    scenario: &Scenario,
+) -> Result<Vec<EffectConfig>, SimulationError> {
     let mut effects = configs(scenario)?;
     effects.retain(|config| config.effect.is_of_instruments());
     Ok(effects)
@@ -68,7 +70,9 @@ pub(crate) fn check_entry(
 }
 
 /// What the faults of a scenario bring along when all of them are present, checked.
-pub(super) fn of_faults(scenario: &Scenario) -> Result<Vec<EffectConfig>, SimulationError> {
+pub(in crate::simulate) fn of_faults(
+    scenario: &Scenario,
+) -> Result<Vec<EffectConfig>, SimulationError> {
     let faults: Vec<&Fault> = scenario.faults.iter().collect();
     let effect = |entry: EffectEntry| {
         check_entry(&scenario.motor, &entry).map_err(|(key, message)| SimulationError::Effect {

@@ -1,6 +1,6 @@
 //! The instruments: faults, noise, resolution and limits between the truth and the sample.
 
-use super::{Measured, Truth};
+use crate::simulate::{Measured, Truth};
 use crate::{Change, DqSignal, Fault, Probe, Scenario, SensorSpec, SpeedSensor, Target};
 use motor::dynamic::{clarke, phases};
 use num_complex::Complex64;
@@ -15,7 +15,7 @@ const ENCODER_WINDOW_S: f64 = 0.01;
 const COUNTS_PER_PULSE: f64 = 4.0;
 
 #[derive(Debug)]
-pub(super) struct Instruments {
+pub(in crate::simulate) struct Instruments {
     spec: SensorSpec,
     t_sample: f64,
     random: Pcg64,
@@ -53,7 +53,7 @@ impl Channel {
 }
 
 impl Instruments {
-    pub(super) fn new(scenario: &Scenario) -> Instruments {
+    pub(in crate::simulate) fn new(scenario: &Scenario) -> Instruments {
         Instruments {
             spec: scenario.sensors.clone(),
             t_sample: scenario.t_sample(),
@@ -64,7 +64,12 @@ impl Instruments {
         }
     }
 
-    pub(super) fn read(&mut self, t: f64, truth: &Truth, faults: &[Fault]) -> Measured {
+    pub(in crate::simulate) fn read(
+        &mut self,
+        t: f64,
+        truth: &Truth,
+        faults: &[Fault],
+    ) -> Measured {
         let active: Vec<&Fault> = faults.iter().filter(|fault| fault.is_active(t)).collect();
         let (u, i) = transformed(truth, &active);
         let own = self.spec.instrument;

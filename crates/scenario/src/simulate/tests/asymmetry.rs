@@ -1,6 +1,6 @@
 //! Resistance in series with one phase against symmetrical components by hand; broken bars by their sideband.
 
-use super::*;
+use crate::simulate::*;
 use crate::tests::parse;
 use crate::{Fault, SensorSpec};
 use motor::dynamic::clarke;
