@@ -4,29 +4,16 @@
 //! figures are drawn in the browser by an embedded chart library from the embedded JSON. So a page can show
 //! nothing that the JSON does not hold.
 
-mod adopt;
-mod audit;
-mod campaign;
-mod chart;
-mod compare;
-mod demo;
-mod explain;
-mod frame;
-mod load_table;
-mod models;
-mod monitor;
-mod number;
-mod overlay;
-mod parameters;
-mod place;
-mod scale;
-mod shell;
-mod table_overlay;
+mod commands;
+mod elements;
+mod sections;
 
-pub use compare::AGREES;
-pub use number::{Style, decimals, significant};
-pub use place::Place;
+pub use commands::compare::AGREES;
+pub use elements::number::{Style, decimals, significant};
+pub use elements::place::Place;
 
+use commands::{adopt, campaign, compare, demo, explain, load_table, monitor};
+use elements::shell;
 use serde::Serialize;
 
 /// Which command's result a page shows.

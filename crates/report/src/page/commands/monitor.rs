@@ -2,11 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::audit;
-use super::chart::{Chart, Kind, Series};
-use super::number::{decimals, shown, significant};
-use super::place::Place;
-use super::shell::{Mood, cards, verdict};
+use crate::page::elements::chart::{Chart, Kind, Series};
+use crate::page::elements::number::{decimals, shown, significant};
+use crate::page::elements::place::Place;
+use crate::page::elements::shell::{Mood, cards, verdict};
+use crate::page::sections::audit;
 use motor::FaultId;
 use replay::VerdictState;
 

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::place::Place;
+use crate::page::elements::place::Place;
 
 /// The findings under a heading; nothing found is said too.
 pub fn section(result: &Place<'_>) -> Markup {

@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::number::{decimals, shown, significant};
-use super::place::Place;
+use crate::page::elements::number::{decimals, shown, significant};
+use crate::page::elements::place::Place;
 use discovery::{AtRest, ErrorSource};
 
 /// The fitted scale and what cannot be concluded beside it; nothing where every scale is known.

@@ -1,6 +1,6 @@
 //! The models that are laid over a measurement.
 
-use super::place::Place;
+use crate::page::elements::place::Place;
 
 /// Colours of the models: what was believed stands out, what was found agrees.
 const TWO: [&str; 2] = ["vermillion", "green"];

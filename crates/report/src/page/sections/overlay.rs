@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::chart::{Chart, Kind, Series};
 use super::models::models;
-use super::place::Place;
 use super::table_overlay;
+use crate::page::elements::chart::{Chart, Kind, Series};
+use crate::page::elements::place::Place;
 
 /// Quantities that the error is shown against: key, axis, unit, what a trend would mean.
 const AGAINST: [(&str, &str, &str, &str); 4] = [

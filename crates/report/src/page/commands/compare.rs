@@ -2,14 +2,12 @@
 
 use maud::{Markup, html};
 
-use super::audit;
-use super::chart::{Chart, Kind, Series};
-use super::number::{decimals, shown, significant};
-use super::overlay;
-use super::parameters::bar;
-use super::place::Place;
-use super::scale;
-use super::shell::{Mood, cards, next, verdict};
+use crate::page::elements::chart::{Chart, Kind, Series};
+use crate::page::elements::number::{decimals, shown, significant};
+use crate::page::elements::place::Place;
+use crate::page::elements::shell::{Mood, cards, next, verdict};
+use crate::page::sections::parameters::bar;
+use crate::page::sections::{audit, overlay, scale};
 
 /// From this error over noise on a model is called wrong.
 pub const AGREES: f64 = 1.1;

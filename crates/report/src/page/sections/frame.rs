@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::number::{decimals, shown};
 use super::parameters::{Bar, bars};
-use super::place::Place;
+use crate::page::elements::number::{decimals, shown};
+use crate::page::elements::place::Place;
 
 /// The section, empty unless `holder` (a step or an adoption) is about the frame.
 pub fn section(holder: &Place<'_>) -> Markup {

@@ -2,11 +2,11 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const CHART_LIBRARY: &str = include_str!("../../assets/uplot/uPlot.iife.min.js");
-const CHART_STYLE: &str = include_str!("../../assets/uplot/uPlot.min.css");
-const CHART_LICENSE: &str = include_str!("../../assets/uplot/LICENSE");
-const SCRIPT: &str = include_str!("../../assets/report.js");
-const STYLE: &str = include_str!("../../assets/report.css");
+const CHART_LIBRARY: &str = include_str!("../../../assets/uplot/uPlot.iife.min.js");
+const CHART_STYLE: &str = include_str!("../../../assets/uplot/uPlot.min.css");
+const CHART_LICENSE: &str = include_str!("../../../assets/uplot/LICENSE");
+const SCRIPT: &str = include_str!("../../../assets/report.js");
+const STYLE: &str = include_str!("../../../assets/report.css");
 
 /// Nothing may be loaded: a report opens on machines without a network, and never tells anybody that it was opened.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'";

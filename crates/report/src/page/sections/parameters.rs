@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::number::{decimals, shown, significant};
-use super::place::Place;
+use crate::page::elements::number::{decimals, shown, significant};
+use crate::page::elements::place::Place;
 
 /// What an error over noise of 1 means.
 pub const NOISE: &str =

@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::chart::{Chart, Kind, Series};
-use super::number::{Style, decimals, shown};
-use super::place::Place;
-use super::shell::{Mood, verdict};
+use crate::page::elements::chart::{Chart, Kind, Series};
+use crate::page::elements::number::{Style, decimals, shown};
+use crate::page::elements::place::Place;
+use crate::page::elements::shell::{Mood, verdict};
 
 /// Columns: key, what it is, unit, how it is written.
 const COLUMNS: [(&str, &str, &str, Style); 8] = [

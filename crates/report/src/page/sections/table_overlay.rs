@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::chart::{Chart, Kind, Series};
 use super::models::models;
-use super::place::Place;
+use crate::page::elements::chart::{Chart, Kind, Series};
+use crate::page::elements::place::Place;
 
 /// Columns: key, what it is, unit.
 const COLUMNS: [(&str, &str, &str); 4] = [

@@ -2,14 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::audit;
-use super::frame;
-use super::number::{decimals, shown};
-use super::overlay;
-use super::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
-use super::place::Place;
-use super::scale;
-use super::shell::{Mood, cards, next, verdict};
+use crate::page::elements::number::{decimals, shown};
+use crate::page::elements::place::Place;
+use crate::page::elements::shell::{Mood, cards, next, verdict};
+use crate::page::sections::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
+use crate::page::sections::{audit, frame, overlay, scale};
 use discovery::Verdict;
 
 /// Key of the error on data that was not fitted.

@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::chart::{Chart, Kind, Series};
-use super::number::{decimals, shown};
-use super::place::Place;
-use super::shell::{Mood, cards, verdict};
+use crate::page::elements::chart::{Chart, Kind, Series};
+use crate::page::elements::number::{decimals, shown};
+use crate::page::elements::place::Place;
+use crate::page::elements::shell::{Mood, cards, verdict};
 
 /// Alarms that are listed; the embedded result has all.
 const MOST_ALARMS: usize = 100;

@@ -1,0 +1,9 @@
+//! What a page says: one file per command.
+
+pub mod adopt;
+pub mod campaign;
+pub mod compare;
+pub mod demo;
+pub mod explain;
+pub mod load_table;
+pub mod monitor;

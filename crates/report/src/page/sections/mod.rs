@@ -1,0 +1,9 @@
+//! Sections that the pages of several commands share.
+
+pub mod audit;
+pub mod frame;
+pub mod models;
+pub mod overlay;
+pub mod parameters;
+pub mod scale;
+pub mod table_overlay;
