@@ -3,14 +3,14 @@
 use monitor::RawSample;
 
 use crate::CORE_HZ;
-use crate::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE, UNTOUCHED};
-use crate::elf::Firmware;
 use crate::error::BoardError;
-use crate::gpio::Pin;
-use crate::log::Log;
+use crate::firmware::elf::Firmware;
+use crate::firmware::log::Log;
 use crate::machine::{Inputs, Machine, Port, Tally};
-use crate::rcc::Cause;
-use crate::usart::{Quality, Sent};
+use crate::peripherals::gpio::Pin;
+use crate::peripherals::rcc::Cause;
+use crate::peripherals::usart::{Quality, Sent};
+use crate::processor::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE, UNTOUCHED};
 
 /// Lamps in the order run, r1..r4, sensor, line, load, fault; the table of docs/wiring.md.
 pub const LAMPS: [(&str, Pin); 9] = [
@@ -227,7 +227,7 @@ impl VirtualBoard {
 
     /// Takes what the firmware wrote to a debugger channel (0 is the log).
     pub fn drain_rtt(&mut self, channel: u32) -> Option<Vec<u8>> {
-        crate::rtt::drain(&mut self.cpu, channel)
+        crate::firmware::rtt::drain(&mut self.cpu, channel)
     }
 
     /// Bytes of stack used at most since power-up: from its beginning, the vector table's first word, down to the deepest

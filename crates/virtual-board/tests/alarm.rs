@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use board::{CAPTURE_EVERY, CAPTURE_INSTANTS, Message};
 use common::{LAMP_TEST_S, board as board_of, motor, scenario};
-use motor::motor_file::Frame as MotorFrame;
-use serialport::{SerialPort, TTYPort};
 use live::{Collector, Decoder, Fetched, open_serial, recording};
+use motor::motor_file::Frame as MotorFrame;
 use scenario::Fault;
+use serialport::{SerialPort, TTYPort};
 use virtual_board::{Port, VirtualBoard};
 
 const FAULT_FROM_S: f64 = 1.0;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::registers::{Registers, Unmodelled};
+use crate::peripherals::registers::{Registers, Unmodelled};
 
 const ISR: u32 = 0x00;
 const CR: u32 = 0x08;

@@ -1,6 +1,6 @@
 //! GPIO ports A..G: plain registers, set/reset, and levels that a person or a wire applies.
 
-use crate::registers::{Registers, Unmodelled};
+use crate::peripherals::registers::{Registers, Unmodelled};
 
 /// A pin: port letter index (0 is A) and number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,19 +5,19 @@
 
 use unicorn_engine::{Arch, Mode, Prot, RegisterARM as R, Unicorn, uc_error};
 
-use crate::block::{Block, Conditions};
-use crate::bus::FACTORY_VALUES;
 use crate::error::BoardError;
-use crate::flash::Step;
 use crate::machine::Machine;
+use crate::machine::bus::FACTORY_VALUES;
+use crate::peripherals::flash::Step;
+use crate::processor::block::{Block, Conditions};
 
 pub(crate) type Core = Unicorn<'static, Machine>;
 
 pub(crate) const FLASH: u32 = 0x0800_0000;
 pub(crate) const FLASH_SIZE: u32 = 512 * 1024;
 /// The last two pages, which the program erases and programs.
-const CALIBRATION: u32 = FLASH + FLASH_SIZE - 2 * crate::flash::PAGE;
-const CALIBRATION_SIZE: u64 = 2 * crate::flash::PAGE as u64;
+const CALIBRATION: u32 = FLASH + FLASH_SIZE - 2 * crate::peripherals::flash::PAGE;
+const CALIBRATION_SIZE: u64 = 2 * crate::peripherals::flash::PAGE as u64;
 pub(crate) const RAM: u32 = 0x2000_0000;
 pub(crate) const RAM_SIZE: u32 = 128 * 1024;
 /// What RAM holds at power-up. On silicon that is anything; here a word that was never written can be told apart.
@@ -392,7 +392,7 @@ fn erase(core: &mut Unicorn<'_, Machine>, page: u32) {
         Step::Nothing => return,
     };
     let address = FLASH + page;
-    let size = crate::flash::PAGE as usize;
+    let size = crate::peripherals::flash::PAGE as usize;
     let erased = core
         .mem_read_as_vec(u64::from(address), size)
         .and_then(|mut bytes| {

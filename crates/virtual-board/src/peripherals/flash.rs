@@ -1,7 +1,7 @@
 //! The flash interface: access control, unlocking, erasing pages and programming double words; and power that fails
 //! while it does.
 
-use crate::registers::{Registers, Unmodelled};
+use crate::peripherals::registers::{Registers, Unmodelled};
 
 const KEYR: u32 = 0x08;
 const SR: u32 = 0x10;

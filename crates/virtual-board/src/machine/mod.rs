@@ -1,20 +1,22 @@
 //! All peripherals together, and what happens when.
 
+pub(crate) mod bus;
+
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use monitor::RawSample;
 
-use crate::adc::Adc;
-use crate::dma::{Dma, Transfer};
-use crate::flash::Flash;
-use crate::gpio::Port as Gpio;
-use crate::iwdg::Iwdg;
-use crate::nvic::Nvic;
-use crate::rcc::{Cause, Rcc};
-use crate::registers::{Registers, Unmodelled};
-use crate::timer::Timer;
-use crate::usart::Usart;
+use crate::peripherals::adc::Adc;
+use crate::peripherals::dma::{Dma, Transfer};
+use crate::peripherals::flash::Flash;
+use crate::peripherals::gpio::Port as Gpio;
+use crate::peripherals::iwdg::Iwdg;
+use crate::peripherals::nvic::Nvic;
+use crate::peripherals::rcc::{Cause, Rcc};
+use crate::peripherals::registers::{Registers, Unmodelled};
+use crate::peripherals::timer::Timer;
+use crate::peripherals::usart::Usart;
 
 /// What the sensors deliver, sampling instant by sampling instant.
 pub trait Inputs {

@@ -1,6 +1,6 @@
 //! The debugger's memory channels: what the firmware wrote to them.
 
-use crate::cpu::{Cpu, RAM, RAM_SIZE};
+use crate::processor::cpu::{Cpu, RAM, RAM_SIZE};
 
 const ID: &[u8; 10] = b"SEGGER RTT";
 /// Bytes before the first channel description, and bytes of each.

@@ -1,7 +1,7 @@
 //! The independent watchdog on its own 32 kHz oscillator.
 
 use crate::CORE_HZ;
-use crate::registers::Unmodelled;
+use crate::peripherals::registers::Unmodelled;
 
 const LSI_HZ: u64 = 32_000;
 

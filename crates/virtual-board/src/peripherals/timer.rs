@@ -1,6 +1,6 @@
 //! General-purpose timers: counting, update and compare flags; TIM3 counts the encoder instead.
 
-use crate::registers::{Registers, Unmodelled};
+use crate::peripherals::registers::{Registers, Unmodelled};
 
 const CR1: u32 = 0x00;
 const CR2: u32 = 0x04;

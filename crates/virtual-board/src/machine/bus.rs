@@ -1,8 +1,8 @@
 //! The address map: which peripheral answers where, and that its clock runs.
 
 use crate::machine::{Machine, TS_CAL_30, TS_CAL_130, VREFINT_CAL};
-use crate::rcc::{AHB1ENR, AHB2ENR, APB1ENR1, APB1ENR2, APB2ENR};
-use crate::registers::Unmodelled;
+use crate::peripherals::rcc::{AHB1ENR, AHB2ENR, APB1ENR1, APB1ENR2, APB2ENR};
+use crate::peripherals::registers::Unmodelled;
 
 #[derive(Clone, Copy, Debug)]
 enum Block {
@@ -162,10 +162,10 @@ impl Machine {
             }
             0x38 => {
                 if is_held(1) {
-                    self.tim3 = crate::timer::Timer::new();
+                    self.tim3 = crate::peripherals::timer::Timer::new();
                 }
                 if is_held(2) {
-                    self.tim4 = crate::timer::Timer::new();
+                    self.tim4 = crate::peripherals::timer::Timer::new();
                 }
             }
             0x3C if is_held(0) => self.lpuart1.reset(),
@@ -174,7 +174,7 @@ impl Machine {
                     self.usart1.reset();
                 }
                 if is_held(16) {
-                    self.tim15 = crate::timer::Timer::new();
+                    self.tim15 = crate::peripherals::timer::Timer::new();
                 }
             }
             _ => {}

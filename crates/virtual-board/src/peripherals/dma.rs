@@ -1,7 +1,7 @@
 //! DMA1 and its request multiplexer: half-words from peripherals to memory in circles, bytes from memory to peripherals,
 //! half and complete flags.
 
-use crate::registers::{Registers, Unmodelled};
+use crate::peripherals::registers::{Registers, Unmodelled};
 
 const CHANNELS: usize = 8;
 const ENABLE: u32 = 1;

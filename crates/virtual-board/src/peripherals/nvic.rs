@@ -1,6 +1,6 @@
 //! Interrupt controller and system control: enabling, pending, priorities, vector table, reset request.
 
-use crate::registers::{Registers, Unmodelled};
+use crate::peripherals::registers::{Registers, Unmodelled};
 
 const IRQS: usize = 102;
 /// Stands for the non-maskable interrupt, which is none of the lines.

@@ -1,6 +1,6 @@
 //! Clocks, power and reset flags: oscillators are ready at once, and enables are enforced elsewhere.
 
-use crate::registers::{Registers, Unmodelled};
+use crate::peripherals::registers::{Registers, Unmodelled};
 
 const CR: u32 = 0x00;
 const CFGR: u32 = 0x08;
