@@ -47,13 +47,13 @@ A fault monitor is no protection device: it does not replace fuses, motor protec
 #[allow(clippy::large_enum_variant)]
 #[derive(Debug, Subcommand)]
 enum Command {
-    Demo(commands::demo::Demo),
-    Simulate(commands::simulate::Simulate),
+    Demo(commands::simulated::demo::Demo),
+    Simulate(commands::simulated::simulate::Simulate),
     Monitor(commands::monitor::MonitorArgs),
-    Compare(commands::compare::Compare),
-    Explain(commands::explain::Explain),
-    Adopt(commands::adopt::Adopt),
-    Campaign(commands::campaign::Campaign),
+    Compare(commands::study::compare::Compare),
+    Explain(commands::study::explain::Explain),
+    Adopt(commands::study::adopt::Adopt),
+    Campaign(commands::simulated::campaign::Campaign),
     Calibrate(commands::calibrate::Calibrate),
     Check(commands::check::Check),
     Motor(commands::motor::Motor),

@@ -8,7 +8,7 @@ use discovery::AdoptReport;
 use crate::cli::arguments::study::{
     StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain, with_progress,
 };
-use crate::cli::commands::explain::print_frame;
+use crate::cli::commands::study::explain::print_frame;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::write_text;
 use crate::cli::printing::terminal::say;

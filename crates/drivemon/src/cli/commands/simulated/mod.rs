@@ -1,0 +1,5 @@
+//! Commands that simulate a motor.
+
+pub(crate) mod campaign;
+pub(crate) mod demo;
+pub(crate) mod simulate;
