@@ -3,6 +3,7 @@
 mod backwards;
 mod calibrated;
 mod codes;
+mod doubt;
 mod drive;
 mod judgement;
 #[path = "../../tests/motor_2200_watt/mod.rs"]
