@@ -70,7 +70,9 @@ impl Estimate {
         let spread = Spread::of(&completed, &fit);
         let (mut parameters, correlations) = spread.intervals(physical);
         parameters[PHYSICAL - 1] = completed.inertia;
-        parameters[0].high = parameters[0].high.max(all_in_copper_ohm(&completed));
+        if completed.plate.dc_resistance.is_none() {
+            parameters[0].high = parameters[0].high.max(all_in_copper_ohm(&completed));
+        }
         for (interval, range) in parameters.iter_mut().zip(RANGES) {
             *interval = interval.inside(range);
         }

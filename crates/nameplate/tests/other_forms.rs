@@ -147,6 +147,7 @@ impl Machine {
             efficiency_percent: exact(100.0 * efficiency),
             power_factor: exact(rated.power_factor),
             current_amp: None,
+            dc_resistance: None,
             breakdown_torque_ratio: exact(breakdown / rated.torque),
             locked_rotor_torque_ratio: exact(locked.torque / rated.torque),
             locked_rotor_current_ratio: exact(locked.current / rated.current),

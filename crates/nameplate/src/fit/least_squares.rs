@@ -6,7 +6,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::misfit::{MISFITS, Misfits, Targets};
-use super::start::{PRIOR_SPREAD, bounds, start};
+use super::start::{bounds, prior_spread, start};
 use crate::circuit::{Circuit, Logs, PARAMETERS, breakdown_slip};
 
 /// Derivatives of the misfits by the logarithms of the unknowns.
@@ -44,6 +44,7 @@ pub(super) struct Problem<'t> {
     meets: Misfits,
     pub(super) centre: Logs,
     bounds: [Logs; 2],
+    pub(super) spread: Logs,
 }
 
 /// One circuit with everything that the descent asks of it.
@@ -62,6 +63,7 @@ impl<'t> Problem<'t> {
             meets: *meets,
             centre: start(targets).logs(),
             bounds: bounds(targets),
+            spread: prior_spread(targets),
         };
         problem.centre = problem.inside(problem.centre);
         problem
@@ -116,7 +118,7 @@ impl<'t> Problem<'t> {
         let circuit = Circuit::from_logs(&logs);
         let slip = breakdown_slip(&circuit, &self.targets.rating());
         let misfits = self.targets.misfits(&circuit, slip);
-        let prior = (logs - self.centre).component_div(&Logs::from(PRIOR_SPREAD));
+        let prior = (logs - self.centre).component_div(&self.spread);
         let cost = misfits.component_div(&self.meets).norm_squared() + prior.norm_squared();
         Trial {
             logs,
@@ -180,7 +182,7 @@ impl<'t> Problem<'t> {
         let mut normal = jacobian.tr_mul(&weighted);
         let mut gradient = weighted.tr_mul(&here.misfits);
         for k in 0..PARAMETERS {
-            let precision = PRIOR_SPREAD[k].powi(-2);
+            let precision = self.spread[k].powi(-2);
             normal[(k, k)] += precision;
             gradient[k] += (here.logs[k] - self.centre[k]) * precision;
         }

@@ -48,6 +48,8 @@ pub struct Targets {
     pub locked_rotor_torque_ratio: f64,
     /// Locked-rotor current over rated current.
     pub locked_rotor_current_ratio: f64,
+    /// Stator resistance where it was measured, warm from rated load, per unit.
+    pub stator_resistance: Option<f64>,
     /// Printed current over the one that power, voltage, efficiency and power factor give.
     pub current_ratio: f64,
 }

@@ -44,7 +44,7 @@ pub fn solve_with_starts(targets: &Targets, meets: &Misfits, seed: u64, starts: 
         }
         let draw = Logs::from_fn(|k, _| {
             let normal: f64 = StandardNormal.sample(&mut rng);
-            problem.centre[k] + normal * PRIOR_SPREAD[k]
+            problem.centre[k] + normal * problem.spread[k]
         });
         let other = problem.descend(&problem.inside(draw));
         if other.cost < best.cost {

@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::least_squares::jacobian;
-use super::misfit::Misfits;
-use super::start::{PRIOR_SPREAD, bounds, start};
+use super::misfit::{Misfits, Targets};
+use super::start::{bounds, prior_spread, start};
 use super::{Fit, MEETS};
 use crate::circuit::{Circuit, Logs, PARAMETERS, Place};
 use crate::interval::Interval;
@@ -17,8 +17,6 @@ type ByValue = SMatrix<f64, PARAMETERS, VALUES>;
 const STEP: f64 = 1e-5;
 /// Precision of an unknown that is held: its rounding counts as that of the printed slip.
 const HELD: f64 = 1e12;
-/// Motors lie closer to the centre of the prior than the spread with which the fit searches.
-const PRIOR_SHARE: f64 = 1.0;
 
 /// The covariance of a circuit's unknowns, and how they follow the values.
 #[derive(Clone, Debug)]
@@ -41,7 +39,7 @@ impl<'c> Spread<'c> {
         for (mut row, weight) in weighted.row_iter_mut().zip(weights.iter()) {
             row *= *weight;
         }
-        let precision = precision();
+        let precision = precision(&completed.targets);
         let own = (jacobian.tr_mul(&weighted) + Square::from_diagonal(&precision))
             .cholesky()
             .map_or_else(Square::zeros, |factor| factor.inverse());
@@ -97,8 +95,8 @@ impl<'c> Spread<'c> {
     }
 }
 
-fn precision() -> Logs {
-    let mut precision = Logs::from(PRIOR_SPREAD).map(|sd| (PRIOR_SHARE * sd).powi(-2));
+fn precision(targets: &Targets) -> Logs {
+    let mut precision = prior_spread(targets).map(|sd| sd.powi(-2));
     precision[Place::SlipRatio as usize] = HELD;
     precision
 }

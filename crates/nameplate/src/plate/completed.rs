@@ -66,6 +66,7 @@ impl Completed {
             breakdown_torque_ratio: 0.0,
             locked_rotor_torque_ratio: 0.0,
             locked_rotor_current_ratio: 0.0,
+            stator_resistance: None,
             current_ratio: 1.0,
         }
         .with_values(&mean);
@@ -114,7 +115,7 @@ impl Completed {
             targets: self.targets.with_values(values),
             ..self.clone()
         };
-        moved.read_current();
+        moved.read_measured();
         moved
     }
 
@@ -127,10 +128,14 @@ impl Completed {
         if !self.known[Value::Loss as usize] {
             targets.efficiency = targets.efficiency.min(1.0 - targets.slip / SLIP_OF_LOSS);
         }
-        self.read_current();
+        self.read_measured();
     }
 
-    fn read_current(&mut self) {
+    /// What is per unit of a base that the other values set.
+    fn read_measured(&mut self) {
+        let base = self.base_impedance_ohm();
+        let resistance = self.plate.dc_resistance;
+        self.targets.stator_resistance = resistance.map(|dc| dc.warm_phase_ohm() / base);
         if let Some(current) = self.plate.current_amp {
             self.targets.current_ratio = current.value / self.base_current_amp();
         }
@@ -297,6 +302,17 @@ fn power_of(plate: &Plate, voltage_volt: f64, prior: &Prior) -> Result<f64, Prob
 }
 
 fn check_ranges(plate: &Plate) -> Result<(), Problem> {
+    if let Some(dc) = plate.dc_resistance
+        && !(1e-6..=1e5).contains(&dc.terminals_ohm)
+    {
+        return Err(Problem::Range {
+            name: "dc_resistance_ohm",
+            value: dc.terminals_ohm,
+            low: 1e-6,
+            high: 1e5,
+            unit: "ohm",
+        });
+    }
     let ranges = [
         ("power_kw", plate.power_kw, 0.01, 50_000.0, "kW"),
         ("voltage_volt", plate.voltage_volt, 10.0, 20_000.0, "V"),

@@ -3,7 +3,7 @@
 use toml_edit::{Item, Value};
 
 use super::code_letter::kva_per_horsepower;
-use super::{Plate, Printed};
+use super::{DcResistance, Plate, Printed};
 use crate::estimate::COLUMN_KEYS;
 
 /// One horsepower, kW.
@@ -23,12 +23,14 @@ pub struct PlateFile {
 }
 
 /// Keys of a plate's file beyond [`COLUMN_KEYS`].
-pub const EXTRA_KEYS: [&str; 5] = [
+pub const EXTRA_KEYS: [&str; 7] = [
     "name",
     "connection",
     "power_hp",
     "nema_code",
     "inertia_kg_m2",
+    "dc_resistance_ohm",
+    "dc_resistance_degc",
 ];
 
 impl PlateFile {
@@ -67,6 +69,8 @@ impl PlateFile {
             }
             "power_hp" => self.plate.power_kw = Some(number()?.times(HORSEPOWER_KW)),
             "inertia_kg_m2" => self.inertia_kg_m2 = Some(number()?.value),
+            "dc_resistance_ohm" => self.dc_resistance().terminals_ohm = number()?.value,
+            "dc_resistance_degc" => self.dc_resistance().winding_degc = degrees(text)?,
             "nema_code" => self.set_code(text)?,
             _ => {
                 let Some(place) = COLUMN_KEYS.iter().position(|known| *known == key) else {
@@ -80,6 +84,14 @@ impl PlateFile {
             }
         }
         Ok(())
+    }
+
+    /// The measured resistance, at room temperature until it is told.
+    fn dc_resistance(&mut self) -> &mut DcResistance {
+        self.plate.dc_resistance.get_or_insert(DcResistance {
+            terminals_ohm: f64::NAN,
+            winding_degc: ROOM_DEGC,
+        })
     }
 
     /// The locked-rotor current of a code letter; power, voltage and current must be set before.
@@ -104,6 +116,19 @@ impl PlateFile {
             Some(per_horsepower.times(horsepower / apparent_kva));
         Ok(())
     }
+}
+
+/// Temperature of a winding that has stood for a day.
+const ROOM_DEGC: f64 = 20.0;
+/// Temperatures that a winding may have, degC.
+const WINDINGS_DEGC: [f64; 2] = [-50.0, 200.0];
+
+fn degrees(text: &str) -> Result<f64, String> {
+    let [low, high] = WINDINGS_DEGC;
+    let degrees = text.trim().parse::<f64>().ok();
+    degrees
+        .filter(|x| (low..=high).contains(x))
+        .ok_or_else(|| format!("\"{text}\" is outside {low}..{high} degC"))
 }
 
 /// The digits of a number, or the text inside quotes.

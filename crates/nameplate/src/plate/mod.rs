@@ -37,6 +37,29 @@ pub struct Plate {
     pub locked_rotor_torque_ratio: Option<Printed>,
     /// Locked-rotor current over rated current.
     pub locked_rotor_current_ratio: Option<Printed>,
+    /// Resistance measured between two terminals with direct current.
+    pub dc_resistance: Option<DcResistance>,
+}
+
+/// A winding's resistance, measured with direct current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DcResistance {
+    /// Between two terminals, ohm, the mean of all three pairs.
+    pub terminals_ohm: f64,
+    /// Temperature of the winding, degC.
+    pub winding_degc: f64,
+}
+
+/// Temperature at which copper would have no resistance, degC below zero (IEC 60034-1).
+const COPPER_DEGC: f64 = 235.0;
+/// Temperature of a winding at rated load: a rise of 80 K, class B, above 20 degC.
+const WARM_DEGC: f64 = 100.0;
+
+impl DcResistance {
+    /// Of an equivalent star phase, warm from rated load, ohm: half of that between two terminals, in star as in delta.
+    pub fn warm_phase_ohm(&self) -> f64 {
+        0.5 * self.terminals_ohm * (COPPER_DEGC + WARM_DEGC) / (COPPER_DEGC + self.winding_degc)
+    }
 }
 
 impl Plate {

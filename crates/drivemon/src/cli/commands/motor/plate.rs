@@ -60,6 +60,17 @@ pub struct PlateArgs {
     /// Inertia of everything on the shaft, kg m2
     #[arg(long, value_name = "KG_M2")]
     inertia_kg_m2: Option<String>,
+    /// Resistance between two terminals, measured with direct current, ohm (mean of the three pairs)
+    #[arg(long, value_name = "OHM")]
+    dc_resistance_ohm: Option<String>,
+    /// Temperature of the winding at that measurement, degC; 20 where it is not given
+    #[arg(
+        long,
+        value_name = "DEGC",
+        requires = "dc_resistance_ohm",
+        allow_hyphen_values = true
+    )]
+    dc_resistance_degc: Option<String>,
     /// What people call the motor
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
@@ -167,7 +178,7 @@ impl PlateArgs {
     }
 
     /// Keys and texts; the code letter last, since it needs power, voltage and current.
-    fn flags(&self) -> [(&'static str, Option<&String>); 15] {
+    fn flags(&self) -> [(&'static str, Option<&String>); 17] {
         [
             ("name", self.name.as_ref()),
             ("power_kw", self.power_kw.as_ref()),
@@ -192,6 +203,8 @@ impl PlateArgs {
             ),
             ("connection", self.connection.as_ref()),
             ("inertia_kg_m2", self.inertia_kg_m2.as_ref()),
+            ("dc_resistance_ohm", self.dc_resistance_ohm.as_ref()),
+            ("dc_resistance_degc", self.dc_resistance_degc.as_ref()),
             ("nema_code", self.nema_code.as_ref()),
         ]
     }
