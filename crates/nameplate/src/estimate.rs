@@ -91,11 +91,14 @@ impl Estimate {
     }
 }
 
-/// Stator resistance of a motor without any loss but copper's: makers do not print how the others divide.
+/// Stator resistance of a motor without any loss but copper's, roundings in its favour: makers do not print how the others
+/// divide.
 fn all_in_copper_ohm(completed: &Completed) -> f64 {
     let rating = completed.targets.rating();
-    let loss = completed.targets.power_factor - rating.power;
-    let rotor = rating.slip * rating.torque();
+    let rounding = |value: Value| completed.covariance[(value as usize, value as usize)].sqrt();
+    let loss =
+        (completed.targets.power_factor - rating.power) * (2.0 * rounding(Value::Loss)).exp();
+    let rotor = rating.slip * rating.torque() * (-2.0 * rounding(Value::Slip)).exp();
     (loss - rotor).max(0.0) * completed.base_impedance_ohm()
 }
 
