@@ -320,3 +320,30 @@ fn a_table_of_motors_keeps_its_columns_and_says_what_is_wrong_with_a_row() {
         lines[3][column("problem")]
     );
 }
+
+/// One clamp: frequency and size, and what the rest needs; nothing invented.
+#[test]
+fn one_clamp_says_what_it_can() {
+    let folder = workplace("check-clamp");
+    let others = ["va", "vb", "vc", "ib", "ic", "speed", "torque"];
+    let today = simulated(&folder, "today", STEADY, &others);
+    let plate = folder.join("plate.toml");
+    let arguments = ["check", text(&today), "--plate", text(&plate)];
+    let output = drivemon(&[&arguments[..], &["--json", "-"]].concat());
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let answer = json(&output);
+    let checked = &answer["recordings"][0];
+    let hz = checked["clamps"][0]["frequency_hz"].as_f64().unwrap();
+    assert!((hz - 50.0).abs() < 0.05, "{hz}");
+    let codes = checked["audit"]["findings"].as_array().unwrap();
+    assert!(
+        codes.iter().all(|finding| finding["code"] != "not-locked"),
+        "{codes:?}"
+    );
+    let shown = drivemon(&arguments);
+    assert!(
+        stdout(&shown).contains("three voltages or three currents are needed"),
+        "{}",
+        stdout(&shown)
+    );
+}

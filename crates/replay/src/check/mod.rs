@@ -1,11 +1,13 @@
 //! From recordings and what is known of a motor to an answer on which a technician can act.
 
 mod blind;
+mod clamp;
 mod knowledge;
 mod severity;
 mod slip;
 
 pub use blind::{BlindSpot, blind_spots};
+pub use clamp::{ClampSignal, clamp_signals};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;
 pub use slip::{EstimatedSpeed, with_estimated_speed};
@@ -40,6 +42,8 @@ pub struct Checked {
     pub rotor: String,
     /// Negative over positive sequence of the currents, percent.
     pub current_unbalance_percent: Option<f64>,
+    /// What single channels say, where there are no three of a kind.
+    pub clamps: Vec<ClampSignal>,
     /// What cannot be seen.
     pub blind: Vec<BlindSpot>,
 }
@@ -86,11 +90,16 @@ fn answer(
     }
     let share =
         |share: &crate::NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
+    let clamps = clamp_signals(recording);
     Checked {
         severity: severity::of(&verdict),
         todo: todo(motor, &verdict),
         windows: [timeline.judged, timeline.windows],
-        not_judged: timeline.not_judged.iter().map(share).collect(),
+        not_judged: match clamps.is_empty() {
+            true => timeline.not_judged.iter().map(share).collect(),
+            false => vec!["three voltages or three currents are needed".to_owned()],
+        },
+        clamps,
         visible_percent: timeline.visible_percent(),
         rotor: words::rotor(&timeline.rotor()),
         current_unbalance_percent: timeline.sequence().i2_over_i1.map(|x| 100.0 * x),

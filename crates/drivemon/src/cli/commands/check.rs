@@ -205,6 +205,18 @@ fn print_one(named: &Named) {
             speed.slip_half_width_percent
         );
     }
+    for clamp in &checked.clamps {
+        let hz = clamp
+            .frequency_hz
+            .map_or("no steady frequency".to_owned(), |hz| format!("{hz:.2} Hz"));
+        say!(
+            "  {}: {hz}, {} {} rms, {:+.1} % from the first to the last quarter",
+            clamp.channel,
+            quantity(clamp.rms),
+            clamp.unit,
+            clamp.change_percent
+        );
+    }
     let [judged, windows] = checked.windows;
     say!("  {judged} of {windows} windows judged");
     checked
