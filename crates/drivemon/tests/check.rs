@@ -347,3 +347,31 @@ fn one_clamp_says_what_it_can() {
         stdout(&shown)
     );
 }
+
+/// A load table whose model misses an effect: the parameters would stand for it (the stator's resistance three times too
+/// high), so nothing is written.
+#[test]
+fn parameters_that_stand_for_a_missing_effect_are_not_taken() {
+    let folder = workplace("identify-misfit");
+    let out = folder.join("m.toml");
+    let arguments = [
+        "motor",
+        "identify",
+        "tests/data/imc_18k5_load_test/load_test.csv",
+        "--motor",
+        "motors/imc-18k5.toml",
+        "-o",
+        text(&out),
+    ];
+    let refused = drivemon(&arguments);
+    assert_eq!(refused.status.code(), Some(3), "{}", stderr(&refused));
+    assert!(
+        stdout(&refused).contains("drivemon explain"),
+        "{}",
+        stdout(&refused)
+    );
+    assert!(!out.exists());
+    let anyway = drivemon(&[&arguments[..], &["--anyway"]].concat());
+    assert_eq!(anyway.status.code(), Some(1));
+    assert!(out.exists());
+}

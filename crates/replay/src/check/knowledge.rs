@@ -65,12 +65,15 @@ impl Learnt {
             Ok((report, motor)) => {
                 let error = report.after.held_out_error_over_noise;
                 if error > FITS {
+                    // Its parameters stand for what it misses: a confident wrong answer.
                     self.notes.push(format!(
-                        "the model misses something of the healthy motor ({error:.1} times the noise): drivemon explain says what"
+                        "parameters not learnt: the model misses something of the healthy motor ({error:.1} times the noise); \
+                         drivemon explain says what"
                     ));
+                } else {
+                    (self.motor, self.knowledge) = (motor, Knowledge::Identified);
+                    self.identified = Some(report);
                 }
-                (self.motor, self.knowledge) = (motor, Knowledge::Identified);
-                self.identified = Some(report);
             }
             Err(error) => self.note("parameters not learnt", &error),
         }

@@ -27,14 +27,17 @@ pub struct Identify {
     /// Motor file to write
     #[arg(short, long = "out", value_name = "M2")]
     out: PathBuf,
+    /// Write the motor file even where the model does not fit: its parameters then stand for what it misses
+    #[arg(long)]
+    anyway: bool,
 }
 
 const EXAMPLES: &str = "\
 Example:
   drivemon motor new --plate pump-plate.toml -o pump.toml
   drivemon motor identify start.csv full-load.csv --motor pump.toml -o pump-2.toml
-Exit codes: 0 written, 1 written, but the model does not fit the recordings (drivemon explain says what is missing),
-2 bad input, 3 the data do not support an answer.";
+Exit codes: 0 written, 1 the model does not fit the recordings, and the file is written all the same (--anyway), 2 bad input,
+3 the model does not fit (drivemon explain says what it misses), or the data do not support an answer: nothing is written.";
 
 /// An error over noise from here on is no noise.
 const MISFIT: f64 = 1.5;
@@ -43,7 +46,7 @@ const MISFIT: f64 = 1.5;
 struct IdentifyJson<'a> {
     #[serde(flatten)]
     report: &'a IdentifyReport,
-    motor_file: String,
+    motor_file: Option<String>,
 }
 
 impl Identify {
@@ -54,20 +57,23 @@ impl Identify {
         let sources = self.study.sources()?;
         let (report, identified) =
             with_progress(|progress| discovery::identify(&sources, &motor, progress))?;
-        self.write(&identified)?;
+        let fits = report.after.held_out_error_over_noise < MISFIT;
+        let written = fits || self.anyway;
+        if written {
+            self.write(&identified)?;
+        }
         let result = IdentifyJson {
             report: &report,
-            motor_file: self.out.display().to_string(),
+            motor_file: written.then(|| self.out.display().to_string()),
         };
-        let fits = report.after.held_out_error_over_noise < MISFIT;
         self.study
             .output
             .json
             .give(&result, || self.print(&report, fits))?;
-        Ok(if fits {
-            Finding::Nothing
-        } else {
-            Finding::Something
+        Ok(match (fits, written) {
+            (true, _) => Finding::Nothing,
+            (false, true) => Finding::Something,
+            (false, false) => Finding::Unsupported,
         })
     }
 
@@ -85,11 +91,17 @@ impl Identify {
             report.after.held_out_error_over_noise
         );
         if !fits {
-            let typed = self.study.typed_with(&self.out);
-            say!("  {} the model misses something:", paint::caution("note:"));
-            say!("  drivemon explain {typed}");
+            say!(
+                "  {} the model misses something, and the parameters stand for it. What it misses:",
+                paint::caution("not identified:")
+            );
+            say!("  drivemon explain {}", self.study.typed());
         }
-        say!("\n{} is written.", self.out.display());
+        if fits || self.anyway {
+            say!("\n{} is written.", self.out.display());
+        } else {
+            say!("\nNothing is written; --anyway writes it.");
+        }
     }
 }
 
