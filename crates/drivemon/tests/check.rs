@@ -166,6 +166,7 @@ fn a_start_and_two_loads_teach_the_parameters() {
             (interval.low..=interval.high).contains(&true_value),
             "{key} {true_value} {interval:?}"
         );
+        println!("{key}: {:+.2} %", 100.0 * (value / true_value - 1.0));
         assert!(
             (value / true_value - 1.0).abs() < tolerance,
             "{key} {true_value} {value}"

@@ -83,7 +83,8 @@ fn healthy_motors_known_by_their_plate_stay_dark() {
         }
     }
     println!(
-        "healthy {healthy}, not judged {not_judged}, FAULT {}",
+        "{} motors: healthy {healthy}, not judged {not_judged}, FAULT {}",
+        motors.len(),
         lit.len()
     );
     assert!(lit.is_empty(), "{lit:#?}");

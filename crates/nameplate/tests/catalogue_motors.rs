@@ -10,12 +10,6 @@ use rayon::prelude::*;
 use support::{Published, fitted_prior, motors};
 
 #[test]
-#[ignore = "prints the constants of src/prior/real_motors.rs"]
-fn print_prior() {
-    println!("{:#.6?}", fitted_prior(&motors()));
-}
-
-#[test]
 fn the_prior_is_that_of_the_shipped_catalogues() {
     let (fitted, shipped) = (fitted_prior(&motors()), Prior::REAL_MOTORS);
     let near = |a: f64, b: f64| assert!((a - b).abs() <= 5.1e-5, "{a} {b}");

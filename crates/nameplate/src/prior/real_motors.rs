@@ -1,4 +1,4 @@
-//! The prior fitted to the catalogue motors of `data/motors.csv`; a test fits it again.
+//! The prior fitted to the catalogue motors of `data/motors.csv`; the example `fit_prior` prints it, a test fits it again.
 
 use super::Prior;
 

@@ -1,5 +1,6 @@
 //! The size of a cause in words.
 
+use monitor::FaultId;
 use serde::Serialize;
 
 use crate::Verdict;
@@ -16,7 +17,7 @@ pub enum Severity {
     Large,
 }
 
-/// Change, percent, from which on a cause is clear, and large.
+/// Change, percent, from which on a cause is clear, and large: round figures that no standard gives; a person decides.
 const BOUNDS_PERCENT: [f64; 2] = [5.0, 20.0];
 
 impl Severity {
@@ -40,15 +41,38 @@ impl Severity {
     }
 }
 
-/// Of the likeliest cause, where a calibrated motor gives its size.
+/// Of the likeliest cause, where it lies in the motor and a calibrated motor gives its size: a sensor, however far off, is no
+/// reason to stop a motor.
 pub(super) fn of(verdict: &Verdict) -> Option<Severity> {
     let first = verdict.candidates.first()?;
-    first.size_percent.map(Severity::of_percent)
+    let size = first.size_percent.filter(|_| in_the_motor(first.fault));
+    size.map(Severity::of_percent)
+}
+
+fn in_the_motor(fault: FaultId) -> bool {
+    !matches!(
+        fault,
+        FaultId::CurrentSensor
+            | FaultId::VoltageSensor
+            | FaultId::SpeedSensor
+            | FaultId::LoadFriction
+            | FaultId::Unknown
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sensor_is_no_reason_to_stop_a_motor() {
+        for fault in FaultId::ALL {
+            let words = fault.words();
+            let elsewhere = ["sensor", "speed", "load", "voltage", "current", "none of"];
+            let is_elsewhere = elsewhere.iter().any(|word| words.contains(word));
+            assert_eq!(in_the_motor(fault), !is_elsewhere, "{words}");
+        }
+    }
 
     #[test]
     fn words_go_with_sizes() {

@@ -66,7 +66,7 @@ pub fn with_estimated_speed(
     let estimated = EstimatedSpeed {
         mean_rpm: synchronous * (1.0 - mean) * 60.0 / TAU,
         slip_percent: 100.0 * mean,
-        slip_half_width_percent: 100.0 * mean * relative_half_width(motor),
+        slip_half_width_percent: 100.0 * mean.abs() * relative_half_width(motor),
     };
     let with_speed = recording
         .clone()
