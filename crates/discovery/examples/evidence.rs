@@ -5,6 +5,11 @@
 //! goes to standard error, with `--verbose` its ranking too. Exits with 1 when a promise is missed.
 
 #[path = "../tests/foreign/mod.rs"]
+#[expect(
+    dead_code,
+    unused_imports,
+    reason = "the laws have a table of their own"
+)]
 mod foreign;
 
 use foreign::cases;

@@ -7,6 +7,8 @@ use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::fit::normal_equations::dot;
 use crate::fit::output_error::Effort;
 use crate::fit::polish::with_nominals;
+use crate::laws::curve::as_knots;
+use crate::laws::report::law_report;
 use crate::report::frame;
 use crate::report::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
 use crate::report::types::FrameReport;
@@ -19,7 +21,7 @@ use crate::search::accept::{explained, gained, proven};
 use crate::search::inconclusive::{self, Uncertainty};
 use crate::search::refit::{best_of, only};
 use motor::MotorFile;
-use motor::effect::{Descriptor, expression, to_entry};
+use motor::effect::{Descriptor, EffectConfig, expression, to_entry};
 use motor::effects::{find, names};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
 use recording::Source;
@@ -29,6 +31,9 @@ pub type Progress<'a> = dyn FnMut(&str, f64) + 'a;
 
 /// Name under which [`adopt`] takes over refitted parameters without any effect.
 pub const PARAMETERS: &str = "parameters";
+
+/// Name under which [`adopt`] takes over the laws that [`explain`] proves.
+pub const LAW: &str = "law";
 
 /// Which effect is missing. The first source is fitted, the others prove; with one source block folds prove.
 ///
@@ -70,6 +75,7 @@ pub fn explain_without(
             final_: None,
             ranking: Vec::new(),
             not_testable: Vec::new(),
+            laws: Vec::new(),
             unexplained: None,
             speed_scale: None,
             cannot_be_concluded: Vec::new(),
@@ -118,6 +124,11 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
         all.for_each(|p| p.off = false);
     }
     let verdict = verdict(study, found, &steps);
+    let laws = found
+        .laws
+        .iter()
+        .map(|law| law_report(study, law))
+        .collect();
     let unexplained = (!found.nameable).then(|| unexplained(study, found));
     let mut report = ExplainReport {
         audit: question.audit.clone(),
@@ -128,6 +139,7 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
         final_: Some(last),
         ranking: ranking(study, found),
         not_testable: not_testable(study, found),
+        laws,
         unexplained,
         speed_scale: speed_scale_report(study, found.last()),
         cannot_be_concluded: inconclusive::list(study, found.last(), &found.first.screened),
@@ -171,6 +183,9 @@ fn frame_step(frame: FrameReport) -> StepReport {
 fn verdict(study: &Study, found: &Explanation, steps: &[StepReport]) -> Verdict {
     if !found.nameable {
         return Verdict::Unknown;
+    }
+    if found.laws.iter().any(|law| law.proven) {
+        return Verdict::Law;
     }
     if !implausible(study, found.last()).is_empty() {
         return Verdict::Implausible;
@@ -309,6 +324,9 @@ pub fn adopt(
     let study = &question.study;
     progress("refitting the parameters", 0.2);
     let refitted = study.trial(&study.at_prior(), Effort::FULL);
+    if effect == LAW {
+        return adopted_law(&question, motor, progress);
+    }
     if effect == frame::NAME {
         return adopted_frame(&question, motor, &refitted);
     }
@@ -340,6 +358,7 @@ pub fn adopt(
         nominals,
         motor_file: String::new(),
         frame: None,
+        laws: Vec::new(),
         speed_scale: speed_scale_report(study, &after),
         cannot_be_concluded: inconclusive::list(study, &after, &[]),
     };
@@ -351,6 +370,41 @@ pub(crate) fn as_believed(study: &Study) -> Trial {
     let mut priors = study.at_prior();
     priors.free.fill(false);
     study.trial(&priors, Effort::NONE)
+}
+
+/// Everything that was found, if a law is part of it.
+fn adopted_law(
+    question: &Question,
+    motor: &MotorFile,
+    progress: &mut Progress<'_>,
+) -> Result<(AdoptReport, MotorFile), Error> {
+    let study = &question.study;
+    let found = explain::explain(study, &[], progress);
+    progress("done", 1.0);
+    let Some(law) = found.laws.last() else {
+        let message = "no law explains these recordings better than the library does: `drivemon explain` says what is missing";
+        return Err(Error::UnknownEffect(message.to_owned()));
+    };
+    let after = &law.trial;
+    let report = AdoptReport {
+        audit: question.audit.clone(),
+        effect: LAW.to_owned(),
+        before: errors(study, &found.baseline),
+        after: errors(study, after),
+        proven: law.proven,
+        parameters: Vec::new(),
+        nominals: fit_report(study, after).parameters,
+        motor_file: String::new(),
+        frame: None,
+        laws: found
+            .laws
+            .iter()
+            .map(|law| law_report(study, law))
+            .collect(),
+        speed_scale: speed_scale_report(study, after),
+        cannot_be_concluded: inconclusive::list(study, after, &[]),
+    };
+    Ok((report, updated(study, after, motor)))
 }
 
 /// Changes nothing but the frame in which the monitor forms its residuals.
@@ -378,6 +432,7 @@ fn adopted_frame(
         nominals: Vec::new(),
         motor_file: String::new(),
         frame: Some(frame),
+        laws: Vec::new(),
         speed_scale: speed_scale_report(&question.study, trial),
         cannot_be_concluded: inconclusive::list(&question.study, trial, &[]),
     };
@@ -392,11 +447,13 @@ fn check_name(effect: &str, motor: &MotorFile) -> Result<(), Error> {
     let formula = effect == expression::NAME;
     let message = if formula && !present {
         "write the formula into the motor file first, its parameters zero".to_owned()
-    } else if !formula && ![PARAMETERS, frame::NAME].contains(&effect) && find(effect, "").is_none()
+    } else if !formula
+        && ![PARAMETERS, LAW, frame::NAME].contains(&effect)
+        && find(effect, "").is_none()
     {
         let known = names().join(", ");
         format!(
-            "no effect is called `{effect}`; use one of: {known}, {formula_name}, {frame_name}, {PARAMETERS}",
+            "no effect is called `{effect}`; use one of: {known}, {formula_name}, {frame_name}, {LAW}, {PARAMETERS}",
             formula_name = expression::NAME,
             frame_name = frame::NAME
         )
@@ -440,7 +497,9 @@ pub(crate) fn updated(study: &Study, trial: &Trial, motor: &MotorFile) -> MotorF
     file.parameters = plant.motor;
     file.mechanics = plant.mechanics;
     file.mechanics.load_friction = motor.mechanics.load_friction;
-    let mut added = trial.fit.hypothesis.configs(&study.prior.plant.rated);
+    let configs = trial.fit.hypothesis.configs(&study.prior.plant.rated);
+    let in_knots = |config: EffectConfig| as_knots(&config).unwrap_or(config);
+    let mut added: Vec<EffectConfig> = configs.into_iter().map(in_knots).collect();
     // The scale of a sensor belongs to the recording, not to the motor.
     let of_the_file = added.drain(..study.given_effects());
     for config in of_the_file.skip(usize::from(study.speed_scale.is_some())) {

@@ -2,6 +2,7 @@
 
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
+use crate::laws::{self, search::LawStep};
 use crate::model::prior::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::search::accept::{adequate, beats, explained, proven};
 use crate::search::off;
@@ -45,6 +46,8 @@ pub(crate) struct Explanation {
     pub steps: Vec<Step>,
     /// Parameters that are off, each with the effects that explain the recording as well.
     pub contests: Vec<(usize, Vec<Candidate>)>,
+    /// Laws that no library holds: proven ones, or one lead.
+    pub laws: Vec<LawStep>,
     /// Whether what was found may be named.
     pub nameable: bool,
 }
@@ -52,6 +55,9 @@ pub(crate) struct Explanation {
 impl Explanation {
     /// The model with everything that was found and may be named.
     pub fn last(&self) -> &Trial {
+        if let Some(law) = self.laws.iter().rfind(|law| law.proven) {
+            return &law.trial;
+        }
         let named = self.steps.last().filter(|_| self.nameable);
         named.map_or(&self.baseline, |s| &s.trial)
     }
@@ -104,11 +110,15 @@ pub(crate) fn explain(
     let mut explanation = Explanation {
         first: first.unwrap_or_else(Round::empty),
         contests: Vec::new(),
+        laws: Vec::new(),
         baseline,
         steps,
         nameable,
     };
-    if nameable {
+    if laws::search::is_asked(study, &explanation) {
+        laws::search::complete(study, &mut explanation, progress);
+    }
+    if explanation.nameable && explanation.laws.is_empty() {
         progress("contesting the parameters that moved", 0.8);
         explanation.contests = contests(study, &explanation, excluded);
     }

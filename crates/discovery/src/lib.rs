@@ -23,13 +23,14 @@ mod data;
 mod explain;
 mod fit;
 mod identify;
+mod laws;
 mod model;
 mod report;
 mod search;
 #[cfg(test)]
 mod tests;
 
-pub use api::{PARAMETERS, Progress, adopt, explain, explain_without};
+pub use api::{LAW, PARAMETERS, Progress, adopt, explain, explain_without};
 pub use compare::compare;
 pub use data::instrument_class;
 pub use data::load_table::table_values;
@@ -39,7 +40,7 @@ pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use model::prediction::simulations;
 pub use report::types::{
     AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,
-    FitReport, FrameBand, FrameReport, Inconclusive, NominalReport, OrderReport, Overall,
-    ParameterReport, RankReport, RegionReport, SignalReport, SpeedScaleReport, StepReport,
-    Unexplained, Verdict,
+    FitReport, FrameBand, FrameReport, Inconclusive, LawCurve, LawPlace, LawReport, NominalReport,
+    OrderReport, Overall, ParameterReport, RankReport, RegionReport, SignalReport,
+    SpeedScaleReport, StepReport, Unexplained, Verdict,
 };

@@ -2,11 +2,14 @@
 //!
 //! A cut of the whole table, which `cargo run --release -p discovery --example evidence` prints.
 
+#[expect(dead_code, unused_imports, reason = "the examples use the rest")]
 mod foreign;
 
-use discovery::Verdict;
+use discovery::{LAW, Verdict, adopt, explain};
 use foreign::cases::single;
 use foreign::evidence::{Answer, Question, Setting, double, with_twins};
+use foreign::laws::Law;
+use foreign::{Hidden, LOADS, Machine, STEPS, priors, record};
 
 /// Seeds of this file; the table uses others.
 const SEED: u64 = 11;
@@ -76,4 +79,56 @@ fn without_the_truth_in_the_library_nothing_is_named() {
         println!("{}", answer.line());
         assert!(answer.report.steps.is_empty());
     }
+}
+
+/// Jaws that brake twice and four times a turn: no effect of the library does.
+fn jaws() -> ([recording::Source; 2], motor::MotorFile) {
+    let machine = Machine::of(SEED);
+    let hidden = Hidden {
+        law: Some(Law::Jaws),
+        ..Hidden::default()
+    };
+    let source =
+        |course, seed| recording::Source::Recording(record(&machine, &hidden, course, seed));
+    let sources = [source(&LOADS, SEED), source(&STEPS, SEED + 1)];
+    (sources, priors(&machine, SEED))
+}
+
+#[test]
+fn a_law_that_no_library_holds_is_found_with_its_curve_and_adopted() {
+    let (sources, believed) = jaws();
+    let report = explain(&sources, &believed, &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    assert_eq!(report.verdict, Verdict::Law);
+    let law = &report.laws[0];
+    assert!(law.proven && Law::Jaws.is_named(law), "{}", law.name());
+    let machine = Machine::of(SEED);
+    let truth = |theta: f64| {
+        let share = 0.04 * (2.0 * theta).cos() + 0.03 * (4.0 * theta + 1.0).cos();
+        share * machine.torque
+    };
+    let curve = &law.curve;
+    let squares = |f: &dyn Fn(usize) -> f64| (0..curve.x.len()).map(|k| f(k).powi(2)).sum::<f64>();
+    // A constant torque is friction as well: only what changes over the turn is the law's alone.
+    let mean = curve.y.iter().sum::<f64>() / curve.y.len() as f64;
+    let error = squares(&|k| curve.y[k] - mean - truth(curve.x[k]));
+    let share = (error / squares(&|k| truth(curve.x[k]))).sqrt();
+    println!("curve off by {:.1} %", 100.0 * share);
+    assert!(share < 0.15, "{share}");
+
+    let (adopted, motor) = adopt(LAW, &sources, &believed, &mut |_, _| {}).expect("adopted");
+    assert!(adopted.proven);
+    let again = motor::MotorFile::parse(&motor.to_toml(), "adopted.toml").expect("a motor file");
+    let after = explain(&sources, &again, &mut |_, _| {}).expect("judged");
+    assert_eq!(after.verdict, Verdict::Adequate, "{}", after.summary);
+}
+
+/// One recording proves no law: curves of ten modes fit the noise of one recording too well.
+#[test]
+fn one_recording_gives_a_lead_and_no_law() {
+    let (sources, believed) = jaws();
+    let report = explain(&sources[..1], &believed, &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    assert_eq!(report.verdict, Verdict::Unknown);
+    assert!(report.laws.len() == 1 && !report.laws[0].proven);
 }

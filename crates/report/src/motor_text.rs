@@ -189,6 +189,10 @@ fn write_effect(table: &mut Table, effect: &EffectEntry) {
             EffectValue::Text(text) => {
                 table.entry(key).or_insert(value(text.as_str()));
             }
+            EffectValue::List(numbers) => {
+                let list: toml_edit::Array = numbers.iter().copied().collect();
+                table.insert(key, value(list));
+            }
         }
     }
 }

@@ -44,6 +44,7 @@ fn nothing(study: &Study, error: f64) -> Explanation {
         baseline: trial(study, &[], error, error),
         first: Round::empty(),
         steps: Vec::new(),
+        laws: Vec::new(),
         contests: Vec::new(),
         nameable: true,
     }

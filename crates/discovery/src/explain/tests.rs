@@ -43,6 +43,7 @@ fn the_last_model_is_that_of_the_last_step() {
         baseline: bare(&study, 3.0),
         first: Round::empty(),
         steps: Vec::new(),
+        laws: Vec::new(),
         contests: Vec::new(),
         nameable: true,
     };
@@ -165,6 +166,7 @@ fn friction_and_more_leakage_are_contested() {
             baseline,
             first: Round::empty(),
             steps: Vec::new(),
+            laws: Vec::new(),
             contests: Vec::new(),
             nameable: true,
         };

@@ -106,7 +106,8 @@ fn moved(prior: &Prior, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> 
     let mut next = h.clone();
     for (&k, dz) in free.iter().zip(step.iter()) {
         let [low, high] = h.bounds(k, prior);
-        next.z[k] = (h.z[k] + dz.clamp(-1.5, 1.5)).clamp(low, high);
+        let longest = h.longest_step(k);
+        next.z[k] = (h.z[k] + dz.clamp(-longest, longest)).clamp(low, high);
     }
     next
 }

@@ -2,7 +2,7 @@
 
 use crate::data::instrument_class::CHANNEL_GAIN;
 use motor::effect::{
-    Effect, EffectConfig, Instrument, Parameter, Plant, Rated, Role, expression, rated,
+    Effect, EffectConfig, Instrument, Parameter, Plant, Rated, Role, curve, expression, rated,
 };
 use motor::motor_file::Uncertainty;
 use motor::{Mechanics, MotorFile, TParams};
@@ -26,6 +26,10 @@ pub(crate) const MAGNETIZING: usize = 3;
 pub(crate) const FRICTION: usize = 5;
 /// Effects keep a plain wide prior: so many typical sizes.
 const SIZE_PRIOR: f64 = 4.0;
+/// Longest step of a coordinate in one iteration of a fit ...
+const LONGEST_STEP: f64 = 1.5;
+/// ... and of the mode of a law: a pump's curve is ten times an ordinary torque, and its modes enter linearly.
+const LONGEST_STEP_OF_A_MODE: f64 = 20.0;
 /// Prior of a shape: a factor of e.
 const SHAPE_PRIOR: f64 = 1.0;
 
@@ -312,11 +316,29 @@ impl Hypothesis {
         let p = self.parameter(k);
         match p.role {
             Role::Size if self.is_prior(k) => (CHANNEL_GAIN / p.typical, 0.0),
-            Role::Size => (SIZE_PRIOR, 0.0),
+            Role::Size => (self.size_deviation(k), 0.0),
             _ => (
                 SHAPE_PRIOR,
                 to_coordinate(p, p.typical * p.scale.of(rated), rated),
             ),
+        }
+    }
+
+    /// Prior standard deviation of a size, in typical sizes.
+    fn size_deviation(&self, k: usize) -> f64 {
+        let config = &self.effects[self.effect_of(k)];
+        let own = config
+            .effect
+            .prior_deviation(&config.values, self.parameter_of(k));
+        own.unwrap_or(SIZE_PRIOR)
+    }
+
+    /// Longest step of a coordinate in one iteration of a fit.
+    pub fn longest_step(&self, k: usize) -> f64 {
+        let of_law = |k| self.effects[self.effect_of(k)].effect.descriptor().name == curve::NAME;
+        match k >= N_NOMINAL && of_law(k) {
+            true => LONGEST_STEP_OF_A_MODE,
+            false => LONGEST_STEP,
         }
     }
 

@@ -1,5 +1,6 @@
 //! What the user gets, with the stable keys of the JSON interface.
 
+use motor::motor_file::EffectEntry;
 use recording::Audit;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,73 @@ pub enum Verdict {
     Unsupported,
     /// The recording is explained only by parameters that no such motor has.
     Implausible,
+    /// A law is missing that the library does not hold; place, coordinate and curve were found and proven.
+    Law,
+}
+
+/// Where a law acts and over what.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct LawPlace {
+    /// Place in the equations.
+    pub place: String,
+    /// Quantity that it depends on.
+    pub coordinate: String,
+}
+
+/// A curve with its 95 % band.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LawCurve {
+    /// Coordinate, unit `x_unit`.
+    pub x: Vec<f64>,
+    /// Value there, unit `y_unit`.
+    pub y: Vec<f64>,
+    /// Lower end of the band.
+    pub lower: Vec<f64>,
+    /// Upper end of the band.
+    pub upper: Vec<f64>,
+    /// Unit of the coordinate.
+    pub x_unit: String,
+    /// Unit of the values; `-` for a relative change.
+    pub y_unit: String,
+}
+
+/// A law that no library holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LawReport {
+    /// Place in the equations.
+    pub place: String,
+    /// Quantity that it depends on.
+    pub coordinate: String,
+    /// What the values of the curve are.
+    pub meaning: String,
+    /// Places and coordinates that explain the recordings as well.
+    pub tied_with: Vec<LawPlace>,
+    /// The curve.
+    pub curve: LawCurve,
+    /// A formula that fits as well as the curve.
+    pub formula: Option<String>,
+    /// Its parameters.
+    pub formula_parameters: Vec<ParameterReport>,
+    /// Share of the excess error that the law explains, percent.
+    pub explained_percent: f64,
+    /// Held-out error over noise with the law ...
+    pub held_out_error_over_noise: f64,
+    /// ... by block folds of the fitted recording ...
+    pub fold_error_over_noise: f64,
+    /// ... and held out without it.
+    pub held_out_error_over_noise_without: f64,
+    /// Whether a recording that was not fitted proves it; one recording alone gives a lead.
+    pub proven: bool,
+    /// The law as a motor file holds it.
+    #[serde(skip)]
+    pub entry: Option<EffectEntry>,
+}
+
+impl LawReport {
+    /// Place and coordinate in words.
+    pub fn name(&self) -> String {
+        format!("{} over {}", self.place, self.coordinate)
+    }
 }
 
 /// A nominal parameter, believed and fitted.
@@ -206,6 +274,9 @@ pub struct ExplainReport {
     pub ranking: Vec<RankReport>,
     /// Effects that a typical size would not show in this recording.
     pub not_testable: Vec<String>,
+    /// Laws that no library holds, in the order in which they were found.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub laws: Vec<LawReport>,
     /// What is left, if the library does not explain it.
     pub unexplained: Option<Unexplained>,
     /// The fitted scale of the speed, where it was declared unknown.
@@ -362,6 +433,9 @@ pub struct AdoptReport {
     /// What the frame of the monitor's model cost, if that is what was adopted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame: Option<FrameReport>,
+    /// The laws that were adopted.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub laws: Vec<LawReport>,
     /// The fitted scale of the speed, where it was declared unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_scale: Option<SpeedScaleReport>,

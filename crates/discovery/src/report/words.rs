@@ -1,6 +1,6 @@
 //! Reports in a sentence.
 
-use crate::report::types::{ExplainReport, Verdict};
+use crate::report::types::{ExplainReport, LawReport, Verdict};
 
 /// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
 const FAR_BELOW: f64 = 0.3;
@@ -33,6 +33,7 @@ fn finding(report: &ExplainReport) -> String {
     };
     let effects: Vec<String> = report.steps.iter().map(named).collect();
     match report.verdict {
+        Verdict::Law => format!("{}{moved}", laws(report, &effects)),
         Verdict::Adequate => format!("The model explains the recording.{moved}"),
         Verdict::Effect => format!("Missing: {}.{moved}", effects.join("; ")),
         Verdict::Ambiguous => {
@@ -47,13 +48,48 @@ fn finding(report: &ExplainReport) -> String {
             format!("Only parameters that no such motor has explain the recording.{moved}")
         }
         Verdict::Unknown => report.unexplained.as_ref().map_or_else(String::new, |u| {
+            let lead = report.laws.first().map_or_else(String::new, |law| {
+                format!(
+                    " Best lead: {} explains {:.0} % of the excess; a second recording with other loads and speeds can prove it.",
+                    law.name(),
+                    law.explained_percent.min(100.0)
+                )
+            });
             format!(
-                "Something is missing that the library does not hold. {}",
+                "Something is missing that the library does not hold. {}{lead}",
                 u.description
             )
         }),
         Verdict::Unsupported => "The recording cannot be judged.".to_owned(),
     }
+}
+
+/// Effects and laws that are missing.
+fn laws(report: &ExplainReport, effects: &[String]) -> String {
+    let law = |law: &LawReport| {
+        let tied = law.tied_with.iter();
+        let others: Vec<String> = tied
+            .map(|t| format!("{} over {}", t.place, t.coordinate))
+            .collect();
+        let or = match others.is_empty() {
+            true => String::new(),
+            false => format!(" (or {})", others.join(" or ")),
+        };
+        let (before, after) = (
+            law.held_out_error_over_noise_without,
+            law.held_out_error_over_noise,
+        );
+        format!(
+            "{}{or}: with it the error falls from {before:.2} to {after:.2} x noise on the recording that was not fitted",
+            law.name()
+        )
+    };
+    let proven = report.laws.iter().filter(|law| law.proven).map(law);
+    let all: Vec<String> = effects.iter().cloned().chain(proven).collect();
+    format!(
+        "Missing, a law that the library does not hold: {}.",
+        all.join("; ")
+    )
 }
 
 fn named(step: &crate::report::types::StepReport) -> String {

@@ -1,6 +1,7 @@
 //! Sensors, noise and converters: from what happens to what is recorded.
 
 use super::course::Course;
+use super::laws::Law;
 use super::plant::{Instant, T_SAMPLE, phases, truth};
 use super::{Hidden, Machine, OMEGA, U};
 use rand::SeedableRng;
@@ -53,7 +54,12 @@ fn ago(rows: &[Instant], k: usize, delay: f64, of: impl Fn(&Instant) -> f64) -> 
 /// What the sensors make of sample `k`: three voltages, three currents, speed, torque.
 fn sensed(m: &Machine, h: &Hidden, rows: &[Instant], k: usize) -> [f64; 8] {
     let [ua, ub, uc] = phases(rows[k].u);
-    let i = |p: usize| (1.0 + h.gain_i) * ago(rows, k, h.delay, |r| phases(r.i)[p]);
+    let law = h.law.unwrap_or(Law::Ripple);
+    let i = |p: usize| {
+        let i = ago(rows, k, h.delay, |r| phases(r.i)[p]);
+        let law = if p == 0 { law.channel_a(m, i) } else { 1.0 };
+        (1.0 + h.gain_i) * i * law
+    };
     let ripple = h.speed_ripple * m.speed() * (rows[k].theta + 1.1).sin();
     let speed = ago(rows, k, h.speed_delay, |r| r.speed);
     [
@@ -63,7 +69,7 @@ fn sensed(m: &Machine, h: &Hidden, rows: &[Instant], k: usize) -> [f64; 8] {
         i(0) * (1.0 + h.gain_ia),
         i(1) + h.offset_ib * m.current,
         i(2),
-        speed * (1.0 + h.speed_scale) + ripple,
+        speed * (1.0 + h.speed_scale) * law.speed(rows[k].theta) + ripple,
         rows[k].load * (1.0 + h.gain_torque),
     ]
 }

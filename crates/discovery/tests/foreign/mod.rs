@@ -8,9 +8,10 @@ pub mod cases;
 mod course;
 pub mod evidence;
 mod instruments;
+pub mod laws;
 mod plant;
 
-pub use course::{COAST, Course, INVERTER, INVERTER_B, LOADS, STEADY, STEPS};
+pub use course::{COAST, Course, DRIVE, DRIVE_B, INVERTER, INVERTER_B, LOADS, STEADY, STEPS};
 pub use instruments::record;
 
 use motor::MotorFile;
@@ -67,6 +68,8 @@ pub struct Hidden {
     pub speed_ripple: f64,
     /// Delay of the speed channel, s.
     pub speed_delay: f64,
+    /// A law that no library holds.
+    pub law: Option<laws::Law>,
 }
 
 /// A machine and its nameplate, 50 Hz, 400 V between lines.

@@ -1,6 +1,7 @@
 //! The machine: bisection for the flux, a ladder for the cage, Runge-Kutta with its own step.
 
 use super::course::{Course, Source};
+use super::laws::Where;
 use super::{Hidden, Machine, OMEGA, U};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -70,13 +71,18 @@ impl Plant {
     /// Magnetizing current over its linear value: a rational curve that is 1 at zero flux.
     fn magnetizing(&self, psi: f64) -> f64 {
         let x = (psi / (U / OMEGA)).powi(6);
-        1.0 + self.h.saturation * 2.0 * x / (1.0 + 0.35 * x)
+        let law = self
+            .h
+            .law
+            .map_or(1.0, |law| law.magnetizing(psi / (U / OMEGA)));
+        law + self.h.saturation * 2.0 * x / (1.0 + 0.35 * x)
     }
 
     /// Leakage over its value at small current.
     fn leakage(&self, i: f64) -> f64 {
         let x = i / (6.0 * self.m.current);
-        1.0 - self.h.leakage * (1.0 - 1.0 / (1.0 + x * x * x).cbrt())
+        let law = self.h.law.map_or(1.0, |law| law.leakage(&self.m, i));
+        law - self.h.leakage * (1.0 - 1.0 / (1.0 + x * x * x).cbrt())
     }
 
     /// Product of the inverse leakage matrix with the layers' flux over a common flux.
@@ -144,13 +150,17 @@ impl Plant {
         s: &State,
         supply: Option<(Complex64, bool)>,
         load: f64,
-        t: f64,
+        [t, hertz]: [f64; 2],
         guess: f64,
     ) -> (State, Complex64, Complex64) {
         let (m, h) = (&self.m, &self.h);
         let spin = Complex64::new(0.0, m.n_p * s.w);
         let (i_s, i_r) = self.currents(s, supply.is_some(), guess);
-        let r_r = self.layers as f64 * m.r_r * (1.0 + h.rotor_rise * t / self.end);
+        let slip = hertz - m.n_p * s.w / TAU;
+        let r_r = self.layers as f64
+            * m.r_r
+            * (1.0 + h.rotor_rise * t / self.end)
+            * h.law.map_or(1.0, |law| law.rotor(slip));
         let bar = Complex64::from_polar(h.rotor_bar * m.r_r, 2.0 * m.n_p * s.theta + 0.7);
         let mut psi_r = [Complex64::ZERO; LAYERS];
         for k in 0..self.layers {
@@ -162,7 +172,9 @@ impl Plant {
         let admittance: Complex64 = self.layer_currents(&ones, Complex64::ZERO).iter().sum();
         let open = follows / (admittance.re + 1.0 / m.l_m);
         let g = h.core * m.power / (1.5 * U * U);
-        let r_s = m.r_s * (1.0 + h.stator_rise * t / self.end);
+        let r_s = m.r_s
+            * (1.0 + h.stator_rise * t / self.end)
+            * h.law.map_or(1.0, |law| law.stator(hertz));
         let (v, i_t, i_s) = match supply {
             // Off the supply the winding feeds its own iron.
             None => (open, Complex64::ZERO, -open * g),
@@ -173,13 +185,25 @@ impl Plant {
         };
         let connected = supply.is_some();
         let psi_s = if connected {
-            v - self.drop(i_t, r_s)
+            let of_law = h.law.map(|law| clarke(law.drops(m, phases(i_t), t)));
+            v - self.drop(i_t, r_s) - of_law.unwrap_or_default()
         } else {
             open
         };
         let shaft = 1.5 * m.n_p * (s.psi_s.conj() * i_s).im
             - self.friction(s.w)
-            - h.pulsation * m.torque * (s.theta + 0.4).cos();
+            - h.pulsation * m.torque * (s.theta + 0.4).cos()
+            - h.law.map_or(0.0, |law| {
+                law.torque(
+                    m,
+                    Where {
+                        t,
+                        speed: s.w,
+                        theta: s.theta,
+                        load,
+                    },
+                )
+            });
         let d = self.turning(s, shaft, load);
         (State { psi_s, psi_r, ..d }, i_t, v)
     }
@@ -258,6 +282,7 @@ pub fn truth(machine: &Machine, hidden: &Hidden, course: &Course) -> Vec<Instant
     for k in 0..(course.end / T_SAMPLE) as usize {
         let held =
             (course.ramp > 0.0).then(|| source.commanded(course, k as f64 * T_SAMPLE, T_SAMPLE));
+        let hertz = source.hertz(course);
         for sub in 0..FINE {
             let t = (k * FINE + sub) as f64 * h;
             let load = course.load(t, machine);
@@ -265,7 +290,7 @@ pub fn truth(machine: &Machine, hidden: &Hidden, course: &Course) -> Vec<Instant
             let u = |t: f64| {
                 on.then(|| held.map_or_else(|| (Source::grid(course, t), false), |u| (u, true)))
             };
-            let (k1, i, v) = plant.rates(&s, u(t), load, t, i_last);
+            let (k1, i, v) = plant.rates(&s, u(t), load, [t, hertz], i_last);
             i_last = i.norm();
             if sub == 0 {
                 let (speed, theta) = (s.w, s.theta);
@@ -279,9 +304,9 @@ pub fn truth(machine: &Machine, hidden: &Hidden, course: &Course) -> Vec<Instant
                 });
             }
             let mid = t + 0.5 * h;
-            let (k2, ..) = plant.rates(&moved(&s, 0.5 * h, &k1), u(mid), load, t, i_last);
-            let (k3, ..) = plant.rates(&moved(&s, 0.5 * h, &k2), u(mid), load, t, i_last);
-            let (k4, ..) = plant.rates(&moved(&s, h, &k3), u(t + h), load, t, i_last);
+            let (k2, ..) = plant.rates(&moved(&s, 0.5 * h, &k1), u(mid), load, [t, hertz], i_last);
+            let (k3, ..) = plant.rates(&moved(&s, 0.5 * h, &k2), u(mid), load, [t, hertz], i_last);
+            let (k4, ..) = plant.rates(&moved(&s, h, &k3), u(t + h), load, [t, hertz], i_last);
             let sum = moved(&moved(&moved(&k1, 2.0, &k2), 2.0, &k3), 1.0, &k4);
             s = moved(&s, h / 6.0, &sum);
         }

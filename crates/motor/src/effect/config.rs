@@ -72,6 +72,13 @@ pub enum EffectError {
         /// Lowest and highest allowed value, as written in files.
         range: [f64; 2],
     },
+    /// A curve cannot be used.
+    Curve {
+        /// The key to blame.
+        key: &'static str,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A formula cannot be understood.
     Formula {
         /// The formula.
@@ -125,6 +132,7 @@ impl fmt::Display for EffectError {
                     "`{key}` = {value} of effect `{effect}` must lie in {low:.6e} .. {high:.6e}"
                 )
             }
+            Self::Curve { key, reason } => write!(f, "`{key}` of effect `curve`: {reason}"),
             Self::Formula { formula, reason } => {
                 write!(f, "formula `{formula}` cannot be used: {reason}")
             }
@@ -142,6 +150,7 @@ impl EffectError {
             Self::Formula { .. } => "formula",
             Self::UnknownParameter { key, .. } | Self::NotANumber { key, .. } => key,
             Self::MissingParameter { key, .. }
+            | Self::Curve { key, .. }
             | Self::NotAText { key, .. }
             | Self::OutOfRange { key, .. } => key,
         }

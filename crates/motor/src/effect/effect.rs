@@ -125,6 +125,22 @@ pub trait Effect: SteadyEffect {
     /// Hooks in which this effect takes part.
     fn hooks(&self) -> &'static [Hook];
 
+    /// The action and the number of knots of a law; `None` for an effect with parameters.
+    #[cfg(feature = "file")]
+    fn law(&self) -> Option<(crate::effect::curve::Action, usize)> {
+        None
+    }
+
+    /// What the hooks get as parameters: computed once before a simulation.
+    fn prepared(&self, p: &[f64], _rated: &Rated<f64>) -> Vec<f64> {
+        p.to_vec()
+    }
+
+    /// Prior standard deviation of a size, in typical sizes, where it is not that of all sizes.
+    fn prior_deviation(&self, _p: &[f64], _parameter: usize) -> Option<f64> {
+        None
+    }
+
     /// Number of states it adds to the model.
     fn extra_states(&self) -> usize {
         0

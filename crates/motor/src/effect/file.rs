@@ -4,7 +4,7 @@ use crate::MotorFile;
 use crate::document::{Document, FileError};
 use crate::effect::config::known_effect;
 use crate::effect::{Descriptor, EffectConfig, EffectError, MAX_FILE_STATES, Rated};
-use crate::effect::{expression, motions};
+use crate::effect::{curve, expression, motions};
 use crate::motor_file::{EffectEntry, EffectParameter, EffectValue, Nameplate};
 
 /// Key that chooses between several forms of one effect.
@@ -85,6 +85,9 @@ pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfi
         motions::check(formula.unwrap_or_default(), &numbers, rated)?;
         return Ok(config);
     }
+    if entry.name == curve::NAME {
+        return curve::from_entry(entry);
+    }
     let effect = known_effect(&entry.name, entry.text(FORM).unwrap_or(""))?;
     check_types(entry, effect.descriptor())?;
     EffectConfig::with_entries(effect, &numbers, rated)
@@ -132,6 +135,9 @@ fn check_formula_texts(entry: &EffectEntry) -> Result<(), EffectError> {
 
 /// An effect as a motor file writes it.
 pub fn to_entry(config: &EffectConfig) -> EffectEntry {
+    if let Some(law) = curve::to_entry(config) {
+        return law;
+    }
     let mut entry = EffectEntry::with_numbers(config.effect.descriptor().name, config.to_file());
     let text = |(key, text): (&str, &str)| EffectParameter {
         key: key.to_owned(),

@@ -6,6 +6,8 @@
 
 #[cfg(feature = "std")]
 pub(crate) mod config;
+#[cfg(feature = "file")]
+pub mod curve;
 pub(crate) mod descriptor;
 #[cfg(feature = "std")]
 #[expect(

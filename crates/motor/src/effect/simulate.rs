@@ -116,7 +116,8 @@ pub fn simulate(plant: &Plant, run: &Run<'_>) -> Outputs {
     let mut outputs = run_with_hooks(plant, &motor, run, inputs);
     outputs.u_zero = vec![0.0; outputs.omega_mech.len()];
     for e in uses(Hook::Outputs) {
-        e.effect.outputs(&e.values, &plant.rated, &mut outputs);
+        let prepared = e.effect.prepared(&e.values, &plant.rated);
+        e.effect.outputs(&prepared, &plant.rated, &mut outputs);
     }
     outputs
 }

@@ -88,7 +88,7 @@ impl<const N: usize> EffectStack<N> {
         timeline: Arc<Timeline>,
     ) -> Self {
         assert!(extra_states(effects) <= N, "too many extra states");
-        let mut active = place(effects);
+        let mut active = place(effects, rated);
         // Two masses split whatever torque the others leave on the shaft: states come last.
         active.sort_by_key(|a| a.states.len());
         let with = |hook: Hook| -> Vec<Active> {
@@ -191,14 +191,14 @@ fn cage_share(cage: Cage) -> (f64, Complex64) {
 }
 
 /// Gives each effect its range of extra states.
-fn place(effects: &[EffectConfig]) -> Vec<Active> {
+fn place(effects: &[EffectConfig], rated: &Rated<f64>) -> Vec<Active> {
     let mut next = 0;
     let mut put = |config: &EffectConfig| {
         let start = next;
         next += config.effect.extra_states();
         Active {
             effect: config.effect,
-            p: config.values.clone(),
+            p: config.effect.prepared(&config.values, rated),
             states: start..next,
         }
     };

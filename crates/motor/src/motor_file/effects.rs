@@ -34,6 +34,8 @@ pub enum EffectValue {
     Number(f64),
     /// Text, such as a formula.
     Text(String),
+    /// Finite numbers, such as the knots of a curve.
+    List(Vec<f64>),
 }
 
 impl EffectEntry {
@@ -70,7 +72,7 @@ impl EffectEntry {
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.parameter(key)?.value {
             EffectValue::Number(number) => Some(number),
-            EffectValue::Text(_) => None,
+            EffectValue::Text(_) | EffectValue::List(_) => None,
         }
     }
 
@@ -78,7 +80,7 @@ impl EffectEntry {
     pub fn text(&self, key: &str) -> Option<&str> {
         match &self.parameter(key)?.value {
             EffectValue::Text(text) => Some(text),
-            EffectValue::Number(_) => None,
+            EffectValue::Number(_) | EffectValue::List(_) => None,
         }
     }
 
@@ -138,6 +140,7 @@ fn read_entry(section: Section<'_>) -> Option<EffectEntry> {
 fn read_parameter(section: &Section<'_>, entry: &Entry) -> Option<EffectParameter> {
     let value = match entry.value {
         Value::Text(_) => EffectValue::Text(section.optional_text(&entry.key)??),
+        Value::Array(_) => EffectValue::List(section.list(&entry.key, &ANY_FINITE)?),
         _ => EffectValue::Number(section.optional_number(&entry.key, &ANY_FINITE)??),
     };
     Some(EffectParameter {

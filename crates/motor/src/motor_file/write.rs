@@ -175,6 +175,7 @@ fn write_effect(text: &mut Text, effect: &EffectEntry) {
         match &parameter.value {
             EffectValue::Number(number) => text.number(&parameter.key, *number),
             EffectValue::Text(words) => text.words(&parameter.key, words),
+            EffectValue::List(numbers) => text.numbers(&parameter.key, numbers),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The models that are laid over a recording.
 
-use discovery::{ExplainReport, FitReport};
+use discovery::{ExplainReport, FitReport, LawReport};
 use motor::MotorFile;
 use motor::effect::{Plant, from_motor_file, rated};
 use motor::motor_file::{EffectEntry, EffectParameter, EffectValue};
@@ -41,7 +41,9 @@ impl Model {
             models.push(Model::new("parameters refitted".to_owned(), &refitted));
         }
         if let Some(complete) = complete(motor, report) {
-            let names: Vec<&str> = report.steps.iter().map(|s| s.effect.as_str()).collect();
+            let effects = report.steps.iter().map(|s| s.effect.clone());
+            let laws = proven(report).map(LawReport::name);
+            let names: Vec<String> = effects.chain(laws).collect();
             models.push(Model::new(
                 format!("with {}", names.join(" and ")),
                 &complete,
@@ -57,7 +59,7 @@ fn complete(motor: &MotorFile, report: &ExplainReport) -> Option<MotorFile> {
     let last = report
         .final_
         .as_ref()
-        .filter(|_| !report.steps.is_empty())?;
+        .filter(|_| !report.steps.is_empty() || proven(report).next().is_some())?;
     let mut ties = report.steps.iter().flat_map(|step| &step.tied_with);
     if ties.any(|tie| last.parameters.iter().any(|p| p.name == *tie)) {
         return None;
@@ -67,7 +69,15 @@ fn complete(motor: &MotorFile, report: &ExplainReport) -> Option<MotorFile> {
         let numbers = step.parameters.iter().map(|p| (p.name.as_str(), p.value));
         add(&mut complete, &step.effect, &step.form, numbers);
     }
+    complete
+        .effects
+        .extend(proven(report).filter_map(|law| law.entry.clone()));
     Some(complete)
+}
+
+/// Laws that are proven.
+fn proven(report: &ExplainReport) -> impl Iterator<Item = &LawReport> {
+    report.laws.iter().filter(|law| law.proven)
 }
 
 fn values(fit: &FitReport) -> impl Iterator<Item = (&str, f64)> {

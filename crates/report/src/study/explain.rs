@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::places::{Place, worst};
 use super::{Inputs, PARAMETERS, in_fitted_scale};
 use crate::overlay::{Model, Overlay, TableOverlay};
+use discovery::LAW;
 
 /// Share of the work that the search takes; the rest goes into the worst places.
 const SEARCH: f64 = 0.9;
@@ -97,6 +98,7 @@ impl Next {
                 "Measure first what separates them, or take the first of the tie:".to_owned(),
                 Some(step.effect.clone()),
             ),
+            (Verdict::Law, _) => ("Add the law to the model:".to_owned(), Some(LAW.to_owned())),
             (Verdict::Adequate, _) if anything_off(report) => (
                 "Take over the refitted parameters:".to_owned(),
                 Some(PARAMETERS.to_owned()),

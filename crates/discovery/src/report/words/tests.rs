@@ -50,6 +50,7 @@ fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) ->
         }),
         ranking: Vec::new(),
         not_testable: Vec::new(),
+        laws: Vec::new(),
         unexplained: (verdict == Verdict::Unknown).then(|| Unexplained {
             description: "It is loud.".to_owned(),
             correlates_with: Vec::new(),

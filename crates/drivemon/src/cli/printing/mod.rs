@@ -3,6 +3,7 @@
 pub(crate) mod answers;
 pub(crate) mod failure;
 pub(crate) mod lamp_symbol;
+pub(crate) mod laws;
 pub(crate) mod output;
 pub(crate) mod paint;
 pub(crate) mod places;

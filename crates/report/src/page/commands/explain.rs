@@ -6,7 +6,7 @@ use crate::page::elements::number::{decimals, shown};
 use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, next, verdict};
 use crate::page::sections::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
-use crate::page::sections::{audit, frame, overlay, scale};
+use crate::page::sections::{audit, frame, laws, overlay, scale};
 use discovery::Verdict;
 
 /// Key of the error on data that was not fitted.
@@ -22,6 +22,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (errors(result, &steps))
         (where_it_fails(result))
         @for (k, step) in steps.iter().enumerate() { (effect(step, k)) (frame::section(step)) }
+        (laws::section(result))
         (unexplained(result))
         (overlay::section(result))
         (ranking(result, &steps))
@@ -48,6 +49,7 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
                 steps.iter().map(with_ties).collect::<Vec<_>>().join("; ")
             ),
         ),
+        Verdict::Law => (Mood::Bad, format!("Missing: {}", missing(result, &names))),
         Verdict::Unknown => (
             Mood::Caution,
             "Something is missing that the library does not hold".to_owned(),
@@ -84,6 +86,15 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
         p.subtle { (result.text("motor")) ", " (proof) "." }
     };
     verdict(mood, &html! { (text) }, &more)
+}
+
+/// Effects and laws that are missing.
+fn missing(result: &Place<'_>, effects: &[&str]) -> String {
+    let found = result.items("laws");
+    let proven = found.iter().filter(|law| law.is_true("proven"));
+    let effects = effects.iter().map(|name| (*name).to_owned());
+    let all: Vec<String> = effects.chain(proven.map(laws::name)).collect();
+    all.join(" and ")
 }
 
 fn any_off(result: &Place<'_>) -> bool {
@@ -141,6 +152,9 @@ fn errors(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
             .filter(|step| step.get("frame").is_none())
             .map(|step| row(format!("with {}", step.text("effect")), step, "chosen")),
     );
+    let found = result.items("laws");
+    let proven = found.iter().filter(|law| law.is_true("proven"));
+    rows.extend(proven.map(|law| row(format!("with {}", laws::name(law)), law, "chosen")));
     html! {
         section aria-labelledby="fall" {
             h2 id="fall" { "How the error falls on data that was not fitted" }

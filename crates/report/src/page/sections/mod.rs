@@ -2,6 +2,7 @@
 
 pub mod audit;
 pub mod frame;
+pub mod laws;
 pub mod models;
 pub mod overlay;
 pub mod parameters;

@@ -12,7 +12,7 @@ use crate::cli::commands::study::explain::print_frame;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::write_text;
 use crate::cli::printing::terminal::say;
-use crate::cli::printing::{paint, scale};
+use crate::cli::printing::{laws, paint, scale};
 use report::Subject;
 use report::motor_text;
 use report::study::{Adopted, PARAMETERS};
@@ -20,12 +20,13 @@ use report::study::{Adopted, PARAMETERS};
 /// Add a physical effect to a motor file, refit everything, and show the error before and after.
 ///
 /// The error is shown on data that was not fitted too. The new motor file keeps the comments of the old one. The name
-/// `parameters` takes over the refitted parameters and adds nothing. A motor file is written only where the error on data
+/// `parameters` takes over the refitted parameters and adds nothing; `law` takes over the curve that `explain` proves where
+/// no effect of the library does. A motor file is written only where the error on data
 /// that was not fitted falls by more than its own scatter.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Adopt {
-    /// Name of the effect, as `drivemon explain` gives it, or `parameters`
+    /// Name of the effect, as `drivemon explain` gives it, `law` or `parameters`
     #[arg(value_name = "EFFECT")]
     effect: String,
     #[command(flatten)]
@@ -115,6 +116,7 @@ fn print(result: &Adopted) {
     line(before, report.before.error_over_noise);
     line("after", report.after.error_over_noise);
     print_verdict(report);
+    report.laws.iter().for_each(laws::print);
     if let Some(frame) = &report.frame {
         print_frame(frame);
     } else {

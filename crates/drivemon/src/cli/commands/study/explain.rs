@@ -9,7 +9,7 @@ use crate::cli::arguments::study::{
 };
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::say;
-use crate::cli::printing::{paint, places, scale};
+use crate::cli::printing::{laws, paint, places, scale};
 use report::Subject;
 use report::study::{Explained, anything_off};
 
@@ -85,6 +85,7 @@ fn print(result: &Explained) {
     print_errors(report);
     print_ranking(report);
     report.steps.iter().for_each(print_step);
+    report.laws.iter().for_each(laws::print);
     if let Some(last) = &report.final_ {
         print_parameters(last);
     }
@@ -102,7 +103,7 @@ fn print_answer(report: &ExplainReport) {
     let summary = wrapped(&report.summary);
     match report.verdict {
         Verdict::Adequate => say!("\n{}", paint::good(summary)),
-        Verdict::Effect => say!("\n{}", paint::error(summary)),
+        Verdict::Effect | Verdict::Law => say!("\n{}", paint::error(summary)),
         _ => say!("\n{}", paint::caution(summary)),
     }
 }
@@ -124,6 +125,12 @@ fn print_errors(report: &ExplainReport) {
         line(
             &format!("with {}", step.effect),
             step.held_out_error_over_noise,
+        );
+    }
+    for law in report.laws.iter().filter(|law| law.proven) {
+        line(
+            &format!("with {}", law.name()),
+            law.held_out_error_over_noise,
         );
     }
     for frame in report.steps.iter().filter_map(|step| step.frame.as_ref()) {

@@ -1,0 +1,56 @@
+//! Which laws can be asked about in a recording.
+
+use crate::data::case::Case;
+use crate::laws::modes::Modes;
+use crate::laws::motion::Motion;
+use motor::effect::curve::{Action, Coordinate, Place};
+use motor::effect::{EffectConfig, Plant};
+
+/// Least change of the supply frequency, Hz.
+const LEAST_FREQUENCY: f64 = 5.0;
+/// Least change of the load, share of rated torque.
+const LEAST_LOAD: f64 = 0.2;
+/// Least change of the speed, share of synchronous speed.
+const LEAST_SPEED: f64 = 0.02;
+/// Least change of the voltage at one frequency, share of rated voltage.
+const LEAST_VOLTAGE: f64 = 0.1;
+/// Least range of any other coordinate, share of its largest value.
+const LEAST_RANGE: f64 = 1e-3;
+
+/// Laws of nothing over what the recording visits.
+pub(crate) fn menu(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
+    let motion = Motion::of(case, plant);
+    let ask = |action: Action| {
+        let range = motion.range(action.place, action.coordinate);
+        let asked = is_judged(case, action) && varies(&motion, plant, action, range);
+        asked.then(|| Modes::absent(action, range))
+    };
+    Action::all().filter_map(ask).collect()
+}
+
+/// Whether the recording can judge this place at all.
+fn is_judged(case: &Case, action: Action) -> bool {
+    match action.place {
+        Place::Torque | Place::Friction => !case.speed_is_input,
+        Place::SensorSpeed => {
+            !case.speed_is_input && !case.speed.is_empty() && !case.speed_scale_is_free
+        }
+        _ => true,
+    }
+}
+
+fn varies(motion: &Motion, plant: &Plant, action: Action, [low, high]: [f64; 2]) -> bool {
+    let rated = &plant.rated;
+    let change = high - low;
+    let frequency = motion.range(Place::Torque, Coordinate::Frequency);
+    let drive = frequency[1] - frequency[0] > LEAST_FREQUENCY;
+    match action.coordinate {
+        Coordinate::Frequency => drive,
+        // Behind a drive voltage and frequency go together.
+        Coordinate::Voltage => !drive && change > LEAST_VOLTAGE * rated.voltage,
+        Coordinate::LoadTorque => change > LEAST_LOAD * rated.torque,
+        Coordinate::Speed => change > LEAST_SPEED * rated.speed(),
+        Coordinate::Angle | Coordinate::AngleElectrical | Coordinate::Time => true,
+        _ => change > LEAST_RANGE * high.abs().max(low.abs()),
+    }
+}

@@ -1,0 +1,15 @@
+//! Laws that no library holds: where in the equations, over which quantity, which curve.
+//!
+//! A curve is a sum of modes, smooth ones cheap and bending ones dear ([`modes`]). Every place and coordinate that the
+//! recording visits ([`menu`]) is screened with the penalty that predicts blocks best which were not fitted
+//! ([`screen`]); the best are refitted with all parameters free and must prove themselves as an effect must
+//! ([`search`]).
+
+pub(crate) mod curve;
+pub(crate) mod menu;
+pub(crate) mod modes;
+mod motion;
+
+pub(crate) mod report;
+mod screen;
+pub(crate) mod search;

@@ -1,0 +1,123 @@
+//! Tries every law at once: sensitivities of its modes against the normal equations of the present fit.
+
+use crate::data::case::Case;
+use crate::fit::normal_equations::{self, Block, Penalty};
+use crate::fit::output_error::Fit;
+use crate::laws::modes::{self, Modes};
+use crate::model::prediction::outputs;
+use crate::model::prior::Prior;
+use motor::effect::EffectConfig;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// Size of the secant, typical sizes.
+const SECANT: f64 = 0.25;
+/// Stiffnesses that are tried, in units of the information over the stiffness of the mean mode.
+const STIFFNESSES: [f64; 7] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
+/// Relative gain of held-out error that a softer curve must bring.
+const SOFTER: f64 = 2e-4;
+
+/// A law, linearised.
+#[derive(Clone, Debug)]
+pub(crate) struct Screened {
+    /// The law with the stiffness that predicts best; its sizes are zero.
+    pub config: EffectConfig,
+    /// Held-out squared error of each block.
+    pub held_out: Vec<f64>,
+}
+
+impl Screened {
+    /// Held-out squared error.
+    pub fn total(&self) -> f64 {
+        self.held_out.iter().sum()
+    }
+}
+
+/// All laws on top of a fit, best first.
+pub(crate) fn screen(
+    case: &Case,
+    prior: &Prior,
+    fit: &Fit,
+    menu: &[EffectConfig],
+    tell: &(dyn Fn() + Sync),
+) -> Vec<Screened> {
+    let rows = case.blocks();
+    let one = |law: &EffectConfig| {
+        let columns = columns(case, prior, fit, law)?;
+        let blocks =
+            normal_equations::extended(&fit.blocks, &rows, &fit.residual, &fit.jacobian, &columns);
+        tell();
+        Some(judged(fit, law, &blocks))
+    };
+    let mut all: Vec<Screened> = menu.par_iter().filter_map(one).collect();
+    all.sort_by(|a, b| a.total().total_cmp(&b.total()));
+    all
+}
+
+/// Change of the outputs by a typical size of each mode; `None` for a law that the model cannot bear.
+fn columns(case: &Case, prior: &Prior, fit: &Fit, law: &EffectConfig) -> Option<Vec<Vec<f64>>> {
+    let rated = &prior.plant.rated;
+    let column = |k: usize| {
+        let mut there = law.clone();
+        let p = &law.effect.descriptor().parameters[k];
+        there.values[k] = SECANT * p.typical * p.scale.of(rated);
+        let mut column = outputs(
+            case,
+            prior,
+            &fit.hypothesis.with(there, rated),
+            fit.observer,
+        );
+        for (x, base) in column.iter_mut().zip(&fit.outputs) {
+            *x = (*x - base) / SECANT;
+        }
+        column
+    };
+    let columns: Vec<Vec<f64>> = modes::sizes(law).into_par_iter().map(column).collect();
+    let finite = columns.iter().flatten().all(|x| x.is_finite());
+    finite.then_some(columns)
+}
+
+/// The stiffness that predicts blocks best which were not fitted.
+fn judged(fit: &Fit, law: &EffectConfig, blocks: &[Block]) -> Screened {
+    let (stiffness, held_out) = best_stiffness(fit.free.len(), &fit.penalty, law, blocks);
+    let mut config = law.clone();
+    modes::stiffen(&mut config, stiffness);
+    Screened { config, held_out }
+}
+
+/// Stiffness and held-out squared errors of the law whose modes stand behind the first `first` coordinates.
+pub(crate) fn best_stiffness(
+    first: usize,
+    base: &Penalty,
+    law: &EffectConfig,
+    blocks: &[Block],
+) -> (f64, Vec<f64>) {
+    let Some(modes) = Modes::of(law) else {
+        return (0.0, normal_equations::held_out(blocks, base));
+    };
+    let of_mode = modes::stiffness(modes.action.coordinate);
+    let all = normal_equations::total(blocks);
+    let n = of_mode.len();
+    let information: f64 = (first..first + n).map(|k| all.gram[(k, k)]).sum();
+    let unit = information / of_mode.iter().sum::<f64>();
+    let tried = |share: f64| {
+        let stiffness = share * unit;
+        let mut penalty = base.clone();
+        penalty.weight = penalty.weight.resize_vertically(first + n, 0.0);
+        penalty.pull = penalty.pull.resize_vertically(first + n, 0.0);
+        let weights = of_mode.iter().map(|k| modes::weight(stiffness, *k));
+        let weights = DVector::from_iterator(n, weights);
+        penalty.weight.rows_mut(first, n).copy_from(&weights);
+        (stiffness, normal_equations::held_out(blocks, &penalty))
+    };
+    let total = |held_out: &[f64]| held_out.iter().sum::<f64>();
+    // From the stiffest on: a softer curve must be worth it.
+    let mut best = tried(STIFFNESSES[STIFFNESSES.len() - 1]);
+    for &share in STIFFNESSES.iter().rev().skip(1) {
+        let softer = tried(share);
+        if total(&softer.1) < (1.0 - SOFTER) * total(&best.1) {
+            best = softer;
+        }
+    }
+    best
+}

@@ -1,0 +1,217 @@
+//! Which law is missing: screened, refitted, proven as an effect must be.
+
+use crate::data::study::{Study, Trial};
+use crate::explain::Explanation;
+use crate::fit::output_error::{Effort, fit};
+use crate::laws::menu::menu;
+use crate::laws::modes::{self, Modes};
+use crate::laws::screen::{Screened, best_stiffness, screen};
+use crate::model::prediction::SpeedObserver;
+use crate::search::accept::{adequate, beats, explained, proven};
+use crate::search::refit::combined;
+use motor::effect::curve::Action;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Laws that are refitted.
+const REFITTED: usize = 6;
+/// Error over noise above which the fit may have settled in a local minimum: the measured speed leads a second screen.
+const ASTRAY: f64 = 3.0;
+/// Laws of the second screen that are refitted too.
+const REFITTED_ASTRAY: usize = 4;
+/// Rate at which the observer of the second screen draws the speed, 1/s.
+const OBSERVER: f64 = 15.0;
+/// Share of the best law's gain that a tied one reaches.
+const TIED: f64 = 0.5;
+/// Share of the excess that a law explains at least to be named without adequacy ...
+const NAMED_SHARE: f64 = 0.85;
+/// ... and the error over noise that it leaves at most.
+const NAMED_ERROR: f64 = 1.25;
+/// First refit and the one after the stiffness was chosen anew, iterations.
+const ITERATIONS: [usize; 2] = [8, 4];
+
+/// A law that was refitted.
+#[derive(Clone, Debug)]
+pub(crate) struct Refitted {
+    /// Where and over what.
+    pub action: Action,
+    /// Its refit.
+    pub trial: Trial,
+    /// Error over noise: geometric mean of folds and proof.
+    pub error: f64,
+}
+
+/// A law that explains what the library leaves.
+#[derive(Clone, Debug)]
+pub(crate) struct LawStep {
+    /// Where and over what.
+    pub action: Action,
+    /// The model with it.
+    pub trial: Trial,
+    /// The model before it.
+    pub before: Trial,
+    /// Laws that explain the recordings as well.
+    pub tied: Vec<Action>,
+    /// Whether it is proven on a recording that was not fitted.
+    pub proven: bool,
+}
+
+/// The law on top of a model; `None` where no law explains anything.
+pub(crate) fn search(
+    study: &Study,
+    base: &Trial,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Option<LawStep> {
+    let laws = refitted(study, base, progress);
+    let best = laws.first()?;
+    let is_proven = !study.proofs.is_empty() && proven(study, base, &best.trial);
+    let leads = explained(study, base, &best.trial) > 0.0;
+    leads.then(|| LawStep {
+        action: best.action,
+        trial: best.trial.clone(),
+        before: base.clone(),
+        tied: tied(study, base, best, &laws),
+        proven: is_proven,
+    })
+}
+
+/// The best laws on top of a model, refitted, best first.
+pub(crate) fn refitted(
+    study: &Study,
+    base: &Trial,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Vec<Refitted> {
+    let (case, prior) = (&study.fitted.case, &study.prior);
+    let plant = base.fit.hypothesis.plant(prior);
+    let menu = menu(case, &plant);
+    progress("screening laws that no library holds", 0.0);
+    let done = AtomicUsize::new(0);
+    let tell = || {
+        done.fetch_add(1, Ordering::Relaxed);
+    };
+    let screened = screen(case, prior, &base.fit, &menu, &tell);
+    let mut starts: Vec<Screened> = screened.into_iter().take(REFITTED).collect();
+    if study.fold_error(&base.folds) > ASTRAY && !case.speed.is_empty() && !case.speed_is_input {
+        let led = Effort {
+            iterations: 8,
+            observer: SpeedObserver::On(OBSERVER),
+            abandon_above: f64::INFINITY,
+        };
+        let observed = fit(case, prior, &base.fit.hypothesis, led);
+        let again = screen(case, prior, &observed, &menu, &tell);
+        for law in again.into_iter().take(REFITTED_ASTRAY) {
+            let known = |s: &Screened| action(s) == action(&law);
+            if !starts.iter().any(known) {
+                starts.push(law);
+            }
+        }
+    }
+    progress("refitting the likeliest laws", 0.4);
+    let one = |law: &Screened| refit(study, base, law);
+    let mut laws: Vec<Refitted> = starts.par_iter().filter_map(one).collect();
+    laws.sort_by(|a, b| a.error.total_cmp(&b.error));
+    laws
+}
+
+fn action(law: &Screened) -> Option<Action> {
+    Modes::of(&law.config).map(|modes| modes.action)
+}
+
+/// A law with all parameters free; the stiffness is chosen once more where the fit has arrived.
+fn refit(study: &Study, base: &Trial, law: &Screened) -> Option<Refitted> {
+    let (case, prior) = (&study.fitted.case, &study.prior);
+    let effort = |iterations| Effort {
+        iterations,
+        ..Effort::FULL
+    };
+    let start = base
+        .fit
+        .hypothesis
+        .with(law.config.clone(), &prior.plant.rated);
+    let first = fit(case, prior, &start, effort(ITERATIONS[0]));
+    let modes = Modes::of(&law.config)?;
+    let n = modes::count(modes.action.coordinate);
+    let (stiffness, _) = best_stiffness(
+        first.free.len() - n,
+        &first.penalty,
+        &law.config,
+        &first.blocks,
+    );
+    let mut again = first.hypothesis.clone();
+    modes::stiffen(again.effects.last_mut()?, stiffness);
+    let trial = study.trial(&again, effort(ITERATIONS[1]));
+    Some(Refitted {
+        action: modes.action,
+        error: combined(study, &trial),
+        trial,
+    })
+}
+
+/// Laws that the best one does not beat and that gain at least half as much.
+fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<Action> {
+    let gain = |t: &Trial| {
+        let fold = study.fold_error(&base.folds) - study.fold_error(&t.folds);
+        let proof = study.proof_error(base) - study.proof_error(t);
+        (fold, proof)
+    };
+    let most = gain(&best.trial);
+    let equal = |law: &&Refitted| {
+        let (fold, proof) = gain(&law.trial);
+        law.action != best.action
+            && fold > TIED * most.0
+            && proof > TIED * most.1
+            && !beats(&best.trial, &law.trial)
+    };
+    all.iter().filter(equal).map(|law| law.action).collect()
+}
+
+/// Whether laws are asked about: the library leaves something, and samples over time can show where.
+pub(crate) fn is_asked(study: &Study, found: &Explanation) -> bool {
+    let last = found.steps.last().map_or(&found.baseline, |s| &s.trial);
+    study.fitted.case.table.is_none() && !(found.nameable && adequate(study, last))
+}
+
+/// Looks for the law that the library does not hold and completes an explanation with it.
+///
+/// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
+/// them it must make the model adequate.
+pub(crate) fn complete(
+    study: &Study,
+    found: &mut Explanation,
+    progress: &mut dyn FnMut(&str, f64),
+) {
+    let mut tell = |what: &str, share: f64| progress(what, 0.5 + 0.25 * share);
+    let alone = search(study, &found.baseline, &mut tell);
+    let last = found.steps.last().map(|step| step.trial.clone());
+    let wins = |law: &LawStep| {
+        law.proven
+            && is_nameable(study, &found.baseline, &law.trial)
+            && last.as_ref().is_none_or(|last| beats(&law.trial, last))
+    };
+    if let Some(law) = alone.as_ref().filter(|law| wins(law)) {
+        found.steps.clear();
+        found.laws = vec![law.clone()];
+        found.nameable = true;
+        return;
+    }
+    if let Some(last) = last {
+        let more = search(study, &last, &mut tell);
+        if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
+            found.laws = vec![law];
+            found.nameable = true;
+            return;
+        }
+    }
+    if !found.nameable {
+        found.laws.extend(alone.map(|law| LawStep {
+            proven: false,
+            ..law
+        }));
+    }
+}
+
+/// Whether a model with a law may be named although something small is left over.
+fn is_nameable(study: &Study, baseline: &Trial, law: &Trial) -> bool {
+    adequate(study, law)
+        || explained(study, baseline, law) > NAMED_SHARE && study.proof_error(law) < NAMED_ERROR
+}

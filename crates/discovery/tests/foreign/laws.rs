@@ -1,0 +1,182 @@
+//! Laws that no library holds, in the plant's own units.
+
+use super::{Machine, U};
+use discovery::LawReport;
+
+/// A hidden law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Friction that falls from rest (Stribeck), torque over speed.
+    Stribeck,
+    /// Torque three times a turn.
+    Ripple,
+    /// A pump that lifts from a speed on.
+    Pump,
+    /// A bearing that warms: friction over time.
+    Bearing,
+    /// Current displacement in the stator: resistance over frequency.
+    Displacement,
+    /// An odd magnetizing curve.
+    Magnetizing,
+    /// A worn contact in phase b: drop over the phase's current.
+    Contact,
+    /// An eccentric speed disc.
+    Disc,
+    /// A piston: half a sine each turn.
+    Piston,
+    /// Rotor resistance over slip.
+    Bars,
+    /// Leakage over current.
+    Leakage,
+    /// A gear whose loss sets in above a load.
+    Gear,
+    /// A contact of phase c that ages within seconds.
+    Ageing,
+    /// A brake that drags for a while.
+    Brake,
+    /// A current channel that saturates.
+    Saturating,
+    /// Two jaws: twice and four times a turn.
+    Jaws,
+}
+
+/// What a law depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct Where {
+    pub t: f64,
+    pub speed: f64,
+    pub theta: f64,
+    pub load: f64,
+}
+
+impl Law {
+    pub const ALL: [Law; 16] = [
+        Law::Stribeck,
+        Law::Ripple,
+        Law::Pump,
+        Law::Bearing,
+        Law::Displacement,
+        Law::Magnetizing,
+        Law::Contact,
+        Law::Disc,
+        Law::Piston,
+        Law::Bars,
+        Law::Leakage,
+        Law::Gear,
+        Law::Ageing,
+        Law::Brake,
+        Law::Saturating,
+        Law::Jaws,
+    ];
+
+    /// Place and coordinate as reports name them.
+    pub fn truth(self) -> (&'static str, &'static str) {
+        match self {
+            Law::Stribeck | Law::Pump => ("torque", "speed"),
+            Law::Ripple | Law::Piston | Law::Jaws => ("torque", "angle"),
+            Law::Bearing | Law::Brake => ("torque", "time"),
+            Law::Displacement => ("stator", "frequency"),
+            Law::Magnetizing => ("magnetizing", "flux"),
+            Law::Contact => ("stator-phase-b", "current"),
+            Law::Disc => ("sensor-speed", "angle"),
+            Law::Bars => ("rotor", "slip"),
+            Law::Leakage => ("leakage", "current"),
+            Law::Gear => ("torque", "load-torque"),
+            Law::Ageing => ("stator-phase-c", "time"),
+            Law::Saturating => ("sensor-ia", "current"),
+        }
+    }
+
+    /// Whether a report names the law, alone or among ties that it declares.
+    pub fn is_named(self, law: &LawReport) -> bool {
+        let is = |place: &str, coordinate: &str| (place, coordinate) == self.truth();
+        let tied = law.tied_with.iter();
+        is(&law.place, &law.coordinate) || tied.into_iter().any(|t| is(&t.place, &t.coordinate))
+    }
+
+    /// Torque that brakes the shaft, N m.
+    pub fn torque(self, m: &Machine, at: Where) -> f64 {
+        let w = at.speed / m.speed();
+        let share = match self {
+            Law::Stribeck => {
+                (w / 0.01).tanh() * (0.05 + 0.05 * (-(w.abs() / 0.14).powf(1.3)).exp())
+            }
+            Law::Ripple => 0.05 * (3.0 * at.theta).cos() + 0.03 * (3.0 * at.theta).sin(),
+            Law::Pump => 0.25 * ((w - 0.45).max(0.0) / 0.57).powf(2.6),
+            Law::Bearing => 0.06 * (-at.t / 1.6).exp() * (w / 0.01).tanh(),
+            Law::Piston => 0.18 * at.theta.sin().max(0.0),
+            Law::Gear => 0.2 * (at.load / m.torque - 0.55).max(0.0),
+            Law::Brake => 0.08 * (-0.5 * ((at.t - 3.2) / 0.35).powi(2)).exp(),
+            Law::Jaws => 0.04 * (2.0 * at.theta).cos() + 0.03 * (4.0 * at.theta + 1.0).cos(),
+            _ => 0.0,
+        };
+        share * m.torque
+    }
+
+    /// Factor on the stator resistance at a frequency, Hz.
+    pub fn stator(self, hz: f64) -> f64 {
+        match self {
+            Law::Displacement => 1.0 + 0.35 * (hz / 50.0).powf(1.5),
+            _ => 1.0,
+        }
+    }
+
+    /// Drops of the phases, V.
+    pub fn drops(self, m: &Machine, i: [f64; 3], t: f64) -> [f64; 3] {
+        let [_, b, c] = i;
+        match self {
+            Law::Contact => [0.0, 0.016 * U * b / (b.abs() + 0.1 * m.current), 0.0],
+            Law::Ageing => {
+                let more = 0.4 / (1.0 + (-(t - 2.8) / 0.12).exp());
+                [0.0, 0.0, more * m.r_s * c]
+            }
+            _ => [0.0; 3],
+        }
+    }
+
+    /// Factor on the rotor resistance at a slip frequency, Hz.
+    pub fn rotor(self, slip_hz: f64) -> f64 {
+        match self {
+            Law::Bars => 1.0 + 0.5 * (1.0 - (-slip_hz.abs() / 4.0).exp()),
+            _ => 1.0,
+        }
+    }
+
+    /// Factor on the magnetizing current at a flux over rated flux.
+    pub fn magnetizing(self, x: f64) -> f64 {
+        match self {
+            Law::Magnetizing => {
+                let knee = 0.25 / (1.0 + (-(x - 0.82) / 0.05).exp());
+                1.0 + knee - 0.12 * (-((x - 0.45) / 0.12).powi(2)).exp()
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// Factor on the leakages at a stator current, A.
+    pub fn leakage(self, m: &Machine, i: f64) -> f64 {
+        match self {
+            Law::Leakage => {
+                let x = i / (1.3 * m.current * 2f64.sqrt());
+                1.0 - 0.35 * x * x / (x * x + 1.0)
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// Factor on the reading of current channel a.
+    pub fn channel_a(self, m: &Machine, i: f64) -> f64 {
+        match self {
+            Law::Saturating => 1.0 - 0.1 * (i / (4.0 * m.current)).powi(2).min(1.0),
+            _ => 1.0,
+        }
+    }
+
+    /// Factor on the reading of the speed channel.
+    pub fn speed(self, theta: f64) -> f64 {
+        match self {
+            Law::Disc => 1.0 + 0.004 * (theta + 0.4).cos() + 0.0015 * (2.0 * theta).cos(),
+            _ => 1.0,
+        }
+    }
+}

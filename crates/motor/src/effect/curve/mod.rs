@@ -1,0 +1,33 @@
+//! A law as a curve: where it acts in the equations, over which quantity, and its values at knots.
+//!
+//! ```toml
+//! [[effects]]
+//! name = "curve"
+//! place = "torque"            # what the curve is added to or multiplied with
+//! coordinate = "speed"        # what it depends on
+//! knots_rad_s = [0.0, 40.0, 80.0, 120.0, 157.0]
+//! values_nm = [0.0, 0.0, 0.2, 1.1, 2.6]
+//! ```
+//!
+//! Between the knots the curve is a cubic spline; beyond the last knot it stays. Over an angle it repeats every
+//! turn. [`Place`] and [`Coordinate`] list what there is, with units and keys.
+
+mod action;
+mod coordinate;
+mod entry;
+mod law;
+mod place;
+mod spline;
+mod steady;
+mod table;
+
+pub use action::Action;
+pub use coordinate::Coordinate;
+pub(crate) use entry::{from_entry, to_entry};
+pub use law::{FEWEST_KNOTS, MOST_KNOTS, curve, knots_and_values};
+pub use place::Place;
+pub use steady::SteadyCurve;
+pub use table::{TABLE_POINTS, Table, tabulated};
+
+/// Name of the effect in motor files.
+pub const NAME: &str = "curve";

@@ -1,0 +1,57 @@
+//! Laws that no library holds: where, over what, the curve with its band.
+
+use maud::{Markup, html};
+
+use crate::page::elements::chart::{Chart, Kind, Series};
+use crate::page::elements::number::{decimals, shown};
+use crate::page::elements::place::Place;
+use motor::effect::curve::{Coordinate, Place as LawPlace};
+
+/// Place and coordinate of a law.
+pub fn name(law: &Place<'_>) -> String {
+    format!("{} over {}", law.text("place"), law.text("coordinate"))
+}
+
+/// One figure each.
+pub fn section(result: &Place<'_>) -> Markup {
+    let laws = result.items("laws");
+    html! { @for (k, law) in laws.iter().enumerate() { (one(law, k)) } }
+}
+
+fn one(law: &Place<'_>, k: usize) -> Markup {
+    let id = format!("law-{k}");
+    let ties = law.items("tied_with");
+    html! {
+        section aria-labelledby=(id) {
+            h2 id=(id) { (name(law)) @if !law.is_true("proven") { " (a lead, not proven)" } }
+            p {
+                "With this curve the error falls from " (shown(law, "held_out_error_over_noise_without", decimals(2)))
+                " to " (shown(law, "held_out_error_over_noise", decimals(2))) " × noise"
+                @if law.is_true("proven") { " on the recording that was not fitted." } @else { ". A second recording with other loads and speeds can prove it." }
+            }
+            (curve(law))
+            @if !law.text("formula").is_empty() { p { "As a formula: " code { (law.text("formula")) } } }
+            @if !ties.is_empty() { p { strong { "As likely: " } @for (n, tie) in ties.iter().enumerate() { @if n > 0 { ", " } (name(tie)) } "." } }
+        }
+    }
+}
+
+fn curve(law: &Place<'_>) -> Markup {
+    let at = |key: &str| law.pointer_to(&format!("curve/{key}/*"));
+    let coordinate = Coordinate::by_name(law.text("coordinate"));
+    let unit = coordinate.map_or("", Coordinate::unit);
+    let relative = law.text("curve/y_unit") == "-";
+    let place = LawPlace::by_name(law.text("place"));
+    let y_unit = match (relative, place) {
+        (false, Some(LawPlace::Torque)) => "N m",
+        (false, _) => "V",
+        (true, _) => "",
+    };
+    let sentence = "The line is the fitted curve, the dashed lines its 95 % band.";
+    Chart::over(law.text("coordinate"), unit, at("x"))
+        .y(law.text("meaning"), y_unit)
+        .with(Series::line("curve", at("y"), "blue").kind(Kind::Line))
+        .with(Series::line("lower end of the band", at("lower"), "sky").dashed(0))
+        .with(Series::line("upper end of the band", at("upper"), "sky").dashed(0))
+        .figure(&name(law), sentence)
+}
