@@ -71,7 +71,9 @@ fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
 
 /// Only the motor file's own effects become part of the program.
 fn effect_terms(file: &MotorFile) -> Result<String, Box<dyn Error>> {
-    let configs = effect::from_motor_file(file, &file.name)?;
+    let mut configs = effect::from_motor_file(file, &file.name)?;
+    // Laws are numbers of the image, not terms of the program.
+    configs.retain(|config| config.effect.law().is_none());
     if configs.len() > MAX_EFFECTS {
         return Err(format!(
             "effects: {} of them, but at most {MAX_EFFECTS} fit",

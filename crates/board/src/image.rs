@@ -3,25 +3,33 @@
 
 use heapless::Vec;
 use monitor::{
-    Abc, ActiveEffect, ActiveEffects, CHANNELS, CIRCUIT, ChannelScale, ComparatorConfig, Converter,
-    FieldCurrent, Frame, Healthy, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MonitorConfig,
-    ParameterDoubt, ROWS, Uncertainty,
+    Abc, ActiveEffect, ActiveEffects, ActiveLaws, CHANNELS, CIRCUIT, ChannelScale,
+    ComparatorConfig, Converter, FieldCurrent, Frame, Healthy, LoadKind, MAX_EFFECT_PARAMETERS,
+    MAX_EFFECTS, MAX_LAWS, MonitorConfig, ParameterDoubt, ROWS, Uncertainty,
 };
 use motor::effect::SteadyEffect;
+use motor::effect::curve::{Action, BOARD_KNOTS, SteadyCurve};
 use motor::effects::STEADY;
 use motor::{Mechanics, TParams};
 
 use crate::checksum::crc32_words;
 
 /// Words of an image, version and checksum included.
-pub const IMAGE_WORDS: usize =
-    42 + HEALTHY_WORDS + CIRCUIT + CHANNELS + MAX_EFFECTS * (1 + 2 * MAX_EFFECT_PARAMETERS);
+pub const IMAGE_WORDS: usize = 42
+    + HEALTHY_WORDS
+    + CIRCUIT
+    + CHANNELS
+    + MAX_EFFECTS * (1 + 2 * MAX_EFFECT_PARAMETERS)
+    + MAX_LAWS * LAW_WORDS;
+
+/// Words of a law: where it acts, number of knots, mean, then knots, values and bends.
+const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 
 /// Words of the healthy motor's statistics.
 const HEALTHY_WORDS: usize = 6 + 2 * ROWS + 10;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0004;
+const SCHEMA: u32 = 0x444D_0005;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +75,10 @@ impl MotorImage {
         write_motor(&mut writer, config);
         write_judgement(&mut writer, config);
         write_effects(&mut writer, config);
+        config
+            .laws
+            .iter()
+            .for_each(|law| write_law(&mut writer, law.as_ref()));
         let mut words = [0; IMAGE_WORDS];
         words
             .iter_mut()
@@ -98,6 +110,7 @@ impl MotorImage {
         Ok(MonitorConfig {
             channel_gain: reader.numbers(),
             effects: effects(&mut reader, terms)?,
+            laws: laws(&mut reader)?,
             ..config
         })
     }
@@ -211,6 +224,32 @@ fn write_effects(w: &mut Writer, config: &MonitorConfig) {
     }
 }
 
+/// The first word of a law that is there is its action's number and one.
+fn write_law(w: &mut Writer, law: Option<&SteadyCurve<f32>>) {
+    let Some(law) = law else {
+        (0..LAW_WORDS).for_each(|_| w.word(0));
+        return;
+    };
+    let (knots, mean, curve) = law.words();
+    w.word(law.action.number() + 1);
+    w.word(knots as u32);
+    w.number(mean);
+    curve.iter().for_each(|numbers| w.numbers(numbers));
+}
+
+fn laws(r: &mut Reader<'_>) -> Result<ActiveLaws, ImageError> {
+    let mut active = ActiveLaws::default();
+    for slot in &mut active {
+        let (number, knots, mean) = (r.word(), r.word() as usize, r.number());
+        let curve = [r.numbers(), r.numbers(), r.numbers()];
+        if let Some(number) = number.checked_sub(1) {
+            let action = Action::by_number(number).ok_or(ImageError::Choice)?;
+            *slot = Some(SteadyCurve::of_words(action, knots, mean, curve));
+        }
+    }
+    Ok(active)
+}
+
 /// Place in [`STEADY`], from 1: it only tells this image from that of another effect, a program knows its terms.
 fn number(active: &ActiveEffect) -> u32 {
     let wanted = active.effect.descriptor();
@@ -256,6 +295,7 @@ fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
             l_m,
         },
         effects: ActiveEffects::default(),
+        laws: ActiveLaws::default(),
         channel_gain: [1.0; CHANNELS],
         mechanics: Mechanics {
             n_p,

@@ -7,7 +7,7 @@ use crate::input::sample::CHANNELS;
 use crate::isolation::Healthy;
 use crate::lamps::threshold::ComparatorConfig;
 use crate::model::doubt::ParameterDoubt;
-use crate::model::effects::ActiveEffects;
+use crate::model::effects::{ActiveEffects, ActiveLaws};
 use crate::model::operating_point::Frame;
 use crate::model::residuals::{FieldCurrent, RESIDUALS};
 use crate::window::MAX_WINDOW_CYCLES;
@@ -37,6 +37,8 @@ pub struct MonitorConfig {
     pub params: TParams<f32>,
     /// Physical effects beyond the T model.
     pub effects: ActiveEffects,
+    /// Laws that no effect holds.
+    pub laws: ActiveLaws,
     /// Corrections of the channels that the effects bring along: voltages a, b, c, then currents a, b, c; 1 for none.
     pub channel_gain: [f32; CHANNELS],
     /// Pole pairs, inertia, friction.

@@ -5,6 +5,7 @@ use std::vec::Vec;
 
 use motor::document::FileError;
 use motor::effect;
+use motor::effect::curve::{SteadyCurve, knots_and_values};
 use motor::effect::{EffectConfig, Instrument, SteadyEffect};
 use motor::motor_file::{self, HealthySettings, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
@@ -16,7 +17,9 @@ use crate::input::sample::CHANNELS;
 use crate::isolation::{Healthy, Uncertainty};
 use crate::lamps::threshold::ComparatorConfig;
 use crate::model::doubt::{CIRCUIT, DEVIATIONS, ParameterDoubt};
-use crate::model::effects::{ActiveEffect, ActiveEffects, MAX_EFFECT_PARAMETERS, MAX_EFFECTS};
+use crate::model::effects::{
+    ActiveEffect, ActiveEffects, ActiveLaws, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS,
+};
 use crate::model::operating_point::Frame;
 use crate::model::residuals::FieldCurrent;
 
@@ -39,7 +42,8 @@ impl MonitorConfig {
     /// Effects that the library refuses, or more than [`MAX_EFFECTS`]: in a motor made by a program only, since a file is
     /// checked when it is read.
     pub fn from_motor_file(file: &MotorFile, t_sample: f64) -> Result<Self, FileError> {
-        let effects = effects_of(file)?;
+        let (laws, effects) = effects_of(file)?;
+        let laws = active_laws(file, &laws)?;
         let plate = &file.nameplate;
         let settings = &file.monitor;
         Ok(MonitorConfig {
@@ -49,6 +53,7 @@ impl MonitorConfig {
                 * file.sensors.encoder_pulses_per_revolution as f32,
             params: single(&file.parameters),
             effects: active_effects(&effects),
+            laws,
             channel_gain: channel_gain(&effects),
             mechanics: single_mechanics(&file.mechanics),
             rated_voltage: plate.phase_voltage_amplitude() as f32,
@@ -96,11 +101,13 @@ pub fn single_mechanics(m: &Mechanics<f64>) -> Mechanics<f32> {
     }
 }
 
-fn effects_of(file: &MotorFile) -> Result<Vec<EffectConfig>, FileError> {
-    let effects = effect::from_motor_file(file, &file.name)?;
+/// Laws and effects of a motor file.
+fn effects_of(file: &MotorFile) -> Result<(Vec<EffectConfig>, Vec<EffectConfig>), FileError> {
+    let all = effect::from_motor_file(file, &file.name)?;
+    let (laws, effects): (Vec<_>, Vec<_>) = all.into_iter().partition(|e| e.effect.law().is_some());
     let count = effects.len();
     match effects.get(MAX_EFFECTS) {
-        None => Ok(effects),
+        None => Ok((laws, effects)),
         Some(_) => Err(FileError::whole(
             &file.name,
             format!(
@@ -108,6 +115,21 @@ fn effects_of(file: &MotorFile) -> Result<Vec<EffectConfig>, FileError> {
             ),
         )),
     }
+}
+
+fn active_laws(file: &MotorFile, laws: &[EffectConfig]) -> Result<ActiveLaws, FileError> {
+    let mut active = [None; MAX_LAWS];
+    if laws.len() > MAX_LAWS {
+        let (count, name) = (laws.len(), &file.name);
+        let message =
+            format!("has {count} curves, but the core takes at most {MAX_LAWS}: remove one");
+        return Err(FileError::whole(name, message));
+    }
+    for (slot, config) in active.iter_mut().zip(laws) {
+        *slot = knots_and_values(config)
+            .and_then(|(action, knots, values)| SteadyCurve::new(action, knots, values));
+    }
+    Ok(active)
 }
 
 fn active_effects(effects: &[EffectConfig]) -> ActiveEffects {

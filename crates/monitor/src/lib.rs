@@ -75,7 +75,8 @@ pub use lamps::signature::{Candidates, FAULTS, TABLE_1};
 pub use lamps::threshold::{ComparatorConfig, ComparatorState};
 pub use model::doubt::{CIRCUIT, ParameterDoubt};
 pub use model::effects::{
-    ActiveEffect, ActiveEffects, Corrected, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, correct,
+    ActiveEffect, ActiveEffects, ActiveLaws, Corrected, MAX_EFFECT_PARAMETERS, MAX_EFFECTS,
+    MAX_LAWS, correct,
 };
 pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};

@@ -416,7 +416,7 @@ impl Monitor {
         window: &Window,
     ) -> Option<Corrected> {
         Some(correct(
-            effects,
+            (effects, &self.config.laws),
             self.rated,
             params,
             [window.u_s.positive, window.i_s.positive],

@@ -46,6 +46,7 @@ fn config() -> MonitorConfig {
             l_m: 0.42,
         },
         effects: [None; MAX_EFFECTS],
+        laws: Default::default(),
         channel_gain: [1.0; CHANNELS],
         mechanics: Mechanics {
             n_p: 2.0,

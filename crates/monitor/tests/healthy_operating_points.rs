@@ -61,6 +61,7 @@ impl Machine {
                 l_lr: single(self.params.l_lr),
                 l_m: single(self.params.l_m),
             },
+            laws: Default::default(),
             effects: Default::default(),
             channel_gain: [1.0; 6],
             mechanics: Mechanics {

@@ -81,6 +81,7 @@ pub fn stand_in_config(recording: &Recording) -> MonitorConfig {
             l_m: 2.0 * ohm / STAND_IN_OMEGA,
         },
         effects: ActiveEffects::default(),
+        laws: Default::default(),
         channel_gain: [1.0; monitor::CHANNELS],
         mechanics: Mechanics {
             n_p: 2.0,

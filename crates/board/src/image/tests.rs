@@ -1,4 +1,5 @@
 use super::*;
+use motor::effect::curve::{Coordinate, Place};
 use motor::motor_file::MotorFile;
 use proptest::prelude::*;
 
@@ -33,6 +34,31 @@ fn with_effects() -> MonitorConfig {
 #[test]
 fn effects_and_channel_gains_survive_the_round_trip() {
     let config = with_effects();
+    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+}
+
+#[test]
+fn laws_survive_the_round_trip() {
+    let mut config = with_effects();
+    let knots = |n: usize| {
+        (0..n)
+            .map(|k| k as f64 * 7.0)
+            .collect::<std::vec::Vec<f64>>()
+    };
+    let values = |n: usize| {
+        (0..n)
+            .map(|k| (k as f64).sin())
+            .collect::<std::vec::Vec<f64>>()
+    };
+    let law = |place, coordinate, n| {
+        let action = Action { place, coordinate };
+        SteadyCurve::new(action, &knots(n), &values(n))
+    };
+    config.laws = [
+        law(Place::Torque, Coordinate::Speed, 18),
+        law(Place::StatorPhaseB, Coordinate::PhaseCurrent, BOARD_KNOTS),
+    ];
+    assert!(config.laws.iter().all(Option::is_some));
     assert_eq!(image(&config).config(&terms(&config)), Ok(config));
 }
 
@@ -126,10 +152,14 @@ fn choices_that_no_shipped_motor_makes_survive_too() {
 #[test]
 fn the_last_word_before_the_checksum_is_used() {
     let mut config = with_effects();
-    config.effects[MAX_EFFECTS - 1] = config.effects[0];
-    let [.., last] = config.effects[0].expect("an effect").parameters;
+    let bends = [[0.0; BOARD_KNOTS], [0.0; BOARD_KNOTS], [7.5; BOARD_KNOTS]];
+    let action = Action {
+        place: Place::Torque,
+        coordinate: Coordinate::Speed,
+    };
+    config.laws[MAX_LAWS - 1] = Some(SteadyCurve::of_words(action, BOARD_KNOTS, 0.0, bends));
     let image = image(&config);
-    assert_eq!(f32::from_bits(image.0[IMAGE_WORDS - 2]), last);
+    assert_eq!(f32::from_bits(image.0[IMAGE_WORDS - 2]), 7.5);
 }
 
 proptest! {

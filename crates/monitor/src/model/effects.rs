@@ -2,6 +2,7 @@
 
 use motor::TParams;
 pub use motor::effect::MAX_PARAMETERS as MAX_EFFECT_PARAMETERS;
+use motor::effect::curve::SteadyCurve;
 use motor::effect::{Rated, SteadyEffect, SteadyPoint};
 use num_complex::Complex32;
 
@@ -21,6 +22,12 @@ pub struct ActiveEffect {
 
 /// The effects in the order in which the motor file names them.
 pub type ActiveEffects = [Option<ActiveEffect>; MAX_EFFECTS];
+
+/// Most laws that one motor file may hold.
+pub const MAX_LAWS: usize = 2;
+
+/// The laws in the order in which the motor file names them; they act after the effects.
+pub type ActiveLaws = [Option<SteadyCurve<f32>>; MAX_LAWS];
 
 /// What was measured in one window, as the T model without effects would have measured it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,9 +57,9 @@ impl Corrected {
     }
 }
 
-/// Applies all effects to one operating point, in the order of the motor file.
+/// Applies all effects to one operating point, in the order of the motor file, then all laws.
 pub fn correct(
-    effects: &ActiveEffects,
+    (effects, laws): (&ActiveEffects, &ActiveLaws),
     rated: Rated<f32>,
     params: &TParams<f32>,
     [u_s, i_s]: [Complex32; 2],
@@ -69,6 +76,9 @@ pub fn correct(
     };
     for active in effects.iter().flatten() {
         active.effect.correct_f32(&active.parameters, &mut point);
+    }
+    for law in laws.iter().flatten() {
+        law.correct(&mut point);
     }
     Corrected {
         u_s: point.u_s,
@@ -132,7 +142,13 @@ mod tests {
             *slot = Some(*effect);
         }
         let (u_s, i_s) = (Complex32::new(300.0, 20.0), Complex32::new(3.0, -4.0));
-        correct(&active, RATED, &PARAMS, [u_s, i_s], [314.2, 150.0])
+        correct(
+            (&active, &[None; MAX_LAWS]),
+            RATED,
+            &PARAMS,
+            [u_s, i_s],
+            [314.2, 150.0],
+        )
     }
 
     #[test]

@@ -37,6 +37,7 @@ pub fn config() -> MonitorConfig {
         encoder_counts_per_revolution: COUNTS_PER_REVOLUTION as f32,
         params: single(PARAMS),
         effects: [None; MAX_EFFECTS],
+        laws: Default::default(),
         channel_gain: [1.0; CHANNELS],
         mechanics: Mechanics {
             n_p: 2.0,

@@ -111,7 +111,7 @@ impl fmt::Display for EffectError {
             Self::NotANumber { effect, key } => {
                 write!(
                     f,
-                    "`{key}` of effect `{effect}` must be a number: write it without quotes"
+                    "`{key}` of effect `{effect}` must be one number, without quotes or brackets"
                 )
             }
             Self::NotAText { effect, key } => {

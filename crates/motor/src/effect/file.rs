@@ -73,6 +73,10 @@ pub(crate) fn check(document: &Document, plate: &Nameplate, entries: &[EffectEnt
 /// # Errors
 /// As [`EffectConfig::from_file`], and a key that the effect does not have, or of the wrong type.
 pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfig, EffectError> {
+    if entry.name == curve::NAME {
+        return curve::from_entry(entry);
+    }
+    check_lists(entry)?;
     let numbers: Vec<(String, f64)> = entry
         .parameters
         .iter()
@@ -85,9 +89,6 @@ pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfi
         motions::check(formula.unwrap_or_default(), &numbers, rated)?;
         return Ok(config);
     }
-    if entry.name == curve::NAME {
-        return curve::from_entry(entry);
-    }
     let effect = known_effect(&entry.name, entry.text(FORM).unwrap_or(""))?;
     check_types(entry, effect.descriptor())?;
     EffectConfig::with_entries(effect, &numbers, rated)
@@ -96,6 +97,19 @@ pub fn from_entry(entry: &EffectEntry, rated: &Rated<f64>) -> Result<EffectConfi
 fn texts(entry: &EffectEntry) -> impl Iterator<Item = &str> {
     let keys = entry.parameters.iter().map(|p| p.key.as_str());
     keys.filter(|key| entry.text(key).is_some())
+}
+
+/// A list is the knots or the values of a curve, and nothing else.
+fn check_lists(entry: &EffectEntry) -> Result<(), EffectError> {
+    let is_list = |p: &&EffectParameter| matches!(p.value, EffectValue::List(_));
+    let list = entry.parameters.iter().find(is_list);
+    list.map_or(Ok(()), |p| {
+        let effect = known_effect(&entry.name, entry.text(FORM).unwrap_or(""));
+        Err(EffectError::NotANumber {
+            effect: effect.map_or(expression::NAME, |e| e.descriptor().name),
+            key: p.key.clone(),
+        })
+    })
 }
 
 /// Nothing but the form is text, and the form is nothing else.

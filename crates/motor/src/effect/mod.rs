@@ -6,7 +6,6 @@
 
 #[cfg(feature = "std")]
 pub(crate) mod config;
-#[cfg(feature = "file")]
 pub mod curve;
 pub(crate) mod descriptor;
 #[cfg(feature = "std")]

@@ -1,5 +1,6 @@
 //! A curve in a motor file.
 
+use super::law::allowed;
 use super::{Action, Coordinate, NAME, Place, curve, knots_and_values};
 use crate::effect::{EffectConfig, EffectError};
 use crate::motor_file::{EffectEntry, EffectParameter, EffectValue};
@@ -16,6 +17,7 @@ pub(crate) fn from_entry(entry: &EffectEntry) -> Result<EffectConfig, EffectErro
     let coordinates = Coordinate::ALL.map(Coordinate::name);
     let coordinate = chosen(entry, COORDINATE, Coordinate::by_name, &coordinates)?;
     let action = Action { place, coordinate };
+    allowed(action)?;
     let keys = [coordinate.key(), place.quantity(coordinate).key];
     let known = [PLACE, COORDINATE, keys[0], keys[1]];
     let mut given = entry.parameters.iter().map(|p| p.key.as_str());

@@ -1,7 +1,7 @@
 //! The effect behind `name = "curve"`.
 
 use super::spline::Spline;
-use super::steady::SteadyCurve;
+use super::steady::{BOARD_KNOTS, SteadyCurve};
 use super::{Action, NAME, Table, tabulated};
 use crate::dynamic::Flow;
 use crate::effect::{
@@ -16,7 +16,9 @@ use std::sync::Mutex;
 /// Fewest knots of a curve.
 pub const FEWEST_KNOTS: usize = 3;
 /// Most knots of a curve.
-pub const MOST_KNOTS: usize = 40;
+pub const MOST_KNOTS: usize = BOARD_KNOTS;
+/// Most knots of a curve over an angle, of which steady state sees the mean alone.
+pub const MOST_KNOTS_OF_A_TURN: usize = 40;
 
 /// A law with a number of knots; its values are the knots, then the curve's values there.
 #[derive(Debug)]
@@ -84,24 +86,17 @@ fn descriptor(action: Action, knots: usize) -> Descriptor {
 /// A law through knots.
 ///
 /// # Errors
-/// A place over which no law acts, fewer than [`FEWEST_KNOTS`] or more than [`MOST_KNOTS`] knots, knots that do not
-/// ascend or (angles) leave one turn, numbers that are not finite, as many values as knots.
+/// A place over which no law acts, fewer than [`FEWEST_KNOTS`] or more than [`MOST_KNOTS`] knots (angles:
+/// [`MOST_KNOTS_OF_A_TURN`]), knots that do not ascend or (angles) leave one turn, numbers that are not finite, as many values as knots.
 pub fn curve(action: Action, knots: &[f64], values: &[f64]) -> Result<EffectConfig, EffectError> {
+    allowed(action)?;
     let key = action.coordinate.key();
-    let wrong = |key: &'static str, reason: String| EffectError::Curve { key, reason };
-    if !action.place.coordinates().contains(&action.coordinate) {
-        let known: Vec<_> = action
-            .place
-            .coordinates()
-            .iter()
-            .map(|c| c.name())
-            .collect();
-        let place = action.place.name();
-        let reason = format!("at `{place}` a law acts over one of: {}", known.join(", "));
-        return Err(wrong("coordinate", reason));
-    }
-    if !(FEWEST_KNOTS..=MOST_KNOTS).contains(&knots.len()) {
-        let reason = format!("{} knots: give {FEWEST_KNOTS} to {MOST_KNOTS}", knots.len());
+    let most = match action.coordinate.is_angle() {
+        true => MOST_KNOTS_OF_A_TURN,
+        false => MOST_KNOTS,
+    };
+    if !(FEWEST_KNOTS..=most).contains(&knots.len()) {
+        let reason = format!("{} knots: give {FEWEST_KNOTS} to {most}", knots.len());
         return Err(wrong(key, reason));
     }
     let values_key = action.place.quantity(action.coordinate).key;
@@ -130,6 +125,25 @@ pub fn curve(action: Action, knots: &[f64], values: &[f64]) -> Result<EffectConf
         effect: known(action, knots.len()),
         values: [knots, values].concat(),
     })
+}
+
+fn wrong(key: &'static str, reason: String) -> EffectError {
+    EffectError::Curve { key, reason }
+}
+
+/// Whether a law acts at this place over this coordinate.
+///
+/// # Errors
+/// The coordinates over which one acts there.
+pub(super) fn allowed(action: Action) -> Result<(), EffectError> {
+    let coordinates = action.place.coordinates();
+    if coordinates.contains(&action.coordinate) {
+        return Ok(());
+    }
+    let known: Vec<_> = coordinates.iter().map(|c| c.name()).collect();
+    let place = action.place.name();
+    let reason = format!("at `{place}` a law acts over one of: {}", known.join(", "));
+    Err(wrong("coordinate", reason))
 }
 
 /// The action, the knots and the values of a curve; `None` for another effect.

@@ -14,19 +14,30 @@
 
 mod action;
 mod coordinate;
+#[cfg(feature = "file")]
 mod entry;
+#[cfg(feature = "file")]
+mod hooks;
+#[cfg(feature = "file")]
 mod law;
 mod place;
+#[cfg(feature = "file")]
 mod spline;
 mod steady;
+#[cfg(feature = "file")]
 mod table;
+#[cfg(all(test, feature = "file"))]
+mod tests;
 
 pub use action::Action;
 pub use coordinate::Coordinate;
+#[cfg(feature = "file")]
 pub(crate) use entry::{from_entry, to_entry};
-pub use law::{FEWEST_KNOTS, MOST_KNOTS, curve, knots_and_values};
-pub use place::Place;
-pub use steady::SteadyCurve;
+#[cfg(feature = "file")]
+pub use law::{FEWEST_KNOTS, MOST_KNOTS, MOST_KNOTS_OF_A_TURN, curve, knots_and_values};
+pub use place::{Place, Quantity};
+pub use steady::{BOARD_KNOTS, SteadyCurve};
+#[cfg(feature = "file")]
 pub use table::{TABLE_POINTS, Table, tabulated};
 
 /// Name of the effect in motor files.

@@ -1,5 +1,6 @@
 //! Cubic splines through knots.
 
+use super::steady::piece;
 use core::f64::consts::TAU;
 
 /// Second derivatives of the cubic spline through `(x, y)`; `x` ascends and has at least three knots. The first two and the last
@@ -38,21 +39,6 @@ pub(super) fn bends(x: &[f64], y: &[f64]) -> Vec<f64> {
     second[0] = (1.0 + first) * second[1] - first * second[2];
     second[n - 1] = (1.0 + last) * second[n - 2] - last * second[n - 3];
     second
-}
-
-/// Value of the cubic piece from `x0` to `x1` at `x`.
-#[inline]
-pub(super) fn piece<F: num_traits::Float>(
-    [x0, x1]: [F; 2],
-    [y0, y1]: [F; 2],
-    [m0, m1]: [F; 2],
-    x: F,
-) -> F {
-    let six = F::one() + F::one() + F::one() + F::one() + F::one() + F::one();
-    let h = x1 - x0;
-    let (a, b) = ((x1 - x) / h, (x - x0) / h);
-    let bend = (a * a * a - a) * m0 + (b * b * b - b) * m1;
-    a * y0 + b * y1 + bend * h * h / six
 }
 
 /// A curve that can be evaluated.

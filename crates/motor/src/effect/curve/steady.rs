@@ -6,10 +6,21 @@ use crate::effect::steady::lit;
 use num_complex::Complex;
 use num_traits::Float;
 
-use super::law::MOST_KNOTS;
+/// Cosines of the odd multiples of 5.625 degrees: where the voltage drop of a phase is taken over a quarter of a cycle (Gauss and
+/// Chebyshev).
+const COSINES: [f64; 8] = [
+    0.995_184_726_672_196_9,
+    0.956_940_335_732_208_9,
+    0.881_921_264_348_355_1,
+    0.773_010_453_362_737,
+    0.634_393_284_163_645_5,
+    0.471_396_736_825_997_7,
+    0.290_284_677_254_462_4,
+    0.098_017_140_329_560_6,
+];
 
-/// Points at which the voltage drop of a phase is taken over a quarter of a cycle (Gauss and Chebyshev).
-const QUADRATURE: usize = 8;
+/// Most knots of a curve on the board.
+pub const BOARD_KNOTS: usize = 24;
 
 /// A curve with its bends, ready to be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,50 +28,75 @@ pub struct SteadyCurve<F> {
     /// Where it acts, over what.
     pub action: Action,
     knots: usize,
-    x: [F; MOST_KNOTS],
-    y: [F; MOST_KNOTS],
-    second: [F; MOST_KNOTS],
+    x: [F; BOARD_KNOTS],
+    y: [F; BOARD_KNOTS],
+    second: [F; BOARD_KNOTS],
     mean: F,
 }
 
 impl<F: Float> SteadyCurve<F> {
-    /// From knots that ascend and their values; `None` for more than there is room for.
+    /// From knots that ascend and their values; `None` for more than there is room for, or fewer than three. Of a curve over an
+    /// angle only the mean is kept.
+    #[cfg(feature = "file")]
     pub fn new(action: Action, x: &[f64], y: &[f64]) -> Option<Self> {
-        if x.len() > MOST_KNOTS || x.len() != y.len() || x.is_empty() {
+        if action.coordinate.is_angle() {
+            let none = [[F::zero(); BOARD_KNOTS]; 3];
+            return Some(Self::of_words(action, 0, lit(mean(x, y)), none));
+        }
+        if !(3..=BOARD_KNOTS).contains(&x.len()) || x.len() != y.len() {
             return None;
         }
         let narrow = |values: &[f64]| {
-            let mut array = [F::zero(); MOST_KNOTS];
+            let mut array = [F::zero(); BOARD_KNOTS];
             for (to, &from) in array.iter_mut().zip(values) {
                 *to = lit(from);
             }
             array
         };
-        Some(Self {
+        let second = super::spline::bends(x, y);
+        let words = [narrow(x), narrow(y), narrow(&second)];
+        Some(Self::of_words(action, x.len(), F::zero(), words))
+    }
+
+    /// From what [`SteadyCurve::words`] gave: knots, values and bends of the first `knots` places.
+    pub fn of_words(
+        action: Action,
+        knots: usize,
+        mean: F,
+        [x, y, second]: [[F; BOARD_KNOTS]; 3],
+    ) -> Self {
+        Self {
             action,
-            knots: x.len(),
-            x: narrow(x),
-            y: narrow(y),
-            second: narrow(&super::spline::bends(x, y)),
-            mean: lit(mean(x, y)),
-        })
+            knots: knots.min(BOARD_KNOTS),
+            x,
+            y,
+            second,
+            mean,
+        }
+    }
+
+    /// Number of knots, mean over a turn, then knots, values and bends.
+    pub fn words(&self) -> (usize, F, [[F; BOARD_KNOTS]; 3]) {
+        (self.knots, self.mean, [self.x, self.y, self.second])
     }
 
     /// Value at `x`; beyond the ends it stays.
     fn at(&self, x: F) -> F {
-        let last = self.knots - 1;
-        let x = x.max(self.x[0]).min(self.x[last]);
-        let k = self.x[1..last]
-            .iter()
-            .take_while(|&&knot| knot <= x)
-            .count()
-            + 1;
-        super::spline::piece(
-            [self.x[k - 1], self.x[k]],
-            [self.y[k - 1], self.y[k]],
-            [self.second[k - 1], self.second[k]],
-            x,
-        )
+        let (Some(begin), Some(end)) = (self.x.first(), self.x.iter().take(self.knots).last())
+        else {
+            return self.mean;
+        };
+        let x = x.max(*begin).min(*end);
+        let mut before = (*begin, self.y[0], self.second[0]);
+        let knots = self.x.iter().zip(&self.y).zip(&self.second);
+        for ((&knot, &y), &second) in knots.take(self.knots).skip(1) {
+            if x <= knot {
+                let (x0, y0, m0) = before;
+                return piece([x0, knot], [y0, y], [m0, second], x);
+            }
+            before = (knot, y, second);
+        }
+        before.1
     }
 
     /// Value of the curve at an operating point; `None` where steady state does not tell the coordinate.
@@ -86,13 +122,12 @@ impl<F: Float> SteadyCurve<F> {
         if amplitude <= F::zero() {
             return F::zero();
         }
-        let mut sum = F::zero();
-        for k in 0..2 * QUADRATURE {
-            let angle = (k as f64 + 0.5) * core::f64::consts::PI / (2 * QUADRATURE) as f64;
-            let cos: F = lit(num_traits::Float::cos(angle));
-            sum = sum + self.at(amplitude * cos) * cos;
-        }
-        sum / (lit::<F>(QUADRATURE as f64) * amplitude)
+        let one = |sum: F, &cos: &f64| {
+            let cos: F = lit(cos);
+            sum + (self.at(amplitude * cos) - self.at(-amplitude * cos)) * cos
+        };
+        let sum = COSINES.iter().fold(F::zero(), one);
+        sum / (lit::<F>(COSINES.len() as f64) * amplitude)
     }
 
     /// Moves a point behind the law, as [`crate::effect::SteadyEffect::correct_f32`] does.
@@ -135,6 +170,16 @@ impl<F: Float> SteadyCurve<F> {
     }
 }
 
+/// Value of the cubic piece from `x0` to `x1` at `x`.
+#[inline]
+pub(super) fn piece<F: Float>([x0, x1]: [F; 2], [y0, y1]: [F; 2], [m0, m1]: [F; 2], x: F) -> F {
+    let six = F::one() + F::one() + F::one() + F::one() + F::one() + F::one();
+    let h = x1 - x0;
+    let (a, b) = ((x1 - x) / h, (x - x0) / h);
+    let bend = (a * a * a - a) * m0 + (b * b * b - b) * m1;
+    a * y0 + b * y1 + bend * h * h / six
+}
+
 /// Magnitude of the rotor current, A: from the air-gap flux and the stator current.
 fn rotor_current<F: Float>(point: &SteadyPoint<F>) -> F {
     let i_m: Complex<F> = point.air_gap_flux() / point.motor.l_m;
@@ -142,6 +187,7 @@ fn rotor_current<F: Float>(point: &SteadyPoint<F>) -> F {
 }
 
 /// Mean over one turn of a periodic curve: by trapezoids between knots, which repeat.
+#[cfg(feature = "file")]
 fn mean(x: &[f64], y: &[f64]) -> f64 {
     let n = x.len();
     let width = |k: usize| match k + 1 == n {

@@ -107,7 +107,8 @@ fn shown_outputs(
         u_measured: inputs.u_s.clone(),
     };
     for e in uses(effects, Hook::Outputs) {
-        e.effect.outputs(&e.values, rated, &mut outputs);
+        e.effect
+            .outputs(&e.effect.prepared(&e.values, rated), rated, &mut outputs);
     }
     outputs
 }
