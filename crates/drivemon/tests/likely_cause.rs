@@ -83,3 +83,47 @@ fn what_several_sensors_showed_one_after_the_other_adds_up_to_one() {
     let dead = candidates(&result).iter().find(|c| c["phase"] == "a");
     assert_eq!(dead.expect("named")["fault"], "Iq");
 }
+
+/// A pump that lifts from 60 rad/s on, at the end of a motor file.
+const PUMP: &str = "\n[[effects]]\nname = \"curve\"\nplace = \"torque\"\ncoordinate = \"speed\"\n\
+                    knots_rad_s = [0.0, 60.0, 90.0, 120.0, 157.0]\nvalues_nm = [0.0, 0.0, 0.3, 1.2, 2.9]\n";
+
+/// A motor whose pump the monitor does not know shows FAULT; once the law is in its motor file it is dark, and a resistance that
+/// really rises still lights.
+#[test]
+fn a_law_that_was_adopted_puts_its_lamps_out_and_no_other() {
+    let folder = scratch("law");
+    let motor =
+        std::fs::read_to_string(format!("{PROJECT}/motors/peer-2k2.toml")).expect("shipped");
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("written");
+        path
+    };
+    let bare = write("bare.toml", &motor);
+    let pump = write("pump.toml", &format!("{motor}{PUMP}"));
+    let recorded = |name: &str, faults: &str| {
+        let scenario = format!(
+            "motor = \"pump.toml\"\nduration_s = 3\n[load]\nfriction_percent = 0\nactive = true\n\
+             profile = [{{ at_s = 0, torque_percent = 60 }}]\n[sensors]\nnoise_sigma_fraction_of_full_scale = 0.002\ntorque = true\n{faults}"
+        );
+        let scenario = write(&format!("{name}.toml"), &scenario);
+        let recording = folder.join(format!("{name}.csv.gz"));
+        let made = drivemon(&["simulate", text(&scenario), "-o", text(&recording)]);
+        assert!(made.status.success(), "{}", stderr(&made));
+        recording
+    };
+    let lit = |recording: &std::path::Path, motor: &std::path::Path| {
+        let told = drivemon(&["monitor", text(recording), "--motor", text(motor)]);
+        told.status.code()
+    };
+    let sound = recorded("sound", "");
+    assert_eq!(
+        lit(&sound, &bare),
+        Some(1),
+        "the pump is taken for friction"
+    );
+    assert_eq!(lit(&sound, &pump), Some(0));
+    let fault = "[[faults]]\nfault = \"Rs\"\nfactor = 1.5\nfrom_s = 1.5\n";
+    assert_eq!(lit(&recorded("fault", fault), &pump), Some(1));
+}

@@ -20,10 +20,10 @@ const BAND: f64 = 1.96;
 pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
     let at = named(step.action);
     LawReport {
+        tied_with: ties(step, &at),
         place: at.place,
         coordinate: at.coordinate,
         meaning: step.action.place.meaning(step.action.coordinate).to_owned(),
-        tied_with: step.tied.iter().map(|action| named(*action)).collect(),
         curve: curve(study, &step.trial),
         formula: None,
         formula_parameters: Vec::new(),
@@ -36,6 +36,17 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
             .and_then(|(_, config)| as_knots(&config))
             .map(|config| to_entry(&config)),
     }
+}
+
+/// Other places and coordinates, each once: friction and torque over time have one name.
+fn ties(step: &LawStep, at: &LawPlace) -> Vec<LawPlace> {
+    let mut ties: Vec<LawPlace> = Vec::new();
+    for tie in step.tied.iter().map(|action| named(*action)) {
+        if tie != *at && !ties.contains(&tie) {
+            ties.push(tie);
+        }
+    }
+    ties
 }
 
 /// Names as reports have them: a phase's own current is a current.
