@@ -2,7 +2,7 @@
 
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
-use crate::laws::{self, search::LawStep};
+use crate::laws::search::{LawStep, search};
 use crate::model::prior::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::search::accept::{adequate, beats, explained, proven};
 use crate::search::off;
@@ -115,14 +115,55 @@ pub(crate) fn explain(
         steps,
         nameable,
     };
-    if laws::search::is_asked(study, &explanation) {
-        laws::search::complete(study, &mut explanation, progress);
+    if laws_are_asked(study, &explanation) {
+        complete_with_law(study, &mut explanation, progress);
     }
     if explanation.nameable && explanation.laws.is_empty() {
         progress("contesting the parameters that moved", 0.8);
         explanation.contests = contests(study, &explanation, excluded);
     }
     explanation
+}
+
+/// Whether laws are asked about: the library leaves something, and samples over time can show where.
+fn laws_are_asked(study: &Study, found: &Explanation) -> bool {
+    let last = found.steps.last().map_or(&found.baseline, |s| &s.trial);
+    study.fitted.case.table.is_none() && !(found.nameable && adequate(study, last))
+}
+
+/// Looks for the law that the library does not hold and completes an explanation with it.
+///
+/// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
+/// them it must make the model adequate.
+fn complete_with_law(study: &Study, found: &mut Explanation, progress: &mut dyn FnMut(&str, f64)) {
+    let mut tell = |what: &str, share: f64| progress(what, 0.5 + 0.25 * share);
+    let alone = search(study, &found.baseline, &mut tell);
+    let last = found.steps.last().map(|step| step.trial.clone());
+    let wins = |law: &LawStep| {
+        law.proven
+            && (adequate(study, &law.trial) || mostly_explained(study, &found.baseline, &law.trial))
+            && last.as_ref().is_none_or(|last| beats(&law.trial, last))
+    };
+    if let Some(law) = alone.as_ref().filter(|law| wins(law)) {
+        found.steps.clear();
+        found.laws = vec![law.clone()];
+        found.nameable = true;
+        return;
+    }
+    if let Some(last) = last {
+        let more = search(study, &last, &mut tell);
+        if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
+            found.laws = vec![law];
+            found.nameable = true;
+            return;
+        }
+    }
+    if !found.nameable {
+        found.laws.extend(alone.map(|law| LawStep {
+            proven: false,
+            ..law
+        }));
+    }
 }
 
 /// The base once more from where its best candidate ended, if that is better without the candidate too: then the

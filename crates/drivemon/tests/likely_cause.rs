@@ -107,7 +107,7 @@ fn a_law_that_was_adopted_puts_its_lamps_out_and_no_other() {
             "motor = \"pump.toml\"\nduration_s = 3\n[load]\nfriction_percent = 0\nactive = true\n\
              profile = [{{ at_s = 0, torque_percent = 60 }}]\n[sensors]\nnoise_sigma_fraction_of_full_scale = 0.002\ntorque = true\n{faults}"
         );
-        let scenario = write(&format!("{name}.toml"), &scenario);
+        let scenario = write(&format!("{name}-scenario.toml"), &scenario);
         let recording = folder.join(format!("{name}.csv.gz"));
         let made = drivemon(&["simulate", text(&scenario), "-o", text(&recording)]);
         assert!(made.status.success(), "{}", stderr(&made));
@@ -124,6 +124,6 @@ fn a_law_that_was_adopted_puts_its_lamps_out_and_no_other() {
         "the pump is taken for friction"
     );
     assert_eq!(lit(&sound, &pump), Some(0));
-    let fault = "[[faults]]\nfault = \"Rs\"\nfactor = 1.5\nfrom_s = 1.5\n";
+    let fault = "[[faults]]\nfault = \"Rs\"\nchange_percent = 50.0\nfrom_s = 1.5\n";
     assert_eq!(lit(&recorded("fault", fault), &pump), Some(1));
 }

@@ -1,13 +1,12 @@
 //! Which law is missing: screened, refitted, proven as an effect must be.
 
 use crate::data::study::{Study, Trial};
-use crate::explain::Explanation;
 use crate::fit::output_error::{Effort, fit};
 use crate::laws::menu::menu;
 use crate::laws::modes::{self, Modes};
 use crate::laws::screen::{Screened, best_stiffness, screen};
 use crate::model::prediction::SpeedObserver;
-use crate::search::accept::{adequate, beats, explained, proven};
+use crate::search::accept::{beats, explained, proven};
 use crate::search::refit::combined;
 use motor::effect::curve::Action;
 use rayon::prelude::*;
@@ -23,10 +22,6 @@ const REFITTED_ASTRAY: usize = 4;
 const OBSERVER: f64 = 15.0;
 /// Share of the best law's gain that a tied one reaches.
 const TIED: f64 = 0.5;
-/// Share of the excess that a law explains at least to be named without adequacy ...
-const NAMED_SHARE: f64 = 0.85;
-/// ... and the error over noise that it leaves at most.
-const NAMED_ERROR: f64 = 1.25;
 /// First refit and the one after the stiffness was chosen anew, iterations.
 const ITERATIONS: [usize; 2] = [8, 4];
 
@@ -163,55 +158,4 @@ fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<A
             && !beats(&best.trial, &law.trial)
     };
     all.iter().filter(equal).map(|law| law.action).collect()
-}
-
-/// Whether laws are asked about: the library leaves something, and samples over time can show where.
-pub(crate) fn is_asked(study: &Study, found: &Explanation) -> bool {
-    let last = found.steps.last().map_or(&found.baseline, |s| &s.trial);
-    study.fitted.case.table.is_none() && !(found.nameable && adequate(study, last))
-}
-
-/// Looks for the law that the library does not hold and completes an explanation with it.
-///
-/// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
-/// them it must make the model adequate.
-pub(crate) fn complete(
-    study: &Study,
-    found: &mut Explanation,
-    progress: &mut dyn FnMut(&str, f64),
-) {
-    let mut tell = |what: &str, share: f64| progress(what, 0.5 + 0.25 * share);
-    let alone = search(study, &found.baseline, &mut tell);
-    let last = found.steps.last().map(|step| step.trial.clone());
-    let wins = |law: &LawStep| {
-        law.proven
-            && is_nameable(study, &found.baseline, &law.trial)
-            && last.as_ref().is_none_or(|last| beats(&law.trial, last))
-    };
-    if let Some(law) = alone.as_ref().filter(|law| wins(law)) {
-        found.steps.clear();
-        found.laws = vec![law.clone()];
-        found.nameable = true;
-        return;
-    }
-    if let Some(last) = last {
-        let more = search(study, &last, &mut tell);
-        if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
-            found.laws = vec![law];
-            found.nameable = true;
-            return;
-        }
-    }
-    if !found.nameable {
-        found.laws.extend(alone.map(|law| LawStep {
-            proven: false,
-            ..law
-        }));
-    }
-}
-
-/// Whether a model with a law may be named although something small is left over.
-fn is_nameable(study: &Study, baseline: &Trial, law: &Trial) -> bool {
-    adequate(study, law)
-        || explained(study, baseline, law) > NAMED_SHARE && study.proof_error(law) < NAMED_ERROR
 }

@@ -1,6 +1,6 @@
 //! Cubic splines through knots.
 
-use super::steady::piece;
+use super::piece::piece;
 use core::f64::consts::TAU;
 
 /// Second derivatives of the cubic spline through `(x, y)`; `x` ascends and has at least three knots. The first two and the last

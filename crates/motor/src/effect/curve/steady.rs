@@ -1,5 +1,6 @@
 //! A law in steady state: what the lamps need, without allocation.
 
+use super::piece::piece;
 use super::{Action, Coordinate, Place};
 use crate::effect::SteadyPoint;
 use crate::effect::steady::lit;
@@ -9,14 +10,14 @@ use num_traits::Float;
 /// Cosines of the odd multiples of 5.625 degrees: where the voltage drop of a phase is taken over a quarter of a cycle (Gauss and
 /// Chebyshev).
 const COSINES: [f64; 8] = [
-    0.995_184_726_672_196_9,
-    0.956_940_335_732_208_9,
-    0.881_921_264_348_355_1,
+    0.995_184_726_672_197,
+    0.956_940_335_732_209,
+    0.881_921_264_348_355,
     0.773_010_453_362_737,
-    0.634_393_284_163_645_5,
-    0.471_396_736_825_997_7,
-    0.290_284_677_254_462_4,
-    0.098_017_140_329_560_6,
+    0.634_393_284_163_645,
+    0.471_396_736_825_998,
+    0.290_284_677_254_462,
+    0.098_017_140_329_561,
 ];
 
 /// Most knots of a curve on the board.
@@ -168,16 +169,6 @@ impl<F: Float> SteadyCurve<F> {
         let r = self.describing_resistance(amplitude) * share;
         point.u_s = point.u_s - point.i_s * r;
     }
-}
-
-/// Value of the cubic piece from `x0` to `x1` at `x`.
-#[inline]
-pub(super) fn piece<F: Float>([x0, x1]: [F; 2], [y0, y1]: [F; 2], [m0, m1]: [F; 2], x: F) -> F {
-    let six = F::one() + F::one() + F::one() + F::one() + F::one() + F::one();
-    let h = x1 - x0;
-    let (a, b) = ((x1 - x) / h, (x - x0) / h);
-    let bend = (a * a * a - a) * m0 + (b * b * b - b) * m1;
-    a * y0 + b * y1 + bend * h * h / six
 }
 
 /// Magnitude of the rotor current, A: from the air-gap flux and the stator current.
