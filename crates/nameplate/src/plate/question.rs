@@ -83,7 +83,7 @@ pub const QUESTIONS: [Question; 17] = [
         [
             "Rated speed",
             "rpm",
-            "below 3000, 1500, 1000, 750 at 50 Hz",
+            "below 3000, 1500, 1000 at 50 Hz; below 3600, 1800, 1200 at 60 Hz",
             "rotor resistance is then known to a factor of two",
         ],
     ),

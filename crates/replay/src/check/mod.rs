@@ -7,7 +7,7 @@ mod severity;
 mod slip;
 mod told;
 
-pub use blind::{BlindSpot, blind_spots};
+pub use blind::{BlindSpot, blind_spots, channels_missing};
 pub use clamp::{ClampSignal, clamp_signals};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;

@@ -36,7 +36,7 @@ fn answer(result: &Place<'_>, one: &Place<'_>) -> Markup {
     };
     let text = html! {
         span.told { (one.text("told/state")) }
-        @if one.get("told/cause").is_some() { span.cause { (one.text("told/cause")) } }
+        @if one.get("told/cause").is_some() { span.culprit { (one.text("told/cause")) } }
     };
     let severity = one.text("told/severity");
     let more = html! {
@@ -131,8 +131,8 @@ fn signals(one: &Place<'_>, k: usize) -> Markup {
                 div.charts.small {
                     @if residuals { @for r in 0..4 { (residual(one, r)) } }
                     @if current {
-                        (operation(one, "current_rms_amp", "Current", "A rms", "Positive sequence of the phase currents."))
-                        (operation(one, "i2_over_i1", "Current unbalance", "1", "Negative over positive sequence."))
+                        (operation(one, "current_rms_amp", "Current", ["current", "A rms"], "Positive sequence of the phase currents."))
+                        (operation(one, "i2_over_i1", "Current unbalance", ["ratio", ""], "Negative over positive sequence."))
                     }
                 }
             }
@@ -167,14 +167,16 @@ fn residual(one: &Place<'_>, r: usize) -> Markup {
     chart.figure(&format!("r{}", r + 1), RESIDUALS[r])
 }
 
-fn operation(one: &Place<'_>, key: &str, heading: &str, unit: &'static str, what: &str) -> Markup {
-    let series = Series::line(
-        heading,
-        one.pointer_to(&format!("operation/*/{key}")),
-        "blue",
-    );
+fn operation(
+    one: &Place<'_>,
+    key: &str,
+    heading: &str,
+    [axis, unit]: [&'static str; 2],
+    what: &str,
+) -> Markup {
+    let series = Series::line(axis, one.pointer_to(&format!("operation/*/{key}")), "blue");
     small("operation", one)
-        .y(heading, unit)
+        .y(axis, unit)
         .starting_at_zero()
         .with(series)
         .figure(heading, what)
