@@ -11,7 +11,7 @@ import * as server from "./workbench/server.js";
 
 /** How often a question is asked how far it is, ms. */
 const POLL_MS = 250;
-const TITLES = ["The nameplate", "A recording", "Is it healthy now?", "The answer"];
+const TITLES = ["The nameplate", "Ten seconds of a recording", "Is it healthy now?", "The answer"];
 
 /**
  * One step: its heading stays, its body changes.
@@ -96,7 +96,13 @@ async function change(k, work) {
 
 /** @param {number} k */
 const changeAt = (k) => async (/** @type {() => Promise<View>} */ work) => {
-  await change(k, work).catch((error) => complain(k, wordsOf(error)));
+  try {
+    await change(k, work);
+    return true;
+  } catch (error) {
+    complain(k, wordsOf(error));
+    return false;
+  }
 };
 
 /** @param {View} next */
@@ -221,7 +227,7 @@ async function openAnswer(next) {
   answer.render(shownAnswer, found, {
     motor: next.motor?.file ?? "motor.toml",
     workbench: openWorkbench,
-    next: () => change(3, () => server.send("/check/next")).catch((error) => complain(3, wordsOf(error))),
+    next: () => changeAt(3)(() => server.send("/check/next")),
   });
   goTo(3);
 }

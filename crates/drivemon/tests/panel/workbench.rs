@@ -431,6 +431,23 @@ fn measure_opening_a_recording() {
     assert!(took < Duration::from_secs(2), "{took:?}");
 }
 
+/// What `drivemon check` says of the same plate and recording.
+fn told_by_the_command(plate: &Value) -> Value {
+    let flags = plate.as_object().expect("a plate").iter();
+    let flags = flags.flat_map(|(key, text)| {
+        let text = text.as_str().expect("a text").to_owned();
+        [format!("--{}", key.replace('_', "-")), text]
+    });
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_drivemon"))
+        .current_dir(root())
+        .args(["check", &format!("{PEER}/recording.csv.gz"), "--json", "-"])
+        .args(flags)
+        .output()
+        .expect("it runs");
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    answer["recordings"][0]["told"].clone()
+}
+
 /// A check over HTTP: what is missing is named, and the answer is the command's own.
 #[test]
 fn a_check_needs_a_plate_and_waveforms() {
@@ -468,6 +485,10 @@ fn a_check_needs_a_plate_and_waveforms() {
     load(address, 0, "recording");
     let shown = asked(address, "check", "");
     assert_eq!(shown["result"]["known_by"], "known by its plate alone");
+    assert_eq!(
+        shown["result"]["recordings"][0]["told"],
+        told_by_the_command(&numbers)
+    );
     let state_of = &shown["result"]["recordings"][0]["told"]["state"];
     assert!(
         state_of.is_string()

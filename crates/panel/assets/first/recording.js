@@ -7,7 +7,7 @@ import * as server from "../workbench/server.js";
 
 /** @typedef {import("../workbench/messages").View} View */
 /** @typedef {import("../workbench/messages").RecordingView} RecordingView */
-/** @typedef {(work: () => Promise<View>, at?: string) => Promise<void>} Change takes the state that comes; a refusal is said at the input of this id */
+/** @typedef {(work: () => Promise<View>) => Promise<boolean>} Change takes the state that comes; a refusal is said at the step, and is `false` */
 
 /**
  * Whether a recording can be checked.
@@ -32,8 +32,7 @@ export function drop(slot, view, words, change, done) {
   const zone = make("div", { class: "drop" }, make("label", { for: id }, words), input);
   const take = async (/** @type {File[]} */ files) => {
     if (files.length === 0) return;
-    await change(() => load(slot, files, view.most_bytes, view.recordings[slot]), id);
-    done?.();
+    if (await change(() => load(slot, files, view.most_bytes, view.recordings[slot]))) done?.();
   };
   input.addEventListener("change", () => take([...(input.files ?? [])]));
   zone.addEventListener("dragover", (event) => {

@@ -13,7 +13,7 @@ const PLACES = [
   { title: "Recording to fit", help: "Compared and fitted. CSV, CSV.gz, Parquet, MAT, COMTRADE .cff, or a load-test table; choose its sidecar .toml together with it." },
   { title: "Recording to prove with", help: "Another run of the same motor, never fitted. Without it, parts of the first that were left out prove." },
 ];
-export const ACCEPT = ".csv,.gz,.parquet,.mat,.cff,.txt,.dat,.toml";
+export const ACCEPT = ".csv,.gz,.parquet,.mat,.cff,.xlsx,.wav,.tsv,.txt,.dat,.toml";
 
 /**
  * Recording and sidecar among the chosen files.

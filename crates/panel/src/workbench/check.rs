@@ -148,11 +148,8 @@ pub(super) async fn motor(
 /// The next recording of the same motor: what was learnt of it stays, the recordings go.
 pub(super) async fn next(State(bench): State<Arc<Bench>>) -> Response {
     let done = bench.free_desk().and_then(|mut desk| {
-        let learnt = desk.motor.clone();
-        let checked = desk.check.as_mut();
-        let (checked, motor) = checked.zip(learnt).ok_or_else(no_motor)?;
-        checked.known.motor = motor.motor;
-        checked.known.text = motor.text;
+        let learnt = desk.motor.clone().filter(|_| desk.check.is_some());
+        desk.believe(learnt.ok_or_else(no_motor)?);
         desk.slots = Default::default();
         desk.results.clear();
         desk.job.problem = None;

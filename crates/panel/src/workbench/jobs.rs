@@ -169,8 +169,7 @@ impl Desk {
                     Change::Stays => {}
                     Change::Adopted(motor) => {
                         self.before.push(believed);
-                        self.motor = Some(motor);
-                        self.check = None;
+                        self.believe(motor);
                     }
                     Change::Learnt(motor) => self.motor = Some(motor),
                 }
@@ -236,7 +235,7 @@ impl Work {
             Healthy::This => &recordings[..1],
             Healthy::Earlier => &recordings[1..],
         };
-        let healthy: Vec<Recording> = healthy.iter().map(|one| Recording::clone(one)).collect();
+        let healthy: Vec<Recording> = healthy.iter().copied().cloned().collect();
         let judged = [(name.clone(), Recording::clone(first))];
         let (mut checkup, motor) = Checkup::new(known, &healthy, &judged, progress)?;
         let change = match checkup.knowledge {

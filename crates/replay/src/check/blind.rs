@@ -25,7 +25,7 @@ pub fn channels_missing(recording: &Recording, motor: &MotorFile) -> Vec<BlindSp
 }
 
 /// What a motor that was never seen in good order leaves dark.
-const NOT_CALIBRATED: BlindSpot = BlindSpot {
+pub(super) const NOT_CALIBRATED: BlindSpot = BlindSpot {
     unseen: "which phase is at fault, and faults smaller than the plate's uncertainty",
     needs: "a recording of the motor in good order (--healthy)",
 };

@@ -1,9 +1,12 @@
 //! The answer in words: one wording for terminal, page and panel.
 
+use motor::FaultId;
 use serde::Serialize;
 
 use super::Checked;
+use super::blind::NOT_CALIBRATED;
 use crate::VerdictState;
+use crate::causes::Candidate;
 
 /// What a technician reads first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -14,7 +17,7 @@ pub struct Told {
     pub cause: Option<String>,
     /// How sure that is, or how much was looked at.
     pub sure: String,
-    /// How bad it is and what that means for the plant, where the size is known.
+    /// How bad a fault is and what that means for the plant, or why that is not known.
     pub severity: Option<&'static str>,
 }
 
@@ -31,7 +34,7 @@ impl Told {
                 VerdictState::Healthy => looked_at(checked),
                 VerdictState::NotJudged => why_not(checked),
             },
-            severity: checked.severity.map(super::Severity::words),
+            severity: likeliest.and_then(|cause| severity(checked, cause)),
         }
     }
 }
@@ -61,6 +64,22 @@ fn sure_of_cause(checked: &Checked) -> String {
             100.0 * next.probability
         ),
         (_, None) => format!("{percent:.1} %; no other cause of the list explains it"),
+    }
+}
+
+fn severity(checked: &Checked, cause: &Candidate) -> Option<&'static str> {
+    let sensors = [
+        FaultId::CurrentSensor,
+        FaultId::VoltageSensor,
+        FaultId::SpeedSensor,
+    ];
+    match checked.severity {
+        Some(severity) => Some(severity.words()),
+        None if sensors.contains(&cause.fault) => Some("an instrument is wrong, not the motor"),
+        None if checked.blind.contains(&NOT_CALIBRATED) => {
+            Some("not known: a size is told once a recording in good order was given (--healthy)")
+        }
+        None => None,
     }
 }
 

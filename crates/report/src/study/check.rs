@@ -16,7 +16,9 @@ pub struct Checkup {
     pub motor: String,
     /// How well it is known.
     pub knowledge: Knowledge,
-    /// The same in words.
+    /// Whether it was ever seen in good order: without that only large faults show.
+    pub calibrated: bool,
+    /// How well it is known, in words.
     pub known_by: &'static str,
     /// Why a step of learning was not possible.
     pub notes: Vec<String>,
@@ -68,26 +70,19 @@ impl Checkup {
         let learnt = learn(&known.motor, healthy, &mut |what, share| {
             progress(what, begin * share);
         });
+        let share = (1.0 - begin) / recordings.len().max(1) as f64;
         let mut checked = Vec::new();
         for (k, (name, recording)) in recordings.iter().enumerate() {
-            let one = (1.0 - begin) / recordings.len() as f64;
-            let at = begin + one * k as f64;
-            let mut tell = |sample: usize| {
-                progress(
-                    "checking",
-                    at + one * sample as f64 / recording.len().max(1) as f64,
-                );
-            };
-            checked.push(CheckedRecording {
-                recording: name.clone(),
-                duration_s: recording.duration(),
-                is_reference: healthy.iter().any(|healthy| healthy == recording),
-                checked: check(recording, &learnt.motor, &mut tell)?,
-            });
+            let at = begin + share * k as f64;
+            let mut tell = |part: f64| progress("checking", at + share * part);
+            let mut one = CheckedRecording::new(name, recording, &learnt.motor, &mut tell)?;
+            one.is_reference = healthy.contains(recording);
+            checked.push(one);
         }
         let checkup = Checkup {
             motor: learnt.motor.name.clone(),
             knowledge: learnt.knowledge,
+            calibrated: learnt.motor.healthy.is_some(),
             known_by: known_by(known, learnt.knowledge),
             notes: learnt.notes,
             contradictions: known.contradictions.clone(),
@@ -110,6 +105,24 @@ impl Checkup {
         };
         let first = states.next().unwrap_or(VerdictState::NotJudged);
         states.fold(first, worst)
+    }
+}
+
+impl CheckedRecording {
+    fn new(
+        name: &str,
+        recording: &Recording,
+        motor: &MotorFile,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<CheckedRecording, String> {
+        let all = recording.len().max(1) as f64;
+        let mut tell = |sample: usize| progress(sample as f64 / all);
+        Ok(CheckedRecording {
+            recording: name.to_owned(),
+            duration_s: recording.duration(),
+            is_reference: false,
+            checked: check(recording, motor, &mut tell)?,
+        })
     }
 }
 

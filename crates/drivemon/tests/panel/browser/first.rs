@@ -66,7 +66,7 @@ async fn opened(page: &Page) -> (Server, Hand<'_>) {
     (server, hand)
 }
 
-async fn plate(page: &Page, hand: &Hand<'_>) {
+async fn plate(page: &Page, hand: &Hand<'_>, pictures: bool) {
     hand.click("#standard-nema").await;
     for (key, text) in PLATE {
         page.fill(&format!("#plate-{key}"), text).await;
@@ -78,6 +78,9 @@ async fn plate(page: &Page, hand: &Hand<'_>) {
     .await;
     let expected = page.text("#plate-power_factor-hint").await;
     assert!(expected.starts_with("expected: 0."), "{expected}");
+    if pictures {
+        shots::part(page, "#view-first", "panel-first-plate", 640).await;
+    }
     hand.click("#plate-continue").await;
     page.until("step 2", "document.querySelector('#first-file-0')")
         .await;
@@ -86,10 +89,7 @@ async fn plate(page: &Page, hand: &Hand<'_>) {
 /// Shorted turns of a real motor: their phase is named within ten clicks; the next recording of it is in good order.
 pub async fn a_real_fault_is_named_within_ten_clicks(page: &Page, pictures: bool) {
     let (_server, hand) = opened(page).await;
-    plate(page, &hand).await;
-    if pictures {
-        shots::whole(page, "panel-first-plate", 1200).await;
-    }
+    plate(page, &hand, pictures).await;
     hand.choose("#first-file-0", measured("sc_a1_b0_c0_001.csv.gz"))
         .await;
     page.until("step 3", "document.querySelector('#healthy-this')")
@@ -104,8 +104,7 @@ pub async fn a_real_fault_is_named_within_ten_clicks(page: &Page, pictures: bool
     words_are_those_of_the_server(page).await;
     what_is_saved(page).await;
     if pictures {
-        shots::whole(page, "panel-first-answer", 1200).await;
-        page.size(1400, 1000).await;
+        shots::part(page, "#step-4", "panel-first-answer", 1000).await;
     }
     hand.click("#first-next").await;
     page.until(

@@ -35,13 +35,16 @@ fn answer(result: &Place<'_>, one: &Place<'_>) -> Markup {
         Some(VerdictState::NotJudged) | None => Mood::Caution,
     };
     let text = html! {
-        span.told { (one.text("told/state")) }
+        span.told.coarse[!result.is_true("calibrated")] { (one.text("told/state")) }
         @if one.get("told/cause").is_some() { span.culprit { (one.text("told/cause")) } }
     };
     let severity = one.text("told/severity");
     let more = html! {
         @if !severity.is_empty() { p.severity { "Severity: " b { (severity) } } }
         p { "How sure: " (one.text("told/sure")) }
+        @for contradiction in result.items("contradictions").iter().take(1) {
+            p { b { "The plate contradicts itself: " } (contradiction.as_text()) ". Read it again: the answer is as good as the plate." }
+        }
         @if one.is_true("is_reference") {
             p { "You called the motor healthy in this recording: it taught what is normal, and is compared with itself. The next recording is compared with it." }
         }

@@ -35,7 +35,7 @@ fn printed(result: &Place<'_>) -> Markup {
                     th scope="row" { (in_words(row.text("name"))) }
                     td { (shown(row, "printed", significant(4))) }
                     td { (shown(row, "circuit", significant(4))) }
-                    td { (interval(row)) }
+                    td.interval { (interval(row)) }
                 } } }
             } }
         }
@@ -55,7 +55,7 @@ fn parameters(result: &Place<'_>) -> Markup {
             tbody { @for row in &rows { tr {
                 th scope="row" { (in_words(row.text("name"))) }
                 td { (shown(row, "value", significant(4))) }
-                td { (interval(row)) }
+                td.interval { (interval(row)) }
                 @if told { td.word { (row.text("would_tell")) } }
             } } }
         } }
