@@ -58,7 +58,7 @@ function complain(k, words) {
  * @param {View} now
  * @returns {number}
  */
-export function place(now) {
+function place(now) {
   if (!now.check) return 0;
   if (!recording.isUsable(now.recordings[0])) return 1;
   return now.results.includes("check") || (now.job.running && now.job.kind === "check") ? 3 : 2;
@@ -71,6 +71,16 @@ function goTo(k) {
 }
 
 /**
+ * One change at a time.
+ * @param {number} k
+ * @param {boolean} now
+ */
+function busy(k, now) {
+  for (const { element } of steps) element.inert = now;
+  steps[k].element.classList.toggle("busy", now);
+}
+
+/**
  * Does what changes the desk, and moves on where a step is done by it.
  * @param {number} k
  * @param {() => Promise<View>} work
@@ -78,20 +88,20 @@ function goTo(k) {
 async function change(k, work) {
   const before = view ? place(view) : 0;
   complain(k, "");
-  for (const { element } of steps) element.inert = true;
-  steps[k].element.classList.add("busy");
+  busy(k, true);
   try {
     take(await work());
-    const now = view ? place(view) : 0;
-    if (now !== before && !editing) goTo(now);
   } catch (error) {
     const state = await server.state().catch(() => null);
     if (state) take(state);
     throw error;
   } finally {
-    for (const { element } of steps) element.inert = false;
-    steps[k].element.classList.remove("busy");
+    busy(k, false);
+    // What had the focus is inert or gone: the keyboard goes on from the step.
+    steps[k].heading.focus({ preventScroll: true });
   }
+  const now = view ? place(view) : 0;
+  if (now !== before && !editing) goTo(now);
 }
 
 /** @param {number} k */

@@ -230,14 +230,13 @@ impl Work {
         let (Some(first), Some(name)) = (recordings.first(), self.names.first()) else {
             return Err("there is no recording to check".to_owned());
         };
+        let judged = [(name.clone(), *first)];
         let healthy = match self.question.healthy {
             Healthy::None => &[][..],
             Healthy::This => &recordings[..1],
             Healthy::Earlier => &recordings[1..],
         };
-        let healthy: Vec<Recording> = healthy.iter().copied().cloned().collect();
-        let judged = [(name.clone(), Recording::clone(first))];
-        let (mut checkup, motor) = Checkup::new(known, &healthy, &judged, progress)?;
+        let (mut checkup, motor) = Checkup::new(known, healthy, &judged, progress)?;
         let change = match checkup.knowledge {
             Knowledge::AsGiven => Change::Stays,
             Knowledge::Identified | Knowledge::Calibrated => {

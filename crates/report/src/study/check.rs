@@ -62,8 +62,8 @@ impl Checkup {
     /// A motor file or a recording that the core cannot take, in words.
     pub fn new(
         known: &Known,
-        healthy: &[Recording],
-        recordings: &[(String, Recording)],
+        healthy: &[&Recording],
+        recordings: &[(String, &Recording)],
         progress: &mut Progress<'_>,
     ) -> Result<(Checkup, MotorFile), String> {
         let begin = if healthy.is_empty() { 0.0 } else { LEARNING };

@@ -66,7 +66,8 @@ impl Check {
             .recordings
             .iter()
             .map(|path| path.display().to_string());
-        let recordings: Vec<_> = names.zip(recordings).collect();
+        let recordings: Vec<_> = names.zip(&recordings).collect();
+        let healthy: Vec<&Recording> = healthy.iter().collect();
         let checked =
             with_progress(|progress| Ok(Checkup::new(&known, &healthy, &recordings, progress)))?;
         let (mut checkup, motor) = checked.map_err(Failure::Usage)?;

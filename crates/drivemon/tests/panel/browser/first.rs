@@ -208,9 +208,13 @@ pub async fn what_is_wrong_is_said_plainly(page: &Page) {
         "document.querySelector('#plate-enough')",
     )
     .await;
-    hand.click("#plate-continue").await;
-    page.until("step 2", "document.querySelector('#first-file-0')")
-        .await;
+    // The keyboard alone: Enter goes on, and the focus goes with it.
+    page.press("\u{e007}").await;
+    page.until(
+        "the focus at step 2",
+        "document.activeElement?.id === 'step-2-title' && document.querySelector('#first-file-0')",
+    )
+    .await;
     wrong_files(page).await;
 }
 
