@@ -96,4 +96,25 @@ mod tests {
             ]
         );
     }
+
+    #[test]
+    fn shorted_turns_have_no_small_size() {
+        let verdict = |fault, size_percent| Verdict {
+            state: crate::VerdictState::Fault,
+            candidates: vec![crate::causes::Candidate {
+                fault,
+                phase: Some("a"),
+                probability: 0.9,
+                size_percent,
+            }],
+            tied: 1,
+            separating_tests: Vec::new(),
+        };
+        let small = Some(1.0);
+        assert_eq!(of(&verdict(FaultId::Turns, small)), Some(Severity::Growing));
+        let resistance = verdict(FaultId::StatorResistance, small);
+        assert_eq!(of(&resistance), Some(Severity::Small));
+        assert_eq!(of(&verdict(FaultId::VoltageSensor, Some(90.0))), None);
+        assert_eq!(of(&verdict(FaultId::Turns, None)), None);
+    }
 }

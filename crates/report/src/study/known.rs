@@ -135,9 +135,16 @@ fn plain(motor: &MotorFile, key: &str) -> Option<ParameterRow> {
     })
 }
 
+/// The lower end that a motor file writes for what may be nothing: it takes no 0.
+const NOTHING: f64 = 1e-12;
+
 fn with_interval(motor: &MotorFile, interval: &ParameterInterval) -> Option<ParameterRow> {
     Some(ParameterRow {
-        low: Some(interval.low),
+        low: Some(if interval.low <= NOTHING {
+            0.0
+        } else {
+            interval.low
+        }),
         high: Some(interval.high),
         ..plain(motor, &interval.key)?
     })
@@ -157,4 +164,40 @@ fn value(motor: &MotorFile, key: &str) -> Option<f64> {
         _ => return motor.effects.iter().find_map(|effect| effect.number(key)),
     };
     Some(nominal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLATE: &str = "power_kw = 2.2\nvoltage_volt = 400\nfrequency_hz = 50\nspeed_rpm = 1438\ncurrent_amp = 4.78\n";
+
+    #[test]
+    fn a_plate_alone_gives_every_parameter_an_interval() {
+        let file = PlateFile::parse(PLATE, "plate").expect("numbers");
+        let known = Known::of_plate(&file).expect("a motor");
+        assert!(known.contradictions.is_empty() && known.plate.len() == COLUMN_KEYS.len());
+        let rows = parameters(&known.motor, None);
+        assert!(rows.len() >= 6);
+        for row in rows {
+            assert!(row.low.is_some_and(|low| low <= row.value), "{row:?}");
+            assert!(row.high.is_some_and(|high| high >= row.value), "{row:?}");
+        }
+    }
+
+    #[test]
+    fn a_file_without_intervals_gives_none() {
+        let text = include_str!("../../../../motors/assumed-300w.toml");
+        let motor = MotorFile::parse(text, "motor").expect("it ships");
+        let rows = parameters(&motor, None);
+        assert_eq!(rows.len(), NOMINALS.len());
+        assert!(rows.iter().all(|row| row.low.is_none() && row.value > 0.0));
+    }
+
+    #[test]
+    fn a_plate_that_says_too_little_is_refused_in_words() {
+        let file = PlateFile::parse("power_kw = 2.2\n", "plate").expect("a number");
+        let told = Known::of_plate(&file).expect_err("no voltage");
+        assert!(told.contains("voltage"), "{told}");
+    }
 }

@@ -53,6 +53,9 @@ fn answer(result: &Place<'_>, one: &Place<'_>) -> Markup {
     verdict(mood, &text, &more)
 }
 
+/// Faults that no row of the method is about ([`FaultId`]).
+const BEYOND: &str = "bearings, insulation to ground, cooling";
+
 /// What to do beside what cannot be seen.
 fn steps(one: &Place<'_>, k: usize) -> Markup {
     let todo = one.items("todo");
@@ -66,8 +69,10 @@ fn steps(one: &Place<'_>, k: usize) -> Markup {
             }
             section aria-labelledby=(id("blind", k)) {
                 h2 id=(id("blind", k)) { "What cannot be seen here" }
-                @if blind.is_empty() { p { "The channels leave nothing dark that this method knows." } }
-                ul.blind { @for spot in &blind { li { (spot.text("unseen")) span.subtle { " – needs " (spot.text("needs")) } } } }
+                ul.blind {
+                    @for spot in &blind { li { (spot.text("unseen")) span.subtle { " – needs " (spot.text("needs")) } } }
+                    li { (BEYOND) span.subtle { " – needs other methods" } }
+                }
             }
         }
     }
