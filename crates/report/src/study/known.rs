@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn a_plate_that_says_too_little_is_refused_in_words() {
         let file = PlateFile::parse("power_kw = 2.2\n", "plate").expect("a number");
-        let told = Known::of_plate(&file).expect_err("no voltage");
-        assert!(told.contains("voltage"), "{told}");
+        let told = Known::of_plate(&file).expect_err("nothing but a power");
+        assert!(told.contains("is missing"), "{told}");
     }
 }
