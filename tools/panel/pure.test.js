@@ -7,6 +7,7 @@ import { groups, named, none } from "../../crates/panel/assets/causes.js";
 import { airy, decimals, following, symmetric } from "../../crates/panel/assets/charts.js";
 import { switched } from "../../crates/panel/assets/controls.js";
 import { lasting, likely, seen } from "../../crates/panel/assets/events.js";
+import { answers, expected, isAsked } from "../../crates/panel/assets/first/plate.js";
 import { clock, either, fixed, moment, percent, rpm, shown, timeOfDay } from "../../crates/panel/assets/format.js";
 import { LIMIT_MS, Watch, stale } from "../../crates/panel/assets/freshness.js";
 import { advice, headline } from "../../crates/panel/assets/lamps.js";
@@ -245,4 +246,25 @@ test("a band opens at the block of it that is furthest off", () => {
   assert.ok(found && Math.abs(found.from_s - 1.94) < 1e-9 && Math.abs(found.to_s - 2.06) < 1e-9);
   assert.equal(worstOf(result, { quantity: "slip", from_percent: 0, to_percent: 5 }, 50), null);
   assert.equal(worstOf(result, { quantity: "frequency", from_percent: 50, to_percent: 75 }, 50)?.from_s, 3 - 0.06);
+});
+
+/**
+ * @param {string} key
+ * @param {"every" | "iec" | "nema" | "elsewhere"} on
+ */
+const question = (key, on) => ({ key, words: key, unit: "", range: "", missing: "", on });
+
+test("a plate is asked for what its kind prints, and empty answers are not sent", () => {
+  const questions = [question("power_kw", "iec"), question("power_hp", "nema"), question("speed_rpm", "every"), question("name", "elsewhere")];
+  assert.deepEqual(questions.filter((each) => isAsked(each, "nema")).map(({ key }) => key), ["power_hp", "speed_rpm", "name"]);
+  const typed = /** @type {Record<string, string>} */ ({ power_kw: "5.5", power_hp: "7.5", speed_rpm: "  ", name: " Pump " });
+  assert.deepEqual(answers(questions, "iec", (key) => typed[key]), { power_kw: "5.5", name: "Pump" });
+  assert.deepEqual(answers(questions, "nema", (key) => typed[key]), { power_hp: "7.5", name: "Pump" });
+});
+
+test("a number that is not printed is told as expected", () => {
+  const plate = [{ name: "power_factor", printed: null, circuit: 0.681, low: 0.621, high: 0.746 }, { name: "speed_rpm", printed: 1725, circuit: 1727, low: 1723, high: 1732 }];
+  assert.equal(expected("power_factor", plate), "expected: 0.681 (95 %: 0.621 to 0.746)");
+  assert.equal(expected("speed_rpm", plate), "");
+  assert.equal(expected("inertia_kg_m2", plate), "");
 });

@@ -376,3 +376,21 @@ fn parameters_that_stand_for_a_missing_effect_are_not_taken() {
     assert_eq!(anyway.status.code(), Some(1));
     assert!(out.exists());
 }
+
+/// A plate beside a motor file would be ignored: it is refused, by name.
+#[test]
+fn a_plate_beside_a_motor_file_is_refused() {
+    let folder = workplace("check-both");
+    let (truth, plate) = (folder.join("truth.toml"), folder.join("plate.toml"));
+    let both = ["check", "none.csv", "--motor", text(&truth)];
+    for (more, named) in [
+        (&["--power-kw", "2.2"][..], "--power-kw"),
+        (&["--name", "Pump"], "--name"),
+        (&["--plate", text(&plate)], "--plate"),
+        (&["--dc-resistance-ohm", "3"], "--dc-resistance-ohm"),
+    ] {
+        let output = drivemon(&[&both[..], more].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(named), "{}", stderr(&output));
+    }
+}

@@ -5,6 +5,7 @@ import { Chart } from "./charts.js";
 import * as controls from "./controls.js";
 import { byId, make, of, say, show } from "./dom.js";
 import * as events from "./events.js";
+import * as first from "./first.js";
 import { Watch } from "./freshness.js";
 import { fixed, rpm, timeOfDay } from "./format.js";
 import * as lamps from "./lamps.js";
@@ -223,29 +224,32 @@ function choose(chosen) {
 }
 
 function tabs() {
-  const all = ["live", "workbench"].map((name) => ({ tab: byId(`tab-${name}`), view: byId(`view-${name}`) }));
-  let started = false;
+  const all = ["live", "first", "workbench"].map((name) => ({ tab: byId(`tab-${name}`), view: byId(`view-${name}`) }));
+  const begin = [() => undefined, () => first.start(all[1].view, () => open(2)), () => workbench.start(all[2].view)];
+  const again = [() => undefined, first.refresh, workbench.refresh];
+  const started = [true, false, false];
   const open = (/** @type {number} */ chosen) => {
     all.forEach(({ tab, view }, k) => {
       tab.setAttribute("aria-selected", String(k === chosen));
       tab.tabIndex = k === chosen ? 0 : -1;
       show(view, k === chosen);
     });
-    if (chosen === 1 && !started) {
-      started = true;
-      workbench.start(all[1].view);
-    }
+    // Both tabs show one desk: what the other changed is fetched.
+    if (started[chosen]) again[chosen]();
+    else begin[chosen]();
+    started[chosen] = true;
   };
   all.forEach(({ tab }, k) => {
     tab.addEventListener("click", () => open(k));
     tab.addEventListener("keydown", (event) => {
-      if (event.key !== "ArrowRight" && event.key !== "ArrowLeft") return;
-      open(1 - k);
-      all[1 - k].tab.focus();
+      const step = { ArrowRight: 1, ArrowLeft: all.length - 1 }[event.key];
+      if (!step) return;
+      const next = (k + step) % all.length;
+      open(next);
+      all[next].tab.focus();
     });
   });
-  show(byId("tabs"), workbench.ready);
-  show(byId("tab-workbench"), workbench.ready);
+  for (const id of ["tabs", "tab-first", "tab-workbench"]) show(byId(id), workbench.ready);
 }
 
 // The cookie has taken the token's place: it need not stay in sight and in the history.

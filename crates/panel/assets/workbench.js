@@ -32,6 +32,7 @@ const parts = {
 /** @type {View | null} */
 let view = null;
 let shownId = -1;
+let following = false;
 
 /** @param {string} words */
 function complain(words) {
@@ -109,7 +110,7 @@ function progress({ recordings: loaded, motor: chosen, job }) {
 
 /** @param {View} next */
 function tabs(next) {
-  show(parts.tabs, next.results.length > 1);
+  show(parts.tabs, KINDS.filter(([kind]) => next.results.includes(kind)).length > 1);
   parts.tabs.replaceChildren(...KINDS.filter(([kind]) => next.results.includes(kind)).map(([kind, words]) => {
     const button = make("button", { type: "button", "aria-pressed": String(parts.answer.dataset.kind === kind) }, words);
     button.addEventListener("click", () => open(kind).catch((error) => complain(wordsOf(error))));
@@ -142,13 +143,19 @@ async function ask(kind, effect = "") {
 }
 
 async function follow() {
+  if (following) return;
+  following = true;
+  await untilAnswered().finally(() => (following = false));
+}
+
+async function untilAnswered() {
   for (;;) {
     const next = await server.state();
     if (!next.job.running) {
       take(next);
       say(parts.what, "");
       complain(next.job.problem ?? "");
-      if (next.job.problem === null && next.job.kind && next.job.id !== shownId) {
+      if (next.job.problem === null && KINDS.some(([kind]) => kind === next.job.kind) && next.job.kind && next.job.id !== shownId) {
         shownId = next.job.id;
         await open(next.job.kind);
         document.getElementById("answer-title")?.focus({ preventScroll: true });
@@ -159,6 +166,20 @@ async function follow() {
     progress(next);
     await new Promise((resolve) => setTimeout(resolve, POLL_MS));
   }
+}
+
+/** @param {View} now */
+async function openLast(now) {
+  const last = KINDS.map(([kind]) => kind).filter((kind) => now.results.includes(kind)).at(-1);
+  if (last) await open(last);
+}
+
+/** Shows what another tab has changed on the desk. */
+export function refresh() {
+  server.state().then(async (now) => {
+    take(now);
+    if (now.job.running) await follow();
+  }).catch((error) => complain(wordsOf(error)));
 }
 
 /**
@@ -173,6 +194,6 @@ export function start(holder) {
   server.state().then(async (first) => {
     take(first);
     if (first.job.running) await follow();
-    else if (first.results.length > 0) await open(first.results[first.results.length - 1]);
+    else await openLast(first);
   }).catch((error) => complain(wordsOf(error)));
 }

@@ -2,6 +2,8 @@
 //!
 //! Terminal, report, panel and campaign all ask here, and the board asks the same function of the core.
 
+use std::fmt;
+
 use monitor::{Channel, FaultId, Known, Lamp, Phase, Report, Suspicion, likely};
 use recording::{Code, Finding};
 use serde::{Serialize, Serializer};
@@ -79,6 +81,20 @@ fn split_friction(all: &mut Vec<Candidate>) {
         ..sum.clone()
     };
     all.push(load);
+}
+
+impl fmt::Display for Candidate {
+    /// Cause, phase and size.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.fault.words())?;
+        if let Some(phase) = self.phase {
+            write!(f, ", phase {phase}")?;
+        }
+        if let Some(size) = self.size_percent {
+            write!(f, ", {size:+.1} %")?;
+        }
+        Ok(())
+    }
 }
 
 impl Candidate {

@@ -242,7 +242,17 @@ globalThis.drawFigures = (root, result) => {
     }
   }
 
+  /** Paper has its own width and its own colours: figures are drawn anew for it, and again for the screen. */
+  function drawOn(paper) {
+    document.documentElement.classList.toggle("on-paper", paper);
+    charts.forEach(build);
+  }
+  const toPaper = () => drawOn(true);
+  const toScreen = () => drawOn(false);
+
   function remove() {
+    window.removeEventListener("beforeprint", toPaper);
+    window.removeEventListener("afterprint", toScreen);
     dark.removeEventListener("change", rebuild);
     window.removeEventListener("dppxchange", rebuild);
     for (const { observer, plot } of charts) {
@@ -255,6 +265,8 @@ globalThis.drawFigures = (root, result) => {
   const rebuild = () => charts.forEach(build);
   root.querySelectorAll("figure[data-chart]").forEach(start);
   dark.addEventListener("change", rebuild);
+  window.addEventListener("beforeprint", toPaper);
+  window.addEventListener("afterprint", toScreen);
   // Another screen, another pixel ratio: text and lines are measured anew.
   window.addEventListener("dppxchange", rebuild);
   return { count: charts.length, redraw, remove };

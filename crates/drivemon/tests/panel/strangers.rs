@@ -263,6 +263,8 @@ fn on_a_network_nothing_is_shown_without_the_token() {
         "/api/stream",
         "/panel/main.js",
         "/api/workbench/state",
+        "/api/workbench/check/form",
+        "/api/workbench/check/report.html",
         "/nowhere",
     ] {
         for shown in [

@@ -188,3 +188,55 @@ fn models_before_and_after_lie_over_the_measurement() {
     assert!(rms("/1") < 0.8 * rms("/0"), "{} {}", rms("/1"), rms("/0"));
     browser::check(&page);
 }
+
+/// What a technician reads is what the JSON says, word for word; every number and figure comes from it.
+#[test]
+fn the_page_of_a_check_says_the_words_of_its_json() {
+    let faulty = page::project("tests/data/itsc_075hp/sc_a1_b0_c0_001.csv.gz");
+    let healthy = page::project("tests/data/itsc_075hp/sc_hlt_001.csv.gz");
+    let plate = [
+        "--power-hp",
+        "0.75",
+        "--voltage-volt",
+        "230",
+        "--frequency-hz",
+        "60",
+        "--speed-rpm",
+        "1725",
+        "--current-amp",
+        "2.6",
+    ];
+    let command = ["check", &faulty, "--healthy", &healthy];
+    let page = Page::of("check", &[&command[..], &plate].concat());
+    page.check();
+    for key in ["state", "cause", "sure", "severity"] {
+        let words = page.text(&format!("/recordings/0/told/{key}"));
+        assert!(
+            !words.is_empty() && page.html.contains(&words),
+            "{key}: {words}"
+        );
+    }
+    assert!(
+        page.text("/recordings/0/told/cause")
+            .starts_with("shorted turns, phase a")
+    );
+    for place in [
+        "/recordings/0/todo/0",
+        "/recordings/0/blind/0/unseen",
+        "/known_by",
+    ] {
+        assert!(page.html.contains(&page.text(place)), "{place}");
+    }
+    browser::check(&page);
+}
+
+#[test]
+fn the_page_of_a_check_draws_residuals_where_there_are_voltages() {
+    let recording = peer("none", "recording.csv.gz");
+    let motor = page::project("motors/peer-2k2.toml");
+    let page = Page::of("check-healthy", &["check", &recording, "--motor", &motor]);
+    page.check();
+    // r1 to r4, the current and its unbalance.
+    assert_eq!(page.charts().len(), 6);
+    assert!(page.html.contains("in good order"));
+}

@@ -150,6 +150,12 @@ impl Page {
             .collect()
     }
 
+    /// A text of the result; empty where there is none.
+    pub fn text(&self, address: &str) -> String {
+        let text = self.json.pointer(address).and_then(Value::as_str);
+        text.unwrap_or_default().to_owned()
+    }
+
     /// The values at an address of the JSON, one for each row of the array before the star.
     pub fn column(&self, address: &str) -> Vec<&Value> {
         let (head, tail) = address.split_once("/*").expect("a star");

@@ -5,6 +5,7 @@ mod completed;
 mod file;
 mod printed;
 mod problem;
+mod question;
 mod synchronous;
 mod values;
 
@@ -12,6 +13,7 @@ pub use completed::Completed;
 pub use file::{EXTRA_KEYS, HORSEPOWER_KW, PlateFile};
 pub use printed::{NotANumber, Printed};
 pub use problem::Problem;
+pub use question::{Printing, QUESTIONS, Question};
 pub use values::{VALUES, Value, Values};
 
 /// A plate: every number may be missing.

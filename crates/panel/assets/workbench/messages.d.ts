@@ -1,7 +1,7 @@
 /** What the workbench's routes send; the Rust side is crates/panel/src/workbench. */
 import type { Finding } from "../messages";
 
-export type Kind = "compare" | "explain" | "adopt";
+export type Kind = "compare" | "explain" | "adopt" | "check";
 
 export interface Columns {
   column: Record<string, string>;
@@ -30,6 +30,7 @@ export interface RecordingView {
   problem: string | null;
   summary: Summary | null;
   audit: { supported: boolean; findings: Finding[] } | null;
+  blind: { unseen: string; needs: string }[] | null;
   read_s: number;
 }
 
@@ -37,9 +38,17 @@ export interface MotorView { name: string; file: string; effects: string[]; adop
 
 export interface Job { id: number; kind: Kind | null; running: boolean; what: string; share: number; problem: string | null }
 
+/** The motor of the first check. */
+export interface CheckView { name: string; by_plate: boolean; calibrated: boolean; contradictions: string[]; typed: Record<string, string> }
+/** A question of the plate's form. */
+export interface Question { key: string; words: string; unit: string; range: string; missing: string; on: "every" | "iec" | "nema" | "elsewhere" }
+export interface PlateRow { name: string; printed: number | null; circuit: number; low: number; high: number }
+export interface Attempt { missing: string | null; contradictions: string[]; plate: PlateRow[] }
+
 export interface View {
   recordings: (RecordingView | null)[];
   motor: MotorView | null;
+  check: CheckView | null;
   shipped: string[];
   job: Job;
   results: Kind[];

@@ -13,7 +13,7 @@ const PLACES = [
   { title: "Recording to fit", help: "Compared and fitted. CSV, CSV.gz, Parquet, MAT, COMTRADE .cff, or a load-test table; choose its sidecar .toml together with it." },
   { title: "Recording to prove with", help: "Another run of the same motor, never fitted. Without it, parts of the first that were left out prove." },
 ];
-const ACCEPT = ".csv,.gz,.parquet,.mat,.cff,.txt,.dat,.toml";
+export const ACCEPT = ".csv,.gz,.parquet,.mat,.cff,.xlsx,.wav,.tsv,.txt,.dat,.toml";
 
 /**
  * Recording and sidecar among the chosen files.
@@ -43,7 +43,7 @@ export function inWords(summary) {
  * @param {RecordingView | null} present what lies there
  * @returns {Promise<View>}
  */
-async function load(slot, files, most, present) {
+export async function load(slot, files, most, present) {
   const { recording, sidecar } = sorted(files);
   const path = `/recordings/${slot}`;
   const query = (/** @type {File} */ file, rest = "") => `?name=${encodeURIComponent(file.name)}${rest}`;
@@ -56,7 +56,7 @@ async function load(slot, files, most, present) {
 }
 
 /** @param {RecordingView} recording */
-function findings({ audit }) {
+export function findings({ audit }) {
   if (!audit || audit.findings.length === 0) return [];
   const title = audit.supported ? "What the audit noticed" : "The audit refuses this recording";
   const list = audit.findings.map((finding) => make("li", { class: finding.refuses ? "refuses" : null }, make("strong", {}, `${finding.code} ${finding.channel}: `), finding.detail));

@@ -15,8 +15,9 @@ import { wire } from "./regions.js";
  * @property {number} rated_hz
  */
 
-/** @type {import("./messages").Figures | null} */
-let figures = null;
+/** Figures by what holds them. */
+/** @type {WeakMap<HTMLElement, import("./messages").Figures>} */
+const drawn = new WeakMap();
 
 /**
  * The page's parts; their names become the answer's own, so that they meet no others on the page.
@@ -78,23 +79,35 @@ function next(kind, result, steps) {
  * @param {Steps} steps
  */
 export function render(holder, kind, answer, steps) {
-  clear(holder);
-  const title = make("h2", { id: "answer-title", class: "answer-title", tabindex: "-1" }, answer.title);
-  holder.append(title, ...parts(answer.html, kind));
-  holder.dataset.kind = kind;
-  applyStyles(holder);
+  const figures = put(holder, kind, answer);
   const verdict = holder.querySelector(".verdict");
   const told = holder.querySelector(`[aria-labelledby=${kind}-next] p`);
   (told ?? verdict)?.after(next(kind, answer.result, steps));
-  figures = globalThis.drawFigures(holder, answer.result);
-  holder.dataset.charts = String(figures.count);
   if (kind === "compare") wire(holder, answer.result, figures, steps.rated_hz, steps.complain);
+}
+
+/**
+ * Puts an answer with its figures in place of the one before.
+ * @param {HTMLElement} holder
+ * @param {Kind} kind
+ * @param {Answer} answer
+ */
+export function put(holder, kind, answer) {
+  clear(holder);
+  const title = make("h2", { id: `${holder.id}-title`, class: "answer-title", tabindex: "-1" }, answer.title);
+  holder.append(title, ...parts(answer.html, kind));
+  holder.dataset.kind = kind;
+  applyStyles(holder);
+  const figures = globalThis.drawFigures(holder, answer.result);
+  drawn.set(holder, figures);
+  holder.dataset.charts = String(figures.count);
+  return figures;
 }
 
 /** @param {HTMLElement} holder */
 export function clear(holder) {
-  figures?.remove();
-  figures = null;
+  drawn.get(holder)?.remove();
+  drawn.delete(holder);
   holder.replaceChildren();
   delete holder.dataset.kind;
 }

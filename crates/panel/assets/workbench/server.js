@@ -11,8 +11,21 @@ const ROOT = "/api/workbench";
  */
 async function refusal(answer) {
   const kind = answer.headers.get("content-type") ?? "";
-  const words = kind.startsWith("application/json") ? (await answer.json()).message : (await answer.text()).trim();
-  return new Error(words || `the server answers ${answer.status}`);
+  if (!kind.startsWith("application/json")) return new Error((await answer.text()).trim() || `the server answers ${answer.status}`);
+  const { message, problems } = await answer.json();
+  return new Refused(message, problems ?? []);
+}
+
+/** What the server refuses, with the fields that are to blame. */
+export class Refused extends Error {
+  /**
+   * @param {string} message
+   * @param {import("../messages").Refusal["problems"]} problems
+   */
+  constructor(message, problems) {
+    super(message);
+    this.problems = problems;
+  }
 }
 
 /**
@@ -45,6 +58,15 @@ export const send = (path, body = {}) => ask(path, { method: "POST", headers: { 
  * @returns {Promise<View>}
  */
 export const upload = (path, file) => ask(path, { method: "POST", headers: { "content-type": "application/octet-stream" }, body: file });
+
+/** @returns {Promise<import("./messages").Question[]>} */
+export const form = () => ask("/check/form");
+
+/**
+ * @param {Record<string, string>} typed
+ * @returns {Promise<import("./messages").Attempt>}
+ */
+export const attempt = (typed) => ask("/check/attempt", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(typed) });
 
 /**
  * @param {string} kind

@@ -49,6 +49,11 @@ const ASSETS: &[Asset] = &[
     own!("workbench/regions.js", SCRIPT),
     own!("workbench/server.js", SCRIPT),
     own!("workbench.css", STYLE),
+    own!("first.js", SCRIPT),
+    own!("first/plate.js", SCRIPT),
+    own!("first/recording.js", SCRIPT),
+    own!("first/answer.js", SCRIPT),
+    own!("first.css", STYLE),
     (
         "/report.js",
         SCRIPT,

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use recording::{Audit, Expectation, Source, audit};
+use replay::check::{BlindSpot, channels_missing};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
+use super::known::{CheckView, Checked};
 use super::motors::{self, Motor, MotorView};
 use super::slot::{Slot, SlotView};
 use super::upload::Budget;
@@ -29,6 +31,8 @@ pub(super) enum Kind {
     Explain,
     /// Add an effect.
     Adopt,
+    /// Whether the motor is in good order.
+    Check,
 }
 
 /// How far the question is.
@@ -59,6 +63,8 @@ pub(super) struct Desk {
     pub slots: [Option<Slot>; SLOTS],
     /// The motor file; the panel's own when absent.
     pub motor: Option<Motor>,
+    /// The motor of the first check, before recordings taught anything of it.
+    pub check: Option<Checked>,
     /// What was believed before each adoption, the latest last.
     pub before: Vec<Motor>,
     /// The question.
@@ -76,6 +82,8 @@ pub struct Bench {
     pub(super) budget: Arc<Budget>,
     /// One file is read at a time: what reading takes in memory is then bounded too.
     pub(super) reading: tokio::sync::Mutex<()>,
+    /// One plate becomes a circuit at a time.
+    pub(super) estimating: tokio::sync::Mutex<()>,
 }
 
 /// What the page shows of the desk.
@@ -83,6 +91,7 @@ pub struct Bench {
 pub(super) struct View {
     recordings: [Option<SlotView>; SLOTS],
     motor: Option<MotorView>,
+    check: Option<CheckView>,
     shipped: Vec<&'static str>,
     job: Job,
     /// Which answers there are.
@@ -98,6 +107,7 @@ impl Bench {
             desk: Mutex::default(),
             budget: Arc::default(),
             reading: tokio::sync::Mutex::default(),
+            estimating: tokio::sync::Mutex::default(),
         })
     }
 
@@ -132,14 +142,16 @@ impl Bench {
     }
 
     /// What a person should know of a recording before anything is asked of it.
-    fn audit(&self, source: &Source) -> Option<Audit> {
+    fn looked_at(&self, source: &Source) -> Option<(Audit, Vec<BlindSpot>)> {
         let Source::Recording(recording) = source else {
             return None;
         };
-        let expectation = self.motor().map_or_else(Expectation::default, |motor| {
+        let motor = self.motor();
+        let expectation = motor.as_ref().map_or_else(Expectation::default, |motor| {
             Expectation::from(&motor.motor)
         });
-        Some(audit(recording, &expectation))
+        let blind = motor.map(|motor| channels_missing(recording, &motor.motor));
+        Some((audit(recording, &expectation), blind.unwrap_or_default()))
     }
 
     /// Audits every recording that is not audited yet, with the motor file as it now is.
@@ -151,14 +163,14 @@ impl Bench {
                 .filter(unaudited)
                 .and_then(|slot| slot.source.clone());
             let Some(source) = source else { continue };
-            let audit = self.audit(&source);
+            let looked_at = self.looked_at(&source);
             // It may have been replaced meanwhile.
             let same = |slot: &&mut Slot| {
                 let now = slot.source.as_ref();
                 now.is_some_and(|now| Arc::ptr_eq(now, &source))
             };
             if let Some(slot) = self.desk().slots[slot].as_mut().filter(same) {
-                slot.view.audit = audit;
+                (slot.view.audit, slot.view.blind) = looked_at.unzip();
             }
         }
     }
@@ -171,6 +183,7 @@ impl Bench {
         View {
             recordings: [view(&desk.slots[0]), view(&desk.slots[1])],
             motor: motor.map(|motor| motor.view(&desk.before)),
+            check: desk.check.as_ref().map(Checked::view),
             shipped: motors::shipped_names(),
             job: desk.job.clone(),
             results: desk.results.keys().copied().collect(),
@@ -183,12 +196,22 @@ impl Desk {
     /// Takes another motor file; answers about the one before are gone.
     pub fn take_motor(&mut self, motor: Option<Motor>) {
         self.motor = motor;
+        self.check = None;
         self.before.clear();
         self.results.clear();
         // What the audit expects changes with the nameplate.
         for slot in self.slots.iter_mut().flatten() {
             slot.view.audit = None;
         }
+    }
+
+    /// Believes another motor file of the same motor; the next check begins with it.
+    pub fn believe(&mut self, motor: Motor) {
+        if let Some(checked) = &mut self.check {
+            checked.known.motor = motor.motor.clone();
+            checked.known.text.clone_from(&motor.text);
+        }
+        self.motor = Some(motor);
     }
 
     /// Numbers that a file which is read now into a slot may hold, beside the other slots.

@@ -7,14 +7,15 @@ use axum::Json;
 use axum::extract::State;
 use axum::extract::rejection::JsonRejection;
 use axum::response::Response;
-use recording::Source;
+use recording::{Recording, Source};
+use replay::check::Knowledge;
 use serde::{Deserialize, Serialize};
 
-use super::answer;
 use super::desk::{Bench, Desk, Job, Kind};
 use super::motors::Motor;
+use super::{answer, check};
 use crate::running::shared::Refusal;
-use report::study::{Adopted, Compared, Explained, Inputs};
+use report::study::{Adopted, Checkup, Compared, Explained, Inputs, Known};
 use report::{Subject, fragment};
 
 /// A question of the page.
@@ -24,6 +25,22 @@ pub(super) struct Question {
     /// What to adopt.
     #[serde(default)]
     effect: String,
+    /// Which recording to check shows the motor in good order.
+    #[serde(default)]
+    healthy: Healthy,
+}
+
+/// Which recording of the motor in good order there is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Healthy {
+    /// None that anybody knows of.
+    #[default]
+    None,
+    /// The one that is checked.
+    This,
+    /// The second one on the desk.
+    Earlier,
 }
 
 /// What a question is worked out from.
@@ -32,10 +49,27 @@ struct Work {
     names: Vec<String>,
     sources: Vec<Source>,
     motor: Motor,
+    /// The motor of a check.
+    known: Option<Known>,
 }
 
-/// A result as JSON, and the motor file that came with it.
-type Outcome = Result<(String, Option<Motor>), String>;
+/// A result as JSON, and what becomes of the motor file.
+struct Done {
+    json: String,
+    motor: Change,
+}
+
+/// What a question changes about the motor file on the desk.
+enum Change {
+    /// Nothing.
+    Stays,
+    /// An effect was added: the one before can come back.
+    Adopted(Motor),
+    /// Healthy recordings taught it.
+    Learnt(Motor),
+}
+
+type Outcome = Result<Done, String>;
 
 /// Begins to work on a question.
 pub(super) async fn begin(
@@ -52,10 +86,14 @@ fn start(bench: &Arc<Bench>, question: Question) -> Result<(), Refusal> {
         .motor()
         .ok_or_else(|| Refusal::of("choose a motor file first"))?;
     let mut desk = bench.free_desk()?;
-    let (names, sources) = desk.sources();
+    let (names, sources) = match question.kind {
+        Kind::Check => desk.check_sources(question.healthy)?,
+        Kind::Compare | Kind::Explain | Kind::Adopt => desk.sources(),
+    };
     if sources.is_empty() {
         return Err(Refusal::of("load a recording first"));
     }
+    let known = desk.check.as_ref().map(|checked| checked.known.clone());
     desk.job = Job {
         id: desk.job.id + 1,
         kind: Some(question.kind),
@@ -73,6 +111,7 @@ fn start(bench: &Arc<Bench>, question: Question) -> Result<(), Refusal> {
             names,
             sources,
             motor,
+            known,
         };
         run(&weak, work);
     });
@@ -95,15 +134,44 @@ fn run(bench: &Weak<Bench>, work: Work) {
 }
 
 impl Desk {
+    /// The recording to check, and the one of the motor in good order behind it where it is the second one.
+    fn check_sources(&self, healthy: Healthy) -> Result<(Vec<String>, Vec<Arc<Source>>), Refusal> {
+        if self.check.is_none() {
+            return Err(check::no_motor());
+        }
+        let of = |slot: usize, what: &str| {
+            let slot = self.slots[slot].as_ref();
+            let there = slot.and_then(|slot| Some((slot.view.name.clone(), slot.source.clone()?)));
+            let (name, source) = there.ok_or_else(|| Refusal::of(format!("load {what} first")))?;
+            match source.as_ref() {
+                Source::Recording(_) => Ok((name, source)),
+                Source::LoadTable(_) => Err(Refusal::of(format!(
+                    "{name}: a load table has no waveforms to judge; the workbench explains it"
+                ))),
+            }
+        };
+        let mut both = vec![of(0, "a recording")?];
+        if healthy == Healthy::Earlier {
+            both.push(of(1, "the recording of the motor in good order")?);
+        }
+        Ok(both.into_iter().unzip())
+    }
+
     fn finish(&mut self, kind: Kind, believed: Motor, outcome: Outcome) {
         self.job.running = false;
         match outcome {
-            Ok((json, adopted)) => {
-                if adopted.is_some() {
-                    self.before.push(believed);
-                    self.motor = adopted;
+            Ok(Done { json, motor }) => {
+                if !matches!(motor, Change::Stays) {
                     // They are about the motor file before.
                     self.results.clear();
+                }
+                match motor {
+                    Change::Stays => {}
+                    Change::Adopted(motor) => {
+                        self.before.push(believed);
+                        self.believe(motor);
+                    }
+                    Change::Learnt(motor) => self.motor = Some(motor),
                 }
                 self.results.insert(kind, json.into());
                 self.job.share = 1.0;
@@ -131,25 +199,72 @@ impl Work {
         match self.question.kind {
             Kind::Compare => {
                 let compared = Compared::new(inputs, String::new(), &mut progress);
-                Ok((shown(Subject::Compare, &compared.map_err(plainly)?)?, None))
+                stays(Subject::Compare, &compared.map_err(plainly)?)
             }
             Kind::Explain => {
                 let explained = Explained::new(inputs, &|_| None, &mut progress);
-                Ok((shown(Subject::Explain, &explained.map_err(plainly)?)?, None))
+                stays(Subject::Explain, &explained.map_err(plainly)?)
             }
             Kind::Adopt => {
                 let effect = self.question.effect.as_str();
                 let adopted = Adopted::new(effect, inputs, &mut progress);
                 let (mut adopted, motor) = adopted.map_err(plainly)?;
                 if !adopted.report.proven {
-                    return Ok((shown(Subject::Adopt, &adopted)?, None));
+                    return stays(Subject::Adopt, &adopted);
                 }
                 let motor = self.motor.with(effect, motor);
                 adopted.report.motor_file.clone_from(&motor.file);
-                Ok((shown(Subject::Adopt, &adopted)?, Some(motor)))
+                Ok(Done {
+                    json: shown(Subject::Adopt, &adopted)?,
+                    motor: Change::Adopted(motor),
+                })
             }
+            Kind::Check => self.checked(&mut progress),
         }
     }
+
+    /// As `drivemon check` does it.
+    fn checked(&self, progress: &mut discovery::Progress<'_>) -> Outcome {
+        let known = self.known.as_ref().ok_or("there is no motor to check")?;
+        let recordings: Vec<&Recording> = self.sources.iter().filter_map(recorded).collect();
+        let (Some(first), Some(name)) = (recordings.first(), self.names.first()) else {
+            return Err("there is no recording to check".to_owned());
+        };
+        let judged = [(name.clone(), *first)];
+        let healthy = match self.question.healthy {
+            Healthy::None => &[][..],
+            Healthy::This => &recordings[..1],
+            Healthy::Earlier => &recordings[1..],
+        };
+        let (mut checkup, motor) = Checkup::new(known, healthy, &judged, progress)?;
+        let change = match checkup.knowledge {
+            Knowledge::AsGiven => Change::Stays,
+            Knowledge::Identified | Knowledge::Calibrated => {
+                let motor = self.motor.learnt(motor);
+                checkup.motor_file = Some(motor.file.clone());
+                Change::Learnt(motor)
+            }
+        };
+        Ok(Done {
+            json: shown(Subject::Check, &checkup)?,
+            motor: change,
+        })
+    }
+}
+
+fn recorded(source: &Source) -> Option<&Recording> {
+    match source {
+        Source::Recording(recording) => Some(recording),
+        Source::LoadTable(_) => None,
+    }
+}
+
+/// A result that leaves the motor file as it is.
+fn stays(subject: Subject, result: &impl Serialize) -> Outcome {
+    Ok(Done {
+        json: shown(subject, result)?,
+        motor: Change::Stays,
+    })
 }
 
 /// The same that the report of the command shows. Styles of single elements, which the page's policy forbids, become

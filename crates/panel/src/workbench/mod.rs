@@ -1,10 +1,12 @@
-//! The workbench: load recordings, compare, explain, adopt, save. It brings its own routes and state.
+//! The workbench: load recordings, check, compare, explain, adopt, save. It brings its own routes and state.
 //!
 //! One desk for all pages of a panel: two recordings, one motor file, one question at a time. What the questions
 //! answer is what the commands answer; what is shown of it is what their reports show.
 
+mod check;
 mod desk;
 mod jobs;
+mod known;
 mod mapping;
 mod motor_requests;
 mod motors;
@@ -63,6 +65,12 @@ pub fn router(bench: Arc<Bench>) -> Router {
         .route("/api/workbench/motor/file", post(motor_requests::file))
         .route("/api/workbench/motor/undo", post(motor_requests::undo))
         .route("/api/workbench/motor.toml", get(motor_requests::save))
+        .route("/api/workbench/check/form", get(check::form))
+        .route("/api/workbench/check/attempt", post(check::attempt))
+        .route("/api/workbench/check/plate", post(check::plate))
+        .route("/api/workbench/check/motor", post(check::motor))
+        .route("/api/workbench/check/next", post(check::next))
+        .route("/api/workbench/check/report.html", get(check::report))
         .route("/api/workbench/jobs", post(jobs::begin))
         .route("/api/workbench/results/{kind}", get(result))
         .route("/api/workbench/region", get(regions::region))

@@ -82,7 +82,8 @@ async fn answer_audited(bench: Arc<Bench>, done: Result<(), Refusal>) -> Respons
 pub(super) async fn undo(State(bench): State<Arc<Bench>>) -> Response {
     let done = bench.free_desk().and_then(|mut desk| {
         let before = desk.before.pop();
-        desk.motor = Some(before.ok_or_else(|| Refusal::of("nothing was adopted"))?);
+        let before = before.ok_or_else(|| Refusal::of("nothing was adopted"))?;
+        desk.believe(before);
         desk.results.clear();
         desk.job.problem = None;
         Ok(())

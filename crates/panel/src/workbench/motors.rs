@@ -95,6 +95,16 @@ impl Motor {
         }
     }
 
+    /// The file with what recordings of the motor in good order taught.
+    pub fn learnt(&self, motor: MotorFile) -> Motor {
+        Motor {
+            file: self.file.clone(),
+            text: motor.to_toml(),
+            motor,
+            adopted: self.adopted.clone(),
+        }
+    }
+
     pub fn view(&self, before: &[Motor]) -> MotorView {
         let steps = before.iter().chain([self]);
         MotorView {

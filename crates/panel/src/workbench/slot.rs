@@ -7,6 +7,7 @@ use std::time::Instant;
 use recording::{
     Audit, Mapping, Preview, Source, TableColumn, preview, read_any, with_most_numbers,
 };
+use replay::check::BlindSpot;
 use serde::Serialize;
 
 use super::mapping::Columns;
@@ -51,6 +52,8 @@ pub(super) struct SlotView {
     pub summary: Option<Summary>,
     /// What the audit found.
     pub audit: Option<Audit>,
+    /// What the channels that are missing leave dark.
+    pub blind: Option<Vec<BlindSpot>>,
     /// Time that reading took, s.
     pub read_s: f64,
 }
@@ -137,6 +140,7 @@ impl Slot {
             problem,
             summary: source.as_ref().map(Summary::of),
             audit: None,
+            blind: None,
             read_s: begin.elapsed().as_secs_f64(),
         };
         self.source = source.map(Arc::new);

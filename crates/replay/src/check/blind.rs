@@ -17,6 +17,19 @@ pub struct BlindSpot {
     pub needs: &'static str,
 }
 
+/// What the channels that a recording lacks leave dark.
+pub fn channels_missing(recording: &Recording, motor: &MotorFile) -> Vec<BlindSpot> {
+    let calibrated = |spot: &BlindSpot| *spot != NOT_CALIBRATED;
+    let all = blind_spots(recording, motor, false);
+    all.into_iter().filter(calibrated).collect()
+}
+
+/// What a motor that was never seen in good order leaves dark.
+pub(super) const NOT_CALIBRATED: BlindSpot = BlindSpot {
+    unseen: "which phase is at fault, and faults smaller than the plate's uncertainty",
+    needs: "a recording of the motor in good order (--healthy)",
+};
+
 /// What these channels and this motor file leave dark.
 pub fn blind_spots(
     recording: &Recording,
@@ -49,8 +62,8 @@ pub fn blind_spots(
     );
     add(
         motor.healthy.is_none(),
-        "which phase is at fault, and faults smaller than the plate's uncertainty",
-        "a recording of the motor in good order (--healthy)",
+        NOT_CALIBRATED.unseen,
+        NOT_CALIBRATED.needs,
     );
     spots
 }

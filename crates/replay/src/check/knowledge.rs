@@ -39,7 +39,7 @@ const FITS: f64 = 1.5;
 /// Identifies the parameters, then calibrates. A step that the recordings do not allow is told and left out.
 pub fn learn(
     motor: &MotorFile,
-    healthy: &[Recording],
+    healthy: &[&Recording],
     progress: &mut discovery::Progress<'_>,
 ) -> Learnt {
     let mut learnt = Learnt {
@@ -59,8 +59,9 @@ pub fn learn(
 }
 
 impl Learnt {
-    fn identify(&mut self, healthy: &[Recording], progress: &mut discovery::Progress<'_>) {
-        let sources: Vec<Source> = healthy.iter().cloned().map(Source::Recording).collect();
+    fn identify(&mut self, healthy: &[&Recording], progress: &mut discovery::Progress<'_>) {
+        let owned = healthy.iter().copied().cloned();
+        let sources: Vec<Source> = owned.map(Source::Recording).collect();
         match discovery::identify(&sources, &self.motor, progress) {
             Ok((report, motor)) => {
                 let error = report.after.held_out_error_over_noise;
@@ -84,10 +85,10 @@ impl Learnt {
     }
 
     /// Without an encoder the speed is estimated here as it will be when the motor is checked.
-    fn calibrate(&mut self, healthy: &[Recording]) {
-        let with_speed = |recording: &Recording| {
+    fn calibrate(&mut self, healthy: &[&Recording]) {
+        let with_speed = |recording: &&Recording| {
             with_estimated_speed(recording, &self.motor)
-                .map_or_else(|| recording.clone(), |(with_speed, _)| with_speed)
+                .map_or_else(|| Recording::clone(recording), |(with_speed, _)| with_speed)
         };
         let healthy: Vec<Recording> = healthy.iter().map(with_speed).collect();
         match calibrate(&self.motor, &healthy, &Surroundings::default()) {

@@ -5,19 +5,24 @@ mod clamp;
 mod knowledge;
 mod severity;
 mod slip;
+mod told;
 
-pub use blind::{BlindSpot, blind_spots};
+pub use blind::{BlindSpot, blind_spots, channels_missing};
 pub use clamp::{ClampSignal, clamp_signals};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;
 pub use slip::{EstimatedSpeed, with_estimated_speed};
+pub use told::Told;
 
 use monitor::Monitor;
 use motor::MotorFile;
 use recording::{Audit, Expectation, Recording};
 use serde::Serialize;
 
-use crate::{Samples, Timeline, Verdict, VerdictState, causes, config_for, replay, words};
+use crate::{
+    Samples, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals, causes, config_for,
+    replay, words,
+};
 
 /// What one recording says of a motor.
 #[derive(Clone, Debug, Serialize)]
@@ -46,6 +51,12 @@ pub struct Checked {
     pub clamps: Vec<ClampSignal>,
     /// What cannot be seen.
     pub blind: Vec<BlindSpot>,
+    /// State, cause, certainty and severity in words.
+    pub told: Told,
+    /// r1 to r4 of every window that has them.
+    pub residuals: Vec<WindowResiduals>,
+    /// Voltage, current, speed and unbalance of every window.
+    pub operation: Vec<WindowOperation>,
 }
 
 /// Checks one recording against a motor.
@@ -71,6 +82,7 @@ pub fn check(
         // An estimate is no channel of the recorder: the audit is about what was recorded.
         answer.audit = recording::audit(recorded, &Expectation::from(motor));
     }
+    answer.told = Told::of(&answer);
     Ok(answer)
 }
 
@@ -107,6 +119,9 @@ fn answer(
         verdict,
         audit,
         speed,
+        told: Told::default(),
+        residuals: timeline.trace.residuals.clone(),
+        operation: timeline.trace.operation.clone(),
     }
 }
 
@@ -126,7 +141,7 @@ fn todo(motor: &MotorFile, verdict: &Verdict) -> Vec<String> {
     };
     if !calibrated {
         steps.push(
-            "record ten seconds while the motor is known to be in good order and give them with --healthy: smaller faults show then"
+            "record ten seconds while the motor is known to be in good order, as a reference (--healthy): smaller faults show then"
                 .to_owned(),
         );
     }

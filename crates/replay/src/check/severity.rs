@@ -15,9 +15,12 @@ pub enum Severity {
     Clear,
     /// Above 20 %.
     Large,
+    /// Shorted turns: their number says nothing of the time that is left.
+    Growing,
 }
 
-/// Change, percent, from which on a cause is clear, and large: round figures that no standard gives; a person decides.
+/// Change, percent, from which on a cause is clear, and large: a convention of this project (docs/lamps.md). The published
+/// pattern has no sizes, and no standard grades faults of a running motor.
 const BOUNDS_PERCENT: [f64; 2] = [5.0, 20.0];
 
 impl Severity {
@@ -37,6 +40,9 @@ impl Severity {
             Severity::Large => {
                 "large (above 20 %): take the motor out of service as soon as the plant allows"
             }
+            Severity::Growing => {
+                "growing, whatever its size: the shorted turns carry a large current of their own; take the motor out of service"
+            }
         }
     }
 }
@@ -46,7 +52,10 @@ impl Severity {
 pub(super) fn of(verdict: &Verdict) -> Option<Severity> {
     let first = verdict.candidates.first()?;
     let size = first.size_percent.filter(|_| in_the_motor(first.fault));
-    size.map(Severity::of_percent)
+    size.map(|size| match first.fault {
+        FaultId::Turns => Severity::Growing,
+        _ => Severity::of_percent(size),
+    })
 }
 
 fn in_the_motor(fault: FaultId) -> bool {
@@ -86,5 +95,26 @@ mod tests {
                 Severity::Large
             ]
         );
+    }
+
+    #[test]
+    fn shorted_turns_have_no_small_size() {
+        let verdict = |fault, size_percent| Verdict {
+            state: crate::VerdictState::Fault,
+            candidates: vec![crate::causes::Candidate {
+                fault,
+                phase: Some("a"),
+                probability: 0.9,
+                size_percent,
+            }],
+            tied: 1,
+            separating_tests: Vec::new(),
+        };
+        let small = Some(1.0);
+        assert_eq!(of(&verdict(FaultId::Turns, small)), Some(Severity::Growing));
+        let resistance = verdict(FaultId::StatorResistance, small);
+        assert_eq!(of(&resistance), Some(Severity::Small));
+        assert_eq!(of(&verdict(FaultId::VoltageSensor, Some(90.0))), None);
+        assert_eq!(of(&verdict(FaultId::Turns, None)), None);
     }
 }

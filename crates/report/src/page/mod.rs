@@ -12,7 +12,7 @@ pub use commands::compare::AGREES;
 pub use elements::number::{Style, decimals, significant};
 pub use elements::place::Place;
 
-use commands::{adopt, campaign, compare, demo, explain, load_table, monitor};
+use commands::{adopt, campaign, check, compare, demo, explain, load_table, monitor};
 use elements::shell;
 use serde::Serialize;
 
@@ -33,6 +33,8 @@ pub enum Subject {
     Adopt,
     /// `drivemon campaign table`.
     Campaign,
+    /// `drivemon check`.
+    Check,
 }
 
 /// The page for a result, complete.
@@ -91,5 +93,6 @@ fn content(subject: Subject, value: &serde_json::Value) -> (&'static str, maud::
             "What the lamps can be trusted with",
             campaign::content(&place),
         ),
+        Subject::Check => ("Is this motor in good order?", check::content(&place)),
     }
 }

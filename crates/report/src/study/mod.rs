@@ -1,13 +1,17 @@
-//! Compare, explain and adopt with everything that is shown of them: terminal, reports and panel hold the same.
+//! Check, compare, explain and adopt with everything that is shown of them: terminal, reports and panel hold the same.
 
 mod adopt;
+mod check;
 mod compare;
 mod explain;
+mod known;
 mod places;
 
 pub use adopt::Adopted;
+pub use check::{CheckedRecording, Checkup};
 pub use compare::Compared;
 pub use explain::{Explained, Next, anything_off};
+pub use known::{Known, ParameterRow, PlateRow};
 pub use places::{Place, worst};
 
 use std::borrow::Cow;

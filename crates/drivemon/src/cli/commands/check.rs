@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use motor::MotorFile;
-use nameplate::{Estimate, motor_text};
 use recording::{Recording, Source};
-use replay::check::{Checked, Knowledge, Learnt, check, learn};
+use replay::check::Checked;
 use replay::{Verdict, VerdictState};
-use serde::Serialize;
+use report::Subject;
+use report::study::{CheckedRecording, Checkup, Known};
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};
@@ -16,9 +15,9 @@ use crate::cli::arguments::study::{print_audit, quantity, with_progress};
 use crate::cli::commands::motor::identify::print_table;
 use crate::cli::commands::motor::plate::PlateArgs;
 use crate::cli::printing::failure::{Failure, Finding};
-use crate::cli::printing::output::{JsonArgs, write_text};
+use crate::cli::printing::output::{OutputArgs, write_text};
+use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
-use crate::cli::printing::{paint, progress};
 
 /// Is this motor in good order? From recordings and a nameplate to an answer, in one step.
 ///
@@ -35,7 +34,7 @@ pub struct Check {
     #[arg(long, value_name = "REC")]
     healthy: Vec<PathBuf>,
     /// Motor file, where there is one; otherwise the plate
-    #[arg(long, value_name = "M", conflicts_with = "plate")]
+    #[arg(long, value_name = "M")]
     motor: Option<PathBuf>,
     /// Write what is known of the motor afterwards as a motor file
     #[arg(short, long = "out", value_name = "M2")]
@@ -43,7 +42,7 @@ pub struct Check {
     #[command(flatten)]
     plate: PlateArgs,
     #[command(flatten)]
-    json: JsonArgs,
+    output: OutputArgs,
     #[command(flatten)]
     input: InputArgs,
 }
@@ -52,48 +51,37 @@ const EXAMPLES: &str = "\
 Examples:
   drivemon check today.csv --plate pump-plate.toml
   drivemon check today.csv --plate pump-plate.toml --healthy march.csv -o pump.toml
+  drivemon check today.csv --motor pump.toml --report today.html
   drivemon check today.csv --power-kw 5.5 --voltage-volt 400 --speed-rpm 1455 --current-amp 10.4
 Exit codes: 0 in good order as far as can be seen, 1 a fault, 2 bad input, 3 not judged: the answer says what to record.";
-
-#[derive(Debug, Serialize)]
-struct CheckJson<'a> {
-    motor: &'a str,
-    knowledge: Knowledge,
-    notes: &'a [String],
-    contradictions: &'a [String],
-    recordings: &'a [Named],
-    motor_file: Option<String>,
-}
-
-#[derive(Debug, Serialize)]
-struct Named {
-    recording: String,
-    #[serde(flatten)]
-    checked: Checked,
-}
 
 impl Check {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         self.files().check()?;
-        let (motor, contradictions) = self.known()?;
+        let known = self.known()?;
         let healthy = self.read(&self.healthy)?;
         let recordings = self.read(&self.recordings)?;
-        let learnt = with_progress(|progress| Ok(learn(&motor, &healthy, progress)))?;
+        let names = self
+            .recordings
+            .iter()
+            .map(|path| path.display().to_string());
+        let recordings: Vec<_> = names.zip(&recordings).collect();
+        let healthy: Vec<&Recording> = healthy.iter().collect();
+        let checked =
+            with_progress(|progress| Ok(Checkup::new(&known, &healthy, &recordings, progress)))?;
+        let (mut checkup, motor) = checked.map_err(Failure::Usage)?;
         if let Some(out) = &self.out {
-            write_text(out, &learnt.motor.to_toml())?;
+            write_text(out, &motor.to_toml())?;
+            checkup.motor_file = Some(out.display().to_string());
         }
-        let answers = self.checked(&recordings, &learnt)?;
-        let result = CheckJson {
-            motor: &learnt.motor.name,
-            knowledge: learnt.knowledge,
-            notes: &learnt.notes,
-            contradictions: &contradictions,
-            recordings: &answers,
-            motor_file: self.out.as_ref().map(|path| path.display().to_string()),
-        };
-        self.json.give(&result, || print(&result, &learnt))?;
-        Ok(finding(&answers))
+        self.output
+            .give(Subject::Check, &checkup, || print(&checkup))?;
+        Ok(match checkup.state() {
+            VerdictState::Fault => Finding::Something,
+            VerdictState::NotJudged => Finding::Unsupported,
+            VerdictState::Healthy => Finding::Nothing,
+        })
     }
 
     fn files(&self) -> Files {
@@ -101,27 +89,26 @@ impl Check {
             .reads_recordings(self.recordings.iter().chain(&self.healthy), &self.input)
             .may_read("the motor file", self.motor.as_ref())
             .may_read("the plate", self.plate.file())
-            .may_write("--json", self.json.file());
+            .writes_results(&self.output);
         match &self.out {
             Some(out) => files.writes("-o", out),
             None => files,
         }
     }
 
-    /// The motor by its file or its plate, and what contradicts what on the plate.
-    fn known(&self) -> Result<(MotorFile, Vec<String>), Failure> {
-        if let Some(path) = &self.motor {
-            return Ok((read_motor(path)?, Vec::new()));
+    /// The motor by its file or its plate.
+    fn known(&self) -> Result<Known, Failure> {
+        let Some(path) = &self.motor else {
+            return Known::of_plate(&self.plate.read()?).map_err(Failure::Usage);
+        };
+        if let Some(flag) = self.plate.given() {
+            return Err(Failure::Usage(format!(
+                "{flag}: --motor says everything of the motor; leave {flag} out, or leave --motor out"
+            )));
         }
-        let plate = self.plate.read()?;
-        let estimate =
-            Estimate::of(&plate.plate).map_err(|problem| Failure::Usage(problem.to_string()))?;
-        let text = motor_text(&plate, &estimate).map_err(Failure::Usage)?;
-        let contradictions = estimate.contradictions.iter().map(ToString::to_string);
-        Ok((
-            MotorFile::parse(&text, "the plate")?,
-            contradictions.collect(),
-        ))
+        let motor = read_motor(path)?;
+        let text = motor.to_toml();
+        Ok(Known::of_file(motor, text))
     }
 
     fn read(&self, paths: &[PathBuf]) -> Result<Vec<Recording>, Failure> {
@@ -134,68 +121,35 @@ impl Check {
         };
         paths.iter().map(one).collect()
     }
-
-    fn checked(&self, recordings: &[Recording], learnt: &Learnt) -> Result<Vec<Named>, Failure> {
-        let one = |(path, recording): (&PathBuf, &Recording)| {
-            let bar = progress::bar("checking", recording.len() as u64);
-            let checked = check(recording, &learnt.motor, &mut |k| {
-                bar.set_position(k as u64)
-            });
-            bar.finish_and_clear();
-            Ok(Named {
-                recording: path.display().to_string(),
-                checked: checked.map_err(Failure::Usage)?,
-            })
-        };
-        self.recordings.iter().zip(recordings).map(one).collect()
-    }
 }
 
-/// A fault outweighs what was not judged.
-fn finding(answers: &[Named]) -> Finding {
-    let any = |state| {
-        answers
-            .iter()
-            .any(|answer| answer.checked.verdict.state == state)
-    };
-    if any(VerdictState::Fault) {
-        Finding::Something
-    } else if any(VerdictState::NotJudged) {
-        Finding::Unsupported
-    } else {
-        Finding::Nothing
-    }
-}
-
-fn print(result: &CheckJson<'_>, learnt: &Learnt) {
-    let known = match result.knowledge {
-        Knowledge::AsGiven => "known by its plate or file alone",
-        Knowledge::Identified => "parameters learnt from healthy recordings",
-        Knowledge::Calibrated => "calibrated on healthy recordings",
-    };
-    say!("{}: {known}", paint::strong(result.motor));
-    for contradiction in result.contradictions {
+fn print(checkup: &Checkup) {
+    say!("{}: {}", paint::strong(&checkup.motor), checkup.known_by);
+    for contradiction in &checkup.contradictions {
         say!("  {} {contradiction}", paint::caution("plate:"));
     }
-    for note in result.notes {
+    for note in &checkup.notes {
         say!("  {} {note}", paint::caution("note:"));
     }
-    if let Some(report) = &learnt.identified {
+    if let Some(report) = &checkup.identified {
         print_table(&report.parameters);
     }
-    result.recordings.iter().for_each(print_one);
-    if let Some(path) = &result.motor_file {
+    checkup.recordings.iter().for_each(print_one);
+    if let Some(path) = &checkup.motor_file {
         say!("\n{path} is written: drivemon check REC --motor {path}");
     }
 }
 
-fn print_one(named: &Named) {
+fn print_one(named: &CheckedRecording) {
     let checked = &named.checked;
     say!("\n{}", paint::strong(&named.recording));
     print_audit(&checked.audit);
-    print_state(&checked.verdict);
-    if let Some(severity) = checked.severity {
-        say!("  size: {}", severity.words());
+    print_state(checked);
+    if let Some(severity) = checked.told.severity {
+        say!("  severity: {severity}");
+    }
+    if named.is_reference {
+        say!("  this recording taught what is normal: it is compared with itself");
     }
     if let Some(speed) = &checked.speed {
         say!(
@@ -236,27 +190,19 @@ fn print_one(named: &Named) {
     print_steps(checked);
 }
 
-fn print_state(verdict: &Verdict) {
-    match verdict.state {
-        VerdictState::Healthy => say!(
-            "  {}",
-            paint::good("in good order, as far as can be seen here")
-        ),
-        VerdictState::NotJudged => say!("  {}", paint::caution("not judged")),
+fn print_state(checked: &Checked) {
+    let Verdict {
+        state, candidates, ..
+    } = &checked.verdict;
+    let told = checked.told.state;
+    match state {
+        VerdictState::Healthy => say!("  {}", paint::good(told)),
+        VerdictState::NotJudged => say!("  {}", paint::caution(told)),
         VerdictState::Fault => {
-            say!("  {}", paint::error("FAULT; possible causes:"));
-            for candidate in &verdict.candidates {
-                let phase = candidate
-                    .phase
-                    .map_or(String::new(), |phase| format!(", phase {phase}"));
-                let size = candidate
-                    .size_percent
-                    .map_or(String::new(), |size| format!(", {size:+.1} %"));
-                say!(
-                    "  {:5.1} %  {}{phase}{size}",
-                    100.0 * candidate.probability,
-                    candidate.fault.words()
-                );
+            let told = told.to_uppercase();
+            say!("  {}", paint::error(format!("{told}; possible causes:")));
+            for candidate in candidates {
+                say!("  {:5.1} %  {candidate}", 100.0 * candidate.probability);
             }
         }
     }

@@ -4,6 +4,7 @@
 
 mod bench;
 mod driver;
+mod first;
 mod measure;
 mod page;
 mod shots;
@@ -61,6 +62,16 @@ fn a_drive_engineer_uses_the_workbench() {
     visit(|page| async move {
         let pictures = std::env::var_os("UPDATE_SCREENSHOTS").is_some();
         bench::a_hidden_effect_is_found_and_adopted(&page, pictures).await;
+        page.assert_silent().await;
+    });
+}
+
+#[test]
+fn a_technician_checks_a_motor_for_the_first_time() {
+    visit(|page| async move {
+        let pictures = std::env::var_os("UPDATE_SCREENSHOTS").is_some();
+        first::a_real_fault_is_named_within_ten_clicks(&page, pictures).await;
+        first::what_is_wrong_is_said_plainly(&page).await;
         page.assert_silent().await;
     });
 }

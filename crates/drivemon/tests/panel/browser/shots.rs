@@ -97,6 +97,19 @@ pub async fn answer(page: &Page, name: &str) {
     page.size(1400, 1000).await;
 }
 
+/// What is in view from an element on, 1200 pixels wide.
+pub async fn part(page: &Page, css: &str, name: &str, height: u32) {
+    page.size(1200, height).await;
+    // The page's own smooth scrolling ends first, and the figures take the new width.
+    tokio::time::sleep(Duration::from_millis(1200)).await;
+    let scroll = format!(
+        "document.querySelector('{css}').scrollIntoView({{block: 'start', behavior: 'instant'}})"
+    );
+    page.run(&scroll).await;
+    take(page, name).await;
+    page.size(1400, 1000).await;
+}
+
 /// The desk on a telephone, dark.
 pub async fn narrow_bench(page: &Page) {
     scheme(page, "dark").await;

@@ -2,6 +2,7 @@
 
 pub mod adopt;
 pub mod campaign;
+pub mod check;
 pub mod compare;
 pub mod demo;
 pub mod explain;

@@ -6,10 +6,16 @@ use crate::page::elements::place::Place;
 
 /// The findings under a heading; nothing found is said too.
 pub fn section(result: &Place<'_>) -> Markup {
+    section_of(result, "audit", "")
+}
+
+/// The same of one of several recordings.
+pub fn section_of(result: &Place<'_>, id: &str, name: &str) -> Markup {
     let findings = result.items("audit/findings");
     html! {
-        section aria-labelledby="audit" {
-            h2 id="audit" { "The recording itself" }
+        section aria-labelledby=(id) {
+            h2 id=(id) { "The recording itself" }
+            @if !name.is_empty() { p.subtle { (name) } }
             @for assumption in result.items("audit/assumptions") {
                 p { "Assumed: " (assumption.as_text()) }
             }

@@ -6,5 +6,6 @@ pub mod laws;
 pub mod models;
 pub mod overlay;
 pub mod parameters;
+pub mod plate;
 pub mod scale;
 pub mod table_overlay;

@@ -4,7 +4,7 @@ use std::io::{BufRead, IsTerminal, Write};
 use std::path::PathBuf;
 
 use clap::Args;
-use nameplate::plate::PlateFile;
+use nameplate::plate::{PlateFile, QUESTIONS, Question};
 
 use crate::cli::printing::failure::Failure;
 
@@ -79,66 +79,6 @@ pub struct PlateArgs {
     ask: bool,
 }
 
-/// What is asked, in this order: key, question, usual range, and what a missing answer costs.
-const QUESTIONS: [(&str, &str, &str, &str); 11] = [
-    ("power_kw", "Rated power, kW", "0.05 to 2000", "needed"),
-    ("voltage_volt", "Line voltage, V", "200 to 11000", "needed"),
-    (
-        "frequency_hz",
-        "Frequency, Hz",
-        "50 or 60",
-        "follows from the speed",
-    ),
-    (
-        "speed_rpm",
-        "Rated speed, rpm",
-        "below 3000, 1500, 1000, 750 at 50 Hz",
-        "rotor resistance is then known to a factor of two",
-    ),
-    (
-        "current_amp",
-        "Rated current, A",
-        "about 2 per kW at 400 V",
-        "follows from efficiency and power factor",
-    ),
-    (
-        "power_factor",
-        "Power factor (cos phi)",
-        "0.6 to 0.93",
-        "follows from current and efficiency",
-    ),
-    (
-        "efficiency_percent",
-        "Efficiency, percent",
-        "60 to 97",
-        "follows from current and power factor",
-    ),
-    (
-        "breakdown_torque_ratio",
-        "Breakdown torque / rated torque",
-        "1.8 to 4",
-        "known to 50 % from motors of this size",
-    ),
-    (
-        "locked_rotor_torque_ratio",
-        "Locked-rotor torque / rated torque",
-        "0.7 to 4",
-        "known to 70 %",
-    ),
-    (
-        "locked_rotor_current_ratio",
-        "Locked-rotor current / rated current",
-        "3.5 to 10",
-        "known to 40 %",
-    ),
-    (
-        "connection",
-        "Connection, star or delta",
-        "as wired",
-        "star: the circuit is the same, per equivalent star phase",
-    ),
-];
-
 impl PlateArgs {
     /// The plate; questions go to the terminal where nothing at all was given, or `--ask` was.
     ///
@@ -170,6 +110,18 @@ impl PlateArgs {
             ));
         }
         Ok(file)
+    }
+
+    /// The first flag of a plate that was given.
+    pub fn given(&self) -> Option<String> {
+        let flags = self.flags().into_iter();
+        let mut typed = flags.filter_map(|(key, text)| text.map(|_| key));
+        let flag = match (&self.plate, self.ask) {
+            (Some(_), _) => Some("plate"),
+            (None, true) => Some("ask"),
+            (None, false) => typed.next(),
+        };
+        flag.map(|key| format!("--{}", key.replace('_', "-")))
     }
 
     /// Files that are read.
@@ -213,12 +165,22 @@ impl PlateArgs {
 /// Asks for what is missing; an empty answer leaves it out, a wrong one is asked again.
 fn ask(file: &mut PlateFile) -> Result<(), Failure> {
     let mut lines = std::io::stdin().lock().lines();
-    for (key, question, range, missing) in QUESTIONS {
-        if has(file, key) {
+    for question in QUESTIONS.iter().filter(|question| is_asked(question)) {
+        if has(file, question.key) {
             continue;
         }
+        let Question {
+            words,
+            range,
+            missing,
+            ..
+        } = question;
+        let unit = match question.unit {
+            "" => String::new(),
+            unit => format!(", {unit}"),
+        };
         loop {
-            eprint!("{question} [{range}; empty: {missing}]: ");
+            eprint!("{words}{unit} [{range}; empty: {missing}]: ");
             let _ = std::io::stderr().flush();
             let Some(answer) = lines.next().transpose().unwrap_or(None) else {
                 return Ok(());
@@ -227,13 +189,18 @@ fn ask(file: &mut PlateFile) -> Result<(), Failure> {
             if answer.is_empty() {
                 break;
             }
-            match file.set(key, &answer) {
+            match file.set(question.key, &answer) {
                 Ok(()) => break,
                 Err(problem) => eprintln!("  {problem}"),
             }
         }
     }
     Ok(())
+}
+
+/// Numbers of plates and catalogues, and the connection; what else is known has flags.
+fn is_asked(question: &Question) -> bool {
+    question.key == "connection" || nameplate::COLUMN_KEYS.contains(&question.key)
 }
 
 fn has(file: &PlateFile, key: &str) -> bool {

@@ -1,0 +1,108 @@
+//! The answer in words: one wording for terminal, page and panel.
+
+use motor::FaultId;
+use serde::Serialize;
+
+use super::Checked;
+use super::blind::NOT_CALIBRATED;
+use crate::VerdictState;
+use crate::causes::Candidate;
+
+/// What a technician reads first.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Told {
+    /// The state.
+    pub state: &'static str,
+    /// The likeliest cause with phase and size, where there is a fault.
+    pub cause: Option<String>,
+    /// How sure that is, or how much was looked at.
+    pub sure: String,
+    /// How bad a fault is and what that means for the plant, or why that is not known.
+    pub severity: Option<&'static str>,
+}
+
+impl Told {
+    pub(super) fn of(checked: &Checked) -> Told {
+        let verdict = &checked.verdict;
+        let fault = verdict.state == VerdictState::Fault;
+        let likeliest = verdict.candidates.first().filter(|_| fault);
+        Told {
+            state: state(verdict.state),
+            cause: likeliest.map(ToString::to_string),
+            sure: match verdict.state {
+                VerdictState::Fault => sure_of_cause(checked),
+                VerdictState::Healthy => looked_at(checked),
+                VerdictState::NotJudged => why_not(checked),
+            },
+            severity: likeliest.and_then(|cause| severity(checked, cause)),
+        }
+    }
+}
+
+fn state(state: VerdictState) -> &'static str {
+    match state {
+        VerdictState::Healthy => "in good order, as far as can be seen here",
+        VerdictState::NotJudged => "not judged",
+        VerdictState::Fault => "fault",
+    }
+}
+
+/// The probability of the likeliest cause, and what else it may be.
+fn sure_of_cause(checked: &Checked) -> String {
+    let causes = &checked.verdict.candidates;
+    let Some(first) = causes.first() else {
+        return "the cause is not known".to_owned();
+    };
+    let percent = 100.0 * first.probability;
+    match (checked.verdict.tied, causes.get(1)) {
+        (2.., _) => format!(
+            "{percent:.1} %; the first {} causes of the list cannot be told apart with this recording",
+            checked.verdict.tied
+        ),
+        (_, Some(next)) => format!(
+            "{percent:.1} %; the next possible cause: {next}, {:.1} %",
+            100.0 * next.probability
+        ),
+        (_, None) => format!("{percent:.1} %; no other cause of the list explains it"),
+    }
+}
+
+fn severity(checked: &Checked, cause: &Candidate) -> Option<&'static str> {
+    let sensors = [
+        FaultId::CurrentSensor,
+        FaultId::VoltageSensor,
+        FaultId::SpeedSensor,
+    ];
+    match checked.severity {
+        Some(severity) => Some(severity.words()),
+        None if sensors.contains(&cause.fault) => Some("an instrument is wrong, not the motor"),
+        None if checked.blind.contains(&NOT_CALIBRATED) => {
+            Some("not known: a size is told once a recording in good order was given (--healthy)")
+        }
+        None => None,
+    }
+}
+
+/// What a dark answer rests on.
+fn looked_at(checked: &Checked) -> String {
+    let [judged, windows] = checked.windows;
+    match checked.visible_percent {
+        Some([r1, ..]) => format!(
+            "{judged} of {windows} windows judged; a fault shows from {r1:.2} % of the voltage balance (r1) on"
+        ),
+        None => {
+            format!("{judged} of {windows} windows judged, by the unbalance of the currents alone")
+        }
+    }
+}
+
+fn why_not(checked: &Checked) -> String {
+    let refusal = checked
+        .audit
+        .findings
+        .iter()
+        .find(|finding| finding.refuses);
+    let first = checked.not_judged.first();
+    let why = refusal.map(|finding| &finding.detail).or(first);
+    why.map_or("nothing in it can be judged".to_owned(), Clone::clone)
+}

@@ -1,0 +1,137 @@
+//! Is this motor in good order? From what is known of it and recordings to an answer on which a technician can act.
+
+use discovery::Progress;
+use motor::MotorFile;
+use recording::Recording;
+use replay::VerdictState;
+use replay::check::{Checked, Knowledge, check, learn};
+use serde::Serialize;
+
+use super::known::{Known, ParameterRow, PlateRow, parameters};
+
+/// Everything that a check says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Checkup {
+    /// The motor's name.
+    pub motor: String,
+    /// How well it is known.
+    pub knowledge: Knowledge,
+    /// Whether it was ever seen in good order: without that only large faults show.
+    pub calibrated: bool,
+    /// How well it is known, in words.
+    pub known_by: &'static str,
+    /// Why a step of learning was not possible.
+    pub notes: Vec<String>,
+    /// What contradicts what on the plate.
+    pub contradictions: Vec<String>,
+    /// The plate's numbers beside the circuit's.
+    pub plate: Vec<PlateRow>,
+    /// The motor's parameters with their intervals.
+    pub parameters: Vec<ParameterRow>,
+    /// The parameters that recordings of the motor in good order told.
+    #[serde(skip)]
+    pub identified: Option<discovery::IdentifyReport>,
+    /// One answer per recording.
+    pub recordings: Vec<CheckedRecording>,
+    /// The motor file that was written.
+    pub motor_file: Option<String>,
+}
+
+/// What one recording says.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckedRecording {
+    /// Its name.
+    pub recording: String,
+    /// Its length, s.
+    pub duration_s: f64,
+    /// Whether it taught itself what is normal: it is then compared with itself.
+    pub is_reference: bool,
+    /// The answer.
+    #[serde(flatten)]
+    pub checked: Checked,
+}
+
+/// Share of the work that learning takes, where there is something to learn from.
+const LEARNING: f64 = 0.8;
+
+impl Checkup {
+    /// Learns from healthy recordings what they teach, then judges the others; the motor as it is known in the end comes
+    /// with it. `motor_file` is the caller's to fill in.
+    ///
+    /// # Errors
+    /// A motor file or a recording that the core cannot take, in words.
+    pub fn new(
+        known: &Known,
+        healthy: &[&Recording],
+        recordings: &[(String, &Recording)],
+        progress: &mut Progress<'_>,
+    ) -> Result<(Checkup, MotorFile), String> {
+        let begin = if healthy.is_empty() { 0.0 } else { LEARNING };
+        let learnt = learn(&known.motor, healthy, &mut |what, share| {
+            progress(what, begin * share);
+        });
+        let share = (1.0 - begin) / recordings.len().max(1) as f64;
+        let mut checked = Vec::new();
+        for (k, (name, recording)) in recordings.iter().enumerate() {
+            let at = begin + share * k as f64;
+            let mut tell = |part: f64| progress("checking", at + share * part);
+            let mut one = CheckedRecording::new(name, recording, &learnt.motor, &mut tell)?;
+            one.is_reference = healthy.contains(recording);
+            checked.push(one);
+        }
+        let checkup = Checkup {
+            motor: learnt.motor.name.clone(),
+            knowledge: learnt.knowledge,
+            calibrated: learnt.motor.healthy.is_some(),
+            known_by: known_by(known, learnt.knowledge),
+            notes: learnt.notes,
+            contradictions: known.contradictions.clone(),
+            plate: known.plate.clone(),
+            parameters: parameters(&learnt.motor, learnt.identified.as_ref()),
+            identified: learnt.identified,
+            recordings: checked,
+            motor_file: None,
+        };
+        Ok((checkup, learnt.motor))
+    }
+
+    /// The state of all recordings together: a fault outweighs what was not judged.
+    pub fn state(&self) -> VerdictState {
+        let mut states = self.recordings.iter().map(|one| one.checked.verdict.state);
+        let worst = |a, b| match (a, b) {
+            (VerdictState::Fault, _) | (_, VerdictState::Fault) => VerdictState::Fault,
+            (VerdictState::Healthy, VerdictState::Healthy) => VerdictState::Healthy,
+            _ => VerdictState::NotJudged,
+        };
+        let first = states.next().unwrap_or(VerdictState::NotJudged);
+        states.fold(first, worst)
+    }
+}
+
+impl CheckedRecording {
+    fn new(
+        name: &str,
+        recording: &Recording,
+        motor: &MotorFile,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<CheckedRecording, String> {
+        let all = recording.len().max(1) as f64;
+        let mut tell = |sample: usize| progress(sample as f64 / all);
+        Ok(CheckedRecording {
+            recording: name.to_owned(),
+            duration_s: recording.duration(),
+            is_reference: false,
+            checked: check(recording, motor, &mut tell)?,
+        })
+    }
+}
+
+fn known_by(known: &Known, knowledge: Knowledge) -> &'static str {
+    match knowledge {
+        Knowledge::AsGiven if known.motor.healthy.is_some() => "known by its calibrated motor file",
+        Knowledge::AsGiven if known.plate.is_empty() => "known by its motor file alone",
+        Knowledge::AsGiven => "known by its plate alone",
+        Knowledge::Identified => "parameters learnt from healthy recordings",
+        Knowledge::Calibrated => "calibrated on healthy recordings",
+    }
+}
