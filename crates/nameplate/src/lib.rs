@@ -19,6 +19,7 @@ pub mod contradiction;
 mod estimate;
 pub mod fit;
 mod interval;
+pub mod measured;
 mod motor_text;
 pub mod physical;
 pub mod plate;

@@ -1,0 +1,230 @@
+//! The tests one after the other: what each told.
+
+use nalgebra::DMatrix;
+
+use super::advice::{Help, helps};
+use super::doubt::{Doubt, What, doubts, excess};
+use super::fit::{Doubts, Posterior, Prior, Problem};
+use super::instruments::Instruments;
+use super::parameters::{ALL, Form, covariance, derivatives, intervals};
+use super::plate_term::PlateTerm;
+use super::point::{Point, points};
+use super::table::{Column, Row, Test, check};
+use super::unknowns::{EXTRA_BOUNDS, Machine, Unknowns};
+use crate::circuit::PARAMETERS;
+use crate::estimate::Estimate;
+use crate::interval::Interval;
+use crate::plate::{Completed, VALUES};
+
+/// Rounds in which contradictions are given room.
+const ROUNDS: usize = 8;
+/// No-load voltages that differ by less than this share are one voltage.
+const ONE_VOLTAGE: f64 = 0.2;
+
+/// What was known after a test.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// The test; `None` before the first.
+    pub test: Option<Test>,
+    /// Rows of the table.
+    pub rows: usize,
+    /// Parameters in the order of [`super::NAMES`].
+    pub parameters: [Interval; ALL],
+}
+
+/// A motor after its tests.
+#[derive(Clone, Debug)]
+pub struct Tested {
+    /// The plate with every value set.
+    pub completed: Completed,
+    /// Which effects the tests show.
+    pub form: Form,
+    /// The plate alone, then one step for each test.
+    pub steps: Vec<Step>,
+    /// Correlations of the logarithms of the parameters after the last step.
+    pub correlations: DMatrix<f64>,
+    /// What contradicts what.
+    pub doubts: Vec<Doubt>,
+    /// Whether all no-load points have one voltage: core loss and friction cannot be told apart.
+    pub one_voltage: bool,
+    /// What is still wide.
+    pub helps: Vec<Help>,
+}
+
+impl Tested {
+    /// What tests on one motor say beyond its plate; `inertia_kg_m2` where it was told.
+    ///
+    /// # Errors
+    /// Rows that are no such test, with table, line, column and the remedy.
+    pub fn of(
+        estimate: &Estimate,
+        rows: &[Row],
+        instruments: &Instruments,
+        inertia_kg_m2: Option<f64>,
+    ) -> Result<Tested, String> {
+        check(rows, &estimate.completed)?;
+        let bench = Bench::of(estimate, rows, instruments, inertia_kg_m2);
+        bench.tested(rows).ok_or_else(|| {
+            "the plate has no circuit from which the tests could begin; look at what `drivemon motor new` says of it".to_owned()
+        })
+    }
+}
+
+struct Bench<'b> {
+    completed: &'b Completed,
+    instruments: &'b Instruments,
+    term: PlateTerm,
+    prior: Prior,
+    bounds: [Unknowns; 2],
+    points: Vec<Point>,
+    form: Form,
+}
+
+impl<'b> Bench<'b> {
+    fn of(estimate: &'b Estimate, rows: &[Row], instruments: &'b Instruments, inertia: Option<f64>) -> Bench<'b> {
+        let prior = Prior::of(estimate, instruments, inertia);
+        let machine = Machine::of(&prior.centre, &estimate.completed);
+        let has = |test: Test| rows.iter().any(|row| row.test == test);
+        Bench {
+            completed: &estimate.completed,
+            instruments,
+            term: PlateTerm::of(estimate, &prior.centre),
+            bounds: bounds(&estimate.completed),
+            points: points(rows, instruments, &machine),
+            form: Form {
+                standstill: estimate.completed.knows_standstill() || has(Test::LockedRotor),
+                saturates: has(Test::NoLoad),
+                bearings: has(Test::CoastDown),
+            },
+            prior,
+        }
+    }
+
+    fn tested(&self, rows: &[Row]) -> Option<Tested> {
+        let (mut steps, mut used) = (Vec::new(), Vec::new());
+        let (mut last, mut named) = self.solved(&used, None)?;
+        steps.push(self.step(None, 0, &last));
+        for test in Test::ALL {
+            let more: Vec<Point> = self.points.iter().filter(|p| p.test == test).cloned().collect();
+            if more.is_empty() {
+                continue;
+            }
+            used.extend(more);
+            (last, named) = self.solved(&used, Some(&last))?;
+            steps.push(self.step(Some(test), rows.iter().filter(|row| row.test == test).count(), &last));
+        }
+        Some(self.answer(rows, steps, &last, named, &used))
+    }
+
+    fn answer(&self, rows: &[Row], steps: Vec<Step>, last: &Posterior, doubts: Vec<Doubt>, used: &[Point]) -> Tested {
+        let by_unknowns = derivatives(last, self.completed, &self.form);
+        let spread = covariance(&by_unknowns, &last.covariance());
+        let correlations = DMatrix::from_fn(ALL, ALL, |a, b| {
+            spread[(a, b)] / (spread[(a, a)] * spread[(b, b)]).sqrt().max(1e-300)
+        });
+        let certain = Doubts::none(used.len());
+        let problem = self.problem(used, &certain);
+        Tested {
+            completed: last.machine.completed.clone(),
+            form: self.form,
+            steps,
+            correlations,
+            doubts,
+            one_voltage: one_voltage(rows),
+            helps: helps(&problem, last, self.instruments, &self.form, &by_unknowns),
+        }
+    }
+
+    fn problem<'p>(&'p self, points: &'p [Point], doubts: &'p Doubts) -> Problem<'p> {
+        Problem {
+            completed: self.completed,
+            term: &self.term,
+            prior: &self.prior,
+            points,
+            doubts,
+            bounds: &self.bounds,
+        }
+    }
+
+    fn step(&self, test: Option<Test>, rows: usize, posterior: &Posterior) -> Step {
+        let by_unknowns = derivatives(posterior, self.completed, &self.form);
+        let spread = covariance(&by_unknowns, &posterior.covariance());
+        Step {
+            test,
+            rows,
+            parameters: intervals(posterior, &self.form, &spread),
+        }
+    }
+
+    /// The posterior of some points, with room for what contradicts, and the contradictions as they were first found.
+    fn solved(&self, points: &[Point], before: Option<&Posterior>) -> Option<(Posterior, Vec<Doubt>)> {
+        let mut factors = Doubts::none(points.len());
+        let mut from = before.map_or(self.prior.centre, |before| before.unknowns);
+        let mut own: Vec<_> = points.iter().map(|point| point.start).collect();
+        for (new, old) in own.iter_mut().zip(before.iter().flat_map(|before| &before.own)) {
+            *new = *old;
+        }
+        let mut named: Vec<Doubt> = Vec::new();
+        for _ in 0..ROUNDS {
+            let problem = self.problem(points, &factors);
+            let posterior = problem.solved(&from, own)?;
+            let found = doubts(&problem, &posterior);
+            if found.is_empty() {
+                return Some((posterior, named));
+            }
+            factors.grow(points, &found);
+            for doubt in found {
+                if !named.iter().any(|old| old.what == doubt.what) {
+                    named.push(doubt);
+                }
+            }
+            (from, own) = (posterior.unknowns, posterior.own);
+        }
+        let posterior = self.problem(points, &factors).solved(&from, own)?;
+        Some((posterior, named))
+    }
+}
+
+impl Doubts {
+    fn none(points: usize) -> Doubts {
+        Doubts {
+            points: vec![1.0; points],
+            values: [1.0; VALUES],
+        }
+    }
+
+    fn grow(&mut self, points: &[Point], found: &[Doubt]) {
+        for doubt in found {
+            match &doubt.what {
+                What::Plate(k) => self.values[*k] *= excess(doubt).max(1.1),
+                What::Rows(_, rows) => {
+                    if let Some(k) = points.iter().position(|point| point.rows == *rows) {
+                        self.points[k] *= excess(doubt).max(1.1);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Lowest and highest place of every unknown.
+fn bounds(completed: &Completed) -> [Unknowns; 2] {
+    let circuit = crate::fit::bounds(&completed.targets);
+    [(-30.0, 0), (30.0, 1)].map(|(end, side)| {
+        let mut all = Unknowns::repeat(end);
+        all.fixed_rows_mut::<PARAMETERS>(VALUES).copy_from(&circuit[side]);
+        for (unknown, ends) in EXTRA_BOUNDS {
+            all[unknown as usize] = ends[side];
+        }
+        all
+    })
+}
+
+fn one_voltage(rows: &[Row]) -> bool {
+    let no_load = rows.iter().filter(|row| row.test == Test::NoLoad);
+    let voltages: Vec<f64> = no_load.filter_map(|row| row.get(Column::Voltage)).collect();
+    let (low, high) = voltages
+        .iter()
+        .fold((f64::MAX, 0.0f64), |(low, high), &v| (low.min(v), high.max(v)));
+    !voltages.is_empty() && low > (1.0 - ONE_VOLTAGE) * high
+}

@@ -1,0 +1,67 @@
+//! Standard tests on simulated motors: the intervals hold the truth after each step, and shrink.
+
+mod bench;
+mod drawn;
+mod machine;
+
+use bench::Bench;
+use drawn::{Motor, drawn, truths};
+use machine::Laws;
+use nameplate::Estimate;
+use nameplate::measured::table::read_csv;
+use nameplate::measured::{ALL, Instruments, NAMES, Tested};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
+
+const STEPS: [&str; 6] = ["plate", "dc-resistance", "no-load", "locked-rotor", "load", "coast-down"];
+
+/// A motor after the full set of tests.
+fn tested(seed: u64, laws: Laws) -> (Motor, Tested) {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let motor = drawn(&mut rng, laws);
+    let plate = bench::plate(&motor, &mut rng, seed.is_multiple_of(2));
+    let estimate = Estimate::of(&plate).unwrap();
+    let mut bench = Bench::new(&motor, rng);
+    bench.dc_resistance();
+    bench.no_load(&[1.1, 1.0, 0.8, 0.6, 0.4, 0.25]);
+    bench.locked_rotor(&[1.0, 0.25]);
+    bench.load(&[0.5, 1.0, 1.2]);
+    bench.coast_down();
+    let rows = read_csv(&bench.table, "tests.csv").unwrap();
+    let tested = Tested::of(&estimate, &rows, &Instruments::default(), None).unwrap();
+    (motor, tested)
+}
+
+fn machines(count: u64, laws: Laws) -> Vec<(Motor, Tested)> {
+    (0..count).into_par_iter().map(|seed| tested(seed, laws)).collect()
+}
+
+fn count(default: u64) -> u64 {
+    std::env::var("CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(default)
+}
+
+fn print(all: &[(Motor, Tested)]) {
+    println!("{:30} {}", "", STEPS.map(|s| format!("{s:>17}")).join(""));
+    for k in 0..ALL {
+        let cells: Vec<String> = (0..STEPS.len())
+            .map(|s| {
+                let held = all.iter().filter(|(m, t)| t.steps[s].parameters[k].holds(truths(m)[k])).count();
+                let mut widths: Vec<f64> = all.iter().map(|(_, t)| t.steps[s].parameters[k]).map(|i| i.high / i.value).collect();
+                widths.sort_by(f64::total_cmp);
+                format!("  {:5.1} % x{:<7.3}", 100.0 * held as f64 / all.len() as f64, widths[widths.len() / 2])
+            })
+            .collect();
+        println!("{:30} {}", NAMES[k], cells.join(""));
+    }
+    let doubted = all.iter().filter(|(_, t)| !t.doubts.is_empty()).count();
+    println!("contradictions named in {doubted} of {}", all.len());
+}
+
+#[test]
+fn intervals_hold_the_truth_after_each_step() {
+    let begun = std::time::Instant::now();
+    let all = machines(count(240), Laws::Fitted);
+    println!("{:?}", begun.elapsed());
+    print(&all);
+}
