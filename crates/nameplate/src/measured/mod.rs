@@ -5,6 +5,7 @@
 //! test circuits: IEEE Std 112-2017, clause 5.9 and form F.
 
 mod advice;
+mod begin;
 mod doubt;
 mod fit;
 mod instruments;

@@ -4,9 +4,10 @@ use nalgebra::DMatrix;
 
 use super::fit::Posterior;
 use super::unknowns::{Machine, OF_MOTOR, Square, Unknown};
+use crate::circuit::{Circuit, Place};
 use crate::interval::Interval;
 use crate::physical::{KEYS, PHYSICAL, physical_with_cages};
-use crate::plate::Completed;
+use crate::plate::{Completed, VALUES};
 
 /// How many parameters tests may tell.
 pub const ALL: usize = PHYSICAL + 3;
@@ -28,6 +29,9 @@ pub const NAMES: [&str; ALL] = {
 const MAGNETIZING: usize = 4;
 const WINDAGE: usize = 9;
 const INERTIA: usize = 11;
+const LEAKAGE_DROP: usize = 7;
+/// A drop below is none.
+const LEAST_DROP: f64 = 1e-4;
 
 /// Which effects the tests show: the parameters mean the motor with them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -103,11 +107,30 @@ pub(super) fn covariance(derivatives: &DMatrix<f64>, of_unknowns: &Square) -> DM
 /// 95 % intervals.
 pub(super) fn intervals(posterior: &Posterior, form: &Form, covariance: &DMatrix<f64>) -> [Interval; ALL] {
     let here = parameters(&posterior.machine, form);
-    core::array::from_fn(|k| {
-        let interval = Interval::around(here[k], covariance[(k, k)].max(0.0).sqrt());
-        match crate::physical::RANGES.get(k) {
-            Some(&range) => interval.inside(range),
-            None => interval,
-        }
-    })
+    let mut all: [Interval; ALL] =
+        core::array::from_fn(|k| Interval::around(here[k], covariance[(k, k)].max(0.0).sqrt()));
+    all[LEAKAGE_DROP] = leakage_drop(posterior);
+    for (interval, range) in all.iter_mut().zip(crate::physical::RANGES) {
+        *interval = interval.inside(range);
+    }
+    all
+}
+
+/// The drop ends at nothing, where its logarithm has no end: its interval is that of the leakage that stays.
+fn leakage_drop(posterior: &Posterior) -> Interval {
+    let place = VALUES + Place::SaturatedLeakage as usize;
+    let spread = posterior.covariance()[(place, place)].max(0.0).sqrt();
+    let stays = Interval::around(posterior.machine.circuit.saturated_leakage, spread);
+    let drop = |saturated_leakage: f64| {
+        let circuit = Circuit {
+            saturated_leakage: saturated_leakage.min(1.0),
+            ..posterior.machine.circuit
+        };
+        circuit.leakage_drop().max(LEAST_DROP)
+    };
+    Interval {
+        value: drop(stays.value),
+        low: drop(stays.high),
+        high: drop(stays.low),
+    }
 }

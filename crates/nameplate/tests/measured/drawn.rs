@@ -88,7 +88,7 @@ fn tried(rng: &mut Pcg64Mcg, laws: Laws) -> Option<Motor> {
     let machine = hidden.meets(&mut logs, &targets)?;
     let inertia = Prior::REAL_MOTORS.inertia_kg_m2(power_kw, pole_pairs, FREQUENCY);
     let volt = 400.0;
-    Some(Motor {
+    let motor = Motor {
         power_kw,
         volt,
         amp: 1000.0 * power_kw / (3f64.sqrt() * volt * targets.rating().power),
@@ -103,7 +103,10 @@ fn tried(rng: &mut Pcg64Mcg, laws: Laws) -> Option<Motor> {
             targets.locked_rotor_current_ratio,
         ],
         machine,
-    })
+    };
+    // What a motor file cannot say.
+    let [share, ratio] = [truths(&motor)[5], truths(&motor)[6]];
+    ((0.001..0.8).contains(&share) && (0.05..4.0).contains(&ratio)).then_some(motor)
 }
 
 fn bounded(rng: &mut Pcg64Mcg, [mean, deviation]: [f64; 2], [low, high]: [f64; 2]) -> f64 {
@@ -192,9 +195,9 @@ impl Hidden {
         ]);
         let spread = DVector::from_row_slice(&PRIOR_SPREAD[..11]);
         for _ in 0..30 {
-            let here = self.shown(logs);
+            let (here, breakdown) = self.shown(logs, None);
             let error = &wanted - &here;
-            if error.amax() < 1e-7 {
+            if error.amax() < 1e-6 {
                 let inside = (0..11).all(|k| (BOUNDS[k][0].ln()..=BOUNDS[k][1].ln()).contains(&logs[k]));
                 return inside.then(|| self.settled(logs));
             }
@@ -202,7 +205,7 @@ impl Hidden {
             for k in 0..11 {
                 let mut moved = *logs;
                 moved[k] += 1e-5;
-                jacobian.set_column(k, &((self.shown(&moved) - &here) * (spread[k] / 1e5f64.recip())));
+                jacobian.set_column(k, &((self.shown(&moved, Some(breakdown)).0 - &here) * (spread[k] / 1e-5)));
             }
             let square: DMatrix<f64> = &jacobian * jacobian.transpose();
             let step = jacobian.transpose() * square.cholesky()?.solve(&error);
@@ -213,8 +216,8 @@ impl Hidden {
         None
     }
 
-    /// Logarithms of power, reactive power, current, and the three ratios.
-    fn shown(&self, logs: &Unknowns) -> DVector<f64> {
+    /// Logarithms of power, reactive power, current, and the three ratios; and the breakdown slip, where torque is flat.
+    fn shown(&self, logs: &Unknowns, breakdown: Option<f64>) -> (DVector<f64>, f64) {
         let machine = self.settled(logs);
         let rated = machine.at(1.0, self.slip, 1.0, self.warm_degc);
         let cold_degc = logs[10].exp();
@@ -227,14 +230,17 @@ impl Hidden {
         };
         let locked = cold.at(1.0, 1.0, 1.0, self.warm_degc);
         let torque = rated.torque.max(1e-6);
-        DVector::from_row_slice(&[
+        let slip = breakdown.unwrap_or_else(|| cold.breakdown_slip(self.warm_degc));
+        let greatest = cold.at(1.0, slip, 1.0, self.warm_degc).torque.max(1e-6);
+        let shown = DVector::from_row_slice(&[
             (torque * (1.0 - self.slip)).ln(),
             rated.reactive.ln(),
             rated.current.ln(),
-            (cold.breakdown(self.warm_degc) / self.rated_torque).ln(),
+            (greatest / self.rated_torque).ln(),
             (locked.torque / self.rated_torque).ln(),
             (locked.current / rated.current).ln(),
-        ])
+        ]);
+        (shown, slip)
     }
 }
 

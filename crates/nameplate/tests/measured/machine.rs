@@ -118,7 +118,7 @@ impl Machine {
         let (mut current, mut air_gap) = (voltage, 0.9 * voltage);
         let mut i = C::new(0.0, 0.0);
         let mut rotor = C::new(1.0, 0.0);
-        for _ in 0..400 {
+        for _ in 0..200 {
             rotor = self.rotor(slip, current, nu, warmth[1]);
             let parallel = C::new(self.core_conductance, -self.susceptance(air_gap, nu)) + rotor.inv();
             let stator = C::new(
@@ -128,9 +128,8 @@ impl Machine {
             i = voltage / (stator + parallel.inv());
             let e = (i / parallel).norm();
             let moved = (i.norm() - current).abs() / current + (e - air_gap).abs() / air_gap;
-            current = 0.4 * current + 0.6 * i.norm();
-            air_gap = 0.6 * air_gap + 0.4 * e;
-            if moved < 1e-12 {
+            (current, air_gap) = (i.norm(), e);
+            if moved < 1e-10 {
                 break;
             }
         }
@@ -172,8 +171,8 @@ impl Machine {
         (low, self.at(low, 1.0, nu, degc))
     }
 
-    /// The greatest torque of the cold motor between rated slip and standstill.
-    pub fn breakdown(&self, degc: f64) -> f64 {
+    /// The slip of the greatest torque between rated slip and standstill.
+    pub fn breakdown_slip(&self, degc: f64) -> f64 {
         let torque = |x: f64| self.at(1.0, self.slip.powf(x), 1.0, degc).torque;
         let best = |places: Vec<f64>| {
             let better = |a: &f64, b: &f64| torque(*a).total_cmp(&torque(*b));
@@ -181,6 +180,6 @@ impl Machine {
         };
         let coarse = best((0..=30).map(|k| f64::from(k) / 30.0).collect());
         let fine = |k: i32| (coarse + f64::from(k - 15) / 15.0 / 30.0).clamp(0.0, 1.0);
-        torque(best((0..=30).map(fine).collect()))
+        self.slip.powf(best((0..=30).map(fine).collect()))
     }
 }

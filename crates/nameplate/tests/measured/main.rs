@@ -21,6 +21,7 @@ fn tested(seed: u64, laws: Laws) -> (Motor, Tested) {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let motor = drawn(&mut rng, laws);
     let plate = bench::plate(&motor, &mut rng, seed.is_multiple_of(2));
+    let t0 = std::time::Instant::now();
     let estimate = Estimate::of(&plate).unwrap();
     let mut bench = Bench::new(&motor, rng);
     bench.dc_resistance();
@@ -29,12 +30,15 @@ fn tested(seed: u64, laws: Laws) -> (Motor, Tested) {
     bench.load(&[0.5, 1.0, 1.2]);
     bench.coast_down();
     let rows = read_csv(&bench.table, "tests.csv").unwrap();
+    let t1 = std::time::Instant::now();
     let tested = Tested::of(&estimate, &rows, &Instruments::default(), None).unwrap();
+    if seed < 8 { println!("oracle+estimate {:?} tested {:?}", t1 - t0, t1.elapsed()); }
     (motor, tested)
 }
 
 fn machines(count: u64, laws: Laws) -> Vec<(Motor, Tested)> {
-    (0..count).into_par_iter().map(|seed| tested(seed, laws)).collect()
+    let only = std::env::var("ONLY").ok().and_then(|n| n.parse::<u64>().ok());
+    (0..count).into_par_iter().filter(|s| only.is_none_or(|o| o == *s)).map(|seed| tested(seed, laws)).collect()
 }
 
 fn count(default: u64) -> u64 {
@@ -53,6 +57,20 @@ fn print(all: &[(Motor, Tested)]) {
             })
             .collect();
         println!("{:30} {}", NAMES[k], cells.join(""));
+    }
+    for (k, name) in NAMES.iter().enumerate() {
+        let mut cells = Vec::new();
+        for s in 0..STEPS.len() {
+            let z: Vec<f64> = all.iter().map(|(m, t)| { let i = t.steps[s].parameters[k]; (i.value / truths(m)[k]).ln() / ((i.high / i.low).ln() / 3.92) }).collect();
+            let mean = z.iter().sum::<f64>() / z.len() as f64;
+            let sd = (z.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / z.len() as f64).sqrt();
+            let big = z.iter().filter(|x| x.abs() > 4.0).count();
+            cells.push(format!(" {mean:5.2} +-{sd:5.2} {big:3}"));
+        }
+        println!("{:30} {}", name, cells.join(""));
+    }
+    for (n, (_, t)) in all.iter().enumerate() {
+        if !t.doubts.is_empty() { println!("{n}: {:?}", t.doubts); }
     }
     let doubted = all.iter().filter(|(_, t)| !t.doubts.is_empty()).count();
     println!("contradictions named in {doubted} of {}", all.len());

@@ -12,8 +12,12 @@ const ITERATIONS: usize = 40;
 const ATTEMPTS: usize = 8;
 /// Longest step of one unknown.
 const LONGEST: f64 = 1.0;
-/// A gain below ends the descent.
-const SMALL_GAIN: f64 = 1e-6;
+/// A gain below ends the descent: a hundredth of a standard deviation.
+const SMALL_GAIN: f64 = 3e-4;
+/// A damping below hinders no step: a small gain is then no small step.
+const FREE: f64 = 1e-2;
+/// A gradient that pushes against a bound.
+const PUSHED: f64 = 1.0;
 
 /// Where the fit ended, and how sure it is there.
 #[derive(Clone, Debug)]
@@ -24,14 +28,21 @@ pub(in crate::measured) struct Posterior {
     /// Inverse covariance.
     pub precision: Square,
     pub rows: Vec<PointRows>,
+    pub cost: f64,
     gradient: Unknowns,
-    cost: f64,
 }
 
 impl Posterior {
     /// Covariance of the unknowns.
     pub fn covariance(&self) -> Square {
         inverse(&self.precision)
+    }
+
+    /// A place as far off as the posterior leaves open.
+    pub fn drawn(&self, normal: &Unknowns) -> Unknowns {
+        let factor = self.precision.cholesky().map(|factor| factor.l().transpose());
+        let off = factor.and_then(|upper| upper.solve_upper_triangular(normal));
+        self.unknowns + off.unwrap_or_else(Unknowns::zeros)
     }
 }
 
@@ -47,15 +58,17 @@ impl Problem<'_> {
     pub fn solved(&self, from: &Unknowns, own: Vec<Own>) -> Option<Posterior> {
         let mut here = self.at(from, own)?;
         let mut damping = 1e-3;
-        let mut small = 0;
         for _ in 0..ITERATIONS {
+            let newton = self.step(&here, 0.0);
+            if -newton.dot(&here.gradient) < SMALL_GAIN {
+                break;
+            }
             let Some(better) = self.lower(&here, &mut damping) else {
                 break;
             };
             let gain = here.cost - better.cost;
             here = better;
-            small = if gain < SMALL_GAIN * (1.0 + here.cost) { small + 1 } else { 0 };
-            if small >= 2 {
+            if gain < SMALL_GAIN && damping < FREE {
                 break;
             }
         }
@@ -79,7 +92,17 @@ impl Problem<'_> {
         None
     }
 
-    fn inside(&self, unknowns: Unknowns) -> Unknowns {
+    /// The bounds that stop the fit, one bit for each unknown.
+    pub fn stopped(&self, here: &Posterior) -> u32 {
+        let stopped = |k: usize| {
+            let low = here.unknowns[k] <= self.bounds[0][k] + 1e-9 && here.gradient[k] > PUSHED;
+            let high = here.unknowns[k] >= self.bounds[1][k] - 1e-9 && here.gradient[k] < -PUSHED;
+            low || high
+        };
+        (0..UNKNOWNS).filter(|&k| stopped(k)).map(|k| 1 << k).sum()
+    }
+
+    pub fn inside(&self, unknowns: Unknowns) -> Unknowns {
         unknowns.sup(&self.bounds[0]).inf(&self.bounds[1])
     }
 

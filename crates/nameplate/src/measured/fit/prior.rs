@@ -1,11 +1,11 @@
 //! What is believed before the tests of values, saturation, friction, inertia, temperature and instruments.
 
-use crate::estimate::Estimate;
+use crate::measured::begin::Begin;
 use crate::measured::instruments::{Instruments, share};
 use crate::measured::unknowns::{
     BEARINGS, SATURATION, SATURATION_EXPONENT, Square, Unknown, Unknowns, WARMTH,
 };
-use crate::plate::{VALUES, Value};
+use crate::plate::{Completed, VALUES, Value};
 use crate::prior::Covariance;
 
 /// Tolerances of a single motor against its plate (IEC 60034-1, table 20), as limits: slip 20 % (30 % below 1 kW), losses 15 %
@@ -31,15 +31,15 @@ pub(in crate::measured) struct Prior {
 }
 
 impl Prior {
-    pub fn of(estimate: &Estimate, instruments: &Instruments, inertia: Option<f64>) -> Prior {
-        let completed = &estimate.completed;
+    pub fn of(begin: &Begin, instruments: &Instruments, inertia: Option<f64>) -> Prior {
+        let completed = &begin.completed;
         let mut centre = Unknowns::zeros();
         centre
             .fixed_rows_mut::<VALUES>(0)
             .copy_from(&completed.targets.values());
         centre
             .fixed_rows_mut::<{ crate::circuit::PARAMETERS }>(VALUES)
-            .copy_from(&estimate.fit.circuit.logs());
+            .copy_from(&begin.fit.circuit.logs());
         let mut spread = Unknowns::repeat(1.0);
         let mut set = |unknown: Unknown, [mean, deviation]: [f64; 2]| {
             centre[unknown as usize] = mean;
@@ -65,7 +65,7 @@ impl Prior {
         set(Unknown::ResistanceGain, [0.0, share(i.resistance_percent)]);
         Prior {
             centre,
-            values: completed.covariance + tolerances(estimate),
+            values: completed.covariance + tolerances(completed),
             spread,
         }
     }
@@ -86,8 +86,7 @@ impl Prior {
 }
 
 /// Variances by which a single motor differs from its plate; a limit is a rectangular distribution's.
-fn tolerances(estimate: &Estimate) -> Covariance {
-    let completed = &estimate.completed;
+pub(in crate::measured) fn tolerances(completed: &Completed) -> Covariance {
     let kilowatts = completed.power_kw;
     let cos = completed.targets.power_factor;
     let power_factor = ((1.0 - cos) / 6.0).clamp(POWER_FACTOR[0], POWER_FACTOR[1]);

@@ -57,20 +57,17 @@ impl Machine {
             + self.rated_torque * self.circuit.stray * current * current
     }
 
-    /// Uncoupled: the rotor takes what friction and stray load need, nearly in phase.
+    /// Uncoupled: the slip is where the rotor gives what friction and stray load take.
     pub(super) fn no_load(&self, air_gap: f64, degc: f64, nu: f64) -> Shown {
-        let [stator, _] = self.warmth(degc);
-        let magnetizing = air_gap * self.magnetizing(air_gap, nu);
-        let share = self.circuit.outer_resistance()
-            / (self.circuit.outer_resistance() + self.circuit.inner_resistance);
-        let leakage = nu * (self.circuit.leakage + self.circuit.inner_leakage * share * share);
-        let mut current = Complex64::new(0.0, -magnetizing);
+        let [stator, rotor] = self.warmth(degc);
+        let branch = Complex64::new(self.circuit.core_conductance, -self.magnetizing(air_gap, nu));
+        let (mut slip, mut current) = (1e-3, air_gap * branch);
         for _ in 0..ROUNDS {
-            let rotor = self.lost_torque(nu, current.norm()) * nu / air_gap;
-            current = Complex64::new(
-                air_gap * self.circuit.core_conductance + rotor,
-                -magnetizing - rotor * rotor * leakage / air_gap,
-            );
+            let admittance = self.rotor_admittance(slip, current.norm(), nu, rotor);
+            let given = air_gap * air_gap * admittance.re / nu;
+            let needed = self.lost_torque(nu * (1.0 - slip), current.norm());
+            slip = (slip * needed / given).clamp(1e-9, 0.5);
+            current = air_gap * (branch + admittance * (needed / given));
         }
         let voltage = air_gap + current * self.stator(current.norm(), nu, stator);
         Shown::of(voltage, current, 0.0)
