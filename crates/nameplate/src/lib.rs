@@ -27,5 +27,5 @@ pub mod prior;
 
 pub use estimate::{COLUMN_KEYS, COLUMNS, Estimate};
 pub use interval::Interval;
-pub use motor_text::motor_text;
+pub use motor_text::{motor_text, tested_text};
 pub use plate::Plate;

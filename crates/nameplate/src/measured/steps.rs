@@ -60,6 +60,12 @@ pub struct Tested {
 }
 
 impl Tested {
+    /// Parameters after the last step, in the order of [`super::NAMES`].
+    pub fn parameters(&self) -> [Interval; ALL] {
+        let nothing = Interval::around(1.0, 0.0);
+        self.steps.last().map_or([nothing; ALL], |step| step.parameters)
+    }
+
     /// What tests on one motor say beyond its plate; `inertia_kg_m2` where it was told.
     ///
     /// # Errors

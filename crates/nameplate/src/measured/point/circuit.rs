@@ -22,8 +22,8 @@ pub(super) struct Shown {
 impl Shown {
     fn of(voltage: Complex64, current: Complex64, torque: f64) -> Shown {
         Shown {
-            voltage: voltage.norm(),
-            current: current.norm(),
+            voltage: voltage.norm_sqr().sqrt(),
+            current: current.norm_sqr().sqrt(),
             active: (voltage * current.conj()).re,
             torque,
         }
@@ -63,13 +63,13 @@ impl Machine {
         let branch = Complex64::new(self.circuit.core_conductance, -self.magnetizing(air_gap, nu));
         let (mut slip, mut current) = (1e-3, air_gap * branch);
         for _ in 0..ROUNDS {
-            let admittance = self.rotor_admittance(slip, current.norm(), nu, rotor);
+            let admittance = self.rotor_admittance(slip, current.norm_sqr().sqrt(), nu, rotor);
             let given = air_gap * air_gap * admittance.re / nu;
-            let needed = self.lost_torque(nu * (1.0 - slip), current.norm());
+            let needed = self.lost_torque(nu * (1.0 - slip), current.norm_sqr().sqrt());
             slip = (slip * needed / given).clamp(1e-9, 0.5);
             current = air_gap * (branch + admittance * (needed / given));
         }
-        let voltage = air_gap + current * self.stator(current.norm(), nu, stator);
+        let voltage = air_gap + current * self.stator(current.norm_sqr().sqrt(), nu, stator);
         Shown::of(voltage, current, 0.0)
     }
 
@@ -77,13 +77,13 @@ impl Machine {
     pub(super) fn locked(&self, current: f64, degc: f64, nu: f64) -> Shown {
         let [stator, rotor] = self.warmth(degc);
         let admittance = self.rotor_admittance(1.0, current, nu, rotor);
-        let mut air_gap = current / admittance.norm();
+        let mut air_gap = current / admittance.norm_sqr().sqrt();
         let mut parallel = admittance;
         for _ in 0..ROUNDS {
             let branch =
                 Complex64::new(self.circuit.core_conductance, -self.magnetizing(air_gap, nu));
             parallel = admittance + branch;
-            air_gap = current / parallel.norm();
+            air_gap = current / parallel.norm_sqr().sqrt();
         }
         let impedance = parallel.inv() + self.stator(current, nu, stator);
         let torque = air_gap * air_gap * admittance.re / nu;
@@ -96,12 +96,12 @@ impl Machine {
         let branch = Complex64::new(self.circuit.core_conductance, -self.magnetizing(air_gap, nu));
         let (mut current, mut admittance) = (Complex64::from(1.0), Complex64::from(1.0));
         for _ in 0..ROUNDS {
-            admittance = self.rotor_admittance(slip, current.norm(), nu, rotor);
+            admittance = self.rotor_admittance(slip, current.norm_sqr().sqrt(), nu, rotor);
             current = air_gap * (admittance + branch);
         }
         let torque = air_gap * air_gap * admittance.re / nu
-            - self.lost_torque(nu * (1.0 - slip), current.norm());
-        let voltage = air_gap + current * self.stator(current.norm(), nu, stator);
+            - self.lost_torque(nu * (1.0 - slip), current.norm_sqr().sqrt());
+        let voltage = air_gap + current * self.stator(current.norm_sqr().sqrt(), nu, stator);
         Shown::of(voltage, current, torque)
     }
 }

@@ -62,12 +62,16 @@ pub fn read(lines: &[Line], label: &str) -> Result<Vec<Row>, String> {
         let first = line.cells.iter().find(|cell| !cell.trim().is_empty());
         first.is_some_and(|cell| !cell.trim().starts_with('#'))
     };
-    let mut lines = lines.iter().filter(filled);
-    let header = lines.next().ok_or_else(|| {
+    let lines: Vec<&Line> = lines.iter().filter(filled).collect();
+    // A sheet may have a title above its header.
+    let is_header = |line: &&Line| line.cells.iter().any(|cell| cell.trim().eq_ignore_ascii_case(TEST));
+    let first = lines.iter().position(is_header).unwrap_or(0);
+    let header = lines.get(first).ok_or_else(|| {
         format!("{label}: is empty; `drivemon motor tests --template` prints a table to fill in")
     })?;
     let header = Header::of(header, label)?;
-    let rows: Vec<Row> = lines
+    let rows: Vec<Row> = lines[first + 1..]
+        .iter()
         .map(|line| header.row(line, label))
         .collect::<Result<_, _>>()?;
     if rows.is_empty() {
