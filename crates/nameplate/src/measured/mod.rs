@@ -17,7 +17,7 @@ pub mod table;
 mod unknowns;
 
 pub use advice::Help;
-pub use doubt::{Culprit, Doubt};
+pub use doubt::{Culprit, Doubt, What};
 pub use instruments::Instruments;
 pub use parameters::{ALL, Form, NAMES};
 pub use steps::{Step, Tested};

@@ -26,8 +26,8 @@ const ROUNDS: usize = 8;
 /// the same motor.
 const STARTS: [usize; 2] = [10, 3];
 const SEED: u64 = 1;
-/// No-load voltages that differ by less than this share are one voltage.
-const ONE_VOLTAGE: f64 = 0.2;
+/// Voltages or frequencies that differ by less than this share are one.
+const ONE: f64 = 0.2;
 
 /// What was known after a test.
 #[derive(Clone, Debug)]
@@ -55,6 +55,8 @@ pub struct Tested {
     pub doubts: Vec<Doubt>,
     /// Whether all no-load points have one voltage: core loss and friction cannot be told apart.
     pub one_voltage: bool,
+    /// Whether all locked-rotor points have one frequency: rotor resistance and skin effect cannot be told apart.
+    pub one_frequency: bool,
     /// What is still wide.
     pub helps: Vec<Help>,
 }
@@ -145,7 +147,8 @@ impl<'b> Bench<'b> {
             steps,
             correlations,
             doubts,
-            one_voltage: one_voltage(rows),
+            one_voltage: are_one(rows, Test::NoLoad, Column::Voltage, f64::NAN),
+            one_frequency: are_one(rows, Test::LockedRotor, Column::Frequency, self.completed.frequency_hz),
             helps: helps(&problem, last, self.instruments, &self.form, &by_unknowns),
         }
     }
@@ -261,11 +264,12 @@ fn bounds(completed: &Completed) -> [Unknowns; 2] {
     })
 }
 
-fn one_voltage(rows: &[Row]) -> bool {
-    let no_load = rows.iter().filter(|row| row.test == Test::NoLoad);
-    let voltages: Vec<f64> = no_load.filter_map(|row| row.get(Column::Voltage)).collect();
-    let (low, high) = voltages
-        .iter()
-        .fold((f64::MAX, 0.0f64), |(low, high), &v| (low.min(v), high.max(v)));
-    !voltages.is_empty() && low > (1.0 - ONE_VOLTAGE) * high
+/// Whether a test has rows, and all of them with about one value of a column.
+fn are_one(rows: &[Row], test: Test, column: Column, otherwise: f64) -> bool {
+    let of_test = rows.iter().filter(|row| row.test == test);
+    let values = of_test.map(|row| row.get(column).unwrap_or(otherwise));
+    let (low, high) = values.fold((f64::MAX, 0.0f64), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    high > 0.0 && low > (1.0 - ONE) * high
 }
