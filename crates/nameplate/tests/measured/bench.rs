@@ -6,10 +6,18 @@ use nameplate::plate::{Plate, Printed};
 use rand_pcg::Pcg64Mcg;
 
 use crate::drawn::{Motor, normal};
+use crate::machine::Laws;
 
 /// Standard deviation of an instrument of class 0.2, and of what a reading scatters beside.
 const CLASS: f64 = 0.002 / 1.732;
-const SCATTER: f64 = 0.001;
+fn scatter(test: &str) -> f64 {
+    match test {
+        "no-load" => 0.004,
+        "locked-rotor" => 0.01,
+        "load" => 0.003,
+        _ => 0.001,
+    }
+}
 const RPM: f64 = 1.0 / 1.732;
 const KELVIN: f64 = 2.0 / 1.732;
 
@@ -67,9 +75,13 @@ impl<'m> Bench<'m> {
         }
     }
 
-    fn read(&mut self, truth: f64, gain: usize, share: f64) -> f64 {
-        let scatter = (CLASS * share * normal(&mut self.rng)).hypot(0.0) * normal(&mut self.rng).signum();
-        truth * (1.0 + self.gains[gain] + scatter + SCATTER * normal(&mut self.rng))
+    /// `share`: the instrument's scatter over that of a voltmeter.
+    fn read(&mut self, test: &str, truth: f64, gain: usize, share: f64) -> f64 {
+        let law = match self.motor.machine.laws {
+            Laws::Fitted => scatter(test) * normal(&mut self.rng),
+            Laws::Others => 0.0,
+        };
+        truth * (1.0 + self.gains[gain] + CLASS * share * normal(&mut self.rng) + law)
     }
 
     fn temperature(&mut self, degc: f64) -> f64 {
@@ -113,17 +125,17 @@ impl<'m> Bench<'m> {
     fn row(&mut self, test: &str, u: f64, nu: f64, shown: &crate::machine::Shown, degc: f64, slip: Option<f64>) {
         let watt = 3f64.sqrt() * self.motor.volt * self.motor.amp;
         let synchronous = 3000.0 / f64::from(self.motor.pole_pairs);
-        let volt = self.read(u * self.motor.volt, 0, 1.0);
-        let amp = self.read(shown.current * self.motor.amp, 1, 1.0);
+        let volt = self.read(test, u * self.motor.volt, 0, 1.0);
+        let amp = self.read(test, shown.current * self.motor.amp, 1, 1.0);
         let late = shown.reactive / shown.active * self.gains[3];
         let share = u * shown.current / shown.active;
-        let power = self.read(shown.active * watt, 2, share) * (1.0 + late);
+        let power = self.read(test, shown.active * watt, 2, share) * (1.0 + late);
         let degc = self.temperature(degc);
         let (rpm, nm) = match slip {
             Some(slip) => {
                 let nm = shown.torque * watt / (synchronous * std::f64::consts::TAU / 60.0);
                 let rpm = synchronous * (1.0 - slip) + RPM * normal(&mut self.rng);
-                (rpm.min(synchronous - 0.01).to_string(), self.read(nm, 4, 1.0).to_string())
+                (rpm.min(synchronous - 0.01).to_string(), self.read(test, nm, 4, 1.0).to_string())
             }
             None => (String::new(), String::new()),
         };
@@ -143,7 +155,7 @@ impl<'m> Bench<'m> {
         for k in 0..=steps {
             if k % 250 == 0 {
                 let rpm = w * rated * 60.0 / std::f64::consts::TAU;
-                let read = rpm * (1.0 + SCATTER * normal(&mut self.rng)) + RPM * normal(&mut self.rng);
+                let read = rpm * (1.0 + scatter("coast-down") * normal(&mut self.rng)) + RPM * normal(&mut self.rng);
                 let _ = writeln!(self.table, "coast-down,,,,,{read},,,,{}", h * f64::from(k));
             }
             let (a, b) = (rate(w), rate(w + 0.5 * h * rate(w)));

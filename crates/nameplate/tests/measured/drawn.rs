@@ -253,7 +253,10 @@ pub fn truths(motor: &Motor) -> [f64; 15] {
     let share = r_2 / (r_1 + r_2);
     let lost = 0.1;
     let drop = (1.0 - m.saturated_leakage) / (1.0 - m.saturated_leakage * lost);
-    let henry = ohm / omega / (1.0 - drop * lost);
+    let henry = match m.laws {
+        Laws::Fitted => ohm / omega / (1.0 - drop * lost),
+        Laws::Others => ohm / omega,
+    };
     let rotor_leakage = m.leakage + m.inner_leakage * share * share;
     let [second_resistance, second_leakage] = second_cage(m);
     let [k, n] = m.saturation;
@@ -265,7 +268,7 @@ pub fn truths(motor: &Motor) -> [f64; 15] {
         r_1 * share * ohm,
         m.leakage * henry,
         rotor_leakage * henry,
-        m.magnetizing * ohm / omega / (1.0 - k + grown),
+        ohm / omega / m.susceptance(1.0, 1.0),
         r_1 * share / second_resistance,
         second_leakage / rotor_leakage,
         drop,

@@ -74,7 +74,7 @@ impl Machine {
         }
     }
 
-    fn susceptance(&self, air_gap: f64, nu: f64) -> f64 {
+    pub fn susceptance(&self, air_gap: f64, nu: f64) -> f64 {
         let flux = air_gap / nu / self.rated_air_gap;
         let [share, exponent] = self.saturation;
         let grown = match self.laws {
@@ -101,7 +101,7 @@ impl Machine {
         let r = self.inner_resistance * self.outer_resistance / (self.inner_resistance + self.outer_resistance);
         let share = self.outer_resistance / (self.inner_resistance + self.outer_resistance);
         let slot = self.inner_leakage * share * share;
-        let xi = (1.5 * slot / r * 2.0 * nu * slip / warmth).sqrt().clamp(1e-3, 20.0);
+        let xi = (1.5 * slot / (0.7 * r) * nu * slip / warmth).sqrt().clamp(1e-3, 20.0);
         let (twice, below) = (2.0 * xi, (2.0 * xi).cosh() - (2.0 * xi).cos());
         let k_r = xi * (twice.sinh() + twice.sin()) / below;
         let k_x = 1.5 * (twice.sinh() - twice.sin()) / (xi * below);

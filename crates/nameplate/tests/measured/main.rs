@@ -70,7 +70,7 @@ fn print(all: &[(Motor, Tested)]) {
         println!("{:30} {}", name, cells.join(""));
     }
     for (n, (_, t)) in all.iter().enumerate() {
-        if !t.doubts.is_empty() { println!("{n}: {:?}", t.doubts); }
+        if !t.doubts.is_empty() { println!("{n}: {:?}", t.doubts.iter().map(|d| format!("{:?} {:.0}/{:.0}", d.what, d.chi_square, d.limit)).collect::<Vec<_>>()); }
     }
     let doubted = all.iter().filter(|(_, t)| !t.doubts.is_empty()).count();
     println!("contradictions named in {doubted} of {}", all.len());
@@ -82,4 +82,11 @@ fn intervals_hold_the_truth_after_each_step() {
     let all = machines(count(240), Laws::Fitted);
     println!("{:?}", begun.elapsed());
     print(&all);
+}
+
+#[test]
+fn other_laws() {
+    let all = machines(count(100), Laws::Others);
+    print(&all);
+    for s in 0..6 { println!("worst: {:?}", NAMES.iter().enumerate().map(|(k, n)| { let mut e: Vec<f64> = all.iter().map(|(m, t)| (t.steps[s].parameters[k].value / truths(m)[k]).ln().abs()).collect(); e.sort_by(f64::total_cmp); format!("{n} {:.3}", e[e.len()/2]) }).collect::<Vec<_>>()); }
 }

@@ -12,8 +12,17 @@ const NOT_MEASURED: [(Test, f64, f64); 4] = [
     (Test::LockedRotor, 40.0, 20.0),
     (Test::Load, 75.0, 25.0),
 ];
-/// What the laws of the circuit may miss, as a share of each reading: saturation, skin effect and core loss are no exact powers.
-const LAWS: f64 = 0.001;
+/// What supply, position and the circuit's own laws may add to a reading, as a share: saturation is no exact power, a bar is no
+/// pair of cages. Motors with other laws (`tests/measured`) set their size.
+pub(super) const fn laws(test: Test) -> f64 {
+    match test {
+        Test::DcResistance => 0.0,
+        Test::NoLoad => 0.004,
+        Test::LockedRotor => 0.01,
+        Test::Load => 0.003,
+        Test::CoastDown => 0.001,
+    }
+}
 
 /// The points of a table's rows; `machine` is the motor of the plate.
 pub(in crate::measured) fn points(rows: &[Row], instruments: &Instruments, machine: &Machine) -> Vec<Point> {
@@ -58,7 +67,7 @@ impl Maker<'_> {
                 (_, measured, _, _) => measured,
             };
             let Some(measured) = measured.filter(|_| is_read(row.test, column)) else { continue };
-            readings.push(self.reading(column, measured, nu, apparent / active.max(1e-12)));
+            readings.push(self.reading(row.test, column, measured, nu, apparent / active.max(1e-12)));
         }
         let (temperature, reading) = self.temperature(row);
         readings.push(reading);
@@ -75,7 +84,7 @@ impl Maker<'_> {
         }
     }
 
-    fn reading(&self, column: Column, measured: f64, nu: f64, apparent_over_active: f64) -> Reading {
+    fn reading(&self, test: Test, column: Column, measured: f64, nu: f64, apparent_over_active: f64) -> Reading {
         let i = self.instruments;
         let (value, limit) = match column {
             Column::Speed => {
@@ -94,12 +103,11 @@ impl Maker<'_> {
             Column::Power => (measured.ln(), share(i.power_percent) * apparent_over_active),
             _ => (measured.ln(), share(i.torque_percent)),
         };
-        let laws = if column == Column::Resistance { 0.0 } else { LAWS };
         Reading {
             column,
             measured,
             value,
-            deviation: limit.hypot(laws),
+            deviation: limit.hypot(laws(test)),
         }
     }
 
@@ -150,7 +158,7 @@ impl Maker<'_> {
                 column: Column::Speed,
                 measured,
                 value,
-                deviation: deviation(radians(self.instruments.speed_rpm) / rated).hypot(LAWS),
+                deviation: deviation(radians(self.instruments.speed_rpm) / rated).hypot(laws(Test::CoastDown)),
             }
         };
         let readings: Vec<Reading> = run.iter().map(reading).collect();

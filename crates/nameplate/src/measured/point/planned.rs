@@ -2,7 +2,7 @@
 
 use super::{KELVINS, Own, Point, Reading};
 use crate::measured::instruments::{Instruments, deviation, share};
-use crate::measured::point::made::radians;
+use crate::measured::point::made::{laws, radians};
 use crate::measured::table::{Column, Test};
 use crate::measured::unknowns::Machine;
 
@@ -57,13 +57,17 @@ fn filled(mut point: Point, machine: &Machine, i: &Instruments) -> Point {
         Column::Current => share(i.current_percent),
         _ => share(i.voltage_percent),
     };
+    let law = |column: Column| match column {
+        Column::Speed | Column::Temperature => 0.0,
+        _ => laws(point.test),
+    };
     point.readings = columns(point.test)
         .iter()
         .map(|&column| Reading {
             column,
             measured: 0.0,
             value: 0.0,
-            deviation: limit(column),
+            deviation: limit(column).hypot(law(column)),
         })
         .collect();
     meets(point, machine)
@@ -79,7 +83,7 @@ fn coast_down(mut point: Point, machine: &Machine, i: &Instruments) -> Point {
             column: Column::Speed,
             measured: 0.0,
             value: 0.0,
-            deviation: deviation(radians(i.speed_rpm) / rated).hypot(0.001),
+            deviation: deviation(radians(i.speed_rpm) / rated).hypot(laws(Test::CoastDown)),
         };
         READINGS
     ];
