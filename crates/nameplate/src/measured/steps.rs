@@ -24,7 +24,7 @@ use crate::plate::{Completed, VALUES};
 const ROUNDS: usize = 8;
 /// Further starts where something contradicts, and where all agrees but a bound stops the fit; their seed: the same tests give
 /// the same motor.
-const STARTS: [usize; 2] = [10, 3];
+const STARTS: [usize; 2] = [24, 3];
 const SEED: u64 = 1;
 /// Voltages or frequencies that differ by less than this share are one.
 const ONE: f64 = 0.2;
@@ -119,7 +119,8 @@ impl<'b> Bench<'b> {
 
     fn tested(&self, rows: &[Row]) -> Option<Tested> {
         let (mut steps, mut used) = (Vec::new(), Vec::new());
-        let (mut last, mut named) = self.solved(&used, None)?;
+        let (plate, _) = self.solved(&used, None)?;
+        let (mut last, mut named) = (plate.clone(), Vec::new());
         steps.push(self.step(None, 0, &last));
         for test in Test::ALL {
             let more: Vec<Point> = self.points.iter().filter(|p| p.test == test).cloned().collect();
@@ -127,7 +128,7 @@ impl<'b> Bench<'b> {
                 continue;
             }
             used.extend(more);
-            (last, named) = self.solved(&used, Some(&last))?;
+            (last, named) = self.solved(&used, Some([&last, &plate]))?;
             steps.push(self.step(Some(test), rows.iter().filter(|row| row.test == test).count(), &last));
         }
         Some(self.answer(rows, steps, &last, named, &used))
@@ -175,7 +176,8 @@ impl<'b> Bench<'b> {
     }
 
     /// The posterior of some points, with room for what contradicts, and the contradictions as they were first found.
-    fn solved(&self, points: &[Point], before: Option<&Posterior>) -> Option<(Posterior, Vec<Doubt>)> {
+    fn solved(&self, points: &[Point], known: Option<[&Posterior; 2]>) -> Option<(Posterior, Vec<Doubt>)> {
+        let before = known.map(|[before, _]| before);
         let mut factors = Doubts::none(points.len());
         let mut from = before.map_or(self.prior.centre, |before| before.unknowns);
         let mut own: Vec<_> = points.iter().map(|point| point.start).collect();
@@ -191,9 +193,10 @@ impl<'b> Bench<'b> {
                 problem.stopped(&posterior) != 0 && problem.stopped(&posterior) != problem.stopped(before)
             };
             let suspicious = !found.is_empty() || before.is_some_and(newly);
-            if let (true, 0, Some(before)) = (suspicious, round, before) {
+            if let (true, 0, Some(around)) = (suspicious, round, known) {
                 // Perhaps a local minimum.
-                posterior = self.elsewhere(&problem, before, posterior, found.is_empty());
+                let starts = STARTS[usize::from(found.is_empty())];
+                posterior = self.elsewhere(&problem, around, posterior, starts);
                 found = doubts(&problem, &posterior);
             }
             if found.is_empty() {
@@ -211,14 +214,14 @@ impl<'b> Bench<'b> {
         Some((posterior, named))
     }
 
-    /// The best of further starts, drawn from what was known before.
-    fn elsewhere(&self, problem: &Problem<'_>, before: &Posterior, found: Posterior, agrees: bool) -> Posterior {
+    /// The best of further starts, drawn from what was known before this test, and before all.
+    fn elsewhere(&self, problem: &Problem<'_>, around: [&Posterior; 2], found: Posterior, starts: usize) -> Posterior {
         let mut rng = Pcg64Mcg::seed_from_u64(SEED);
         let mut best = found;
-        for _ in 0..STARTS[usize::from(agrees)] {
+        for k in 0..starts {
             let normal = Unknowns::from_fn(|_, _| StandardNormal.sample(&mut rng));
             let own = problem.points.iter().map(|point| point.start).collect();
-            let from = problem.inside(before.drawn(&normal));
+            let from = problem.inside(around[k % 2].drawn(&normal));
             if let Some(other) = problem.solved(&from, own)
                 && other.cost < best.cost
             {

@@ -72,6 +72,13 @@ fn print(all: &[(Motor, Tested)]) {
     for (n, (_, t)) in all.iter().enumerate() {
         if !t.doubts.is_empty() { println!("{n}: {:?}", t.doubts.iter().map(|d| format!("{:?} {:.0}/{:.0}", d.what, d.chi_square, d.limit)).collect::<Vec<_>>()); }
     }
+    let mut ratios: Vec<(f64, u64, usize, usize)> = Vec::new();
+    for (n, (_, t)) in all.iter().enumerate() { for s in 1..STEPS.len() { for k in 0..ALL {
+        ratios.push((t.steps[s].parameters[k].log_spread() / t.steps[s - 1].parameters[k].log_spread(), n as u64, s, k)); } } }
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let at = |q: f64| ratios[((ratios.len() - 1) as f64 * q) as usize];
+    println!("growth: 50 % {:?} 90 {:?} 95 {:?} 98 {:?} 99 {:?} 99.5 {:?} max {:?}", at(0.5), at(0.9), at(0.95), at(0.98), at(0.99), at(0.995), at(1.0));
+    for k in 0..ALL { let mut e: Vec<f64> = all.iter().map(|(m, t)| (t.steps[5].parameters[k].value / truths(m)[k]).ln().abs()).collect(); e.sort_by(f64::total_cmp); println!("error {} median {:.4} 95 % {:.4}", NAMES[k], e[e.len()/2], e[e.len()*95/100]); }
     let doubted = all.iter().filter(|(_, t)| !t.doubts.is_empty()).count();
     println!("contradictions named in {doubted} of {}", all.len());
 }
@@ -89,4 +96,27 @@ fn other_laws() {
     let all = machines(count(100), Laws::Others);
     print(&all);
     for s in 0..6 { println!("worst: {:?}", NAMES.iter().enumerate().map(|(k, n)| { let mut e: Vec<f64> = all.iter().map(|(m, t)| (t.steps[s].parameters[k].value / truths(m)[k]).ln().abs()).collect(); e.sort_by(f64::total_cmp); format!("{n} {:.3}", e[e.len()/2]) }).collect::<Vec<_>>()); }
+}
+
+#[test]
+fn gen_template() {
+    let plate = "power_kw = 2.2\nvoltage_volt = 400\nfrequency_hz = 50\nspeed_rpm = 1438\ncurrent_amp = 4.78\npower_factor = 0.77\nefficiency_percent = 86.3";
+    let file = nameplate::plate::PlateFile::parse(plate, "p").unwrap();
+    let e = Estimate::of(&file.plate).unwrap();
+    let c = e.fit.circuit;
+    let t = e.completed.targets;
+    let mut machine = machine::Machine { laws: Laws::Fitted, stator_resistance: c.stator_resistance * 1.1, leakage: c.leakage * 1.15, magnetizing: c.magnetizing * 0.97, inner_resistance: c.inner_resistance * 1.03, outer_resistance: 4.0 * c.inner_resistance, inner_leakage: c.leakage * 1.0, core_conductance: c.core_conductance * 0.8, windage: c.windage * 1.1, stray: c.stray * 0.85, saturated_leakage: 0.8, saturation: [0.0, 6.5], rated_air_gap: 1.0, bearings: 0.35, warm_degc: 92.0, slip: t.slip, rated_torque: t.rating().torque() };
+    machine.rated_air_gap = machine.at(1.0, t.slip, 1.0, 92.0).air_gap;
+    machine.saturation[0] = 0.28;
+    let rated = machine.at(1.0, t.slip, 1.0, 92.0);
+    println!("rated: I {} P2 {} eff {} pf {}", rated.current, rated.torque * (1.0 - t.slip) / t.rating().power, rated.torque * (1.0 - t.slip) / rated.active, rated.active / rated.current);
+    let motor = Motor { machine, power_kw: 2.2, volt: 400.0, amp: e.completed.base_current_amp(), pole_pairs: 2, inertia: 0.0095 / 0.7627639917864495, values: [0.0; 6] };
+    println!("{:?}", NAMES.iter().zip(truths(&motor)).collect::<Vec<_>>());
+    let mut bench = Bench::new(&motor, Pcg64Mcg::seed_from_u64(7));
+    bench.dc_resistance();
+    bench.no_load(&[1.1, 1.0, 0.8, 0.6, 0.4, 0.25]);
+    bench.locked_rotor(&[1.0, 0.25]);
+    bench.load(&[0.25, 0.5, 0.75, 1.0, 1.25]);
+    bench.coast_down();
+    println!("{}", bench.table);
 }

@@ -158,7 +158,8 @@ impl Maker<'_> {
                 column: Column::Speed,
                 measured,
                 value,
-                deviation: deviation(radians(self.instruments.speed_rpm) / rated).hypot(laws(Test::CoastDown)),
+                deviation: deviation(radians(self.instruments.speed_rpm) / rated)
+                    .hypot(laws(Test::CoastDown) * value),
             }
         };
         let readings: Vec<Reading> = run.iter().map(reading).collect();
