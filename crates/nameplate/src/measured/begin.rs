@@ -54,7 +54,9 @@ impl Begin {
         let targets = &self.completed.targets;
         let rating = targets.rating();
         let rated = fit.circuit.at_rating(&rating);
-        let breakdown = fit.circuit.at_slip(&rating, fit.breakdown_slip, Winding::Cold);
+        let breakdown = fit
+            .circuit
+            .at_slip(&rating, fit.breakdown_slip, Winding::Cold);
         let locked = fit.circuit.at_slip(&rating, 1.0, Winding::Cold);
         let power = rated.torque * (1.0 - rating.slip * fit.circuit.slip_ratio);
         let mut moved = *targets;

@@ -18,6 +18,8 @@ const BEYOND: f64 = 3.719;
 const ALONE: f64 = 1e-7;
 /// Rows with at least this share of the worst contradiction take part in it.
 const TAKES_PART: f64 = 0.5;
+/// A temperature is the culprit only where it explains clearly more than any other reading.
+const LESS_LIKELY: f64 = 0.8;
 
 /// A contradiction.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +79,12 @@ pub(super) fn excess(doubt: &Doubt) -> f64 {
     doubt.chi_square / doubt.limit
 }
 
-fn of_value(problem: &Problem<'_>, posterior: &Posterior, covariance: &Square, k: usize) -> Option<Doubt> {
+fn of_value(
+    problem: &Problem<'_>,
+    posterior: &Posterior,
+    covariance: &Square,
+    k: usize,
+) -> Option<Doubt> {
     let variance = problem.prior.values[(k, k)] * problem.doubts.values[k];
     let left = variance - covariance[(k, k)];
     if !problem.completed.known[k] || left < 1e-3 * variance {
@@ -93,13 +100,23 @@ fn of_value(problem: &Problem<'_>, posterior: &Posterior, covariance: &Square, k
     })
 }
 
-fn of_point(point: &Point, rows: &PointRows, covariance: &Square, posterior: &Posterior) -> Option<Doubt> {
+fn of_point(
+    point: &Point,
+    rows: &PointRows,
+    covariance: &Square,
+    posterior: &Posterior,
+) -> Option<Doubt> {
     let count = rows.residual.len();
     if count == 0 {
         return None;
     }
-    let covariance = DMatrix::from_column_slice(covariance.nrows(), covariance.ncols(), covariance.as_slice());
-    let left = DMatrix::identity(count, count) - &rows.jacobian * covariance * rows.jacobian.transpose();
+    let covariance = DMatrix::from_column_slice(
+        covariance.nrows(),
+        covariance.ncols(),
+        covariance.as_slice(),
+    );
+    let left =
+        DMatrix::identity(count, count) - &rows.jacobian * covariance * rows.jacobian.transpose();
     let eigen = SymmetricEigen::new(left);
     let inverse = |x: f64| if x > ALONE { 1.0 / x } else { 0.0 };
     let freedom = eigen.eigenvalues.iter().filter(|x| **x > ALONE).count();
@@ -116,12 +133,21 @@ fn of_point(point: &Point, rows: &PointRows, covariance: &Square, posterior: &Po
 }
 
 /// The reading that, had it been another, would lower the chi-square most.
-fn culprit(point: &Point, rows: &PointRows, weight: &DMatrix<f64>, posterior: &Posterior) -> Option<Culprit> {
+fn culprit(
+    point: &Point,
+    rows: &PointRows,
+    weight: &DMatrix<f64>,
+    posterior: &Posterior,
+) -> Option<Culprit> {
     let pulled = weight * &rows.residual;
     let one = |k: usize| {
         let column: DVector<f64> = rows.readings.column(k).into_owned();
         let (along, square) = (column.dot(&pulled), column.dot(&(weight * &column)));
-        (square > 0.0).then(|| (k, along * along / square, along / square))
+        let likely = match point.readings[k].column {
+            Column::Temperature => LESS_LIKELY,
+            _ => 1.0,
+        };
+        (square > 0.0).then(|| (k, likely * along * along / square, along / square))
     };
     let all = (0..point.readings.len()).filter_map(one);
     let (k, _, change) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;

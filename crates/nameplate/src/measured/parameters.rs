@@ -84,7 +84,11 @@ pub(super) fn parameters(machine: &Machine, form: &Form) -> [f64; ALL] {
 const STEP: f64 = 1e-5;
 
 /// Derivatives of the parameters' logarithms by the unknowns.
-pub(super) fn derivatives(posterior: &Posterior, completed: &Completed, form: &Form) -> DMatrix<f64> {
+pub(super) fn derivatives(
+    posterior: &Posterior,
+    completed: &Completed,
+    form: &Form,
+) -> DMatrix<f64> {
     let here = parameters(&posterior.machine, form);
     let mut matrix = DMatrix::zeros(ALL, super::unknowns::UNKNOWNS);
     for j in 0..OF_MOTOR {
@@ -100,12 +104,20 @@ pub(super) fn derivatives(posterior: &Posterior, completed: &Completed, form: &F
 
 /// Covariance of the parameters' logarithms.
 pub(super) fn covariance(derivatives: &DMatrix<f64>, of_unknowns: &Square) -> DMatrix<f64> {
-    let unknowns = DMatrix::from_column_slice(of_unknowns.nrows(), of_unknowns.ncols(), of_unknowns.as_slice());
+    let unknowns = DMatrix::from_column_slice(
+        of_unknowns.nrows(),
+        of_unknowns.ncols(),
+        of_unknowns.as_slice(),
+    );
     derivatives * unknowns * derivatives.transpose()
 }
 
 /// 95 % intervals.
-pub(super) fn intervals(posterior: &Posterior, form: &Form, covariance: &DMatrix<f64>) -> [Interval; ALL] {
+pub(super) fn intervals(
+    posterior: &Posterior,
+    form: &Form,
+    covariance: &DMatrix<f64>,
+) -> [Interval; ALL] {
     let here = parameters(&posterior.machine, form);
     let mut all: [Interval; ALL] =
         core::array::from_fn(|k| Interval::around(here[k], covariance[(k, k)].max(0.0).sqrt()));

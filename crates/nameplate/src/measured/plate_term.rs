@@ -71,7 +71,11 @@ impl PlateTerm {
 
     fn whole(&self, unknowns: &Unknowns) -> (Whole, SVector<f64, ROWS>) {
         let circuit = Circuit::from_logs(&logs(unknowns));
-        let rating = self.completed.with_values(&values(unknowns)).targets.rating();
+        let rating = self
+            .completed
+            .with_values(&values(unknowns))
+            .targets
+            .rating();
         let slip = breakdown_slip(&circuit, &rating);
         let here = self.residual(unknowns, slip);
         let mut whole = Whole::zeros();
@@ -92,7 +96,9 @@ impl PlateTerm {
         residual
             .fixed_rows_mut::<MISFITS>(0)
             .copy_from(&misfits.component_div(&self.meets));
-        residual.fixed_rows_mut::<PARAMETERS>(MISFITS).copy_from(&prior);
+        residual
+            .fixed_rows_mut::<PARAMETERS>(MISFITS)
+            .copy_from(&prior);
         residual[ROWS - 1] = 0.0;
         residual
     }

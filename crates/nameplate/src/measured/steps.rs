@@ -65,7 +65,9 @@ impl Tested {
     /// Parameters after the last step, in the order of [`super::NAMES`].
     pub fn parameters(&self) -> [Interval; ALL] {
         let nothing = Interval::around(1.0, 0.0);
-        self.steps.last().map_or([nothing; ALL], |step| step.parameters)
+        self.steps
+            .last()
+            .map_or([nothing; ALL], |step| step.parameters)
     }
 
     /// What tests on one motor say beyond its plate; `inertia_kg_m2` where it was told.
@@ -98,7 +100,12 @@ struct Bench<'b> {
 }
 
 impl<'b> Bench<'b> {
-    fn of(begin: &'b Begin, rows: &[Row], instruments: &'b Instruments, inertia: Option<f64>) -> Bench<'b> {
+    fn of(
+        begin: &'b Begin,
+        rows: &[Row],
+        instruments: &'b Instruments,
+        inertia: Option<f64>,
+    ) -> Bench<'b> {
         let prior = Prior::of(begin, instruments, inertia);
         let machine = Machine::of(&prior.centre, &begin.completed);
         let has = |test: Test| rows.iter().any(|row| row.test == test);
@@ -123,18 +130,34 @@ impl<'b> Bench<'b> {
         let (mut last, mut named) = (plate.clone(), Vec::new());
         steps.push(self.step(None, 0, &last));
         for test in Test::ALL {
-            let more: Vec<Point> = self.points.iter().filter(|p| p.test == test).cloned().collect();
+            let more: Vec<Point> = self
+                .points
+                .iter()
+                .filter(|p| p.test == test)
+                .cloned()
+                .collect();
             if more.is_empty() {
                 continue;
             }
             used.extend(more);
             (last, named) = self.solved(&used, Some([&last, &plate]))?;
-            steps.push(self.step(Some(test), rows.iter().filter(|row| row.test == test).count(), &last));
+            steps.push(self.step(
+                Some(test),
+                rows.iter().filter(|row| row.test == test).count(),
+                &last,
+            ));
         }
         Some(self.answer(rows, steps, &last, named, &used))
     }
 
-    fn answer(&self, rows: &[Row], steps: Vec<Step>, last: &Posterior, doubts: Vec<Doubt>, used: &[Point]) -> Tested {
+    fn answer(
+        &self,
+        rows: &[Row],
+        steps: Vec<Step>,
+        last: &Posterior,
+        doubts: Vec<Doubt>,
+        used: &[Point],
+    ) -> Tested {
         let by_unknowns = derivatives(last, self.completed, &self.form);
         let spread = covariance(&by_unknowns, &last.covariance());
         let correlations = DMatrix::from_fn(ALL, ALL, |a, b| {
@@ -149,7 +172,12 @@ impl<'b> Bench<'b> {
             correlations,
             doubts,
             one_voltage: are_one(rows, Test::NoLoad, Column::Voltage, f64::NAN),
-            one_frequency: are_one(rows, Test::LockedRotor, Column::Frequency, self.completed.frequency_hz),
+            one_frequency: are_one(
+                rows,
+                Test::LockedRotor,
+                Column::Frequency,
+                self.completed.frequency_hz,
+            ),
             helps: helps(&problem, last, self.instruments, &self.form, &by_unknowns),
         }
     }
@@ -176,12 +204,19 @@ impl<'b> Bench<'b> {
     }
 
     /// The posterior of some points, with room for what contradicts, and the contradictions as they were first found.
-    fn solved(&self, points: &[Point], known: Option<[&Posterior; 2]>) -> Option<(Posterior, Vec<Doubt>)> {
+    fn solved(
+        &self,
+        points: &[Point],
+        known: Option<[&Posterior; 2]>,
+    ) -> Option<(Posterior, Vec<Doubt>)> {
         let before = known.map(|[before, _]| before);
         let mut factors = Doubts::none(points.len());
         let mut from = before.map_or(self.prior.centre, |before| before.unknowns);
         let mut own: Vec<_> = points.iter().map(|point| point.start).collect();
-        for (new, old) in own.iter_mut().zip(before.iter().flat_map(|before| &before.own)) {
+        for (new, old) in own
+            .iter_mut()
+            .zip(before.iter().flat_map(|before| &before.own))
+        {
             *new = *old;
         }
         let mut named: Vec<Doubt> = Vec::new();
@@ -190,7 +225,8 @@ impl<'b> Bench<'b> {
             let mut posterior = problem.solved(&from, own)?;
             let mut found = doubts(&problem, &posterior);
             let newly = |before: &Posterior| {
-                problem.stopped(&posterior) != 0 && problem.stopped(&posterior) != problem.stopped(before)
+                problem.stopped(&posterior) != 0
+                    && problem.stopped(&posterior) != problem.stopped(before)
             };
             let suspicious = !found.is_empty() || before.is_some_and(newly);
             if let (true, 0, Some(around)) = (suspicious, round, known) {
@@ -215,7 +251,13 @@ impl<'b> Bench<'b> {
     }
 
     /// The best of further starts, drawn from what was known before this test, and before all.
-    fn elsewhere(&self, problem: &Problem<'_>, around: [&Posterior; 2], found: Posterior, starts: usize) -> Posterior {
+    fn elsewhere(
+        &self,
+        problem: &Problem<'_>,
+        around: [&Posterior; 2],
+        found: Posterior,
+        starts: usize,
+    ) -> Posterior {
         let mut rng = Pcg64Mcg::seed_from_u64(SEED);
         let mut best = found;
         for k in 0..starts {
@@ -259,7 +301,8 @@ fn bounds(completed: &Completed) -> [Unknowns; 2] {
     let circuit = crate::fit::bounds(&completed.targets);
     [(-30.0, 0), (30.0, 1)].map(|(end, side)| {
         let mut all = Unknowns::repeat(end);
-        all.fixed_rows_mut::<PARAMETERS>(VALUES).copy_from(&circuit[side]);
+        all.fixed_rows_mut::<PARAMETERS>(VALUES)
+            .copy_from(&circuit[side]);
         for (unknown, ends) in EXTRA_BOUNDS {
             all[unknown as usize] = ends[side];
         }

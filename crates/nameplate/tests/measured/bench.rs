@@ -8,8 +8,12 @@ use rand_pcg::Pcg64Mcg;
 use crate::drawn::{Motor, normal};
 use crate::machine::Laws;
 
-/// Standard deviation of an instrument of class 0.2, and of what a reading scatters beside.
+/// Standard deviations: of an instrument of class 0.2, of a speed and of a temperature.
 const CLASS: f64 = 0.002 / 1.732;
+const RPM: f64 = 1.0 / 1.732;
+const KELVIN: f64 = 2.0 / 1.732;
+
+/// What supply and position add to a reading of a motor with the laws that are fitted.
 fn scatter(test: &str) -> f64 {
     match test {
         "no-load" => 0.004,
@@ -18,14 +22,19 @@ fn scatter(test: &str) -> f64 {
         _ => 0.001,
     }
 }
-const RPM: f64 = 1.0 / 1.732;
-const KELVIN: f64 = 2.0 / 1.732;
 
 pub const HEADER: &str = "test,voltage_volt,frequency_hz,current_amp,power_watt,speed_rpm,torque_nm,temperature_degc,resistance_ohm,time_s\n";
 
 /// The plate of the motor's type: its single values differ by the tolerances of IEC 60034-1.
 pub fn plate(motor: &Motor, rng: &mut Pcg64Mcg, ratios: bool) -> Plate {
-    let [slip, efficiency, power_factor, breakdown, locked_torque, locked_current] = motor.values;
+    let [
+        slip,
+        efficiency,
+        power_factor,
+        breakdown,
+        locked_torque,
+        locked_current,
+    ] = motor.values;
     let third = 1.0 / 3f64.sqrt();
     let mut off = |limit: f64| limit * third * normal(rng);
     let slip = slip * off(if motor.power_kw < 1.0 { 0.3 } else { 0.2 }).exp();
@@ -34,7 +43,8 @@ pub fn plate(motor: &Motor, rng: &mut Pcg64Mcg, ratios: bool) -> Plate {
     let tangent = (1.0 / power_factor / power_factor - 1.0).sqrt()
         * off(step / (power_factor * (1.0 - power_factor * power_factor))).exp();
     let power_factor = 1.0 / tangent.hypot(1.0);
-    let printed = |value: f64, digits: usize| Some(format!("{value:.digits$}").parse::<Printed>().unwrap());
+    let printed =
+        |value: f64, digits: usize| Some(format!("{value:.digits$}").parse::<Printed>().unwrap());
     let exact = |value: f64| Some(Printed::exact(value));
     let mut ratio = |value: f64, limit: f64| match ratios {
         true => printed(value * off(limit).exp(), 2),
@@ -95,7 +105,11 @@ impl<'m> Bench<'m> {
         for _ in 0..3 {
             let scatter = 1.0 + CLASS * normal(&mut self.rng) + self.gains[5];
             let degc = self.temperature(22.0);
-            let _ = writeln!(self.table, "dc-resistance,,,,,,,{degc},{},", terminals * scatter);
+            let _ = writeln!(
+                self.table,
+                "dc-resistance,,,,,,,{degc},{},",
+                terminals * scatter
+            );
         }
     }
 
@@ -122,7 +136,15 @@ impl<'m> Bench<'m> {
         }
     }
 
-    fn row(&mut self, test: &str, u: f64, nu: f64, shown: &crate::machine::Shown, degc: f64, slip: Option<f64>) {
+    fn row(
+        &mut self,
+        test: &str,
+        u: f64,
+        nu: f64,
+        shown: &crate::machine::Shown,
+        degc: f64,
+        slip: Option<f64>,
+    ) {
         let watt = 3f64.sqrt() * self.motor.volt * self.motor.amp;
         let synchronous = 3000.0 / f64::from(self.motor.pole_pairs);
         let volt = self.read(test, u * self.motor.volt, 0, 1.0);
@@ -135,12 +157,18 @@ impl<'m> Bench<'m> {
             Some(slip) => {
                 let nm = shown.torque * watt / (synchronous * std::f64::consts::TAU / 60.0);
                 let rpm = synchronous * (1.0 - slip) + RPM * normal(&mut self.rng);
-                (rpm.min(synchronous - 0.01).to_string(), self.read(test, nm, 4, 1.0).to_string())
+                (
+                    rpm.min(synchronous - 0.01).to_string(),
+                    self.read(test, nm, 4, 1.0).to_string(),
+                )
             }
             None => (String::new(), String::new()),
         };
         let hz = 50.0 * nu;
-        let _ = writeln!(self.table, "{test},{volt},{hz},{amp},{power},{rpm},{nm},{degc},,");
+        let _ = writeln!(
+            self.table,
+            "{test},{volt},{hz},{amp},{power},{rpm},{nm},{degc},,"
+        );
     }
 
     /// Running out, integrated in small steps.
@@ -150,17 +178,17 @@ impl<'m> Bench<'m> {
         let torque = 1000.0 * self.motor.power_kw / rated / m.rated_torque;
         let rate = |w: f64| -m.friction(w) * torque / (self.motor.inertia * rated);
         let whole = -1.0 / rate(1.0);
+        // In rated speeds; the middle of each step.
         let (mut w, steps) = (1.02, 2000);
         let h = 0.8 * whole / f64::from(steps);
         for k in 0..=steps {
             if k % 250 == 0 {
                 let rpm = w * rated * 60.0 / std::f64::consts::TAU;
-                let read = rpm * (1.0 + scatter("coast-down") * normal(&mut self.rng)) + RPM * normal(&mut self.rng);
+                let read = rpm * (1.0 + scatter("coast-down") * normal(&mut self.rng))
+                    + RPM * normal(&mut self.rng);
                 let _ = writeln!(self.table, "coast-down,,,,,{read},,,,{}", h * f64::from(k));
             }
-            let (a, b) = (rate(w), rate(w + 0.5 * h * rate(w)));
-            let _ = a;
-            w += h * b;
+            w += h * rate(w + 0.5 * h * rate(w));
         }
     }
 }

@@ -198,14 +198,18 @@ impl Hidden {
             let (here, breakdown) = self.shown(logs, None);
             let error = &wanted - &here;
             if error.amax() < 1e-6 {
-                let inside = (0..11).all(|k| (BOUNDS[k][0].ln()..=BOUNDS[k][1].ln()).contains(&logs[k]));
+                let inside =
+                    (0..11).all(|k| (BOUNDS[k][0].ln()..=BOUNDS[k][1].ln()).contains(&logs[k]));
                 return inside.then(|| self.settled(logs));
             }
             let mut jacobian = DMatrix::zeros(6, 11);
             for k in 0..11 {
                 let mut moved = *logs;
                 moved[k] += 1e-5;
-                jacobian.set_column(k, &((self.shown(&moved, Some(breakdown)).0 - &here) * (spread[k] / 1e-5)));
+                jacobian.set_column(
+                    k,
+                    &((self.shown(&moved, Some(breakdown)).0 - &here) * (spread[k] / 1e-5)),
+                );
             }
             let square: DMatrix<f64> = &jacobian * jacobian.transpose();
             let step = jacobian.transpose() * square.cholesky()?.solve(&error);
@@ -284,7 +288,12 @@ pub fn truths(motor: &Motor) -> [f64; 15] {
 
 /// Resistance and leakage of the faster of two parallel branches with the rotor's impedance, by partial fractions of its admittance.
 fn second_cage(m: &Machine) -> [f64; 2] {
-    let (x, x_1, r_1, r_2) = (m.leakage, m.inner_leakage, m.inner_resistance, m.outer_resistance);
+    let (x, x_1, r_1, r_2) = (
+        m.leakage,
+        m.inner_leakage,
+        m.inner_resistance,
+        m.outer_resistance,
+    );
     // Y(p) = (r_1 + r_2 + x_1 p) / (x x_1 p^2 + (x (r_1 + r_2) + r_2 x_1) p + r_1 r_2)
     let matrix = SMatrix::<f64, 2, 2>::new(
         0.0,

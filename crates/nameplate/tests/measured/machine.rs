@@ -93,15 +93,21 @@ impl Machine {
         let g = nu * self.leakage_factor(current);
         let common = C::new(0.0, self.leakage * g);
         if self.laws == Laws::Fitted {
-            let inner = C::new(self.inner_resistance * warmth / slip, self.inner_leakage * g);
+            let inner = C::new(
+                self.inner_resistance * warmth / slip,
+                self.inner_leakage * g,
+            );
             let outer = C::new(self.outer_resistance * warmth / slip, 0.0);
             return common + inner * outer / (inner + outer);
         }
         // A bar (A. B. Field, 1905) with the resistance and leakage of both cages at low slip.
-        let r = self.inner_resistance * self.outer_resistance / (self.inner_resistance + self.outer_resistance);
+        let r = self.inner_resistance * self.outer_resistance
+            / (self.inner_resistance + self.outer_resistance);
         let share = self.outer_resistance / (self.inner_resistance + self.outer_resistance);
         let slot = self.inner_leakage * share * share;
-        let xi = (1.5 * slot / (0.7 * r) * nu * slip / warmth).sqrt().clamp(1e-3, 20.0);
+        let xi = (1.5 * slot / (0.7 * r) * nu * slip / warmth)
+            .sqrt()
+            .clamp(1e-3, 20.0);
         let (twice, below) = (2.0 * xi, (2.0 * xi).cosh() - (2.0 * xi).cos());
         let k_r = xi * (twice.sinh() + twice.sin()) / below;
         let k_x = 1.5 * (twice.sinh() - twice.sin()) / (xi * below);
@@ -120,7 +126,8 @@ impl Machine {
         let mut rotor = C::new(1.0, 0.0);
         for _ in 0..200 {
             rotor = self.rotor(slip, current, nu, warmth[1]);
-            let parallel = C::new(self.core_conductance, -self.susceptance(air_gap, nu)) + rotor.inv();
+            let parallel =
+                C::new(self.core_conductance, -self.susceptance(air_gap, nu)) + rotor.inv();
             let stator = C::new(
                 self.stator_resistance * warmth[0],
                 self.leakage * nu * self.leakage_factor(current),

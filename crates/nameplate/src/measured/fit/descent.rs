@@ -40,7 +40,10 @@ impl Posterior {
 
     /// A place as far off as the posterior leaves open.
     pub fn drawn(&self, normal: &Unknowns) -> Unknowns {
-        let factor = self.precision.cholesky().map(|factor| factor.l().transpose());
+        let factor = self
+            .precision
+            .cholesky()
+            .map(|factor| factor.l().transpose());
         let off = factor.and_then(|upper| upper.solve_upper_triangular(normal));
         self.unknowns + off.unwrap_or_else(Unknowns::zeros)
     }
@@ -138,7 +141,11 @@ impl Problem<'_> {
         head += plate.tr_mul(&residual);
         cost += residual.norm_squared();
         let machine = Machine::of(unknowns, self.completed);
-        let machines = if self.points.is_empty() { Vec::new() } else { moved(unknowns, self.completed) };
+        let machines = if self.points.is_empty() {
+            Vec::new()
+        } else {
+            moved(unknowns, self.completed)
+        };
         let mut rows = Vec::with_capacity(self.points.len());
         for (k, point) in self.points.iter().enumerate() {
             let one = PointRows::of(point, &own[k], self.doubts.points[k], &machine, &machines);
@@ -173,11 +180,24 @@ pub(in crate::measured) fn information(rows: &PointRows) -> Square {
 
 impl Problem<'_> {
     /// What points would add to the precision of a posterior.
-    pub fn planned_information(&self, posterior: &Posterior, points: &[crate::measured::point::Point]) -> Square {
+    pub fn planned_information(
+        &self,
+        posterior: &Posterior,
+        points: &[crate::measured::point::Point],
+    ) -> Square {
         let machines = moved(&posterior.unknowns, self.completed);
         let one = |point: &crate::measured::point::Point| {
-            information(&PointRows::of(point, &point.start, 1.0, &posterior.machine, &machines))
+            information(&PointRows::of(
+                point,
+                &point.start,
+                1.0,
+                &posterior.machine,
+                &machines,
+            ))
         };
-        points.iter().map(one).fold(Square::zeros(), |sum, one| sum + one)
+        points
+            .iter()
+            .map(one)
+            .fold(Square::zeros(), |sum, one| sum + one)
     }
 }

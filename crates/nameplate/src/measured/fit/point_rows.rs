@@ -74,7 +74,8 @@ impl PointRows {
 
     /// The point's own unknowns after a step of the others.
     pub fn settled(&self, test: Test, own: &Own, step: &Unknowns) -> Own {
-        let right = -(&self.own.residual + &self.own.jacobian * DVector::from_column_slice(step.as_slice()));
+        let right = -(&self.own.residual
+            + &self.own.jacobian * DVector::from_column_slice(step.as_slice()));
         let change = self.own.upper.solve_upper_triangular(&right);
         let mut new = *own;
         for (k, change) in change.iter().flat_map(|c| c.iter()).enumerate() {
@@ -91,7 +92,9 @@ fn limits(test: Test, k: usize) -> [f64; 2] {
     match (test, k) {
         (Test::DcResistance, _) => [-0.6, 2.6],
         (Test::Load, 1) => [1e-5, 0.95],
-        (Test::NoLoad | Test::LockedRotor, 1) | (Test::Load, _) if k + 1 == own_of(test) => [-0.6, 2.6],
+        (Test::NoLoad | Test::LockedRotor, 1) | (Test::Load, _) if k + 1 == own_of(test) => {
+            [-0.6, 2.6]
+        }
         _ => [1e-3, 20.0],
     }
 }
@@ -114,7 +117,10 @@ fn gains(point: &Point, all: &mut DMatrix<f64>, weight: impl Fn(usize) -> f64) {
         let places: &[(Unknown, f64)] = match reading.column {
             Column::Voltage => &[(Unknown::VoltageGain, 1.0)],
             Column::Current => &[(Unknown::CurrentGain, 1.0)],
-            Column::Power => &[(Unknown::PowerGain, 1.0), (Unknown::PowerAngle, point.tan_phi)],
+            Column::Power => &[
+                (Unknown::PowerGain, 1.0),
+                (Unknown::PowerAngle, point.tan_phi),
+            ],
             Column::Torque => &[(Unknown::TorqueGain, 1.0)],
             Column::Resistance => &[(Unknown::ResistanceGain, 1.0)],
             _ => &[],

@@ -72,12 +72,15 @@ impl Prior {
 
     /// Inverse of the covariance; the circuit's part is empty.
     pub fn precision(&self, doubts: &[f64; VALUES]) -> Square {
-        let doubted = Covariance::from_fn(|a, b| self.values[(a, b)] * (doubts[a] * doubts[b]).sqrt());
+        let doubted =
+            Covariance::from_fn(|a, b| self.values[(a, b)] * (doubts[a] * doubts[b]).sqrt());
         let inverse = doubted
             .cholesky()
             .map_or_else(Covariance::zeros, |factor| factor.inverse());
         let mut precision = Square::zeros();
-        precision.fixed_view_mut::<VALUES, VALUES>(0, 0).copy_from(&inverse);
+        precision
+            .fixed_view_mut::<VALUES, VALUES>(0, 0)
+            .copy_from(&inverse);
         for k in crate::measured::unknowns::OF_PLATE..crate::measured::unknowns::UNKNOWNS {
             precision[(k, k)] = self.spread[k].powi(-2);
         }

@@ -60,7 +60,10 @@ impl Machine {
     /// Uncoupled: the slip is where the rotor gives what friction and stray load take.
     pub(super) fn no_load(&self, air_gap: f64, degc: f64, nu: f64) -> Shown {
         let [stator, rotor] = self.warmth(degc);
-        let branch = Complex64::new(self.circuit.core_conductance, -self.magnetizing(air_gap, nu));
+        let branch = Complex64::new(
+            self.circuit.core_conductance,
+            -self.magnetizing(air_gap, nu),
+        );
         let (mut slip, mut current) = (1e-3, air_gap * branch);
         for _ in 0..ROUNDS {
             let admittance = self.rotor_admittance(slip, current.norm_sqr().sqrt(), nu, rotor);
@@ -80,8 +83,10 @@ impl Machine {
         let mut air_gap = current / admittance.norm_sqr().sqrt();
         let mut parallel = admittance;
         for _ in 0..ROUNDS {
-            let branch =
-                Complex64::new(self.circuit.core_conductance, -self.magnetizing(air_gap, nu));
+            let branch = Complex64::new(
+                self.circuit.core_conductance,
+                -self.magnetizing(air_gap, nu),
+            );
             parallel = admittance + branch;
             air_gap = current / parallel.norm_sqr().sqrt();
         }
@@ -93,7 +98,10 @@ impl Machine {
     /// Running at a slip.
     pub(super) fn running(&self, air_gap: f64, slip: f64, degc: f64, nu: f64) -> Shown {
         let [stator, rotor] = self.warmth(degc);
-        let branch = Complex64::new(self.circuit.core_conductance, -self.magnetizing(air_gap, nu));
+        let branch = Complex64::new(
+            self.circuit.core_conductance,
+            -self.magnetizing(air_gap, nu),
+        );
         let (mut current, mut admittance) = (Complex64::from(1.0), Complex64::from(1.0));
         for _ in 0..ROUNDS {
             admittance = self.rotor_admittance(slip, current.norm_sqr().sqrt(), nu, rotor);

@@ -25,8 +25,15 @@ pub(super) const fn laws(test: Test) -> f64 {
 }
 
 /// The points of a table's rows; `machine` is the motor of the plate.
-pub(in crate::measured) fn points(rows: &[Row], instruments: &Instruments, machine: &Machine) -> Vec<Point> {
-    let maker = Maker { instruments, machine };
+pub(in crate::measured) fn points(
+    rows: &[Row],
+    instruments: &Instruments,
+    machine: &Machine,
+) -> Vec<Point> {
+    let maker = Maker {
+        instruments,
+        machine,
+    };
     let mut points: Vec<Point> = Vec::new();
     let mut run: Vec<usize> = Vec::new();
     for (k, row) in rows.iter().enumerate() {
@@ -58,16 +65,41 @@ impl Maker<'_> {
         let machine = self.machine;
         let rated = machine.completed.frequency_hz;
         let nu = row.get(Column::Frequency).unwrap_or(rated) / rated;
-        let apparent = 3f64.sqrt() * row.get(Column::Voltage).unwrap_or(0.0) * row.get(Column::Current).unwrap_or(0.0);
-        let active = row.get(Column::Power).unwrap_or(apparent).clamp(1e-3 * apparent, apparent);
+        let apparent = 3f64.sqrt()
+            * row.get(Column::Voltage).unwrap_or(0.0)
+            * row.get(Column::Current).unwrap_or(0.0);
+        let active = row
+            .get(Column::Power)
+            .unwrap_or(apparent)
+            .clamp(1e-3 * apparent, apparent);
         let mut readings = Vec::new();
-        for column in [Column::Resistance, Column::Voltage, Column::Current, Column::Power, Column::Speed, Column::Torque] {
-            let measured = match (column, row.get(column), row.get(Column::ShaftPower), row.get(Column::Speed)) {
+        for column in [
+            Column::Resistance,
+            Column::Voltage,
+            Column::Current,
+            Column::Power,
+            Column::Speed,
+            Column::Torque,
+        ] {
+            let measured = match (
+                column,
+                row.get(column),
+                row.get(Column::ShaftPower),
+                row.get(Column::Speed),
+            ) {
                 (Column::Torque, None, Some(power), Some(speed)) => Some(power / radians(speed)),
                 (_, measured, _, _) => measured,
             };
-            let Some(measured) = measured.filter(|_| is_read(row.test, column)) else { continue };
-            readings.push(self.reading(row.test, column, measured, nu, apparent / active.max(1e-12)));
+            let Some(measured) = measured.filter(|_| is_read(row.test, column)) else {
+                continue;
+            };
+            readings.push(self.reading(
+                row.test,
+                column,
+                measured,
+                nu,
+                apparent / active.max(1e-12),
+            ));
         }
         let (temperature, reading) = self.temperature(row);
         readings.push(reading);
@@ -84,7 +116,14 @@ impl Maker<'_> {
         }
     }
 
-    fn reading(&self, test: Test, column: Column, measured: f64, nu: f64, apparent_over_active: f64) -> Reading {
+    fn reading(
+        &self,
+        test: Test,
+        column: Column,
+        measured: f64,
+        nu: f64,
+        apparent_over_active: f64,
+    ) -> Reading {
         let i = self.instruments;
         let (value, limit) = match column {
             Column::Speed => {
@@ -139,8 +178,12 @@ impl Maker<'_> {
             Test::NoLoad => (2, [0.97 * voltage, temperature, 0.0]),
             Test::LockedRotor => (2, [current, temperature, 0.0]),
             Test::Load | Test::CoastDown => {
-                let speed = row.get(Column::Speed).map(|rpm| 1.0 - radians(rpm) / (nu * base.rad_s));
-                let by_power = row.get(Column::Power).map(|watt| rated_slip * watt / base.watt);
+                let speed = row
+                    .get(Column::Speed)
+                    .map(|rpm| 1.0 - radians(rpm) / (nu * base.rad_s));
+                let by_power = row
+                    .get(Column::Power)
+                    .map(|watt| rated_slip * watt / base.watt);
                 let slip = speed.or(by_power).unwrap_or(rated_slip).clamp(1e-4, 0.9);
                 (3, [0.94 * voltage, slip, temperature])
             }
@@ -181,7 +224,10 @@ fn is_read(test: Test, column: Column) -> bool {
     match test {
         Test::DcResistance => column == Column::Resistance,
         Test::NoLoad => matches!(column, Column::Voltage | Column::Current | Column::Power),
-        Test::LockedRotor => matches!(column, Column::Voltage | Column::Current | Column::Power | Column::Torque),
+        Test::LockedRotor => matches!(
+            column,
+            Column::Voltage | Column::Current | Column::Power | Column::Torque
+        ),
         Test::Load => column != Column::Resistance,
         Test::CoastDown => false,
     }

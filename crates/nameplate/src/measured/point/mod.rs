@@ -50,8 +50,18 @@ impl Point {
         match self.test {
             Test::DcResistance => self.resistance(machine, own),
             Test::CoastDown => coast_down::speeds(machine, own[0], &self.times),
-            Test::NoLoad => self.shown(machine, &machine.no_load(own[0], degc(own[1]), self.nu), 0.0, own[1]),
-            Test::LockedRotor => self.shown(machine, &machine.locked(own[0], degc(own[1]), self.nu), 1.0, own[1]),
+            Test::NoLoad => self.shown(
+                machine,
+                &machine.no_load(own[0], degc(own[1]), self.nu),
+                0.0,
+                own[1],
+            ),
+            Test::LockedRotor => self.shown(
+                machine,
+                &machine.locked(own[0], degc(own[1]), self.nu),
+                1.0,
+                own[1],
+            ),
             Test::Load => {
                 let slip = own[1].max(1e-6);
                 let shown = machine.running(own[0], slip, degc(own[2]), self.nu);
@@ -70,11 +80,21 @@ impl Point {
         self.readings.iter().map(of).collect()
     }
 
-    fn shown(&self, machine: &Machine, shown: &circuit::Shown, slip: f64, temperature: f64) -> Vec<f64> {
+    fn shown(
+        &self,
+        machine: &Machine,
+        shown: &circuit::Shown,
+        slip: f64,
+        temperature: f64,
+    ) -> Vec<f64> {
         let log = |per_unit: f64, base: f64| (per_unit.max(1e-9) * base).ln();
         let of = |reading: &Reading| match reading.column {
-            Column::Voltage => log(shown.voltage, machine.base.volt) + machine.get(Unknown::VoltageGain),
-            Column::Current => log(shown.current, machine.base.amp) + machine.get(Unknown::CurrentGain),
+            Column::Voltage => {
+                log(shown.voltage, machine.base.volt) + machine.get(Unknown::VoltageGain)
+            }
+            Column::Current => {
+                log(shown.current, machine.base.amp) + machine.get(Unknown::CurrentGain)
+            }
             Column::Power => {
                 log(shown.active, machine.base.watt)
                     + machine.get(Unknown::PowerGain)

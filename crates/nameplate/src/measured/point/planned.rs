@@ -16,33 +16,61 @@ const LOADS: [f64; 5] = [0.25, 0.5, 0.75, 1.0, 1.25];
 const READINGS: usize = 8;
 
 /// The points of a whole test, with the temperature measured.
-pub(in crate::measured) fn planned(test: Test, machine: &Machine, instruments: &Instruments) -> Vec<Point> {
+pub(in crate::measured) fn planned(
+    test: Test,
+    machine: &Machine,
+    instruments: &Instruments,
+) -> Vec<Point> {
     let slip = 1.0 - machine.rated_speed;
     let flux = machine.rated_flux;
-    let point = |nu: f64, own: usize, start: Own| filled(Point {
-        test,
-        rows: Vec::new(),
-        nu,
-        tan_phi: 1.0,
-        times: Vec::new(),
-        readings: Vec::new(),
-        own,
-        start,
-    }, machine, instruments);
+    let point = |nu: f64, own: usize, start: Own| {
+        filled(
+            Point {
+                test,
+                rows: Vec::new(),
+                nu,
+                tan_phi: 1.0,
+                times: Vec::new(),
+                readings: Vec::new(),
+                own,
+                start,
+            },
+            machine,
+            instruments,
+        )
+    };
     match test {
         Test::DcResistance => vec![point(1.0, 1, [0.2, 0.0, 0.0])],
         Test::NoLoad => VOLTAGES.map(|e| point(1.0, 2, [e, 0.4, 0.0])).to_vec(),
         Test::LockedRotor => FREQUENCIES.map(|nu| point(nu, 2, [1.0, 0.4, 0.0])).to_vec(),
-        Test::Load => LOADS.map(|share| point(1.0, 3, [flux, share * slip, 0.8])).to_vec(),
-        Test::CoastDown => vec![coast_down(point(1.0, 1, [1.0, 0.0, 0.0]), machine, instruments)],
+        Test::Load => LOADS
+            .map(|share| point(1.0, 3, [flux, share * slip, 0.8]))
+            .to_vec(),
+        Test::CoastDown => vec![coast_down(
+            point(1.0, 1, [1.0, 0.0, 0.0]),
+            machine,
+            instruments,
+        )],
     }
 }
 
 fn columns(test: Test) -> &'static [Column] {
     match test {
         Test::DcResistance => &[Column::Resistance, Column::Temperature],
-        Test::Load => &[Column::Voltage, Column::Current, Column::Power, Column::Speed, Column::Torque, Column::Temperature],
-        Test::NoLoad | Test::LockedRotor => &[Column::Voltage, Column::Current, Column::Power, Column::Temperature],
+        Test::Load => &[
+            Column::Voltage,
+            Column::Current,
+            Column::Power,
+            Column::Speed,
+            Column::Torque,
+            Column::Temperature,
+        ],
+        Test::NoLoad | Test::LockedRotor => &[
+            Column::Voltage,
+            Column::Current,
+            Column::Power,
+            Column::Temperature,
+        ],
         Test::CoastDown => &[],
     }
 }
@@ -76,7 +104,11 @@ fn filled(mut point: Point, machine: &Machine, i: &Instruments) -> Point {
 fn coast_down(mut point: Point, machine: &Machine, i: &Instruments) -> Point {
     let loss = machine.friction(1.0) * machine.base.nm;
     let rated = machine.rated_speed * machine.base.rad_s;
-    let whole = machine.get(crate::measured::unknowns::Unknown::Inertia).exp() * rated / loss;
+    let whole = machine
+        .get(crate::measured::unknowns::Unknown::Inertia)
+        .exp()
+        * rated
+        / loss;
     point.times = (0..READINGS).map(|k| 0.1 * whole * k as f64).collect();
     point.readings = vec![
         Reading {

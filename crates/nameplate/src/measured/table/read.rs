@@ -14,6 +14,8 @@ pub struct Line {
 
 /// Separators that spreadsheets write.
 const SEPARATORS: [char; 3] = [';', '\t', ','];
+/// What people call the lines.
+const PHASES: [&str; 12] = ["a", "b", "c", "u", "v", "w", "1", "2", "3", "r", "s", "t"];
 /// Columns that are no quantity.
 const TEST: &str = "test";
 const REMARK: &str = "remark";
@@ -23,7 +25,7 @@ const REMARK: &str = "remark";
 /// # Errors
 /// As [`read`].
 pub fn read_csv(text: &str, label: &str) -> Result<Vec<Row>, String> {
-    let text = text.trim_start_matches('\u{feff}');
+    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let header = text.lines().find(|line| !is_empty(line)).unwrap_or("");
     let most = |a: &char, b: &char| header.matches(*a).count().cmp(&header.matches(*b).count());
     let separator = SEPARATORS.into_iter().max_by(most).unwrap_or(',');
@@ -64,7 +66,11 @@ pub fn read(lines: &[Line], label: &str) -> Result<Vec<Row>, String> {
     };
     let lines: Vec<&Line> = lines.iter().filter(filled).collect();
     // A sheet may have a title above its header.
-    let is_header = |line: &&Line| line.cells.iter().any(|cell| cell.trim().eq_ignore_ascii_case(TEST));
+    let is_header = |line: &&Line| {
+        line.cells
+            .iter()
+            .any(|cell| cell.trim().eq_ignore_ascii_case(TEST))
+    };
     let first = lines.iter().position(is_header).unwrap_or(0);
     let header = lines.get(first).ok_or_else(|| {
         format!("{label}: is empty; `drivemon motor tests --template` prints a table to fill in")
@@ -95,7 +101,9 @@ impl Header {
         let mut places = Vec::new();
         for (k, cell) in line.cells.iter().enumerate() {
             let name = cell.trim().to_lowercase();
-            let twice = line.cells[..k].iter().any(|c| c.trim().to_lowercase() == name);
+            let twice = line.cells[..k]
+                .iter()
+                .any(|c| c.trim().to_lowercase() == name);
             if twice && !name.is_empty() {
                 return Err(format!(
                     "{label}:{}: column {name} stands twice; keep one",
@@ -132,6 +140,7 @@ impl Header {
             let cell = cell.trim();
             match place {
                 Place::Remark => {}
+                Place::Test if cell.is_empty() => {}
                 Place::Test => {
                     test = Some(test_of(cell).map_err(|p| format!("{}: {p}", at(TEST)))?);
                 }
@@ -171,10 +180,11 @@ fn place(name: &str) -> Result<Place, String> {
     if let Some(known) = NAMES.iter().find(|known| known.name == name) {
         return Ok(Place::Quantity(known));
     }
-    let phase = ["_a", "_b", "_c", "_u", "_v", "_w", "1", "2", "3"];
-    let of_phase = name.split("_amp").next().is_some_and(|stem| {
-        (stem.starts_with('i') || stem.starts_with("current")) && phase.iter().any(|p| stem.ends_with(p))
-    }) || ["ia", "ib", "ic", "iu", "iv", "iw"].contains(&name);
+    let stem = name.strip_suffix("_amp").unwrap_or(name);
+    let of_phase = ["i", "i_", "current_"].iter().any(|quantity| {
+        let phase = stem.strip_prefix(quantity);
+        phase.is_some_and(|phase| PHASES.contains(&phase))
+    });
     if of_phase {
         return Err(format!(
             "\"{name}\" looks like the current of one line; write the mean of the three into current_amp"
@@ -209,6 +219,8 @@ fn number(cell: &str, name: &Name) -> Result<f64, String> {
     }
     match (low..=high).contains(&value) {
         true => Ok(value),
-        false => Err(format!("{cell} is outside {low}..{high}; look at the unit in the column's name")),
+        false => Err(format!(
+            "{cell} is outside {low}..{high}; look at the unit in the column's name"
+        )),
     }
 }

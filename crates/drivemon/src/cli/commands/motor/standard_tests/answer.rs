@@ -58,17 +58,24 @@ pub struct HelpJson {
 
 impl TestsJson {
     pub fn of(out: &Path, estimate: &Estimate, tested: &Tested, rows: &[Row]) -> TestsJson {
-        let of_plate = estimate.contradictions.iter().map(|contradiction| ContradictionJson {
-            test: "plate",
-            places: Vec::new(),
-            chi_square: None,
-            degrees_of_freedom: None,
-            limit: None,
-            message: contradiction.to_string(),
-        });
+        let of_plate = estimate
+            .contradictions
+            .iter()
+            .map(|contradiction| ContradictionJson {
+                test: "plate",
+                places: Vec::new(),
+                chi_square: None,
+                degrees_of_freedom: None,
+                limit: None,
+                message: contradiction.to_string(),
+            });
         TestsJson {
             motor_file: out.display().to_string(),
-            steps: tested.steps.iter().map(|step| of_step(step, tested)).collect(),
+            steps: tested
+                .steps
+                .iter()
+                .map(|step| of_step(step, tested))
+                .collect(),
             contradictions: of_plate
                 .chain(tested.doubts.iter().map(|doubt| of_doubt(doubt, rows)))
                 .collect(),
@@ -97,14 +104,24 @@ fn of_doubt(doubt: &Doubt, rows: &[Row]) -> ContradictionJson {
         What::Rows(test, numbers) => {
             let all = numbers.iter().filter_map(|&k| rows.get(k));
             let places: Vec<String> = all.map(Row::place).collect();
-            (test.name(), places, format!("{} does not go with plate and other tests", test.name()))
+            (
+                test.name(),
+                places,
+                format!("{} does not go with plate and other tests", test.name()),
+            )
         }
         What::Plate(value) => {
-            let lead = format!("{} does not go with the tests, beyond the tolerances of IEC 60034-1", plate_value(*value));
+            let lead = format!(
+                "{} does not go with the tests, beyond the tolerances of IEC 60034-1",
+                plate_value(*value)
+            );
             ("plate", Vec::new(), lead)
         }
     };
-    let settled = doubt.culprit.as_ref().map_or(String::new(), |culprit| format!("; {}", would_fit(culprit)));
+    let settled = doubt
+        .culprit
+        .as_ref()
+        .map_or(String::new(), |culprit| format!("; {}", would_fit(culprit)));
     ContradictionJson {
         test,
         places,
@@ -125,7 +142,10 @@ fn plate_value(value: usize) -> &'static str {
         (Value::TanPhi, "the plate's power factor"),
         (Value::Breakdown, "the plate's breakdown torque"),
         (Value::LockedRotorTorque, "the plate's locked-rotor torque"),
-        (Value::LockedRotorCurrent, "the plate's locked-rotor current"),
+        (
+            Value::LockedRotorCurrent,
+            "the plate's locked-rotor current",
+        ),
     ];
     let found = NAMES.iter().find(|name| name.0 as usize == value);
     found.map_or("the plate", |name| name.1)

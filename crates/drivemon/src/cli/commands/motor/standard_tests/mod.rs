@@ -46,7 +46,12 @@ pub struct Tests {
     #[arg(long = "tests", value_name = "TABLE", required_unless_present = "template", num_args = 1..)]
     tables: Vec<PathBuf>,
     /// Motor file to write
-    #[arg(short, long = "out", value_name = "OUT.toml", required_unless_present = "template")]
+    #[arg(
+        short,
+        long = "out",
+        value_name = "OUT.toml",
+        required_unless_present = "template"
+    )]
     out: Option<PathBuf>,
     /// Print a table to fill in, and nothing else
     #[arg(long, exclusive = true)]

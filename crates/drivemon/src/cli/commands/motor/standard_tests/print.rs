@@ -8,11 +8,21 @@ pub fn print(result: &TestsJson) {
     print_steps(result);
     for contradiction in &result.contradictions {
         let places = contradiction.places.join(", ");
-        let at = if places.is_empty() { places } else { format!("{places}: ") };
-        say!("\n  {} {at}{}", paint::caution("contradiction:"), contradiction.message);
+        let at = if places.is_empty() {
+            places
+        } else {
+            format!("{places}: ")
+        };
+        say!(
+            "\n  {} {at}{}",
+            paint::caution("contradiction:"),
+            contradiction.message
+        );
     }
     if !result.contradictions.is_empty() {
-        say!("  what takes part in a contradiction counts with a wider uncertainty, as wide as it needs");
+        say!(
+            "  what takes part in a contradiction counts with a wider uncertainty, as wide as it needs"
+        );
     }
     for note in &result.notes {
         say!("\n  {note}");
@@ -30,14 +40,30 @@ pub fn print(result: &TestsJson) {
 fn print_steps(result: &TestsJson) {
     let cell = |interval: &nameplate::Interval| {
         let up = (interval.high / interval.value).max(interval.value / interval.low);
-        let factor = if up < 99.5 { format!("{up:.*}", places(up)) } else { "100+".to_owned() };
+        let factor = if up < 99.5 {
+            format!("{up:.*}", places(up))
+        } else {
+            "100+".to_owned()
+        };
         format!("{:>9} x{factor:<6}", short(interval.value))
     };
-    let heads = result.steps.iter().map(|step| format!("  {:<17}", step.after));
-    say!("  after{:<22}{}  95 % interval", "", heads.collect::<String>());
-    let Some(last) = result.steps.last() else { return };
+    let heads = result
+        .steps
+        .iter()
+        .map(|step| format!("  {:<17}", step.after));
+    say!(
+        "  after{:<22}{}  95 % interval",
+        "",
+        heads.collect::<String>()
+    );
+    let Some(last) = result.steps.last() else {
+        return;
+    };
     for (k, parameter) in last.parameters.iter().enumerate() {
-        let cells = result.steps.iter().map(|step| format!("  {}", cell(&step.parameters[k].interval)));
+        let cells = result
+            .steps
+            .iter()
+            .map(|step| format!("  {}", cell(&step.parameters[k].interval)));
         let interval = parameter.interval;
         say!(
             "  {:<27}{}  {} .. {}",
