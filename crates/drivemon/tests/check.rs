@@ -551,14 +551,20 @@ fn a_motor_of_standard_tests_runs_as_it_was_measured() {
     std::fs::write(folder.join("tests.csv"), template()).unwrap();
     let output = tested(&folder, &folder.join("tests.csv"), "truth.toml", &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    // Uncoupled at 400.6 V: 127.2 W, 2.813 A; at 441.7 V: 187.3 W, 3.808 A; with 12.45 N m (85.2 % of rated) 2183 W, 4.326 A.
-    for (voltage, load, [watt, amp]) in [
-        (100.15, 0.0, [127.2, 2.813]),
-        (110.4, 0.0, [187.3, 3.808]),
-        (100.15, 85.2, [2183.0, 4.326]),
+    let ohm = MotorFile::read(folder.join("truth.toml"))
+        .unwrap()
+        .parameters
+        .r_s;
+    // Volt, load in percent (12.45 N m), watt, ampere and degC of three rows.
+    for [voltage, load, watt, amp, degc] in [
+        [400.6, 0.0, 127.2, 2.813, 39.0],
+        [441.7, 0.0, 187.3, 3.808, 40.0],
+        [400.6, 85.2, 2183.2, 4.326, 87.0],
     ] {
+        // The simulated windings are as warm as at rated load, 100 degC (copper, IEC 60034-1).
+        let watt = watt + 3.0 * amp * amp * ohm * (1.0 - (235.0 + degc) / 335.0);
         let scenario = format!(
-            "start = \"running\"\nduration_s = 3\n[supply]\nvoltage_percent = {voltage}\n[load]\nfriction_percent = 0\nactive = true\nconstant_percent = {load}\n"
+            "start = \"running\"\nduration_s = 3\n[supply]\nvoltage_line_rms_volt = {voltage}\n[load]\nfriction_percent = 0\nactive = true\nconstant_percent = {load}\n"
         );
         let recording = simulated(&folder, &format!("run-{voltage}-{load}"), &scenario, &[]);
         let [power, current] = power_and_current(&recording);

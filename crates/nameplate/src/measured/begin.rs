@@ -1,6 +1,6 @@
 //! Where the tests begin: the plate's circuit, or where no circuit has the printed values the nearest values that one has.
 
-use super::fit::tolerances;
+use super::tolerances::tolerances;
 use crate::circuit::Winding;
 use crate::estimate::Estimate;
 use crate::fit::{Fit, MEETS, Misfit, Misfits, solve};

@@ -14,6 +14,7 @@ mod plate_term;
 mod point;
 mod steps;
 pub mod table;
+mod tolerances;
 mod unknowns;
 
 pub use advice::Help;

@@ -28,6 +28,7 @@ pub const NAMES: [&str; ALL] = {
 
 const MAGNETIZING: usize = 4;
 const WINDAGE: usize = 9;
+const STRAY: usize = 10;
 const INERTIA: usize = 11;
 const LEAKAGE_DROP: usize = 7;
 /// A drop below is none.
@@ -70,6 +71,10 @@ pub(super) fn parameters(machine: &Machine, form: &Form) -> [f64; ALL] {
     all[PHYSICAL + 1] = exponent;
     if form.saturates {
         all[MAGNETIZING] /= at_rated_flux;
+    }
+    // The motor file counts stray load from the printed current.
+    if let Some(printed) = machine.completed.plate.current_amp {
+        all[STRAY] *= (printed.value / machine.base.amp).powi(2);
     }
     let bearings = machine.bearings();
     let torque = machine.rated_torque * machine.circuit.windage * machine.base.nm;

@@ -2,7 +2,7 @@
 //!
 //! The motors are drawn as the prior has them (`drawn`), their circuit is solved with no code of the crate (`machine`), and a
 //! bench (`bench`) reads plate and tables with the errors of single motors and instruments. `CASES=1000 cargo test -p nameplate
-//! --test measured -- --nocapture` prints the table of docs/motor-file.md.
+//! --test measured -- --nocapture` prints the figures of docs/first-steps.md.
 
 mod bench;
 mod drawn;

@@ -94,7 +94,7 @@ fn accused(all: &All) -> usize {
         .count()
 }
 
-/// Of 1000 motors 92 to 98 % are held in 86 of the 90 cells (docs/motor-file.md has the others); here the scatter of 200 comes to that, 1.5
+/// Of 1000 motors 92 to 98 % are held in 86 of the 90 cells (docs/first-steps.md has the others); here the scatter of 200 comes to that, 1.5
 /// points of one standard deviation in each cell.
 #[test]
 fn intervals_hold_the_truth_after_each_step() {

@@ -6,7 +6,7 @@ mod prior;
 
 pub(super) use descent::{Posterior, inverse};
 pub(super) use point_rows::PointRows;
-pub(super) use prior::{Prior, tolerances};
+pub(super) use prior::Prior;
 
 use super::plate_term::PlateTerm;
 use super::point::Point;
