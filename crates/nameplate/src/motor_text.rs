@@ -164,10 +164,8 @@ impl<'e> Text<'e> {
         self.line(format_args!(
             "\n# Per equivalent star phase, warm from rated load.\n[parameters]"
         ));
-        for k in 0..PHYSICAL {
-            if IN_PARAMETERS.contains(&k) {
-                self.number(NAMES[k], self.parameters[k].value);
-            }
+        for k in IN_PARAMETERS {
+            self.number(NAMES[k], self.parameters[k].value);
         }
         self.line(format_args!(
             "friction_nm_s = 0.0\nload_friction_nm_s = 0.0"

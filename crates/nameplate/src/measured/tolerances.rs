@@ -3,7 +3,7 @@
 use crate::plate::{Completed, VALUES, Value};
 use crate::prior::Covariance;
 
-/// Tolerances of a single motor against its plate (IEC 60034-1, table 20), as limits: slip 20 % (30 % below 1 kW), losses 15 %
+/// Tolerances of a single motor against its plate (IEC 60034-1, schedule of tolerances), as limits: slip 20 % (30 % below 1 kW), losses 15 %
 /// (10 % above 150 kW), power factor a sixth of 1 - cos phi within 0.02 to 0.07, breakdown torque 10 %, locked-rotor torque
 /// and current 20 %.
 const SLIP: [f64; 2] = [0.3, 0.2];
@@ -13,6 +13,7 @@ const BREAKDOWN: f64 = 0.1;
 const LOCKED_ROTOR: f64 = 0.2;
 /// Least variance of a value: no plate is exact.
 const LEAST: f64 = 1e-8;
+
 /// Variances by which a single motor differs from its plate; a limit is a rectangular distribution's.
 pub(super) fn tolerances(completed: &Completed) -> Covariance {
     let kilowatts = completed.power_kw;

@@ -81,7 +81,7 @@ fn filled(mut point: Point, machine: &Machine, i: &Instruments) -> Point {
         Column::Temperature => deviation(i.temperature_kelvin) / KELVINS,
         Column::Resistance => share(i.resistance_percent),
         Column::Torque => share(i.torque_percent),
-        Column::Power => 3.0 * share(i.power_percent),
+        Column::Power => share(i.power_percent),
         Column::Current => share(i.current_percent),
         _ => share(i.voltage_percent),
     };
@@ -98,7 +98,7 @@ fn filled(mut point: Point, machine: &Machine, i: &Instruments) -> Point {
             deviation: limit(column).hypot(law(column)),
         })
         .collect();
-    meets(point, machine)
+    with_power_error(meets(point, machine), i)
 }
 
 fn coast_down(mut point: Point, machine: &Machine, i: &Instruments) -> Point {
@@ -127,6 +127,36 @@ fn meets(mut point: Point, machine: &Machine) -> Point {
     let shown = point.predicted(machine, &point.start);
     for (reading, value) in point.readings.iter_mut().zip(shown) {
         reading.value = value;
+    }
+    point
+}
+
+/// A wattmeter's error is a share of the apparent power.
+fn with_power_error(mut point: Point, i: &Instruments) -> Point {
+    let value = |column: Column| {
+        let found = point
+            .readings
+            .iter()
+            .find(|reading| reading.column == column);
+        found.map(|reading| reading.value)
+    };
+    let (Some(volt), Some(amp), Some(watt)) = (
+        value(Column::Voltage),
+        value(Column::Current),
+        value(Column::Power),
+    ) else {
+        return point;
+    };
+    let apparent_over_active = 3f64.sqrt() * (volt + amp - watt).exp();
+    point.tan_phi = (apparent_over_active * apparent_over_active - 1.0)
+        .max(0.0)
+        .sqrt();
+    for reading in point
+        .readings
+        .iter_mut()
+        .filter(|reading| reading.column == Column::Power)
+    {
+        reading.deviation = (share(i.power_percent) * apparent_over_active).hypot(laws(point.test));
     }
     point
 }

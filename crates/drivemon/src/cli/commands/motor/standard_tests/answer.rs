@@ -52,6 +52,8 @@ pub struct HelpJson {
     pub factor_now: f64,
     pub test: Option<&'static str>,
     pub factor_then: Option<f64>,
+    /// The test was done: once more averages its scatter.
+    pub again: bool,
     #[serde(skip)]
     pub how: &'static str,
 }
@@ -80,7 +82,11 @@ impl TestsJson {
                 .chain(tested.doubts.iter().map(|doubt| of_doubt(doubt, rows)))
                 .collect(),
             notes: notes(tested),
-            still_wide: tested.helps.iter().map(of_help).collect(),
+            still_wide: tested
+                .helps
+                .iter()
+                .map(|help| of_help(help, tested))
+                .collect(),
         }
     }
 }
@@ -198,8 +204,17 @@ fn notes(tested: &Tested) -> Vec<String> {
     notes
 }
 
-fn of_help(help: &Help) -> HelpJson {
+fn of_help(help: &Help, tested: &Tested) -> HelpJson {
+    let whole_already = |test: Test| {
+        let part = match test {
+            Test::NoLoad => tested.one_voltage,
+            Test::LockedRotor => tested.one_frequency,
+            _ => false,
+        };
+        !part && tested.steps.iter().any(|step| step.test == Some(test))
+    };
     HelpJson {
+        again: help.test.is_some_and(|(test, _)| whole_already(test)),
         parameter: help.parameter,
         factor_now: help.factor_now,
         test: help.test.map(|(test, _)| test.name()),

@@ -87,9 +87,10 @@ fn places(factor: f64) -> usize {
 fn print_help(help: &HelpJson) {
     match help.factor_then {
         Some(then) => say!(
-            "    {:<27} x{:.2}: {} would leave x{then:.2}",
+            "    {:<27} x{:.2}: {}{} would leave x{then:.2}",
             paint::strong(help.parameter),
             help.factor_now,
+            if help.again { "once more " } else { "" },
             help.how
         ),
         None => say!(
