@@ -127,9 +127,11 @@ impl Tests {
 /// The nameplate of a motor file as a plate.
 fn of_motor(motor: &motor::MotorFile) -> Result<PlateFile, String> {
     let plate = &motor.nameplate;
-    let mut file = PlateFile::default();
-    file.name = Some(motor.name.clone());
-    file.delta = plate.connection == motor::motor_file::Connection::Delta;
+    let mut file = PlateFile {
+        name: Some(motor.name.clone()),
+        delta: plate.connection == motor::motor_file::Connection::Delta,
+        ..PlateFile::default()
+    };
     let mut set = |key: &str, value: f64| {
         let told = file.set(key, &value.to_string());
         told.map_err(|problem| format!("{key}: {problem}"))
