@@ -19,6 +19,7 @@ pub mod contradiction;
 mod estimate;
 pub mod fit;
 mod interval;
+pub mod measured;
 mod motor_text;
 pub mod physical;
 pub mod plate;
@@ -26,5 +27,5 @@ pub mod prior;
 
 pub use estimate::{COLUMN_KEYS, COLUMNS, Estimate};
 pub use interval::Interval;
-pub use motor_text::motor_text;
+pub use motor_text::{motor_text, tested_text};
 pub use plate::Plate;

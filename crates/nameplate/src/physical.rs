@@ -52,6 +52,15 @@ pub fn with_equal_leakages([r_r, l_ls, l_lr, l_m]: [f64; 4]) -> [f64; 4] {
 /// Parameters of an equivalent star phase in the order of [`KEYS`]; inductances without current, resistances at rated load's
 /// temperature.
 pub fn physical(circuit: &Circuit, completed: &Completed) -> [f64; PHYSICAL] {
+    physical_with_cages(circuit, completed, completed.knows_standstill())
+}
+
+/// As [`physical`], with the leakages of two cages where `two_cages`, of one otherwise.
+pub(crate) fn physical_with_cages(
+    circuit: &Circuit,
+    completed: &Completed,
+    two_cages: bool,
+) -> [f64; PHYSICAL] {
     let ohm = completed.base_impedance_ohm();
     let omega = TAU * completed.frequency_hz;
     let henry = ohm / omega / circuit.saturation_without_current();
@@ -66,7 +75,7 @@ pub fn physical(circuit: &Circuit, completed: &Completed) -> [f64; PHYSICAL] {
         circuit.magnetizing * ohm / omega,
     ];
     // One cage: the leakages' split is convention, and equal ones are the usual one.
-    let [r_r, l_ls, l_lr, l_m] = if completed.knows_standstill() {
+    let [r_r, l_ls, l_lr, l_m] = if two_cages {
         machine
     } else {
         with_equal_leakages(machine)

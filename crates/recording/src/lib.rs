@@ -35,7 +35,7 @@ pub use mapping::{ColumnMap, DateOrder, Factor, Mapping, Origin, Said, Sensor, T
 pub use names::{companions, sidecar_path};
 pub use read::{
     Preview, Progress, Source, preview, read_any, read_load_table, read_recording, read_stream,
-    with_most_numbers,
+    with_most_numbers, workbook_text,
 };
 pub use write::{
     reading_text, sidecar_text, write_csv, write_parquet, write_recording, write_whole,

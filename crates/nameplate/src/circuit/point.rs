@@ -66,6 +66,12 @@ impl Circuit {
         self.at_slip(rating, rating.slip * self.slip_ratio, Winding::Warm)
     }
 
+    /// Air-gap voltage at rated load.
+    pub(crate) fn rated_air_gap_voltage(&self, rating: &Rating) -> f64 {
+        let slip = rating.slip * self.slip_ratio;
+        self.flow(slip, Winding::Warm).air_gap.norm()
+    }
+
     /// Factor on all leakages at a stator current, 1 at rated current; the form of the effect `leakage-saturation`.
     pub fn saturation(&self, current: f64) -> f64 {
         let drop = self.leakage_drop();

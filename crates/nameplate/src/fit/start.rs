@@ -29,7 +29,7 @@ const BOUNDS: [[f64; 2]; PARAMETERS] = [
 const WIDEST_SLIP: f64 = 0.2;
 
 /// [`PRIOR_SPREAD`], narrower where an unknown was measured.
-pub(super) fn prior_spread(targets: &Targets) -> Logs {
+pub(crate) fn prior_spread(targets: &Targets) -> Logs {
     let mut spread = Logs::from(PRIOR_SPREAD);
     if targets.stator_resistance.is_some() {
         spread[Place::StatorResistance as usize] = MEASURED_RESISTANCE;
@@ -38,7 +38,7 @@ pub(super) fn prior_spread(targets: &Targets) -> Logs {
 }
 
 /// Bounds of the logarithms; the slip's are those of the printed speed.
-pub(super) fn bounds(targets: &Targets) -> [Logs; 2] {
+pub(crate) fn bounds(targets: &Targets) -> [Logs; 2] {
     let half = targets.slip_half_step.min(WIDEST_SLIP);
     [0, 1].map(|side| {
         let mut logs = Logs::from_fn(|k, _| BOUNDS[k][side].ln());

@@ -35,6 +35,7 @@ use std::path::Path;
 use table::Kind;
 use table_file::{Row, TableFile};
 pub use text::source::Progress;
+pub use xlsx::workbook_text;
 
 /// What a file turned out to hold.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,11 +9,14 @@ use crate::contained::contained;
 use crate::error::Error;
 use crate::mapping::Mapping;
 use calamine::{Reader, Xlsx, XlsxError};
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// Names of the parts with which the archive of a workbook begins.
 const FIRST_PARTS: [&[u8]; 4] = [b"[Content_Types].xml", b"_rels/", b"xl/", b"docProps/"];
+
+/// What of a file tells its format, bytes.
+const HEAD: u64 = 64;
 
 /// Whether a file begins as workbooks do: zip archives of such parts.
 pub(super) fn is(head: &[u8]) -> bool {
@@ -27,6 +30,28 @@ pub(super) fn open(path: &Path, mapping: &Mapping) -> Result<Box<dyn TableFile>,
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|error| Error::io(path, &error))?;
     of_bytes(&name, bytes, mapping)
+}
+
+/// The first sheet with cells as lines of text with tabs, a line for each row; `None` of a file that is no workbook by name and
+/// content.
+///
+/// # Errors
+/// A file that cannot be read, or a damaged workbook, with the remedy.
+pub fn workbook_text(path: &Path) -> Result<Option<String>, Error> {
+    let name = path.display().to_string();
+    let failed = |error: std::io::Error| Error::io(path, &error);
+    let mut head = Vec::new();
+    let file = std::fs::File::open(path).map_err(failed)?;
+    file.take(HEAD).read_to_end(&mut head).map_err(failed)?;
+    let extension = crate::names::extension(path);
+    if !is(&head) && extension != "xlsx" && extension != "xlsm" {
+        return Ok(None);
+    }
+    let bytes = std::fs::read(path).map_err(failed)?;
+    parts::check(&name, &bytes)?;
+    let text = contained(|| text(&name, bytes))
+        .unwrap_or_else(|| Err(damaged(&name, "its cells cannot be read")))?;
+    Ok(Some(String::from_utf8_lossy(&text.lines).into_owned()))
 }
 
 /// The same of a workbook that is in memory.

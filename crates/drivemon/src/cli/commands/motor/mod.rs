@@ -4,12 +4,13 @@ mod catalogue;
 pub(crate) mod identify;
 mod new;
 pub(crate) mod plate;
+mod standard_tests;
 
 use clap::{Args, Subcommand};
 
 use crate::cli::printing::failure::{Failure, Finding};
 
-/// Motor files from a nameplate or a table of motors; every parameter with an interval.
+/// Motor files from a nameplate, standard tests, recordings or a table of motors; every parameter with an interval.
 #[derive(Debug, Args)]
 pub struct Motor {
     #[command(subcommand)]
@@ -19,6 +20,7 @@ pub struct Motor {
 #[derive(Debug, Subcommand)]
 enum Command {
     New(new::New),
+    Tests(standard_tests::Tests),
     Catalogue(catalogue::Catalogue),
     Identify(identify::Identify),
 }
@@ -28,6 +30,7 @@ impl Motor {
     pub fn run(&self) -> Result<Finding, Failure> {
         match &self.command {
             Command::New(new) => new.run(),
+            Command::Tests(tests) => tests.run(),
             Command::Catalogue(catalogue) => catalogue.run(),
             Command::Identify(identify) => identify.run(),
         }

@@ -93,13 +93,7 @@ impl PlateArgs {
             }
             None => PlateFile::default(),
         };
-        for (key, text) in self.flags() {
-            if let Some(text) = text {
-                let flag = key.replace('_', "-");
-                file.set(key, text)
-                    .map_err(|problem| Failure::Usage(format!("--{flag}: {problem}")))?;
-            }
-        }
+        self.set(&mut file)?;
         let nothing = file == PlateFile::default();
         if self.ask || (nothing && std::io::stdin().is_terminal()) {
             ask(&mut file)?;
@@ -122,6 +116,26 @@ impl PlateArgs {
             (None, false) => typed.next(),
         };
         flag.map(|key| format!("--{}", key.replace('_', "-")))
+    }
+
+    /// A plate from elsewhere with the flags over it.
+    ///
+    /// # Errors
+    /// A number that is none, with the flag.
+    pub fn over(&self, mut file: PlateFile) -> Result<PlateFile, Failure> {
+        self.set(&mut file)?;
+        Ok(file)
+    }
+
+    fn set(&self, file: &mut PlateFile) -> Result<(), Failure> {
+        for (key, text) in self.flags() {
+            if let Some(text) = text {
+                let flag = key.replace('_', "-");
+                file.set(key, text)
+                    .map_err(|problem| Failure::Usage(format!("--{flag}: {problem}")))?;
+            }
+        }
+        Ok(())
     }
 
     /// Files that are read.
