@@ -4,19 +4,18 @@ mod blind;
 mod clamp;
 mod knowledge;
 mod severity;
-mod slip;
 
 pub use blind::{BlindSpot, blind_spots};
 pub use clamp::{ClampSignal, clamp_signals};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;
-pub use slip::{EstimatedSpeed, with_estimated_speed};
 
 use monitor::Monitor;
 use motor::MotorFile;
 use recording::{Audit, Expectation, Recording};
 use serde::Serialize;
 
+use crate::speed::{EstimatedSpeed, with_estimated_speed};
 use crate::{Samples, Timeline, Verdict, VerdictState, causes, config_for, replay, words};
 
 /// What one recording says of a motor.
