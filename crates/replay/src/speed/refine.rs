@@ -8,7 +8,7 @@ use super::angle::Turned;
 use super::blocks::{Block, Blocks, straight};
 use super::circuit::CircuitSlip;
 use super::search::{Offset, SeenLine, Unique};
-use super::spectrum::hann;
+use super::spectrum::{hann, is_harmonic};
 
 /// Places that are tried: so many bins to both sides, in such steps.
 const REACH_BINS: f64 = 4.0;
@@ -19,6 +19,12 @@ const DEVIATION_BINS: f64 = 1.0;
 const CLEAR: f64 = 30.0;
 /// Neighbouring blocks share half of their samples: their errors are half the same.
 const OVERLAP: f64 = 1.5;
+/// What the search says of the slip of blocks that say nothing themselves is off by this share.
+const GUESS: f64 = 0.5;
+/// Share of the blocks that may say nothing.
+const MOST_SILENT: f64 = 0.5;
+/// Least half interval of the mean slip: what happens between the middles of blocks at a load step.
+const LEAST: f64 = 3e-5;
 /// Least error of a block, bins: the circuit's slip inside a block is no better known.
 const LEAST_BINS: f64 = 0.05;
 
@@ -65,7 +71,7 @@ pub(super) fn refine(turned: &Turned, blocks: &Blocks, unique: &Unique) -> Optio
     let window = hann(blocks.cycles * turned.per_cycle);
     let bin = 1.0 / (unique.per_pair * blocks.cycles as f64);
     let mut rests = Vec::new();
-    let mut variance = 0.0;
+    let (mut variance, mut silent, mut guessed) = (0.0, 0.0, 0.0);
     for block in &blocks.blocks {
         let slip: Vec<f64> = turned.slip[block.start..block.start + window.len()]
             .iter()
@@ -77,16 +83,23 @@ pub(super) fn refine(turned: &Turned, blocks: &Blocks, unique: &Unique) -> Optio
             let orders = unique.per_pair * (1.0 - mean - rest);
             lines
                 .iter()
-                .map(|line| line.power(orders, turned.per_cycle))
+                .map(|line| line.power(orders, turned.per_cycle, blocks.cycles))
                 .sum()
         };
-        let [rest, of_block] = top(power, bin);
+        let [rest, of_block] = match lines.is_empty() {
+            true => [0.0, 0.0],
+            false => top(power, bin),
+        };
+        if of_block == 0.0 {
+            silent += 1.0;
+            guessed += GUESS * unique.offset.at(block.slip).abs() + bin;
+        }
         let middle = turned.at[block.start + window.len() / 2];
         rests.push([middle, rest]);
         variance += of_block + (LEAST_BINS * bin).powi(2);
     }
     let count = rests.len() as f64;
-    if rests.is_empty() {
+    if rests.is_empty() || silent > MOST_SILENT * count {
         return None;
     }
     let overlap = if rests.len() > 1 { OVERLAP } else { 1.0 };
@@ -94,7 +107,7 @@ pub(super) fn refine(turned: &Turned, blocks: &Blocks, unique: &Unique) -> Optio
     Some(Refined {
         offset: unique.offset,
         rests,
-        half_width: 1.96 * of_mean.sqrt(),
+        half_width: (1.96 * of_mean.sqrt()).hypot(guessed / count).hypot(LEAST),
     })
 }
 
@@ -135,8 +148,11 @@ fn lines(
 }
 
 impl Line {
-    /// Power over noise at an order of the slots.
-    fn power(&self, slots: f64, per_cycle: usize) -> f64 {
+    /// Power over noise at an order of the slots; 0 under a harmonic of the supply.
+    fn power(&self, slots: f64, per_cycle: usize, cycles: usize) -> f64 {
+        if is_harmonic(slots + self.harmonic, cycles) {
+            return 0.0;
+        }
         let step = TAU * self.turns * (slots + self.harmonic) / per_cycle as f64;
         let turn = Complex64::from_polar(1.0, -step);
         let mut axis = Complex64::ONE;
@@ -149,7 +165,7 @@ impl Line {
     }
 }
 
-/// Place of the largest power and its variance: `exp` of the power over noise is the likelihood of a line there.
+/// Place of the largest power and its variance, 0 where there is none: `exp` of the power over noise is the likelihood of a line there.
 fn top(power: impl Fn(f64) -> f64, bin: f64) -> [f64; 2] {
     let count = (REACH_BINS / STEP_BINS).round() as i32;
     let places: Vec<f64> = (-count..=count).map(|k| f64::from(k) * STEP_BINS).collect();
@@ -161,8 +177,8 @@ fn top(power: impl Fn(f64) -> f64, bin: f64) -> [f64; 2] {
         .max_by(|a, b| logs[*a].total_cmp(&logs[*b]))
         .unwrap_or(0);
     if best == 0 || best + 1 == logs.len() {
-        // The block has no top here: it says nothing.
-        return [0.0, (REACH_BINS * bin).powi(2)];
+        // No top here: the block says nothing.
+        return [0.0, 0.0];
     }
     let curvature = 2.0 * logs[best] - logs[best - 1] - logs[best + 1];
     if logs[best] > CLEAR && curvature > 0.0 {

@@ -26,6 +26,8 @@ const SEEN: f64 = 0.5;
 const PRESENT: f64 = 2.0;
 /// Bins around a place in which the top of its line may be.
 const LOBES_BINS: f64 = 8.0;
+/// Orders beside a harmonic in which a line may be the flank, or the sideband by a swinging load, of one that the harmonic covers.
+const GUARD_ORDERS: f64 = 0.06;
 /// Power over noise up to which a line is weak.
 const WEAK: f64 = 20.0;
 /// Lines of slots are not looked for around the fundamental.
@@ -91,7 +93,7 @@ impl Grid {
         let rated = motor.nameplate.rated_slip().max(0.002);
         let mean = circuit.mean();
         let deviation = (circuit.half_width / 1.96).max(OFFSET * rated);
-        let reach = (4.0 * deviation).max(0.6 * mean.abs() + 0.1 * rated);
+        let reach = (4.0 * deviation).max(0.6 * mean.abs());
         let pairs = f64::from(motor.nameplate.pole_pairs);
         let step = STEP_BINS * pairs / (f64::from(most_bars) * blocks.cycles as f64);
         let count = (reach / step).ceil() as i32;
@@ -225,12 +227,7 @@ impl View<'_> {
                     })
                 })
                 .collect();
-            let bin = 1.0 / (per_pair * self.blocks.cycles as f64);
-            self.evidence(
-                &powers,
-                harmonic.usual,
-                (LOBES_BINS * bin / grid.step) as usize,
-            )
+            self.evidence(&powers, harmonic.usual, self.cells(grid, per_pair))
         })
     }
 
@@ -261,8 +258,7 @@ impl View<'_> {
                     })
                 })
                 .collect();
-            let bin = self.pairs / self.blocks.cycles as f64;
-            self.evidence(&powers, ECCENTRIC, (LOBES_BINS * bin / grid.step) as usize)
+            self.evidence(&powers, ECCENTRIC, self.cells(grid, 1.0 / self.pairs))
         });
         let mut total = vec![0.0; grid.offsets.len()];
         add(&mut total, &sides[0], &sides[1]);
@@ -270,11 +266,16 @@ impl View<'_> {
     }
 
     /// A strong line stands out far beside its place: there it speaks for the place of its top alone.
-    fn evidence(&self, powers: &[Option<Sum>], usual: f64, lobes: usize) -> Evidence {
+    fn evidence(&self, powers: &[Option<Sum>], usual: f64, [lobes, guard]: [usize; 2]) -> Evidence {
         let one = |(k, power): (usize, &Option<Sum>)| {
             let Some(Sum { power, count }) = power else {
                 return 0.0;
             };
+            let beside = &powers[k.saturating_sub(guard)..(k + guard + 1).min(powers.len())];
+            if beside.iter().any(Option::is_none) {
+                // What stands here may belong to a line under a harmonic.
+                return 0.0;
+            }
             let near = &powers[k.saturating_sub(lobes)..(k + lobes + 1).min(powers.len())];
             let top = near
                 .iter()
@@ -286,6 +287,12 @@ impl View<'_> {
             (here - strong * (1.0 - power / top)).max((1.0 - usual).ln())
         };
         powers.iter().enumerate().map(one).collect()
+    }
+
+    /// Cells of the grid in the lobes of a line and beside a harmonic, for lines that move by `per_slip` orders with the slip.
+    fn cells(&self, grid: &Grid, per_slip: f64) -> [usize; 2] {
+        let orders = [LOBES_BINS / self.blocks.cycles as f64, GUARD_ORDERS];
+        orders.map(|orders| (orders / per_slip / grid.step) as usize)
     }
 
     fn summed(&self, white: impl Fn(&Block) -> Option<f64>) -> Option<Sum> {

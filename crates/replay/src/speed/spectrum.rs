@@ -7,8 +7,8 @@ use rustfft::Fft;
 
 /// Points of the spectrum in one bin: lines are found between bins.
 pub(super) const PADDING: usize = 4;
-/// Bins on both sides of a harmonic that its main lobe covers (Hann).
-pub(super) const LOBE_BINS: f64 = 2.5;
+/// Bins on both sides of a harmonic that it covers: its main lobe (Hann), and skirts of a swinging load.
+pub(super) const LOBE_BINS: f64 = 3.0;
 /// Stretches of noise in one order; the noise of a point is the median over its stretch and the two beside it.
 const STRETCHES: usize = 4;
 

@@ -181,7 +181,7 @@ impl PlateArgs {
     }
 
     /// Keys and texts; the code letter last, since it needs power, voltage and current.
-    fn flags(&self) -> [(&'static str, Option<&String>); 17] {
+    fn flags(&self) -> [(&'static str, Option<&String>); 18] {
         [
             ("name", self.name.as_ref()),
             ("power_kw", self.power_kw.as_ref()),
