@@ -14,8 +14,9 @@ const STEP_BINS: f64 = 0.2;
 const SURE: f64 = 0.999;
 /// Share of it that must lie around one slip.
 const ONE_SLIP: f64 = 0.99;
-/// Around one slip: so far to both sides.
+/// Around one slip: so far to both sides, and so many bins of the strongest lines.
 const SAME_SLIP: f64 = 0.0005;
+const SAME_BINS: f64 = 0.5;
 /// Numbers of bars below this share of the likeliest are not told.
 const TOLD: f64 = 0.05;
 /// Circuits are off by this share of the rated slip without load: losses and phase errors that no interval holds.
@@ -172,11 +173,13 @@ fn decide(view: &View<'_>, grid: &Grid, candidates: &[u32], posterior: &[Vec<f64
         .max_by(|a, b| posterior[best][*a].total_cmp(&posterior[best][*b]))
         .unwrap_or(0);
     let centre = grid.offsets[top].at_mean;
+    let bin = view.pairs / f64::from(candidates[best]) / view.blocks.cycles as f64;
+    let near = SAME_SLIP.max(SAME_BINS * bin);
     let (mut mass, mut square) = (0.0, 0.0);
     for cells in posterior {
         for (cell, offset) in cells.iter().zip(&grid.offsets) {
             let off = offset.at_mean - centre;
-            if off.abs() <= SAME_SLIP {
+            if off.abs() <= near {
                 mass += cell;
                 square += cell * off * off;
             }
