@@ -114,7 +114,7 @@ fn slot_harmonics_of_a_known_cage_give_the_speed() {
             bars_known: true,
             foreign: 0,
         };
-        let outcomes = outcomes(1, cases(12), wish);
+        let outcomes = outcomes(1, cases(8), wish);
         report(
             &format!("bars known, lines of {:.2} %", 100.0 * lines),
             &outcomes,
@@ -146,7 +146,7 @@ fn an_unknown_cage_is_told_or_left() {
             bars_known: false,
             foreign: 0,
         };
-        let outcomes = outcomes(1, cases(12), wish);
+        let outcomes = outcomes(1, cases(8), wish);
         report(
             &format!("bars unknown, lines of {:.2} %", 100.0 * lines),
             &outcomes,
@@ -175,7 +175,7 @@ fn without_slot_harmonics_the_circuit_answers() {
             bars_known,
             foreign,
         };
-        let count = cases(12);
+        let count = cases(8);
         let outcomes = outcomes(1, count, wish);
         report(
             &format!("no lines, bars known {bars_known}, {foreign} foreign"),
