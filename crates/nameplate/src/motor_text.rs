@@ -154,6 +154,9 @@ impl<'e> Text<'e> {
         }
         let connection = if self.file.delta { "delta" } else { "star" };
         self.line(format_args!("connection = \"{connection}\""));
+        if let Some(bars) = self.file.rotor_bars {
+            self.line(format_args!("rotor_bars = {bars}"));
+        }
     }
 
     fn number(&mut self, key: &str, value: f64) {

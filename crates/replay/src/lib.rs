@@ -24,6 +24,7 @@ mod judgement;
 pub mod operating_points;
 mod rotor;
 mod samples;
+pub mod speed;
 mod timeline;
 mod trace;
 pub mod words;

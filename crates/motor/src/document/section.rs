@@ -105,6 +105,14 @@ impl<'d> Section<'d> {
         }
     }
 
+    /// A whole number that may be absent.
+    pub fn optional_integer(&self, key: &str, bounds: &Bounds) -> Option<Option<u32>> {
+        match self.optional_number(key, bounds)? {
+            Some(number) => self.whole(key, number).map(Some),
+            None => Some(None),
+        }
+    }
+
     /// A whole number that must be present.
     pub fn integer(&self, key: &str, bounds: &Bounds, meaning: &str) -> Option<u32> {
         let number = self.number(key, bounds, meaning)?;

@@ -31,6 +31,8 @@ pub struct Nameplate {
     pub connection: Connection,
     /// Rated speed, rpm, when the plate gives it.
     pub speed_rpm: Option<f64>,
+    /// Bars of the cage, 5..=400, when somebody counted them or the maker says so.
+    pub rotor_bars: Option<u32>,
 }
 
 impl Nameplate {
@@ -76,6 +78,7 @@ const CURRENT: Bounds = Bounds::above(0.0, 1e6, "A");
 const FREQUENCY: Bounds = Bounds::between(1.0, 1000.0, "Hz").hint("the supply's, not in rad/s");
 const TORQUE: Bounds = Bounds::above(0.0, 1e8, "N m");
 const SPEED: Bounds = Bounds::above(0.0, 60_000.0, "rpm");
+const ROTOR_BARS: Bounds = Bounds::between(5.0, 400.0, "").hint("usually 7 to 30 per pole pair");
 const CONNECTIONS: [(&str, Connection); 2] =
     [("star", Connection::Star), ("delta", Connection::Delta)];
 
@@ -102,6 +105,7 @@ fn read_values(section: &Section<'_>) -> Option<Nameplate> {
     let torque = section.number("torque_nm", &TORQUE, "rated shaft torque");
     let connection = section.choice("connection", &CONNECTIONS);
     let speed = section.optional_number("speed_rpm", &SPEED);
+    let rotor_bars = section.optional_integer("rotor_bars", &ROTOR_BARS);
     Some(Nameplate {
         pole_pairs: pole_pairs?,
         power_watt: power?,
@@ -111,6 +115,7 @@ fn read_values(section: &Section<'_>) -> Option<Nameplate> {
         torque_nm: torque?,
         connection: connection?,
         speed_rpm: speed?,
+        rotor_bars: rotor_bars?,
     })
 }
 

@@ -87,6 +87,9 @@ fn nameplate(text: &mut Text, nameplate: &Nameplate) {
     };
     text.words("connection", connection);
     text.optional("speed_rpm", nameplate.speed_rpm);
+    if let Some(bars) = nameplate.rotor_bars {
+        text.integer("rotor_bars", bars);
+    }
 }
 
 fn parameters(text: &mut Text, motor: &MotorFile) {

@@ -20,15 +20,18 @@ pub struct PlateFile {
     pub delta: bool,
     /// Inertia of everything on the shaft, kg m2.
     pub inertia_kg_m2: Option<f64>,
+    /// Bars of the cage.
+    pub rotor_bars: Option<u32>,
 }
 
 /// Keys of a plate's file beyond [`COLUMN_KEYS`].
-pub const EXTRA_KEYS: [&str; 7] = [
+pub const EXTRA_KEYS: [&str; 8] = [
     "name",
     "connection",
     "power_hp",
     "nema_code",
     "inertia_kg_m2",
+    "rotor_bars",
     "dc_resistance_ohm",
     "dc_resistance_degc",
 ];
@@ -69,6 +72,7 @@ impl PlateFile {
             }
             "power_hp" => self.plate.power_kw = Some(number()?.times(HORSEPOWER_KW)),
             "inertia_kg_m2" => self.inertia_kg_m2 = Some(number()?.value),
+            "rotor_bars" => self.rotor_bars = Some(bars(text)?),
             "dc_resistance_ohm" => self.dc_resistance().terminals_ohm = number()?.value,
             "dc_resistance_degc" => self.dc_resistance().winding_degc = degrees(text)?,
             "nema_code" => self.set_code(text)?,
@@ -122,6 +126,12 @@ impl PlateFile {
 const ROOM_DEGC: f64 = 20.0;
 /// Temperatures that a winding may have, degC.
 const WINDINGS_DEGC: [f64; 2] = [-50.0, 200.0];
+
+fn bars(text: &str) -> Result<u32, String> {
+    let bars = text.trim().parse::<u32>().ok();
+    bars.filter(|bars| (5..=400).contains(bars))
+        .ok_or_else(|| format!("\"{text}\" is no whole number of 5 to 400 bars"))
+}
 
 fn degrees(text: &str) -> Result<f64, String> {
     let [low, high] = WINDINGS_DEGC;

@@ -5,8 +5,8 @@ use motor::MotorFile;
 use recording::{Recording, Source};
 use serde::Serialize;
 
-use super::slip::with_estimated_speed;
 use crate::calibrate::{Surroundings, calibrate};
+use crate::speed::with_estimated_speed;
 
 /// How well a motor is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -4,14 +4,12 @@ mod blind;
 mod clamp;
 mod knowledge;
 mod severity;
-mod slip;
 mod told;
 
 pub use blind::{BlindSpot, blind_spots, channels_missing};
 pub use clamp::{ClampSignal, clamp_signals};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;
-pub use slip::{EstimatedSpeed, with_estimated_speed};
 pub use told::Told;
 
 use monitor::Monitor;
@@ -19,6 +17,7 @@ use motor::MotorFile;
 use recording::{Audit, Expectation, Recording};
 use serde::Serialize;
 
+use crate::speed::{EstimatedSpeed, with_estimated_speed};
 use crate::{
     Samples, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals, causes, config_for,
     replay, words,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use recording::{Recording, Source};
 use replay::check::Checked;
+use replay::speed::{EstimatedSpeed, SpeedSource};
 use replay::{Verdict, VerdictState};
 use report::Subject;
 use report::study::{CheckedRecording, Checkup, Known};
@@ -23,7 +24,7 @@ use crate::cli::printing::terminal::say;
 ///
 /// The plate becomes a motor file with intervals, healthy recordings (--healthy) teach parameters and statistics, and each
 /// recording is judged by the board's core. What the plate leaves open lights nothing. Without a speed the slip is estimated
-/// from voltages and currents, and said to be an estimate.
+/// from slot harmonics where they are seen, else from the circuit, and said to be an estimate.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Check {
@@ -152,12 +153,7 @@ fn print_one(named: &CheckedRecording) {
         say!("  this recording taught what is normal: it is compared with itself");
     }
     if let Some(speed) = &checked.speed {
-        say!(
-            "  speed: no encoder; estimated {:.0} rpm, slip {:.2} +- {:.2} % of synchronous speed",
-            speed.mean_rpm,
-            speed.slip_percent,
-            speed.slip_half_width_percent
-        );
+        print_speed(speed);
     }
     for clamp in &checked.clamps {
         let hz = clamp
@@ -188,6 +184,30 @@ fn print_one(named: &CheckedRecording) {
         );
     }
     print_steps(checked);
+}
+
+fn print_speed(speed: &EstimatedSpeed) {
+    let source = match speed.source {
+        SpeedSource::Circuit => "from the circuit",
+        SpeedSource::SlotHarmonics => "from slot harmonics",
+    };
+    let decimals = match speed.source {
+        SpeedSource::Circuit => 2,
+        SpeedSource::SlotHarmonics => 3,
+    };
+    say!(
+        "  speed: no encoder; estimated {:.0} rpm, slip {:.decimals$} +- {:.decimals$} % of synchronous speed, {source}",
+        speed.mean_rpm,
+        speed.slip_percent,
+        speed.slip_half_width_percent
+    );
+    let bars: Vec<String> = speed.rotor_bars.iter().map(ToString::to_string).collect();
+    if speed.source == SpeedSource::Circuit && !bars.is_empty() {
+        say!(
+            "    slot harmonics are seen and fit {} rotor bars: with the right number as rotor_bars on the plate they give the speed",
+            bars.join(", ")
+        );
+    }
 }
 
 fn print_state(checked: &Checked) {

@@ -60,6 +60,9 @@ pub struct PlateArgs {
     /// Inertia of everything on the shaft, kg m2
     #[arg(long, value_name = "KG_M2")]
     inertia_kg_m2: Option<String>,
+    /// Bars of the cage, where they are known: the slot harmonics then give the speed
+    #[arg(long, value_name = "BARS")]
+    rotor_bars: Option<String>,
     /// Resistance between two terminals, measured with direct current, ohm (mean of the three pairs)
     #[arg(long, value_name = "OHM")]
     dc_resistance_ohm: Option<String>,
@@ -144,7 +147,7 @@ impl PlateArgs {
     }
 
     /// Keys and texts; the code letter last, since it needs power, voltage and current.
-    fn flags(&self) -> [(&'static str, Option<&String>); 17] {
+    fn flags(&self) -> [(&'static str, Option<&String>); 18] {
         [
             ("name", self.name.as_ref()),
             ("power_kw", self.power_kw.as_ref()),
@@ -169,6 +172,7 @@ impl PlateArgs {
             ),
             ("connection", self.connection.as_ref()),
             ("inertia_kg_m2", self.inertia_kg_m2.as_ref()),
+            ("rotor_bars", self.rotor_bars.as_ref()),
             ("dc_resistance_ohm", self.dc_resistance_ohm.as_ref()),
             ("dc_resistance_degc", self.dc_resistance_degc.as_ref()),
             ("nema_code", self.nema_code.as_ref()),
