@@ -120,7 +120,7 @@ fn a_name_is_known_new_or_a_formula_in_the_file() {
         "{unknown}"
     );
     assert!(
-        unknown.ends_with("expression, rotor-flux-frame, parameters"),
+        unknown.ends_with("expression, rotor-flux-frame, law, parameters"),
         "{unknown}"
     );
 }
