@@ -110,6 +110,26 @@ fn a_bump_is_found_where_it_is() {
     assert!((found("s") - 3.2).abs() < 0.05 && (found("w") - 0.9).abs() < 0.05);
 }
 
+/// Friction that falls from rest: the exponent too, which a sign that binds more tightly than a power would freeze.
+#[test]
+fn a_stribeck_curve_is_found_with_its_exponent() {
+    let truth = |x: f64| (x / 1.2).tanh() * (2.0 + 3.0 * (-(x / 40.0).powf(1.5)).exp());
+    let (all, reach) = asked(Coordinate::Speed, [0.0, 150.0], truth);
+    assert!(
+        all[0].shape.name.starts_with("Stribeck"),
+        "{}",
+        all[0].shape.name
+    );
+    let stribeck = all.iter().find(|p| p.shape.name == "Stribeck");
+    let stribeck = stribeck.expect("asked");
+    let found = |name: &str| {
+        let k = stribeck.shape.parameters.iter().position(|p| p.0 == name);
+        parameter(stribeck, k.expect("a parameter"), &reach)
+    };
+    assert!((found("n") - 1.5).abs() < 0.15, "{}", found("n"));
+    assert!((found("w") - 40.0).abs() < 4.0, "{}", found("w"));
+}
+
 #[test]
 fn two_harmonics_are_found_and_one_is_not_taken_for_two() {
     let both = |x: f64| 0.4 * (2.0 * x).cos() + 0.3 * (4.0 * x + 1.0).cos();
