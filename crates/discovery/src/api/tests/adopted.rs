@@ -221,3 +221,15 @@ fn the_scale_of_a_sensor_is_reported_and_not_adopted() {
     let known = specimen::table_study(|_| ());
     assert!(speed_scale_report(&known, &specimen::trial_with(&known, &[])).is_none());
 }
+
+/// Only a law has formulas; that is said before any recording is looked at.
+#[test]
+fn a_formula_of_an_effect_is_refused() {
+    let laws = Laws {
+        formula: Some(1),
+        ..Laws::default()
+    };
+    let error = adopt_with("windage", &[], &specimen::motor(""), laws, &mut |_, _| {}).err();
+    let message = error.map(|e| e.to_string()).unwrap_or_default();
+    assert!(message.contains("leave --formula out"), "{message}");
+}

@@ -57,16 +57,12 @@ pub(crate) fn formulas(study: &Study, step: Curve<'_>) -> Vec<Proven> {
     let refit = |p: &Proposal| refitted(study, step, &config, p);
     let likely = &all[..REFITTED.min(all.len())];
     let mut good: Vec<Proven> = likely.par_iter().filter_map(refit).collect();
-    good.retain(|formula| is_as_good(study, step, &formula.trial));
-    sort(&mut good);
-    good
-}
-
-/// Fewest numbers first among those that the data do not speak against; then the others.
-fn sort(formulas: &mut [Proven]) {
-    let least = formulas.iter().map(|f| f.bic).fold(f64::INFINITY, f64::min);
+    let least = good.iter().map(|f| f.bic).fold(f64::INFINITY, f64::min);
+    good.retain(|formula| is_as_good(study, step, formula, least));
     let key = |f: &Proven| (f.bic > least + DECISIVE, f.numbers);
-    formulas.sort_by(|a, b| key(a).cmp(&key(b)).then(a.bic.total_cmp(&b.bic)));
+    // Fewest numbers first among those that the data do not speak against; then the others.
+    good.sort_by(|a, b| key(a).cmp(&key(b)).then(a.bic.total_cmp(&b.bic)));
+    good
 }
 
 /// The law of a trial and its position among the effects.
@@ -156,11 +152,14 @@ fn without_law(study: &Study, step: Curve<'_>, z: &DVector<f64>) -> Option<Hypot
 }
 
 /// Whether a formula loses next to nothing against the curve, folds and proving recordings together: each alone scatters
-/// by as much as a formula may lose.
-fn is_as_good(study: &Study, step: Curve<'_>, formula: &Trial) -> bool {
+/// by as much as a formula may lose. Of a law that gains little a hundredth is less than the scatter too: there the
+/// information criterion decides, `least` being that of the best formula.
+fn is_as_good(study: &Study, step: Curve<'_>, formula: &Proven, least: f64) -> bool {
     let square =
         |t: &Trial| 0.5 * (study.fold_error(&t.folds).powi(2) + study.proof_error(t).powi(2));
-    let (before, curve, formula) = (square(step.before), square(step.trial), square(formula));
-    formula - curve <= LOST_GAIN * (before - curve)
-        && formula.sqrt() <= (1.0 + LOST_ERROR) * curve.sqrt()
+    let (before, curve) = (square(step.before), square(step.trial));
+    let error = square(&formula.trial);
+    let undecided = formula.bic <= least + DECISIVE;
+    (undecided || error - curve <= LOST_GAIN * (before - curve))
+        && error.sqrt() <= (1.0 + LOST_ERROR) * curve.sqrt()
 }

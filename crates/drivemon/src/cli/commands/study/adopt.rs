@@ -57,9 +57,9 @@ const WIDTH: usize = 36;
 impl Adopt {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
+        self.check_formula()?;
         let files = self.study.files().writes("-o", &self.out);
         self.shapes.read_by(files).check()?;
-        self.check_formula()?;
         let laws = Laws {
             shapes: self.shapes.shapes()?,
             formula: self.formula,
