@@ -8,6 +8,8 @@ use std::f64::consts::TAU;
 
 /// Points at which the bend of a formula is looked at.
 const DENSE: usize = 2000;
+/// Points to both sides from which a bend draws knots.
+const AROUND: usize = 20;
 /// Share of the knots that bends attract; the others lie at equal distances.
 const ATTRACTED: f64 = 0.7;
 
@@ -114,24 +116,102 @@ fn knots(formula: &Formula, p: &[f64]) -> Vec<f64> {
     let y: Vec<f64> = (0..=DENSE).map(|k| formula.value(p, at(k))).collect();
     // A cubic piece errs with the fourth power of its length: a fourth root evens the errors out.
     let bend = |k: usize| (y[k + 1] - 2.0 * y[k] + y[k - 1]).abs().powf(0.25);
-    let mut density = vec![0.0; DENSE];
-    for (k, share) in density.iter_mut().enumerate() {
-        *share = bend(k.clamp(1, DENSE - 1));
-    }
+    let bends: Vec<f64> = (1..DENSE).map(bend).collect();
+    // A corner draws knots from some way around, not all into one place.
+    let around = |k: usize| &bends[k.saturating_sub(AROUND)..(k + AROUND).min(bends.len())];
+    let density: Vec<f64> = (0..DENSE).map(|k| around(k).iter().sum()).collect();
     let total: f64 = density.iter().sum();
     let even = 1.0 / DENSE as f64;
     let mut knots = vec![low];
     let mut sum = 0.0;
     for (k, bent) in density.iter().enumerate() {
         let attracted = if total > 0.0 { bent / total } else { even };
-        let before = sum;
-        sum += ATTRACTED * attracted + (1.0 - ATTRACTED) * even;
-        let next = knots.len() as f64 / (MOST_KNOTS - 1) as f64;
-        if sum >= next && knots.len() < MOST_KNOTS - 1 {
-            let share = (next - before) / (sum - before);
+        let cell = ATTRACTED * attracted + (1.0 - ATTRACTED) * even;
+        let next = |n: usize| n as f64 / (MOST_KNOTS - 1) as f64;
+        while knots.len() < MOST_KNOTS - 1 && sum + cell >= next(knots.len()) {
+            let share = (next(knots.len()) - sum) / cell;
             knots.push(at(k) + share * (at(k + 1) - at(k)));
         }
+        sum += cell;
     }
     knots.push(high);
     knots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::formula::dictionary::Shapes;
+    use motor::effect::curve::{Action, knots_and_values};
+    use motor::effect::to_entry;
+
+    fn written(
+        place: Place,
+        coordinate: Coordinate,
+        range: [f64; 2],
+        (shape, amplitudes, coordinates): (&str, &[f64], &[f64]),
+    ) -> EffectConfig {
+        let shape = Shapes::default().all().find(|s| s.name == shape);
+        let action = Action { place, coordinate };
+        let reach = Reach::of(range);
+        Formula::config(
+            action,
+            shape.expect("known"),
+            &reach,
+            amplitudes,
+            coordinates,
+        )
+    }
+
+    #[test]
+    fn a_torque_over_speed_becomes_an_expression_with_named_numbers() {
+        let place = Place::Torque;
+        let shape = ("power", &[2.5][..], &[3f64.ln()][..]);
+        let config = written(place, Coordinate::Speed, [-0.5, 157.08], shape);
+        let entry = to_entry(&as_written(&config).expect("a formula"));
+        assert_eq!(entry.name, "expression");
+        assert_eq!(entry.text("formula"), Some("a*(abs(omega)/157)^n"));
+        assert_eq!(entry.text("adds_to"), Some("torque"));
+        assert_eq!(entry.number("a"), Some(2.5));
+        assert!((entry.number("n").expect("a number") - 3.0).abs() < 1e-12);
+    }
+
+    /// Where an expression has no such variable, knots meet the formula, at its corner too.
+    #[test]
+    fn elsewhere_a_formula_becomes_knots_that_meet_it() {
+        let shape = ("hinge", &[0.8][..], &[0.45][..]);
+        let (place, range) = (Place::Rotor, [0.2, 6.0]);
+        let config = written(place, Coordinate::Slip, range, shape);
+        let curve = as_written(&config).expect("a formula");
+        let (_, x, y) = knots_and_values(&curve).expect("a curve");
+        assert!(x.len() == MOST_KNOTS && x[0] == 0.2 && x[MOST_KNOTS - 1] == 6.0);
+        let formula = Formula::of(&config).expect("a formula");
+        for (x, y) in x.iter().zip(y) {
+            assert_eq!(formula.value(&config.values, *x), *y);
+        }
+        // Between them no straight line is off by more than a hundredth of the largest value.
+        for (x, y) in x.windows(2).zip(y.windows(2)) {
+            let middle = formula.value(&config.values, 0.5 * (x[0] + x[1]));
+            assert!((middle - 0.5 * (y[0] + y[1])).abs() < 0.008 * 0.8, "{x:?}");
+        }
+    }
+
+    #[test]
+    fn a_law_over_an_angle_keeps_its_harmonics_in_the_text() {
+        let shape = ("harmonic", &[0.1, 0.2][..], &[3.0][..]);
+        let turn = [0.0, TAU];
+        let config = written(Place::SensorSpeed, Coordinate::Angle, turn, shape);
+        let curve = as_written(&config).expect("a formula");
+        assert!(knots_and_values(&curve).is_some_and(|(_, x, _)| x[MOST_KNOTS - 1] < TAU));
+        let formula = Formula::of(&config).expect("a formula");
+        let names: Vec<_> = numbers(formula, &config.values)
+            .into_iter()
+            .map(|n| n.name)
+            .collect();
+        assert_eq!(names, ["a", "b"]);
+        assert_eq!(
+            text(formula, &config.values),
+            "a*cos(3*theta) + b*sin(3*theta)"
+        );
+    }
 }
