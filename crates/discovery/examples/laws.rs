@@ -10,7 +10,7 @@
 #[expect(dead_code, reason = "the tests use the rest")]
 mod foreign;
 
-use discovery::{ExplainReport, explain, simulations};
+use discovery::{ExplainReport, FormulaReport, ParameterReport, explain, simulations};
 use foreign::laws::Law;
 use foreign::{DRIVE, DRIVE_B, Hidden, Machine, priors, record};
 use recording::Source;
@@ -26,6 +26,19 @@ fn asked(law: Option<Law>, seed: u64) -> ExplainReport {
         |course, n| Source::Recording(record(&machine, &hidden, course, 100 * seed + n));
     let sources = [recording(&DRIVE, 1), recording(&DRIVE_B, 2)];
     explain(&sources, &priors(&machine, seed), &mut |_, _| {}).expect("judged")
+}
+
+fn formula(f: &FormulaReport) -> String {
+    let number = |p: &ParameterReport| format!("{} {:.4} +- {:.4}", p.name, p.value, p.std_error);
+    let numbers: Vec<String> = f.parameters.iter().map(number).collect();
+    format!(
+        "{}: {} ({}) {:.3} folds {:.3}",
+        f.shape,
+        f.formula,
+        numbers.join(", "),
+        f.held_out_error_over_noise,
+        f.fold_error_over_noise
+    )
 }
 
 fn print(law: Option<Law>, seed: u64) -> bool {
@@ -49,8 +62,9 @@ fn print(law: Option<Law>, seed: u64) -> bool {
                 .map(|t| format!("{}/{}", t.place, t.coordinate))
                 .collect();
             let how = if l.proven { "proven" } else { "lead" };
+            let formulas: Vec<String> = l.formulas.iter().map(formula).collect();
             format!(
-                "{}/{} {how} {:.3} folds {:.3} explains {:.0} % tied {tied:?}",
+                "{}/{} {how} {:.3} folds {:.3} explains {:.0} % tied {tied:?} formulas {formulas:?}",
                 l.place,
                 l.coordinate,
                 l.held_out_error_over_noise,

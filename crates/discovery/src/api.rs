@@ -8,7 +8,9 @@ use crate::fit::normal_equations::dot;
 use crate::fit::output_error::Effort;
 use crate::fit::polish::with_nominals;
 use crate::laws::curve::as_knots;
+use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
+use crate::laws::search::LawStep;
 use crate::report::frame;
 use crate::report::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
 use crate::report::types::FrameReport;
@@ -45,7 +47,20 @@ pub fn explain(
     motor: &MotorFile,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    explain_without(sources, motor, &[], progress)
+    explain_with(sources, motor, Laws::default(), progress)
+}
+
+/// As [`explain`], with shapes of formulas of the user's own.
+///
+/// # Errors
+/// As [`explain`].
+pub fn explain_with(
+    sources: &[Source],
+    motor: &MotorFile,
+    laws: Laws,
+    progress: &mut Progress<'_>,
+) -> Result<ExplainReport, Error> {
+    explained_by(sources, motor, &[], laws, progress)
 }
 
 /// As [`explain`], without asking about the effects in `excluded`: a way to see what a library that lacks the
@@ -59,8 +74,19 @@ pub fn explain_without(
     excluded: &[&str],
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
+    explained_by(sources, motor, excluded, Laws::default(), progress)
+}
+
+fn explained_by(
+    sources: &[Source],
+    motor: &MotorFile,
+    excluded: &[&str],
+    laws: Laws,
+    progress: &mut Progress<'_>,
+) -> Result<ExplainReport, Error> {
     match Question::new(sources, motor, progress) {
-        Ok(question) => {
+        Ok(mut question) => {
+            question.study.shapes = laws.shapes;
             let found = explain::explain(&question.study, excluded, progress);
             let frame = judged_frame(&question, motor, found.last());
             progress("done", 1.0);
@@ -319,13 +345,34 @@ pub fn adopt(
     motor: &MotorFile,
     progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
+    adopt_with(effect, sources, motor, Laws::default(), progress)
+}
+
+/// As [`adopt`], with shapes of formulas of the user's own; of a law a formula instead of the curve.
+///
+/// # Errors
+/// As [`adopt`], and a formula of another effect or one that there is not.
+pub fn adopt_with(
+    effect: &str,
+    sources: &[Source],
+    motor: &MotorFile,
+    laws: Laws,
+    progress: &mut Progress<'_>,
+) -> Result<(AdoptReport, MotorFile), Error> {
     check_name(effect, motor)?;
-    let question = Question::new(sources, motor, progress)?;
+    if laws.formula.is_some() && effect != LAW {
+        let message = format!(
+            "`{effect}` has no formulas to choose from: leave --formula out, or adopt `{LAW}`"
+        );
+        return Err(Error::UnknownEffect(message));
+    }
+    let mut question = Question::new(sources, motor, progress)?;
+    question.study.shapes = laws.shapes;
     let study = &question.study;
     progress("refitting the parameters", 0.2);
     let refitted = study.trial(&study.at_prior(), Effort::FULL);
     if effect == LAW {
-        return adopted_law(&question, motor, progress);
+        return adopted_law(&question, motor, laws.formula, progress);
     }
     if effect == frame::NAME {
         return adopted_frame(&question, motor, &refitted);
@@ -376,6 +423,7 @@ pub(crate) fn as_believed(study: &Study) -> Trial {
 fn adopted_law(
     question: &Question,
     motor: &MotorFile,
+    formula: Option<usize>,
     progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
     let study = &question.study;
@@ -385,7 +433,10 @@ fn adopted_law(
         let message = "no law explains these recordings better than the library does: `drivemon explain` says what is missing";
         return Err(Error::UnknownEffect(message.to_owned()));
     };
-    let after = &law.trial;
+    let after = match formula {
+        Some(number) => chosen_formula(law, number)?,
+        None => &law.trial,
+    };
     let report = AdoptReport {
         audit: question.audit.clone(),
         effect: LAW.to_owned(),
@@ -405,6 +456,18 @@ fn adopted_law(
         cannot_be_concluded: inconclusive::list(study, after, &[]),
     };
     Ok((report, updated(study, after, motor)))
+}
+
+/// The model with a formula of a law, counted from 1.
+fn chosen_formula(law: &LawStep, number: usize) -> Result<&Trial, Error> {
+    let of_number = number.checked_sub(1).and_then(|k| law.formulas.get(k));
+    let trial = of_number.map(|formula| &formula.trial);
+    trial.ok_or_else(|| {
+        Error::UnknownEffect(match law.formulas.len() {
+            0 => "no formula explains these recordings as well as the curve does: leave --formula out".to_owned(),
+            count => format!("there is no formula {number}: give --formula 1 to {count}"),
+        })
+    })
 }
 
 /// Changes nothing but the frame in which the monitor forms its residuals.

@@ -2,6 +2,7 @@
 
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
+use crate::laws::formula::prove::formulas;
 use crate::laws::search::{LawStep, search};
 use crate::model::prior::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
 use crate::search::accept::{adequate, beats, explained, proven};
@@ -117,6 +118,10 @@ pub(crate) fn explain(
     };
     if laws_are_asked(study, &explanation) {
         complete_with_law(study, &mut explanation, progress);
+        progress("holding formulas against the curve", 0.78);
+        for law in explanation.laws.iter_mut().filter(|law| law.proven) {
+            law.formulas = formulas(study, law.as_curve());
+        }
     }
     if explanation.nameable && explanation.laws.is_empty() {
         progress("contesting the parameters that moved", 0.8);

@@ -30,17 +30,20 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-pub use api::{LAW, PARAMETERS, Progress, adopt, explain, explain_without};
+pub use api::{
+    LAW, PARAMETERS, Progress, adopt, adopt_with, explain, explain_with, explain_without,
+};
 pub use compare::compare;
 pub use data::instrument_class;
 pub use data::load_table::table_values;
 pub use data::question::Error;
 pub use data::unsupported::Unsupported;
 pub use identify::{IdentifiedParameter, IdentifyReport, identify};
+pub use laws::formula::dictionary::{Laws, Shapes};
 pub use model::prediction::simulations;
 pub use report::types::{
     AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,
-    FitReport, FrameBand, FrameReport, Inconclusive, LawCurve, LawPlace, LawReport, NominalReport,
-    OrderReport, Overall, ParameterReport, RankReport, RegionReport, SignalReport,
+    FitReport, FormulaReport, FrameBand, FrameReport, Inconclusive, LawCurve, LawPlace, LawReport,
+    NominalReport, OrderReport, Overall, ParameterReport, RankReport, RegionReport, SignalReport,
     SpeedScaleReport, StepReport, Unexplained, Verdict,
 };

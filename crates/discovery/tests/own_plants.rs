@@ -5,7 +5,7 @@
 #[expect(dead_code, unused_imports, reason = "the examples use the rest")]
 mod foreign;
 
-use discovery::{LAW, Verdict, adopt, explain};
+use discovery::{LAW, Laws, Verdict, adopt_with, compare, explain};
 use foreign::cases::single;
 use foreign::evidence::{Answer, Question, Setting, double, with_twins};
 use foreign::laws::Law;
@@ -116,11 +116,45 @@ fn a_law_that_no_library_holds_is_found_with_its_curve_and_adopted() {
     println!("curve off by {:.1} %", 100.0 * share);
     assert!(share < 0.15, "{share}");
 
-    let (adopted, motor) = adopt(LAW, &sources, &believed, &mut |_, _| {}).expect("adopted");
+    let formula = &law.formulas[0];
+    println!("{} {:?}", formula.formula, formula.parameters);
+    assert_eq!(formula.shape, "two harmonics");
+    assert_eq!(law.formula.as_ref(), Some(&formula.formula));
+    let amplitude = |a: &str, b: &str| {
+        let value = |name: &str| {
+            let mut all = formula.parameters.iter();
+            all.find(|p| p.name == name).map_or(f64::NAN, |p| p.value)
+        };
+        value(a).hypot(value(b)) / machine.torque
+    };
+    let mut found = [amplitude("a", "b"), amplitude("c", "d")];
+    if formula.formula.starts_with("a*cos(4*theta)") {
+        found.swap(0, 1);
+    }
+    assert!((found[0] - 0.04).abs() < 0.004, "{found:?}");
+    assert!((found[1] - 0.03).abs() < 0.004, "{found:?}");
+
+    let laws = Laws {
+        formula: Some(1),
+        ..Laws::default()
+    };
+    let (adopted, motor) =
+        adopt_with(LAW, &sources, &believed, laws, &mut |_, _| {}).expect("adopted");
     assert!(adopted.proven);
+    assert_eq!(motor.effects[0].name, "expression");
     let again = motor::MotorFile::parse(&motor.to_toml(), "adopted.toml").expect("a motor file");
     let after = explain(&sources, &again, &mut |_, _| {}).expect("judged");
     assert_eq!(after.verdict, Verdict::Adequate, "{}", after.summary);
+    // The knots of the curve do the same.
+    let mut knots = motor;
+    knots.effects = law.entry.iter().cloned().collect();
+    let knots = motor::MotorFile::parse(&knots.to_toml(), "knots.toml").expect("a motor file");
+    for file in [&again, &knots] {
+        let held = compare(&sources[1..], file, &mut |_, _| {}).expect("comparable");
+        let error = held.overall.expect("sound").error_over_noise;
+        println!("{error:.3} x noise");
+        assert!(error < 1.05, "{error}");
+    }
 }
 
 /// One recording proves no law: curves of ten modes fit the noise of one recording too well.

@@ -263,3 +263,55 @@ fn shells_complete_every_command_and_man_has_a_page_for_each() {
     let nowhere = drivemon(&["man", "/nonexistent/folder"]);
     assert_eq!(nowhere.status.code(), Some(2));
 }
+
+/// Recordings are not read for a formula that there cannot be, nor for shapes that cannot be understood.
+#[test]
+fn wrong_formulas_and_shapes_are_refused_with_what_to_write() {
+    let folder = scratch("formulas");
+    let shapes = folder.join("mine.toml");
+    let text_of_shapes =
+        "[[shapes]]\nname = \"mine\"\nformula = \"a*tanh(x/w)\"\nover = \"open\"\n";
+    std::fs::write(&shapes, text_of_shapes).expect("a file");
+    let motor = format!("{PROJECT}/motors/peer-2k2.toml");
+    let recording = format!("{PROJECT}/tests/data/peer/windage/recording.csv.gz");
+    let out = folder.join("out.toml");
+    let adopt = |more: &[&str]| {
+        let all = [
+            "adopt",
+            more[0],
+            recording.as_str(),
+            "--motor",
+            motor.as_str(),
+            "-o",
+            text(&out),
+        ];
+        drivemon(&[&all, &more[1..]].concat())
+    };
+    for (more, said) in [
+        (
+            &["windage", "--formula", "1"][..],
+            "--formula belongs to `drivemon adopt law`",
+        ),
+        (&["law", "--formula", "0"], "formulas count from 1"),
+        (&["law", "--formula", "one"], "invalid value 'one'"),
+        (
+            &["law", "--shapes", text(&shapes)],
+            "mine.toml:3: shapes[1].formula: it must be proportional",
+        ),
+        (&["law", "--shapes", "/no/such.toml"], "/no/such.toml"),
+    ] {
+        let output = adopt(more);
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{more:?} {}",
+            stderr(&output)
+        );
+        assert!(
+            stderr(&output).contains(said),
+            "{more:?} {}",
+            stderr(&output)
+        );
+        assert!(!out.exists());
+    }
+}

@@ -4,6 +4,7 @@ use crate::data::case::Case;
 use crate::data::noise_floor::{Floor, floor};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, Fit, fit};
+use crate::laws::formula::dictionary::Shapes;
 use crate::model::free_scale::{self, FreeScale};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, Prior};
@@ -37,6 +38,8 @@ pub(crate) struct Study {
     pub proofs: Vec<Subject>,
     /// How the speed channel becomes a speed, where its scale is a free parameter.
     pub speed_scale: Option<FreeScale>,
+    /// Shapes of formulas that the curve of a law is held against.
+    pub shapes: Shapes,
 }
 
 /// A hypothesis, fitted and measured on data that was not fitted.
@@ -87,6 +90,7 @@ impl Study {
             proofs: proofs.into_iter().map(subject).collect(),
             prior,
             speed_scale,
+            shapes: Shapes::default(),
         }
     }
 

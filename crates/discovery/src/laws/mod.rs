@@ -6,6 +6,7 @@
 //! ([`search`]).
 
 pub(crate) mod curve;
+pub(crate) mod formula;
 pub(crate) mod menu;
 pub(crate) mod modes;
 mod motion;

@@ -136,6 +136,14 @@ impl Modes {
         shares.iter().zip(&p[SHAPES..]).map(|(s, u)| s * u).sum()
     }
 
+    /// The coordinate at a share of the way between the ends, on the axis of the splines.
+    pub fn along(&self, p: &[f64], share: f64) -> f64 {
+        match self.action.coordinate.is_angle() {
+            true => TAU * share,
+            false => from_place(p, share),
+        }
+    }
+
     /// Places at which a curve of knots meets this one: more than two for each interval of the splines.
     pub fn knots(&self, p: &[f64]) -> Vec<f64> {
         const OPEN: usize = 18;

@@ -2,13 +2,14 @@
 
 use crate::data::study::{Study, Trial};
 use crate::laws::curve::as_knots;
+use crate::laws::formula::prove::{coordinates_of, law_of};
+use crate::laws::formula::report::formula_report;
 use crate::laws::modes::{self, Modes};
 use crate::laws::search::LawStep;
-use crate::model::prior::N_NOMINAL;
 use crate::report::types::{LawCurve, LawPlace, LawReport};
 use crate::search::accept::explained;
 use motor::effect::curve::{Action, Coordinate, Place};
-use motor::effect::{EffectConfig, to_entry};
+use motor::effect::to_entry;
 use nalgebra::DVector;
 
 /// Points of a reported curve.
@@ -19,14 +20,19 @@ const BAND: f64 = 1.96;
 /// The report of a law.
 pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
     let at = named(step.action);
+    let formulas = step.formulas.iter();
+    let formulas: Vec<_> = formulas.filter_map(|f| formula_report(study, f)).collect();
+    let first = formulas.first().cloned();
+    let first = first.as_ref();
     LawReport {
         tied_with: ties(step, &at),
         place: at.place,
         coordinate: at.coordinate,
         meaning: step.action.place.meaning(step.action.coordinate).to_owned(),
         curve: curve(study, &step.trial),
-        formula: None,
-        formula_parameters: Vec::new(),
+        formula: first.map(|f| f.formula.clone()),
+        formula_parameters: first.map_or_else(Vec::new, |f| f.parameters.clone()),
+        formulas,
         explained_percent: 100.0 * explained(study, &step.before, &step.trial),
         held_out_error_over_noise: study.proof_error(&step.trial),
         fold_error_over_noise: study.fold_error(&step.trial.folds),
@@ -65,13 +71,6 @@ fn named(action: Action) -> LawPlace {
     }
 }
 
-/// The law of a trial and its position among the effects.
-fn law_of(study: &Study, trial: &Trial) -> Option<(usize, EffectConfig)> {
-    let configs = trial.fit.hypothesis.configs(&study.prior.plant.rated);
-    let index = configs.iter().rposition(|c| Modes::of(c).is_some())?;
-    Some((index, configs[index].clone()))
-}
-
 /// The curve with its band.
 fn curve(study: &Study, trial: &Trial) -> LawCurve {
     let Some((index, config)) = law_of(study, trial) else {
@@ -108,16 +107,9 @@ fn deviation<'s>(
     index: usize,
     law: &Modes,
 ) -> impl Fn(&[f64]) -> f64 + use<'s> {
-    let h = &trial.fit.hypothesis;
     let covariance = study.covariance(trial);
     let n = modes::count(law.action.coordinate);
-    let of_law = |&k: &usize| k >= N_NOMINAL && h.effect_of(k) == index;
-    let free = trial.fit.free.iter();
-    let at: Vec<usize> = (0..)
-        .zip(free)
-        .filter(|(_, k)| of_law(k))
-        .map(|(at, _)| at)
-        .collect();
+    let at = coordinates_of(trial, index);
     move |shares: &[f64]| {
         if at.len() != n {
             return 0.0;

@@ -2,6 +2,7 @@
 
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::{Effort, fit};
+use crate::laws::formula::prove::{Curve, Proven};
 use crate::laws::menu::menu;
 use crate::laws::modes::{self, Modes};
 use crate::laws::screen::{Screened, best_stiffness, screen};
@@ -49,6 +50,18 @@ pub(crate) struct LawStep {
     pub tied: Vec<Action>,
     /// Whether it is proven on a recording that was not fitted.
     pub proven: bool,
+    /// Formulas that explain the recordings as well as the curve, simplest first.
+    pub formulas: Vec<Proven>,
+}
+
+impl LawStep {
+    /// The models that formulas are held against.
+    pub fn as_curve(&self) -> Curve<'_> {
+        Curve {
+            before: &self.before,
+            trial: &self.trial,
+        }
+    }
 }
 
 /// The law on top of a model; `None` where no law explains anything.
@@ -67,6 +80,7 @@ pub(crate) fn search(
         before: base.clone(),
         tied: tied(study, base, best, &laws),
         proven: is_proven,
+        formulas: Vec::new(),
     })
 }
 

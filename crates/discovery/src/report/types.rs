@@ -50,6 +50,24 @@ pub struct LawCurve {
     pub y_unit: String,
 }
 
+/// A formula that explains the recordings as well as the curve of a law.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FormulaReport {
+    /// Name of its shape in the dictionary.
+    pub shape: String,
+    /// The formula in the variable of the coordinate.
+    pub formula: String,
+    /// Its amplitudes and shape parameters.
+    pub parameters: Vec<ParameterReport>,
+    /// Held-out error over noise with the formula instead of the curve ...
+    pub held_out_error_over_noise: f64,
+    /// ... and by block folds of the fitted recording.
+    pub fold_error_over_noise: f64,
+    /// The formula as a motor file holds it.
+    #[serde(skip)]
+    pub entry: Option<EffectEntry>,
+}
+
 /// A law that no library holds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawReport {
@@ -63,10 +81,13 @@ pub struct LawReport {
     pub tied_with: Vec<LawPlace>,
     /// The curve.
     pub curve: LawCurve,
-    /// A formula that fits as well as the curve.
+    /// The formula with the fewest numbers that fits as well as the curve, in the variable of the coordinate (`omega`,
+    /// `theta`, `theta_u`, `slip_hz`, `i`, `psi`, `f`, `u`, `t`, `tau_load`).
     pub formula: Option<String>,
     /// Its parameters.
     pub formula_parameters: Vec<ParameterReport>,
+    /// All formulas that fit as well as the curve, that one first.
+    pub formulas: Vec<FormulaReport>,
     /// Share of the excess error that the law explains, percent.
     pub explained_percent: f64,
     /// Held-out error over noise with the law ...

@@ -194,6 +194,7 @@ impl Work {
             names: &self.names,
             sources: &self.sources,
             motor: &self.motor.motor,
+            laws: discovery::Laws::default(),
         };
         let plainly = |error: discovery::Error| error.to_string();
         match self.question.kind {

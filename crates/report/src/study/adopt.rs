@@ -39,8 +39,9 @@ impl Adopted {
             names,
             sources,
             motor,
+            laws,
         } = inputs;
-        let (report, adopted) = discovery::adopt(effect, sources, motor, progress)?;
+        let (report, adopted) = discovery::adopt_with(effect, sources, motor, laws, progress)?;
         let models = [
             Model::believed(motor),
             Model::new(format!("with {effect}"), &adopted),

@@ -38,6 +38,7 @@ impl Compared {
             names,
             sources,
             motor,
+            ..
         } = inputs;
         let report = discovery::compare(sources, motor, progress)?;
         let models = [Model::believed(motor)];

@@ -56,8 +56,9 @@ impl Explained {
             names,
             sources,
             motor,
+            laws,
         } = inputs;
-        let searched = discovery::explain(sources, motor, &mut |what, share| {
+        let searched = discovery::explain_with(sources, motor, laws, &mut |what, share| {
             progress(what, SEARCH * share)
         });
         let report = searched?;

@@ -17,7 +17,7 @@ pub use places::{Place, worst};
 use std::borrow::Cow;
 
 pub use discovery::PARAMETERS;
-use discovery::SpeedScaleReport;
+use discovery::{Laws, SpeedScaleReport};
 use monitor::MAX_EFFECTS;
 use motor::MotorFile;
 use recording::Source;
@@ -31,6 +31,8 @@ pub struct Inputs<'a> {
     pub sources: &'a [Source],
     /// What is believed of the motor.
     pub motor: &'a MotorFile,
+    /// What laws are held against, and which formula is taken over.
+    pub laws: Laws,
 }
 
 /// A source as figures show it: a speed of unknown scale in the scale that was fitted.

@@ -120,7 +120,7 @@ fn a_name_is_known_new_or_a_formula_in_the_file() {
         "{unknown}"
     );
     assert!(
-        unknown.ends_with("expression, rotor-flux-frame, parameters"),
+        unknown.ends_with("expression, rotor-flux-frame, law, parameters"),
         "{unknown}"
     );
 }
@@ -220,4 +220,16 @@ fn the_scale_of_a_sensor_is_reported_and_not_adopted() {
     assert_eq!(names, ["core-loss"]);
     let known = specimen::table_study(|_| ());
     assert!(speed_scale_report(&known, &specimen::trial_with(&known, &[])).is_none());
+}
+
+/// Only a law has formulas; that is said before any recording is looked at.
+#[test]
+fn a_formula_of_an_effect_is_refused() {
+    let laws = Laws {
+        formula: Some(1),
+        ..Laws::default()
+    };
+    let error = adopt_with("windage", &[], &specimen::motor(""), laws, &mut |_, _| {}).err();
+    let message = error.map(|e| e.to_string()).unwrap_or_default();
+    assert!(message.contains("leave --formula out"), "{message}");
 }

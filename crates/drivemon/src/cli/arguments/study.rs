@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use discovery::{Error, Progress};
+use discovery::{Error, Laws, Progress, Shapes};
 use motor::MotorFile;
+use motor::document::read_text;
 use recording::{Audit, Source};
 
 use crate::cli::arguments::files::Files;
@@ -30,6 +31,45 @@ pub struct StudyArgs {
     input: InputArgs,
     #[command(flatten)]
     pub output: OutputArgs,
+}
+
+/// Shapes of formulas beside the program's own.
+#[derive(Debug, Default, Args)]
+pub struct ShapesArgs {
+    /// TOML file with shapes that a law's curve is held against, beside the program's own
+    #[arg(long, value_name = "FILE")]
+    shapes: Option<PathBuf>,
+}
+
+impl ShapesArgs {
+    /// The file among those that are read.
+    pub fn read_by(&self, files: Files) -> Files {
+        match &self.shapes {
+            Some(path) => files.reads("the file of --shapes", path),
+            None => files,
+        }
+    }
+
+    /// The shapes.
+    ///
+    /// # Errors
+    /// A file that cannot be read, and everything that is wrong with it.
+    pub fn shapes(&self) -> Result<Shapes, Failure> {
+        let Some(path) = &self.shapes else {
+            return Ok(Shapes::default());
+        };
+        let text = read_text(path)?;
+        Ok(Shapes::with(&text, &path.display().to_string())?)
+    }
+
+    /// The option as it is typed behind a subcommand.
+    pub fn typed(&self) -> String {
+        let path = self
+            .shapes
+            .as_ref()
+            .map(|path| quoted(&path.display().to_string()));
+        path.map_or_else(String::new, |path| format!(" --shapes {path}"))
+    }
 }
 
 /// Steps of the progress bar.
@@ -83,6 +123,7 @@ impl StudyArgs {
             names,
             sources,
             motor,
+            laws: Laws::default(),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use discovery::{LawCurve, LawReport};
 
-use crate::cli::arguments::study::{quantity, wrapped};
+use crate::cli::arguments::study::{quantity, uncertain, wrapped};
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
 
@@ -22,15 +22,40 @@ pub fn print(law: &LawReport) {
     };
     say!("\n{} {how}.", paint::strong(law.name()));
     print_curve(law);
-    if let Some(formula) = &law.formula {
-        say!("As a formula: {formula}");
-    }
+    print_formulas(law);
     if !law.tied_with.is_empty() {
         let ties = law.tied_with.iter();
         let ties: Vec<String> = ties
             .map(|t| format!("{} over {}", t.place, t.coordinate))
             .collect();
         say!("{}", wrapped(&format!("As likely: {}.", ties.join(", "))));
+    }
+}
+
+/// Formulas that fit as well as the curve, with the numbers that `adopt law --formula` takes.
+fn print_formulas(law: &LawReport) {
+    if law.formulas.is_empty() {
+        if law.proven {
+            say!("No formula of the dictionary fits as well as the curve.");
+        }
+        return;
+    }
+    say!("Formulas that fit as well as the curve (`drivemon adopt law --formula N` takes one):");
+    for (k, formula) in law.formulas.iter().enumerate() {
+        say!(
+            "  {}. {}  {:.3} x noise",
+            k + 1,
+            paint::strong(&formula.formula),
+            formula.held_out_error_over_noise
+        );
+        for p in &formula.parameters {
+            let unit = if p.unit == "-" { "" } else { &p.unit };
+            say!(
+                "       {:<4} {} {unit}",
+                p.name,
+                uncertain(p.value, p.std_error)
+            );
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use crate::page::elements::chart::{Chart, Kind, Series};
-use crate::page::elements::number::{decimals, shown};
+use crate::page::elements::number::{decimals, shown, significant};
 use crate::page::elements::place::Place;
 use motor::effect::curve::{Coordinate, Place as LawPlace};
 
@@ -30,8 +30,30 @@ fn one(law: &Place<'_>, k: usize) -> Markup {
                 @if law.is_true("proven") { " on the recording that was not fitted." } @else { ". A second recording with other loads and speeds can prove it." }
             }
             (curve(law))
-            @if !law.text("formula").is_empty() { p { "As a formula: " code { (law.text("formula")) } } }
+            (formulas(law))
             @if !ties.is_empty() { p { strong { "As likely: " } @for (n, tie) in ties.iter().enumerate() { @if n > 0 { ", " } (name(tie)) } "." } }
+        }
+    }
+}
+
+/// Formulas that fit as well as the curve.
+fn formulas(law: &Place<'_>) -> Markup {
+    let formulas = law.items("formulas");
+    html! {
+        @if !formulas.is_empty() {
+            p { "Formulas that fit as well as the curve; " code { "drivemon adopt law --formula N" } " takes one:" }
+            ol {
+                @for formula in &formulas {
+                    li {
+                        code { (formula.text("formula")) } ": " (shown(formula, "held_out_error_over_noise", decimals(3))) " × noise; "
+                        @for (n, p) in formula.items("parameters").iter().enumerate() {
+                            @if n > 0 { ", " }
+                            (p.text("name")) " = " (shown(p, "value", significant(4))) " ± " (shown(p, "std_error", significant(2)))
+                            @if p.text("unit") != "-" { " " (p.text("unit")) }
+                        }
+                    }
+                }
+            }
         }
     }
 }

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use discovery::AdoptReport;
+use discovery::{AdoptReport, LAW, Laws};
 
 use crate::cli::arguments::study::{
-    StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain, with_progress,
+    ShapesArgs, StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain,
+    with_progress,
 };
 use crate::cli::commands::study::explain::print_frame;
 use crate::cli::printing::failure::{Failure, Finding};
@@ -15,7 +16,7 @@ use crate::cli::printing::terminal::say;
 use crate::cli::printing::{laws, paint, scale};
 use report::Subject;
 use report::motor_text;
-use report::study::{Adopted, PARAMETERS};
+use report::study::{Adopted, Inputs, PARAMETERS};
 
 /// Add a physical effect to a motor file, refit everything, and show the error before and after.
 ///
@@ -31,6 +32,11 @@ pub struct Adopt {
     effect: String,
     #[command(flatten)]
     study: StudyArgs,
+    #[command(flatten)]
+    shapes: ShapesArgs,
+    /// Of a law take this formula instead of the curve: its number in the list of `drivemon explain`, from 1
+    #[arg(long, value_name = "N")]
+    formula: Option<usize>,
     /// Motor file to write
     #[arg(short, long = "out", value_name = "M2")]
     out: PathBuf,
@@ -51,11 +57,20 @@ const WIDTH: usize = 36;
 impl Adopt {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        self.study.files().writes("-o", &self.out).check()?;
+        self.check_formula()?;
+        let files = self.study.files().writes("-o", &self.out);
+        self.shapes.read_by(files).check()?;
+        let laws = Laws {
+            shapes: self.shapes.shapes()?,
+            formula: self.formula,
+        };
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
         let names = self.study.names();
-        let inputs = self.study.inputs(&names, &sources, &motor);
+        let inputs = Inputs {
+            laws,
+            ..self.study.inputs(&names, &sources, &motor)
+        };
         let (mut result, adopted) =
             with_progress(|progress| Adopted::new(&self.effect, inputs, progress))?;
         let written = result.report.proven || self.anyway;
@@ -72,6 +87,19 @@ impl Adopt {
             (false, true) => Finding::Something,
             (false, false) => Finding::Unsupported,
         })
+    }
+
+    /// Refuses a formula of anything but a law before the recordings are read.
+    fn check_formula(&self) -> Result<(), Failure> {
+        let message = match self.formula {
+            Some(0) => "--formula 0: formulas count from 1".to_owned(),
+            Some(_) if self.effect != LAW => format!(
+                "--formula belongs to `drivemon adopt {LAW}`: `{}` has no formulas to choose from",
+                self.effect
+            ),
+            _ => return Ok(()),
+        };
+        Err(Failure::Usage(message))
     }
 
     fn write_motor(&self, adopted: &motor::MotorFile) -> Result<(), Failure> {

@@ -1,17 +1,19 @@
 //! `drivemon explain`: which physical effect a model misses.
 
 use clap::Args;
-use discovery::{ExplainReport, FitReport, FrameReport, RankReport, StepReport, Verdict};
+use discovery::{
+    ExplainReport, FitReport, FrameReport, LAW, Laws, RankReport, StepReport, Verdict,
+};
 
 use crate::cli::arguments::study::{
-    StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain, with_progress,
-    wrapped,
+    ShapesArgs, StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain,
+    with_progress, wrapped,
 };
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::say;
 use crate::cli::printing::{laws, paint, places, scale};
 use report::Subject;
-use report::study::{Explained, anything_off};
+use report::study::{Explained, Inputs, anything_off};
 
 /// Find out which physical effect the model misses, and prove it on data that was not fitted.
 ///
@@ -23,6 +25,8 @@ use report::study::{Explained, anything_off};
 pub struct Explain {
     #[command(flatten)]
     study: StudyArgs,
+    #[command(flatten)]
+    shapes: ShapesArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -42,11 +46,18 @@ const WIDTH: usize = 36;
 impl Explain {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        self.study.files().check()?;
+        self.shapes.read_by(self.study.files()).check()?;
+        let laws = Laws {
+            shapes: self.shapes.shapes()?,
+            formula: None,
+        };
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
         let names = self.study.names();
-        let inputs = self.study.inputs(&names, &sources, &motor);
+        let inputs = Inputs {
+            laws,
+            ..self.study.inputs(&names, &sources, &motor)
+        };
         let adopt = |name: &str| Some(self.adopt(name));
         let result = with_progress(|progress| Explained::new(inputs, &adopt, progress))?;
         self.study
@@ -57,7 +68,14 @@ impl Explain {
 
     fn adopt(&self, name: &str) -> String {
         let file = self.study.new_motor_file(name);
-        format!("drivemon adopt {name} {} -o {file}", self.study.typed())
+        let shapes = match name {
+            LAW => self.shapes.typed(),
+            _ => String::new(),
+        };
+        format!(
+            "drivemon adopt {name} {}{shapes} -o {file}",
+            self.study.typed()
+        )
     }
 }
 
