@@ -24,7 +24,7 @@ pub const CONFIG: MonitorConfig = MonitorConfig {
         l_m: 0.42,
     },
     effects: [None; monitor::MAX_EFFECTS],
-    laws: Default::default(),
+    laws: [None; monitor::MAX_LAWS],
     channel_gain: [1.0; monitor::CHANNELS],
     mechanics: Mechanics {
         n_p: 2.0,
