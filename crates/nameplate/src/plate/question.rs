@@ -46,7 +46,7 @@ const fn question(
 }
 
 /// All questions, in the order in which they are asked; a code letter comes behind what it needs.
-pub const QUESTIONS: [Question; 17] = [
+pub const QUESTIONS: [Question; 18] = [
     question(
         Printing::Elsewhere,
         "name",
@@ -185,6 +185,16 @@ pub const QUESTIONS: [Question; 17] = [
             "degC",
             "\u{2212}50 to 200",
             "20 degC",
+        ],
+    ),
+    question(
+        Printing::Elsewhere,
+        "rotor_bars",
+        [
+            "Number of rotor bars",
+            "",
+            "20 to 100, from the maker",
+            "without an encoder the speed then comes from the circuit, less sure",
         ],
     ),
     question(

@@ -105,7 +105,13 @@ fn a_name_is_known_new_or_a_formula_in_the_file() {
         Err(Error::UnknownEffect(message)) => message,
         Err(other) => panic!("another error: {other:?}"),
     };
-    for known in ["windage", "core-loss", "parameters", "law", "rotor-flux-frame"] {
+    for known in [
+        "windage",
+        "core-loss",
+        "parameters",
+        "law",
+        "rotor-flux-frame",
+    ] {
         assert_eq!(complaint(known, &plain), "");
     }
     assert_eq!(complaint("core-loss", &holding), "");
