@@ -80,7 +80,7 @@ fn laws(report: &ExplainReport, effects: &[String]) -> String {
             law.held_out_error_over_noise,
         );
         format!(
-            "{}{or}: with it the error falls from {before:.2} to {after:.2} x noise on the recording that was not fitted",
+            "{}{or}; with it the error falls from {before:.2} to {after:.2} x noise on the recording that was not fitted",
             law.name()
         )
     };

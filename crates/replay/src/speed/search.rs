@@ -193,7 +193,7 @@ fn decide(view: &View<'_>, grid: &Grid, candidates: &[u32], posterior: &[Vec<f64
             true => 0.0,
             false => (square / mass).sqrt(),
         },
-        lines: view.seen(candidates[best], &grid, top),
+        lines: view.seen(candidates[best], grid, top),
     };
     Found {
         rotor_bars: told.map(|k| candidates[*k]).collect(),

@@ -79,12 +79,11 @@ fn print_curve(law: &LawReport) {
         let k = n * last / (LINES - 1);
         let [y, lower, upper] = scaled(curve, k);
         say!(
-            "  {:>10} {:<6} {:>10} ({} .. {})  {}",
+            "  {:>10} {:<6} {:>10} {:<24} {}",
             quantity(curve.x[k]),
             curve.x_unit,
             quantity(y),
-            quantity(lower),
-            quantity(upper),
+            format!("({} .. {})", quantity(lower), quantity(upper)),
             bar(curve.y[k], full)
         );
     }

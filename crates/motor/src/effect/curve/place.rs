@@ -115,21 +115,21 @@ impl Place {
     /// What the values mean, for a person.
     pub fn meaning(self, coordinate: Coordinate) -> &'static str {
         match self {
-            Place::Torque => "torque that brakes the shaft",
-            Place::Friction => "torque against the direction of motion",
-            Place::Stator if coordinate == Coordinate::PhaseCurrent => "voltage drop of each phase",
-            Place::Stator => "stator resistance, relative change",
+            Place::Torque => "braking torque",
+            Place::Friction => "friction torque",
+            Place::Stator if coordinate == Coordinate::PhaseCurrent => "drop of each phase",
+            Place::Stator => "change of resistance",
             Place::StatorPhaseA | Place::StatorPhaseB | Place::StatorPhaseC => {
                 match coordinate == Coordinate::PhaseCurrent {
-                    true => "voltage drop in this phase",
-                    false => "resistance of this phase, relative change",
+                    true => "drop in this phase",
+                    false => "change of resistance",
                 }
             }
-            Place::Rotor => "rotor resistance, relative change",
-            Place::Magnetizing => "magnetizing current, relative change",
-            Place::Leakage => "leakage inductance, relative change",
+            Place::Rotor => "change of resistance",
+            Place::Magnetizing => "change of current",
+            Place::Leakage => "change of inductance",
             Place::SensorSpeed | Place::SensorIa | Place::SensorIb | Place::SensorIc => {
-                "reading of the channel, relative error"
+                "error of the reading"
             }
         }
     }
