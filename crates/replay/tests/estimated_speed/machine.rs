@@ -342,7 +342,7 @@ impl Plant {
             let i = clean.currents().unwrap()[0];
             2f64.sqrt() * (i.iter().map(|x| x * x).sum::<f64>() / i.len() as f64).sqrt()
         };
-        for k in 0..speed.len() {
+        for (k, w) in speed.iter().enumerate() {
             let (mut alpha, mut beta) = (0.0, 0.0);
             let time = k as f64 * step;
             for line in &self.lines {
@@ -353,7 +353,7 @@ impl Plant {
             for [amplitude, hz, phase] in &self.foreign {
                 alpha += amplitude * fundamental * (TAU * hz * time + phase).cos();
             }
-            shaft += speed[k] * step;
+            shaft += w * step;
             let axes = [
                 alpha,
                 -alpha / 2.0 + 3f64.sqrt() / 2.0 * beta,
