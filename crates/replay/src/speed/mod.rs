@@ -1,9 +1,9 @@
 //! The speed of a motor without an encoder.
 //!
-//! The circuit gives a first slip ([`circuit`]): it is as good as the rotor resistance. The slots of the rotor modulate the
+//! The circuit gives a first slip (`circuit.rs`): it is as good as the rotor resistance. The slots of the rotor modulate the
 //! air gap and leave lines in the currents whose frequencies follow the speed alone (Hurst and Habetler, IEEE Trans. Power
-//! Electron. 11 (1996) 292, doi:10.1109/63.486177). Where they are seen beyond doubt ([`search`]) they take the circuit's place
-//! ([`refine`]).
+//! Electron. 11 (1996) 292, doi:10.1109/63.486177). Where they are seen beyond doubt (`search.rs`) they take the circuit's place
+//! (`refine.rs`).
 
 mod angle;
 mod blocks;
