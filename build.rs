@@ -74,13 +74,6 @@ fn effect_terms(file: &MotorFile) -> Result<String, Box<dyn Error>> {
     let mut configs = effect::from_motor_file(file, &file.name)?;
     // Laws are numbers of the image, not terms of the program.
     configs.retain(|config| config.effect.law().is_none());
-    if configs.len() > MAX_EFFECTS {
-        return Err(format!(
-            "effects: {} of them, but at most {MAX_EFFECTS} fit",
-            configs.len()
-        )
-        .into());
-    }
     let mut terms = vec!["None".to_owned(); MAX_EFFECTS];
     for (term, config) in terms.iter_mut().zip(configs) {
         let known = |(steady, _): &(&&dyn SteadyEffect, &&str)| {

@@ -1,6 +1,6 @@
 //! What is wrong with a plan although every value of it is in its range.
 
-use monitor::{MAX_EFFECTS, Monitor, MonitorConfig};
+use monitor::{Monitor, MonitorConfig};
 use motor::document::Section;
 
 use crate::planned::axis::{Axis, Grid};
@@ -12,21 +12,13 @@ use scenario::simulate::{Simulation, SimulationError};
 
 /// A motor that the monitor or the simulation cannot take.
 pub(crate) fn motor(section: &Section<'_>, pair: &MotorPair) {
-    let count = pair.monitor.effects.len();
-    if count > MAX_EFFECTS {
-        let message = format!(
-            "has {count} effects, but the core takes at most {MAX_EFFECTS}: remove the smallest"
-        );
-        section.report("file", message);
-    } else {
-        match MonitorConfig::from_motor_file(&pair.monitor, T_SAMPLE_S).map(Monitor::new) {
-            Ok(Ok(_)) => {}
-            Ok(Err(error)) => section.report(
-                "file",
-                format!("{error}: change the value in the motor file"),
-            ),
-            Err(error) => section.report("file", error.to_string()),
-        }
+    match MonitorConfig::from_motor_file(&pair.monitor, T_SAMPLE_S).map(Monitor::new) {
+        Ok(Ok(_)) => {}
+        Ok(Err(error)) => section.report(
+            "file",
+            format!("{error}: change the value in the motor file"),
+        ),
+        Err(error) => section.report("file", error.to_string()),
     }
     let scenario = Scenario::of(pair.plant.clone(), 1.0);
     if let Err(error @ SimulationError::Effect { .. }) = Simulation::new(&scenario) {

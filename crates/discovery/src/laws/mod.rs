@@ -10,7 +10,6 @@ pub(crate) mod formula;
 pub(crate) mod menu;
 pub(crate) mod modes;
 mod motion;
-
 pub(crate) mod report;
 mod screen;
 pub(crate) mod search;

@@ -39,14 +39,12 @@ pub(crate) fn screen(
     prior: &Prior,
     fit: &Fit,
     menu: &[EffectConfig],
-    tell: &(dyn Fn() + Sync),
 ) -> Vec<Screened> {
     let rows = case.blocks();
     let one = |law: &EffectConfig| {
         let columns = columns(case, prior, fit, law)?;
         let blocks =
             normal_equations::extended(&fit.blocks, &rows, &fit.residual, &fit.jacobian, &columns);
-        tell();
         Some(judged(fit, law, &blocks))
     };
     let mut all: Vec<Screened> = menu.par_iter().filter_map(one).collect();

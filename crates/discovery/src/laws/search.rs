@@ -11,7 +11,6 @@ use crate::search::accept::{beats, explained, proven};
 use crate::search::refit::combined;
 use motor::effect::curve::Action;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Laws that are refitted.
 const REFITTED: usize = 6;
@@ -94,11 +93,7 @@ pub(crate) fn refitted(
     let plant = base.fit.hypothesis.plant(prior);
     let menu = menu(case, &plant);
     progress("screening laws that no library holds", 0.0);
-    let done = AtomicUsize::new(0);
-    let tell = || {
-        done.fetch_add(1, Ordering::Relaxed);
-    };
-    let screened = screen(case, prior, &base.fit, &menu, &tell);
+    let screened = screen(case, prior, &base.fit, &menu);
     let mut starts: Vec<Screened> = screened.into_iter().take(REFITTED).collect();
     if study.fold_error(&base.folds) > ASTRAY && !case.speed.is_empty() && !case.speed_is_input {
         let led = Effort {
@@ -107,7 +102,7 @@ pub(crate) fn refitted(
             abandon_above: f64::INFINITY,
         };
         let observed = fit(case, prior, &base.fit.hypothesis, led);
-        let again = screen(case, prior, &observed, &menu, &tell);
+        let again = screen(case, prior, &observed, &menu);
         for law in again.into_iter().take(REFITTED_ASTRAY) {
             let known = |s: &Screened| action(s) == action(&law);
             if !starts.iter().any(known) {

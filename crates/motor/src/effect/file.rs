@@ -103,13 +103,17 @@ fn texts(entry: &EffectEntry) -> impl Iterator<Item = &str> {
 fn check_lists(entry: &EffectEntry) -> Result<(), EffectError> {
     let is_list = |p: &&EffectParameter| matches!(p.value, EffectValue::List(_));
     let list = entry.parameters.iter().find(is_list);
-    list.map_or(Ok(()), |p| {
-        let effect = known_effect(&entry.name, entry.text(FORM).unwrap_or(""));
-        Err(EffectError::NotANumber {
-            effect: effect.map_or(expression::NAME, |e| e.descriptor().name),
-            key: p.key.clone(),
-        })
-    })
+    let Some(list) = list else { return Ok(()) };
+    let effect = match entry.name.as_str() {
+        expression::NAME => expression::NAME,
+        name => {
+            known_effect(name, entry.text(FORM).unwrap_or(""))?
+                .descriptor()
+                .name
+        }
+    };
+    let key = list.key.clone();
+    Err(EffectError::NotANumber { effect, key })
 }
 
 /// Nothing but the form is text, and the form is nothing else.

@@ -18,7 +18,7 @@ use std::borrow::Cow;
 
 pub use discovery::PARAMETERS;
 use discovery::{Laws, SpeedScaleReport};
-use monitor::MAX_EFFECTS;
+use monitor::MonitorConfig;
 use motor::MotorFile;
 use recording::Source;
 
@@ -50,16 +50,16 @@ pub fn in_fitted_scale<'a>(
     }
 }
 
-/// Whether the core takes all effects of a motor file.
+/// Whether the core takes all effects and curves of a motor file.
 ///
 /// # Errors
 /// The file, how many there are, and the remedy.
 pub fn effects_fit(file: &str, motor: &MotorFile) -> Result<(), String> {
-    let count = motor.effects.len();
-    match count <= MAX_EFFECTS {
-        true => Ok(()),
-        false => Err(format!(
-            "{file}: effects: {count} of them, but the core takes at most {MAX_EFFECTS}; remove the smallest"
-        )),
-    }
+    // What fits does not depend on the sampling time.
+    let config = MonitorConfig::from_motor_file(motor, 1e-4);
+    config.map(drop).map_err(|error| {
+        let problems = error.problems().iter();
+        let said: Vec<String> = problems.map(|p| format!("{file} {}", p.message)).collect();
+        said.join("\n")
+    })
 }

@@ -337,9 +337,12 @@ fn a_curve_that_cannot_be_used_is_refused_with_its_key() {
             .expect_err("too wide")
             .contains("within one turn")
     );
-    let list = format!("{FILE}\n[[effects]]\nname = \"windage\"\nwindage_nm_s2 = [1e-4]\n");
-    let error = MotorFile::parse(&list, "m.toml")
-        .expect_err("a list")
-        .to_string();
-    assert!(error.contains("effects.windage.windage_nm_s2"), "{error}");
+    for (name, said) in [
+        ("windage", "effects.windage.windage_nm_s2"),
+        ("windige", "no effect is called `windige`"),
+    ] {
+        let list = format!("{FILE}\n[[effects]]\nname = \"{name}\"\nwindage_nm_s2 = [1e-4]\n");
+        let error = MotorFile::parse(&list, "m.toml").expect_err("a list");
+        assert!(error.to_string().contains(said), "{error}");
+    }
 }
