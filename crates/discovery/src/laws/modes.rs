@@ -5,14 +5,12 @@
 //! coordinate passes zero the knots crowd there by an inverse hyperbolic sine. Over an angle the modes are a
 //! constant and harmonics.
 
-use motor::dynamic::Flow;
-use motor::effect::curve::{Action, Coordinate, Table, tabulated};
+use motor::effect::curve::{Action, Coordinate, Law, tabulated};
 use motor::effect::{
-    Applies, At, Descriptor, Effect, EffectConfig, Hook, Instantaneous, MAX_PARAMETERS, Outputs,
-    Parameter, Rated, Rates, Role, Scale, SteadyEffect, SteadyPoint, Written,
+    Applies, Descriptor, EffectConfig, MAX_PARAMETERS, Parameter, Rated, Role, Scale, SteadyEffect,
+    SteadyPoint, Written,
 };
 use nalgebra::{DMatrix, DVector};
-use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
@@ -258,12 +256,12 @@ impl SteadyEffect for Modes {
     fn correct_f64(&self, _p: &[f64], _point: &mut SteadyPoint<f64>) {}
 }
 
-impl Effect for Modes {
-    fn hooks(&self) -> &'static [Hook] {
-        self.action.hooks()
+impl Law for Modes {
+    fn action(&self) -> Action {
+        self.action
     }
 
-    fn prepared(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
+    fn table(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
         let per_unit = self.action.per_unit(rated);
         let range = [p[0], p[1]];
         if self.action.coordinate.is_angle() {
@@ -280,33 +278,18 @@ impl Effect for Modes {
         })
     }
 
-    fn prior_deviation(&self, p: &[f64], parameter: usize) -> Option<f64> {
+    fn deviation(&self, p: &[f64], parameter: usize) -> Option<f64> {
         let of_mode = stiffness(self.action.coordinate);
         let mode = parameter.checked_sub(SHAPES)?;
         Some(weight(p[STIFFNESS], *of_mode.get(mode)?).sqrt().recip())
-    }
-
-    fn parameters(&self, p: &[f64], at: &At<'_>, i_s: Complex64, now: &mut Instantaneous) {
-        self.action.parameters(Table::of(p), at, i_s, now);
-    }
-
-    fn magnetizing(&self, p: &[f64], x: f64) -> (f64, f64) {
-        self.action.magnetizing(Table::of(p), x)
-    }
-
-    fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {
-        self.action.finish(Table::of(p), at, flow, rates);
-    }
-
-    fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
-        self.action.outputs(Table::of(p), outputs);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use motor::effect::curve::Place;
+    use motor::effect::Effect;
+    use motor::effect::curve::{Place, Table};
 
     fn law(place: Place, coordinate: Coordinate, range: [f64; 2]) -> EffectConfig {
         Modes::absent(Action { place, coordinate }, range)

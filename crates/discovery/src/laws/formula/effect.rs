@@ -2,13 +2,11 @@
 
 use super::kind::{Kind, Reach};
 use super::shape::Shape;
-use motor::dynamic::Flow;
-use motor::effect::curve::{Action, Table, tabulated};
+use motor::effect::curve::{Action, Law, tabulated};
 use motor::effect::{
-    Applies, At, Descriptor, Effect, EffectConfig, Hook, Instantaneous, MAX_PARAMETERS, Outputs,
-    Parameter, Rated, Rates, Role, Scale, SteadyEffect, SteadyPoint, Written,
+    Applies, Descriptor, EffectConfig, MAX_PARAMETERS, Parameter, Rated, Role, Scale, SteadyEffect,
+    SteadyPoint, Written,
 };
-use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
@@ -140,35 +138,19 @@ impl SteadyEffect for Formula {
     fn correct_f64(&self, _p: &[f64], _point: &mut SteadyPoint<f64>) {}
 }
 
-impl Effect for Formula {
-    fn hooks(&self) -> &'static [Hook] {
-        self.action.hooks()
+impl Law for Formula {
+    fn action(&self) -> Action {
+        self.action
     }
 
-    fn prepared(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
+    fn table(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
         let (reach, amplitudes, coordinates) = self.split(p);
         let value = |x: f64| self.shape.value(amplitudes, coordinates, &reach, x);
         let per_unit = self.action.per_unit(rated);
         tabulated(self.action.coordinate, reach.range, per_unit, value)
     }
 
-    fn prior_deviation(&self, _p: &[f64], _parameter: usize) -> Option<f64> {
+    fn deviation(&self, _p: &[f64], _parameter: usize) -> Option<f64> {
         Some(UNKNOWN)
-    }
-
-    fn parameters(&self, p: &[f64], at: &At<'_>, i_s: Complex64, now: &mut Instantaneous) {
-        self.action.parameters(Table::of(p), at, i_s, now);
-    }
-
-    fn magnetizing(&self, p: &[f64], x: f64) -> (f64, f64) {
-        self.action.magnetizing(Table::of(p), x)
-    }
-
-    fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {
-        self.action.finish(Table::of(p), at, flow, rates);
-    }
-
-    fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
-        self.action.outputs(Table::of(p), outputs);
     }
 }

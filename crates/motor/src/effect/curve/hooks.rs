@@ -2,7 +2,7 @@
 
 use super::{Action, Coordinate, Place, Table};
 use crate::dynamic::{Flow, Linear, clarke, phases};
-use crate::effect::{At, Hook, Instantaneous, Outputs, Rated, Rates};
+use crate::effect::{At, Effect, Hook, Instantaneous, Outputs, Rated, Rates, SteadyEffect};
 use core::f64::consts::TAU;
 use num_complex::Complex64;
 
@@ -160,4 +160,57 @@ fn only(phase: usize, value: f64) -> [f64; 3] {
     let mut abc = [0.0; 3];
     abc[phase] = value;
     abc
+}
+
+/// A curve in some form (knots, modes, a formula) at a place over a coordinate: an [`Effect`] by its table.
+pub trait Law: SteadyEffect {
+    /// Where it acts, over what.
+    fn action(&self) -> Action;
+
+    /// The curve for the values `p`, as [`super::tabulated`] writes it.
+    fn table(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64>;
+
+    /// Number of knots of a curve that a motor file holds; `None` for a form that only a fit has.
+    fn knots(&self) -> Option<usize> {
+        None
+    }
+
+    /// Prior standard deviation of a size, in typical sizes, where it is not that of all sizes.
+    fn deviation(&self, _p: &[f64], _parameter: usize) -> Option<f64> {
+        None
+    }
+}
+
+impl<L: Law> Effect for L {
+    fn hooks(&self) -> &'static [Hook] {
+        self.action().hooks()
+    }
+
+    fn law(&self) -> Option<(Action, usize)> {
+        Some((self.action(), self.knots()?))
+    }
+
+    fn prepared(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
+        self.table(p, rated)
+    }
+
+    fn prior_deviation(&self, p: &[f64], parameter: usize) -> Option<f64> {
+        self.deviation(p, parameter)
+    }
+
+    fn parameters(&self, p: &[f64], at: &At<'_>, i_s: Complex64, now: &mut Instantaneous) {
+        self.action().parameters(Table::of(p), at, i_s, now);
+    }
+
+    fn magnetizing(&self, p: &[f64], x: f64) -> (f64, f64) {
+        self.action().magnetizing(Table::of(p), x)
+    }
+
+    fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {
+        self.action().finish(Table::of(p), at, flow, rates);
+    }
+
+    fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
+        self.action().outputs(Table::of(p), outputs);
+    }
 }

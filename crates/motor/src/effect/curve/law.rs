@@ -2,14 +2,11 @@
 
 use super::spline::Spline;
 use super::steady::{BOARD_KNOTS, SteadyCurve};
-use super::{Action, NAME, Table, tabulated};
-use crate::dynamic::Flow;
+use super::{Action, Law, NAME, tabulated};
 use crate::effect::{
-    Applies, At, Descriptor, Effect, EffectConfig, EffectError, Hook, Instantaneous,
-    MAX_PARAMETERS, Outputs, Parameter, Rated, Rates, Role, Scale, SteadyEffect, SteadyPoint,
-    Written,
+    Applies, Descriptor, EffectConfig, EffectError, MAX_PARAMETERS, Parameter, Rated, Role, Scale,
+    SteadyEffect, SteadyPoint, Written,
 };
-use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
@@ -179,16 +176,12 @@ impl SteadyEffect for Curve {
     }
 }
 
-impl Effect for Curve {
-    fn hooks(&self) -> &'static [Hook] {
-        self.action.hooks()
+impl Law for Curve {
+    fn action(&self) -> Action {
+        self.action
     }
 
-    fn law(&self) -> Option<(Action, usize)> {
-        Some((self.action, self.knots))
-    }
-
-    fn prepared(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
+    fn table(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
         let spline = self.spline(p);
         let range = [p[0], p[self.knots - 1]];
         let action = self.action;
@@ -197,19 +190,7 @@ impl Effect for Curve {
         })
     }
 
-    fn parameters(&self, p: &[f64], at: &At<'_>, i_s: Complex64, now: &mut Instantaneous) {
-        self.action.parameters(Table::of(p), at, i_s, now);
-    }
-
-    fn magnetizing(&self, p: &[f64], x: f64) -> (f64, f64) {
-        self.action.magnetizing(Table::of(p), x)
-    }
-
-    fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {
-        self.action.finish(Table::of(p), at, flow, rates);
-    }
-
-    fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
-        self.action.outputs(Table::of(p), outputs);
+    fn knots(&self) -> Option<usize> {
+        Some(self.knots)
     }
 }

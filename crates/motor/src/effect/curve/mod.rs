@@ -35,6 +35,8 @@ pub use coordinate::Coordinate;
 #[cfg(feature = "file")]
 pub(crate) use entry::{from_entry, to_entry};
 #[cfg(feature = "file")]
+pub use hooks::Law;
+#[cfg(feature = "file")]
 pub use law::{FEWEST_KNOTS, MOST_KNOTS, MOST_KNOTS_OF_A_TURN, curve, knots_and_values};
 pub use place::{Place, Quantity};
 pub use steady::{BOARD_KNOTS, SteadyCurve};
