@@ -22,11 +22,18 @@ export function switched(faults, name, on, change_percent) {
 
 /** @type {SwitchedFault[]} */
 let inForce = [];
+/** Asked for and not yet answered: a status from before must not turn the switches back. */
+let asked = 0;
 let seeking = false;
 
 /** @param {SwitchedFault[]} faults */
 async function put(faults) {
+  const before = inForce;
+  inForce = faults;
+  asked += 1;
   const refusal = await send("/api/faults", { faults });
+  asked -= 1;
+  if (refusal) inForce = before;
   show(byId("faults-problem"), refusal !== null);
   say(byId("faults-problem"), refusal?.message ?? "");
   if (refusal) mark(inForce);
@@ -61,7 +68,7 @@ function mark(faults) {
 
 /** @param {Status} status */
 export function render(status) {
-  inForce = status.faults;
+  if (asked === 0) inForce = status.faults;
   show(byId("faults-card"), status.source.can.faults);
   const [table, more] = [byId("faults"), byId("faults-more")];
   if (table.childElementCount === 0 && status.switches.length > 0) {

@@ -59,6 +59,26 @@ export function show(element, shown) {
 }
 
 /**
+ * Lets an element grow but not shrink: what a person is about to click below it stays where it is.
+ * @param {HTMLElement} element
+ */
+export function neverShrinks(element) {
+  let width = 0;
+  let tallest = 0;
+  new ResizeObserver(() => {
+    const now = element.getBoundingClientRect();
+    if (now.width !== width) {
+      [width, tallest] = [now.width, 0];
+      element.style.minHeight = "";
+      return;
+    }
+    if (now.height <= tallest) return;
+    tallest = now.height;
+    element.style.minHeight = `${tallest}px`;
+  }).observe(element);
+}
+
+/**
  * Sends a request; what the server refuses comes back.
  * @param {string} path
  * @param {unknown} body

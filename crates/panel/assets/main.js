@@ -3,7 +3,7 @@
 import * as causes from "./causes.js";
 import { Chart } from "./charts.js";
 import * as controls from "./controls.js";
-import { byId, make, of, say, show } from "./dom.js";
+import { byId, make, neverShrinks, of, say, show } from "./dom.js";
 import * as events from "./events.js";
 import * as first from "./first.js";
 import { Watch } from "./freshness.js";
@@ -120,6 +120,11 @@ function audit(next) {
   const list = byId("audit");
   show(list, next.source.audit.length > 0);
   list.replaceChildren(...next.source.audit.map((finding) => make("li", { class: finding.refuses ? "refuses" : null }, make("b", {}, finding.code), ` ${finding.detail}`)));
+}
+
+async function takeStatusNow() {
+  const answer = await fetch("/api/status");
+  takeStatus(await answer.json());
 }
 
 /** @param {"open" | "waiting"} state */
@@ -256,6 +261,7 @@ function tabs() {
 if (location.search) history.replaceState(null, "", location.pathname);
 lamps.build(byId("door"));
 buildFigures();
+document.querySelectorAll("[data-never-shrinks]").forEach((element) => element instanceof HTMLElement && neverShrinks(element));
 controls.start();
 parameters.start();
 events.start();
@@ -271,6 +277,8 @@ listen({
   alive: ({ rests }) => watch.alive(rests),
   lost: (messages) => {
     lost += messages;
+    // A status may have been among them, and none comes again until something changes.
+    takeStatusNow().catch(() => undefined);
     byId("connection").title = "this page could not follow; the source did not wait for it";
   },
 });

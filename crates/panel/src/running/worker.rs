@@ -18,6 +18,9 @@ const TICK: Duration = Duration::from_millis(5);
 /// Source time that is worked on between two looks for commands, s.
 const SLICE_S: f64 = 0.02;
 
+/// The page shows how far a slow computer is behind in these steps, s; a message for every slice would slow it further.
+const BEHIND_SHOWN_S: f64 = 0.1;
+
 /// Before an instant that is sought, s: finding the supply, filling a window and the persistence of the lamps at 5 Hz and more.
 const RUN_UP_S: f64 = 2.0;
 
@@ -109,7 +112,9 @@ impl Worker {
 
     fn note(&mut self, goes_on: bool, failure: Option<String>, forgiven: f64) {
         let mut status = locked(&self.shared.status);
-        let changed = goes_on == status.ended || status.failure != failure || forgiven > 0.0;
+        let shown = |behind_s: f64| (behind_s / BEHIND_SHOWN_S) as u64;
+        let further_behind = shown(status.behind_s) != shown(status.behind_s + forgiven);
+        let changed = goes_on == status.ended || status.failure != failure || further_behind;
         status.ended = !goes_on;
         status.failure = failure;
         status.behind_s += forgiven;

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::driver::Driver;
 
 /// Longest wait for anything.
-const PATIENCE: Duration = Duration::from_secs(25);
+const PATIENCE: Duration = Duration::from_secs(90);
 
 /// A tab.
 #[derive(Clone)]
@@ -106,6 +106,19 @@ impl Page {
             .await
             .expect("it is there");
         found.click().await.expect("it can be clicked");
+    }
+
+    /// Turns a switch of the page over. Text that grows above it between aiming and clicking makes a person miss: they look, and click again.
+    pub async fn turn(&self, name: &str) {
+        let checked = format!("return document.querySelector('#{name}').checked");
+        let before = self.run(&checked).await;
+        for _ in 0..3 {
+            self.click(&format!("label[for={name}]")).await;
+            if self.run(&checked).await != before {
+                return;
+            }
+        }
+        panic!("#{name} does not turn");
     }
 
     /// Replaces the text of an input by typing.

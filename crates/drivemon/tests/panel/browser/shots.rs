@@ -17,7 +17,7 @@ pub async fn all(page: &Page) {
     page.go(&server.url()).await;
     page.until_lamps("run").await;
     tokio::time::sleep(FILL).await;
-    page.click("label[for=fault-Rs]").await;
+    page.turn("fault-Rs").await;
     page.until_lamps("run r1 r4 fault").await;
     tokio::time::sleep(FILL / 2).await;
     whole(page, "panel-live", 1500).await;
@@ -65,7 +65,7 @@ async fn calibrated(page: &Page) {
     tokio::time::sleep(FILL / 2).await;
     page.fill("#fault-size", "100").await;
     page.click("#faults-card summary").await;
-    page.click("label[for=fault-Rsa]").await;
+    page.turn("fault-Rsa").await;
     page.until(
         "the cause",
         "document.querySelector('#causes [data-cause=Rs]')",

@@ -30,7 +30,7 @@ pub async fn faults_light_their_lamps_and_go_dark(page: &Page) {
     assert_eq!(page.text("#state-title").await, "Healthy");
     for (fault, pattern) in TABLE_1 {
         let name = fault.name();
-        page.click(&format!("label[for=fault-{name}]")).await;
+        page.turn(&format!("fault-{name}")).await;
         page.until_lamps(&expected(name, pattern)).await;
         page.until(
             "the headline",
@@ -40,7 +40,7 @@ pub async fn faults_light_their_lamps_and_go_dark(page: &Page) {
         if name != "Lr" {
             leads(page, name).await;
         }
-        page.click(&format!("label[for=fault-{name}]")).await;
+        page.turn(&format!("fault-{name}")).await;
         page.until_lamps("run").await;
     }
     page.until(
@@ -84,13 +84,13 @@ async fn leads(page: &Page, name: &str) {
 
 async fn both_directions_and_beyond_the_table(page: &Page) {
     page.fill("#fault-size", "-50").await;
-    page.click("label[for=fault-Bl]").await;
+    page.turn("fault-Bl").await;
     page.until_lamps("run r2 r3 r4 fault").await;
     page.click("#faults-off").await;
     page.until_lamps("run").await;
     page.fill("#fault-size", "-100").await;
     page.click("#faults-card summary").await;
-    page.click("label[for=fault-ia]").await;
+    page.turn("fault-ia").await;
     page.until_lamps("sensor fault").await;
     // Said once, with what to do about it, and named as the cause.
     assert_eq!(page.text("#state-why").await, "Current sensor a is dead.");
@@ -222,7 +222,7 @@ pub async fn the_page_comes_back_after_a_restart(page: &Page) {
         "document.querySelector('#connection').dataset.state === 'open'",
     )
     .await;
-    page.click("label[for=fault-Vq]").await;
+    page.turn("fault-Vq").await;
     page.until_lamps("run r1 r3 r4 fault").await;
 }
 
@@ -453,7 +453,7 @@ pub async fn an_alarm_is_acknowledged(page: &Page) {
     let server = Server::start(&["--speed", "2"]);
     page.go(&server.url()).await;
     page.until_lamps("run").await;
-    page.click("label[for=fault-Rs]").await;
+    page.turn("fault-Rs").await;
     page.until("an event", "document.querySelector('#events tbody tr')")
         .await;
     let at = page.text("#events tbody th").await;
