@@ -19,6 +19,9 @@ const SAME_SLIP: f64 = 0.0005;
 const SAME_BINS: f64 = 0.5;
 /// Numbers of bars below this share of the likeliest are not told.
 const TOLD: f64 = 0.05;
+/// Lines that more numbers than these explain are no lines of slots: steps of a converter without noise fit any cage (thirty numbers and more).
+/// Slots of 48 random machines left one to six where any were told.
+const MOST_TOLD: usize = 8;
 /// Circuits are off by this share of the rated slip without load: losses and phase errors that no interval holds.
 const OFFSET: f64 = 0.05;
 /// Blocks that must see a place.
@@ -185,7 +188,14 @@ fn decide(view: &View<'_>, grid: &Grid, candidates: &[u32], posterior: &[Vec<f64
             }
         }
     }
-    let told = order.iter().filter(|k| masses[**k] > TOLD * masses[best]);
+    let told: Vec<u32> = order
+        .iter()
+        .filter(|k| masses[**k] > TOLD * masses[best])
+        .map(|k| candidates[*k])
+        .collect();
+    if told.len() > MOST_TOLD {
+        return Found::default();
+    }
     let unique = Unique {
         per_pair: f64::from(candidates[best]) / view.pairs,
         offset: grid.offsets[top],
@@ -196,7 +206,7 @@ fn decide(view: &View<'_>, grid: &Grid, candidates: &[u32], posterior: &[Vec<f64
         lines: view.seen(candidates[best], grid, top),
     };
     Found {
-        rotor_bars: told.map(|k| candidates[*k]).collect(),
+        rotor_bars: told,
         unique: (mass > ONE_SLIP * total && !unique.lines.is_empty()).then_some(unique),
     }
 }

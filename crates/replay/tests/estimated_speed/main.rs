@@ -156,8 +156,9 @@ fn an_unknown_cage_is_told_or_left() {
             .iter()
             .filter(|o| o.bars.contains(&o.true_bars))
             .count();
+        let many: Vec<usize> = told.iter().map(|o| o.bars.len()).collect();
         println!(
-            "    numbers told {}, the true one among them {right}",
+            "    numbers told {}, the true one among them {right}; how many at once {many:?}",
             told.len()
         );
         assert!(10 * right >= 9 * told.len());
