@@ -2,10 +2,10 @@
 
 use board::modbus::BoardStatus;
 use board::{
-    Calibration, CalibrationSource, EffectTerms, LearnState, Learner, Loaded, MotorImage, Progress,
-    Refusal,
+    Calibration, CalibrationSource, EffectTerms, LearnState, Learner, Loaded, MotorImage,
+    Overrides, Progress, Refusal,
 };
-use monitor::{Lamp, Lamps, Monitor, MonitorConfig, Report};
+use monitor::{Monitor, MonitorConfig, Report};
 
 use crate::hardware::flash_store::FlashStore;
 
@@ -126,23 +126,13 @@ impl Commissioning {
         }
     }
 
-    /// What the panel shows about learning: r1..r4 blink while it lasts, FAULT after a refusal, SENSOR where a calibration
-    /// was ignored; the latter two until they are acknowledged.
-    #[inline(never)]
-    pub fn overlay(&self, lamps: &Lamps) -> Lamps {
-        let mut shown = *lamps;
-        if self.learner.is_some() {
-            shown.r = [Lamp::Blink; 4];
+    /// What the panel shows about learning and calibration; a refusal and an ignored calibration until they are acknowledged.
+    pub fn overrides(&self, instrument_faulty: bool) -> Overrides {
+        Overrides {
+            instrument_faulty,
+            learning: self.learner.is_some(),
+            refused: !self.acknowledged && matches!(self.learning, LearnState::Refused(_)),
+            calibration_ignored: !self.acknowledged && self.source.is_ignored(),
         }
-        if self.acknowledged {
-            return shown;
-        }
-        if matches!(self.learning, LearnState::Refused(_)) && shown.fault == Lamp::Off {
-            shown.fault = Lamp::Blink;
-        }
-        if self.source.is_ignored() && shown.sensor == Lamp::Off {
-            shown.sensor = Lamp::Blink;
-        }
-        shown
     }
 }

@@ -4,7 +4,7 @@ use core::hint::black_box;
 use core::panic::PanicInfo;
 
 use board::modbus::Command;
-use board::{Button, Calibration, Capture, Display, LAMPS, Press, StuckChannels};
+use board::{Button, Calibration, Capture, Display, LAMPS, Press, Shown, StuckChannels, levels};
 use embassy_executor::Spawner;
 use embassy_stm32::gpio::Input;
 use embassy_stm32::peripherals::IWDG;
@@ -143,8 +143,9 @@ async fn watch(
             && let Some(report) = process_block(monitor, state, &block)
         {
             *lamps = report.lamps;
-            panel.display.observe(lamps);
-            panel.record.tell(&report, monitor, &panel.commissioning);
+            let shown = panel.show(lamps);
+            let commissioning = &panel.commissioning;
+            panel.record.tell(&report, &shown, monitor, commissioning);
             if let Some(calibration) = panel.commissioning.observe(&report, monitor) {
                 return Pause::Learnt(calibration);
             }
@@ -193,8 +194,9 @@ impl Panel {
         self.obey_button();
         self.obey_master();
         let bright = (self.blocks / BLINK_BLOCKS).is_multiple_of(2);
-        let lamps = self.with_instrument(&self.commissioning.overlay(lamps));
-        self.wires.set(self.display.levels(&lamps, bright));
+        let shown = self.show(lamps);
+        self.record.refresh(&shown);
+        self.wires.set(levels(&shown.lamps, bright));
     }
 
     fn obey_button(&mut self) {
@@ -224,16 +226,11 @@ impl Panel {
         self.record.acknowledge();
     }
 
-    /// A board that cannot measure says so, whatever its numbers say about the motor.
-    fn with_instrument(&self, lamps: &Lamps) -> Lamps {
-        if !self.instrument_faulty && !self.channels.is_any() {
-            return *lamps;
-        }
-        Lamps {
-            sensor: Lamp::On,
-            fault: Lamp::On,
-            ..*lamps
-        }
+    /// The monitor's lamps with what the board knows beside them. A board that cannot measure says so, whatever its numbers say about the motor.
+    fn show(&mut self, lamps: &Lamps) -> Shown {
+        let faulty = self.instrument_faulty || self.channels.is_any();
+        let overrides = self.commissioning.overrides(faulty);
+        self.display.show(lamps, &overrides)
     }
 
     fn look_after_supply(&mut self) {
@@ -252,8 +249,9 @@ impl Panel {
         defmt::error!("the motor constants in flash are corrupted: flash the board again");
         loop {
             self.instrument_faulty = true;
-            let lamps = self.with_instrument(&Lamps::default());
-            self.wires.set(self.display.levels(&lamps, false));
+            let shown = self.show(&Lamps::default());
+            self.record.refresh(&shown);
+            self.wires.set(levels(&shown.lamps, false));
             self.watchdog.pet();
             Timer::after(LAMP_TEST).await;
         }

@@ -1,8 +1,8 @@
 //! What is kept and told about every window: frames, registers, and the samples around an alarm.
 
-use board::modbus::{BoardStatus, Status};
-use board::{CAPTURE_EVERY, Capture};
-use monitor::{Lamp, Monitor, RawSample, Report};
+use board::modbus::{BoardStatus, Image, Status};
+use board::{CAPTURE_EVERY, Capture, Shown};
+use monitor::{Lamp, Monitor, NotJudged, RawSample, Report};
 
 use crate::commissioning::Commissioning;
 use crate::hardware::housekeeping::ResetCause;
@@ -16,18 +16,28 @@ pub struct Record {
     board: BoardStatus,
     capture: &'static mut Capture,
     was_lit: bool,
+    registers: Image,
+    shown: Shown,
 }
 
 impl Record {
     /// Nothing recorded yet.
     pub fn new(telemetry: Telemetry, cause: ResetCause, capture: &'static mut Capture) -> Self {
+        let board = BoardStatus {
+            reset_cause: cause as u16,
+            ..BoardStatus::default()
+        };
+        let nothing_yet = Report {
+            not_judged: Some(NotJudged::NotLocked),
+            ..Report::default()
+        };
+        let shown = Shown::default();
         Record {
             telemetry,
+            registers: Status::default().take(&nothing_yet, &shown, &board),
+            shown,
             status: Status::default(),
-            board: BoardStatus {
-                reset_cause: cause as u16,
-                ..BoardStatus::default()
-            },
+            board,
             capture,
             was_lit: false,
         }
@@ -56,9 +66,15 @@ impl Record {
         self.capture.arm();
     }
 
-    /// Tells one window's result everywhere.
+    /// Tells one window's result, and what the door shows with it, everywhere.
     #[inline(never)]
-    pub fn tell(&mut self, report: &Report, monitor: &Monitor, commissioning: &Commissioning) {
+    pub fn tell(
+        &mut self,
+        report: &Report,
+        shown: &Shown,
+        monitor: &Monitor,
+        commissioning: &Commissioning,
+    ) {
         let lit = report.lamps.fault == Lamp::On;
         if lit && !self.was_lit {
             self.capture.alarm();
@@ -67,10 +83,23 @@ impl Record {
         commissioning.describe(&mut self.board);
         self.board.thresholds = monitor.config().thresholds;
         self.board.capture = self.capture.state() as u16;
-        serial::publish(self.status.take(report, &self.board));
-        self.telemetry.send(report, self.board.vdda_millivolt);
+        self.shown = *shown;
+        self.registers = self.status.take(report, shown, &self.board);
+        serial::publish(self.registers);
+        self.telemetry
+            .send(report, shown, self.board.vdda_millivolt);
         if let Some(chunk) = self.capture.next_chunk(commissioning.motor()) {
             self.telemetry.send_chunk(&chunk);
+        }
+    }
+
+    /// Tells a master at once what the door shows now, where it changed since the last report.
+    #[inline(never)]
+    pub fn refresh(&mut self, shown: &Shown) {
+        if self.shown != *shown {
+            self.shown = *shown;
+            self.status.refresh(&mut self.registers, shown);
+            serial::publish(self.registers);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What the board says: a log for people and a frame per window for programs, over the debugger's memory channels; the
 //! frames over the serial line too.
 
-use board::{CaptureChunk, Frame, MAX_FRAME_BYTES};
+use board::{CaptureChunk, Frame, MAX_FRAME_BYTES, Shown};
 use monitor::Report;
 use rtt_target::ChannelMode::NoBlockSkip;
 use rtt_target::{UpChannel, rtt_init, set_defmt_channel};
@@ -31,8 +31,8 @@ impl Telemetry {
     }
 
     /// Sends one window's result.
-    pub fn send(&mut self, report: &Report, vdda_millivolt: u16) {
-        let frame = Frame::new(report, self.sequence, vdda_millivolt);
+    pub fn send(&mut self, report: &Report, shown: &Shown, vdda_millivolt: u16) {
+        let frame = Frame::new(report, shown, self.sequence, vdda_millivolt);
         self.sequence = self.sequence.wrapping_add(1);
         self.send_bytes(frame.encode(&mut [0; MAX_FRAME_BYTES]));
     }

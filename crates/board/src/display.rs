@@ -13,6 +13,17 @@ pub const LAMP_NAMES: [&str; LAMPS] = [
 /// Index of RUN, which is never latched.
 const RUN: usize = 0;
 
+fn of_order([run, r1, r2, r3, r4, sensor, line, load, fault]: [Lamp; LAMPS]) -> Lamps {
+    Lamps {
+        run,
+        r: [r1, r2, r3, r4],
+        sensor,
+        line,
+        load,
+        fault,
+    }
+}
+
 /// What each wire carries; `blink_phase` is the common bright half of all blinking lamps.
 pub fn levels(lamps: &Lamps, blink_phase: bool) -> [bool; LAMPS] {
     in_order(lamps).map(|lamp| match lamp {
@@ -35,6 +46,57 @@ pub(crate) fn in_order(lamps: &Lamps) -> [Lamp; LAMPS] {
         lamps.load,
         lamps.fault,
     ]
+}
+
+/// What the board knows beside the reports of the monitor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Overrides {
+    /// The board doubts its own converters or their supply: SENSOR and FAULT light.
+    pub instrument_faulty: bool,
+    /// Learning: r1..r4 blink.
+    pub learning: bool,
+    /// Learning was refused, and nobody has acknowledged it: FAULT blinks.
+    pub refused: bool,
+    /// The calibration in flash is ignored, and nobody has acknowledged it: SENSOR blinks.
+    pub calibration_ignored: bool,
+}
+
+impl Overrides {
+    fn over(&self, lamps: &Lamps) -> Lamps {
+        let mut shown = *lamps;
+        if self.learning {
+            shown.r = [Lamp::Blink; 4];
+        }
+        if self.refused && shown.fault == Lamp::Off {
+            shown.fault = Lamp::Blink;
+        }
+        if self.calibration_ignored && shown.sensor == Lamp::Off {
+            shown.sensor = Lamp::Blink;
+        }
+        if self.instrument_faulty {
+            (shown.sensor, shown.fault) = (Lamp::On, Lamp::On);
+        }
+        shown
+    }
+}
+
+/// What the board says at one moment: the same on the wires, in frames, in registers and on the page.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// The lamps, with everything that lies over the monitor's.
+    pub lamps: Lamps,
+    /// The board doubts its own converters or their supply.
+    pub instrument_faulty: bool,
+}
+
+impl Shown {
+    /// The monitor's lamps with nothing over them.
+    pub fn only(lamps: Lamps) -> Shown {
+        Shown {
+            lamps,
+            instrument_faulty: false,
+        }
+    }
 }
 
 /// The panel's memory: live (lamps follow the monitor) or latched (a lit lamp stays until acknowledged).
@@ -63,20 +125,19 @@ impl Display {
         self.held = [false; LAMPS];
     }
 
-    /// Takes the lamps after a report and remembers those that are on.
-    pub fn observe(&mut self, lamps: &Lamps) {
-        for (held, lamp) in self.held.iter_mut().zip(in_order(lamps)).skip(RUN + 1) {
-            *held |= self.latched && lamp == Lamp::On;
+    /// What is shown now: the monitor's lamps, what lies over them, and what was lit before where lit lamps stay.
+    pub fn show(&mut self, lamps: &Lamps, overrides: &Overrides) -> Shown {
+        let mut now = in_order(&overrides.over(lamps));
+        for (held, lamp) in self.held.iter_mut().zip(&mut now).skip(RUN + 1) {
+            *held |= self.latched && *lamp == Lamp::On;
+            if *held {
+                *lamp = Lamp::On;
+            }
         }
-    }
-
-    /// What each wire carries now.
-    pub fn levels(&self, lamps: &Lamps, blink_phase: bool) -> [bool; LAMPS] {
-        let mut levels = levels(lamps, blink_phase);
-        for (level, held) in levels.iter_mut().zip(self.held) {
-            *level |= held;
+        Shown {
+            lamps: of_order(now),
+            instrument_faulty: overrides.instrument_faulty,
         }
-        levels
     }
 }
 
@@ -107,35 +168,73 @@ mod tests {
         assert_eq!(lit(levels(&FAULTY, false)), ["run", "r1", "r4", "fault"]);
     }
 
+    const NOTHING: Overrides = Overrides {
+        instrument_faulty: false,
+        learning: false,
+        refused: false,
+        calibration_ignored: false,
+    };
+
+    fn shown(display: &mut Display, lamps: &Lamps) -> Vec<&'static str> {
+        lit(levels(&display.show(lamps, &NOTHING).lamps, false))
+    }
+
     #[test]
     fn latched_lamps_stay_until_acknowledged_and_run_never_latches() {
         let mut display = Display::default();
         display.set_latched(true);
-        display.observe(&FAULTY);
+        shown(&mut display, &FAULTY);
         assert_eq!(
-            lit(display.levels(&Lamps::default(), false)),
+            shown(&mut display, &Lamps::default()),
             ["r1", "r4", "fault"]
         );
         display.acknowledge();
-        assert_eq!(lit(display.levels(&Lamps::default(), false)), [""; 0]);
+        assert_eq!(shown(&mut display, &Lamps::default()), [""; 0]);
     }
 
     #[test]
     fn acknowledging_does_not_hide_a_fault_that_is_still_there() {
         let mut display = Display::default();
         display.set_latched(true);
-        display.observe(&FAULTY);
+        shown(&mut display, &FAULTY);
         display.acknowledge();
-        assert_eq!(
-            lit(display.levels(&FAULTY, false)),
-            ["run", "r1", "r4", "fault"]
-        );
+        assert_eq!(shown(&mut display, &FAULTY), ["run", "r1", "r4", "fault"]);
     }
 
     #[test]
     fn live_lamps_remember_nothing() {
         let mut display = Display::default();
-        display.observe(&FAULTY);
-        assert_eq!(lit(display.levels(&Lamps::default(), true)), [""; 0]);
+        shown(&mut display, &FAULTY);
+        assert_eq!(shown(&mut display, &Lamps::default()), [""; 0]);
+    }
+
+    #[test]
+    fn a_doubt_about_the_instrument_stays_too_where_lamps_stay() {
+        let mut display = Display::default();
+        display.set_latched(true);
+        let doubt = Overrides {
+            instrument_faulty: true,
+            ..NOTHING
+        };
+        let shown = display.show(&Lamps::default(), &doubt);
+        assert_eq!(lit(levels(&shown.lamps, false)), ["sensor", "fault"]);
+        let later = display.show(&Lamps::default(), &NOTHING);
+        assert_eq!((later.lamps, later.instrument_faulty), (shown.lamps, false));
+    }
+
+    #[test]
+    fn learning_and_its_refusal_blink_where_nothing_burns() {
+        let over = Overrides {
+            learning: true,
+            refused: true,
+            calibration_ignored: true,
+            ..NOTHING
+        };
+        let lamps = over.over(&Lamps::default());
+        assert_eq!(
+            (lamps.r, lamps.fault, lamps.sensor),
+            ([Lamp::Blink; 4], Lamp::Blink, Lamp::Blink)
+        );
+        assert_eq!(over.over(&FAULTY).fault, Lamp::On);
     }
 }

@@ -1,9 +1,9 @@
 //! One window's result on its way to a computer.
 
-use monitor::{Lamp, RESIDUALS, Report};
+use monitor::{Lamp, Lamps, RESIDUALS, Reason, Report};
 use serde::{Deserialize, Serialize};
 
-use crate::display::LAMPS;
+use crate::display::{LAMPS, Shown};
 use crate::framing::{self, MAX_FRAME_BYTES, SCHEMA};
 
 /// What the board says about one window.
@@ -33,16 +33,19 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// What a report says.
+    /// What a report says, and what the door shows with it.
     #[inline(never)]
-    pub fn new(report: &Report, sequence: u32, vdda_millivolt: u16) -> Self {
+    pub fn new(report: &Report, shown: &Shown, sequence: u32, vdda_millivolt: u16) -> Self {
         let window = report.window.unwrap_or_default();
         Frame {
             schema: SCHEMA,
             sequence,
             sample_index: report.sample_index,
-            lamps: packed(report),
-            residuals: report.residuals.map(|residuals| residuals.r),
+            lamps: packed(&shown.lamps),
+            residuals: report
+                .residuals
+                .filter(|_| !shown.instrument_faulty)
+                .map(|residuals| residuals.r),
             u_s_volt: monitor::magnitude(window.u_s.positive),
             i_s_amp: monitor::magnitude(window.i_s.positive),
             omega_sync_rad_s: match window.backwards {
@@ -50,7 +53,7 @@ impl Frame {
                 false => window.omega_sync,
             },
             omega_mech_rad_s: window.shaft_speed(),
-            not_judged: report.not_judged.map_or(0, |why| why.reason().number()),
+            not_judged: why_not_judged(report, shown),
             vdda_millivolt,
         }
     }
@@ -76,8 +79,16 @@ impl Frame {
     }
 }
 
-pub(crate) fn packed(report: &Report) -> u32 {
-    let lamps = crate::display::in_order(&report.lamps);
+/// Number of the reason why a window counts for nothing; 0 where it was judged.
+pub(crate) fn why_not_judged(report: &Report, shown: &Shown) -> u8 {
+    match shown.instrument_faulty {
+        true => Reason::Instrument.number(),
+        false => report.not_judged.map_or(0, |why| why.reason().number()),
+    }
+}
+
+pub(crate) fn packed(lamps: &Lamps) -> u32 {
+    let lamps = crate::display::in_order(lamps);
     let codes = lamps.map(|lamp| match lamp {
         Lamp::Off => 0,
         Lamp::On => 1,
@@ -124,15 +135,15 @@ mod tests {
 
     #[test]
     fn lamps_are_told_apart() {
-        let report = Report {
-            lamps: monitor::Lamps {
+        let shown = Shown {
+            lamps: Lamps {
                 run: Lamp::Blink,
                 fault: Lamp::On,
-                ..monitor::Lamps::default()
+                ..Lamps::default()
             },
-            ..Report::default()
+            ..Shown::default()
         };
-        let frame = Frame::new(&report, 0, 3300);
+        let frame = Frame::new(&Report::default(), &shown, 0, 3300);
         let seen: Vec<Lamp> = (0..LAMPS).map(|k| frame.lamp(k)).collect();
         assert_eq!(seen[0], Lamp::Blink);
         assert_eq!(seen[LAMPS - 1], Lamp::On);

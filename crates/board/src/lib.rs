@@ -32,7 +32,7 @@ pub use calibration::{
 };
 pub use capture::{CAPTURE_EVERY, CAPTURE_INSTANTS, Capture, CaptureChunk, CaptureState};
 pub use checksum::{crc32, crc32_words};
-pub use display::{Display, LAMP_NAMES, LAMPS, levels};
+pub use display::{Display, LAMP_NAMES, LAMPS, Overrides, Shown, levels};
 pub use frame::Frame;
 pub use framing::{FrameError, MAX_FRAME_BYTES};
 pub use image::{EffectTerms, IMAGE_WORDS, ImageError, MotorImage};

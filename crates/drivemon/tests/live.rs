@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::time::Duration;
 
-use board::{CAPTURE_EVERY, Capture, Frame, MAX_FRAME_BYTES, MotorImage};
+use board::{CAPTURE_EVERY, Capture, Frame, MAX_FRAME_BYTES, MotorImage, Shown};
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
 use motor::motor_file::Frame as MotorFrame;
@@ -50,7 +50,7 @@ fn sent(seconds: f64) -> Vec<u8> {
             if report.lamps.fault == monitor::Lamp::On {
                 capture.alarm();
             }
-            let frame = Frame::new(&report, sequence, 3_300);
+            let frame = Frame::new(&report, &Shown::only(report.lamps), sequence, 3_300);
             sequence += 1;
             bytes.extend(frame.encode(&mut [0; MAX_FRAME_BYTES]));
             if let Some(piece) = capture.next_chunk(image.identification()) {

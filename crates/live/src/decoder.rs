@@ -71,11 +71,11 @@ impl Decoder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use board::{Frame, MAX_FRAME_BYTES};
+    use board::{Frame, MAX_FRAME_BYTES, Shown};
     use monitor::Report;
 
     fn frame(sequence: u32) -> Vec<u8> {
-        let frame = Frame::new(&Report::default(), sequence, 3_300);
+        let frame = Frame::new(&Report::default(), &Shown::default(), sequence, 3_300);
         frame.encode(&mut [0; MAX_FRAME_BYTES]).to_vec()
     }
 

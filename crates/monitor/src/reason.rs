@@ -32,11 +32,13 @@ pub enum Reason {
     Reversing = 12,
     /// Noise hides what the lamps are to show.
     Noise = 13,
+    /// The board doubts its own converters or their supply: nothing that it measures counts.
+    Instrument = 14,
 }
 
 impl Reason {
     /// Every reason, in the order of its number.
-    pub const ALL: [Reason; 13] = [
+    pub const ALL: [Reason; 14] = [
         Reason::NotLocked,
         Reason::Settling,
         Reason::Clipped,
@@ -50,6 +52,7 @@ impl Reason {
         Reason::NoLoadCurrent,
         Reason::Reversing,
         Reason::Noise,
+        Reason::Instrument,
     ];
 
     /// Number on the wire.
@@ -79,6 +82,7 @@ impl Reason {
             Reason::NoLoadCurrent => "no load current",
             Reason::Reversing => "braking or reversing",
             Reason::Noise => "noise",
+            Reason::Instrument => "instrument",
         }
     }
 }

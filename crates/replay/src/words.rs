@@ -44,6 +44,7 @@ pub fn reason(number: u8) -> Option<String> {
         Reason::NoLoadCurrent => not_judged(NotJudged::NoLoadCurrent),
         Reason::Reversing => not_judged(NotJudged::Reversing),
         Reason::Noise => not_judged(NotJudged::Noise),
+        Reason::Instrument => "the board doubts its own converters or their supply".to_owned(),
     })
 }
 

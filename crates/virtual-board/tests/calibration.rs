@@ -2,7 +2,7 @@
 
 mod common;
 
-use board::{Calibration, Frame, LEARN_WINDOWS, Loaded, Store};
+use board::{Calibration, Frame, LEARN_WINDOWS, Loaded, Shown, Store};
 use common::flash_image::FlashImage;
 use common::{INHIBITED, LAMP_TEST_S, Sensors, board as board_of, firmware, motor, scenario};
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample};
@@ -90,7 +90,7 @@ fn expected(
         .filter_map(|raw| monitor.update_raw(&mut state, raw));
     reports
         .zip(seen)
-        .map(|(report, frame)| Frame::new(&report, frame.sequence, frame.vdda_millivolt))
+        .map(|(report, frame)| Frame::new(&report, &Shown::only(report.lamps), frame.sequence, frame.vdda_millivolt))
         .collect()
 }
 

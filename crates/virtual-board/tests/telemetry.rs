@@ -2,7 +2,7 @@
 
 mod common;
 
-use board::{Frame, LAMP_NAMES, Message};
+use board::{Frame, LAMP_NAMES, Message, Shown};
 use common::{INHIBITED, LAMP_TEST_S, board as board_of, motor, scenario};
 use monitor::{Monitor, MonitorConfig, MonitorState, Report};
 use motor::motor_file::Frame as MotorFrame;
@@ -50,7 +50,7 @@ fn every_frame_is_the_hosts_report_bit_for_bit() {
     );
     let mut with_residuals = 0;
     for (frame, report) in frames.iter().zip(&reports) {
-        let expected = Frame::new(report, frame.sequence, frame.vdda_millivolt);
+        let expected = Frame::new(report, &Shown::only(report.lamps), frame.sequence, frame.vdda_millivolt);
         assert_eq!(
             bits(frame),
             bits(&expected),

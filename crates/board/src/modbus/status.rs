@@ -3,11 +3,12 @@
 use core::f32::consts::{SQRT_2, TAU};
 
 use micromath::F32Ext;
-use monitor::{CHANNELS, Report, Suspicion, Window, likely, magnitude};
+use monitor::{CHANNELS, Lamp, Reason, Report, Suspicion, Window, likely, magnitude};
 
 use super::map::{Field, Image};
 use crate::calibration::CalibrationSource;
-use crate::frame::packed;
+use crate::display::Shown;
+use crate::frame::{packed, why_not_judged};
 use crate::learn::LearnState;
 
 /// Rad/s of one turn per minute.
@@ -64,24 +65,44 @@ pub struct Status {
 }
 
 impl Status {
-    /// Counts a report and puts it with the board's state into registers.
+    /// Counts a report and puts it with the board's state and with what the door shows into registers.
     #[inline(never)]
-    pub fn take(&mut self, report: &Report, board: &BoardStatus) -> Image {
+    pub fn take(&mut self, report: &Report, shown: &Shown, board: &BoardStatus) -> Image {
         self.windows = self.windows.wrapping_add(1);
         self.judged = self.judged.wrapping_add(u32::from(report.is_judged()));
         let mut image = Image::default();
         image.set_long(Field::Windows, self.windows);
         image.set_long(Field::WindowsJudged, self.judged);
-        image.set_word(Field::Verdict, self.verdict(report));
         put_board(&mut image, board);
         put_report(&mut image, report);
+        put_cause(&mut image, report, shown);
+        image.set_word(Field::NotJudged, u16::from(why_not_judged(report, shown)));
         put_window(&mut image, report.window.as_ref());
+        self.put_shown(&mut image, shown);
         image
     }
 
-    fn verdict(&self, report: &Report) -> u16 {
-        match report.lamps.fault {
-            monitor::Lamp::On => 2,
+    /// Puts what the door shows now into registers that were filled before: what changed between two reports.
+    #[inline(never)]
+    pub fn refresh(&self, image: &mut Image, shown: &Shown) {
+        if shown.instrument_faulty {
+            image.set_word(Field::NotJudged, u16::from(Reason::Instrument.number()));
+            image.set_word(Field::LikelyFault, 0);
+            image.set_word(Field::FaultProbability, 0);
+        }
+        self.put_shown(image, shown);
+    }
+
+    fn put_shown(&self, image: &mut Image, shown: &Shown) {
+        image.set_long(Field::Lamps, packed(&shown.lamps));
+        image.set_word(Field::Verdict, self.verdict(shown));
+    }
+
+    /// The lamps in one word: nobody reads "healthy" where FAULT or SENSOR is lit.
+    fn verdict(&self, shown: &Shown) -> u16 {
+        match (shown.lamps.fault, shown.lamps.sensor) {
+            (Lamp::On, _) => 2,
+            (_, Lamp::On) => 0,
             _ if self.judged > 0 => 1,
             _ => 0,
         }
@@ -104,16 +125,6 @@ fn put_board(image: &mut Image, board: &BoardStatus) {
 }
 
 fn put_report(image: &mut Image, report: &Report) {
-    image.set_long(Field::Lamps, packed(report));
-    image.set_word(
-        Field::NotJudged,
-        report
-            .not_judged
-            .map_or(0, |why| u16::from(why.reason().number())),
-    );
-    let (fault, probability) = likeliest(report);
-    image.set_word(Field::LikelyFault, fault);
-    image.set_word(Field::FaultProbability, (1000.0 * probability) as u16);
     let residuals = report
         .residuals
         .map_or([f32::NAN; 4], |residuals| residuals.r);
@@ -122,10 +133,19 @@ fn put_report(image: &mut Image, report: &Report) {
     }
 }
 
+fn put_cause(image: &mut Image, report: &Report, shown: &Shown) {
+    let (fault, probability) = match shown.instrument_faulty {
+        true => (0, 0.0),
+        false => likeliest(report),
+    };
+    image.set_word(Field::LikelyFault, fault);
+    image.set_word(Field::FaultProbability, (1000.0 * probability) as u16);
+}
+
 /// Number of the likeliest cause while FAULT is lit, the first of equals; 0 when it is none that has a number.
 fn likeliest(report: &Report) -> (u16, f32) {
     let mut best = (0, 0.0);
-    if report.lamps.fault == monitor::Lamp::On {
+    if report.lamps.fault == Lamp::On {
         likely(report, &[], &mut |Suspicion {
                                       suspect,
                                       probability,
@@ -176,7 +196,16 @@ fn put_window(image: &mut Image, window: Option<&Window>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use monitor::{Candidates, Lamp, Residuals};
+    use monitor::{Candidates, Residuals};
+
+    /// The registers of a door that shows what the monitor says.
+    fn registers(report: &Report) -> Image {
+        let shown = Shown {
+            lamps: report.lamps,
+            ..Shown::default()
+        };
+        Status::default().take(report, &shown, &BoardStatus::default())
+    }
 
     fn float(image: &Image, field: Field) -> f32 {
         let words = image
@@ -211,7 +240,7 @@ mod tests {
 
     #[test]
     fn measurements_arrive_in_the_units_of_the_map() {
-        let image = Status::default().take(&report(), &BoardStatus::default());
+        let image = registers(&report());
         assert_eq!(float(&image, Field::Residual2), -0.2);
         for (field, expected) in [
             (Field::Speed, 1_500.0),
@@ -250,7 +279,7 @@ mod tests {
             not_judged: Some(monitor::NotJudged::NotLocked),
             ..Report::default()
         };
-        let image = Status::default().take(&nothing, &BoardStatus::default());
+        let image = registers(&nothing);
         for field in RESIDUALS
             .into_iter()
             .chain(CHANNEL_FIELDS)
@@ -270,7 +299,7 @@ mod tests {
         faulty.lamps.fault = Lamp::On;
         // Speed sensor: r1, r2, r4 and not r3.
         faulty.candidates = Some(Candidates::from_normalised(&[9.0, 9.0, 0.0, 9.0]));
-        let image = Status::default().take(&faulty, &BoardStatus::default());
+        let image = registers(&faulty);
         assert_eq!(
             (
                 word(&image, Field::Verdict),
@@ -281,7 +310,7 @@ mod tests {
         assert!((500..=1000).contains(&word(&image, Field::FaultProbability)));
         // The likeliest is no row at all: it has no number, as before.
         faulty.candidates = Some(Candidates::from_normalised(&[0.0, 9.0, 0.0, 0.0]));
-        let image = Status::default().take(&faulty, &BoardStatus::default());
+        let image = registers(&faulty);
         assert_eq!(word(&image, Field::LikelyFault), 0);
     }
 
@@ -291,7 +320,7 @@ mod tests {
         faulty.lamps.fault = Lamp::On;
         faulty.sensor = Some(monitor::SensorFinding::DeadCurrent(monitor::Phase::A));
         let named = |report: &Report| {
-            let image = Status::default().take(report, &BoardStatus::default());
+            let image = registers(report);
             (
                 word(&image, Field::LikelyFault),
                 word(&image, Field::FaultProbability),
@@ -301,5 +330,35 @@ mod tests {
         faulty.sensor = None;
         faulty.rotor.is_broken = true;
         assert_eq!(named(&faulty), (13, 1000));
+    }
+
+    #[test]
+    fn a_doubt_about_the_instrument_reaches_the_master_between_two_reports() {
+        let mut faulty = report();
+        faulty.lamps.fault = Lamp::On;
+        faulty.candidates = Some(Candidates::from_normalised(&[9.0, 9.0, 0.0, 9.0]));
+        let mut status = Status::default();
+        let shown = Shown {
+            lamps: faulty.lamps,
+            ..Shown::default()
+        };
+        let mut image = status.take(&faulty, &shown, &BoardStatus::default());
+        let mut doubt = shown;
+        (doubt.lamps.sensor, doubt.instrument_faulty) = (Lamp::On, true);
+        status.refresh(&mut image, &doubt);
+        assert_eq!(image, status_with(&faulty, &doubt));
+        assert_eq!(word(&image, Field::NotJudged), 14);
+        assert_eq!(word(&image, Field::LikelyFault), 0);
+    }
+
+    fn status_with(report: &Report, shown: &Shown) -> Image {
+        Status::default().take(report, shown, &BoardStatus::default())
+    }
+
+    #[test]
+    fn nobody_reads_healthy_beside_a_lit_sensor_lamp() {
+        let mut shown = Shown::default();
+        shown.lamps.sensor = Lamp::On;
+        assert_eq!(word(&status_with(&report(), &shown), Field::Verdict), 0);
     }
 }

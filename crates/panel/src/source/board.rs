@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant as WallTime};
 
 use ::board::{Frame, Message};
-use monitor::{Candidates, Lamp, MonitorConfig, Report};
+use monitor::{Candidates, Lamp, MonitorConfig, Reason, Report};
 use motor::MotorFile;
 use motor::document::FileError;
 
@@ -16,6 +16,8 @@ use replay::words;
 
 /// s; sampling time of the board.
 const T_SAMPLE: f64 = 1e-4;
+/// What to do about a board that doubts itself.
+const DOUBTFUL_BOARD: &str = "measure the board's 3.3 V and look at the connectors of its inputs; if both are right, exchange the board";
 /// Silence after which the board is taken not to be there.
 const SILENCE: Duration = Duration::from_secs(3);
 
@@ -72,6 +74,9 @@ impl BoardSource {
         frame: &Frame,
         normalised: Option<[f32; 4]>,
     ) -> (Vec<LikelyCause>, Vec<&'static str>) {
+        if Reason::from_number(frame.not_judged) == Some(Reason::Instrument) {
+            return (Vec::new(), vec![DOUBTFUL_BOARD]);
+        }
         let by_table = self
             .motor
             .as_ref()
@@ -158,9 +163,11 @@ impl Source for BoardSource {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ::board::MAX_FRAME_BYTES;
+    use ::board::modbus::{BoardStatus, Field, Image, Status, address};
+    use ::board::{Display, MAX_FRAME_BYTES, Overrides, Shown, levels};
     use live::SourceError;
     use monitor::{Lamps, NotJudged, Residuals, Window};
+    use proptest::prelude::*;
 
     /// A link that delivers these bytes and then nothing.
     struct Canned(Vec<u8>);
@@ -195,10 +202,17 @@ mod tests {
     }
 
     fn windows(reports: &[Report]) -> Vec<WindowMessage> {
-        let bytes = (0..).zip(reports).flat_map(|(k, report)| {
-            let frame = Frame::new(report, k, 3_300);
-            frame.encode(&mut [0; MAX_FRAME_BYTES]).to_vec()
-        });
+        let frames = (0..)
+            .zip(reports)
+            .map(|(k, report)| Frame::new(report, &Shown::only(report.lamps), k, 3_300));
+        told(&frames.collect::<Vec<_>>())
+    }
+
+    /// What the page is told of these frames.
+    fn told(frames: &[Frame]) -> Vec<WindowMessage> {
+        let bytes = frames
+            .iter()
+            .flat_map(|frame| frame.encode(&mut [0; MAX_FRAME_BYTES]).to_vec());
         let text = include_str!("../../../../motors/assumed-300w.toml");
         let motor = MotorFile::parse(text, "motor").expect("it ships");
         let link = Box::new(Canned(bytes.collect()));
@@ -253,5 +267,123 @@ mod tests {
     fn no_other_parameters_can_be_tried_on_a_board() {
         let source = BoardSource::new(Box::new(Canned(Vec::new())), "port".into(), None);
         assert!(source.config(None) == Ok(None) && !source.info().can.parameters);
+    }
+
+    fn any_lamp() -> impl Strategy<Value = Lamp> {
+        prop_oneof![Just(Lamp::Off), Just(Lamp::On), Just(Lamp::Blink)]
+    }
+
+    fn any_lamps() -> impl Strategy<Value = Lamps> {
+        proptest::array::uniform9(any_lamp()).prop_map(
+            |[run, r1, r2, r3, r4, sensor, line, load, fault]| Lamps {
+                run,
+                r: [r1, r2, r3, r4],
+                sensor,
+                line,
+                load,
+                fault,
+            },
+        )
+    }
+
+    fn any_overrides() -> impl Strategy<Value = Overrides> {
+        any::<[bool; 4]>().prop_map(
+            |[instrument_faulty, learning, refused, calibration_ignored]| Overrides {
+                instrument_faulty,
+                learning,
+                refused,
+                calibration_ignored,
+            },
+        )
+    }
+
+    fn words_of(registers: &Image, field: Field, count: u16) -> Vec<u16> {
+        let words = registers.range(address(field), count);
+        words.expect("in the map").to_vec()
+    }
+
+    /// Lamps as the wires carry them over both halves of a blink.
+    fn by_wires(shown: &Shown) -> Vec<Lamp> {
+        let halves = levels(&shown.lamps, true)
+            .into_iter()
+            .zip(levels(&shown.lamps, false));
+        let lamps = halves.map(|halves| match halves {
+            (true, true) => Lamp::On,
+            (true, false) => Lamp::Blink,
+            _ => Lamp::Off,
+        });
+        lamps.collect()
+    }
+
+    fn by_master(registers: &Image) -> Vec<Lamp> {
+        let words = words_of(registers, Field::Lamps, 2);
+        let bits = u32::from(words[0]) << 16 | u32::from(words[1]);
+        let lamps = (0..9).map(|k| match bits >> (2 * k) & 3 {
+            1 => Lamp::On,
+            2 => Lamp::Blink,
+            _ => Lamp::Off,
+        });
+        lamps.collect()
+    }
+
+    fn by_page(lamps: &LampsMessage) -> Vec<Lamp> {
+        let [run, r1, r2, r3, r4] = [lamps.run, lamps.r1, lamps.r2, lamps.r3, lamps.r4];
+        let [sensor, line, load, fault] = [lamps.sensor, lamps.line, lamps.load, lamps.fault];
+        vec![run, r1, r2, r3, r4, sensor, line, load, fault]
+    }
+
+    proptest! {
+        /// Whatever the monitor says, the board overrides and the door remembers: wires, frame, registers and page show one thing.
+        #[test]
+        fn wires_frames_registers_and_page_show_the_same(
+            before in any_lamps(),
+            now in any_lamps(),
+            over_before in any_overrides(),
+            over_now in any_overrides(),
+            latched: bool,
+            judged: bool,
+            acknowledged: bool,
+        ) {
+            let mut display = Display::default();
+            display.set_latched(latched);
+            let mut status = Status::default();
+            let judged_report = report();
+            let first = display.show(&before, &over_before);
+            let mut refreshed = status.take(&judged_report, &first, &BoardStatus::default());
+            if acknowledged {
+                display.acknowledge();
+            }
+            let shown = display.show(&now, &over_now);
+            status.refresh(&mut refreshed, &shown);
+            let report = Report {
+                lamps: now,
+                not_judged: (!judged).then_some(NotJudged::Transient),
+                ..report()
+            };
+            let registers = status.take(&report, &shown, &BoardStatus::default());
+            let frame = Frame::new(&report, &shown, 0, 3_300);
+            let [page] = told(&[frame]).try_into().expect("one window");
+
+            let door = by_wires(&shown);
+            prop_assert_eq!(&by_master(&registers), &door);
+            prop_assert_eq!(&by_master(&refreshed), &door);
+            prop_assert_eq!(&by_page(&page.lamps), &door);
+
+            let [sensor, fault] = [door[5], door[8]];
+            for registers in [&registers, &refreshed] {
+                let verdict = words_of(registers, Field::Verdict, 1)[0];
+                prop_assert_eq!(verdict == 2, fault == Lamp::On);
+                prop_assert!(verdict != 1 || sensor != Lamp::On);
+            }
+            let reason = words_of(&registers, Field::NotJudged, 1)[0];
+            prop_assert_eq!(page.not_judged, words::reason(reason as u8));
+            // A board that doubts itself blames nothing on the motor.
+            if over_now.instrument_faulty {
+                prop_assert!(page.causes.is_empty() && page.r_percent.is_none());
+                prop_assert_eq!(words_of(&registers, Field::LikelyFault, 1)[0], 0);
+                prop_assert_eq!(words_of(&refreshed, Field::LikelyFault, 1)[0], 0);
+                prop_assert_eq!(reason, 14);
+            }
+        }
     }
 }
