@@ -272,3 +272,13 @@ pub(crate) fn unknown_speed(seconds: f64, gain: f64) -> Recording {
     }));
     rec
 }
+
+/// A plant with an effect more.
+pub(crate) fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
+    move |plant| plant.effects.push(effect(name, size))
+}
+
+/// 220 V and 1.3 A: the power to which a core loss is related, W.
+pub(crate) fn apparent_power() -> f64 {
+    3f64.sqrt() * 220.0 * 1.3
+}

@@ -1,17 +1,11 @@
 use super::*;
+use crate::api::errors;
 use crate::explain::Step;
 use crate::model::prior::{FRICTION, MAGNETIZING};
 use crate::search::refit::{Candidate, Round, combined};
 use crate::search::screen::Screened;
-use crate::tests::specimen;
-use motor::effect::Plant;
-use recording::Recording;
-
-mod adopted;
-
-fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
-    move |plant| plant.effects.push(specimen::effect(name, size))
-}
+use crate::tests::specimen::{self, apparent_power, with};
+use motor::effects::names;
 
 fn question(sources: &[Source]) -> Question {
     Question::new(sources, &specimen::motor(""), &mut |_, _| {}).expect("judged")
@@ -85,11 +79,6 @@ fn frame(proven: bool) -> FrameReport {
         proven,
         by_load: Vec::new(),
     }
-}
-
-/// 220 V and 1.3 A: the power to which a core loss is related, W.
-fn apparent_power() -> f64 {
-    3f64.sqrt() * 220.0 * 1.3
 }
 
 /// A table of a machine whose core takes 4 % of the rated apparent power, beside the prior that it takes none.
