@@ -13,6 +13,7 @@
 //! assert!(peak.fold(0.0, f64::max) > 0.5); // ampere
 //! ```
 
+mod chain;
 mod faults;
 mod load;
 mod read;
@@ -27,6 +28,7 @@ mod malformed_cases;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use chain::{CHANNELS, Carrier, ChannelChain, Inl, InlShape, Reference, SEQUENCE, SignalChain};
 pub use faults::{Asymmetry, Change, DqSignal, Fault, Parameter, Probe, Target};
 pub use load::LoadSpec;
 pub use sensors::{SensorSpec, SpeedSensor};
@@ -95,6 +97,10 @@ const SAMPLE_RATE_HZ: f64 = 10_000.0;
 /// The published instrument takes its d-q data every 20 ms.
 const DATA_INTERVAL_S: f64 = 0.02;
 
+/// A signal chain takes its quantities at least this often, s: straight lines between them are then off by 2e-6 of a
+/// sinusoid of 60 Hz.
+const CHAIN_STEP_S: f64 = 10e-6;
+
 impl Scenario {
     /// A healthy motor on its rated supply with its own load, already running, sampled at 10 kHz by the
     /// instruments of its motor file.
@@ -155,6 +161,15 @@ impl Scenario {
     /// Time between samples, s.
     pub fn t_sample(&self) -> f64 {
         1.0 / self.sample_rate_hz
+    }
+
+    /// Equal steps from one sample to the next: one, or as many as a signal chain needs to be fed finely.
+    pub(crate) fn steps_per_sample(&self) -> u32 {
+        match self.sensors.chain {
+            // At most 1000: samples come at 100 Hz and more.
+            Some(_) => (self.t_sample() / CHAIN_STEP_S - 1e-9).ceil().max(1.0) as u32,
+            None => 1,
+        }
     }
 
     /// Number of samples from t = 0, the last at or before `duration_s`.

@@ -2,7 +2,7 @@
 
 /// `(text after the motor's line, line, key, remedy)`.
 #[rustfmt::skip]
-pub const CASES: [(&str, usize, &str, &str); 37] = [
+pub const CASES: [(&str, usize, &str, &str); 52] = [
     ("", 1, "duration_s", "is missing: add length of the experiment"),
     ("duration = 3", 2, "duration", "did you mean `duration_s`?"),
     ("duration_s = 0", 2, "duration_s", "above 0"),
@@ -29,6 +29,21 @@ pub const CASES: [(&str, usize, &str, &str); 37] = [
     ("duration_s = 1\n[load]\nquadratic_nm_s2 = -1", 4, "load.quadratic_nm_s2", "at least 0"),
     ("duration_s = 1\n[sensors]\nadc_bits = 32", 4, "sensors.adc_bits", "at most 16 bit"),
     ("duration_s = 1\n[sensors]\nspeed = \"resolver\"", 4, "sensors.speed", "\"tachometer\", \"encoder\", \"none\""),
+    ("duration_s = 1\n[sensors.chain]\nvoltage_filter_us = [-5]", 4, "sensors.chain.voltage_filter_us", "78 is 78 microseconds"),
+    ("duration_s = 1\n[sensors.chain]\nvoltage_filter_us = [70, 8, 3]", 4, "sensors.chain.voltage_filter_us", "write one or two in brackets"),
+    ("duration_s = 1\n[sensors.chain]\ncurrent_filter_us = 70", 4, "sensors.chain.current_filter_us", "a list of numbers"),
+    ("duration_s = 1\n[sensors.chain]\ncurrent_filter_us = [70]\ncurrent_filter_hz = 1600", 4, "sensors.chain.current_filter_us", "keep one of the two"),
+    ("duration_s = 1\n[sensors.chain]\nvoltage_filter_hz = 1", 4, "sensors.chain.voltage_filter_hz", "at least 10"),
+    ("duration_s = 1\n[sensors.chain]\ncurrent_delay_us = -3", 4, "sensors.chain.current_delay_us", "add the same to all of them"),
+    ("duration_s = 1\n[sensors.chain]\nvoltage_delay_us = [1, 2]", 4, "sensors.chain.voltage_delay_us", "write 3 in brackets"),
+    ("duration_s = 1\n[sensors.chain]\nvoltage_gain_error_percent = 80", 4, "sensors.chain.voltage_gain_error_percent", "at most 50 percent"),
+    ("duration_s = 1\n[sensors.chain]\ncurrent_reference = \"own\"", 4, "sensors.chain.current_reference", "\"absolute\", \"ratiometric\""),
+    ("duration_s = 1\n[sensors.chain]\nreference_drift_percent_per_s = 10\nreference_error_percent = 45", 5, "sensors.chain.reference_error_percent", "at most 20 percent"),
+    ("duration_s = 60\n[sensors.chain]\nreference_drift_percent_per_s = 1", 4, "sensors.chain.reference_drift_percent_per_s", "lower it"),
+    ("duration_s = 1\n[sensors.chain]\ncarrier_ripple_amp = 1", 4, "sensors.chain.carrier_ripple_amp", "add carrier_hz"),
+    ("duration_s = 1\n[sensors.chain]\ncrosstalk_percent = 11", 4, "sensors.chain.crosstalk_percent", "at most 10 percent"),
+    ("duration_s = 1\n[sensors.chain]\ninl_lsb = 2\ninl_shape = \"wave\"", 5, "sensors.chain.inl_shape", "\"bow\", \"cubic\", \"bits\""),
+    ("duration_s = 1\n[sensors.chain]\ndelay_us = 3", 4, "sensors.chain.delay_us", "voltage_filter_hz"),
     ("duration_s = 1\n[[faults]]\nfault = \"Rx\"\nchange_percent = 5", 4, "faults[1].fault", "\"Rx\" is not known: write one of \"Rs\""),
     ("duration_s = 1\n[[faults]]\nfault = \"Rs\"", 3, "faults[1].change_percent", "0 changes are given"),
     ("duration_s = 1\n[[faults]]\nfault = \"Rs\"\nchange_percent = 0", 5, "faults[1].change_percent", "changes nothing"),

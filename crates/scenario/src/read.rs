@@ -73,7 +73,7 @@ fn read_values(document: &Document, root: &Section<'_>, motor: MotorFile) -> Opt
     let seed = root.integer_or("seed", &SEED, 0);
     let supply = supply::read(root, &base.motor.nameplate);
     let load = load::read(root, &base.motor.nameplate);
-    let sensors = sensors::read(root, &base.motor);
+    let sensors = sensors::read(root, &base.motor, duration);
     let faults = faults::read(root, plant.unwrap_or(base.plant));
     let effects = read_effects(root);
     check_effects(

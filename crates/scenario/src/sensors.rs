@@ -1,5 +1,6 @@
 //! `[sensors]`: the instruments, where they differ from those of the motor file.
 
+use crate::chain::{self, SignalChain};
 use motor::MotorFile;
 use motor::document::{Bounds, Section};
 use motor::motor_file::{LoadKind, Sensors};
@@ -26,6 +27,8 @@ pub struct SensorSpec {
     pub speed: SpeedSensor,
     /// Whether the shaft torque is recorded.
     pub torque: bool,
+    /// Filters, delays and errors between sensor and code; none where nothing is said.
+    pub chain: Option<SignalChain>,
 }
 
 impl SensorSpec {
@@ -36,14 +39,16 @@ impl SensorSpec {
             quantise: true,
             speed: SpeedSensor::Tachometer,
             torque: motor.load == LoadKind::Measured,
+            chain: None,
         }
     }
 
-    /// Perfect instruments: no noise, no steps, no limits.
+    /// Perfect instruments: no noise, no steps, no limits, no chain.
     #[must_use]
     pub fn ideal(mut self) -> SensorSpec {
         self.instrument.noise_sigma_fraction_of_full_scale = 0.0;
         self.quantise = false;
+        self.chain = None;
         self
     }
 }
@@ -59,17 +64,26 @@ const SPEEDS: [(&str, SpeedSensor); 3] = [
     ("none", SpeedSensor::None),
 ];
 
-pub(super) fn read(root: &Section<'_>, motor: &MotorFile) -> Option<SensorSpec> {
+/// `duration_s` is how long a drifting reference drifts.
+pub(super) fn read(
+    root: &Section<'_>,
+    motor: &MotorFile,
+    duration_s: Option<f64>,
+) -> Option<SensorSpec> {
     let base = SensorSpec::of(motor);
     let Some(section) = root.optional_section("sensors")? else {
         return Some(base);
     };
-    let spec = read_values(&section, &base);
+    let spec = read_values(&section, &base, duration_s);
     section.finish();
     spec
 }
 
-fn read_values(section: &Section<'_>, base: &SensorSpec) -> Option<SensorSpec> {
+fn read_values(
+    section: &Section<'_>,
+    base: &SensorSpec,
+    duration_s: Option<f64>,
+) -> Option<SensorSpec> {
     let own = &base.instrument;
     let noise = section.number_or(
         "noise_sigma_fraction_of_full_scale",
@@ -95,6 +109,7 @@ fn read_values(section: &Section<'_>, base: &SensorSpec) -> Option<SensorSpec> {
     let quantise = section.flag_or("quantise", base.quantise);
     let speed = section.choice_or("speed", &SPEEDS, base.speed);
     let torque = section.flag_or("torque", base.torque);
+    let chain = chain::read(section, duration_s);
     Some(SensorSpec {
         instrument: Sensors {
             noise_sigma_fraction_of_full_scale: noise?,
@@ -107,5 +122,6 @@ fn read_values(section: &Section<'_>, base: &SensorSpec) -> Option<SensorSpec> {
         quantise: quantise?,
         speed: speed?,
         torque: torque?,
+        chain: chain?,
     })
 }

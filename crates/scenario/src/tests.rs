@@ -122,3 +122,33 @@ fn a_fault_by_name_for_programs() {
     assert_eq!(fault.apply(10.0), 5.0);
     assert!(Fault::percent("Xx", 1.0, Frame::Voltage).is_none());
 }
+
+#[test]
+fn a_signal_chain_is_read_in_si() {
+    let scenario = parse(
+        "duration_s = 1\n[sensors.chain]\nvoltage_filter_us = [78, 7]\nvoltage_delay_us = 1.6\ncurrent_filter_hz = [1000, 2000, 4000]\n\
+         current_gain_error_percent = [0.5, 0, -0.5]\ncrosstalk_percent = 0.01\ninl_lsb = 2\ninl_shape = \"bits\"\nvoltage_reference = \"ratiometric\"",
+    );
+    let chain = scenario.sensors.chain.expect("a chain");
+    let near = |x: f64, y: f64| assert!((x - y).abs() < 1e-12, "{x} {y}");
+    let [va, _, _, ia, _, ic] = chain.channels;
+    near(va.time_constants_s[0], 78e-6);
+    near(va.time_constants_s[1], 7e-6);
+    near(va.delay_s, 1.6e-6);
+    near(
+        ic.time_constants_s[0],
+        1.0 / (std::f64::consts::TAU * 4000.0),
+    );
+    near(ia.gain_error, 0.005);
+    near(ic.gain_error, -0.005);
+    near(chain.crosstalk, 1e-4);
+    assert_eq!((va.ratiometric, ia.ratiometric), (true, false));
+    assert_eq!(
+        chain.inl,
+        Inl {
+            lsb: 2.0,
+            shape: InlShape::Bits
+        }
+    );
+    assert_eq!(parse("duration_s = 1\n[sensors]").sensors.chain, None);
+}

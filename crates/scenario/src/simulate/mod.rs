@@ -129,6 +129,7 @@ pub struct Simulation {
     instruments: Instruments,
     next: u64,
     samples: u64,
+    steps_per_sample: u32,
 }
 
 impl Simulation {
@@ -157,6 +158,7 @@ impl Simulation {
             instruments: Instruments::new(scenario),
             next: 0,
             samples: scenario.samples(),
+            steps_per_sample: scenario.steps_per_sample(),
             scenario: scenario.clone(),
         })
     }
@@ -205,6 +207,20 @@ impl Simulation {
         k / self.scenario.sample_rate_hz
     }
 
+    /// Goes to the next sample; a signal chain sees what happens on the way.
+    fn advance(&mut self, t: f64, t_next: f64) {
+        let steps = f64::from(self.steps_per_sample);
+        let mut before = t;
+        for k in 1..self.steps_per_sample {
+            let now = t + (t_next - t) * f64::from(k) / steps;
+            self.plant.advance(before, now);
+            let truth = self.plant.truth(now);
+            self.instruments.observe(now, &truth, &self.scenario.faults);
+            before = now;
+        }
+        self.plant.advance(before, t_next);
+    }
+
     fn sample(&mut self, t: f64) -> SimSample {
         let truth = self.plant.truth(t);
         let faults = &self.scenario.faults;
@@ -225,7 +241,7 @@ impl Iterator for Simulation {
             let (t, t_next) = (self.time(self.next), self.time(self.next + 1));
             self.plant.switch_faults(&self.scenario.faults, t);
             let sample = self.sample(t);
-            self.plant.advance(t, t_next);
+            self.advance(t, t_next);
             self.next += 1;
             if t >= self.scenario.record_from_s {
                 return Some(sample);

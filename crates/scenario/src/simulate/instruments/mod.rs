@@ -1,5 +1,6 @@
 //! The instruments of a scenario: from what was true to what is recorded.
 
+mod chain;
 mod sensing;
 #[cfg(feature = "recording")]
 mod shown;

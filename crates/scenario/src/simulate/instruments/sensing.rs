@@ -1,5 +1,7 @@
 //! The instruments: faults, noise, resolution and limits between the truth and the sample.
 
+use super::chain::Chain;
+use crate::chain::CHANNELS;
 use crate::simulate::{Measured, Truth};
 use crate::{Change, DqSignal, Fault, Probe, Scenario, SensorSpec, SpeedSensor, Target};
 use motor::dynamic::{clarke, phases};
@@ -22,6 +24,7 @@ pub(in crate::simulate) struct Instruments {
     last_theta: Option<f64>,
     encoder_angle: f64,
     counts: VecDeque<i64>,
+    chain: Option<Chain>,
 }
 
 /// One analogue channel; corrected value = (raw - offset) * gain.
@@ -54,6 +57,7 @@ impl Channel {
 
 impl Instruments {
     pub(in crate::simulate) fn new(scenario: &Scenario) -> Instruments {
+        let chain = scenario.sensors.chain.as_ref();
         Instruments {
             spec: scenario.sensors.clone(),
             t_sample: scenario.t_sample(),
@@ -61,6 +65,14 @@ impl Instruments {
             last_theta: None,
             encoder_angle: 0.0,
             counts: VecDeque::new(),
+            chain: chain.map(|chain| Chain::new(chain, scenario.seed)),
+        }
+    }
+
+    /// Shows a signal chain what is so at `t`, s, between samples; nothing else looks.
+    pub(in crate::simulate) fn observe(&mut self, t: f64, truth: &Truth, faults: &[Fault]) {
+        if let Some(chain) = &mut self.chain {
+            chain.observe(t, sensed(truth, &active(faults, t)));
         }
     }
 
@@ -70,47 +82,80 @@ impl Instruments {
         truth: &Truth,
         faults: &[Fault],
     ) -> Measured {
-        let active: Vec<&Fault> = faults.iter().filter(|fault| fault.is_active(t)).collect();
-        let (u, i) = transformed(truth, &active);
-        let own = self.spec.instrument;
-        let (mut u_s_abc, mut i_s_abc) = ([0.0; 3], [0.0; 3]);
-        let (mut voltage_codes, mut current_codes) = ([0; 3], [0; 3]);
-        for k in 0..3 {
-            let channel = Channel {
-                full_scale: own.voltage_full_scale_volt,
-                bits: own.adc_bits,
-                gain: own.voltage_gain[k],
-                offset: own.voltage_offset_volt[k],
-            };
-            let x = probed(u[k], Probe::Voltage(k), &active);
-            (u_s_abc[k], voltage_codes[k]) = self.convert(&channel, x);
-        }
-        for k in 0..3 {
-            let channel = Channel {
-                full_scale: own.current_full_scale_amp,
-                bits: own.adc_bits,
-                gain: own.current_gain[k],
-                offset: own.current_offset_amp[k],
-            };
-            let x = probed(i[k], Probe::Current(k), &active);
-            (i_s_abc[k], current_codes[k]) = self.convert(&channel, x);
-        }
+        let active = active(faults, t);
+        let channels: [Channel; CHANNELS] = std::array::from_fn(|k| self.channel(k));
+        let raw = self.raw(t, sensed(truth, &active), &channels);
+        let shown: [(f64, u16); CHANNELS] =
+            std::array::from_fn(|k| self.convert(&channels[k], raw[k]));
+        let [a, b, c, d, e, f] = shown;
+        let (u, i) = ([a, b, c], [d, e, f]);
         let count = self.count(truth, &active);
         Measured {
-            u_s_abc,
-            i_s_abc,
+            u_s_abc: u.map(|(value, _)| value),
+            i_s_abc: i.map(|(value, _)| value),
             omega_mech: self.speed(truth, count, &active),
-            tau_load: self.plain(truth.tau_load, own.torque_full_scale_nm),
-            voltage_codes,
-            current_codes,
+            tau_load: self.plain(truth.tau_load, self.spec.instrument.torque_full_scale_nm),
+            voltage_codes: u.map(|(_, code)| code),
+            current_codes: i.map(|(_, code)| code),
             // The hardware counter has 16 bits and wraps.
             encoder_count: count as u16,
         }
     }
 
-    /// The calibrated value and the code of one channel.
-    fn convert(&mut self, channel: &Channel, x: f64) -> (f64, u16) {
-        let raw = x / channel.gain + channel.offset + self.noise(channel.full_scale);
+    /// Channel `k`: voltages a, b, c, then currents a, b, c.
+    fn channel(&self, k: usize) -> Channel {
+        let own = &self.spec.instrument;
+        let phase = k % 3;
+        let (full_scale, gain, offset) = match k < 3 {
+            true => (
+                own.voltage_full_scale_volt,
+                own.voltage_gain[phase],
+                own.voltage_offset_volt[phase],
+            ),
+            false => (
+                own.current_full_scale_amp,
+                own.current_gain[phase],
+                own.current_offset_amp[phase],
+            ),
+        };
+        Channel {
+            full_scale,
+            bits: own.adc_bits,
+            gain,
+            offset,
+        }
+    }
+
+    /// What reaches the converter's pins, before the motor file's correction.
+    fn raw(
+        &mut self,
+        t: f64,
+        sensed: [f64; CHANNELS],
+        channels: &[Channel; CHANNELS],
+    ) -> [f64; CHANNELS] {
+        let uncorrected = |x: [f64; CHANNELS]| -> [f64; CHANNELS] {
+            std::array::from_fn(|k| x[k] / channels[k].gain + channels[k].offset)
+        };
+        let Some(chain) = &mut self.chain else {
+            return uncorrected(sensed);
+        };
+        chain.observe(t, sensed);
+        let full_scales = std::array::from_fn(|k| channels[k].full_scale);
+        chain.distorted(t, uncorrected(chain.filtered(t)), full_scales)
+    }
+
+    /// The calibrated value and the code of what reaches the pin.
+    fn convert(&mut self, channel: &Channel, raw: f64) -> (f64, u16) {
+        let raw = raw + self.noise(channel.full_scale);
+        let bent = match &self.chain {
+            Some(chain) => raw + chain.inl_lsb(raw / channel.full_scale) * channel.step(),
+            None => raw,
+        };
+        self.shown(channel, bent)
+    }
+
+    /// The calibrated value and the code.
+    fn shown(&self, channel: &Channel, raw: f64) -> (f64, u16) {
         let code = channel.code(raw);
         let shown = if self.spec.quantise {
             channel.raw_of(code)
@@ -128,7 +173,8 @@ impl Instruments {
             gain: 1.0,
             offset: 0.0,
         };
-        self.convert(&channel, x).0
+        let raw = x + self.noise(full_scale);
+        self.shown(&channel, raw).0
     }
 
     fn noise(&mut self, full_scale: f64) -> f64 {
@@ -176,6 +222,19 @@ impl Instruments {
         let pulses = f64::from(self.spec.instrument.encoder_pulses_per_revolution);
         counts * TAU / (COUNTS_PER_PULSE * pulses) / (intervals as f64 * self.t_sample)
     }
+}
+
+fn active(faults: &[Fault], t: f64) -> Vec<&Fault> {
+    faults.iter().filter(|fault| fault.is_active(t)).collect()
+}
+
+/// Voltages and currents behind the faults of their signals and sensors.
+fn sensed(truth: &Truth, active: &[&Fault]) -> [f64; CHANNELS] {
+    let (u, i) = transformed(truth, active);
+    std::array::from_fn(|k| match k {
+        0..3 => probed(u[k], Probe::Voltage(k), active),
+        _ => probed(i[k - 3], Probe::Current(k - 3), active),
+    })
 }
 
 /// Phase voltages and currents behind the faults of d-q signals.

@@ -14,7 +14,7 @@ pub(in crate::simulate) struct Linear {
     healthy: LinearParams,
     params: LinearParams,
     step: LinearStep,
-    t_sample: f64,
+    t_step: f64,
     state: LinearState,
     theta_mech: f64,
     presence: Presence,
@@ -28,11 +28,12 @@ impl Linear {
         mechanics.load_friction *= scenario.load.friction_factor;
         let field_current = file.nominal_field_current();
         let healthy = LinearParams::new(&file.parameters, &mechanics, field_current);
+        let t_step = scenario.t_sample() / f64::from(scenario.steps_per_sample());
         let mut plant = Linear {
             healthy,
             params: healthy,
-            step: healthy.discretise(scenario.t_sample()),
-            t_sample: scenario.t_sample(),
+            step: healthy.discretise(t_step),
+            t_step,
             state: LinearState::default(),
             theta_mech: 0.0,
             presence: Presence::default(),
@@ -48,7 +49,7 @@ impl Linear {
     pub(super) fn switch_faults(&mut self, faults: &[Fault], t: f64) {
         if let Some(present) = self.presence.changed_at(faults, t) {
             self.params = changed(&self.healthy, &present);
-            self.step = self.params.discretise(self.t_sample);
+            self.step = self.params.discretise(self.t_step);
         }
     }
 

@@ -1,6 +1,7 @@
 //! The simulated motor and its instruments against what the scenario says.
 
 mod asymmetry;
+mod chain;
 mod instruments;
 mod switching;
 
