@@ -1,0 +1,69 @@
+//! How many healthy motors light FAULT because of their board's parts alone.
+//!
+//! `cargo run --release -p campaign --example front_end [BOARDS] [SEED]` prints the table of docs/wiring.md: boards drawn
+//! within the tolerances of the bill of materials, a healthy motor at rated load behind each, judged by the core with the
+//! motor file's thresholds. What is known of a delay goes the way of a recording's sidecar (`delay_us`).
+
+mod board;
+mod judge;
+
+use board::{Board, Variant};
+use judge::{Judged, judge};
+use motor::MotorFile;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+use std::error::Error;
+
+const MOTORS: [(&str, &str); 3] = [
+    ("300 W", "assumed-300w"),
+    ("2.2 kW", "peer-2k2"),
+    ("18.5 kW", "imc-18k5"),
+];
+const BOARDS: u32 = 200;
+const SEED: u64 = 7;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let boards = arguments.next().map_or(Ok(BOARDS), |text| text.parse())?;
+    let seed = arguments.next().map_or(Ok(SEED), |text| text.parse())?;
+    println!("{boards} boards a row, seed {seed}; r4 in percent of its scale, its limit is 0.3\n");
+    println!("| front end | motor | FAULT | SENSOR | r4 mean | r4 from .. to |");
+    println!("|---|---|---|---|---|---|");
+    for variant in Variant::ALL {
+        for (name, file) in MOTORS {
+            let path = format!("{}/../../motors/{file}.toml", env!("CARGO_MANIFEST_DIR"));
+            let motor = MotorFile::read(path)?;
+            row(variant, name, &motor, boards, seed)?;
+        }
+    }
+    Ok(())
+}
+
+fn row(
+    variant: Variant,
+    name: &str,
+    motor: &MotorFile,
+    boards: u32,
+    seed: u64,
+) -> Result<(), Box<dyn Error>> {
+    // The same boards in front of every motor.
+    let mut random = Pcg64::seed_from_u64(seed);
+    let mut all = Vec::new();
+    for _ in 0..boards {
+        all.push(judge(&Board::draw(variant, &mut random), motor)?);
+    }
+    let share = |of: fn(&Judged) -> bool| {
+        100.0 * all.iter().filter(|x| of(x)).count() as f64 / f64::from(boards)
+    };
+    let r4: Vec<f64> = all.iter().map(|x| x.r4_percent).collect();
+    let mean = r4.iter().sum::<f64>() / f64::from(boards);
+    let least = r4.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = r4.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    println!(
+        "| {} | {name} | {:.1} % | {:.1} % | {mean:+.2} | {least:+.2} .. {most:+.2} |",
+        variant.name(),
+        share(|x| x.fault),
+        share(|x| x.sensor),
+    );
+    Ok(())
+}
