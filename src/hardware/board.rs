@@ -8,8 +8,8 @@
 //! | PC1  | phase current b | ADC1 channel 7 |
 //! | PC2  | phase voltage c | ADC1 channel 8 |
 //! | PC3  | phase current c | ADC1 channel 9 |
-//! | PC6  | encoder A | TIM3 channel 1, pull-up, 5 V tolerant |
-//! | PC7  | encoder B | TIM3 channel 2, pull-up, 5 V tolerant |
+//! | PC6  | encoder A | TIM3 channel 1, pull-up: not for 5 V |
+//! | PC7  | encoder B | TIM3 channel 2, pull-up: not for 5 V |
 //! | PC8  | lamp RUN (green) | high is on |
 //! | PB11..PB14 | lamps r1..r4 (yellow) | high is on |
 //! | PB15 | lamp SENSOR (blue) | high is on |

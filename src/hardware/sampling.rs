@@ -182,7 +182,7 @@ fn skew() -> usize {
     (RING + codes - counts) % RING
 }
 
-/// 12.5 cycles at 42.5 MHz: the input filters of docs/wiring.md hold the charge (100 nF at the pin).
+/// 12.5 cycles at 42.5 MHz: the front end of docs/wiring.md holds the charge (47 nF at the pin).
 fn sequence(
     (v_a, i_a, v_b, i_b, v_c, i_c): &mut Pins,
 ) -> [(embassy_stm32::adc::AnyAdcChannel<'_, ADC1>, SampleTime); CHANNELS] {
