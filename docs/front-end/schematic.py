@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the front end: docs/front-end/schematic.svg.
 
-Usage: pip install schemdraw; python3 docs/front-end/schematic.py
+Usage: pip install schemdraw==0.23; python3 docs/front-end/schematic.py
 Values are those of parts.csv; a test compares parts.csv with the netlists.
 """
 

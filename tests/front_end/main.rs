@@ -3,7 +3,7 @@
 //! Every test that needs ngspice says so and passes where it is not installed; `.ci/run` installs it.
 
 mod limits;
-mod parts;
+mod page;
 mod spice;
 
 use limits::{Board, Point, crosstalk_problems, nominal_problems, spread_problems};
@@ -169,12 +169,29 @@ fn the_pin_holds_the_charge_of_the_channel_before() {
 
 #[test]
 fn the_table_of_parts_is_the_list_of_parts() {
-    parts::check_or_update();
+    page::check_or_update("parts", &page::parts_table());
+}
+
+#[test]
+fn the_table_of_channels_is_what_ngspice_computes() {
+    let netlists = [
+        ("voltage", "voltage-channel.cir"),
+        ("current", "current-channel.cir"),
+        ("old divider", "old-divider.cir"),
+    ];
+    let mut channels = Vec::new();
+    for (name, netlist) in netlists {
+        let Some(points) = points(netlist, "point") else {
+            return;
+        };
+        channels.push((name, points));
+    }
+    page::check_or_update("channels", &page::channel_table(&channels));
 }
 
 #[test]
 fn every_value_of_the_netlists_is_in_the_list_of_parts() {
-    let listed = parts::text();
+    let listed = page::parts();
     for value in [
         "12.1 kohm",
         "9.53 kohm",
