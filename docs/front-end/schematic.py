@@ -103,7 +103,7 @@ def voltage(d, y):
 
 def current(d, y):
     """Transducer with a buffered reference."""
-    d += elm.Label().at((-0.6, y + 4.3)).label("Current, one of three: 83.8 A full scale with a transducer of 25 A, one turn", halign="left", fontsize=14)
+    d += elm.Label().at((-0.6, y + 4.3)).label("Current, one of three: 83.8 A full scale (25 A type)", halign="left", fontsize=14)
     d += elm.Dot(open=True).at((4.6, y + 1.4)).label("from supply", loc="left")
     d += elm.Line().at((4.6, y + 1.4)).to((BOX[0], y + 1.4))
     d += elm.Dot(open=True).at((4.6, y - 1.4)).label("into motor", loc="left")
