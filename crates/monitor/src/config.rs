@@ -2,6 +2,7 @@
 
 use motor::{Mechanics, TParams};
 
+use crate::checks::cage::Cage;
 use crate::input::converter::Converter;
 use crate::input::sample::CHANNELS;
 use crate::isolation::Healthy;
@@ -65,6 +66,8 @@ pub struct MonitorConfig {
     pub comparator: ComparatorConfig,
     /// Statistics of the healthy motor; without them FAULT follows the thresholds of r1..r4.
     pub healthy: Option<Healthy>,
+    /// What is known of the rotor's cage.
+    pub cage: Cage,
     /// What is not known of the parameters.
     pub doubt: ParameterDoubt,
 }
@@ -153,6 +156,7 @@ impl MonitorConfig {
                     .map(|gain| ("channel_gain", gain, [0.1, 10.0])),
             )
             .try_for_each(check_range)?;
+        self.cage.validate()?;
         self.healthy
             .as_ref()
             .map_or(Ok(()), |healthy| healthy.validate())

@@ -58,6 +58,7 @@ mod sync;
 mod tests;
 mod window;
 
+pub use checks::cage::{Cage, CageLimits, HealthySidebands};
 pub use checks::rotor_bars::{RotorReading, RotorState, Sidebands};
 pub use checks::sensors::{HealthConfig, Phase, SensorFinding};
 pub use checks::supply::{SupplyConfig, SupplyFinding};
