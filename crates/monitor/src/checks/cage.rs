@@ -40,7 +40,7 @@ pub struct CageLimits {
 /// Power factor by which limits that are published against the whole current are turned into shares of the active one.
 const POWER_FACTOR: f32 = 0.8;
 /// Share of what one bar leaves from which on bars count as broken. Currents between the bars and the inertia of the shaft
-/// make a real sideband smaller than the formula's: one measured motor showed a third to a half of it.
+/// make a real sideband smaller than the formula's.
 const SHARE_OF_ONE: f32 = 0.5;
 
 /// A rise that counts, in standard deviations of one block. Three blocks in a row must show it.

@@ -23,10 +23,11 @@ const LARGEST_STEP: f32 = 2.0 * TAU * Sidebands::LARGEST_SLIP;
 const LINES: usize = 5;
 /// Place of the sideband among them; the others are two and one turn to each side of it.
 const SIDEBAND: usize = 2;
-/// Times the lines beside it that a sideband must be. Noise that is alike in all five lines passes in `(1 + 4^2/4)^-4`, 1.6 in
+/// Times the lines beside it that a sideband must be. Noise that is alike in all five lines passes in `(1 + 3^2/4)^-4`, nine in
 /// a thousand blocks (a line's power over the mean of four others is distributed as F with 2 and 8 degrees of freedom),
-/// and in a row of three blocks, which FAULT takes, in 4 of a thousand million. A step of the load stays below 1.3 times.
-const CLEAR: f32 = 4.0;
+/// and in a row of three blocks, which FAULT takes, in 7 of ten million; and it must pass the limit as well. A step of the
+/// load stays below 1.3 times. A swing passes within 9 % of twice the slip frequency: so well must the slip be known.
+const CLEAR: f32 = 3.0;
 
 /// What one block of whole turns says about the cage.
 #[derive(Clone, Copy, Debug, PartialEq)]
