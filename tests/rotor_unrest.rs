@@ -15,12 +15,10 @@ use scenario::simulate::Simulation;
 use scenario::{Fault, Scenario};
 
 const MOTOR: &str = "motors/peer-2k2.toml";
-const DURATION_S: f64 = 10.0;
+/// Blocks last longest at the lightest load: three seconds.
+const DURATION_S: f64 = 16.0;
 /// Interval of the load's points, s.
 const STEP_S: f64 = 0.02;
-/// Twice the slip frequency of this motor at rated torque, Hz: 50 Hz and two pole pairs.
-const TWICE_SLIP_HZ: f64 = 6.0;
-
 /// A load of a mean torque, percent of the rated one, with swings on top: amplitude in percent, frequency, phase.
 #[derive(Clone, Debug)]
 struct RestlessLoad {
@@ -150,18 +148,25 @@ fn rated_current() -> f32 {
     motor(MOTOR).nameplate.current_amplitude() as f32
 }
 
-/// A swing within a tenth of twice the slip frequency looks like bars, and is kept out.
-fn is_told_apart(load: &RestlessLoad, twice_slip_hz: f64) -> bool {
-    let far = |[_, hz, _]: &[f64; 3]| (hz / twice_slip_hz - 1.0).abs() > 0.1;
-    load.swings.iter().all(far)
+/// A swing within a tenth of twice the slip frequency of any block looks like bars, and is kept out.
+fn is_told_apart(load: &RestlessLoad, blocks_hz: &[f64]) -> bool {
+    let far = |hz: f64| blocks_hz.iter().all(|twice| (hz / twice - 1.0).abs() > 0.1);
+    load.swings.iter().all(|[_, hz, _]| far(*hz))
 }
 
-/// Twice the slip frequency over a run, Hz.
-fn twice_slip_hz(reports: &[Report]) -> Option<f64> {
-    let windows = reports.iter().filter_map(|report| report.window);
-    let slips = windows.filter_map(|w| Some(f64::from(w.omega_sync - 2.0 * w.omega_mech?)));
-    let slips: Vec<f64> = slips.collect();
-    (!slips.is_empty()).then(|| 2.0 * slips.iter().sum::<f64>() / slips.len() as f64 / TAU)
+/// Twice the slip frequency of each block, Hz.
+fn twice_slip_hz(reports: &[Report]) -> Vec<f64> {
+    let ends = |report: &Report| report.rotor.sidebands.is_some();
+    let twice = |report: &Report| {
+        let window = report.window.as_ref()?;
+        Some(2.0 * f64::from(window.omega_sync - 2.0 * window.omega_mech?) / TAU)
+    };
+    let blocks = reports.split_inclusive(ends);
+    let means = blocks.filter_map(|block| {
+        let all: Vec<f64> = block.iter().filter_map(twice).collect();
+        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+    });
+    means.collect()
 }
 
 struct FalseAlarms {
@@ -178,18 +183,15 @@ fn false_alarms(seeds: std::ops::Range<u32>) -> FalseAlarms {
     for seed in seeds {
         let load = RestlessLoad::random(seed);
         let reports = load.reports(0.0, Cage::UNKNOWN);
-        let twice = twice_slip_hz(&reports).unwrap_or(TWICE_SLIP_HZ);
-        let place = match is_told_apart(&load, twice) {
+        let twice = twice_slip_hz(&reports);
+        let place = match is_told_apart(&load, &twice) {
             true => &mut count.told_apart,
             false => &mut count.too_near,
         };
         place[0] += 1;
         if is_broken(&reports) {
             place[1] += 1;
-            println!(
-                "{load:?}, twice the slip {twice:.2} Hz: {:?}",
-                blocks(&reports)
-            );
+            println!("{load:?}, twice the slip {twice:.2?} Hz");
         }
     }
     count
@@ -205,7 +207,7 @@ fn whole_cages_under_restless_loads_are_not_called_broken() {
 #[test]
 #[ignore = "a measurement of minutes"]
 fn three_hundred_restless_loads() {
-    let count = false_alarms(1000..1360);
+    let count = false_alarms(1000..1400);
     println!(
         "{} runs told apart, {} alarms; {} too near, {} alarms",
         count.told_apart[0], count.told_apart[1], count.too_near[0], count.too_near[1]
@@ -231,8 +233,8 @@ fn smallest_asymmetry() {
     println!(
         "load %, swings: usual, 28 bars, 44 bars, calibrated; lower sideband and lines beside it at 5 %"
     );
-    for mean in [30.0, 50.0, 75.0, 100.0] {
-        for swings in [vec![], vec![[5.0, 1.3, 0.0], [10.0, 11.0, 0.0]]] {
+    for mean in [40.0, 60.0, 80.0, 100.0] {
+        for swings in [vec![], vec![[10.0, 11.0, 0.0]], vec![[5.0, 0.7, 0.0]]] {
             let load = RestlessLoad {
                 swings,
                 ..RestlessLoad::steady(mean, 7)
@@ -248,8 +250,8 @@ fn smallest_asymmetry() {
                 .last()
                 .expect("blocks");
             println!(
-                "{mean} {}: {found:?}; {:.3} % {:.3} %, healthy {healthy:?}",
-                load.swings.len(),
+                "{mean} {:?}: {found:?}; {:.3} % {:.3} %, healthy {healthy:?}",
+                load.swings,
                 100.0 * last.lower,
                 100.0 * last.beside
             );
