@@ -118,7 +118,7 @@ impl HealthySidebands {
         let ([light, heavy], [first, last]) = (self.at, self.lower);
         let span = heavy - light;
         let way = if span > 0.0 {
-            ((active - light) / span).max(0.0).min(1.0)
+            ((active - light) / span).clamp(0.0, 1.0)
         } else {
             0.0
         };
