@@ -4,7 +4,6 @@
 use core::f32::consts::TAU;
 
 use crate::checks::rotor_bars::Sidebands;
-use crate::config::{ConfigError, check_range};
 
 /// Lower sideband of the healthy motor, at a light and at a heavy load; twice the same where only one load was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +34,17 @@ pub struct CageLimits {
     pub broken: f32,
     /// What the healthy motor showed at this load.
     pub healthy: Option<f32>,
+}
+
+/// The cage as one report shows it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RotorReading {
+    /// What the block says that this window ended; blocks are whole turns of twice the slip angle, one to some seconds.
+    pub sidebands: Option<Sidebands>,
+    /// The limits that hold for that block.
+    pub limits: Option<CageLimits>,
+    /// Bars count as broken: block after block they said so.
+    pub is_broken: bool,
 }
 
 /// Power factor by which limits that are published against the whole current are turned into shares of the active one.
@@ -91,13 +101,6 @@ impl Cage {
             Self::BROKEN
         }
     }
-
-    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
-        check_range(("cage.bars", self.bars, [0.0, 1000.0]))?;
-        self.healthy
-            .as_ref()
-            .map_or(Ok(()), HealthySidebands::validate)
-    }
 }
 
 /// What one broken bar of `bars` leaves at `(1 - 2 s)` of the supply's frequency, as a share of the current:
@@ -132,18 +135,6 @@ impl HealthySidebands {
             broken: (healthy + rise) * (1.0 + beyond),
             healthy: Some(healthy),
         }
-    }
-
-    fn validate(&self) -> Result<(), ConfigError> {
-        let ([light, heavy], [first, last]) = (self.at, self.lower);
-        let checks = [
-            ("cage.healthy.at", light, [1e-3, heavy]),
-            ("cage.healthy.at", heavy, [light, 100.0]),
-            ("cage.healthy.lower", first, [0.0, 1.0]),
-            ("cage.healthy.lower", last, [0.0, 1.0]),
-            ("cage.healthy.scatter", self.scatter, [0.0, 1.0]),
-        ];
-        checks.into_iter().try_for_each(check_range)
     }
 }
 
@@ -311,23 +302,5 @@ mod tests {
         assert!(limits.normalised(&shaken(1.3)).is_nan());
         assert!(limits.normalised(&shaken(0.6)) < 1.0);
         assert!(!limits.raises_doubt(&shaken(0.6)));
-    }
-
-    #[test]
-    fn ranges_are_checked() {
-        assert!(Cage::UNKNOWN.validate().is_ok());
-        assert!(calibrated([0.5, 1.0], [0.4, 0.6]).validate().is_ok());
-        for wrong in [
-            calibrated([1.0, 0.5], [0.4, 0.6]),
-            calibrated([0.0, 0.5], [0.4, 0.6]),
-            calibrated([0.5, 1.0], [-0.4, 0.6]),
-            calibrated([0.5, f32::NAN], [0.4, 0.6]),
-            Cage {
-                bars: f32::NAN,
-                ..Cage::UNKNOWN
-            },
-        ] {
-            assert!(wrong.validate().is_err(), "{wrong:?}");
-        }
     }
 }

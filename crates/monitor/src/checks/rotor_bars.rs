@@ -11,7 +11,6 @@ use core::f32::consts::TAU;
 
 use num_complex::Complex32;
 
-use crate::checks::cage::CageLimits;
 use crate::sync::rotation::{renormalise, small_rotation};
 
 /// Turns of twice the slip angle in one block: load steps and other pulsations cancel the better, the more there are.
@@ -52,17 +51,6 @@ impl Sidebands {
     pub fn is_clear(&self) -> bool {
         self.lower > CLEAR * self.beside
     }
-}
-
-/// The cage as one report shows it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RotorReading {
-    /// What the block says that this window ended; blocks are whole turns of twice the slip angle, one to some seconds.
-    pub sidebands: Option<Sidebands>,
-    /// The limits that hold for that block.
-    pub limits: Option<CageLimits>,
-    /// Bars count as broken: block after block they said so.
-    pub is_broken: bool,
 }
 
 /// Sums over the open block.
