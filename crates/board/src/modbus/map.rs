@@ -164,7 +164,12 @@ pub const MAP: [Entry; FIELDS] = {
             "two bits per lamp from the lowest, in the order RUN r1 r2 r3 r4 SENSOR LINE LOAD FAULT: 0 off, 1 on, 2 blinking",
         ),
         numbered(NotJudged, Meaning::Reasons),
-        entry(Verdict, Word, "", "0 not judged yet or SENSOR lit, 1 healthy, 2 FAULT lit"),
+        entry(
+            Verdict,
+            Word,
+            "",
+            "0 not judged yet or SENSOR lit, 1 healthy, 2 FAULT lit",
+        ),
         numbered(LikelyFault, Meaning::Faults),
         entry(FaultProbability, Word, "per mille", "its probability"),
         entry(Windows, Long, "", "windows since the start"),
