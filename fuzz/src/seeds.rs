@@ -3,7 +3,7 @@
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use board::{Frame, MAX_FRAME_BYTES};
+use board::{Frame, MAX_FRAME_BYTES, Shown};
 use flate2::{Compression, write::GzEncoder};
 use monitor::Report;
 use zip::write::SimpleFileOptions;
@@ -204,7 +204,7 @@ pub(crate) fn comtrade() -> Vec<Vec<u8>> {
 /// A way of feeding and a stream, as the target takes them.
 pub(crate) fn telemetry() -> Vec<Vec<u8>> {
     let frame = |sequence| {
-        let frame = Frame::new(&Report::default(), sequence, 3_300);
+        let frame = Frame::new(&Report::default(), &Shown::default(), sequence, 3_300);
         frame.encode(&mut [0; MAX_FRAME_BYTES]).to_vec()
     };
     let stream: Vec<u8> = (0..3).flat_map(frame).collect();

@@ -3,9 +3,9 @@
 
 use heapless::Vec;
 use monitor::{
-    Abc, ActiveEffect, ActiveEffects, ActiveLaws, CHANNELS, CIRCUIT, ChannelScale,
-    ComparatorConfig, Converter, FieldCurrent, Frame, Healthy, LoadKind, MAX_EFFECT_PARAMETERS,
-    MAX_EFFECTS, MAX_LAWS, MonitorConfig, ParameterDoubt, ROWS, Uncertainty,
+    Abc, ActiveEffect, ActiveEffects, ActiveLaws, CHANNELS, CIRCUIT, Cage, ChannelScale,
+    ComparatorConfig, Converter, FieldCurrent, Frame, Healthy, HealthySidebands, LoadKind,
+    MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS, MonitorConfig, ParameterDoubt, ROWS, Uncertainty,
 };
 use motor::effect::SteadyEffect;
 use motor::effect::curve::{Action, BOARD_KNOTS, SteadyCurve};
@@ -17,6 +17,7 @@ use crate::checksum::crc32_words;
 /// Words of an image, version and checksum included.
 pub const IMAGE_WORDS: usize = 42
     + HEALTHY_WORDS
+    + CAGE_WORDS
     + CIRCUIT
     + CHANNELS
     + MAX_EFFECTS * (1 + 2 * MAX_EFFECT_PARAMETERS)
@@ -28,8 +29,11 @@ const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 /// Words of the healthy motor's statistics.
 const HEALTHY_WORDS: usize = 6 + 2 * ROWS + 10;
 
+/// Words of the cage: bars, then healthy loads, sidebands and scatter.
+const CAGE_WORDS: usize = 6;
+
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0005;
+const SCHEMA: u32 = 0x444D_0006;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,6 +156,7 @@ fn write_judgement(w: &mut Writer, config: &MonitorConfig) {
     w.word(u32::from(config.comparator.persistence));
     w.number(config.comparator.hysteresis);
     write_healthy(w, config.healthy.as_ref());
+    write_cage(w, &config.cage);
     w.numbers(&config.doubt.circuit);
     config
         .doubt
@@ -214,6 +219,31 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
         significance,
     };
     (significance > 0.0).then_some(healthy)
+}
+
+/// A healthy load is positive, so 0 stands for sidebands that were not calibrated.
+fn write_cage(w: &mut Writer, cage: &Cage) {
+    w.number(cage.bars);
+    let Some(healthy) = &cage.healthy else {
+        w.numbers(&[0.0; CAGE_WORDS - 1]);
+        return;
+    };
+    w.numbers(&healthy.at);
+    w.numbers(&healthy.lower);
+    w.number(healthy.scatter);
+}
+
+fn read_cage(r: &mut Reader<'_>) -> Cage {
+    let bars = r.number();
+    let healthy = HealthySidebands {
+        at: r.numbers(),
+        lower: r.numbers(),
+        scatter: r.number(),
+    };
+    Cage {
+        bars,
+        healthy: (healthy.at[0] > 0.0).then_some(healthy),
+    }
 }
 
 fn write_effects(w: &mut Writer, config: &MonitorConfig) {
@@ -317,6 +347,7 @@ fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
             hysteresis: r.number(),
         },
         healthy: read_healthy(r),
+        cage: read_cage(r),
         doubt: read_doubt(r),
     })
 }

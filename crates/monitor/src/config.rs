@@ -2,6 +2,7 @@
 
 use motor::{Mechanics, TParams};
 
+use crate::checks::cage::Cage;
 use crate::input::converter::Converter;
 use crate::input::sample::CHANNELS;
 use crate::isolation::Healthy;
@@ -65,6 +66,8 @@ pub struct MonitorConfig {
     pub comparator: ComparatorConfig,
     /// Statistics of the healthy motor; without them FAULT follows the thresholds of r1..r4.
     pub healthy: Option<Healthy>,
+    /// What is known of the rotor's cage.
+    pub cage: Cage,
     /// What is not known of the parameters.
     pub doubt: ParameterDoubt,
 }
@@ -153,6 +156,7 @@ impl MonitorConfig {
                     .map(|gain| ("channel_gain", gain, [0.1, 10.0])),
             )
             .try_for_each(check_range)?;
+        check_cage(&self.cage)?;
         self.healthy
             .as_ref()
             .map_or(Ok(()), |healthy| healthy.validate())
@@ -173,9 +177,49 @@ pub(crate) fn check_range(
     }
 }
 
+fn check_cage(cage: &Cage) -> Result<(), ConfigError> {
+    check_range(("cage.bars", cage.bars, [0.0, 1000.0]))?;
+    let Some(healthy) = &cage.healthy else {
+        return Ok(());
+    };
+    let ([light, heavy], [first, last]) = (healthy.at, healthy.lower);
+    let checks = [
+        ("cage.healthy.at", light, [1e-3, 100.0]),
+        ("cage.healthy.at", heavy, [light, 100.0]),
+        ("cage.healthy.lower", first, [0.0, 1.0]),
+        ("cage.healthy.lower", last, [0.0, 1.0]),
+        ("cage.healthy.scatter", healthy.scatter, [0.0, 1.0]),
+    ];
+    checks.into_iter().try_for_each(check_range)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::checks::cage::HealthySidebands;
+
+    #[test]
+    fn ranges_of_the_cage_are_checked() {
+        let cage = |at, lower, bars| Cage {
+            bars,
+            healthy: Some(HealthySidebands {
+                at,
+                lower,
+                scatter: 0.001,
+            }),
+        };
+        assert!(check_cage(&Cage::UNKNOWN).is_ok());
+        assert!(check_cage(&cage([0.5, 1.0], [0.004, 0.006], 28.0)).is_ok());
+        for wrong in [
+            cage([1.0, 0.5], [0.004, 0.006], 28.0),
+            cage([0.0, 0.5], [0.004, 0.006], 28.0),
+            cage([0.5, 1.0], [-0.004, 0.006], 28.0),
+            cage([0.5, f32::NAN], [0.004, 0.006], 28.0),
+            cage([0.5, 1.0], [0.004, 0.006], f32::NAN),
+        ] {
+            assert!(check_cage(&wrong).is_err(), "{wrong:?}");
+        }
+    }
 
     #[test]
     fn an_error_says_what_was_wrong_and_what_would_be_right() {

@@ -10,6 +10,7 @@ use motor::effect::{EffectConfig, Instrument, SteadyEffect};
 use motor::motor_file::{self, HealthySettings, MotorFile, Sensors};
 use motor::{Mechanics, TParams};
 
+use crate::checks::cage::{Cage, HealthySidebands};
 use crate::config::{LoadKind, MonitorConfig};
 use crate::frames::Abc;
 use crate::input::converter::{ChannelScale, Converter};
@@ -75,6 +76,7 @@ impl MonitorConfig {
                 hysteresis: settings.hysteresis as f32,
             },
             healthy: file.healthy.as_ref().map(healthy),
+            cage: cage(file),
             doubt: doubt(file, &effects),
         })
     }
@@ -231,6 +233,19 @@ fn healthy(settings: &HealthySettings) -> Healthy {
             negative_impedance: share(settings.negative_impedance_percent),
         },
         significance: settings.significance as f32,
+    }
+}
+
+fn cage(file: &MotorFile) -> Cage {
+    let shares = |percent: [f64; 2]| percent.map(|x| (x / 100.0) as f32);
+    let healthy = file.healthy.as_ref().and_then(|healthy| healthy.rotor);
+    Cage {
+        bars: file.nameplate.rotor_bars.unwrap_or(0) as f32,
+        healthy: healthy.map(|rotor| HealthySidebands {
+            at: shares(rotor.active_percent),
+            lower: shares(rotor.sideband_percent),
+            scatter: (rotor.scatter_percent / 100.0) as f32,
+        }),
     }
 }
 

@@ -58,7 +58,8 @@ mod sync;
 mod tests;
 mod window;
 
-pub use checks::rotor_bars::{RotorReading, RotorState, Sidebands};
+pub use checks::cage::{Cage, CageLimits, HealthySidebands, RotorReading};
+pub use checks::rotor_bars::{RotorState, Sidebands};
 pub use checks::sensors::{HealthConfig, Phase, SensorFinding};
 pub use checks::supply::{SupplyConfig, SupplyFinding};
 pub use config::{ConfigError, LoadKind, MonitorConfig};

@@ -4,6 +4,7 @@ use motor::TParams;
 use motor::effect::Rated;
 use num_complex::Complex32;
 
+use crate::checks::cage::CageLimits;
 use crate::checks::rotor_bars::{RotorState, Sidebands};
 use crate::checks::sensors::{HealthConfig, SensorFinding};
 use crate::checks::supply::{SupplyConfig, SupplyFinding};
@@ -287,6 +288,8 @@ impl Monitor {
         }
         report.not_judged = self.obstacle(measured, window, report);
         report.rotor.sidebands = self.follow_rotor(state, window, report.not_judged);
+        let limits = |sidebands: &Sidebands| self.cage_limits(sidebands.active);
+        report.rotor.limits = report.rotor.sidebands.as_ref().map(limits);
         let movement = (voltages && currents)
             .then(|| self.movement(&state.rehearsal, window))
             .flatten();
@@ -309,6 +312,12 @@ impl Monitor {
                 state.temperature.follow(isolation, healthy, fault);
             }
         }
+    }
+
+    /// Sidebands from which on the cage is doubtful or broken, at an active current, A.
+    pub fn cage_limits(&self, active: f32) -> CageLimits {
+        let share = active / self.config.rated_current;
+        self.config.cage.limits(share, self.config.mechanics.n_p)
     }
 
     /// Adds the latest cycle to the block of whole turns of twice the slip angle. What hinders judging begins a new one.

@@ -119,7 +119,7 @@ mod tests {
             assert_eq!(Reason::from_number(number), Some(reason));
         }
         assert_eq!(
-            (Reason::from_number(0), Reason::from_number(14)),
+            (Reason::from_number(0), Reason::from_number(15)),
             (None, None)
         );
     }

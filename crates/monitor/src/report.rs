@@ -1,6 +1,6 @@
 //! What the monitor says about one window.
 
-use crate::checks::rotor_bars::RotorReading;
+use crate::checks::cage::RotorReading;
 use crate::checks::sensors::SensorFinding;
 use crate::checks::supply::SupplyFinding;
 use crate::isolation::Isolation;

@@ -68,6 +68,7 @@ fn config() -> MonitorConfig {
             hysteresis: 0.8,
         },
         healthy: None,
+        cage: monitor::Cage::UNKNOWN,
         doubt: ParameterDoubt::default(),
     }
 }

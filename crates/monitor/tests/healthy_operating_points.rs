@@ -84,6 +84,7 @@ impl Machine {
                 hysteresis: 0.8,
             },
             healthy: None,
+            cage: monitor::Cage::UNKNOWN,
             doubt: ParameterDoubt::default(),
         }
     }

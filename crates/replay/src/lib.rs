@@ -30,7 +30,7 @@ mod trace;
 pub mod words;
 
 pub use judgement::{Direction, NotJudgedShare, Unjudged};
-pub use rotor::RotorSummary;
+pub use rotor::{RotorCage, RotorSummary};
 pub use samples::{Samples, Timed};
 pub use timeline::{LampState, SequenceSummary, Timeline, Verdict, VerdictState};
 pub use trace::{Trace, WindowOperation, WindowResiduals};
@@ -104,6 +104,7 @@ pub fn stand_in_config(recording: &Recording) -> MonitorConfig {
             hysteresis: 0.8,
         },
         healthy: None,
+        cage: monitor::Cage::UNKNOWN,
         doubt: ParameterDoubt::default(),
     }
 }

@@ -1,6 +1,6 @@
 //! What the core's findings are called in front of people.
 
-use crate::RotorSummary;
+use crate::{RotorCage, RotorSummary};
 use monitor::{NotJudged, Reason, SensorFinding, Sidebands, SupplyFinding};
 
 /// Why a window was not judged, with what to do about it.
@@ -70,26 +70,59 @@ pub fn sensor(finding: SensorFinding) -> String {
 
 /// What the sidebands of the current say about the rotor's bars.
 pub fn rotor(summary: &RotorSummary) -> String {
-    match (
+    let answer = match summary.state {
+        RotorCage::NotTested => return rotor_not_tested(),
+        RotorCage::Whole => "whole",
+        RotorCage::Doubtful => "doubtful",
+        RotorCage::Broken => "broken",
+    };
+    let (Some(lower), Some(upper)) = (
         summary.lower_sideband_percent,
         summary.upper_sideband_percent,
-    ) {
-        (Some(lower), Some(upper)) => format!(
-            "rotor bars {}: sidebands at twice the slip frequency {lower:.2} and {upper:.2} % of the active current in {} {} \
-             (broken from {} %)",
-            if summary.broken { "broken" } else { "whole" },
-            summary.blocks,
-            if summary.blocks == 1 {
-                "block"
-            } else {
-                "blocks"
-            },
-            summary.broken_from_percent
-        ),
-        _ => format!(
-            "rotor bars not tested: that takes speed, a fifth of the rated current as active current, a slip below {:.0} %, and \
-             two turns of the slip without a load step",
-            100.0 * Sidebands::LARGEST_SLIP
-        ),
+    ) else {
+        return format!("rotor bars {answer}");
+    };
+    let blocks = match summary.blocks {
+        1 => "1 block".to_owned(),
+        n => format!("{n} blocks"),
+    };
+    format!(
+        "rotor bars {answer}: sidebands at twice the slip frequency {lower:.2} and {upper:.2} % of the active current in {blocks}{} \
+         (doubtful from {:.2} %, broken from {:.2} %){}",
+        since_calibration(summary),
+        summary.doubtful_from_percent,
+        summary.broken_from_percent,
+        advice(summary)
+    )
+}
+
+fn rotor_not_tested() -> String {
+    format!(
+        "rotor bars not tested: that takes speed, a fifth of the rated current as active current, a slip below {:.0} %, and \
+         two turns of the slip without a load step",
+        100.0 * Sidebands::LARGEST_SLIP
+    )
+}
+
+/// The lower sideband beside what it was at calibration.
+fn since_calibration(summary: &RotorSummary) -> String {
+    match (summary.growth(), summary.at_calibration_percent) {
+        (Some(growth), _) => format!(", {growth:.1} times what it was at calibration"),
+        (None, Some(before)) => format!(", at calibration {before:.2} %"),
+        (None, None) => String::new(),
+    }
+}
+
+/// What settles a doubt.
+fn advice(summary: &RotorSummary) -> &'static str {
+    match (summary.state, summary.at_calibration_percent) {
+        (RotorCage::Doubtful, None) => {
+            "; that is more than most whole cages leave: compare with a motor of the same type, or calibrate this one and watch the \
+             sideband grow"
+        }
+        (RotorCage::Doubtful, Some(_)) => {
+            "; that is more than at calibration: record again soon, at the same load"
+        }
+        _ => "",
     }
 }

@@ -46,6 +46,7 @@ pub const CONFIG: MonitorConfig = MonitorConfig {
         hysteresis: 0.8,
     },
 healthy: None,
+    cage: monitor::Cage::UNKNOWN,
     doubt: monitor::ParameterDoubt {
         circuit: [0.0; monitor::CIRCUIT],
         effects: [[0.0; monitor::MAX_EFFECT_PARAMETERS]; monitor::MAX_EFFECTS],

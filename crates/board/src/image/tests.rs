@@ -104,8 +104,17 @@ fn calibrated() -> MonitorConfig {
         },
         significance: 5.5,
     };
+    let sidebands = HealthySidebands {
+        at: [number(), number()],
+        lower: [number(), number()],
+        scatter: number(),
+    };
     MonitorConfig {
         healthy: Some(healthy),
+        cage: Cage {
+            bars: 28.0,
+            healthy: Some(sidebands),
+        },
         ..with_effects()
     }
 }

@@ -74,9 +74,9 @@ impl PanelConfig {
     }
 
     fn follow_rotor(&self, state: &mut PanelState, report: &mut Report) {
-        if let Some(sidebands) = &report.rotor.sidebands {
+        if let (Some(sidebands), Some(limits)) = (&report.rotor.sidebands, &report.rotor.limits) {
             self.comparator
-                .update(&mut state.rotor, sidebands.normalised());
+                .update(&mut state.rotor, limits.normalised(sidebands));
         }
         report.rotor.is_broken = state.rotor.is_lit();
     }

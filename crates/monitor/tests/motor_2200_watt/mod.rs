@@ -6,7 +6,7 @@ use motor::{Mechanics, TParams};
 
 // Named by the parent: to the unit tests it is this crate, to the others another one.
 use super::monitor::{
-    CHANNELS, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, MAX_EFFECTS,
+    CHANNELS, Cage, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, MAX_EFFECTS,
     MonitorConfig,
 };
 
@@ -59,6 +59,7 @@ pub fn config() -> MonitorConfig {
             hysteresis: 0.8,
         },
         healthy: None,
+        cage: Cage::UNKNOWN,
         doubt: Default::default(),
     }
 }

@@ -6,6 +6,17 @@ use crate::document::{Bounds, Section};
 /// zero sequence of the currents and of that of the voltages.
 pub const EVIDENCE_ROWS: usize = 9;
 
+/// Lower sidebands of a healthy cage at a light and at a heavy load; twice the same where only one was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HealthyRotor {
+    /// Active currents, percent of the rated current, the smaller first.
+    pub active_percent: [f64; 2],
+    /// Current at `(1 - 2 s)` times the supply's frequency there, percent of the active current.
+    pub sideband_percent: [f64; 2],
+    /// Its standard deviation from block to block, percent of the active current.
+    pub scatter_percent: f64,
+}
+
 /// Statistics of the healthy motor, percent of each row's scale or of each quantity's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HealthySettings {
@@ -41,6 +52,8 @@ pub struct HealthySettings {
     pub negative_impedance_percent: f64,
     /// Standard deviations at which FAULT lights.
     pub significance: f64,
+    /// Sidebands of the rotor's bars; `None`: not calibrated.
+    pub rotor: Option<HealthyRotor>,
 }
 
 impl Default for HealthySettings {
@@ -64,6 +77,7 @@ impl Default for HealthySettings {
             speed_percent: 0.01,
             negative_impedance_percent: 10.0,
             significance: 5.5,
+            rotor: None,
         }
     }
 }
@@ -75,6 +89,8 @@ const TURNS_ANGLE_DEG: f64 = 70.0;
 const MEAN: Bounds = Bounds::between(-1000.0, 1000.0, "percent");
 const SHARE: Bounds = Bounds::between(0.0, 1000.0, "percent");
 const ANGLE: Bounds = Bounds::between(-360.0, 360.0, "degrees");
+const SIDEBAND: Bounds = Bounds::between(0.0, 100.0, "percent");
+const ACTIVE: Bounds = Bounds::between(1.0, 1000.0, "percent");
 const SIGNIFICANCE: Bounds = Bounds::between(1.0, 1000.0, "standard deviations");
 
 pub(super) fn read(root: &Section<'_>) -> Option<Option<HealthySettings>> {
@@ -99,18 +115,41 @@ fn read_values(section: &Section<'_>) -> Option<HealthySettings> {
     let numbers = base.shares().map(|(key, default)| share(key, default));
     let angle = section.number_or("turns_angle_deg", &ANGLE, base.turns_angle_deg);
     let significance = section.number_or("significance", &SIGNIFICANCE, base.significance);
+    let rotor = read_rotor(section);
     let mut settings = HealthySettings {
         mean_percent: mean?,
         scatter_percent: scatter?,
         current_unbalance_percent: unbalance?.unwrap_or_default(),
         turns_angle_deg: angle?,
         significance: significance?,
+        rotor: rotor?,
         ..base
     };
     for (place, number) in settings.share_places().into_iter().zip(numbers) {
         *place = number?;
     }
     Some(settings)
+}
+
+fn read_rotor(section: &Section<'_>) -> Option<Option<HealthyRotor>> {
+    let sideband = section.optional_numbers::<2>("rotor_sideband_percent", &SIDEBAND);
+    let active = section.optional_numbers::<2>("rotor_active_percent", &ACTIVE);
+    let scatter = section.number_or("rotor_sideband_scatter_percent", &SIDEBAND, 0.0);
+    let (sideband, active, scatter) = (sideband?, active?, scatter?);
+    let [light, heavy] = active.unwrap_or([100.0; 2]);
+    Some(sideband.map(|[first, last]| {
+        // Loads in either order.
+        let (active_percent, sideband_percent) = if light <= heavy {
+            ([light, heavy], [first, last])
+        } else {
+            ([heavy, light], [last, first])
+        };
+        HealthyRotor {
+            active_percent,
+            sideband_percent,
+            scatter_percent: scatter,
+        }
+    }))
 }
 
 /// How many plain shares there are.

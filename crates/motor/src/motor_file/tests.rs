@@ -25,6 +25,9 @@ voltage_gain_percent = 3.8
 speed_percent = 3.9
 negative_impedance_percent = 4.1
 significance = 6.5
+rotor_active_percent = [90.0, 40.0]
+rotor_sideband_percent = [0.5, 0.3]
+rotor_sideband_scatter_percent = 0.04
 "#;
 
 fn smallest() -> MotorFile {
@@ -151,6 +154,11 @@ fn a_healthy_section_is_read_key_by_key() {
         speed_percent: 3.9,
         negative_impedance_percent: 4.1,
         significance: 6.5,
+        rotor: Some(HealthyRotor {
+            active_percent: [40.0, 90.0],
+            sideband_percent: [0.3, 0.5],
+            scatter_percent: 0.04,
+        }),
     };
     assert_eq!(motor.healthy, Some(expected));
     assert_eq!(

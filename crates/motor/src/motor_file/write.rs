@@ -156,6 +156,11 @@ fn healthy(text: &mut Text, settings: &HealthySettings) {
     }
     text.number("turns_angle_deg", settings.turns_angle_deg);
     text.number("significance", settings.significance);
+    if let Some(rotor) = &settings.rotor {
+        text.numbers("rotor_active_percent", &rotor.active_percent);
+        text.numbers("rotor_sideband_percent", &rotor.sideband_percent);
+        text.number("rotor_sideband_scatter_percent", rotor.scatter_percent);
+    }
 }
 
 fn uncertainty(text: &mut Text, settings: &Uncertainty) {

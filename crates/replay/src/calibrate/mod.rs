@@ -6,6 +6,7 @@
 mod fit;
 mod gains;
 mod refuse;
+mod rotor;
 mod statistics;
 mod uncertainty;
 mod windows;
@@ -121,7 +122,10 @@ pub fn calibrate(
         };
         (nothing, Vec::new())
     };
-    let healthy = statistics::healthy(&fitted, &observed, surroundings, &monitor_of)?;
+    let healthy = HealthySettings {
+        rotor: rotor::healthy(&fitted.motor, &sources)?,
+        ..statistics::healthy(&fitted, &observed, surroundings, &monitor_of)?
+    };
     let mut motor = fitted.motor.clone();
     motor.healthy = Some(healthy);
     if has_voltages {

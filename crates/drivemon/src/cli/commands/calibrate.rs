@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use monitor::Cause;
+use monitor::{Cage, Cause};
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
 use recording::{Audit, Recording, Source};
@@ -102,6 +102,17 @@ struct HealthyJson {
     mean_percent: [f64; 9],
     i2_over_i1_percent: [f64; 2],
     i2_over_i1_scatter_percent: f64,
+    /// Sidebands of the cage at a light and at a heavy load; absent where the recordings show too few blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rotor: Option<RotorJson>,
+}
+
+/// The healthy cage, percent of the active current; loads in percent of the rated current.
+#[derive(Debug, Serialize)]
+struct RotorJson {
+    active_percent: [f64; 2],
+    sideband_percent: [f64; 2],
+    scatter_percent: f64,
 }
 
 impl Calibrate {
@@ -202,6 +213,11 @@ fn healthy(settings: &HealthySettings) -> HealthyJson {
         mean_percent: settings.mean_percent,
         i2_over_i1_percent: settings.current_unbalance_percent,
         i2_over_i1_scatter_percent: settings.current_unbalance_scatter_percent,
+        rotor: settings.rotor.map(|rotor| RotorJson {
+            active_percent: rotor.active_percent,
+            sideband_percent: rotor.sideband_percent,
+            scatter_percent: rotor.scatter_percent,
+        }),
     }
 }
 
@@ -311,6 +327,32 @@ fn print_statistics(result: &CalibrateJson) {
         healthy.significance,
         result.false_alarm_rate
     );
+    print_rotor(healthy.rotor.as_ref());
     let [r1, r2, r3, r4] = result.threshold_percent;
     say!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
+}
+
+fn print_rotor(rotor: Option<&RotorJson>) {
+    let Some(rotor) = rotor else {
+        say!("  rotor bars not calibrated: too few blocks with speed and load");
+        return;
+    };
+    let ([light, heavy], [first, last]) = (rotor.active_percent, rotor.sideband_percent);
+    let scatter = rotor.scatter_percent;
+    if light == heavy {
+        say!(
+            "  healthy sideband of the rotor bars {first:.2} % at {light:.0} % active current, scatter {scatter:.2} %"
+        );
+    } else {
+        say!(
+            "  healthy sideband of the rotor bars {first:.2} % at {light:.0} % active current, {last:.2} % at {heavy:.0} %, scatter {scatter:.2} %"
+        );
+    }
+    let largest = first.max(last);
+    if largest >= 100.0 * f64::from(Cage::DOUBTFUL) {
+        say!(
+            "  {} {largest:.2} % is more than most whole cages leave: if bars are broken already, they are now taken for healthy",
+            paint::caution("rotor:")
+        );
+    }
 }

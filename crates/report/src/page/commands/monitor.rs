@@ -78,7 +78,11 @@ fn rotor(result: &Place<'_>) -> Option<(Markup, Markup)> {
         html! { (percent("lower_sideband")) " %" },
         html! {
             "of the active current at (1 - 2 s) f, mean of " (shown(result, "rotor/blocks", decimals(0)))
-            " blocks; bars count as broken from " (percent("broken_from")) " %"
+            " blocks; bars " (result.text("rotor/state")) ": doubtful from " (percent("doubtful_from")) " %, broken from "
+            (percent("broken_from")) " %"
+            @if result.get("rotor/at_calibration_percent").is_some() {
+                ", at calibration " (percent("at_calibration")) " %"
+            }
         },
     ))
 }
