@@ -1,7 +1,7 @@
 //! What comes over wires: frames of the board, requests to it.
 
 use board::modbus::{BoardStatus, Collector, Image, MAX_RESPONSE_BYTES, Slave, Status, UNLOCK_KEY};
-use board::{MAX_FRAME_BYTES, Message, crc32};
+use board::{MAX_FRAME_BYTES, Message, Shown, crc32};
 use live::Decoder;
 use monitor::Report;
 
@@ -44,7 +44,11 @@ fn framed(content: &[u8]) -> Vec<u8> {
 
 /// Requests of a length byte and a body each; the checksum is put behind unless the length's top bit says otherwise.
 pub(crate) fn modbus(bytes: &[u8]) {
-    let image = Status::default().take(&Report::default(), &BoardStatus::default());
+    let image = Status::default().take(
+        &Report::default(),
+        &Shown::default(),
+        &BoardStatus::default(),
+    );
     let mut slave = Slave::new(1);
     let (mut rest, mut now_ms, mut key_seen) = (bytes, 0u32, false);
     while let Some((length, tail)) = rest.split_first() {
