@@ -349,6 +349,52 @@ fn one_clamp_says_what_it_can() {
         "{}",
         stdout(&shown)
     );
+    assert!(checked["clamps"][0]["beside_supply"]["line"].is_null());
+}
+
+/// Bars leave a pair of lines at twice the slip frequency; one current shows the pair and calls nothing broken.
+#[test]
+fn one_clamp_shows_the_lines_of_broken_bars_and_names_what_else_leaves_them() {
+    let folder = workplace("check-clamp-bars");
+    let asymmetry =
+        "[[effects]]\nname = \"rotor-asymmetry\"\nasymmetry_re = 0.04\nasymmetry_im = 0.0\n";
+    let scenario = STEADY.replace("duration_s = 4", "duration_s = 10");
+    let others = ["va", "vb", "vc", "ib", "ic", "torque"];
+    let with_speed = simulated(&folder, "today", &(scenario + asymmetry), &others);
+    let whole = std::fs::read_to_string(&with_speed).unwrap();
+    let last = whole
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .next_back()
+        .unwrap();
+    let slip_hz = 50.0 - 2.0 * last.parse::<f64>().unwrap() / std::f64::consts::TAU;
+    let bare: Vec<String> = whole
+        .lines()
+        .map(|line| line.split(',').take(2).collect::<Vec<_>>().join(","))
+        .collect();
+    std::fs::write(folder.join("clamp.csv"), bare.join("\n") + "\n").unwrap();
+    let (recording, plate) = (folder.join("clamp.csv"), folder.join("plate.toml"));
+    let arguments = ["check", text(&recording), "--plate", text(&plate)];
+    let answer = json(&drivemon(&[&arguments[..], &["--json", "-"]].concat()));
+    let clamp = &answer["recordings"][0]["clamps"][0];
+    let line = &clamp["beside_supply"]["line"];
+    let distance = line["distance_hz"]
+        .as_f64()
+        .unwrap_or_else(|| panic!("{clamp}"));
+    // Lines of ten seconds are 0.1 Hz apart; the speed swings by less.
+    assert!(
+        (distance - 2.0 * slip_hz).abs() < 0.15,
+        "{distance} {slip_hz}"
+    );
+    assert!(line["lower_percent"].as_f64().unwrap() > 0.5, "{line}");
+    let words = clamp["rotor"].as_str().unwrap();
+    assert!(
+        words.contains("cannot be told") && words.contains("swings"),
+        "{words}"
+    );
+    assert_eq!(drivemon(&arguments).status.code(), Some(3));
 }
 
 /// A load table whose model misses an effect: the parameters would stand for it (the stator's resistance three times too

@@ -27,7 +27,7 @@ pub fn channels_missing(recording: &Recording, motor: &MotorFile) -> Vec<BlindSp
 /// What a motor that was never seen in good order leaves dark.
 pub(super) const NOT_CALIBRATED: BlindSpot = BlindSpot {
     unseen: "which phase is at fault, and faults smaller than the plate's uncertainty",
-    needs: "a recording of the motor in good order (--healthy)",
+    needs: "a recording of the motor in good order",
 };
 
 /// What these channels and this motor file leave dark.

@@ -3,6 +3,8 @@
 use recording::{Channel, Recording};
 use serde::Serialize;
 
+use super::clamp_bars::{BesideSupply, beside_supply};
+
 /// One channel of a recording that has no three of a kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClampSignal {
@@ -16,6 +18,10 @@ pub struct ClampSignal {
     pub rms: f64,
     /// Change of the size from the first to the last quarter, percent.
     pub change_percent: f64,
+    /// What lies beside the supply; only of a current of a steady frequency, long enough to part lines from the supply.
+    pub beside_supply: Option<BesideSupply>,
+    /// What that says about the rotor's bars, in words; absent of a voltage.
+    pub rotor: Option<String>,
 }
 
 /// Least periods for a frequency.
@@ -47,16 +53,42 @@ fn signal(channel: Channel, x: &[f64], step: f64) -> ClampSignal {
         &swings[swings.len() - quarter.min(swings.len())..],
     ]
     .map(rms);
+    let is_voltage = Channel::VOLTAGES.contains(&channel);
+    let frequency_hz = frequency(&swings, step);
+    let beside_supply = frequency_hz
+        .filter(|_| !is_voltage)
+        .and_then(|hz| beside_supply(&swings, step, hz));
     ClampSignal {
         channel: channel.to_string(),
-        unit: if Channel::VOLTAGES.contains(&channel) {
-            "V"
-        } else {
-            "A"
-        },
-        frequency_hz: frequency(&swings, step),
+        unit: if is_voltage { "V" } else { "A" },
+        frequency_hz,
+        rotor: (!is_voltage).then(|| words(beside_supply.as_ref(), frequency_hz)),
+        beside_supply,
         rms: rms(&swings),
         change_percent: 100.0 * (last / first.max(f64::MIN_POSITIVE) - 1.0),
+    }
+}
+
+/// Without a speed the bars are never called whole or broken.
+fn words(beside: Option<&BesideSupply>, frequency_hz: Option<f64>) -> String {
+    let Some((beside, supply_hz)) = beside.zip(frequency_hz) else {
+        return "rotor bars not tested: that takes a steady supply and some ten seconds".to_owned();
+    };
+    let [from, to] = beside.looked_hz;
+    match &beside.line {
+        Some(line) => format!(
+            "rotor bars cannot be told from one current: lines {:.2} Hz beside the supply, {:.2} % of the current below and {:.2} % above it. Broken bars leave such lines at \
+             a slip of {:.1} %, and so does a load that swings at {0:.2} Hz: record the speed too, or another load",
+            line.distance_hz,
+            line.lower_percent,
+            line.upper_percent,
+            50.0 * line.distance_hz / supply_hz,
+        ),
+        None => format!(
+            "rotor bars: no line beside the supply between {from:.1} and {to:.1} Hz; from {:.2} % of the current on one would show. Broken bars leave some 0.5 to 2 % near rated \
+             load, little without load",
+            beside.visible_percent
+        ),
     }
 }
 

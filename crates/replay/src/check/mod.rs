@@ -2,12 +2,14 @@
 
 mod blind;
 mod clamp;
+mod clamp_bars;
 mod knowledge;
 mod severity;
 mod told;
 
 pub use blind::{BlindSpot, blind_spots, channels_missing};
 pub use clamp::{ClampSignal, clamp_signals};
+pub use clamp_bars::{BesideSupply, SupplySideband};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;
 pub use told::Told;
@@ -56,6 +58,13 @@ pub struct Checked {
     pub residuals: Vec<WindowResiduals>,
     /// Voltage, current, speed and unbalance of every window.
     pub operation: Vec<WindowOperation>,
+}
+
+impl Checked {
+    /// Whether no recording in good order was given yet.
+    pub fn lacks_reference(&self) -> bool {
+        self.blind.contains(&blind::NOT_CALIBRATED)
+    }
 }
 
 /// Checks one recording against a motor.
@@ -140,7 +149,7 @@ fn todo(motor: &MotorFile, verdict: &Verdict) -> Vec<String> {
     };
     if !calibrated {
         steps.push(
-            "record ten seconds while the motor is known to be in good order, as a reference (--healthy): smaller faults show then"
+            "record ten seconds while the motor is known to be in good order, as a reference: smaller faults show then"
                 .to_owned(),
         );
     }

@@ -77,7 +77,7 @@ fn severity(checked: &Checked, cause: &Candidate) -> Option<&'static str> {
         Some(severity) => Some(severity.words()),
         None if sensors.contains(&cause.fault) => Some("an instrument is wrong, not the motor"),
         None if checked.blind.contains(&NOT_CALIBRATED) => {
-            Some("not known: a size is told once a recording in good order was given (--healthy)")
+            Some("not known: a size is told once a recording in good order was given")
         }
         None => None,
     }

@@ -166,6 +166,9 @@ fn print_one(named: &CheckedRecording) {
             clamp.unit,
             clamp.change_percent
         );
+        if let Some(rotor) = &clamp.rotor {
+            say!("    {rotor}");
+        }
     }
     let [judged, windows] = checked.windows;
     say!("  {judged} of {windows} windows judged");
@@ -173,7 +176,9 @@ fn print_one(named: &CheckedRecording) {
         .not_judged
         .iter()
         .for_each(|why| say!("    not judged: {why}"));
-    say!("  {}", checked.rotor);
+    if checked.clamps.is_empty() {
+        say!("  {}", checked.rotor);
+    }
     if let Some(percent) = checked.current_unbalance_percent {
         say!("  unbalance of the currents (negative over positive sequence): {percent:.2} %");
     }
@@ -238,5 +243,8 @@ fn print_steps(checked: &Checked) {
         for spot in &checked.blind {
             say!("    - {} (needs {})", spot.unseen, spot.needs);
         }
+    }
+    if checked.lacks_reference() {
+        say!("  a recording in good order is given with --healthy REC");
     }
 }

@@ -120,6 +120,7 @@ fn figures(one: &Place<'_>) -> Vec<(Markup, Markup)> {
                 (clamp.text("channel")) ", effective value"
                 @if clamp.get("frequency_hz").is_some() { " at " (shown(&clamp, "frequency_hz", decimals(2))) " Hz" }
                 ", " (shown(&clamp, "change_percent", decimals(1).signed())) " % from the first to the last quarter"
+                @if clamp.get("rotor").is_some() { "; " (clamp.text("rotor")) }
             },
         )
     });
