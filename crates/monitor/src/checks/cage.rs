@@ -111,7 +111,14 @@ fn one_bar(bars: f32, pole_pairs: f32) -> f32 {
         return 0.0;
     }
     let angle = TAU * pole_pairs / bars;
-    libm::sinf(angle) / (2.0 * pole_pairs * (TAU - angle))
+    sine(angle) / (2.0 * pole_pairs * (TAU - angle))
+}
+
+/// Of angles up to a quarter of a turn: Taylor to the seventh power, within 1.6e-4. The library's sine reaches double precision, which
+/// the board's processor has only in software.
+fn sine(angle: f32) -> f32 {
+    let square = angle * angle;
+    angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))
 }
 
 impl HealthySidebands {
@@ -247,6 +254,14 @@ mod tests {
                 ["doubtful", "doubtful", "doubtful", "broken"]
             ]
         );
+    }
+
+    #[test]
+    fn the_sine_holds_up_to_a_quarter_of_a_turn() {
+        for step in 0..=90_u8 {
+            let angle = f32::from(step).to_radians();
+            assert!((sine(angle) - angle.sin()).abs() < 1.6e-4, "{step}");
+        }
     }
 
     /// By hand: `a = 4 pi/28 = 0.4488`, `sin a = 0.4339`, `4 (2 pi - a) = 23.34`.
