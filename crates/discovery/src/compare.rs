@@ -136,12 +136,17 @@ fn state(study: &Study, rows: &Range<usize>) -> String {
         .supply
         .segments
         .iter()
-        .any(|s| part.contains(&s.start) && s.start > 0);
+        .any(|s| part.contains(&s.start) && s.start > 0 && !is_cut(case, s.start));
     if step > 0.1 * rated.torque || stepped {
         return "step".to_owned();
     }
     let round = |x: f64| (x / 5.0).round() * 5.0 + 0.0; // -0 becomes 0: one region, not two
     format!("load {:.0} %, voltage {:.0} %", round(load), round(voltage))
+}
+
+fn is_cut(case: &Case, sample: usize) -> bool {
+    let cuts = &case.timeline.cuts;
+    cuts.iter().any(|cut| cut.sample == sample)
 }
 
 /// Mean load torque of some rows, N m: as measured, or that of the air gap (its power over the synchronous speed).
@@ -201,11 +206,10 @@ fn regions(study: &Study, r: &[f64]) -> Vec<RegionReport> {
             _ => groups.push((name, vec![(k, rows)])),
         }
     }
-    let t_row = case.t_row();
     let report = |(name, blocks): &(String, Vec<Numbered>)| RegionReport {
         name: name.clone(),
-        from_s: blocks[0].1.start as f64 * t_row,
-        to_s: blocks[blocks.len() - 1].1.end as f64 * t_row,
+        from_s: case.time_of(blocks[0].1.start),
+        to_s: case.time_of(blocks[blocks.len() - 1].1.end - 1) + case.t_row(),
         error_over_noise: error_of(study, r, blocks),
     };
     groups.iter().map(report).collect()

@@ -37,6 +37,7 @@ pub use compare::compare;
 pub use data::instrument_class;
 pub use data::load_table::table_values;
 pub use data::question::Error;
+pub use data::stretches::told as told_stretches;
 pub use data::unsupported::Unsupported;
 pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use laws::formula::dictionary::{Laws, Shapes};

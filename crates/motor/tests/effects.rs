@@ -58,6 +58,7 @@ fn outputs(plant: &Plant, inputs: &Inputs, between: Between) -> Outputs {
         speed: SpeedSource::Free,
         timeline: &Arc::new(Timeline::constant(OMEGA)),
         running_at: None,
+        running_at_cuts: &[],
         open: &[],
     };
     simulate(plant, &run)

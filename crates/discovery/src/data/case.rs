@@ -53,6 +53,8 @@ pub(crate) struct Speeds<'a> {
     pub speed: Cow<'a, [f64]>,
     /// Speed at the start, rad/s.
     pub running_at: Option<f64>,
+    /// Speeds after the cuts of the timeline, rad/s.
+    pub running_at_cuts: Vec<f64>,
     /// Supply and measured angle.
     pub timeline: Arc<Timeline>,
 }
@@ -72,6 +74,8 @@ pub(crate) struct Case {
     pub speed_is_input: bool,
     /// Speed at the start unless from standstill.
     pub running_at: Option<f64>,
+    /// Speed at the first sample after each cut of the timeline.
+    pub running_at_cuts: Vec<f64>,
     /// Whether the speed at the start is not measured, but that at which the model carries the load.
     pub settles: bool,
     /// Samples at which a switch has taken the motor off the supply.
@@ -153,10 +157,12 @@ impl Case {
                 t_sample,
                 omega_sync: supply.omega_sync.clone(),
                 theta_mech,
+                cuts: Vec::new(),
             }),
             speed: fine(speed.value),
             speed_is_input: load.unknown,
             running_at,
+            running_at_cuts: Vec::new(),
             settles: rec.speed().is_none(),
             open: Vec::new(),
             decimation: 1,
@@ -200,6 +206,7 @@ impl Case {
             speed: Vec::new(),
             speed_is_input: false,
             running_at: None,
+            running_at_cuts: Vec::new(),
             settles: false,
             open: Vec::new(),
             decimation: 1,
@@ -228,7 +235,17 @@ impl Case {
 
     /// Time between residual rows, s.
     pub fn t_row(&self) -> f64 {
-        self.inputs.t_sample * (self.between.stride() * self.decimation) as f64
+        self.inputs.t_sample * self.samples_per_row() as f64
+    }
+
+    /// Input samples per residual row.
+    pub fn samples_per_row(&self) -> usize {
+        self.between.stride() * self.decimation
+    }
+
+    /// Time of a residual row since the first sample, s, parts that were left out counted.
+    pub fn time_of(&self, row: usize) -> f64 {
+        self.timeline.clock(row as f64 * self.t_row())
     }
 
     /// The measured speeds that drive a simulation of `plant`, from the smoothed `speed`: with a free scale they are what
@@ -239,6 +256,7 @@ impl Case {
             return Speeds {
                 speed: Cow::Borrowed(speed),
                 running_at: self.running_at,
+                running_at_cuts: self.running_at_cuts.clone(),
                 timeline: self.timeline.clone(),
             };
         }
@@ -246,6 +264,7 @@ impl Case {
         Speeds {
             speed: Cow::Owned(over(speed)),
             running_at: self.running_at.map(|x| x / gain),
+            running_at_cuts: over(&self.running_at_cuts),
             timeline: Arc::new(Timeline {
                 theta_mech: over(&self.timeline.theta_mech),
                 ..(*self.timeline).clone()
@@ -259,6 +278,7 @@ impl Case {
         let speeds = self.speeds(plant, &self.speed);
         case.speed = speeds.speed.into_owned();
         (case.running_at, case.timeline) = (speeds.running_at, speeds.timeline);
+        case.running_at_cuts = speeds.running_at_cuts;
         if self.speed_scale_is_free {
             let gain = gain_of(&plant.effects);
             for (y, w) in case.measured.iter_mut().zip(&mut case.weight) {
@@ -436,7 +456,7 @@ fn between(rec: &Recording, t_sample: f64) -> Between {
 }
 
 /// Shaft angle by integrating the measured speed (trapezoids), rad.
-fn measured_angle(rec: &Recording) -> Vec<f64> {
+pub(crate) fn measured_angle(rec: &Recording) -> Vec<f64> {
     let Some(speed) = rec.speed() else {
         return Vec::new();
     };

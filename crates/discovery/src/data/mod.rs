@@ -8,5 +8,6 @@ pub(crate) mod load_table;
 pub(crate) mod noise_floor;
 pub(crate) mod question;
 pub(crate) mod signal;
+pub mod stretches;
 pub(crate) mod study;
 pub(crate) mod unsupported;

@@ -1,6 +1,7 @@
 //! From files to a study: audit, preparation, errors.
 
 use crate::data::case::Case;
+use crate::data::stretches::{joined, stretches, told};
 use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
 use crate::model::free_scale::FreeScale;
@@ -59,7 +60,10 @@ impl Question {
         };
         let effects = from_motor_file(motor, &motor.name).map_err(Error::MotorFile)?;
         progress("auditing the recordings", 0.0);
-        let audited = audit_of(first, motor);
+        let mut audited = audit_of(first, motor);
+        if let Source::Recording(recording) = first {
+            audited.assumptions.extend(told(recording));
+        }
         let mut prior = Prior::new(motor, effects);
         if sources.iter().any(measures_torque) {
             // A measured brake torque holds the friction of the load.
@@ -125,11 +129,19 @@ fn case_of(
 ) -> Result<Case, Unsupported> {
     match (source, scale) {
         (Source::LoadTable(table), _) => Case::of_table(table, rated),
-        (Source::Recording(recording), None) => Case::new(recording, rated),
+        (Source::Recording(recording), None) => case_of_recording(recording, rated),
         (Source::Recording(recording), Some(scale)) => Ok(Case {
             speed_scale_is_free: true,
-            ..Case::new(&scale.applied(recording), rated)?
+            ..case_of_recording(&scale.applied(recording), rated)?
         }),
+    }
+}
+
+/// A recording whole, or stretches of a long one.
+fn case_of_recording(recording: &Recording, rated: &Rated<f64>) -> Result<Case, Unsupported> {
+    match stretches(recording) {
+        None => Case::new(recording, rated),
+        Some(stretches) => joined(recording, rated, &stretches),
     }
 }
 

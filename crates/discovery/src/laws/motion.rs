@@ -19,6 +19,8 @@ const BEYOND: f64 = 0.002;
 pub(crate) struct Motion {
     /// Time between the values, s.
     pub t_step: f64,
+    /// Time from the first to the last value, s, parts that were left out counted.
+    duration: f64,
     speed: Vec<f64>,
     slip: Vec<f64>,
     stator: Vec<f64>,
@@ -59,6 +61,7 @@ impl Motion {
             rotor: fluxes.iter().zip(&i_s).map(rotor).collect(),
             flux: fluxes.iter().map(|flux| flux.norm()).collect(),
             phase: outputs.i_s_abc.iter().map(|i| i[0]).collect(),
+            duration: case.timeline.clock(t_step * i_s.len() as f64),
             speed: outputs.omega_mech,
             t_step,
         }
@@ -83,7 +86,7 @@ impl Motion {
     pub fn range(&self, place: Place, coordinate: Coordinate) -> [f64; 2] {
         match coordinate {
             Coordinate::Angle | Coordinate::AngleElectrical => return [0.0, TAU],
-            Coordinate::Time => return [0.0, self.t_step * self.speed.len() as f64],
+            Coordinate::Time => return [0.0, self.duration],
             _ => {}
         }
         let begin = (SETTLES / self.t_step) as usize;

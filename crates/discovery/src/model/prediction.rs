@@ -63,23 +63,29 @@ pub(crate) fn run(
         }
         _ => SpeedSource::Free,
     };
+    let starts = |measured: f64, k: usize| match case.settles {
+        true => settled(plant, drive, speeds.timeline.omega_sync[k], k).unwrap_or(measured),
+        false => measured,
+    };
+    let cuts = speeds.timeline.cuts.iter().zip(&speeds.running_at_cuts);
+    let running_at_cuts: Vec<f64> = cuts
+        .map(|(cut, &omega)| starts(omega, cut.sample))
+        .collect();
     let run = Run {
         inputs: &drive.inputs,
         between: case.between,
         speed,
         timeline: &speeds.timeline,
-        running_at: speeds.running_at.map(|measured| match case.settles {
-            true => settled(plant, drive, speeds.timeline.omega_sync[0]).unwrap_or(measured),
-            false => measured,
-        }),
+        running_at: speeds.running_at.map(|measured| starts(measured, 0)),
+        running_at_cuts: &running_at_cuts,
         open: &case.open,
     };
     simulate(plant, &run)
 }
 
-/// Speed at which the motor carries what the first samples ask of it, rad/s.
-fn settled(plant: &Plant, drive: &Drive<'_>, omega_sync: f64) -> Option<f64> {
-    let (u_s, torque) = (drive.inputs.u_s.first()?, *drive.inputs.tau_load.first()?);
+/// Speed at which the motor carries what sample `k` asks of it, rad/s.
+fn settled(plant: &Plant, drive: &Drive<'_>, omega_sync: f64, k: usize) -> Option<f64> {
+    let (u_s, torque) = (drive.inputs.u_s.get(k)?, *drive.inputs.tau_load.get(k)?);
     let amplitude = Complex64::new(u_s.norm(), 0.0);
     let friction = plant.mechanics.total_friction();
     let curve = SteadyState::new(&plant.motor, plant.mechanics.n_p, amplitude, omega_sync);

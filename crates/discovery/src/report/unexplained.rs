@@ -52,7 +52,7 @@ fn drivers(study: &Study) -> Vec<(&'static str, Vec<f64>)> {
     };
     let n_p = study.prior.plant.mechanics.n_p;
     let inputs = &case.inputs;
-    let mut all = vec![("time", mean(&|row| row as f64))];
+    let mut all = vec![("time", mean(&|row| case.time_of(row)))];
     all.push(("current", mean(&|row| case.measured[row][0].abs())));
     if inputs.u_s.is_empty() {
         return all;
@@ -99,10 +99,7 @@ fn worst_place(study: &Study, trial: &Trial) -> String {
     let block = worst.map_or(0, |(k, _)| k);
     match case.table {
         Some(_) => format!("the worst point number {}", block + 1),
-        None => format!(
-            "the worst time {:.2} s",
-            (block * case.block) as f64 * case.t_row()
-        ),
+        None => format!("the worst time {:.2} s", case.time_of(block * case.block)),
     }
 }
 
@@ -203,7 +200,7 @@ mod tests {
         for block in [0, 5, 11] {
             let rows = study.fitted.case.blocks()[block].clone();
             let middle = 0.5 * (rows.start + rows.end - 1) as f64;
-            close("time", block, middle);
+            close("time", block, middle * study.fitted.case.t_row());
             for name in ["voltage", "load", "frequency"] {
                 close(name, block, 2.0 * middle);
             }
@@ -233,6 +230,7 @@ mod tests {
         // The mean of a rectified sine is 2/pi of its amplitude; 40 ms are 2.4 periods.
         let expected = point.i_s.norm() * 2.0 / std::f64::consts::PI;
         assert!((of("current") / expected - 1.0).abs() < 0.1);
-        assert!((of("time") - 1049.5).abs() < 12.0, "{}", of("time"));
+        // Rows 1000 to 1099 or so, every 0.4 ms.
+        assert!((of("time") - 0.42).abs() < 0.005, "{}", of("time"));
     }
 }

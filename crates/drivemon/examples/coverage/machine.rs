@@ -42,6 +42,8 @@ pub enum Question {
     Any,
     /// The same, but no recording is longer than a minute.
     Short,
+    /// The same, but every recording lasts ten minutes.
+    Long,
     /// The motor is as believed and carries a constant load.
     Healthy,
     /// One parameter, by its place, is so many times what is believed, in an operation that shows it.
@@ -60,6 +62,7 @@ impl Case {
         match question {
             Question::Any => {}
             Question::Short => operation = operation.no_longer_than_a_minute(),
+            Question::Long => operation = operation.of_ten_minutes(),
             Question::Healthy => {
                 believed = truth;
                 operation = operation.constant();
@@ -206,7 +209,7 @@ struct Operation {
 impl Operation {
     fn random(rng: &mut Pcg64) -> Self {
         let kind = ["constant", "steps", "start"][rng.random_range(0..3)];
-        // Ten minutes at full rate would take an hour to fit: long recordings are slower ones.
+        // Long recordings are slower ones.
         let (duration, rate) = [
             (2.0, 10e3),
             (4.0, 10e3),
@@ -249,6 +252,13 @@ impl Operation {
         if self.duration > 60.0 {
             (self.duration, self.rate) = (60.0, 2e3);
         }
+        self
+    }
+
+    /// Ten minutes, at a rate of the short ones: a tenth of it where that would be 10 kHz.
+    fn of_ten_minutes(mut self) -> Self {
+        self.rate = if self.rate > 5e3 { 1e3 } else { self.rate };
+        self.duration = 600.0;
         self
     }
 

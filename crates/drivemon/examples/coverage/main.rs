@@ -3,8 +3,8 @@
 //! `cargo run --release -p drivemon --example coverage -- --machines 300 --first 1`
 //! `--only adopt|calibrate|explain` asks one command; `--only healthy` asks `explain` about motors as believed at constant load,
 //! `--only changed` about one parameter that is off by as much as a user wants found (a tenth as many machines each);
-//! `--short` makes recordings of ten minutes, whose fits take a quarter of an hour and more, into ones of a minute; `--explain`
-//! asks every machine for missing effects too; `--verbose` prints every interval. Exits with 1 when a promise is missed.
+//! `--short` makes recordings of ten minutes into ones of a minute, `--long` all into ones of ten minutes; `--explain` asks every
+//! machine for missing effects too; `--verbose` prints every interval. Exits with 1 when a promise is missed.
 
 mod machine;
 mod tally;
@@ -124,9 +124,10 @@ fn main() -> ExitCode {
         };
         seeds.par_iter().map(one).collect::<Vec<Answer>>()
     };
-    let any = match has("--short") {
-        true => Question::Short,
-        false => Question::Any,
+    let any = match (has("--short"), has("--long")) {
+        (true, _) => Question::Short,
+        (false, true) => Question::Long,
+        (false, false) => Question::Any,
     };
     let asked = |what: &str, of| about(&seeds, what, any, of);
     println!(

@@ -42,5 +42,5 @@ pub use signals::{Inputs, Outputs};
 #[cfg(feature = "std")]
 pub use simulate::{Between, Plant, Run, SpeedSource, simulate};
 #[cfg(feature = "std")]
-pub use stack::{EffectStack, MAX_FILE_STATES, Timeline, extra_states};
+pub use stack::{Cut, EffectStack, MAX_FILE_STATES, Timeline, extra_states};
 pub use steady::{MAX_PARAMETERS, SteadyEffect, SteadyPoint};

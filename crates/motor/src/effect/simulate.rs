@@ -2,7 +2,7 @@
 
 use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, phases};
 use crate::effect::{
-    EffectConfig, EffectStack, Hook, Inputs, MAX_FILE_STATES, Outputs, Rated, Timeline,
+    Cut, EffectConfig, EffectStack, Hook, Inputs, MAX_FILE_STATES, Outputs, Rated, Timeline,
     extra_states,
 };
 use crate::{Mechanics, TParams};
@@ -66,6 +66,8 @@ pub struct Run<'a> {
     pub timeline: &'a Arc<Timeline>,
     /// Speed at the first sample, rad/s; `None` starts de-energised from standstill.
     pub running_at: Option<f64>,
+    /// Speed at the first sample after each cut of the timeline, rad/s: the motor runs there.
+    pub running_at_cuts: &'a [f64],
     /// Input samples at which the terminals are open: no current flows, the rotor flux decays alone.
     pub open: &'a [Range<usize>],
 }
@@ -129,11 +131,12 @@ fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &I
         e.effect.hooks().iter().any(|h| !outer.contains(h))
     };
     let start = start_state(plant, motor, run, inputs);
+    let restarts = restarts(plant, motor, run, inputs);
     // Stator inductance while the rotor flux stands still.
     let transient = motor.l_ls + motor.l_lr * motor.l_m / motor.l_r();
     if !plant.effects.iter().any(inside) {
         let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
-        return integrate(&model, start, run, inputs, transient);
+        return integrate(&model, start, &restarts, run, inputs, transient);
     }
     let (mechanics, timeline) = (&plant.mechanics, run.timeline.clone());
     if extra_states(&plant.effects) == 0 {
@@ -142,6 +145,7 @@ fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &I
         return integrate(
             &model,
             DynamicState::with_extra(&start),
+            &restarts,
             run,
             inputs,
             transient,
@@ -154,6 +158,7 @@ fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &I
     integrate(
         &model,
         DynamicState::with_extra(&start),
+        &restarts,
         run,
         inputs,
         transient,
@@ -166,18 +171,44 @@ fn start_state(
     run: &Run<'_>,
     inputs: &Inputs,
 ) -> DynamicState {
-    let running = |omega_mech| {
-        let omega_sync = run.timeline.omega_sync[0];
-        let n_p = plant.mechanics.n_p;
-        DynamicState::running(motor, n_p, inputs.u_s[0], omega_sync, omega_mech)
+    let at_speed = |omega_mech| running(plant, motor, run, inputs, 0, omega_mech);
+    run.running_at.map_or_else(DynamicState::rest, at_speed)
+}
+
+/// Steady state at sample `k` and this speed (rad/s).
+fn running(
+    plant: &Plant,
+    motor: &TParams<f64>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+    k: usize,
+    omega_mech: f64,
+) -> DynamicState {
+    let omega_sync = run.timeline.omega_sync[k];
+    let n_p = plant.mechanics.n_p;
+    DynamicState::running(motor, n_p, inputs.u_s[k], omega_sync, omega_mech)
+}
+
+/// The samples after the cuts of a recording, and the state of the motor there.
+fn restarts(
+    plant: &Plant,
+    motor: &TParams<f64>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+) -> Vec<(usize, DynamicState)> {
+    let cuts = run.timeline.cuts.iter().zip(run.running_at_cuts);
+    let at = |(cut, &omega): (&Cut, &f64)| {
+        let state = running(plant, motor, run, inputs, cut.sample, omega);
+        (cut.sample, state)
     };
-    run.running_at.map_or_else(DynamicState::rest, running)
+    cuts.map(at).collect()
 }
 
 /// Integrates over all inputs and records every step.
 fn integrate<H: Hooks>(
     model: &Dynamic<H>,
     mut state: DynamicState<H::Extra>,
+    restarts: &[(usize, DynamicState)],
     run: &Run<'_>,
     inputs: &Inputs,
     transient: f64,
@@ -192,9 +223,15 @@ fn integrate<H: Hooks>(
     out.i_s_abc.reserve(steps + 1);
     out.omega_mech.reserve(steps + 1);
     out.theta_mech.reserve(steps + 1);
+    let mut restarts = restarts.iter().peekable();
     for step in 0..=steps {
         let k = step * stride;
         let t = inputs.t_sample * k as f64;
+        if let Some((_, there)) = restarts.next_if(|(sample, _)| *sample <= k) {
+            // Angle and extra states go on: nothing tells them better than the last stretch.
+            (state.psi_s, state.psi_r) = (there.psi_s, there.psi_r);
+            state.omega_mech = there.omega_mech;
+        }
         steer(&mut state, run.speed, k, h);
         if run.open.iter().any(|open| open.contains(&k)) {
             interrupt(model, &mut state, t, inputs.u_s[k], transient);

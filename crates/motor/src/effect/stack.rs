@@ -24,6 +24,17 @@ pub struct Timeline {
     pub omega_sync: Vec<f64>,
     /// Measured shaft angle, rad; empty: the simulated one counts.
     pub theta_mech: Vec<f64>,
+    /// Where the samples were cut out of a longer recording, in their order; empty: they follow one another.
+    pub cuts: Vec<Cut>,
+}
+
+/// The first sample after a part that was left out of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// Its number among the samples that are left.
+    pub sample: usize,
+    /// Its time since the first sample, s, the part that was left out counted.
+    pub t: f64,
 }
 
 impl Timeline {
@@ -33,6 +44,17 @@ impl Timeline {
             t_sample: 1.0,
             omega_sync: vec![omega_sync],
             theta_mech: Vec::new(),
+            cuts: Vec::new(),
+        }
+    }
+
+    /// Time since the first sample, s, parts that were left out counted, at `t` (s) of the samples that are left.
+    #[inline]
+    pub fn clock(&self, t: f64) -> f64 {
+        let begins = |cut: &Cut| self.t_sample * cut.sample as f64;
+        match self.cuts.iter().rev().find(|cut| begins(cut) <= t) {
+            Some(cut) => cut.t + (t - begins(cut)),
+            None => t,
         }
     }
 
@@ -110,7 +132,7 @@ impl<const N: usize> EffectStack<N> {
     #[inline]
     fn at<'a>(&'a self, t: f64, state: &'a DynamicState<[f64; N]>, active: &Active) -> At<'a> {
         At {
-            t,
+            t: self.timeline.clock(t),
             psi_s: state.psi_s,
             psi_r: state.psi_r,
             omega_mech: state.omega_mech,

@@ -55,6 +55,7 @@ impl Drive {
                 t_sample,
                 omega_sync: frequency(&u_s, t_sample, half),
                 theta_mech: angle(recording),
+                cuts: Vec::new(),
             }),
             imposed_speed: imposed_speed(recording, half),
             running_at: running_at(recording, rated),
@@ -84,6 +85,7 @@ impl Drive {
                 speed: imposed.map_or(SpeedSource::Free, SpeedSource::Imposed),
                 timeline: &self.timeline,
                 running_at: self.running_at,
+                running_at_cuts: &[],
                 open: &[],
             },
         )

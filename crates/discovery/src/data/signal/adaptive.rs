@@ -92,6 +92,16 @@ impl Windows {
         out
     }
 
+    /// Keeps the windows of the first samples.
+    pub fn truncate(&mut self, samples: usize) {
+        self.level.truncate(samples);
+    }
+
+    /// The windows of a series that follows, of the same shortest window.
+    pub fn append(&mut self, mut next: Self) {
+        self.level.append(&mut next.level);
+    }
+
     /// The same for a signal of one axis.
     pub fn smooth_real(&self, x: &[f64]) -> Vec<f64> {
         let x: Vec<_> = x.iter().map(|&x| Complex64::new(x, 0.0)).collect();

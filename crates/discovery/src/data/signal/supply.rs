@@ -140,6 +140,43 @@ impl Supply {
         }
     }
 
+    /// Keeps the first samples.
+    pub fn truncate(&mut self, samples: usize) {
+        self.u_s.truncate(samples);
+        self.omega_sync.truncate(samples);
+        self.theta.truncate(samples);
+        for parts in [&mut self.segments, &mut self.raw] {
+            parts.retain_mut(|part| {
+                part.end = part.end.min(samples);
+                part.start < part.end
+            });
+        }
+        self.windows.truncate(self.segments.len());
+        for (windows, segment) in self.windows.iter_mut().zip(&self.segments) {
+            windows.truncate(segment.len());
+        }
+    }
+
+    /// A supply that follows, another part of the same recording. Its harmonics are forgotten: they are in its voltage.
+    pub fn append(&mut self, mut next: Self) {
+        let from = self.u_s.len();
+        for supply in [&mut *self, &mut next] {
+            if !supply.denoised {
+                // Taken as it was measured: so are its disturbances.
+                supply.raw.clear();
+                supply.raw.push(0..supply.u_s.len());
+                supply.denoised = true;
+            }
+        }
+        let later = |part: &Range<usize>| part.start + from..part.end + from;
+        self.segments.extend(next.segments.iter().map(later));
+        self.raw.extend(next.raw.iter().map(later));
+        self.u_s.append(&mut next.u_s);
+        self.omega_sync.append(&mut next.omega_sync);
+        self.theta.append(&mut next.theta);
+        self.windows.append(&mut next.windows);
+    }
+
     /// `raw` without its harmonics.
     fn cleaned(&self, raw: &[Complex64]) -> Vec<Complex64> {
         let harmonic = |(k, u): (usize, &Complex64)| {

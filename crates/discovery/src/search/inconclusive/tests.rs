@@ -235,6 +235,7 @@ fn the_largest_slip_is_that_of_steady_running() {
         t_sample: specimen::T_SAMPLE,
         omega_sync: vec![omega; samples],
         theta_mech: Vec::new(),
+        cuts: Vec::new(),
     });
     let slip_at = |k: usize| 0.01 * ((7 * (k / block).min(9)) % 10 + 1) as f64;
     case.speed = (0..samples)

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use discovery::{Error, Laws, Progress, Shapes};
+use discovery::{Error, Laws, Progress, Shapes, told_stretches};
 use motor::MotorFile;
 use motor::document::read_text;
 use recording::{Audit, Source};
@@ -13,7 +13,7 @@ use crate::cli::arguments::input::{InputArgs, read_motor};
 use crate::cli::printing::failure::Failure;
 use crate::cli::printing::output::OutputArgs;
 use crate::cli::printing::shell::quoted;
-use crate::cli::printing::terminal::say;
+use crate::cli::printing::terminal::{complain, say};
 use crate::cli::printing::{paint, progress};
 use report::study::Inputs;
 use report::{Style, decimals, significant};
@@ -72,6 +72,16 @@ impl ShapesArgs {
     }
 }
 
+/// One line on standard error where a recording is too long to be fitted whole.
+fn tell_stretches(source: &Source) {
+    let Source::Recording(recording) = source else {
+        return;
+    };
+    if let Some(stretches) = told_stretches(recording) {
+        complain(format_args!("{}: {stretches}", recording.name()));
+    }
+}
+
 /// Steps of the progress bar.
 const STEPS: f64 = 1000.0;
 
@@ -90,7 +100,10 @@ impl StudyArgs {
     /// Whatever is wrong with flags, file or sidecar.
     pub fn sources(&self) -> Result<Vec<Source>, Failure> {
         let paths = self.recordings.iter();
-        paths.map(|path| self.input.read(path)).collect()
+        let sources = paths.map(|path| self.input.read(path));
+        let sources = sources.collect::<Result<Vec<_>, _>>()?;
+        sources.iter().for_each(tell_stretches);
+        Ok(sources)
     }
 
     /// The motor file.

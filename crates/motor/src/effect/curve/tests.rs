@@ -61,6 +61,7 @@ fn run(plant: &Plant) -> Outputs {
             speed: SpeedSource::Free,
             timeline: &Arc::new(Timeline::constant(RATED.omega_sync)),
             running_at: None,
+            running_at_cuts: &[],
             open: &[],
         },
     )

@@ -153,5 +153,6 @@ fn timeline(scenario: &Scenario) -> Timeline {
             .map(|k| waveform.omega_sync(f64::from(k) * TIMELINE_S))
             .collect(),
         theta_mech: Vec::new(),
+        cuts: Vec::new(),
     }
 }
