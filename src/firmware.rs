@@ -44,7 +44,7 @@ static CAPTURE: ConstStaticCell<Capture> = ConstStaticCell::new(Capture::new());
 async fn main(spawner: Spawner) -> ! {
     let cause = ResetCause::take();
     let board = Board::new(embassy_stm32::init(clocks()));
-    let telemetry = Telemetry::start();
+    let telemetry = Telemetry::default();
     let capture = CAPTURE.take();
     defmt::info!("drive-monitor: {=str}, reset: {}", NAME, cause);
     let mut watchdog = IndependentWatchdog::new(board.watchdog, WATCHDOG);

@@ -8,10 +8,12 @@
 
 mod capture;
 mod decoder;
+mod log;
 #[cfg(feature = "probe")]
 mod probe;
 mod source;
 
 pub use capture::{CaptureError, Collector, Fetched, recording};
 pub use decoder::Decoder;
+pub use log::{LogSplitter, SplitLog};
 pub use source::{Source, SourceError, open_probe, open_serial};

@@ -1,21 +1,22 @@
-//! Frames through a debug probe: RTT channel 1 of the board.
+//! Frames through a debug probe: in the board's log, RTT channel 0.
 
 use std::time::Duration;
 
 use probe_rs::rtt::{Error, Rtt};
 use probe_rs::{Session, SessionConfig};
 
-use super::{Source, SourceError};
+use super::{LogSplitter, Source, SourceError};
 
 const CHIP: &str = "STM32G474RETx";
-/// The channel of the frames; 0 is the log.
-const CHANNEL: usize = 1;
+/// The channel of log and frames.
+const CHANNEL: usize = 0;
 /// Between two looks; the board's memory holds 0.3 s of frames.
 const PAUSE: Duration = Duration::from_millis(50);
 
 struct Probe {
     session: Session,
     rtt: Rtt,
+    log: LogSplitter,
 }
 
 /// Attaches to the first probe's chip without stopping it.
@@ -30,7 +31,8 @@ pub(super) fn open() -> Result<Box<dyn Source>, SourceError> {
             "the board does not run this firmware: {error}; flash it with `drivemon flash`"
         ))
     })?;
-    Ok(Box::new(Probe { session, rtt }))
+    let log = LogSplitter::default();
+    Ok(Box::new(Probe { session, rtt, log }))
 }
 
 fn attach(session: &mut Session) -> Result<Rtt, Error> {
@@ -48,7 +50,7 @@ impl Source for Probe {
             ))
         })?;
         bytes.truncate(length);
-        Ok(bytes)
+        Ok(self.log.take(&bytes).frames)
     }
 }
 

@@ -221,13 +221,20 @@ impl VirtualBoard {
 
     /// Takes the lines that the firmware logged since the last call; what was not taken in time is dropped on the board.
     pub fn log(&mut self) -> Vec<String> {
-        let bytes = self.drain_rtt(0).unwrap_or_default();
-        self.log.lines(&bytes)
+        self.read_log();
+        self.log.lines()
     }
 
-    /// Takes what the firmware wrote to a debugger channel (0 is the log).
-    pub fn drain_rtt(&mut self, channel: u32) -> Option<Vec<u8>> {
-        crate::firmware::rtt::drain(&mut self.cpu, channel)
+    /// Takes the frames that the firmware wrote into its log since the last call.
+    pub fn frames(&mut self) -> Vec<u8> {
+        self.read_log();
+        self.log.frames()
+    }
+
+    /// Reads the debugger's channel, as a debugger does.
+    fn read_log(&mut self) {
+        let bytes = crate::firmware::rtt::drain(&mut self.cpu, 0);
+        self.log.take(&bytes.unwrap_or_default());
     }
 
     /// Bytes of stack used at most since power-up: from its beginning, the vector table's first word, down to the deepest

@@ -63,7 +63,7 @@ fn frames(board: &mut VirtualBoard) -> (Vec<Frame>, Vec<RawSample>) {
     let mut bytes = Vec::new();
     for _ in 0..8 {
         board.run(0.1).expect("a run");
-        bytes.extend(board.drain_rtt(1).expect("a channel for frames"));
+        bytes.extend(board.frames());
     }
     let frames = bytes
         .split_inclusive(|byte| *byte == 0)

@@ -30,7 +30,7 @@ fn every_frame_is_the_hosts_report_bit_for_bit() {
     let mut bytes = Vec::new();
     for _ in 0..100 {
         board.run(0.04).expect("a run");
-        bytes.extend(board.drain_rtt(1).expect("a channel for frames"));
+        bytes.extend(board.frames());
     }
     let frames: Vec<Frame> = bytes
         .split_inclusive(|byte| *byte == 0)

@@ -1,7 +1,5 @@
-//! Stray-load loss: a braking torque that grows with the square of the current, `T_s (I/I_N)^2`, smoothed at standstill.
-//!
-//! Of the losses in IEEE 112 and IEC 60034-2-1 the one that neither the windings' resistances nor a no-load test show. Over
-//! speed it is `P = P_N (I/I_N)^2 w/w_s`, with `P_N = T_s w_s` at rated current.
+//! Stray-load loss, of those in IEEE 112 and IEC 60034-2-1 the one that neither resistances nor a no-load test show: a braking
+//! torque `T_s (I/I_N)^2`, smoothed at standstill; as a power `P_N (I/I_N)^2 w/w_s`, with `P_N = T_s w_s` at rated current.
 
 use crate::effect::steady::{Real, lit, steady_effect};
 use crate::effect::{Applies, Descriptor, Kind, Parameter, Rated, Scale, SteadyPoint};
@@ -33,7 +31,6 @@ pub struct StrayLoadLoss;
 
 steady_effect!(StrayLoadLoss, DESCRIPTOR, correct);
 
-#[inline(always)]
 fn torque<F: Real>(p: &[F], rated: &Rated<F>, squared_current: F, omega_mech: F) -> F {
     let turning = (omega_mech / (rated.speed() * lit(0.005))).tangent();
     p[0] * squared_current / (rated.current * rated.current) * turning
@@ -56,8 +53,7 @@ mod dynamic {
         }
 
         fn finish(&self, p: &[f64], at: &At<'_>, flow: &Flow, rates: &mut Rates<'_>) {
-            let squared = flow.winding.i_s.norm_sqr();
-            rates.omega_mech -= torque(p, at.rated, squared, at.omega_mech) / flow.inertia;
+            rates.omega_mech -= torque(p, at.rated, flow.winding.i_s.norm_sqr(), at.omega_mech) / flow.inertia;
         }
     }
 }
