@@ -2,9 +2,10 @@
 
 mod common;
 
+use audit::Code;
 use common::{in_project, in_shared_data, monitored, motor, read};
 use monitor::{Lamp, NotJudged};
-use recording::{Code, Mapping};
+use recording::Mapping;
 use replay::{Timeline, Unjudged, VerdictState};
 
 const PEER_SETS: [&str; 9] = [
@@ -128,7 +129,7 @@ fn three_currents_alone_give_the_published_negative_sequence_and_no_verdict() {
 fn the_load_table_becomes_operating_points() {
     let file = in_project("tests/data/imc_18k5_load_test/load_test.csv");
     let table =
-        recording::read_load_table(&file, &Mapping::default(), &mut |_| {}).expect("readable");
+        formats::read_load_table(&file, &Mapping::default(), &mut |_| {}).expect("readable");
     let motor = motor("motors/imc-18k5.toml");
     let points =
         replay::operating_points::OperatingPoints::new(&table, Some(&motor)).operating_points;

@@ -1,10 +1,12 @@
 //! What `drivemon monitor` costs: samples per second of reading, audit and replay of one recording.
 
+use audit::{Audit, Expectation, audit};
 use benches::interleaved::shortest;
 use criterion::{Criterion, Throughput};
+use formats::{read_recording, write_recording};
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::{Audit, Expectation, Mapping, Recording, audit, read_recording, write_recording};
+use recording::{Mapping, Recording};
 use replay::{Samples, config_for, replay};
 use scenario::Scenario;
 use scenario::simulate;

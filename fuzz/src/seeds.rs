@@ -176,7 +176,7 @@ pub(crate) fn streams() -> Vec<Vec<u8>> {
     all.into_iter().flatten().collect()
 }
 
-const DATA: &str = "crates/recording/tests/data";
+const DATA: &str = "crates/formats/tests/data";
 
 pub(crate) fn parquet() -> Vec<Vec<u8>> {
     files(DATA, ".parquet")

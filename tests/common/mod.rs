@@ -3,9 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
+use audit::{Audit, Expectation, audit};
+use formats::read_recording;
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::{Audit, Expectation, Mapping, Recording, audit, read_recording};
+use recording::{Mapping, Recording};
 use replay::{self, Samples, Timeline};
 
 /// A file of the project.

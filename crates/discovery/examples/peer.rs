@@ -4,8 +4,9 @@
 //! `recording.csv.gz` and `recording_b.csv.gz`.
 
 use discovery::{ExplainReport, explain};
+use formats::read_recording;
 use motor::MotorFile;
-use recording::{Source, read_recording};
+use recording::Source;
 use std::path::Path;
 use std::time::Instant;
 

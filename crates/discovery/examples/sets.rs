@@ -4,9 +4,10 @@
 //! `recording.csv.gz`, `recording_b.csv.gz` with their sidecars, and is named after what is hidden.
 
 use discovery::explain;
+use formats::read_recording;
 use motor::MotorFile;
 use rayon::prelude::*;
-use recording::{Source, read_recording};
+use recording::Source;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

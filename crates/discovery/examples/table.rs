@@ -1,8 +1,9 @@
 //! Explains a load-test table: `cargo run --release -p discovery --example table -- MOTOR TABLE`.
 
 use discovery::explain;
+use formats::read_any;
 use motor::MotorFile;
-use recording::{Source, read_any};
+use recording::Source;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);

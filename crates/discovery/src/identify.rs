@@ -1,8 +1,9 @@
 //! Parameters from recordings, with the intervals of the motor file as prior.
 
+use audit::Audit;
 use motor::MotorFile;
 use motor::motor_file::{ParameterInterval, Uncertainty};
-use recording::{Audit, Source};
+use recording::Source;
 use serde::Serialize;
 
 use crate::api::{Progress, as_believed, errors, updated};

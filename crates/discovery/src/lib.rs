@@ -7,7 +7,8 @@
 //! ```
 //! use discovery::compare;
 //! use motor::MotorFile;
-//! use recording::{Mapping, Source, read_recording};
+//! use formats::read_recording;
+//! use recording::{Mapping, Source};
 //!
 //! let motor = MotorFile::read("../../tests/data/peer/windage/motor.toml").expect("a motor file");
 //! let file = "../../tests/data/peer/windage/recording.csv.gz".as_ref();

@@ -1,8 +1,9 @@
 //! The published load test of a real 18.5 kW motor (tests/data/imc_18k5_load_test).
 
 use discovery::{Verdict, explain};
+use formats::read_load_table;
 use motor::MotorFile;
-use recording::{Source, read_load_table};
+use recording::Source;
 use std::path::Path;
 
 /// Core 410 W and friction 180 W, as published with the table.

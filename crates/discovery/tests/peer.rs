@@ -4,8 +4,9 @@
 //! the product promises (5 %, dead time 15 %, parameters 2 percentage points).
 
 use discovery::{ExplainReport, Verdict, adopt, compare, explain};
+use formats::read_recording;
 use motor::MotorFile;
-use recording::{Source, read_recording};
+use recording::Source;
 use std::path::{Path, PathBuf};
 
 fn folder(set: &str) -> PathBuf {

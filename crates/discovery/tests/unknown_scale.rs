@@ -2,8 +2,9 @@
 //! found, and the factor with it. Truth: `tests/data/peer/*/truth.toml`, and the sidecars' own scale.
 
 use discovery::{AtRest, ExplainReport, Verdict, adopt, compare, explain};
+use formats::read_recording;
 use motor::MotorFile;
-use recording::{Channel, Mapping, Recording, Source, UNITS, UnknownScale, read_recording};
+use recording::{Channel, Mapping, Recording, Source, UNITS, UnknownScale};
 use std::path::{Path, PathBuf};
 
 /// What the tachometer shows: an odd factor on the speed, and not zero at rest.

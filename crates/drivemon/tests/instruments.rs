@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use audit::{Audit, Code, Expectation, audit};
+use formats::read_recording;
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::{Audit, Channel, Code, Expectation, Mapping, Recording, audit, read_recording};
+use recording::{Channel, Mapping, Recording};
 use replay::{self, Samples, Timeline, VerdictState};
 use scenario::Scenario;
 use scenario::simulate::record;
@@ -98,7 +100,7 @@ fn reread(recording: &Recording, name: &str, flags: &Mapping) -> Recording {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).expect("a folder");
     let path = folder.join("recording.csv");
-    recording::write_recording(&path, recording).expect("room");
+    formats::write_recording(&path, recording).expect("room");
     read_recording(&path, flags, &mut |_| {}).expect("readable")
 }
 

@@ -131,7 +131,7 @@ fn a_sidecar_is_written_over_a_sidecar_only() {
 fn the_other_half_of_a_comtrade_pair_is_an_input() {
     let folder = scratch("pair");
     for end in ["cfg", "dat"] {
-        let name = format!("crates/recording/tests/data/binary-1999.{end}");
+        let name = format!("crates/formats/tests/data/binary-1999.{end}");
         fs::copy(shipped(&name), folder.join(format!("x.{end}"))).expect("copied");
     }
     let before = contents(&folder);

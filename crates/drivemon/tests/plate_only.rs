@@ -4,11 +4,12 @@
 
 use std::path::Path;
 
+use audit::{Expectation, audit};
 use monitor::Monitor;
 use motor::MotorFile;
 use nameplate::plate::PlateFile;
 use nameplate::{Estimate, Plate, catalogue, motor_text};
-use recording::{Expectation, Recording, audit};
+use recording::Recording;
 use replay::{Samples, VerdictState};
 use scenario::Scenario;
 use scenario::simulate::record;

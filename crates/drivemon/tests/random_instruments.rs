@@ -6,12 +6,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use audit::{Audit, Code, Expectation, audit};
+use formats::{read_recording, write_recording};
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::{
-    Audit, Channel, Code, Expectation, Mapping, Metadata, Recording, Sensors, audit,
-    read_recording, write_recording,
-};
+use recording::{Channel, Mapping, Metadata, Recording, Sensors};
 use replay::{self, Samples, VerdictState};
 use scenario::Scenario;
 use scenario::simulate::record;

@@ -40,7 +40,7 @@ pub enum CaptureError {
     OtherMotor,
     /// The motor file has effects that the core cannot take.
     #[error(transparent)]
-    Motor(#[from] motor::document::FileError),
+    Motor(#[from] motor::FileError),
     /// The samples do not make a recording.
     #[error(transparent)]
     Recording(#[from] recording::Error),

@@ -3,7 +3,7 @@
 use std::format;
 use std::vec::Vec;
 
-use motor::document::FileError;
+use motor::FileError;
 use motor::effect;
 use motor::effect::curve::{SteadyCurve, knots_and_values};
 use motor::effect::{EffectConfig, Instrument, SteadyEffect};

@@ -21,8 +21,6 @@
 //! ```
 
 pub mod connection;
-#[cfg(feature = "file")]
-pub mod document;
 #[cfg(feature = "std")]
 pub mod dynamic;
 pub mod effect;
@@ -40,6 +38,8 @@ pub mod parity;
 pub mod steady_state;
 pub mod temperature;
 
+#[cfg(feature = "file")]
+pub use document::FileError;
 pub use fault::FaultId;
 #[cfg(feature = "file")]
 pub use motor_file::MotorFile;

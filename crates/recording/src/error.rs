@@ -96,7 +96,8 @@ impl Error {
         }
     }
 
-    pub(crate) fn of(problems: Vec<Problem>) -> Error {
+    /// Problems that the user can correct, in the order in which they are to be read.
+    pub fn of(problems: Vec<Problem>) -> Error {
         Error {
             class: Class::BadInput,
             problems,
@@ -118,7 +119,8 @@ impl Error {
         &self.problems
     }
 
-    pub(crate) fn io(path: &Path, error: &std::io::Error) -> Error {
+    /// A file that the system does not give; the remedy fits the reason.
+    pub fn io(path: &Path, error: &std::io::Error) -> Error {
         let remedy = match error.kind() {
             std::io::ErrorKind::NotFound => "check the name and the folder",
             std::io::ErrorKind::PermissionDenied => "allow this user to read it",

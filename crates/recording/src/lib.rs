@@ -1,42 +1,34 @@
-//! Reading, mapping, writing and auditing recordings of motors and load-test tables.
+//! What a recording of a motor or a load table holds, and how the columns of a file become its channels.
 //!
-//! [`read_recording`] turns a `.csv` or `.csv.gz` file into a [`Recording`] in SI units, with every
-//! assumption that this took written down beside it. Whatever is wrong with an input becomes an
-//! [`Error`] that names file, line, column and remedy.
+//! A [`Recording`] has a clock and channels in SI units; a [`LoadTable`] has operating points. A [`Mapping`] says
+//! which column of a file is which channel, in which unit and through which sensor; flags and the [`Sidecar`] beside a
+//! file fill it. Whatever is wrong with an input is an [`Error`] that names file, line, column and remedy.
+//! The crate `formats` reads and writes files, `audit` looks for what is wrong with a recording.
 //!
 //! ```
-//! use recording::{Mapping, read_recording};
+//! use recording::{Channel, Metadata, Recording};
 //!
-//! let file = "../../tests/data/peer/none/recording.csv.gz".as_ref();
-//! let recording = read_recording(file, &Mapping::default(), &mut |_| {}).expect("readable");
-//! assert!((recording.t_sample() - 1e-4).abs() < 1e-12);
+//! let t = (0..4).map(|k| f64::from(k) * 1e-4).collect();
+//! let recording = Recording::new("bench", t, Metadata::default())
+//!     .and_then(|recording| recording.with_channel(Channel::SPEED, vec![157.0; 4]))
+//!     .expect("a rising clock, and one value per sample");
+//! assert_eq!(recording.channel(Channel::SPEED), Some(&[157.0; 4][..]));
 //! ```
 
-mod audit;
-mod contained;
 mod data;
 mod error;
 mod mapping;
-mod names;
-mod read;
-mod seal;
+pub mod names;
 mod suggest;
-mod write;
 
-pub use audit::{Audit, Circuit, Code, Expectation, Finding, audit, with_sound_probes};
 pub use data::channel::{Channel, Quantity, Signal};
 pub use data::load_table::{LoadPoint, LoadTable, TableColumn};
 pub use data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use data::recording::{Bridged, Recording, UnknownScale};
-pub use data::units::{Period, UNITS, Unit};
+pub use data::source::Source;
+pub use data::units::{Period, UNITS, Unit, is_unit};
 pub use error::{Class, Error, Problem};
 pub use mapping::sidecar::Sidecar;
-pub use mapping::{ColumnMap, DateOrder, Factor, Mapping, Origin, Said, Sensor, Target};
+pub use mapping::{ColumnMap, DateOrder, Factor, Mapping, Origin, Said, Sensor, Slot, Target};
 pub use names::{companions, sidecar_path};
-pub use read::{
-    Preview, Progress, Source, preview, read_any, read_load_table, read_recording, read_stream,
-    with_most_numbers, workbook_text,
-};
-pub use write::{
-    reading_text, sidecar_text, write_csv, write_parquet, write_recording, write_whole,
-};
+pub use suggest::closest;

@@ -3,19 +3,19 @@
 use std::path::{Path, PathBuf};
 
 /// Whether a name ends like this, `.csv.gz`, in upper or lower case.
-pub(crate) fn ends_in(path: &Path, end: &str) -> bool {
+pub fn ends_in(path: &Path, end: &str) -> bool {
     let name = path.to_string_lossy().to_lowercase();
     name.ends_with(end)
 }
 
 /// The extension in lower case; empty without one.
-pub(crate) fn extension(path: &Path) -> String {
+pub fn extension(path: &Path) -> String {
     let extension = path.extension().unwrap_or_default();
     extension.to_string_lossy().to_lowercase()
 }
 
 /// The file of the same name with another extension, in the case that is there: `x.cfg`, `x.CFG` or `x.Cfg`.
-pub(crate) fn beside(path: &Path, extension: &str) -> Option<PathBuf> {
+pub fn beside(path: &Path, extension: &str) -> Option<PathBuf> {
     let first: String = extension[..1].to_uppercase() + &extension[1..];
     let spellings = [extension.to_owned(), extension.to_uppercase(), first];
     let paths = spellings.iter().map(|end| path.with_extension(end));

@@ -4,8 +4,8 @@
 
 use std::fmt;
 
+use audit::{Code, Finding};
 use monitor::{Channel, FaultId, Known, Lamp, Phase, Report, Suspicion, likely};
-use recording::{Code, Finding};
 use serde::{Serialize, Serializer};
 
 /// Causes less likely than this are not listed.

@@ -3,7 +3,9 @@
 //! ```
 //! use monitor::Monitor;
 //! use motor::MotorFile;
-//! use recording::{Expectation, Mapping, audit, read_recording};
+//! use audit::{Expectation, audit};
+//! use formats::read_recording;
+//! use recording::Mapping;
 //! use replay::{Samples, config_for, replay};
 //!
 //! let motor = MotorFile::read("../../tests/data/peer/none/motor.toml").expect("a motor file");
@@ -39,7 +41,7 @@ use monitor::{
     ActiveEffects, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor,
     MonitorConfig, MonitorState, ParameterDoubt,
 };
-use motor::document::FileError;
+use motor::FileError;
 use motor::{Mechanics, MotorFile, TParams};
 use recording::{LoadTorque, Recording};
 

@@ -1,7 +1,7 @@
 //! A recording as the samples that the core takes.
 
+use audit::{Audit, Code};
 use monitor::{Abc, ClippedChannels, Sample, SpeedSample};
-use recording::{Audit, Code};
 use recording::{Channel, Recording, VoltageKind};
 
 /// Largest step of the clock, in sampling times, that is not a gap.

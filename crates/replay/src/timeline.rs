@@ -1,11 +1,11 @@
 //! What a whole recording came to: lamp changes, verdict, sequence components.
 
+use audit::Finding;
 use monitor::{
     Candidates, Channel, FAULTS, Known, Lamp, Lamps, LoadKind, MonitorConfig, NotJudged, Report,
     Witness,
 };
 use num_complex::Complex64;
-use recording::Finding;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::alarm_causes::Causes;

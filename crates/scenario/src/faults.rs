@@ -1,8 +1,8 @@
 //! `[[faults]]`: what breaks, how far, and when.
 
 use super::PlantKind;
+use document::{Bounds, Section};
 use motor::FaultId;
-use motor::document::{Bounds, Section};
 use motor::motor_file::Frame;
 
 /// A parameter of the motor.

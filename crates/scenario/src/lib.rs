@@ -34,8 +34,8 @@ pub use load::LoadSpec;
 pub use sensors::{SensorSpec, SpeedSensor};
 pub use supply::{Piecewise, SupplySpec};
 
+use document::{Document, FileError, read_text};
 use motor::MotorFile;
-use motor::document::{Document, FileError, read_text};
 use motor::motor_file::EffectEntry;
 use std::path::{Path, PathBuf};
 

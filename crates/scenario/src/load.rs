@@ -1,6 +1,6 @@
 //! `[load]`: what the shaft drives beside the motor's own friction.
 
-use motor::document::{Bounds, Section};
+use document::{Bounds, Section};
 use motor::load::{Interpolation, Load, Profile};
 use motor::motor_file::Nameplate;
 

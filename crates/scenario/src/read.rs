@@ -2,8 +2,8 @@
 
 use super::{PlantKind, Scenario, Start, faults, load, sensors, supply};
 use crate::simulate::check_entry;
+use document::{Bounds, Document, FileError, Section};
 use motor::MotorFile;
-use motor::document::{Bounds, Document, FileError, Section};
 use motor::motor_file::{EffectEntry, read_effects};
 use std::path::{Path, PathBuf};
 

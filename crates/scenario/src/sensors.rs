@@ -1,8 +1,8 @@
 //! `[sensors]`: the instruments, where they differ from those of the motor file.
 
 use crate::chain::{self, SignalChain};
+use document::{Bounds, Section};
 use motor::MotorFile;
-use motor::document::{Bounds, Section};
 use motor::motor_file::{LoadKind, Sensors};
 
 /// Where a recorded speed comes from. The encoder count is simulated in any case.

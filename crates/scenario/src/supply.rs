@@ -1,7 +1,7 @@
 //! `[supply]`: amplitude, frequency, unbalance, harmonics and their steps.
 
+use document::{Bounds, Section};
 use motor::connection::phase_amplitude_of_line_rms;
-use motor::document::{Bounds, Section};
 use motor::dynamic::Harmonic;
 use motor::motor_file::Nameplate;
 use num_complex::Complex64;

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use audit::{Expectation, audit};
+use formats::{read_any, read_stream};
 use monitor::Monitor;
-use recording::{
-    Error, Expectation, LoadTable, Mapping, Recording, Source, audit, read_any, read_stream,
-};
+use recording::{Error, LoadTable, Mapping, Recording, Source};
 use replay::{Samples, replay, stand_in_config};
 
 /// Samples that are replayed; more only take longer.
@@ -68,7 +68,7 @@ fn use_table(table: &LoadTable) {
 
 fn use_recording(recording: &Recording) {
     let audit = audit(recording, &Expectation::default());
-    let finite = |finding: &recording::Finding| finding.value.is_finite();
+    let finite = |finding: &audit::Finding| finding.value.is_finite();
     assert!(audit.findings.iter().all(finite), "{:?}", audit.findings);
     if recording.len() > REPLAYED {
         return;

@@ -7,8 +7,8 @@ mod print;
 pub use case::{Case, CaseResult};
 pub use matrix::{FaultMatrix, FaultRow, HealthyRow};
 
+use motor::FileError;
 use motor::MotorFile;
-use motor::document::FileError;
 use motor::motor_file::{FieldCurrent, Frame};
 use serde::Serialize;
 
@@ -69,7 +69,7 @@ pub enum DemoError {
     Monitor(#[from] monitor::ConfigError),
     /// Effects of the motor file that the core cannot take.
     #[error(transparent)]
-    Effects(#[from] motor::document::FileError),
+    Effects(#[from] motor::FileError),
 }
 
 /// Runs the demonstration on a motor; `progress` is called once after each experiment.

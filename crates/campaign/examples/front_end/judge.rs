@@ -1,13 +1,13 @@
 //! A healthy motor behind a board, judged by the core.
 
 use crate::board::Board;
+use audit::{Expectation, audit};
+use formats::{read_recording, write_recording};
 use monitor::{Lamp, Monitor};
 use motor::MotorFile;
 use motor::load::Load;
 use motor::motor_file::Sensors;
-use recording::{
-    Channel, Expectation, Mapping, Recording, Target, audit, read_recording, write_recording,
-};
+use recording::{Channel, Mapping, Recording, Target};
 use replay::{Samples, config_for};
 use scenario::simulate::record;
 use scenario::{LoadSpec, Scenario, SensorSpec};

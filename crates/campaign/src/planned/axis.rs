@@ -1,6 +1,6 @@
 //! The conditions that a campaign varies, one axis each.
 
-use motor::document::Bounds;
+use document::Bounds;
 
 /// A quantity that runs differ in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

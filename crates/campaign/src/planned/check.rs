@@ -1,7 +1,7 @@
 //! What is wrong with a plan although every value of it is in its range.
 
+use document::Section;
 use monitor::{Monitor, MonitorConfig};
-use motor::document::Section;
 
 use crate::planned::axis::{Axis, Grid};
 use crate::planned::fault::FaultKind;

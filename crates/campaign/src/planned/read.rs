@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use document::{Bounds, Document, FileError, Section, Value, read_text};
 use motor::MotorFile;
-use motor::document::{Bounds, Document, FileError, Section, Value, read_text};
 use twox_hash::XxHash64;
 
 use crate::planned::axis::{AXES, DESCRIBED, Described, Grid};

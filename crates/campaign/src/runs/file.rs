@@ -83,7 +83,7 @@ impl Results {
     /// # Errors
     /// A path that cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), StoreError> {
-        recording::write_whole(path, |file| {
+        formats::write_whole(path, |file| {
             self.write_rows(file).map_err(std::io::Error::other)
         })
         .map_err(|error| StoreError::System(named(path), error))

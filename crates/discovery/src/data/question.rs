@@ -7,16 +7,17 @@ use crate::data::unsupported::Unsupported;
 use crate::model::free_scale::FreeScale;
 use crate::model::prior::Prior;
 use crate::model::speed_gain::{is_scale, name};
+use audit::{Audit, Expectation, audit, with_sound_probes};
 use motor::MotorFile;
 use motor::effect::{Rated, from_motor_file};
-use recording::{Audit, Expectation, LoadTorque, Recording, Source, audit, with_sound_probes};
+use recording::{LoadTorque, Recording, Source};
 use std::fmt;
 
 /// Why nothing can be answered.
 #[derive(Clone, Debug)]
 pub enum Error {
     /// The effects of the motor file are wrong.
-    MotorFile(motor::document::FileError),
+    MotorFile(document::FileError),
     /// No recording was given, or a mixture of recordings and load tables.
     Recordings(String),
     /// The recording cannot be judged: its audit, and the reason.

@@ -1,7 +1,7 @@
 //! What the user gets, with the stable keys of the JSON interface.
 
+use audit::Audit;
 use motor::motor_file::EffectEntry;
-use recording::Audit;
 use serde::{Deserialize, Serialize};
 
 /// The answer of an explanation.

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use formats::read_recording;
 use motor::MotorFile;
-use recording::{Mapping, Source, read_recording};
+use recording::{Mapping, Source};
 
 use crate::data::question::Question;
 use crate::data::study::{Study, Trial};

@@ -165,12 +165,12 @@ const OTHERS: [(&str, &str, &str); 22] = [
     (
         "a wrong bit in a file with checksums",
         "refused, or nothing that is read changes",
-        "crates/recording/tests/formats/parquet.rs::a_wrong_byte_in_a_file_of_ours_is_noticed_wherever_it_is",
+        "crates/formats/tests/all/formats/parquet.rs::a_wrong_byte_in_a_file_of_ours_is_noticed_wherever_it_is",
     ),
     (
         "a configuration of 100 000 sections",
         "refused within a second or two; the first fifty problems",
-        "crates/motor/src/document/tests.rs::many_sections_take_linear_time",
+        "crates/document/src/tests.rs::many_sections_take_linear_time",
     ),
     (
         "a day without a pause",

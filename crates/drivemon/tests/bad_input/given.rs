@@ -105,7 +105,7 @@ fn recordings(cases: Vec<Case>) -> Vec<Given> {
         command: ALONE,
         words: owned(case.expected),
         exit_code: Some(case.exit_code),
-        test: "crates/recording/tests/malformed/main.rs::every_malformed_input_is_refused_with_place_and_remedy",
+        test: "crates/formats/tests/all/malformed/mod.rs::every_malformed_input_is_refused_with_place_and_remedy",
     };
     cases.into_iter().map(given).collect()
 }
@@ -124,7 +124,7 @@ fn whole_recordings() -> Vec<Given> {
 
 fn data(name: &str) -> Vec<u8> {
     let path = Path::new(PROJECT)
-        .join("crates/recording/tests/data")
+        .join("crates/formats/tests/data")
         .join(name);
     std::fs::read(path).expect("it ships")
 }
@@ -147,7 +147,7 @@ fn comtrade() -> Vec<Given> {
         command: MAPPED,
         words: owned(words),
         exit_code: Some(*exit_code),
-        test: "crates/recording/tests/formats/comtrade_damaged.rs::a_wrong_configuration_is_named_by_line_and_field",
+        test: "crates/formats/tests/all/formats/comtrade_damaged.rs::a_wrong_configuration_is_named_by_line_and_field",
     };
     let row = |(row, words): &(&'static str, &'static [&'static str])| {
         let all = text("ascii-1999.dat");
@@ -162,7 +162,7 @@ fn comtrade() -> Vec<Given> {
             command: MAPPED,
             words: owned(words),
             exit_code: Some(2),
-            test: "crates/recording/tests/formats/comtrade_damaged.rs::a_wrong_row_of_text_is_named_by_line_and_channel",
+            test: "crates/formats/tests/all/formats/comtrade_damaged.rs::a_wrong_row_of_text_is_named_by_line_and_channel",
         }
     };
     let configurations = comtrade_cases::CONFIGURATIONS.iter().map(slip);
@@ -180,19 +180,19 @@ fn binary() -> Vec<Given> {
         exit_code: Some(exit_code),
         test,
     };
-    const PARQUET: &str = "crates/recording/tests/formats/parquet.rs::damaged_files_are_refused";
+    const PARQUET: &str = "crates/formats/tests/all/formats/parquet.rs::damaged_files_are_refused";
     const LIES: &str =
-        "crates/recording/tests/formats/parquet.rs::lengths_that_lie_are_a_damaged_file";
+        "crates/formats/tests/all/formats/parquet.rs::lengths_that_lie_are_a_damaged_file";
     const BROTLI: &str =
-        "crates/recording/tests/formats/parquet.rs::every_compression_but_brotli_is_read";
+        "crates/formats/tests/all/formats/parquet.rs::every_compression_but_brotli_is_read";
     const MAT: &str =
-        "crates/recording/tests/formats/mat.rs::damaged_and_foreign_files_are_refused";
+        "crates/formats/tests/all/formats/mat.rs::damaged_and_foreign_files_are_refused";
     const PARQUET_PHASE: &str =
-        "crates/recording/tests/formats/parquet.rs::a_phase_that_cannot_be_read_is_no_absent_one";
+        "crates/formats/tests/all/formats/parquet.rs::a_phase_that_cannot_be_read_is_no_absent_one";
     const MAT_PHASE: &str =
-        "crates/recording/tests/formats/mat.rs::a_phase_that_cannot_be_read_is_no_absent_one";
+        "crates/formats/tests/all/formats/mat.rs::a_phase_that_cannot_be_read_is_no_absent_one";
     const NAME: &str =
-        "crates/recording/tests/formats/main.rs::a_name_that_does_not_fit_the_content_is_named";
+        "crates/formats/tests/all/formats/mod.rs::a_name_that_does_not_fit_the_content_is_named";
     let (parquet, mat) = (data("pyarrow-gzip.parquet"), data("scipy-v6.mat"));
     let lie = Path::new(PROJECT).join("fuzz/findings/parquet/byte-stream-split");
     let lie = std::fs::read(lie).expect("it ships");

@@ -6,23 +6,23 @@
 mod common;
 
 mod board;
-#[path = "../../../../crates/recording/tests/formats/comtrade_cases.rs"]
+#[path = "../../../../crates/formats/tests/all/formats/comtrade_cases.rs"]
 mod comtrade_cases;
-#[path = "../../../../crates/recording/tests/malformed/files.rs"]
+#[path = "../../../../crates/formats/tests/all/malformed/files.rs"]
 mod files;
 mod given;
 mod malformed;
 #[path = "../../../../crates/motor/src/motor_file/malformed_cases.rs"]
 mod motor_cases;
 mod page;
-#[path = "../../../../crates/recording/tests/common/mod.rs"]
+#[path = "../../../../crates/formats/tests/all/common.rs"]
 mod recording_common;
 #[path = "../../../scenario/src/malformed_cases.rs"]
 mod scenario_cases;
-#[path = "../../../../crates/recording/tests/malformed/sidecars.rs"]
+#[path = "../../../../crates/formats/tests/all/malformed/sidecars.rs"]
 mod sidecars;
 
-/// A malformed recording as `crates/recording/tests/malformed` describes it.
+/// A malformed recording as `crates/formats/tests/all/malformed` describes it.
 struct Case {
     name: &'static str,
     bytes: Vec<u8>,

@@ -84,7 +84,7 @@ fn an_alarm_leaves_a_recording_that_compare_reads() {
         std::fs::write(folder.join(format!("alarm.{format}")), &answer.body).expect("written");
     }
     for name in ["alarm.csv", "alarm.parquet"] {
-        let recording = recording::read_recording(
+        let recording = formats::read_recording(
             &folder.join(name),
             &recording::Mapping::default(),
             &mut |_| {},

@@ -1,11 +1,11 @@
 //! Effects in the motor file: from its entries and back.
 
 use crate::MotorFile;
-use crate::document::{Document, FileError};
 use crate::effect::config::known_effect;
 use crate::effect::{Descriptor, EffectConfig, EffectError, MAX_FILE_STATES, Rated};
 use crate::effect::{curve, expression, motions};
 use crate::motor_file::{EffectEntry, EffectParameter, EffectValue, Nameplate};
+use document::{Document, FileError};
 
 /// Key that chooses between several forms of one effect.
 const FORM: &str = "form";

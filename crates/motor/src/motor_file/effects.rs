@@ -3,7 +3,7 @@
 //! This module knows no effect. The library of effects checks names, parameters and ranges; lines are kept so that its
 //! errors can name them.
 
-use crate::document::{Bounds, Entry, Problem, Section, Value};
+use document::{Bounds, Entry, Problem, Section, Value};
 
 /// One `[[effects]]` entry.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! `[healthy]`: what `calibrate` learned of the healthy motor; with it FAULT follows the direction of the evidence.
 
-use crate::document::{Bounds, Section};
+use document::{Bounds, Section};
 
 /// Rows of evidence: torque balance, `e_d`, `e_q`, then real and imaginary part of the negative sequence's balance, of the
 /// zero sequence of the currents and of that of the voltages.

@@ -25,8 +25,8 @@ pub use nameplate::{Connection, Nameplate};
 pub use sensors::Sensors;
 pub use uncertainty::{Correlation, ParameterInterval, Uncertainty};
 
-use crate::document::{Document, FileError, Section, read_text};
 use crate::{Mechanics, TParams};
+use document::{Document, FileError, Section, read_text};
 use std::path::Path;
 
 /// Everything that is known about one motor and the instrument at its terminals.

@@ -1,6 +1,6 @@
 //! `[load]` and `[monitor]`: what the residuals may assume and how they are judged.
 
-use crate::document::{Bounds, Section};
+use document::{Bounds, Section};
 
 /// What is known about the load torque.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

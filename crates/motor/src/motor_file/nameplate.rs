@@ -1,6 +1,6 @@
 //! `[nameplate]`: what the plate on the housing says.
 
-use crate::document::{Bounds, Section};
+use document::{Bounds, Section};
 use std::f64::consts::TAU;
 
 /// How the three windings are connected.

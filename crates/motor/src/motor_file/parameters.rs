@@ -1,8 +1,8 @@
 //! `[parameters]`: the T model and the mechanics.
 
 use super::Nameplate;
-use crate::document::{Bounds, Section};
 use crate::{Mechanics, TParams};
+use document::{Bounds, Section};
 
 pub(super) struct Parameters {
     pub(super) t_model: TParams<f64>,

@@ -1,7 +1,7 @@
 //! `[sensors]`: ranges, resolution, noise and corrections of the instrument.
 
 use super::Nameplate;
-use crate::document::{Bounds, Section};
+use document::{Bounds, Section};
 
 /// The instrument at the motor's terminals and shaft.
 ///

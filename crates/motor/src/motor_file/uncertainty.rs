@@ -1,7 +1,7 @@
 //! `[uncertainty]`: 95 % intervals of parameters that were not measured on this motor, and how they hang together.
 
 use super::EffectEntry;
-use crate::document::{Bounds, Section};
+use document::{Bounds, Section};
 
 /// 95 % intervals of parameters, and their strong correlations.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,12 +6,13 @@ use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
+use formats::{sidecar_text, write_csv, write_parquet};
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::record::RecordWriter;
-use recording::{Recording, sidecar_text, write_csv, write_parquet};
+use recording::Recording;
 
 use crate::running::history::HistoryRow;
 use crate::running::session::Session;

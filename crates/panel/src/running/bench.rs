@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant as WallTime};
 
+use document::FileError;
 use monitor::{ConfigError, LoadKind, Monitor, MonitorState, Rehearsal, Report};
 use motor::MotorFile;
-use motor::document::FileError;
 use recording::{LoadTorque, Sensors};
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! The motor's parameters as fields of the page, checked by the motor file's own reader.
 
+use document::{FileError, Problem};
 use motor::MotorFile;
-use motor::document::{FileError, Problem};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toml_edit::{DocumentMut, Item, value};

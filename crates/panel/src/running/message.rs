@@ -159,7 +159,7 @@ pub struct Plate {
     /// Whether the motor is known at all.
     pub known: bool,
     /// What the audit of a recording found.
-    pub audit: Vec<recording::Finding>,
+    pub audit: Vec<audit::Finding>,
 }
 
 impl WindowMessage {

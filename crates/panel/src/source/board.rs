@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant as WallTime};
 
 use ::board::{Frame, Message};
+use document::FileError;
 use monitor::{Candidates, Lamp, MonitorConfig, Reason, Report};
 use motor::MotorFile;
-use motor::document::FileError;
 
 use super::{Can, Item, Source, SourceFailure, SourceInfo};
 use crate::running::message::{

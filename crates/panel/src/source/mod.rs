@@ -8,9 +8,9 @@ pub use board::BoardSource;
 pub use replayed::ReplayedSource;
 pub use simulated::{PANEL_FAULTS, PanelFault, SimulatedSource, built_in_motor};
 
+use document::FileError;
 use monitor::{MonitorConfig, RawSample, Rehearsal, Sample};
 use motor::MotorFile;
-use motor::document::FileError;
 use recording::Recording;
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ pub struct SourceInfo {
     /// Whether faults can be switched, speed chosen, pause pressed, another instant sought.
     pub can: Can,
     /// What the audit of a recording found.
-    pub audit: Vec<recording::Finding>,
+    pub audit: Vec<audit::Finding>,
 }
 
 /// What a source can do.

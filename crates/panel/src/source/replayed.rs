@@ -1,9 +1,10 @@
 //! A recording, played at the speed that the page chooses.
 
+use audit::Audit;
+use document::FileError;
 use monitor::MonitorConfig;
 use motor::MotorFile;
-use motor::document::FileError;
-use recording::{Audit, Recording};
+use recording::Recording;
 
 use super::{Can, Instant, Item, Reading, Source, SourceFailure, SourceInfo};
 use replay::{Samples, config_for, stand_in_config};

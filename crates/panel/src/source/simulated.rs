@@ -1,8 +1,8 @@
 //! A simulated motor that runs for ever and whose faults are switched from the page.
 
+use document::FileError;
 use monitor::{FaultId, MonitorConfig, RawSample, Rehearsal, TABLE_1};
 use motor::MotorFile;
-use motor::document::FileError;
 use motor::motor_file::Frame;
 use serde::Serialize;
 

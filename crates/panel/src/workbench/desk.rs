@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use recording::{Audit, Expectation, Source, audit};
+use audit::{Audit, Expectation, audit};
+use recording::Source;
 use replay::check::{BlindSpot, channels_missing};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use recording::{
-    Audit, Mapping, Preview, Source, TableColumn, preview, read_any, with_most_numbers,
-};
+use audit::Audit;
+use formats::{Preview, preview, read_any, with_most_numbers};
+use recording::{Mapping, Source, TableColumn};
 use replay::check::BlindSpot;
 use serde::Serialize;
 

@@ -56,7 +56,7 @@ impl TableColumn {
     }
 
     /// What is wrong with a value, and the remedy.
-    pub(crate) fn complaint(self, x: f64) -> Option<(&'static str, &'static str)> {
+    pub fn complaint(self, x: f64) -> Option<(&'static str, &'static str)> {
         let share = matches!(self, TableColumn::PowerFactor | TableColumn::Efficiency);
         if share && x > 1.0 {
             return Some(("is above 1", "write a share, 0.9 for 90 %"));
@@ -112,7 +112,7 @@ impl LoadTable {
     /// # Errors
     /// Columns that are too few, of unequal length, or hold impossible values; fewer than two points.
     pub fn new(name: &str, columns: BTreeMap<TableColumn, Vec<f64>>) -> Result<LoadTable, Error> {
-        sufficient(name, columns.keys().copied())?;
+        LoadTable::sufficient(name, columns.keys().copied())?;
         let points = columns.values().map(Vec::len).max().unwrap_or(0);
         if points < 2 {
             let message = format!("holds {points} operating point(s); at least 2 are needed");
@@ -131,6 +131,38 @@ impl LoadTable {
             columns,
             assumptions: Vec::new(),
         })
+    }
+
+    /// Whether columns are enough to judge a motor by.
+    ///
+    /// # Errors
+    /// No current, or nothing that says how the motor was loaded.
+    pub fn sufficient(
+        name: &str,
+        columns: impl Iterator<Item = TableColumn> + Clone,
+    ) -> Result<(), Error> {
+        let has = |wanted: &[TableColumn]| columns.clone().any(|column| wanted.contains(&column));
+        if !has(&[TableColumn::Current]) {
+            let remedy = "add the line current, A rms";
+            return Err(Error::at(
+                name,
+                1,
+                "current_rms_amp",
+                "the column is missing",
+                remedy,
+            ));
+        }
+        if !has(&[TableColumn::Power, TableColumn::Torque, TableColumn::Speed]) {
+            let remedy = "add at least one of power_watt, torque_nm, speed_rpm";
+            return Err(Error::at(
+                name,
+                1,
+                "",
+                "the table does not say how the motor was loaded",
+                remedy,
+            ));
+        }
+        Ok(())
     }
 
     /// The file, as the user named it.
@@ -209,35 +241,6 @@ impl LoadPoint {
         let efficiency = self.efficiency.filter(|efficiency| *efficiency > 0.0)?;
         Some(self.power_watt? / efficiency)
     }
-}
-
-/// Whether columns are enough to judge a motor by.
-pub(crate) fn sufficient(
-    name: &str,
-    columns: impl Iterator<Item = TableColumn> + Clone,
-) -> Result<(), Error> {
-    let has = |wanted: &[TableColumn]| columns.clone().any(|column| wanted.contains(&column));
-    if !has(&[TableColumn::Current]) {
-        let remedy = "add the line current, A rms";
-        return Err(Error::at(
-            name,
-            1,
-            "current_rms_amp",
-            "the column is missing",
-            remedy,
-        ));
-    }
-    if !has(&[TableColumn::Power, TableColumn::Torque, TableColumn::Speed]) {
-        let remedy = "add at least one of power_watt, torque_nm, speed_rpm";
-        return Err(Error::at(
-            name,
-            1,
-            "",
-            "the table does not say how the motor was loaded",
-            remedy,
-        ));
-    }
-    Ok(())
 }
 
 fn check(name: &str, column: TableColumn, values: &[f64], points: usize) -> Result<(), Error> {

@@ -4,4 +4,5 @@ pub(crate) mod channel;
 pub(crate) mod load_table;
 pub(crate) mod metadata;
 pub(crate) mod recording;
+pub(crate) mod source;
 pub(crate) mod units;

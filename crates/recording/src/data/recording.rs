@@ -85,7 +85,11 @@ impl Recording {
         Ok(self)
     }
 
-    pub(crate) fn set(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), Error> {
+    /// Adds or replaces a channel in place, in its SI unit.
+    ///
+    /// # Errors
+    /// A length other than the clock's, or a number that is not finite.
+    pub fn set(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), Error> {
         let field = channel.to_string();
         if values.len() != self.t.len() {
             let message = format!("{} values for {} samples", values.len(), self.t.len());
@@ -101,15 +105,18 @@ impl Recording {
         Ok(())
     }
 
-    /// Adds a channel that was computed from others (the third current of three).
-    pub(crate) fn derive(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), Error> {
+    /// Adds a channel that was computed from others (the third current of three), in its SI unit.
+    ///
+    /// # Errors
+    /// A length other than the clock's, or a number that is not finite.
+    pub fn derive(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), Error> {
         self.set(channel, values)?;
         self.made.derived.insert(channel);
         Ok(())
     }
 
     /// Notes that spikes of a channel were bridged.
-    pub(crate) fn note_bridged(&mut self, channel: Channel, bridged: Bridged) {
+    pub fn note_bridged(&mut self, channel: Channel, bridged: Bridged) {
         self.made.bridged.insert(channel, bridged);
     }
 

@@ -151,7 +151,7 @@ fn usual(name: &str) -> &str {
 }
 
 /// Whether a word is the unit of any quantity, as instruments write it.
-pub(crate) fn is_unit(name: &str) -> bool {
+pub fn is_unit(name: &str) -> bool {
     let name = usual(name.trim());
     UNITS.iter().any(|unit| unit.name == name) || OTHERS.contains(&name)
 }

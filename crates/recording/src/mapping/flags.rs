@@ -60,7 +60,7 @@ impl Mapping {
     /// of another channel than the speed.
     pub fn set_scale(&mut self, flag: &str) -> Result<(), Error> {
         let (target, text) = target_of("--scale", flag)?;
-        if text == UNKNOWN {
+        if text == Factor::UNKNOWN {
             if let Some(message) = refused_unknown(target) {
                 let remedy = "give a factor; only that of the speed can be fitted";
                 return Err(Error::at(COMMAND_LINE, 0, "--scale", message, remedy));
@@ -223,8 +223,6 @@ impl Mapping {
 }
 
 pub(super) const COMMAND_LINE: &str = "command line";
-/// The word for an unknown factor.
-pub(crate) const UNKNOWN: &str = "unknown";
 
 /// Why the factor of a target cannot be left open; `None` for the speed.
 pub(crate) fn refused_unknown(target: Target) -> Option<String> {

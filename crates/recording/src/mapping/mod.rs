@@ -1,6 +1,5 @@
 //! How the columns of a file become channels: names, units, scales, as flags or sidecar say.
 
-pub(crate) mod aliases;
 mod flags;
 mod sensor;
 pub(crate) mod sidecar;
@@ -11,7 +10,6 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
-pub(crate) use flags::UNKNOWN;
 pub use sensor::Sensor;
 
 /// What a column may become.
@@ -57,7 +55,7 @@ impl fmt::Display for Target {
 
 /// What a column is called in a list of columns: a target, or a line voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Slot {
+pub struct Slot {
     /// Where the column goes; v_ab is kept where va is, v_bc where vb is, v_ca where vc is.
     pub target: Target,
     /// Of a line voltage, whether it is the other way round: `vba`.
@@ -105,6 +103,11 @@ pub enum Factor {
     Unknown,
 }
 
+impl Factor {
+    /// How a flag or a sidecar writes [`Factor::Unknown`].
+    pub const UNKNOWN: &str = "unknown";
+}
+
 /// How one column becomes a channel: `SI = sensor(unit(scale (raw - offset)))`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnMap {
@@ -138,7 +141,7 @@ pub enum Origin {
 
 impl Origin {
     /// The end of a sentence.
-    pub(crate) fn words(self) -> &'static str {
+    pub fn words(self) -> &'static str {
         match self {
             Origin::User => "user's assumption",
             Origin::Sidecar => "as the sidecar declares",
@@ -169,12 +172,12 @@ impl ColumnMap {
     }
 
     /// What the column holds: the quantity, or what its sensor gives out.
-    pub(crate) fn raw(&self, quantity: Quantity) -> Quantity {
+    pub fn raw(&self, quantity: Quantity) -> Quantity {
         self.sensor.as_ref().map_or(quantity, Sensor::raw)
     }
 
     /// The conversion in words: `speed = 1.0144 x (speed_raw + 2.11) rad/s`.
-    pub(crate) fn sentence(&self, target: Target, column: &str) -> Option<String> {
+    pub fn sentence(&self, target: Target, column: &str) -> Option<String> {
         if *self
             == (ColumnMap {
                 origin: self.origin,

@@ -11,10 +11,11 @@ mod statistics;
 mod uncertainty;
 mod windows;
 
+use audit::Audit;
 use monitor::{Cause, Healthy, Monitor, MonitorConfig};
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
-use recording::{Audit, Recording};
+use recording::Recording;
 
 pub use gains::Kind;
 pub use statistics::Surroundings;

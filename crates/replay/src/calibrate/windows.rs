@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use audit::{Audit, Expectation, audit};
 use monitor::{Healthy, Monitor, MonitorConfig, MonitorState, Report, Window};
 use motor::MotorFile;
-use recording::{Audit, Expectation, Recording, audit};
+use recording::Recording;
 
 use super::{Refusal, configured};
 use crate::Samples;

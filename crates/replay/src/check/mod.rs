@@ -14,9 +14,10 @@ pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;
 pub use told::Told;
 
+use audit::{Audit, Expectation};
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::{Audit, Expectation, Recording};
+use recording::Recording;
 use serde::Serialize;
 
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
@@ -81,14 +82,14 @@ pub fn check(
         None => (None, None),
     };
     let shown = estimated.as_ref().unwrap_or(recorded);
-    let audit = recording::audit(shown, &Expectation::from(motor));
+    let audit = audit::audit(shown, &Expectation::from(motor));
     let config = config_for(motor, shown).map_err(|error| error.to_string())?;
     let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
     let timeline = replay(&monitor, &Samples::new(shown, &audit), progress);
     let mut answer = answer(motor, shown, audit, &timeline, speed);
     if answer.speed.is_some() {
         // An estimate is no channel of the recorder: the audit is about what was recorded.
-        answer.audit = recording::audit(recorded, &Expectation::from(motor));
+        answer.audit = audit::audit(recorded, &Expectation::from(motor));
     }
     answer.told = Told::of(&answer);
     Ok(answer)

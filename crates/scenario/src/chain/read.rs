@@ -1,7 +1,7 @@
 //! Reads `[sensors.chain]`.
 
 use super::{Carrier, ChannelChain, Inl, InlShape, Reference, SignalChain};
-use motor::document::{Bounds, Section, Value};
+use document::{Bounds, Section, Value};
 
 const TIME_CONSTANT: Bounds = Bounds::above(0.0, 10_000.0, "us").hint("78 is 78 microseconds");
 const CORNER: Bounds = Bounds::between(10.0, 1e6, "Hz");
@@ -161,9 +161,8 @@ fn carrier(section: &Section<'_>) -> Option<Carrier> {
 
 /// A number for all three phases, or three in brackets.
 fn one_or_three(section: &Section<'_>, key: &str, bounds: &Bounds) -> Option<[f64; 3]> {
-    let is_list = |entry: &&motor::document::Entry| {
-        entry.key == key && matches!(entry.value, Value::Array(_))
-    };
+    let is_list =
+        |entry: &&document::Entry| entry.key == key && matches!(entry.value, Value::Array(_));
     match section.entries().iter().find(is_list) {
         Some(_) => Some(section.optional_numbers(key, bounds)?.unwrap_or([0.0; 3])),
         None => Some([section.number_or(key, bounds, 0.0)?; 3]),

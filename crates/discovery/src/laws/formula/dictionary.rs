@@ -2,7 +2,7 @@
 
 use super::kind::Kind;
 use super::shape::{Over, Shape};
-use motor::document::{Document, FileError, Section};
+use document::{Document, FileError, Section};
 use std::sync::LazyLock;
 
 /// The program's own shapes.

@@ -1,6 +1,6 @@
 use super::*;
 use crate::report::types::{FitReport, NominalReport, StepReport, Unexplained};
-use recording::Audit;
+use audit::Audit;
 
 fn nominal(name: &str, off: bool, change_percent: f64) -> NominalReport {
     NominalReport {

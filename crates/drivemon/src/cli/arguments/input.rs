@@ -189,8 +189,8 @@ impl InputArgs {
         let bar = progress::bar("reading", 0);
         let mut progress = progress::reading(&bar);
         let source = match path.as_os_str() == DASH {
-            true => recording::read_stream(STDIN, std::io::stdin(), &mapping, &mut progress),
-            false => recording::read_any(path, &mapping, &mut progress),
+            true => formats::read_stream(STDIN, std::io::stdin(), &mapping, &mut progress),
+            false => formats::read_any(path, &mapping, &mut progress),
         }?;
         bar.finish_and_clear();
         tell_assumptions(&source);
@@ -230,8 +230,8 @@ fn write_sidecar(path: &Path, source: &Source) -> Result<(), Failure> {
             "--write-sidecar: {name} exists and is kept; rename or remove it first"
         ));
     }
-    let text = recording::reading_text(recording);
-    let written = recording::write_whole(&sidecar, |file| file.write_all(text.as_bytes()));
+    let text = formats::reading_text(recording);
+    let written = formats::write_whole(&sidecar, |file| file.write_all(text.as_bytes()));
     written.or_else(|error| {
         usage(format!(
             "--write-sidecar: {} cannot be written: {error}",

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use audit::Audit;
 use clap::Args;
 use discovery::{Error, Laws, Progress, Shapes, told_stretches};
+use document::read_text;
 use motor::MotorFile;
-use motor::document::read_text;
-use recording::{Audit, Source};
+use recording::Source;
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};

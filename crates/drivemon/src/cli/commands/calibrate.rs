@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use audit::Audit;
 use clap::Args;
 use monitor::{Cage, Cause};
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
-use recording::{Audit, Recording, Source};
+use recording::{Recording, Source};
 use serde::Serialize;
 
 use crate::cli::arguments::files::Files;

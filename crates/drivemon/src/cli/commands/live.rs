@@ -183,7 +183,7 @@ impl Watch<'_> {
         };
         let recording =
             recording(fetched, motor).map_err(|error| Failure::Usage(error.to_string()))?;
-        recording::write_recording(path, &recording)?;
+        formats::write_recording(path, &recording)?;
         let name = path.display().to_string();
         if !self.quiet {
             say!("{name}: {} samples around the alarm", recording.len());

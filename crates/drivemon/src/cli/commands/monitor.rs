@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use audit::{Audit, Expectation, audit};
 use clap::Args;
 use monitor::{Monitor, MonitorConfig};
 use motor::MotorFile;
-use recording::{Audit, Expectation, audit};
 use recording::{LoadTable, Recording, Source};
 use serde::Serialize;
 

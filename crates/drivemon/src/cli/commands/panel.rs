@@ -4,9 +4,10 @@ use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use audit::{Audit, Expectation, audit};
 use clap::Args;
 use motor::MotorFile;
-use recording::{Audit, Expectation, Source as Read, audit};
+use recording::Source as Read;
 use tokio::sync::watch;
 
 use crate::cli::arguments::input::{InputArgs, read_motor};

@@ -33,7 +33,7 @@ pub enum Failure {
     Recording(#[from] recording::Error),
     /// A motor file or scenario.
     #[error(transparent)]
-    File(#[from] motor::document::FileError),
+    File(#[from] document::FileError),
     /// The motor file's values do not fit the core.
     #[error("{file}: {error}; change the value in the motor file")]
     Config {

@@ -125,7 +125,7 @@ pub(crate) fn text_of(value: &impl Serialize) -> Result<String, Failure> {
 
 /// Writes a text file, whole or not at all.
 pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
-    recording::write_whole(path, |file| file.write_all(text.as_bytes()))
+    formats::write_whole(path, |file| file.write_all(text.as_bytes()))
         .map_err(|error| cannot_write(path, error))
 }
 

@@ -1,7 +1,7 @@
 //! Progress bars on stderr, for whatever takes more than a moment.
 
+use formats::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use recording::Progress;
 
 /// A bar that counts to `length` under a title; invisible when stderr is no terminal.
 pub fn bar(title: &'static str, length: u64) -> ProgressBar {

@@ -3,11 +3,11 @@
 use crate::data::channel::Quantity;
 use crate::data::units::Unit;
 use crate::mapping::flags::{
-    DATE_ORDERS, DELIMITERS, LARGEST_DELAY_S, THOUSANDS, UNKNOWN, check_names, date_order,
-    delimiter, refused_unknown, thousands,
+    DATE_ORDERS, DELIMITERS, LARGEST_DELAY_S, THOUSANDS, check_names, date_order, delimiter,
+    refused_unknown, thousands,
 };
 use crate::mapping::{ColumnMap, Factor, LINE, Mapping, Origin, Said, Slot, Target};
-use motor::document::{Bounds, Section, Value};
+use document::{Bounds, Section, Value};
 
 const DELAY_US: Bounds = Bounds::between(-1e6 * LARGEST_DELAY_S, 1e6 * LARGEST_DELAY_S, "us");
 const RATE: Bounds = Bounds::between(0.1, 1e8, "Hz");
@@ -142,7 +142,8 @@ fn column(
 /// A factor, or `"unknown"`.
 fn scale(table: &Section<'_>, target: Target) -> Option<Option<Factor>> {
     let entry = table.entries().iter().find(|entry| entry.key == "scale");
-    if matches!(entry.map(|entry| &entry.value), Some(Value::Text(text)) if text == UNKNOWN) {
+    if matches!(entry.map(|entry| &entry.value), Some(Value::Text(text)) if text == Factor::UNKNOWN)
+    {
         // Asking makes the key known.
         table.optional_text("scale")?;
         if let Some(message) = refused_unknown(target) {

@@ -8,7 +8,7 @@ use crate::data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, V
 use crate::error::{Error, Problem};
 use crate::names::sidecar_path;
 use columns::mapping;
-use motor::document::{Document, FileError, Section, read_text};
+use document::{Document, FileError, Section, read_text};
 use sensors::sensors;
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use crate::data::metadata::Sensors;
 use crate::mapping::flags::all_of;
 use crate::mapping::sensor::{Sensor, WAYS};
 use crate::mapping::{Mapping, Origin, Said, Target};
-use motor::document::{Bounds, Section};
+use document::{Bounds, Section};
 
 const VOLT: Bounds = Bounds::above(0.0, 1e6, "V");
 const AMP: Bounds = Bounds::above(0.0, 1e6, "A");

@@ -8,10 +8,11 @@ mod switching;
 use super::*;
 use crate::tests::{folder, parse};
 use crate::{Fault, PlantKind, Scenario, SensorSpec, Start};
+use formats::read_recording;
 use monitor::{Converter, RawSample};
 use motor::dynamic::clarke;
 use motor::linear_plant::LinearParams;
-use recording::{Channel, read_recording};
+use recording::Channel;
 use std::f64::consts::TAU;
 
 /// The assumed motor, running, with perfect instruments.
@@ -368,7 +369,7 @@ fn a_recording_reads_back_as_it_was_written() {
     };
     let written = record(&scenario, |_| {}).expect("records");
     let path = std::env::temp_dir().join(format!("simulated-{}.csv.gz", std::process::id()));
-    recording::write_recording(&path, &written).expect("written");
+    formats::write_recording(&path, &written).expect("written");
     let read =
         read_recording(&path, &recording::Mapping::default(), &mut |_| {}).expect("readable");
     assert_eq!(read.metadata, written.metadata);

@@ -91,7 +91,7 @@ impl PlateArgs {
         let mut file = match &self.plate {
             Some(path) => {
                 let label = path.display().to_string();
-                let text = motor::document::read_text(path)?;
+                let text = document::read_text(path)?;
                 PlateFile::parse(&text, &label).map_err(Failure::Usage)?
             }
             None => PlateFile::default(),

@@ -290,7 +290,7 @@ fn record(run: &Run<'_>, path: &Path) -> Result<Finding, Failure> {
     if run.is_backwards() {
         recording = mirrored(&recording)?;
     }
-    recording::write_recording(path, &recording)?;
+    formats::write_recording(path, &recording)?;
     let motor = motor_of(path);
     write_text(&motor, &run.monitor_file().to_toml())?;
     let (path, motor) = (path.display(), motor.display());

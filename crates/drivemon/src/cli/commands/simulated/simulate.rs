@@ -51,7 +51,7 @@ impl Simulate {
         let done = |share: f64| bar.set_position((share * STEPS as f64) as u64);
         let recording = simulate::record(&scenario, done).map_err(|error| self.failure(error))?;
         bar.finish_and_clear();
-        recording::write_recording(&self.output, &recording)?;
+        formats::write_recording(&self.output, &recording)?;
         say!(
             "{}: {} samples, {:.3} s of \"{}\"",
             self.output.display(),

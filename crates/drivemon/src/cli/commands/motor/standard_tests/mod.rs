@@ -114,9 +114,9 @@ impl Tests {
         let mut rows = Vec::new();
         for path in &self.tables {
             let label = path.display().to_string();
-            let text = match recording::workbook_text(path)? {
+            let text = match formats::workbook_text(path)? {
                 Some(text) => text,
-                None => motor::document::read_text(path)?,
+                None => document::read_text(path)?,
             };
             rows.extend(table::read_csv(&text, &label).map_err(Failure::Usage)?);
         }

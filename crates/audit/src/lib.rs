@@ -1,0 +1,96 @@
+//! The audit: what is wrong with a recording, before anything is concluded from it.
+//!
+//! Every check is a file. A check that finds channels whose phasors mean nothing says so in the
+//! [`Context`], and later checks leave them alone: one mistake gives one finding.
+
+mod context;
+mod expectation;
+mod finding;
+mod levels;
+mod measure;
+mod silent;
+mod timing;
+mod wiring;
+
+pub use expectation::{Circuit, Expectation};
+pub use finding::{Audit, Code, Finding};
+pub use wiring::probes::with_sound_probes;
+
+use context::Context;
+use levels::{clipping, offset, rms_values, scale, sensor, spikes, unit};
+use recording::Recording;
+use silent::{frozen, held, missing, stuck};
+use timing::{clock, drift, gap, not_locked, skew};
+use wiring::{phases, speed, supply, zero_sequence};
+
+/// Audits a recording against what the nameplate lets one expect.
+///
+/// Start-ups, load steps, supply steps and frequency ramps are not findings: what is compared with a
+/// limit is taken from steady blocks of three periods.
+pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
+    let mut context = Context::new(recording, expectation);
+    let mut findings = clock::check(&context);
+    findings.extend(gap::check(&context));
+    findings.extend(spikes::check(&context));
+    findings.extend(clipping::check(&context));
+    findings.extend(rms_values::check(&mut context));
+    if findings
+        .iter()
+        .all(|finding| finding.code != Code::RmsValues)
+    {
+        findings.extend(not_locked::check(&context));
+    }
+    if findings.iter().all(|f| f.code != Code::RmsValues) {
+        findings.extend(standing_still(&mut context));
+    }
+    findings.extend(scale::check(&mut context));
+    let drift = drift::check(&mut context);
+    if drift.is_none() {
+        findings.extend(phases::check(&mut context));
+    }
+    findings.extend(drift);
+    findings.extend(unit::check(&mut context));
+    propose_sensors(&mut findings, sensor::check(&context));
+    findings.extend(offset::check(&context));
+    let skew = skew::check(&context);
+    if skew.is_none() {
+        findings.extend(zero_sequence::check(&context));
+    }
+    findings.extend(skew);
+    findings.extend(supply::check(&context));
+    if findings.iter().all(|finding| finding.code != Code::Unit) {
+        findings.extend(speed::check(&mut context));
+    }
+    findings.extend(missing::check(&context));
+    Audit {
+        supported: findings.iter().all(|finding| !finding.refuses),
+        findings,
+        assumptions: recording.assumptions.clone(),
+        unusable: context.unsound.iter().map(ToString::to_string).collect(),
+    }
+}
+
+/// Proposals of sensors: beside the other findings, or within that of a unit of the same channels.
+fn propose_sensors(findings: &mut Vec<Finding>, proposals: Vec<Finding>) {
+    for proposal in proposals {
+        let same = |finding: &&mut Finding| {
+            finding.code == Code::Unit && finding.channel == proposal.channel
+        };
+        match findings.iter_mut().find(same) {
+            Some(unit) => unit.detail = format!("{} Or: {}", unit.detail, proposal.detail),
+            None => findings.push(proposal),
+        }
+    }
+}
+
+/// Recorders, displays and channels that keep their values: the widest cause speaks for what follows from it.
+fn standing_still(context: &mut Context<'_>) -> Vec<Finding> {
+    let held = held::check(context);
+    if held.iter().any(|finding| finding.refuses) {
+        return held;
+    }
+    let mut findings: Vec<Finding> = frozen::check(context).into_iter().collect();
+    findings.extend(held);
+    findings.extend(stuck::check(context));
+    findings
+}

@@ -1,0 +1,179 @@
+//! Least-squares fit of one sinusoid to a block of samples.
+//!
+//! Model: `x(t) = mean + Re[(phasor + slope tau) e^{j omega (t - centre)}]`, tau from -1 to 1 over the
+//! block. Unlike a discrete Fourier sum it needs neither whole periods nor even sampling, and its
+//! slope gives the frequency error and the change of the amplitude.
+
+use num_complex::Complex64;
+
+/// One sinusoid in one channel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fit {
+    /// Mean over the block, in the channel's unit.
+    pub mean: f64,
+    /// Amplitude and phase in the middle of the block.
+    pub phasor: Complex64,
+    /// Change of the phasor over half a block.
+    pub slope: Complex64,
+    /// Variance of the samples about their mean.
+    pub variance: f64,
+    /// Variance that the sinusoid leaves.
+    pub rest: f64,
+}
+
+/// Columns of the model: 1, cos, sin, tau cos, tau sin.
+const N: usize = 5;
+type Row = [f64; N];
+
+/// The model's columns over a block, with their normal matrix factored.
+pub(crate) struct Basis {
+    rows: Vec<Row>,
+    factor: [Row; N],
+    half: f64,
+}
+
+impl Basis {
+    /// The columns at the times `t`, s, for `omega`, rad/s. `None` when they cannot be told apart:
+    /// too few samples or less than about one period.
+    pub fn new(t: &[f64], omega: f64) -> Option<Basis> {
+        let (first, last) = (*t.first()?, *t.last()?);
+        let (centre, half) = (0.5 * (first + last), 0.5 * (last - first));
+        let rows: Vec<Row> = t
+            .iter()
+            .map(|t| {
+                let (sin, cos) = (omega * (t - centre)).sin_cos();
+                let tau = (t - centre) / half;
+                [1.0, cos, sin, tau * cos, tau * sin]
+            })
+            .collect();
+        let factor = cholesky(normal(&rows))?;
+        Some(Basis { rows, factor, half })
+    }
+
+    /// Fits one channel over the block; `x` is as long as the block.
+    pub fn fit(&self, x: &[f64]) -> Fit {
+        let n = self.rows.len() as f64;
+        let (mut rhs, mut sum, mut square) = ([0.0; N], 0.0, 0.0);
+        for (row, x) in self.rows.iter().zip(x) {
+            for (rhs, column) in rhs.iter_mut().zip(row) {
+                *rhs += column * x;
+            }
+            sum += x;
+            square += x * x;
+        }
+        let s = solve(&self.factor, rhs);
+        let explained: f64 = s.iter().zip(&rhs).map(|(s, r)| s * r).sum();
+        Fit {
+            mean: s[0],
+            phasor: Complex64::new(s[1], -s[2]),
+            slope: Complex64::new(s[3], -s[4]),
+            variance: (square - sum * sum / n) / n,
+            rest: ((square - explained) / n).max(0.0),
+        }
+    }
+
+    /// The frequency error that the slopes of several channels show together, rad/s.
+    pub fn frequency_error(&self, fits: &[Fit]) -> f64 {
+        let turning: f64 = fits
+            .iter()
+            .map(|fit| (fit.slope * fit.phasor.conj()).im)
+            .sum();
+        let power: f64 = fits.iter().map(|fit| fit.phasor.norm_sqr()).sum();
+        turning / (power * self.half)
+    }
+}
+
+fn normal(rows: &[Row]) -> [Row; N] {
+    let mut matrix = [[0.0; N]; N];
+    for row in rows {
+        for (i, line) in matrix.iter_mut().enumerate() {
+            for (entry, column) in line[..=i].iter_mut().zip(row) {
+                *entry += row[i] * column;
+            }
+        }
+    }
+    matrix
+}
+
+/// Smallest share of a column that the columns before it may leave: below, the block is too short.
+const INDEPENDENT: f64 = 0.02;
+
+/// Lower factor of a symmetric matrix of which the lower half is given.
+fn cholesky(a: [Row; N]) -> Option<[Row; N]> {
+    let mut l = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..=i {
+            let dot: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
+            let left = a[i][j] - dot;
+            if i == j {
+                if left.is_nan() || left <= INDEPENDENT * a[i][i] {
+                    return None;
+                }
+                l[i][i] = left.sqrt();
+            } else {
+                l[i][j] = left / l[j][j];
+            }
+        }
+    }
+    Some(l)
+}
+
+fn solve(l: &[Row; N], mut x: Row) -> Row {
+    for i in 0..N {
+        let dot: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
+        x[i] = (x[i] - dot) / l[i][i];
+    }
+    for i in (0..N).rev() {
+        let dot: f64 = (i + 1..N).map(|k| l[k][i] * x[k]).sum();
+        x[i] = (x[i] - dot) / l[i][i];
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// 2.6 periods, uneven sampling, a growing amplitude and an offset: exact to rounding.
+    #[test]
+    fn a_growing_sinusoid_is_recovered_from_a_broken_number_of_periods() {
+        let omega = TAU * 50.0;
+        let t: Vec<f64> = (0..520)
+            .map(|k| f64::from(k) * 1e-4 + f64::from(k % 3) * 1e-5)
+            .collect();
+        let (centre, half) = (0.5 * t[519], 0.5 * t[519]);
+        let (phasor, slope) = (
+            Complex64::from_polar(325.0, 0.7),
+            Complex64::from_polar(10.0, 0.7),
+        );
+        let signal = |t: &f64| {
+            let tau = (t - centre) / half;
+            3.0 + ((phasor + slope * tau) * Complex64::cis(omega * (t - centre))).re
+        };
+        let x: Vec<f64> = t.iter().map(signal).collect();
+        let fit = Basis::new(&t, omega).unwrap().fit(&x);
+        assert!((fit.phasor - phasor).norm() < 1e-9);
+        assert!((fit.slope - slope).norm() < 1e-9);
+        assert!((fit.mean - 3.0).abs() < 1e-9);
+        assert!(fit.rest < 1e-9 * fit.variance);
+    }
+
+    #[test]
+    fn the_slope_shows_the_frequency_error() {
+        let t: Vec<f64> = (0..600).map(|k| f64::from(k) * 1e-4).collect();
+        let x: Vec<f64> = t.iter().map(|t| (TAU * 50.2 * t).cos()).collect();
+        let basis = Basis::new(&t, TAU * 50.0).unwrap();
+        let error = basis.frequency_error(&[basis.fit(&x)]);
+        // First order in the phase error at the ends of the block (0.038 rad).
+        assert!((error - TAU * 0.2).abs() < 0.01 * TAU * 0.2, "{error}");
+    }
+
+    #[test]
+    fn half_a_period_is_too_short() {
+        let t: Vec<f64> = (0..100).map(|k| f64::from(k) * 1e-4).collect();
+        assert!(Basis::new(&t, TAU * 50.0).is_none());
+        assert!(Basis::new(&t[..2], TAU * 50.0).is_none());
+        assert!(Basis::new(&[], 1.0).is_none());
+    }
+}

@@ -1,0 +1,8 @@
+//! What every check measures with: blocks of whole periods, phasors, sequences, statistics.
+
+pub(crate) mod blocks;
+pub(crate) mod fit;
+pub(crate) mod refresh;
+pub(crate) mod sequence;
+pub(crate) mod statistics;
+pub(crate) mod track;

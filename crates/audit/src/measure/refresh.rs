@@ -1,0 +1,47 @@
+//! How many rows a channel keeps its value for, where it is refreshed more slowly than rows are written.
+
+use crate::measure::statistics::quantile;
+
+/// Rows from which on a value counts as held; a few may be a converter's resolution.
+const FEWEST_ROWS: f64 = 10.0;
+/// Refreshes that must be seen.
+const FEWEST_REFRESHES: usize = 20;
+/// Share of the refreshes that must come after whole multiples of the same number of rows.
+const REGULAR: f64 = 0.9;
+/// Deviation from a whole multiple that still counts, as a share of it, and in rows.
+const OFF_SHARE: f64 = 0.1;
+const OFF_ROWS: f64 = 1.0;
+/// Share of the refreshes that must be larger than the smallest change: a slow drift goes on step by step.
+const LARGER: f64 = 0.2;
+
+/// The number of rows for which a channel keeps its value, where it is refreshed regularly.
+pub(crate) fn rows(x: &[f64]) -> Option<f64> {
+    let changes = refreshes(x)?;
+    let waits = || changes.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
+    let rows = quantile(waits(), 0.1)?;
+    let whole = |wait: &f64| {
+        let multiple = (wait / rows).round().max(1.0);
+        (wait - multiple * rows).abs() <= (OFF_SHARE * rows).max(OFF_ROWS * multiple.min(4.0))
+    };
+    let regular = waits().filter(whole).count() as f64;
+    let sizes = || changes.iter().map(|k| (x[*k] - x[k - 1]).abs());
+    let smallest = sizes().fold(f64::INFINITY, f64::min);
+    let larger = sizes().filter(|size| *size > 1.5 * smallest).count() as f64;
+    let count = changes.len() as f64;
+    (rows >= FEWEST_ROWS && regular >= REGULAR * (count - 1.0) && larger >= LARGER * count)
+        .then_some(rows)
+}
+
+/// Where a channel changes: one or two rows in a row, the second where the change was interpolated; `None` where it changes
+/// too rarely or row by row.
+fn refreshes(x: &[f64]) -> Option<Vec<usize>> {
+    let mut first: Vec<usize> = Vec::new();
+    let (mut last, mut rows) = (0, 0_usize);
+    for k in (1..x.len()).filter(|k| x[*k] != x[k - 1]) {
+        if last == 0 || k > last + 1 {
+            first.push(k);
+        }
+        (last, rows) = (k, rows + 1);
+    }
+    (first.len() >= FEWEST_REFRESHES && rows <= 2 * first.len()).then_some(first)
+}

@@ -1,0 +1,140 @@
+//! Follows the supply's fundamental through a recording, block by block.
+
+use crate::measure::fit::{Basis, Fit};
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// Periods in a block: enough to tell the amplitude's slope from its phase, short against load steps.
+pub(crate) const PERIODS: f64 = 3.0;
+/// Share of the variance, adjusted for the parameters spent, that a fundamental must explain. A
+/// two-level pulse pattern leaves it about half; noise has 0, scattered by a few over the samples.
+const LOCKED_SHARE: f64 = 0.3;
+/// Added to the share per sample of the block that is missing to many: noise fits short blocks.
+const SHORT_BLOCK: f64 = 4.0;
+/// Frequencies looked for when the clock's unit is taken at its word, Hz.
+const RANGE_HZ: Range<f64> = 1.5..1000.0;
+/// Step of the search, as a ratio: 3 periods resolve a third.
+const RATIO: f64 = 1.12;
+/// Samples per period below which a sinusoid cannot be told from its aliases.
+const FEWEST_SAMPLES: f64 = 4.0;
+/// Largest change of the frequency from one block to the next that is followed without a new search.
+const FOLLOWED: f64 = 0.15;
+
+/// A stretch of the recording over which the fundamental was found.
+#[derive(Clone, Debug)]
+pub(crate) struct Span {
+    pub range: Range<usize>,
+    /// rad/s.
+    pub omega: f64,
+}
+
+/// The clock and the channels that carry the fundamental.
+pub(crate) struct Tracked<'r> {
+    pub t: &'r [f64],
+    pub t_sample: f64,
+    pub channels: Vec<&'r [f64]>,
+}
+
+impl Tracked<'_> {
+    /// Every block over which the fundamental was found, in the order of time.
+    pub fn spans(&self) -> Vec<Span> {
+        let mut spans: Vec<Span> = Vec::new();
+        let (mut at, mut known) = (0, None);
+        while at + 8 < self.t.len() {
+            let followed = known.and_then(|omega| self.follow(at, omega));
+            match followed.or_else(|| self.search(at, &self.candidates())) {
+                Some(span) => {
+                    at = span.range.end;
+                    known = Some(span.omega);
+                    spans.push(span);
+                }
+                None => {
+                    known = None;
+                    // A step in time can be more samples than there are numbers for.
+                    at = at.saturating_add(self.step_when_lost()).min(self.t.len());
+                }
+            }
+        }
+        spans
+    }
+
+    /// The fundamental whatever the clock's unit: periods from a few samples to a third of the file.
+    pub fn any_frequency(&self) -> Option<f64> {
+        let longest = self.t.len() as f64 / PERIODS;
+        let periods = ladder(FEWEST_SAMPLES, longest, RATIO);
+        let omegas: Vec<f64> = periods.map(|n| TAU / (n * self.t_sample)).collect();
+        self.search(0, &omegas).map(|span| span.omega)
+    }
+
+    fn candidates(&self) -> Vec<f64> {
+        let highest = RANGE_HZ.end.min(1.0 / (FEWEST_SAMPLES * self.t_sample));
+        ladder(RANGE_HZ.start, highest, RATIO)
+            .map(|f| TAU * f)
+            .collect()
+    }
+
+    /// A tenth of a second, or a hundredth of the recording, whichever is longer.
+    fn step_when_lost(&self) -> usize {
+        ((0.02 / self.t_sample) as usize)
+            .max(self.t.len() / 400)
+            .max(1)
+    }
+
+    fn follow(&self, at: usize, omega: f64) -> Option<Span> {
+        self.refined(at, omega)
+            .filter(|span| (span.omega / omega - 1.0).abs() < FOLLOWED)
+    }
+
+    fn search(&self, at: usize, omegas: &[f64]) -> Option<Span> {
+        let coarse = omegas.iter().filter_map(|&omega| {
+            let (_, share) = self.fitted(at, omega)?;
+            Some((omega, share))
+        });
+        let (omega, _) = coarse.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        self.refined(at, omega)
+    }
+
+    /// Newton steps on the frequency; the block follows its period.
+    fn refined(&self, at: usize, mut omega: f64) -> Option<Span> {
+        for _ in 0..4 {
+            let (error, _) = self.fitted(at, omega)?;
+            omega += error.clamp(-0.1 * omega, 0.1 * omega);
+        }
+        let (_, share) = self.fitted(at, omega)?;
+        let range = self.block(at, omega)?;
+        let needed = LOCKED_SHARE + SHORT_BLOCK / range.len() as f64;
+        (share > needed).then_some(Span { range, omega })
+    }
+
+    /// Frequency error and explained share of the block that begins at a sample.
+    fn fitted(&self, at: usize, omega: f64) -> Option<(f64, f64)> {
+        let range = self.block(at, omega)?;
+        let basis = Basis::new(&self.t[range.clone()], omega)?;
+        let fits: Vec<Fit> = self
+            .channels
+            .iter()
+            .map(|x| basis.fit(&x[range.clone()]))
+            .collect();
+        let total: f64 = fits.iter().map(|fit| fit.variance).sum();
+        let rest: f64 = fits.iter().map(|fit| fit.rest).sum();
+        let error = basis.frequency_error(&fits);
+        let n = range.len() as f64;
+        let share = 1.0 - rest / total * (n - 1.0) / (n - 5.0);
+        (total > 0.0 && n > 5.0 && error.is_finite()).then_some((error, share))
+    }
+
+    fn block(&self, at: usize, omega: f64) -> Option<Range<usize>> {
+        let end = self.t[at] + PERIODS * TAU / omega;
+        if !omega.is_normal() || omega < 0.0 || end > self.t[self.t.len() - 1] + self.t_sample {
+            return None;
+        }
+        let length = self.t[at..].partition_point(|t| *t < end - 0.5 * self.t_sample);
+        // A gap inside the block leaves too few samples: half of them are asked for.
+        let expected = PERIODS * TAU / (omega * self.t_sample);
+        (length as f64 > 0.5 * expected).then_some(at..at + length)
+    }
+}
+
+fn ladder(from: f64, to: f64, ratio: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(from), move |x| Some(x * ratio)).take_while(move |x| *x <= to)
+}

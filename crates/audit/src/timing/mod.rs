@@ -1,0 +1,7 @@
+//! Checks of the clock: gaps, jitter, two clocks, channels sampled in turn, no supply to lock to.
+
+pub(crate) mod clock;
+pub(crate) mod drift;
+pub(crate) mod gap;
+pub(crate) mod not_locked;
+pub(crate) mod skew;

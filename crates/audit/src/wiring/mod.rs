@@ -1,0 +1,7 @@
+//! Checks of what hangs where: phases, polarity, sums, supply, speed against slip, second probes.
+
+pub(crate) mod phases;
+pub(crate) mod probes;
+pub(crate) mod speed;
+pub(crate) mod supply;
+pub(crate) mod zero_sequence;

@@ -1,0 +1,9 @@
+//! Files of recorders, read and written: every kind in one program, because each program links every decoder.
+
+mod common;
+mod formats;
+mod loggers;
+mod malformed;
+mod random_input;
+mod reading_real_files;
+mod writing;
