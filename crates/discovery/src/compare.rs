@@ -64,7 +64,7 @@ pub fn compare(
         bands: bands(study, &r),
         orders: orders(case, &r),
         overall: Some(Overall {
-            error_over_noise: study.fold_error(&[crate::fit::normal_equations::dot(&r, &r)]),
+            error_over_noise: study.fold_error(&[signal::dot(&r, &r)]),
         }),
         speed_scale,
         cannot_be_concluded: cannot_be_concluded.unwrap_or_default(),
@@ -107,7 +107,7 @@ fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
 fn error_of(study: &Study, r: &[f64], blocks: &[Numbered]) -> f64 {
     let sse = |rows: &Range<usize>| {
         let part = &r[rows.start * N_CHANNELS..rows.end * N_CHANNELS];
-        crate::fit::normal_equations::dot(part, part)
+        signal::dot(part, part)
     };
     let error: f64 = blocks.iter().map(|(_, rows)| sse(rows)).sum();
     let floor: f64 = blocks

@@ -3,7 +3,6 @@
 use crate::data::question::{Error, Question};
 use crate::data::study::{Study, Trial};
 use crate::explain;
-use crate::fit::normal_equations::dot;
 use crate::fit::output_error::Effort;
 use crate::fit::polish::with_nominals;
 use crate::laws::curve::as_knots;
@@ -21,6 +20,7 @@ use motor::effect::{EffectConfig, expression, to_entry};
 use motor::effects::{find, names};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
 use recording::Source;
+use signal::dot;
 
 use super::explain::{judged_frame, speed_scale_report};
 use super::{LAW, PARAMETERS, Progress};

@@ -3,13 +3,13 @@
 use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::data::inputs::{InputNoise, Load, measured_speed};
 use crate::data::load_table::{self, Point};
-use crate::data::signal::{Supply, Windows, denoise, refined, sigma};
 use crate::data::unsupported::{Unsupported, check_clock, check_size};
 use crate::model::speed_gain::gain_of;
 use motor::dynamic::clarke;
 use motor::effect::{Between, Inputs, Plant, Rated, Timeline};
 use num_complex::Complex64;
 use recording::{Channel, LoadTable, Recording, StartsFrom, Supply as SupplyKind, VoltageKind};
+use signal::{Supply, Windows, denoise, refined, sigma};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;

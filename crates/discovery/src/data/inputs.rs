@@ -1,8 +1,8 @@
 //! Measured torque and speed made ready to drive a model: as smooth as their noise allows.
 
-use crate::data::signal::{Windows, longest_real, sigma};
 use crate::data::unsupported::Unsupported;
 use recording::{Channel, LoadTorque, Recording};
+use signal::{Windows, longest_real, sigma};
 
 /// Shortest window of a load torque, samples: a load step stays a step.
 const SHORTEST_TORQUE: usize = 25;

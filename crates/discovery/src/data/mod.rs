@@ -7,7 +7,6 @@ pub mod instrument_class;
 pub(crate) mod load_table;
 pub(crate) mod noise_floor;
 pub(crate) mod question;
-pub(crate) mod signal;
 pub mod stretches;
 pub(crate) mod study;
 pub(crate) mod unsupported;

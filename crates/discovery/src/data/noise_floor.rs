@@ -2,8 +2,6 @@
 
 use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
-use crate::data::signal::refined;
-use crate::fit::normal_equations::dot;
 use crate::model::prediction::{Drive, outputs_on};
 use motor::effect::Plant;
 use num_complex::Complex64;
@@ -11,6 +9,8 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use signal::dot;
+use signal::refined;
 use std::ops::Range;
 
 /// Monte-Carlo draws of the input noise.

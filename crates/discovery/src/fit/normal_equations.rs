@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 use crate::data::channels::N_CHANNELS;
+use signal::dot;
 
 /// Number of interleaved folds.
 pub(crate) const FOLDS: usize = 5;
@@ -18,24 +19,6 @@ pub(crate) struct Block {
     pub score: DVector<f64>,
     /// `r' r`.
     pub sse: f64,
-}
-
-/// Dot product in eight independent sums, so that it vectorises.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (head_a, head_b) = (a.chunks_exact(8), b.chunks_exact(8));
-    let tail: f64 = head_a
-        .remainder()
-        .iter()
-        .zip(head_b.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    for (x, y) in head_a.zip(head_b) {
-        for k in 0..8 {
-            sums[k] += x[k] * y[k];
-        }
-    }
-    sums.iter().sum::<f64>() + tail
 }
 
 fn part<'a>(x: &'a [f64], rows: &Range<usize>) -> &'a [f64] {

@@ -97,7 +97,7 @@ fn cost(r: &[f64], penalty: &Penalty) -> f64 {
         .iter()
         .zip(&penalty.pull)
         .map(|(w, p)| w * p * p);
-    let sum = normal_equations::dot(r, r) + pulls.sum::<f64>();
+    let sum = signal::dot(r, r) + pulls.sum::<f64>();
     if sum.is_finite() { sum } else { f64::INFINITY }
 }
 
@@ -128,7 +128,7 @@ pub(crate) fn fit(case: &Case, prior: &Prior, start: &Hypothesis, effort: Effort
     let mut inflation = limits[0];
     for iteration in 0..effort.iterations {
         let r = residual(case, &out);
-        let sse = normal_equations::dot(&r, &r);
+        let sse = signal::dot(&r, &r);
         let j = jacobian(case, prior, &h, &out, effort.observer);
         let blocks = normal_equations::blocks(&rows, &r, &j);
         let nominals = free.iter().filter(|&&k| k < N_NOMINAL).count();
@@ -265,7 +265,7 @@ mod tests {
             "{:?}",
             fit.hypothesis.z
         );
-        assert!(normal_equations::dot(&fit.residual, &fit.residual) < 1e-4);
+        assert!(signal::dot(&fit.residual, &fit.residual) < 1e-4);
     }
 
     /// Parameters that differ by some per cent are found: the table is exact, the priors are wide.

@@ -10,12 +10,13 @@ use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::data::instrument_class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
 use crate::data::noise_floor::noise_draws;
 use crate::data::study::Study;
-use crate::fit::normal_equations::{self, Block, dot};
+use crate::fit::normal_equations::{self, Block};
 use crate::fit::output_error::Fit;
 use crate::model::prediction::{Drive, outputs_on};
 use crate::model::prior::N_NOMINAL;
 use motor::effect::{Instrument, Plant};
 use nalgebra::{DMatrix, DVector};
+use signal::dot;
 use std::borrow::Cow;
 
 /// Gain for which the derivative is taken.

@@ -5,9 +5,7 @@
 //! supply's.
 
 use crate::data::case::Case;
-use crate::data::signal::estimated_sigma;
 use crate::data::unsupported::Unsupported;
-use crate::fit::normal_equations::dot;
 use crate::fit::output_error::{Effort, fit};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
@@ -17,6 +15,8 @@ use motor::dynamic::clarke;
 use motor::effect::{EffectConfig, Instrument, Rated};
 use motor::effects;
 use recording::{Recording, StartsFrom, UnknownScale};
+use signal::dot;
+use signal::estimated_sigma;
 use std::ops::Range;
 
 /// Share of the rated voltage and current below which a motor is not supplied.

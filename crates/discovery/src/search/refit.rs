@@ -2,7 +2,6 @@
 
 use crate::data::case::Case;
 use crate::data::study::{Study, Trial};
-use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, Fit, fit};
 use crate::model::prediction::SpeedObserver;
 use crate::model::prior::Hypothesis;
@@ -190,7 +189,7 @@ fn promising(
     // Shapes move during a refit: a bad model may gain more than its secant promises.
     let matters = |s: &Start| error > POOR || screened(s) < (1.0 - LEAST_GAIN) * error;
     let starts = groups.iter().map(start).filter(matters).take(CONFIRMED);
-    let own = study.fold_error(&[normal_equations::dot(&fit.residual, &fit.residual)]);
+    let own = study.fold_error(&[signal::dot(&fit.residual, &fit.residual)]);
     let limit = 1.0 + LIKELY * (own * own - 1.0).max(0.0);
     let (mut likely, mut rest) = (Vec::new(), Vec::new());
     for s in starts {
@@ -221,7 +220,7 @@ fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
     let at = |s: &Screened| start.hypothesis.with(s.config.clone(), rated);
     let (case, prior) = (&study.fitted.case, &study.prior);
     let tried = |s: &Screened| fit(case, prior, &at(s), short(start.observer));
-    let sse = |f: &Fit| normal_equations::dot(&f.residual, &f.residual);
+    let sse = |f: &Fit| signal::dot(&f.residual, &f.residual);
     let resonance = start.group[0].config.effect.descriptor().is_resonance();
     let best = if !resonance && start.observer == SpeedObserver::Off {
         at(&start.group[0])
@@ -233,7 +232,7 @@ fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
     };
     // On top of a model that already fits nothing improves the error by much: every refit is finished.
     let poor = study.fold_error(&base.folds) > POOR;
-    let limit = HOPELESS * normal_equations::dot(&base.fit.residual, &base.fit.residual);
+    let limit = HOPELESS * signal::dot(&base.fit.residual, &base.fit.residual);
     let effort = Effort {
         abandon_above: if poor { limit } else { f64::INFINITY },
         ..Effort::FULL

@@ -1,7 +1,7 @@
 use super::*;
-use crate::data::signal::estimated_sigma;
 use crate::tests::specimen::{self, SIGMA, T_SAMPLE};
 use recording::{LoadTorque, Metadata};
+use signal::estimated_sigma;
 
 fn rated() -> Rated<f64> {
     specimen::prior("").plant.rated

@@ -6,7 +6,6 @@ use super::propose::{Projector, Proposal, Weight, propose};
 use super::quadratic::Quadratic;
 use super::shape::Shape;
 use crate::data::study::{Study, Trial};
-use crate::fit::normal_equations;
 use crate::fit::output_error::Effort;
 use crate::laws::modes::Modes;
 use crate::model::prior::{Hypothesis, N_NOMINAL};
@@ -103,7 +102,7 @@ fn weight(study: &Study, trial: &Trial) -> Weight {
     Weight {
         values,
         inflation: trial.fit.inflation,
-        variance: normal_equations::dot(residual, residual) / values,
+        variance: signal::dot(residual, residual) / values,
     }
 }
 
@@ -124,7 +123,7 @@ fn refitted(study: &Study, step: Curve<'_>, config: &EffectConfig, p: &Proposal)
     let trial = study.trial(&bare.with(formula, rated), effort);
     let numbers = p.shape.numbers();
     let residual = &trial.fit.residual;
-    let error = normal_equations::dot(residual, residual) + trial.proof.iter().sum::<f64>();
+    let error = signal::dot(residual, residual) + trial.proof.iter().sum::<f64>();
     Some(Proven {
         bic: weight(study, step.trial).bic(error, numbers),
         numbers,

@@ -341,7 +341,7 @@ fn a_hopeless_refit_of_a_poor_model_is_given_up() {
         };
         let found = fit(case, &study.prior, &from, effort);
         (
-            normal_equations::dot(&found.residual, &found.residual),
+            signal::dot(&found.residual, &found.residual),
             found.hypothesis.z,
         )
     };

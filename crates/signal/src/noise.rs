@@ -5,7 +5,7 @@ use recording::{Channel, Recording};
 /// Standard deviation of white noise on a smooth signal: the median magnitude of its third differences.
 ///
 /// Third differences of a sinusoid of 50 Hz at 5 kHz are 2.5e-4 of its amplitude.
-pub(crate) fn estimated_sigma(x: &[f64]) -> f64 {
+pub fn estimated_sigma(x: &[f64]) -> f64 {
     let mut third: Vec<f64> = x
         .windows(4)
         .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs())
@@ -20,7 +20,7 @@ pub(crate) fn estimated_sigma(x: &[f64]) -> f64 {
 }
 
 /// Declared noise of a channel, or an estimate, never zero.
-pub(crate) fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
+pub fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
     let declared = rec.metadata.sensors.sigma(channel);
     let sigma = declared.unwrap_or_else(|| estimated_sigma(x));
     let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));

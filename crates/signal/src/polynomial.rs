@@ -1,6 +1,6 @@
 //! Local quadratic smoothing (Savitzky-Golay) that respects the ends of a segment.
 
-use crate::fit::normal_equations::dot;
+use crate::dot::dot;
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 
@@ -30,7 +30,7 @@ fn apply(w: &[f64], re: &[f64], im: &[f64]) -> Complex64 {
 
 /// Value and slope (per sample) of a signal.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Smoothed {
+pub struct Smoothed {
     /// Smoothed signal.
     pub value: Vec<Complex64>,
     /// Its slope per sample.
@@ -39,7 +39,7 @@ pub(crate) struct Smoothed {
 
 /// How far the smoothing of a point looks, and how often it is evaluated.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reach {
+pub struct Reach {
     /// Points of a window.
     pub window: usize,
     /// Points from one evaluation to the next.
@@ -47,14 +47,14 @@ pub(crate) struct Reach {
 }
 
 /// The reach of windows of about `window` points over `n` points; `None` where there is nothing to smooth.
-pub(crate) fn reach(n: usize, window: usize) -> Option<Reach> {
+pub fn reach(n: usize, window: usize) -> Option<Reach> {
     let window = (window | 1).min(n);
     let stride = (window / KNOTS).max(1);
     (window >= 5).then_some(Reach { window, stride })
 }
 
 /// Smooths one segment with windows of about `window` points; nearer to an end the last full window counts.
-pub(crate) fn smooth(x: &[Complex64], window: usize) -> Smoothed {
+pub fn smooth(x: &[Complex64], window: usize) -> Smoothed {
     let Some(Reach { window, stride }) = reach(x.len(), window) else {
         return Smoothed {
             value: x.to_vec(),

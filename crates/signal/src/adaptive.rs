@@ -6,7 +6,7 @@
 //! the parameters that damp it (leakage, inertia).
 
 use super::polynomial::{Smoothed, reach, smooth};
-use crate::fit::normal_equations::dot;
+use crate::dot::dot;
 use num_complex::Complex64;
 
 /// Orders of the polynomials that a quadratic leaves over and that are looked for in a window: kinks, steps and up to
@@ -23,7 +23,7 @@ const FAR: f64 = 2.5;
 
 /// A series of samples and its white noise.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Noisy<'a> {
+pub struct Noisy<'a> {
     /// Samples; a signal of one axis has no imaginary part.
     pub x: &'a [Complex64],
     /// Variance of the noise of each sample, per axis.
@@ -34,7 +34,7 @@ pub(crate) struct Noisy<'a> {
 
 /// The window of each sample.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Windows {
+pub struct Windows {
     /// 0: the sample itself; `k`: the shortest window times `2^(k - 1)`.
     level: Vec<u8>,
     /// Shortest window, samples.
@@ -110,7 +110,7 @@ impl Windows {
 }
 
 /// The longest windows of a signal of one axis with noise of the standard deviation `sigma`.
-pub(crate) fn longest_real(x: &[f64], sigma: f64, shortest: usize, may_be_raw: bool) -> Windows {
+pub fn longest_real(x: &[f64], sigma: f64, shortest: usize, may_be_raw: bool) -> Windows {
     let complex: Vec<_> = x.iter().map(|&x| Complex64::new(x, 0.0)).collect();
     let series = Noisy {
         x: &complex,

@@ -18,7 +18,7 @@ const WHITE_LIMIT: f64 = 1.25;
 
 /// A denoised supply.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Supply {
+pub struct Supply {
     /// Denoised voltage vector, V.
     pub u_s: Vec<Complex64>,
     /// Supply frequency, rad/s, one per sample.
@@ -39,7 +39,7 @@ pub(crate) struct Supply {
 }
 
 /// Denoises `raw` (V) with noise `sigma` (V, per axis); `omega_rated` (rad/s) sets the windows.
-pub(crate) fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated: f64) -> Supply {
+pub fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated: f64) -> Supply {
     let period = std::f64::consts::TAU / omega_rated / t_sample;
     let window = (period as usize).max(16);
     // An unbalance makes the amplitude ripple: steps are looked for once the harmonics are known and removed.
@@ -292,7 +292,7 @@ impl Supply {
 }
 
 /// A series at `factor` times the rate, on straight lines between its samples.
-pub(crate) fn refined<T>(x: &[T], factor: usize) -> Vec<T>
+pub fn refined<T>(x: &[T], factor: usize) -> Vec<T>
 where
     T: Copy
         + std::ops::Add<Output = T>
