@@ -29,8 +29,8 @@ pub fn with_sound_probes(recording: &Recording, audit: &Audit) -> Recording {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::audit;
     use crate::Expectation;
+    use crate::audit;
     use recording::{Metadata, Signal};
     use std::f64::consts::TAU;
 

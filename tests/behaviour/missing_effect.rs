@@ -1,8 +1,6 @@
 //! A missing effect lights lamps; adopted, it leaves them dark, and a real fault still lights.
 
-mod common;
-
-use common::motor;
+use crate::common::motor;
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample, Report};
 use motor::MotorFile;
 use motor::motor_file::{EffectEntry, Frame};

@@ -1,10 +1,8 @@
 //! Table 1 through the core: the published patterns, the full motor, and the healthy motor at every load.
 
-mod common;
-
 use std::sync::OnceLock;
 
-use common::motor;
+use crate::common::motor;
 use sim_host::demo::{self, Demo, FaultMatrix};
 
 /// One run for all tests; the seed is arbitrary.

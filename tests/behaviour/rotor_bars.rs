@@ -1,10 +1,8 @@
 //! Broken rotor bars: found by the sidebands of the current, and told from a load that swings.
 
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{in_project, motor};
+use crate::common::{in_project, motor};
 use monitor::{Cage, Lamp, Monitor, MonitorConfig, MonitorState, RawSample, Report, Sidebands};
 use motor::dynamic::clarke;
 use motor::motor_file::{EffectEntry, Frame};

@@ -1,9 +1,7 @@
 //! Recordings that this project did not make, through the audit and the core.
 
-mod common;
-
+use crate::common::{in_project, in_shared_data, monitored, motor, read};
 use audit::Code;
-use common::{in_project, in_shared_data, monitored, motor, read};
 use monitor::{Lamp, NotJudged};
 use recording::Mapping;
 use replay::{Timeline, Unjudged, VerdictState};

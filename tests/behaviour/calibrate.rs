@@ -1,8 +1,6 @@
 //! Calibrated motors on recordings that this project did not make: what is learnt, what is named, what is refused.
 
-mod common;
-
-use common::{in_project, monitored, motor, read};
+use crate::common::{in_project, monitored, motor, read};
 use motor::motor_file::{EffectEntry, LoadKind};
 use motor::{FaultId, MotorFile};
 use recording::{Channel, Mapping, Recording, Signal};

@@ -1,10 +1,8 @@
 //! How small an asymmetry of the cage is found at several loads, and what whole cages under restless loads are taken for.
 
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{in_project, motor};
+use crate::common::{in_project, motor};
 use monitor::{
     Cage, HealthySidebands, Monitor, MonitorConfig, MonitorState, RawSample, Report, Sidebands,
 };
