@@ -8,6 +8,7 @@
 use super::polynomial::{Smoothed, reach, smooth};
 use crate::dot::dot;
 use num_complex::Complex64;
+use std::ops::Range;
 
 /// Orders of the polynomials that a quadratic leaves over and that are looked for in a window: kinks, steps and up to
 /// three swings.
@@ -92,14 +93,13 @@ impl Windows {
         out
     }
 
-    /// Keeps the windows of the first samples.
-    pub fn truncate(&mut self, samples: usize) {
-        self.level.truncate(samples);
-    }
-
-    /// The windows of a series that follows, of the same shortest window.
-    pub fn append(&mut self, mut next: Self) {
-        self.level.append(&mut next.level);
+    /// The windows of some parts of the series, one after the other.
+    pub fn taken(&self, parts: &[Range<usize>]) -> Self {
+        let part = |r: &Range<usize>| self.level.get(r.clone()).unwrap_or_default();
+        Self {
+            level: parts.iter().flat_map(part).copied().collect(),
+            shortest: self.shortest,
+        }
     }
 
     /// The same for a signal of one axis.

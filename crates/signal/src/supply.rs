@@ -140,41 +140,36 @@ impl Supply {
         }
     }
 
-    /// Keeps the first samples.
-    pub fn truncate(&mut self, samples: usize) {
-        self.u_s.truncate(samples);
-        self.omega_sync.truncate(samples);
-        self.theta.truncate(samples);
-        for parts in [&mut self.segments, &mut self.raw] {
-            parts.retain_mut(|part| {
-                part.end = part.end.min(samples);
-                part.start < part.end
-            });
-        }
-        self.windows.truncate(self.segments.len());
-        for (windows, segment) in self.windows.iter_mut().zip(&self.segments) {
-            windows.truncate(segment.len());
-        }
-    }
-
-    /// A supply that follows, another part of the same recording. Its harmonics are forgotten: they are in its voltage.
-    pub fn append(&mut self, mut next: Self) {
-        let from = self.u_s.len();
-        for supply in [&mut *self, &mut next] {
-            if !supply.denoised {
-                // Taken as it was measured: so are its disturbances.
-                supply.raw.clear();
-                supply.raw.push(0..supply.u_s.len());
-                supply.denoised = true;
+    /// Parts of the supply, one after the other; each is a segment at least.
+    pub fn taken(&self, parts: &[Range<usize>]) -> Self {
+        let mut taken = Self {
+            denoised: self.denoised,
+            harmonics: self.harmonics.clone(),
+            window: self.window,
+            ..Self::default()
+        };
+        for part in parts {
+            let from = taken.u_s.len();
+            let both = |r: &Range<usize>| r.start.max(part.start)..r.end.min(part.end);
+            let there = |r: &Range<usize>| r.start + from - part.start..r.end + from - part.start;
+            for (k, segment) in self.segments.iter().enumerate() {
+                let common = both(segment);
+                if common.start < common.end {
+                    taken.segments.push(there(&common));
+                    let inside = common.start - segment.start..common.end - segment.start;
+                    let windows = self.windows.get(k);
+                    taken
+                        .windows
+                        .extend(windows.map(|windows| windows.taken(&[inside])));
+                }
             }
+            let raw = self.raw.iter().map(both).filter(|r| r.start < r.end);
+            taken.raw.extend(raw.map(|r| there(&r)));
+            taken.u_s.extend(&self.u_s[part.clone()]);
+            taken.omega_sync.extend(&self.omega_sync[part.clone()]);
+            taken.theta.extend(&self.theta[part.clone()]);
         }
-        let later = |part: &Range<usize>| part.start + from..part.end + from;
-        self.segments.extend(next.segments.iter().map(later));
-        self.raw.extend(next.raw.iter().map(later));
-        self.u_s.append(&mut next.u_s);
-        self.omega_sync.append(&mut next.omega_sync);
-        self.theta.append(&mut next.theta);
-        self.windows.append(&mut next.windows);
+        taken
     }
 
     /// `raw` without its harmonics.

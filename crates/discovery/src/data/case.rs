@@ -456,7 +456,7 @@ fn between(rec: &Recording, t_sample: f64) -> Between {
 }
 
 /// Shaft angle by integrating the measured speed (trapezoids), rad.
-pub(crate) fn measured_angle(rec: &Recording) -> Vec<f64> {
+fn measured_angle(rec: &Recording) -> Vec<f64> {
     let Some(speed) = rec.speed() else {
         return Vec::new();
     };

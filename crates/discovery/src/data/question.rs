@@ -1,7 +1,7 @@
 //! From files to a study: audit, preparation, errors.
 
 use crate::data::case::Case;
-use crate::data::stretches::{joined, stretches, told};
+use crate::data::stretches::{cut, stretches, told};
 use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
 use crate::model::free_scale::FreeScale;
@@ -140,10 +140,11 @@ fn case_of(
 
 /// A recording whole, or stretches of a long one.
 fn case_of_recording(recording: &Recording, rated: &Rated<f64>) -> Result<Case, Unsupported> {
-    match stretches(recording) {
-        None => Case::new(recording, rated),
-        Some(stretches) => joined(recording, rated, &stretches),
-    }
+    let whole = Case::new(recording, rated)?;
+    Ok(match stretches(recording) {
+        None => whole,
+        Some(stretches) => cut(&whole, rated, &stretches),
+    })
 }
 
 /// Where the fit of an unknown scale of the speed starts; `None` when every scale is known.

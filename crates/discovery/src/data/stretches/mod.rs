@@ -1,11 +1,11 @@
 //! Long recordings: a fit simulates its recording hundreds of times, so that of a long one some stretches are taken.
 
 mod choice;
-mod joined;
+mod cut;
 
 pub use choice::told;
 pub(crate) use choice::{Stretch, stretches};
-pub(crate) use joined::joined;
+pub(crate) use cut::cut;
 
 #[cfg(test)]
 mod tests;

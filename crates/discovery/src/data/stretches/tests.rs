@@ -97,16 +97,17 @@ fn two_parts() -> Vec<Stretch> {
     vec![part(0.0, 1.0, 0.0), part(3.0, 4.5, 0.5)]
 }
 
-fn joined_case(torque: impl Fn(f64) -> f64) -> Case {
+fn cut_case(torque: impl Fn(f64) -> f64) -> Case {
     let rated = specimen::prior("").plant.rated;
-    joined(&specimen::recording(5.0, torque), &rated, &two_parts()).expect("judged")
+    let whole = Case::new(&specimen::recording(5.0, torque), &rated).expect("judged");
+    cut(&whole, &rated, &two_parts())
 }
 
 /// The motor's steady state in closed form on both sides of the cut: nothing is left, and the clock goes on.
 #[test]
 fn a_cut_leaves_no_error_and_keeps_the_clock() {
     let prior = specimen::prior("");
-    let case = joined_case(|t| if t < 2.0 { 1.0 } else { 0.4 });
+    let case = cut_case(|t| if t < 2.0 { 1.0 } else { 0.4 });
     let h = crate::model::prior::Hypothesis::at_prior(false);
     let r = residual(&case, &outputs(&case, &prior, &h, SpeedObserver::Off));
     let judged: Vec<f64> = case
@@ -133,7 +134,7 @@ fn a_cut_leaves_no_error_and_keeps_the_clock() {
 /// The shaft goes on turning where a part was left out: 2 s at the speed of the load.
 #[test]
 fn the_shaft_turns_through_a_cut() {
-    let case = joined_case(|_| 1.0);
+    let case = cut_case(|_| 1.0);
     let omega = specimen::point(1.0).omega_mech;
     let theta = &case.timeline.theta_mech;
     let cut = case.timeline.cuts[0].sample;
@@ -146,7 +147,7 @@ fn the_shaft_turns_through_a_cut() {
 #[test]
 fn an_effect_over_time_follows_the_clock() {
     let prior = specimen::prior("");
-    let case = joined_case(|_| 1.0);
+    let case = cut_case(|_| 1.0);
     let with = |entry: &str| {
         let file = specimen::motor(entry);
         motor::effect::from_motor_file(&file, "specimen.toml").expect("valid effects")
