@@ -8,7 +8,7 @@ mod start;
 pub use least_squares::Fit;
 pub use misfit::{MISFITS, Misfit, Misfits, Targets};
 pub use spread::Spread;
-pub use start::{PRIOR_SPREAD, start};
+pub use start::{BOUNDS, PRIOR_SPREAD, start};
 pub(crate) use start::{bounds, prior_spread};
 
 use least_squares::Problem;

@@ -10,8 +10,8 @@ pub const PRIOR_SPREAD: [f64; PARAMETERS] =
     [0.5, 0.5, 0.5, 0.4, 1.0, 1.0, 0.6, 0.6, 0.4, 0.2, 0.08, 0.1];
 /// Standard deviation of the logarithm of a measured stator resistance: the winding's temperature at rated load is not measured.
 const MEASURED_RESISTANCE: f64 = 0.04;
-/// Lowest and highest value of each unknown that a motor has.
-const BOUNDS: [[f64; 2]; PARAMETERS] = [
+/// Lowest and highest value of each unknown that a motor has, in the order of the circuit.
+pub const BOUNDS: [[f64; 2]; PARAMETERS] = [
     [2e-4, 0.4],
     [5e-3, 0.5],
     [0.3, 20.0],

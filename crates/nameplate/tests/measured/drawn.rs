@@ -1,6 +1,7 @@
 //! Random motors as the prior has them: values of motors of a size, a circuit that has these values, and what no plate tells.
 
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use nameplate::circuit::{PARAMETERS, Place};
 use nameplate::fit::{PRIOR_SPREAD, Targets, start};
 use nameplate::plate::{VALUES, Values};
 use nameplate::prior::Prior;
@@ -24,20 +25,12 @@ pub struct Motor {
 }
 
 const FREQUENCY: f64 = 50.0;
-/// Lowest and highest logarithm of the eleven unknowns of a circuit that a motor has.
-const BOUNDS: [[f64; 2]; 11] = [
-    [2e-4, 0.4],
-    [5e-3, 0.5],
-    [0.3, 20.0],
-    [5e-4, 0.5],
-    [1e-4, 5.0],
-    [1e-4, 3.0],
-    [1e-5, 0.3],
-    [1e-4, 0.08],
-    [1e-3, 0.035],
-    [0.5, 0.999],
-    [0.76, 1.0],
-];
+/// As the fit has them; but a leakage that does not saturate at all has no knee to draw.
+const BOUNDS: [[f64; 2]; PARAMETERS] = {
+    let mut bounds = nameplate::fit::BOUNDS;
+    bounds[Place::SaturatedLeakage as usize][1] = 0.999;
+    bounds
+};
 type Unknowns = SVector<f64, 11>;
 
 pub fn normal(rng: &mut Pcg64Mcg) -> f64 {

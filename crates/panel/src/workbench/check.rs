@@ -11,10 +11,11 @@ use axum::response::{IntoResponse, Response};
 use nameplate::plate::{PlateFile, Printing, QUESTIONS};
 use report::study::{Known, PlateRow};
 use report::{Subject, page};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::desk::{Bench, Kind};
 use super::known::{Checked, Typed};
+use super::motor_requests::{Named, answer_audited, sent, take};
 use super::motors::Motor;
 use super::upload::harmless;
 use super::{answer, refused};
@@ -101,7 +102,7 @@ pub(super) async fn plate(
     let done = known.and_then(|(known, typed)| {
         let name = file_name(&known.motor.name);
         let motor = Motor::parse(&name, &known.text)?;
-        take(&bench, motor, Checked { known, typed })
+        take(&bench, Some(motor), Some(Checked { known, typed }))
     });
     answer_audited(bench, done).await
 }
@@ -120,27 +121,18 @@ fn file_name(motor: &str) -> String {
     }
 }
 
-#[derive(Debug, Deserialize)]
-pub(super) struct Named {
-    name: String,
-}
-
 /// Takes a motor file instead of a plate.
 pub(super) async fn motor(
     State(bench): State<Arc<Bench>>,
     Query(named): Query<Named>,
     body: Bytes,
 ) -> Response {
-    let name = harmless(&named.name);
-    let text = std::str::from_utf8(&body)
-        .map_err(|error| Refusal::of(format!("{name}: is no text: {error}; choose a motor file")));
-    let done = text.and_then(|text| {
-        let motor = Motor::parse(&name, text)?;
+    let done = sent(&named, &body).and_then(|(motor, text)| {
         let checked = Checked {
             known: Known::of_file(motor.motor.clone(), text.to_owned()),
             typed: Typed::new(),
         };
-        take(&bench, motor, checked)
+        take(&bench, Some(motor), Some(checked))
     });
     answer_audited(bench, done).await
 }
@@ -231,23 +223,6 @@ async fn estimated(bench: &Bench, file: PlateFile) -> Result<Known, Refusal> {
     let done = work.await;
     done.map_err(|_| Refusal::of("the plate cannot be computed: the search broke off"))?
         .map_err(Refusal::of)
-}
-
-fn take(bench: &Bench, motor: Motor, checked: Checked) -> Result<(), Refusal> {
-    let mut desk = bench.free_desk()?;
-    desk.take_motor(Some(motor));
-    desk.check = Some(checked);
-    desk.job.problem = None;
-    Ok(())
-}
-
-async fn answer_audited(bench: Arc<Bench>, done: Result<(), Refusal>) -> Response {
-    if done.is_ok() {
-        let shared = bench.clone();
-        // A panic would leave a recording without findings.
-        let _ = tokio::task::spawn_blocking(move || shared.audit_missing()).await;
-    }
-    answer(&bench, done)
 }
 
 #[cfg(test)]

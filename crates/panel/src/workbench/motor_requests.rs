@@ -11,6 +11,7 @@ use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 
 use super::desk::Bench;
+use super::known::Checked;
 use super::motors::{Motor, SHIPPED};
 use super::upload::harmless;
 use super::{answer, refused};
@@ -36,7 +37,7 @@ pub(super) async fn choose(
         let (file, text) = found.ok_or_else(|| Refusal::of("there is no such motor file here"))?;
         Motor::parse(file, text).map(Some)
     });
-    let done = motor.and_then(|motor| take(&bench, motor));
+    let done = motor.and_then(|motor| take(&bench, motor, None));
     answer_audited(bench, done).await
 }
 
@@ -52,24 +53,34 @@ pub(super) async fn file(
     Query(named): Query<Named>,
     body: Bytes,
 ) -> Response {
-    let name = harmless(&named.name);
-    let text = std::str::from_utf8(&body);
-    let text = text
-        .map_err(|error| Refusal::of(format!("{name}: is no text: {error}; choose a motor file")));
-    let motor = text.and_then(|text| Motor::parse(&name, text));
-    let done = motor.and_then(|motor| take(&bench, Some(motor)));
+    let done = sent(&named, &body).and_then(|(motor, _)| take(&bench, Some(motor), None));
     answer_audited(bench, done).await
 }
 
-fn take(bench: &Bench, motor: Option<Motor>) -> Result<(), Refusal> {
+/// A motor file that the page sends, and its text.
+pub(super) fn sent<'b>(named: &Named, body: &'b [u8]) -> Result<(Motor, &'b str), Refusal> {
+    let name = harmless(&named.name);
+    let text = std::str::from_utf8(body).map_err(|error| {
+        Refusal::of(format!("{name}: is no text: {error}; choose a motor file"))
+    })?;
+    Ok((Motor::parse(&name, text)?, text))
+}
+
+/// Puts a motor file on the desk, with what the first check knows of the motor.
+pub(super) fn take(
+    bench: &Bench,
+    motor: Option<Motor>,
+    check: Option<Checked>,
+) -> Result<(), Refusal> {
     let mut desk = bench.free_desk()?;
     desk.take_motor(motor);
+    desk.check = check;
     desk.job.problem = None;
     Ok(())
 }
 
 /// The state after another motor file was taken, with the audits that belong to it.
-async fn answer_audited(bench: Arc<Bench>, done: Result<(), Refusal>) -> Response {
+pub(super) async fn answer_audited(bench: Arc<Bench>, done: Result<(), Refusal>) -> Response {
     if done.is_ok() {
         let shared = bench.clone();
         // A panic would leave a recording without findings.
