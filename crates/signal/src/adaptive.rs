@@ -93,11 +93,14 @@ impl Windows {
         out
     }
 
-    /// The windows of some parts of the series, one after the other.
+    /// The windows of some parts of the series, one after the other; none is longer than what is taken.
     pub fn taken(&self, parts: &[Range<usize>]) -> Self {
         let part = |r: &Range<usize>| self.level.get(r.clone()).unwrap_or_default();
+        let mut level: Vec<u8> = parts.iter().flat_map(part).copied().collect();
+        let longest = longest_of(level.len(), self.shortest);
+        level.iter_mut().for_each(|at| *at = (*at).min(longest));
         Self {
-            level: parts.iter().flat_map(part).copied().collect(),
+            level,
             shortest: self.shortest,
         }
     }
@@ -118,6 +121,12 @@ pub fn longest_real(x: &[f64], sigma: f64, shortest: usize, may_be_raw: bool) ->
         two_axes: false,
     };
     Windows::longest(series, shortest, may_be_raw)
+}
+
+/// Level of the longest window that a series of `samples` can hold.
+fn longest_of(samples: usize, shortest: usize) -> u8 {
+    let holds = |number: &u8| samples >> (number - 1) >= shortest.max(5);
+    (1..=63).take_while(holds).last().unwrap_or(1)
 }
 
 /// Means of neighbouring pairs; an odd last one is left out.

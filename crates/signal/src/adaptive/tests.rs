@@ -207,3 +207,17 @@ fn few_neighbours_exceed_by_chance() {
     assert_eq!(failed(49..60), 11);
     assert_eq!(failed(50..60), 0);
 }
+
+/// A long constant has windows of its own length; parts of it have windows that fit into them, and smooth as before.
+#[test]
+fn parts_of_a_series_have_windows_that_fit() {
+    let noise = noise(4096, 1.0, 7);
+    let windows = longest_real(&noise, 1.0, 16, false);
+    for length in [3, 20, 40, 700] {
+        let part = windows.taken(&[100..100 + length]);
+        let smoothed = part.smooth_real(&noise[100..100 + length]);
+        assert_eq!(smoothed.len(), length);
+        assert!(smoothed.iter().all(|x| x.is_finite()));
+    }
+    assert_eq!(windows.taken(&[0..2048, 2048..4096]), windows);
+}
