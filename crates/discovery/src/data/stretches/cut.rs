@@ -14,15 +14,11 @@ const OFF: f64 = 0.02;
 
 /// A case of these stretches of a recording, in whole blocks.
 pub(crate) fn cut(whole: &Case, rated: &Rated<f64>, stretches: &[Stretch]) -> Case {
-    let parts: Vec<Part> = stretches
-        .iter()
-        .map(|stretch| Part::of(whole, stretch))
-        .collect();
+    let part = |stretch| Part::of(whole, stretch);
+    let parts: Vec<Part> = stretches.iter().map(part).collect();
     let samples: Vec<Range<usize>> = parts.iter().map(|part| part.samples.clone()).collect();
-    let of_recording: Vec<Range<usize>> = samples
-        .iter()
-        .map(|r| r.start / whole.finer..r.end / whole.finer)
-        .collect();
+    let coarse = |r: &Range<usize>| r.start / whole.finer..r.end / whole.finer;
+    let of_recording: Vec<Range<usize>> = samples.iter().map(coarse).collect();
     let rows: Vec<Range<usize>> = parts.iter().map(|part| part.rows.clone()).collect();
     Case {
         inputs: Inputs {
