@@ -93,16 +93,17 @@ async fn both_directions_and_beyond_the_table(page: &Page) {
     page.turn("fault-ia").await;
     page.until_lamps("sensor fault").await;
     // Said once, with what to do about it, and named as the cause.
+    let shows = |css: &str, text: &str| {
+        format!("document.querySelector(\"{css}\").innerText.trim().includes(\"{text}\")")
+    };
+    let reason = shows("#state-why", "Current sensor a is dead.");
+    page.until("the reason", &reason).await;
     assert_eq!(page.text("#state-why").await, "Current sensor a is dead.");
-    assert_eq!(
-        page.text("#state-do").await,
-        "Check the sensor's cable and its supply."
-    );
-    let named = page.text("#causes").await;
-    assert!(
-        named.contains("current sensor, phase a") && named.contains("100 %"),
-        "{named}"
-    );
+    let advice = shows("#state-do", "Check the sensor's cable and its supply.");
+    page.until("what to do", &advice).await;
+    let cause = shows("#causes", "current sensor, phase a");
+    page.until("the cause", &cause).await;
+    assert!(page.text("#causes").await.contains("100 %"));
     page.click("#faults-off").await;
     page.until_lamps("run").await;
     // A motor cannot lose all its friction and more: refused, and the switch stays off.
