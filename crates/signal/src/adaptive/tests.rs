@@ -214,7 +214,7 @@ fn parts_of_a_series_have_windows_that_fit() {
     let noise = noise(4096, 1.0, 7);
     let windows = longest_real(&noise, 1.0, 16, false);
     for length in [3, 20, 40, 700] {
-        let part = windows.taken(&[100..100 + length]);
+        let part = windows.taken(std::slice::from_ref(&(100..100 + length)));
         let smoothed = part.smooth_real(&noise[100..100 + length]);
         assert_eq!(smoothed.len(), length);
         assert!(smoothed.iter().all(|x| x.is_finite()));
