@@ -1,7 +1,7 @@
 //! The audit: what is wrong with a recording, before anything is concluded from it.
 //!
 //! Every check is a file. A check that finds channels whose phasors mean nothing says so in the
-//! [`Context`], and later checks leave them alone: one mistake gives one finding.
+//! `Context`, and later checks leave them alone: one mistake gives one finding.
 
 mod context;
 mod expectation;
