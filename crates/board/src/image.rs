@@ -3,9 +3,10 @@
 
 use heapless::Vec;
 use monitor::{
-    Abc, ActiveEffect, ActiveEffects, ActiveLaws, CHANNELS, CIRCUIT, Cage, ChannelScale,
-    ComparatorConfig, Converter, FieldCurrent, Frame, Healthy, HealthySidebands, LoadKind,
-    MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS, MonitorConfig, ParameterDoubt, ROWS, Uncertainty,
+    Abc, ActiveEffect, ActiveEffects, ActiveLaws, AnalogueChain, CHANNELS, CIRCUIT, Cage,
+    ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, Healthy, HealthySidebands,
+    LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS, MonitorConfig, ParameterDoubt, ROWS,
+    Uncertainty,
 };
 use motor::effect::SteadyEffect;
 use motor::effect::curve::{Action, BOARD_KNOTS, SteadyCurve};
@@ -20,6 +21,7 @@ pub const IMAGE_WORDS: usize = 42
     + CAGE_WORDS
     + CIRCUIT
     + CHANNELS
+    + CHAIN_WORDS
     + MAX_EFFECTS * (1 + 2 * MAX_EFFECT_PARAMETERS)
     + MAX_LAWS * LAW_WORDS;
 
@@ -29,11 +31,14 @@ const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 /// Words of the healthy motor's statistics.
 const HEALTHY_WORDS: usize = 6 + 2 * ROWS + 10;
 
+/// Words of the analogue chain: delays and roll-off.
+const CHAIN_WORDS: usize = CHANNELS + 1;
+
 /// Words of the cage: bars, then healthy loads, sidebands and scatter.
 const CAGE_WORDS: usize = 6;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0006;
+const SCHEMA: u32 = 0x444D_0007;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,6 +130,8 @@ fn write_measurement(w: &mut Writer, config: &MonitorConfig) {
     w.scale(&config.converter.voltage);
     w.scale(&config.converter.current);
     w.word(u32::from(config.converter.max_code));
+    w.numbers(&config.converter.chain.delay);
+    w.number(config.converter.chain.roll_off);
     w.number(config.encoder_counts_per_revolution);
 }
 
@@ -307,6 +314,10 @@ fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
         voltage: r.scale(),
         current: r.scale(),
         max_code: r.word() as u16,
+        chain: AnalogueChain {
+            delay: r.numbers(),
+            roll_off: r.number(),
+        },
     };
     let encoder_counts_per_revolution = r.number();
     let [r_s, r_r, l_ls, l_lr, l_m] = r.numbers();

@@ -3,6 +3,7 @@
 use motor::{Mechanics, TParams};
 
 use crate::checks::cage::Cage;
+use crate::input::chain::AnalogueChain;
 use crate::input::converter::Converter;
 use crate::input::sample::CHANNELS;
 use crate::isolation::Healthy;
@@ -155,6 +156,7 @@ impl MonitorConfig {
                 self.channel_gain
                     .map(|gain| ("channel_gain", gain, [0.1, 10.0])),
             )
+            .chain(chain_ranges(&self.converter.chain))
             .try_for_each(check_range)?;
         check_cage(&self.cage)?;
         self.healthy
@@ -175,6 +177,20 @@ pub(crate) fn check_range(
             range: [least, greatest],
         })
     }
+}
+
+type Range = (&'static str, f32, [f32; 2]);
+
+fn chain_ranges(chain: &AnalogueChain) -> impl Iterator<Item = Range> {
+    let delays = chain
+        .delay
+        .map(|delay| ("converter.chain.delay", delay, AnalogueChain::DELAYS));
+    let roll_off = (
+        "converter.chain.roll_off",
+        chain.roll_off,
+        AnalogueChain::ROLL_OFFS,
+    );
+    delays.into_iter().chain([roll_off])
 }
 
 fn check_cage(cage: &Cage) -> Result<(), ConfigError> {

@@ -13,6 +13,7 @@ use motor::{Mechanics, TParams};
 use crate::checks::cage::{Cage, HealthySidebands};
 use crate::config::{LoadKind, MonitorConfig};
 use crate::frames::Abc;
+use crate::input::chain::AnalogueChain;
 use crate::input::converter::{ChannelScale, Converter};
 use crate::input::sample::CHANNELS;
 use crate::isolation::{Healthy, Uncertainty};
@@ -205,7 +206,17 @@ fn converter(sensors: &Sensors) -> Converter {
             sensors.current_gain,
             sensors.current_offset_amp,
         ),
+        chain: chain(sensors),
         ..Converter::bipolar(1.0, 1.0, sensors.adc_bits as u8)
+    }
+}
+
+fn chain(sensors: &Sensors) -> AnalogueChain {
+    let [a, b, c] = sensors.voltage_delay_s.map(|delay| delay as f32);
+    let [d, e, f] = sensors.current_delay_s.map(|delay| delay as f32);
+    AnalogueChain {
+        delay: [a, b, c, d, e, f],
+        roll_off: sensors.roll_off_s as f32,
     }
 }
 

@@ -64,6 +64,7 @@ pub use checks::sensors::{HealthConfig, Phase, SensorFinding};
 pub use checks::supply::{SupplyConfig, SupplyFinding};
 pub use config::{ConfigError, LoadKind, MonitorConfig};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
+pub use input::chain::AnalogueChain;
 pub use input::converter::{ChannelScale, Converter};
 pub use input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
 pub use isolation::{

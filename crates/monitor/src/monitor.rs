@@ -224,13 +224,23 @@ impl Monitor {
             clipped: tally.clipped,
             invalid_samples: tally.invalid,
         };
-        let corrected = cycle.corrected(&self.config.channel_gain);
+        let corrected = self.at_terminals(state, cycle);
         state.window.push(corrected, self.config.window_cycles);
         let window = state
             .window
             .measure(self.config.window_cycles, self.config.t_sample)
             .filter(|_| state.sync.is_locked());
         self.report(state, window, cycle.clipped.any())
+    }
+
+    /// The cycle with all that is known of the instrument. Samples in SI units come from another recorder than the board.
+    fn at_terminals(&self, state: &MonitorState, cycle: Cycle) -> Cycle {
+        let cycle = cycle.corrected(&self.config.channel_gain);
+        if state.in_codes {
+            cycle.ahead_of(&self.config.converter.chain, state.sync.omega())
+        } else {
+            cycle
+        }
     }
 
     fn idle_report(&self, state: &mut MonitorState) -> Option<Report> {

@@ -5,6 +5,7 @@ use core::f32::consts::TAU;
 use num_complex::Complex32;
 
 use crate::frames::{Sequence, magnitude};
+use crate::input::chain::AnalogueChain;
 use crate::input::sample::{CHANNELS, ClippedChannels};
 use crate::noise::trend::Trend;
 use crate::sync::encoder::SpeedReading;
@@ -47,6 +48,17 @@ impl Cycle {
             channel.phasor *= gain;
             channel.offset *= gain;
             channel.mean_square *= gain * gain;
+        }
+        self
+    }
+
+    /// The cycle at the motor's terminals, of what a chain showed at the supply frequency `omega`, rad/s.
+    #[must_use]
+    pub fn ahead_of(mut self, chain: &AnalogueChain, omega: f32) -> Self {
+        let channels = self.phasors.channels.iter_mut();
+        for (channel, factor) in channels.zip(chain.undone(omega)) {
+            channel.phasor *= factor;
+            channel.mean_square *= factor.norm_sqr();
         }
         self
     }

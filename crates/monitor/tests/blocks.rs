@@ -36,6 +36,7 @@ fn config() -> MonitorConfig {
             voltage: channel(0.15, 2.0),
             current: channel(0.01, 0.05),
             max_code: 4095,
+            chain: monitor::AnalogueChain::NONE,
         },
         encoder_counts_per_revolution: 4096.0,
         params: TParams {

@@ -16,6 +16,7 @@
 //! ```
 
 mod data;
+pub mod delay;
 mod error;
 mod mapping;
 pub mod names;

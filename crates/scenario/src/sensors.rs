@@ -43,6 +43,15 @@ impl SensorSpec {
         }
     }
 
+    /// What the simulated board is told of its motor: without a chain of their own its channels are not late.
+    pub fn told(&self, motor: &MotorFile) -> MotorFile {
+        let mut told = motor.clone();
+        if self.chain.is_none() {
+            told.sensors = told.sensors.without_delays();
+        }
+        told
+    }
+
     /// Perfect instruments: no noise, no steps, no limits, no chain.
     #[must_use]
     pub fn ideal(mut self) -> SensorSpec {

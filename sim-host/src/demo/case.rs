@@ -53,8 +53,9 @@ impl Case<'_> {
     /// A motor that cannot be simulated.
     pub fn run(&self) -> Result<CaseResult, DemoError> {
         let simulation = Simulation::new(&self.scenario())?;
-        let t_sample = simulation.scenario().t_sample();
-        let config = MonitorConfig::from_motor_file(self.motor, t_sample)?;
+        let scenario = simulation.scenario();
+        let told = scenario.sensors.told(self.motor);
+        let config = MonitorConfig::from_motor_file(&told, scenario.t_sample())?;
         let monitor = Monitor::new(config)?;
         let mut state = MonitorState::default();
         let mut result = CaseResult::default();

@@ -14,6 +14,7 @@ pub const CONFIG: MonitorConfig = MonitorConfig {
         voltage: CHANNEL,
         current: CHANNEL,
         max_code: 4095,
+        chain: monitor::AnalogueChain::NONE,
     },
     encoder_counts_per_revolution: 4096.0,
     params: TParams {

@@ -22,6 +22,8 @@ fn terms(config: &MonitorConfig) -> EffectTerms {
 fn with_effects() -> MonitorConfig {
     let mut config = shipped("assumed-300w.toml");
     config.channel_gain[4] = 0.98;
+    config.converter.chain.delay = [8.9e-5, 8.8e-5, 8.7e-5, 8.6e-5, 8.5e-5, 8.4e-5];
+    config.converter.chain.roll_off = 8.37e-5;
     for (slot, number) in config.effects.iter_mut().zip([2, 9]) {
         *slot = Some(ActiveEffect {
             effect: STEADY[number],

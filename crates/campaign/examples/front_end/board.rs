@@ -60,14 +60,38 @@ impl Variant {
 /// A board: its signal chains, and what the user was told of them.
 pub struct Board {
     pub chain: SignalChain,
-    /// Nominal delay of each channel, s, where it is known.
-    pub known_delays: Option<[f64; CHANNELS]>,
+    /// The nominal chain, where the board is told of it.
+    pub known: Option<Known>,
     /// V.
     pub voltage_full_scale: f64,
     /// Full scale of the currents over the rated amplitude.
     pub current_headroom: f64,
     /// Of the noise.
     pub seed: u64,
+}
+
+/// What a motor file says of a chain.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// Voltages a, b, c, then currents a, b, c.
+    pub delays_s: [f64; CHANNELS],
+    pub roll_off_s: f64,
+}
+
+impl Known {
+    pub const NOTHING: Known = Known {
+        delays_s: [0.0; CHANNELS],
+        roll_off_s: 0.0,
+    };
+
+    fn of(nominal: &[ChannelChain; CHANNELS]) -> Known {
+        let [voltage, ..] = nominal;
+        let squares = voltage.time_constants_s.iter().map(|t| t * t);
+        Known {
+            delays_s: nominal.map(whole_delay),
+            roll_off_s: squares.sum::<f64>().sqrt(),
+        }
+    }
 }
 
 /// What is left of a gain after calibration.
@@ -96,7 +120,7 @@ impl Board {
                 channels,
                 ..SignalChain::default()
             },
-            known_delays: variant.delays_are_known().then(|| nominal.map(whole_delay)),
+            known: variant.delays_are_known().then(|| Known::of(&nominal)),
             voltage_full_scale: if old { 395.8 } else { 630.8 },
             current_headroom: if old { 10.0 } else { 2.0 },
             seed: random.random(),

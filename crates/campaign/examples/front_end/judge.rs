@@ -1,16 +1,12 @@
-//! A healthy motor behind a board, judged by the core.
+//! A healthy motor behind a board, judged by the core as the board does: from the converter's codes.
 
-use crate::board::Board;
-use audit::{Expectation, audit};
-use formats::{read_recording, write_recording};
-use monitor::{Lamp, Monitor};
+use crate::board::{Board, Known};
+use monitor::{Lamp, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
-use motor::load::Load;
-use motor::motor_file::Sensors;
-use recording::{Channel, Mapping, Recording, Target};
-use replay::{Samples, config_for};
-use scenario::simulate::record;
-use scenario::{LoadSpec, Scenario, SensorSpec};
+use motor::motor_file::{LoadKind, Sensors};
+use replay::Timeline;
+use scenario::simulate::{Measured, Simulation};
+use scenario::{Scenario, SensorSpec};
 use std::error::Error;
 
 /// Enough for FAULT: windows of five cycles, three of them in a row.
@@ -27,15 +23,17 @@ pub struct Judged {
 }
 
 pub fn judge(board: &Board, motor: &MotorFile) -> Result<Judged, Box<dyn Error>> {
-    let scenario = scenario(board, motor);
-    let recording = record(&scenario, |_| ())?;
-    let recording = match board.known_delays {
-        Some(delays) => told(&recording, delays)?,
-        None => recording,
-    };
-    let audit = audit(&recording, &Expectation::from(&scenario.motor));
-    let monitor = Monitor::new(config_for(&scenario.motor, &recording)?)?;
-    let timeline = replay::replay(&monitor, &Samples::new(&recording, &audit), &mut |_| ());
+    let motor = behind(board, motor)?;
+    let scenario = scenario(board, &motor);
+    let config = MonitorConfig::from_motor_file(&motor, scenario.t_sample())?;
+    let mut timeline = Timeline::new(&config);
+    let monitor = Monitor::new(config)?;
+    let mut state = MonitorState::default();
+    for sample in Simulation::new(&scenario)? {
+        if let Some(report) = monitor.update_raw(&mut state, &raw(&sample.measured)) {
+            timeline.add(sample.t, &report);
+        }
+    }
     let (means, _) = timeline
         .residual_percent()
         .ok_or("no window was judged: the table would be empty")?;
@@ -47,49 +45,49 @@ pub fn judge(board: &Board, motor: &MotorFile) -> Result<Judged, Box<dyn Error>>
     })
 }
 
-/// Rated load, its torque measured; ranges as the board has them.
-fn scenario(board: &Board, motor: &MotorFile) -> Scenario {
+/// The motor file of the board: its ranges, and what is known of its delays. The load is a friction that takes the rated
+/// torque at rated speed, the only kind of load that a board knows.
+fn behind(board: &Board, motor: &MotorFile) -> Result<MotorFile, Box<dyn Error>> {
     let mut motor = motor.clone();
+    let known = board.known.unwrap_or(Known::NOTHING);
+    let [a, b, c, d, e, f] = known.delays_s;
     motor.sensors = Sensors {
         voltage_full_scale_volt: board.voltage_full_scale,
         current_full_scale_amp: board.current_headroom * motor.nameplate.current_amplitude(),
         noise_sigma_fraction_of_full_scale: NOISE_LSB / FULL_SCALE_LSB,
         adc_bits: 12,
+        voltage_delay_s: [a, b, c],
+        current_delay_s: [d, e, f],
+        roll_off_s: known.roll_off_s,
         ..motor.sensors
     };
-    let torque = motor.nameplate.torque_nm;
+    motor.load = LoadKind::Friction;
+    let plate = &motor.nameplate;
+    let rated_speed = plate.synchronous_speed_mech() * (1.0 - plate.rated_slip());
+    let friction = plate.torque_nm / rated_speed - motor.mechanics.friction;
+    if friction <= 0.0 {
+        return Err("the motor's own friction takes more than the rated torque".into());
+    }
+    motor.mechanics.load_friction = friction;
+    Ok(motor)
+}
+
+fn scenario(board: &Board, motor: &MotorFile) -> Scenario {
     Scenario {
         seed: board.seed,
-        load: LoadSpec {
-            friction_factor: 0.0,
-            other: Load::Constant {
-                torque,
-                active: false,
-            },
-        },
         sensors: SensorSpec {
-            torque: true,
+            speed: scenario::SpeedSensor::Encoder,
             chain: Some(board.chain.clone()),
-            ..SensorSpec::of(&motor)
+            ..SensorSpec::of(motor)
         },
-        ..Scenario::of(motor, DURATION_S)
+        ..Scenario::of(motor.clone(), DURATION_S)
     }
 }
 
-/// The recording as its reader gives it when a sidecar says by how much each channel is late.
-fn told(recording: &Recording, delays: [f64; 6]) -> Result<Recording, Box<dyn Error>> {
-    let file = format!("drivemon-front-end-{}.csv", std::process::id());
-    let path = std::env::temp_dir().join(file);
-    write_recording(&path, recording)?;
-    let mut mapping = Mapping::default();
-    let channels = Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS);
-    for (channel, late) in channels.zip(delays) {
-        // A channel that shows what was before counts as sampled earlier.
-        mapping.entry(Target::Channel(channel)).delay = Some(-late);
+fn raw(measured: &Measured) -> RawSample {
+    RawSample {
+        voltage_codes: measured.voltage_codes,
+        current_codes: measured.current_codes,
+        encoder_count: measured.encoder_count,
     }
-    let read = read_recording(&path, &mapping, &mut |_| ());
-    std::fs::remove_file(&path)?;
-    // Beside the recording there may be its sidecar.
-    let _ = std::fs::remove_file(recording::sidecar_path(&path));
-    Ok(read?)
 }

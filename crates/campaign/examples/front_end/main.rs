@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p campaign --example front_end [BOARDS] [SEED]` prints the table of docs/wiring.md: boards drawn
 //! within the tolerances of the bill of materials, a healthy motor at rated load behind each, judged by the core with the
-//! motor file's thresholds. What is known of a delay goes the way of a recording's sidecar (`delay_us`).
+//! motor file's thresholds, from the converter's codes as on the board. What is known of the chain stands in the motor file.
 
 mod board;
 mod judge;

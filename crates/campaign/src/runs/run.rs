@@ -153,6 +153,8 @@ impl<'p> Run<'p> {
         self.declare_load(&mut file);
         // An axis of whole numbers between 6 and 16.
         file.sensors.adc_bits = self.conditions.of(Axis::Bits).round() as u32;
+        // The boards of a campaign have no chain.
+        file.sensors = file.sensors.without_delays();
         file
     }
 

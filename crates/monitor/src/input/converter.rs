@@ -1,6 +1,7 @@
 //! From ADC codes to SI units: the one place where codes become volts and amperes.
 
 use crate::frames::Abc;
+use crate::input::chain::AnalogueChain;
 use crate::input::sample::{CHANNELS, ClippedChannels, RawSample, Sample, SpeedSample};
 use crate::sync::phasor::{CodeRange, Unit};
 
@@ -30,6 +31,8 @@ pub struct Converter {
     pub current: ChannelScale,
     /// Largest code of the converter, `2^bits - 1`.
     pub max_code: u16,
+    /// What lies ahead of the converter; undone on the phasors of codes, not by [`Converter::convert`].
+    pub chain: AnalogueChain,
 }
 
 impl ChannelScale {
@@ -69,6 +72,7 @@ impl Converter {
             voltage: ChannelScale::bipolar(voltage_full_scale, bits),
             current: ChannelScale::bipolar(current_full_scale, bits),
             max_code: ((1_u32 << bits.min(16)) - 1) as u16,
+            chain: AnalogueChain::NONE,
         }
     }
 

@@ -1,6 +1,7 @@
 //! From ADC codes to valid samples in SI units.
 
 pub(crate) mod block;
+pub(crate) mod chain;
 pub(crate) mod codes;
 pub(crate) mod converter;
 pub(crate) mod sample;

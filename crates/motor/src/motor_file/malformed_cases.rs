@@ -36,7 +36,10 @@ const LAST: &str = "load_friction_nm_s = 0.0\n";
 
 /// Each of them is refused.
 #[rustfmt::skip]
-pub const CASES: [Case; 61] = [
+pub const CASES: [Case; 64] = [
+    case("delay of another front end", (LAST, "load_friction_nm_s = 0.0\n[sensors]\nvoltage_delay_us = [900, 900, 900]"), 20, "sensors.voltage_delay_us", "at most 200 us"),
+    case("delay of one phase only", (LAST, "load_friction_nm_s = 0.0\n[sensors]\ncurrent_delay_us = [85.7]"), 20, "sensors.current_delay_us", "3"),
+    case("negative roll-off", (LAST, "load_friction_nm_s = 0.0\n[sensors]\nroll_off_us = -78.5"), 20, "sensors.roll_off_us", "300 us"),
     case("negative resistance", (R_S, "stator_resistance_ohm = -3.7"), 11, "parameters.stator_resistance_ohm", "above 0 and at most 100000 ohm"),
     case("zero resistance", (R_S, "stator_resistance_ohm = 0"), 11, "parameters.stator_resistance_ohm", "0 is out of range: write above 0"),
     case("not a number", (R_S, "stator_resistance_ohm = nan"), 11, "parameters.stator_resistance_ohm", "not a finite number: write above 0"),

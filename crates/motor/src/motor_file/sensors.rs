@@ -31,6 +31,12 @@ pub struct Sensors {
     pub voltage_gain: [f64; 3],
     /// Correction factor of the current channels a, b, c.
     pub current_gain: [f64; 3],
+    /// By how much the board's voltage channels a, b, c are late, s, -5e-5..=2e-4.
+    pub voltage_delay_s: [f64; 3],
+    /// By how much the board's current channels a, b, c are late, s, -5e-5..=2e-4.
+    pub current_delay_s: [f64; 3],
+    /// Time constant `T` of the roll-off `1 - (w T)^2/2` of all of the board's channels, s, 0..=3e-4.
+    pub roll_off_s: f64,
 }
 
 /// A 12-bit ADC is what microcontrollers have.
@@ -61,6 +67,20 @@ impl Sensors {
             current_offset_amp: [0.0; 3],
             voltage_gain: [1.0; 3],
             current_gain: [1.0; 3],
+            voltage_delay_s: [0.0; 3],
+            current_delay_s: [0.0; 3],
+            roll_off_s: 0.0,
+        }
+    }
+
+    /// The same instrument with channels that are not late: that of a simulation without a chain of its own.
+    #[must_use]
+    pub fn without_delays(self) -> Sensors {
+        Sensors {
+            voltage_delay_s: [0.0; 3],
+            current_delay_s: [0.0; 3],
+            roll_off_s: 0.0,
+            ..self
         }
     }
 
@@ -91,6 +111,12 @@ const VOLTAGE_OFFSET: Bounds = Bounds::between(-1e5, 1e5, "V");
 const CURRENT_OFFSET: Bounds = Bounds::between(-1e5, 1e5, "A");
 const GAIN: Bounds =
     Bounds::between(-10.0, 10.0, "").hint("a factor near 1; negative turns polarity");
+
+const DELAY: Bounds =
+    Bounds::between(-50.0, 200.0, "us").hint("the documented front end has 90 us");
+const ROLL_OFF: Bounds =
+    Bounds::between(0.0, 300.0, "us").hint("the documented front end has 78.5 us");
+pub(super) const MICROSECOND: f64 = 1e-6;
 
 pub(super) fn read(root: &Section<'_>, nameplate: Option<&Nameplate>) -> Option<Sensors> {
     let section = root.optional_section("sensors")?;
@@ -136,6 +162,9 @@ fn read_values(section: &Section<'_>, base: &Sensors) -> Option<Sensors> {
     let current_offset = triple("current_offset_amp", &CURRENT_OFFSET, [0.0; 3]);
     let voltage_gain = triple("voltage_gain", &GAIN, [1.0; 3]);
     let current_gain = triple("current_gain", &GAIN, [1.0; 3]);
+    let voltage_delay = triple("voltage_delay_us", &DELAY, [0.0; 3]);
+    let current_delay = triple("current_delay_us", &DELAY, [0.0; 3]);
+    let roll_off = number("roll_off_us", &ROLL_OFF, 0.0);
     Some(Sensors {
         voltage_full_scale_volt: voltage?,
         current_full_scale_amp: current?,
@@ -148,6 +177,9 @@ fn read_values(section: &Section<'_>, base: &Sensors) -> Option<Sensors> {
         current_offset_amp: current_offset?,
         voltage_gain: voltage_gain?,
         current_gain: current_gain?,
+        voltage_delay_s: voltage_delay?.map(|us| us * MICROSECOND),
+        current_delay_s: current_delay?.map(|us| us * MICROSECOND),
+        roll_off_s: roll_off? * MICROSECOND,
     })
 }
 

@@ -58,6 +58,9 @@ voltage_offset_volt = [-1.0, 0.5, 1e-3]
 current_offset_amp = [0.1, 0.0, -0.1]
 voltage_gain = [1.0, 1.01, 0.99]
 current_gain = [1.0, -1.0, 1.0]
+voltage_delay_us = [88.94, 90.13, 89.0]
+current_delay_us = [-50, 0, 85.73]
+roll_off_us = 78.5
 [monitor]
 frame = "voltage"
 field_current = "nominal"
@@ -114,6 +117,9 @@ fn every_optional_key_is_read() {
     assert_eq!(motor.load, LoadKind::Free);
     assert_eq!(motor.sensors.current_full_scale_amp, 60.0);
     assert_eq!(motor.sensors.current_gain, [1.0, -1.0, 1.0]);
+    assert!((motor.sensors.voltage_delay_s[1] - 90.13e-6).abs() < 1e-18);
+    assert!((motor.sensors.current_delay_s[0] + 50e-6).abs() < 1e-18);
+    assert!((motor.sensors.roll_off_s - 78.5e-6).abs() < 1e-18);
     assert_eq!(motor.monitor.frame, Frame::Voltage);
     assert_eq!(motor.monitor.field_current, FieldCurrent::Nominal);
     assert_eq!(motor.monitor.nominal_field_current_amp, Some(3.25));

@@ -1,6 +1,7 @@
 //! A motor as the text of a motor file.
 
 use super::monitor::{FIELD_CURRENTS, FRAMES, LOADS};
+use super::sensors::MICROSECOND;
 use super::{
     Connection, EffectEntry, EffectValue, HealthySettings, MonitorSettings, MotorFile, Nameplate,
     Sensors, Uncertainty,
@@ -124,6 +125,22 @@ fn sensors(text: &mut Text, sensors: &Sensors) {
     text.numbers("current_offset_amp", &sensors.current_offset_amp);
     text.numbers("voltage_gain", &sensors.voltage_gain);
     text.numbers("current_gain", &sensors.current_gain);
+    if *sensors != sensors.without_delays() {
+        text.numbers(
+            "voltage_delay_us",
+            &sensors.voltage_delay_s.map(microseconds),
+        );
+        text.numbers(
+            "current_delay_us",
+            &sensors.current_delay_s.map(microseconds),
+        );
+        text.number("roll_off_us", microseconds(sensors.roll_off_s));
+    }
+}
+
+/// To the picosecond, so that what was read is written again.
+fn microseconds(seconds: f64) -> f64 {
+    (seconds / MICROSECOND * 1e6).round() / 1e6
 }
 
 fn monitor(text: &mut Text, settings: &MonitorSettings) {

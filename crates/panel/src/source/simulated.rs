@@ -146,8 +146,10 @@ impl Source for SimulatedSource {
     }
 
     fn config(&self, motor: Option<&MotorFile>) -> Result<Option<MonitorConfig>, FileError> {
-        let t_sample = self.simulation.scenario().t_sample();
-        let config = motor.map(|motor| MonitorConfig::from_motor_file(motor, t_sample));
+        let scenario = self.simulation.scenario();
+        let config = motor.map(|motor| {
+            MonitorConfig::from_motor_file(&scenario.sensors.told(motor), scenario.t_sample())
+        });
         config.transpose()
     }
 

@@ -1,9 +1,11 @@
 //! From raw columns to a recording in SI: units, line voltages, the third current, encoder counts.
 
-use super::{clock, delay, encoder, spikes};
+use super::{clock, encoder, spikes};
 use crate::read::Raw;
 use crate::read::plan::Plan;
-use recording::{Channel, Error, Factor, Mapping, Metadata, Recording, Target, Unit, UnknownScale};
+use recording::{
+    Channel, Error, Factor, Mapping, Metadata, Recording, Target, Unit, UnknownScale, delay,
+};
 
 pub(in crate::read) fn recording(
     file: &str,

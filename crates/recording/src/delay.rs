@@ -12,7 +12,7 @@ const GAP: f64 = 3.5;
 
 /// The values at the row times `t`, s, of a channel that was sampled `delay`, s, later. Flat stretches (a clipped top, a held
 /// value) stay flat and get no overshoot; beyond the first and the last sample a straight line goes on for one step.
-pub(in crate::read) fn at_row_times(t: &[f64], x: &[f64], delay: f64, t_sample: f64) -> Vec<f64> {
+pub fn at_row_times(t: &[f64], x: &[f64], delay: f64, t_sample: f64) -> Vec<f64> {
     let clock = Clock { t, x, t_sample };
     let mut next = 0;
     let values = t.iter().map(|row| {
