@@ -21,6 +21,7 @@
 mod alarm_causes;
 pub mod calibrate;
 pub mod causes;
+pub mod channels;
 pub mod check;
 mod judgement;
 pub mod operating_points;
