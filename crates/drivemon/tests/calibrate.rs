@@ -179,3 +179,148 @@ fn column(name: &str) -> usize {
         .position(|cell| cell == name)
         .expect("a column of the recording")
 }
+
+/// Gains and delays, us, of va, vb, vc, ia, ib, ic on the bench below.
+const GAINS: [f64; 6] = [1.004, 0.997, 1.0, 0.992, 1.006, 1.001];
+const LATE_US: [f64; 6] = [93.5, 92.3, 91.1, 88.1, 86.9, 85.7];
+
+/// One signal of 230 V and 7 A on all six channels, three seconds at 10 kHz in codes of 0.3 V and 0.01 A; `turns` moves each channel.
+fn bench(folder: &str, hertz: f64, turns: [f64; 6]) -> PathBuf {
+    use std::fmt::Write;
+    let mut text = String::from("t,va,vb,vc,ia,ib,ic\n");
+    for k in 0..30_000 {
+        let t = f64::from(k) * 1e-4;
+        write!(text, "{t:.4}").expect("memory");
+        for channel in 0..6 {
+            let angle = hertz * (t - LATE_US[channel] * 1e-6) + turns[channel];
+            let (size, step) = if channel < 3 {
+                (325.0, 0.3)
+            } else {
+                (10.0, 0.01)
+            };
+            let x = size * GAINS[channel] * (std::f64::consts::TAU * angle).cos();
+            write!(text, ",{:.2}", (x / step).round() * step).expect("memory");
+        }
+        text.push('\n');
+    }
+    let path = scratch(&format!("{folder}-source")).join("bench.csv");
+    std::fs::write(&path, text).expect("a scratch folder");
+    path
+}
+
+#[test]
+fn channels_are_calibrated_into_a_motor_file_whose_comments_survive() {
+    let recording = bench("channels", 50.3, [0.0; 6]);
+    let out = scratch("channels").join("board.toml");
+    let output = drivemon(&[
+        "calibrate",
+        "--channels",
+        text(&recording),
+        "--motor",
+        MOTOR,
+        "-o",
+        text(&out),
+        "--json",
+        "-",
+        "--true-volt",
+        "229.8097",
+        "--true-amp",
+        "7.071068",
+    ]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let written = std::fs::read_to_string(&out).expect("written");
+    let old = std::fs::read_to_string(Path::new(PROJECT).join(MOTOR)).expect("shipped");
+    let comments = |text: &str| text.lines().filter(|line| line.starts_with('#')).count();
+    assert_eq!(comments(&written), comments(&old), "{written}");
+    let motor = motor::MotorFile::parse(&written, "board.toml").expect("a motor file");
+    let sensors = motor.sensors;
+    let gains = [sensors.voltage_gain, sensors.current_gain].concat();
+    for (gain, truth) in gains.iter().zip(GAINS) {
+        // Rounding of 30 000 samples to 1/1000 of the amplitude.
+        assert!((gain * truth - 1.0).abs() < 5e-5, "{gain} {truth}");
+    }
+    let delays = [sensors.voltage_delay_s, sensors.current_delay_s].concat();
+    let common = LATE_US[3..].iter().sum::<f64>() / 3.0;
+    for (delay, late) in delays.iter().zip(LATE_US) {
+        assert!(
+            (delay * 1e6 - (late - common)).abs() < 0.1,
+            "{delay} {late}"
+        );
+    }
+    let result: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(result["channels"].as_array().expect("six").len(), 6);
+    assert!((result["frequencies_hz"][0].as_f64().expect("a number") - 50.3).abs() < 1e-3);
+}
+
+/// The table of a board, for whatever motor stands behind it.
+#[test]
+fn channels_without_a_motor_file_are_a_table_of_their_own() {
+    let recording = bench("channels-table", 50.0, [0.0; 6]);
+    let out = scratch("channels-table").join("channels.toml");
+    let output = drivemon(&[
+        "calibrate",
+        "--channels",
+        text(&recording),
+        "-o",
+        text(&out),
+    ]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = stdout(&output);
+    for words in ["delay, us", "--true-volt", "one frequency does not tell"] {
+        assert!(said.contains(words), "{words} is missing in: {said}");
+    }
+    let table: toml::Table = std::fs::read_to_string(&out)
+        .expect("written")
+        .parse()
+        .expect("TOML");
+    let sensors = table["sensors"].as_table().expect("a table");
+    assert_eq!(
+        sensors["voltage_delay_us"]
+            .as_array()
+            .expect("a list")
+            .len(),
+        3
+    );
+}
+
+#[test]
+fn channels_are_not_calibrated_from_a_running_motor() {
+    let third = 1.0 / 3.0;
+    let recording = bench(
+        "three-phase",
+        50.0,
+        [0.0, -third, third, 0.0, -third, third],
+    );
+    let out = scratch("three-phase").join("channels.toml");
+    let output = drivemon(&[
+        "calibrate",
+        "--channels",
+        text(&recording),
+        "-o",
+        text(&out),
+    ]);
+    assert_eq!(output.status.code(), Some(3));
+    let message = stderr(&output);
+    assert!(message.contains("these are three phases"), "{message}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn options_of_the_channels_need_channels() {
+    let out = scratch("channels-options").join("m.toml");
+    let output = drivemon(&[
+        "calibrate",
+        HEALTHY,
+        "--motor",
+        MOTOR,
+        "--true-volt",
+        "230",
+        "-o",
+        text(&out),
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--channels"));
+    let without = drivemon(&["calibrate", HEALTHY, "-o", text(&out)]);
+    assert_eq!(without.status.code(), Some(2));
+    assert!(stderr(&without).contains("--motor"));
+}

@@ -24,6 +24,7 @@ fn edited(old: &str, motor: &MotorFile) -> Option<String> {
         set(parameters.entry(key).or_insert(value(number)), number);
     }
     set_frame(&mut document, motor)?;
+    set_sensors(&mut document, motor)?;
     set_thresholds(&mut document, motor)?;
     set_healthy(&mut document, motor)?;
     if !motor.effects.is_empty() {
@@ -70,6 +71,39 @@ fn set_frame(document: &mut DocumentMut, motor: &MotorFile) -> Option<()> {
     let spoken = motor.monitor.field_current != silence.field_current;
     set_word(document, "field_current", field, spoken)
 }
+
+/// Gains and delays of the channels, where the file names them or they are no longer what silence means.
+fn set_sensors(document: &mut DocumentMut, motor: &MotorFile) -> Option<()> {
+    let of = |motor: &MotorFile| {
+        let fresh: DocumentMut = motor.to_toml().parse().ok()?;
+        let sensors = fresh.get("sensors")?.as_table_like()?;
+        let keys = CHANNEL_KEYS.into_iter();
+        let named = keys.filter_map(|key| Some((key, sensors.get(key)?.clone())));
+        Some(named.collect::<Vec<_>>())
+    };
+    let before = of(&MotorFile::parse(&document.to_string(), "").ok()?)?;
+    for (key, item) in of(motor)? {
+        let old = before.iter().find(|(named, _)| *named == key);
+        if old.is_some_and(|(_, old)| old.to_string() == item.to_string()) {
+            continue;
+        }
+        let sensors = document
+            .entry("sensors")
+            .or_insert_with(|| Item::Table(Table::new()))
+            .as_table_like_mut()?;
+        sensors.insert(key, item);
+    }
+    Some(())
+}
+
+/// What a calibration of the channels changes, and a roll-off that is written beside delays.
+const CHANNEL_KEYS: [&str; 5] = [
+    "voltage_gain",
+    "current_gain",
+    "voltage_delay_us",
+    "current_delay_us",
+    "roll_off_us",
+];
 
 /// Thresholds, where the file names them or they are no longer what silence means.
 fn set_thresholds(document: &mut DocumentMut, motor: &MotorFile) -> Option<()> {
@@ -227,6 +261,28 @@ mod tests {
             read.effects[0].number("core_loss_resistance_ohm"),
             Some(980.0)
         );
+    }
+
+    #[test]
+    fn gains_and_delays_of_the_channels_are_written_where_the_file_names_its_sensors() {
+        let mut motor = MotorFile::parse(OLD, "old").unwrap();
+        motor.sensors.voltage_gain = [1.001, 0.998, 1.0];
+        motor.sensors.current_delay_s = [88.1e-6, 86.9e-6, 85.7e-6];
+        let text = updated(OLD, &motor);
+        assert!(
+            text.contains("voltage_gain = [1.001, 0.998, 1.0]"),
+            "{text}"
+        );
+        assert!(
+            text.contains("current_delay_us = [88.1, 86.9, 85.7]"),
+            "{text}"
+        );
+        assert!(means(&text, &motor));
+        let comment = OLD.lines().find(|line| line.starts_with('#')).unwrap();
+        assert!(text.contains(comment));
+        // And back: what is named stays named.
+        let again = updated(&text, &MotorFile::parse(OLD, "old").unwrap());
+        assert!(means(&again, &MotorFile::parse(OLD, "old").unwrap()));
     }
 
     #[test]

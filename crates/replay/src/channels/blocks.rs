@@ -25,6 +25,8 @@ pub struct Sine {
     pub omega: f64,
     /// Phasors of the channels, block by block: `x = Re(p e^(j w t))`, V and A.
     pub blocks: Vec<[Complex64; CHANNELS]>,
+    /// What the rounding of codes may do to each phasor, the same in every cycle, a share of its length.
+    pub rounding: [f64; CHANNELS],
 }
 
 impl Sine {
@@ -79,7 +81,40 @@ pub fn sine(recording: &Recording) -> Result<Sine, Refusal> {
         }
         omega += drift(&blocks) / (CYCLES * TAU / omega);
     }
-    Ok(Sine { omega, blocks })
+    let mut sine = Sine {
+        omega,
+        blocks,
+        rounding: [0.0; CHANNELS],
+    };
+    sine.rounding = rounding(t, &channels, &sine);
+    Ok(sine)
+}
+
+/// Codes of a supply that the sampling keeps step with are rounded alike in every cycle: no scatter shows it. Of the `n`
+/// samples of a cycle with a step `q` the phasor is off by `q/sqrt(12) sqrt(2/n)`.
+fn rounding(t: &[f64], channels: &[&[f64]; CHANNELS], sine: &Sine) -> [f64; CHANNELS] {
+    let span = t
+        .last()
+        .zip(t.first())
+        .map_or(0.0, |(last, first)| last - first);
+    let in_a_cycle = t.len() as f64 * TAU / (sine.omega * span);
+    let lengths = sine.seen_from_the_first();
+    std::array::from_fn(|k| step(channels[k]) * (in_a_cycle * 6.0).powf(-0.5) / lengths[k].norm())
+}
+
+/// Share of the peak within which two values are one code.
+const SAME: f64 = 1e-7;
+
+/// Smallest distance between two values: the converter's step, or next to nothing without one.
+fn step(x: &[f64]) -> f64 {
+    let mut values = x.to_vec();
+    values.sort_unstable_by(f64::total_cmp);
+    let peak = values.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let least = steps
+        .filter(|step| *step > SAME * peak)
+        .fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 fn channels(recording: &Recording) -> Option<[&[f64]; CHANNELS]> {

@@ -77,7 +77,13 @@ pub(super) fn relative(sine: &Sine, setup: &Setup) -> Relative {
         .map(|rms| rms.map(|rms| (rms * SQRT_2).ln() - (0.5 * roll_off * roll_off).ln_1p()));
     let load = sine.omega * setup.load_time_constant_s;
     let each = |of: &dyn Fn(&[Complex64; CHANNELS], usize) -> f64| {
-        std::array::from_fn(|k| scattered(sine.blocks.iter().map(|block| of(block, k))))
+        std::array::from_fn(|k| {
+            let scatter = scattered(sine.blocks.iter().map(|block| of(block, k)));
+            Estimate {
+                error: scatter.error.hypot(sine.rounding[k]),
+                ..scatter
+            }
+        })
     };
     Relative {
         omega: sine.omega,

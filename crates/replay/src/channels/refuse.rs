@@ -95,15 +95,15 @@ pub(super) fn contradictions(names: &[&str], sines: &[Sine], setup: &Setup) -> R
         return Ok(());
     };
     for (name, other) in names.iter().skip(1).zip(others) {
-        for k in 0..CHANNELS {
-            let (a, b) = (first.log_gain[k], other.log_gain[k]);
+        let pairs = first.log_gain.iter().zip(&other.log_gain);
+        for ((a, b), channel) in pairs.zip(NAMES) {
             let apart = (a.value - b.value).abs();
             if apart > ERRORS * a.error.hypot(b.error) && apart > DIFFERENCE {
                 return Err(refused(
                     name,
                     format!(
                         "the gain of {} differs by {:.2} % from that of {}: another set-up, another amplitude or another meter reading",
-                        NAMES[k],
+                        channel,
                         100.0 * apart,
                         names[0]
                     ),
@@ -123,7 +123,7 @@ pub(super) fn imprecise(names: &[&str], found: &Found) -> Result<(), Refusal> {
         worst.unwrap_or_default()
     };
     let (k, gain) = worst(&found.gain);
-    if !(gain < GAIN_ERROR) {
+    if gain.is_nan() || gain > GAIN_ERROR {
         return Err(refused(
             &names,
             format!(
@@ -134,7 +134,7 @@ pub(super) fn imprecise(names: &[&str], found: &Found) -> Result<(), Refusal> {
         ));
     }
     let (k, delay) = worst(&found.delay_s);
-    if !(delay < DELAY_ERROR_S) {
+    if delay.is_nan() || delay > DELAY_ERROR_S {
         return Err(refused(
             &names,
             format!(

@@ -81,7 +81,7 @@ fn gains_and_delays_are_found_within_their_errors() {
         );
         for k in group {
             let (one, truth) = (found.gain[k], log.exp() / GOOD.gain[k]);
-            assert!(one.error < 3e-5, "{k}: {one:?}");
+            assert!(one.error < 6e-5, "{k}: {one:?}");
             assert!(
                 (one.value - truth).abs() < 4.5 * one.error,
                 "{k}: {one:?} {truth}"
@@ -91,7 +91,7 @@ fn gains_and_delays_are_found_within_their_errors() {
     let common = mean(&GOOD.late_s[3..]);
     for (k, late) in GOOD.late_s.iter().enumerate() {
         let one = found.delay_s[k];
-        assert!(one.error < 0.05e-6, "{k}: {one:?}");
+        assert!(one.error < 0.2e-6, "{k}: {one:?}");
         assert!(
             (one.value - (late - common)).abs() < 4.5 * one.error,
             "{k}: {one:?}"
@@ -99,6 +99,21 @@ fn gains_and_delays_are_found_within_their_errors() {
     }
     assert_eq!(found.rotation_rad, None);
     assert!((found.frequencies_hz[0] - 50.0).abs() < 1e-4);
+}
+
+/// 50 Hz at 10 kHz without noise: every cycle is rounded alike, the blocks do not scatter, and the errors are not 0.
+#[test]
+fn rounding_in_step_with_the_supply_is_part_of_the_errors() {
+    let bench = Bench { noise: 0.0, ..GOOD };
+    let found = find(&[bench.recording()], &Setup::default()).expect("a good bench");
+    let common = mean(&GOOD.late_s[3..]);
+    for (one, late) in found.delay_s.iter().zip(GOOD.late_s) {
+        assert!(one.error > 0.05e-6 && one.error < 0.2e-6, "{one:?}");
+        assert!(
+            (one.value - (late - common)).abs() < 4.5 * one.error,
+            "{one:?}"
+        );
+    }
 }
 
 #[test]

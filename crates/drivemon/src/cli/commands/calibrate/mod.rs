@@ -1,6 +1,8 @@
-//! `drivemon calibrate`: what a healthy motor looks like.
+//! `drivemon calibrate`: what a healthy motor looks like, and what the instrument's channels do.
 
-use std::path::PathBuf;
+mod channels;
+
+use std::path::{Path, PathBuf};
 
 use audit::Audit;
 use clap::Args;
@@ -16,6 +18,7 @@ use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::{JsonArgs, write_text};
 use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
+use channels::ChannelArgs;
 use replay::calibrate::{Calibrated, Kind, Refusal, Surroundings, calibrate};
 use report::motor_text;
 
@@ -25,16 +28,18 @@ use report::motor_text;
 /// them. Steady parts are used, starts and load steps are passed over. With the new motor file FAULT follows the
 /// direction of the evidence instead of the lamps r1..r4, and names phases. Three currents alone are enough to watch for
 /// shorted turns. Recordings that are faulty themselves are refused, and nothing is written then.
+///
+/// With `--channels` it learns the instrument instead: gain and delay of each channel, from one signal on all of them.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Calibrate {
     /// Recordings of the healthy motor (.csv, .csv.gz, .parquet, .mat, .cfg, .cff)
     #[arg(value_name = "REC", required = true)]
     recordings: Vec<PathBuf>,
-    /// Motor file with what is believed so far
-    #[arg(long, value_name = "M")]
-    motor: PathBuf,
-    /// Motor file to write
+    /// Motor file with what is believed so far; with --channels the one that the recordings were read with, if any
+    #[arg(long, value_name = "M", required_unless_present = "channels")]
+    motor: Option<PathBuf>,
+    /// Motor file to write; with --channels and without --motor its table `[sensors]` alone
     #[arg(short, long = "out", value_name = "M2")]
     out: PathBuf,
     /// How much warmer or colder than in the recordings the windings may become, K
@@ -43,6 +48,8 @@ pub struct Calibrate {
     /// FAULT lamps per judged window that are accepted on a healthy motor
     #[arg(long, value_name = "RATE", default_value_t = 1e-6)]
     false_alarm_rate: f64,
+    #[command(flatten)]
+    channels: ChannelArgs,
     #[command(flatten)]
     json: JsonArgs,
     #[command(flatten)]
@@ -53,6 +60,7 @@ const EXAMPLES: &str = "\
 Example:
   drivemon calibrate idle.csv.gz half.csv.gz full.csv.gz --motor m.toml -o m-calibrated.toml
   drivemon monitor today.csv.gz --motor m-calibrated.toml
+  drivemon calibrate --channels bench-25hz.csv bench-60hz.csv --true-volt 230.4 --true-amp 7.02 --motor m.toml -o m-board17.toml
 Exit codes: 0 calibrated, 2 bad input, 3 refused: the reason names the recording and what to do.";
 
 /// Everything that `drivemon calibrate` says.
@@ -121,17 +129,30 @@ impl Calibrate {
     pub fn run(&self) -> Result<Finding, Failure> {
         self.check()?;
         self.files().check()?;
-        let motor = read_motor(&self.motor)?;
         let recordings = self.read()?;
+        match &self.motor {
+            _ if self.channels.channels => {
+                let files = (self.motor.as_deref(), &self.out);
+                channels::run(&self.channels, &recordings, files, &self.json)
+            }
+            Some(motor) => self.learn(motor, &recordings),
+            None => Err(Failure::Usage(
+                "--motor is missing: name the motor file with what is believed so far".to_owned(),
+            )),
+        }
+    }
+
+    fn learn(&self, path: &Path, recordings: &[Recording]) -> Result<Finding, Failure> {
+        let motor = read_motor(path)?;
         let surroundings = Surroundings {
             winding_kelvin: self.winding_kelvin,
             false_alarm_rate: self.false_alarm_rate,
         };
         let spinner = progress::bar("calibrating", 0);
-        let calibrated = calibrate(&motor, &recordings, &surroundings);
+        let calibrated = calibrate(&motor, recordings, &surroundings);
         spinner.finish_and_clear();
         let calibrated = calibrated.map_err(refused)?;
-        self.write_motor(&calibrated.motor)?;
+        self.write_motor(path, &calibrated.motor)?;
         let result = self.result(&motor, &calibrated);
         self.json.give(&result, || print(&result))?;
         Ok(Finding::Nothing)
@@ -140,7 +161,7 @@ impl Calibrate {
     fn files(&self) -> Files {
         Files::default()
             .reads_recordings(&self.recordings, &self.input)
-            .reads("the motor file", &self.motor)
+            .may_read("the motor file", self.motor.as_ref())
             .writes("-o", &self.out)
             .may_write("--json", self.json.file())
     }
@@ -164,15 +185,15 @@ impl Calibrate {
         let one = |path: &PathBuf| match self.input.read(path)? {
             Source::Recording(recording) => Ok(recording),
             Source::LoadTable(_) => Err(Failure::Usage(format!(
-                "{}: a load table has no waveforms to calibrate lamps from; its parameters come from `drivemon explain`",
+                "{}: a load table has no waveforms to calibrate from; its parameters come from `drivemon explain`",
                 path.display()
             ))),
         };
         self.recordings.iter().map(one).collect()
     }
 
-    fn write_motor(&self, motor: &MotorFile) -> Result<(), Failure> {
-        let old = std::fs::read_to_string(&self.motor).unwrap_or_default();
+    fn write_motor(&self, path: &Path, motor: &MotorFile) -> Result<(), Failure> {
+        let old = std::fs::read_to_string(path).unwrap_or_default();
         let text = motor_text::updated(&old, motor);
         write_text(&self.out, &text)
     }
