@@ -57,13 +57,13 @@ pub struct MonitorState {
     pub(crate) encoder: EncoderState,
     pub(crate) window: WindowState,
     pub(crate) scatter: CycleScatter,
-    panel: PanelState,
+    pub(crate) panel: PanelState,
     rotor: RotorState,
     pub(crate) temperature: Temperature,
-    measured: [bool; 2],
+    pub(crate) measured: [bool; 2],
     samples: u64,
     pub(crate) since_report: u32,
-    rehearsal: Rehearsal,
+    pub(crate) rehearsal: Rehearsal,
     /// Whether the open cycle is summed up in codes.
     in_codes: bool,
 }
@@ -306,21 +306,11 @@ impl Monitor {
         let calm = movement.is_none_or(|m| m.is_steady && !m.is_plugged);
         let noise = self.allowance(state, window, calm && report.not_judged.is_none());
         if let Some(movement) = &movement {
-            self.evaluate(&state.rehearsal, window, movement, &noise, report);
+            self.set_limits(&state.rehearsal, window, movement, &noise, report);
         }
-        if let Some(healthy) = &self.config.healthy {
-            self.isolate(
-                healthy,
-                measured,
-                &state.rehearsal,
-                &state.temperature,
-                (window, &noise),
-                report,
-            );
-            if let Some(isolation) = &report.isolation {
-                let fault = state.panel.is_isolated();
-                state.temperature.follow(isolation, healthy, fault);
-            }
+        let rise = self.isolate(state, window, &noise, report);
+        if movement.is_some() {
+            self.evaluate(rise, &state.rehearsal, window, report);
         }
     }
 
@@ -468,7 +458,7 @@ impl Monitor {
     }
 
     #[inline(never)]
-    fn point_at(
+    pub(crate) fn point_at(
         &self,
         corrected: &Corrected,
         frame: Frame,

@@ -2,11 +2,8 @@
 
 use crate::config::LoadKind;
 use crate::frames::magnitude;
-use crate::isolation::{
-    Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS, Temperature,
-};
+use crate::isolation::{Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS};
 use crate::model::movement::DERIVATIVE_DOUBT;
-use crate::model::operating_point::OperatingPoint;
 use crate::model::residuals::{FieldCurrent, ResidualModel, Residuals};
 use crate::monitor::{Monitor, MonitorState};
 use crate::noise::allowance::Allowance;
@@ -30,70 +27,34 @@ impl Monitor {
         }
     }
 
-    /// Which cause explains a steady window with its noise.
+    /// Which cause explains a steady window of a calibrated motor, and how far it says the resistances have risen.
     #[inline(never)]
     pub(crate) fn isolate(
         &self,
-        healthy: &Healthy,
-        [voltages, currents]: [bool; 2],
-        rehearsal: &Rehearsal,
-        temperature: &Temperature,
-        (window, noise): (&Window, &Allowance),
+        state: &mut MonitorState,
+        window: &Window,
+        noise: &Allowance,
         report: &mut Report,
-    ) {
-        if report.not_judged.is_some() {
-            return;
-        }
+    ) -> f32 {
+        let calibrated = self.config.healthy.as_ref();
+        let Some(healthy) = calibrated.filter(|_| report.not_judged.is_none()) else {
+            return 0.0;
+        };
+        let [voltages, currents] = state.measured;
+        let temperature = &mut state.temperature;
         let evidence = if voltages {
-            self.evidence_of_all(
-                healthy,
-                rehearsal,
-                temperature.latest(),
-                window,
-                &noise.rows,
-            )
+            let near = temperature.latest();
+            self.evidence_of_all(healthy, &state.rehearsal, near, window, &noise.rows)
         } else {
             currents.then(|| Evidence::of_currents(healthy, window, &noise.rows))
         };
-        let expected = temperature.expected(healthy);
-        report.isolation = evidence.map(|evidence| Isolation::of(&evidence, healthy, expected));
-        // Without voltages there are no residuals, at any temperature.
-        if let (Some(isolation), true) = (report.isolation, voltages) {
-            self.evaluate_warm(isolation.heating.rise, rehearsal, window, report);
-        }
-    }
-
-    /// The residuals that the lamps show, with the resistances of the winding temperature that the evidence implies.
-    #[inline(never)]
-    fn evaluate_warm(
-        &self,
-        heating: f32,
-        rehearsal: &Rehearsal,
-        window: &Window,
-        report: &mut Report,
-    ) {
-        if let Some((point, residuals)) = self.warm_residuals(heating, rehearsal, window) {
-            report.point = Some(point);
-            let visible = report.visible.unwrap_or(self.config.thresholds);
-            let torque_known = self.tau_load(window).is_some();
-            report.normalised = Some(self.normalise(&residuals, &visible, torque_known));
-            report.residuals = Some(residuals);
-        }
-    }
-
-    fn warm_residuals(
-        &self,
-        heating: f32,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<(OperatingPoint, Residuals)> {
-        let corrected = self.corrected_at(heating, window)?;
-        let omega_el = corrected.omega_mech * self.config.mechanics.n_p;
-        let frame = self.config.frame;
-        let point = OperatingPoint::new(&corrected, frame, window.omega_sync, omega_el)?;
-        let point = point.rehearse(rehearsal);
-        let residuals = self.model.evaluate(&point, self.tau_load(window));
-        Some((point, residuals))
+        let Some(evidence) = evidence else {
+            return 0.0;
+        };
+        let isolation = Isolation::of(&evidence, healthy, temperature.expected(healthy));
+        report.isolation = Some(isolation);
+        temperature.follow(&isolation, healthy, state.panel.is_isolated());
+        isolation.heating.rise
     }
 
     /// What a window shows beyond the healthy motor: the material of a calibration. Currents alone give their sequence
@@ -116,7 +77,7 @@ impl Monitor {
     ) -> Option<Residuals> {
         let evidence = self.evidence_of_all(healthy, rehearsal, 0.0, window, &[0.0; ROWS])?;
         let heating = Isolation::of(&evidence, healthy, Heating::any(healthy)).heating;
-        let (_, residuals) = self.warm_residuals(heating.rise, rehearsal, window)?;
+        let (_, residuals) = self.residuals_with(heating.rise, rehearsal, window)?;
         Some(residuals)
     }
 

@@ -25,16 +25,18 @@ impl Monitor {
         &self,
         rehearsal: &Rehearsal,
         window: &Window,
-        residuals: &Residuals,
     ) -> [f32; RESIDUALS] {
         let doubt = &self.config.doubt;
         let mut squares = [0.0; RESIDUALS];
         if !doubt.is_any() {
             return squares;
         }
+        let Some((_, residuals)) = self.residuals_with(0.0, rehearsal, window) else {
+            return squares;
+        };
         let mut add = |up: Candidate, down: Candidate| {
             let changes =
-                [up, down].map(|candidate| self.change(&candidate, rehearsal, window, residuals));
+                [up, down].map(|candidate| self.change(&candidate, rehearsal, window, &residuals));
             for (square, (a, b)) in squares.iter_mut().zip(changes[0].iter().zip(changes[1])) {
                 let greater = a.max(b);
                 *square += greater * greater;

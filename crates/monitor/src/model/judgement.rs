@@ -3,7 +3,7 @@
 use crate::checks::sensors::SensorFinding;
 use crate::config::LoadKind;
 use crate::model::movement::Movement;
-use crate::model::operating_point::Frame;
+use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::{RESIDUALS, Residuals};
 use crate::monitor::Monitor;
 use crate::noise::allowance::Allowance;
@@ -15,8 +15,9 @@ use crate::window::Window;
 const NOISY: f32 = 10.0;
 
 impl Monitor {
+    /// What lights the lamps in this window, or the reason why it is not judged.
     #[inline(never)]
-    pub(crate) fn evaluate(
+    pub(crate) fn set_limits(
         &self,
         rehearsal: &Rehearsal,
         window: &Window,
@@ -24,21 +25,13 @@ impl Monitor {
         noise: &Allowance,
         report: &mut Report,
     ) {
-        let Some(point) = self.operating_point(self.config.frame, rehearsal, window) else {
-            return;
-        };
-        let tau_load = self.tau_load(window);
-        let residuals = self.model.evaluate(&point, tau_load);
-        report.point = Some(point);
-        report.residuals = Some(residuals);
         let mut visible = self.visible(movement, noise);
         let noisy = self.is_too_noisy(&visible);
-        let doubt = self.parameter_doubt(rehearsal, window, &residuals);
+        let doubt = self.parameter_doubt(rehearsal, window);
         for (visible, doubt) in visible.iter_mut().zip(doubt) {
             *visible += doubt;
         }
         report.visible = Some(visible);
-        report.normalised = Some(self.normalise(&residuals, &visible, tau_load.is_some()));
         if movement.is_plugged {
             report.not_judged = report.not_judged.or(Some(NotJudged::Reversing));
         } else if !movement.is_steady {
@@ -48,6 +41,39 @@ impl Monitor {
         } else if window.invalid_samples == 0 {
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
         }
+    }
+
+    /// The residuals against what lights their lamps, with resistances that have risen by this share: zero for a motor
+    /// that is not calibrated.
+    #[inline(never)]
+    pub(crate) fn evaluate(
+        &self,
+        rise: f32,
+        rehearsal: &Rehearsal,
+        window: &Window,
+        report: &mut Report,
+    ) {
+        let Some((point, residuals)) = self.residuals_with(rise, rehearsal, window) else {
+            return;
+        };
+        let visible = report.visible.unwrap_or(self.config.thresholds);
+        let torque_known = self.tau_load(window).is_some();
+        report.point = Some(point);
+        report.normalised = Some(self.normalise(&residuals, &visible, torque_known));
+        report.residuals = Some(residuals);
+    }
+
+    /// Operating point and residuals with resistances that have risen by this share.
+    pub(crate) fn residuals_with(
+        &self,
+        rise: f32,
+        rehearsal: &Rehearsal,
+        window: &Window,
+    ) -> Option<(OperatingPoint, Residuals)> {
+        let corrected = self.corrected_at(rise, window)?;
+        let point = self.point_at(&corrected, self.config.frame, rehearsal, window)?;
+        let residuals = self.model.evaluate(&point, self.tau_load(window));
+        Some((point, residuals))
     }
 
     /// Residuals that light their lamps: the thresholds, or what the noise of this window can do where that is more (a
@@ -68,7 +94,7 @@ impl Monitor {
 
     /// Over what lights the lamps: noise stands in it already. What an undeclared load makes meaningless becomes NaN, which
     /// no comparator counts.
-    pub(crate) fn normalise(
+    fn normalise(
         &self,
         residuals: &Residuals,
         visible: &[f32; RESIDUALS],
