@@ -2,7 +2,7 @@
 
 use board::modbus::BoardStatus;
 use board::{
-    Calibration, CalibrationSource, EffectTerms, LearnState, Learner, Loaded, MotorImage,
+    Calibration, CalibrationSource, Doubts, EffectTerms, LearnState, Learner, Loaded, MotorImage,
     Overrides, Progress, Refusal,
 };
 use monitor::{Monitor, MonitorConfig, Report};
@@ -79,12 +79,16 @@ impl Commissioning {
         }
     }
 
-    /// Begins to learn, anew where it was learning already.
-    pub fn begin(&mut self) {
+    /// Begins to learn, anew where it was learning already. A board that doubts itself learns nothing.
+    pub fn begin(&mut self, doubts: Doubts) {
+        self.acknowledged = false;
+        if doubts.is_any() {
+            self.refuse(Refusal::Instrument);
+            return;
+        }
         defmt::info!("learning");
         self.learner = Some(Learner::new(self.motor));
         self.learning = LearnState::Learning;
-        self.acknowledged = false;
     }
 
     /// A person has seen the lamps.
@@ -94,8 +98,17 @@ impl Commissioning {
 
     /// Takes a report; a calibration comes out of the last one that learning needs.
     #[inline(never)]
-    pub fn observe(&mut self, report: &Report, monitor: &Monitor) -> Option<Calibration> {
+    pub fn observe(
+        &mut self,
+        report: &Report,
+        monitor: &Monitor,
+        doubts: Doubts,
+    ) -> Option<Calibration> {
         let learner = self.learner.as_mut()?;
+        if doubts.is_any() {
+            self.refuse(Refusal::Instrument);
+            return None;
+        }
         let factory = self.factory.as_ref()?;
         match learner.observe(report, monitor.config(), &factory.thresholds) {
             Progress::Learning => None,
@@ -127,9 +140,10 @@ impl Commissioning {
     }
 
     /// What the panel shows about learning and calibration; a refusal and an ignored calibration until they are acknowledged.
-    pub fn overrides(&self, instrument_faulty: bool) -> Overrides {
+    pub fn overrides(&self, doubts: Doubts, noticed: bool) -> Overrides {
         Overrides {
-            instrument_faulty,
+            instrument_faulty: doubts.stop_judging(),
+            noticed,
             learning: self.learner.is_some(),
             refused: !self.acknowledged && matches!(self.learning, LearnState::Refused(_)),
             calibration_ignored: !self.acknowledged && self.source.is_ignored(),

@@ -8,7 +8,11 @@ mod firmware;
 #[cfg(target_os = "none")]
 mod hardware;
 #[cfg(target_os = "none")]
+mod panel;
+#[cfg(target_os = "none")]
 mod record;
+#[cfg(target_os = "none")]
+mod safety;
 
 #[cfg(not(target_os = "none"))]
 fn main() {

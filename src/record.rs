@@ -1,13 +1,13 @@
 //! What is kept and told about every window: frames, registers, and the samples around an alarm.
 
 use board::modbus::{BoardStatus, Image, Status};
-use board::{CAPTURE_EVERY, Capture, Shown};
+use board::{CAPTURE_EVERY, Capture, Doubts, Shown};
 use monitor::{Lamp, Monitor, NotJudged, RawSample, Report};
 
 use crate::commissioning::Commissioning;
-use crate::hardware::housekeeping::ResetCause;
 use crate::hardware::serial;
 use crate::hardware::telemetry::Telemetry;
+use crate::safety::{self, Start};
 
 /// Frames, registers and capture.
 pub struct Record {
@@ -18,13 +18,18 @@ pub struct Record {
     was_lit: bool,
     registers: Image,
     shown: Shown,
+    /// Something about the board changed that no master knows yet.
+    stale: bool,
 }
 
 impl Record {
     /// Nothing recorded yet.
-    pub fn new(telemetry: Telemetry, cause: ResetCause, capture: &'static mut Capture) -> Self {
+    pub fn new(telemetry: Telemetry, start: &Start, capture: &'static mut Capture) -> Self {
         let board = BoardStatus {
-            reset_cause: cause as u16,
+            reset_cause: start.cause as u16,
+            crash: start.crash,
+            crashes: start.crashes as u16,
+            program: safety::program(),
             ..BoardStatus::default()
         };
         let nothing_yet = Report {
@@ -40,6 +45,7 @@ impl Record {
             board,
             capture,
             was_lit: false,
+            stale: false,
         }
     }
 
@@ -47,6 +53,22 @@ impl Record {
     pub fn note_chip(&mut self, vdda_millivolt: u16, temperature_degc: f32) {
         self.board.vdda_millivolt = vdda_millivolt;
         self.board.temperature_degc = temperature_degc;
+    }
+
+    /// Notes how the board is. A master learns it with the next report or change of a lamp, within a second otherwise.
+    pub fn note_health(&mut self, doubts: Doubts, relay: bool) {
+        self.stale |= self.board.doubts != doubts || self.board.relay != relay;
+        self.board.doubts = doubts;
+        self.board.relay = relay;
+    }
+
+    /// Notes the time since the start, s, and the deepest stack, bytes.
+    pub fn note_second(&mut self, uptime_s: u32, stack_bytes: u32, crashes: u32) {
+        self.board.uptime_s = uptime_s;
+        self.board.stack_bytes = stack_bytes as u16;
+        self.board.crashes = crashes as u16;
+        self.board.stored_data_errors = safety::faults::stored_data_errors() as u16;
+        self.stale = true;
     }
 
     /// Takes a block's samples into the ring.
@@ -96,9 +118,10 @@ impl Record {
     /// Tells a master at once what the door shows now, where it changed since the last report.
     #[inline(never)]
     pub fn refresh(&mut self, shown: &Shown) {
-        if self.shown != *shown {
+        if self.shown != *shown || self.stale {
             self.shown = *shown;
-            self.status.refresh(&mut self.registers, shown);
+            self.stale = false;
+            self.status.refresh(&mut self.registers, shown, &self.board);
             serial::publish(self.registers);
         }
     }

@@ -1,4 +1,4 @@
-//! Which pin does what, and the clocks. The same table with the wiring is in docs/wiring.md.
+//! Which pin does what. The same table with the wiring is in docs/wiring.md.
 //!
 //! | pin  | function | notes |
 //! |------|----------|-------|
@@ -20,22 +20,18 @@
 //! | PA9  | RS-485 data to the transceiver (DI) | USART1, 19200 8E1 |
 //! | PA10 | RS-485 data from the transceiver (RO) | USART1 |
 //! | PA12 | RS-485 driver enable (DE and /RE) | USART1, high while sending |
+//! | PA8  | relay, through a charge pump | toggled while energised |
+//! | PB10 | contact of the relay | closed is low, pull-up |
 //! | PC13 | button B1 of the NUCLEO | high is pressed |
 
 use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::{ADC5, FLASH, IWDG};
-use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk, mux};
-use embassy_stm32::time::Hertz;
-use embassy_stm32::{Config, Peri, Peripherals};
+use embassy_stm32::{Peri, Peripherals};
 
 use super::encoder::Encoder;
-use super::lamps::Lamps;
+use super::lamps::{Lamps, RelayWires};
 use super::sampling::Sources;
 use super::serial::Lines;
-
-/// The crystal X3 of the NUCLEO. The internal oscillator is 1 % off, and so would be every measured
-/// speed and frequency; residual thresholds lie at 0.3 %.
-const CRYSTAL: Hertz = Hertz(24_000_000);
 
 /// The peripherals, by what they are for.
 pub struct Board {
@@ -43,6 +39,8 @@ pub struct Board {
     pub sources: Sources,
     /// The lamps.
     pub lamps: Lamps,
+    /// The relay and its contact.
+    pub relay: RelayWires,
     /// Acknowledge, lamp mode.
     pub button: Input<'static>,
     /// Converter of the chip's own reference.
@@ -53,28 +51,6 @@ pub struct Board {
     pub lines: Lines,
     /// Watchdog.
     pub watchdog: Peri<'static, IWDG>,
-}
-
-/// 24 MHz / 6 x 85 / 2 = 170 MHz for the core and the converters' clock divider.
-pub fn clocks() -> Config {
-    let mut config = Config::default();
-    config.rcc.hse = Some(Hse {
-        freq: CRYSTAL,
-        mode: HseMode::Oscillator,
-    });
-    config.rcc.pll = Some(Pll {
-        source: PllSource::HSE,
-        prediv: PllPreDiv::DIV6,
-        mul: PllMul::MUL85,
-        divp: None,
-        divq: None,
-        divr: Some(PllRDiv::DIV2),
-    });
-    config.rcc.sys = Sysclk::PLL1_R;
-    config.rcc.boost = true;
-    config.rcc.mux.adc12sel = mux::Adcsel::SYS;
-    config.rcc.mux.adc345sel = mux::Adcsel::SYS;
-    config
 }
 
 impl Board {
@@ -100,6 +76,10 @@ impl Board {
                 lamp(p.PC4),
                 lamp(p.PC5),
             ]),
+            relay: RelayWires::new(
+                Output::new(p.PA8, Level::Low, Speed::Low),
+                Input::new(p.PB10, Pull::Up),
+            ),
             button: Input::new(p.PC13, Pull::None),
             housekeeping: p.ADC5,
             flash: p.FLASH,

@@ -1,7 +1,6 @@
 //! Where the calibration lies: the last two pages of bank 2, away from the program, which runs on from bank 1.
 
 use board::{PAGE_BYTES, PAGES, Store};
-use cortex_m_rt::exception;
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Flash};
 use embassy_stm32::pac;
@@ -17,12 +16,4 @@ pub type FlashStore = Store<Flash<'static, Blocking>>;
 pub fn open(flash: Peri<'static, FLASH>) -> Option<FlashStore> {
     let two_banks = pac::FLASH.optr().read().dbank();
     two_banks.then(|| Store::new(Flash::new_blocking(flash), FLASH_BYTES - PAGES * PAGE_BYTES))
-}
-
-/// A double word whose programming a reset cut off fails its error correction, and reading it raises this. The value
-/// that was read is wrong and the record's checksum finds it; without clearing the flag this would come for ever.
-#[exception]
-#[allow(unsafe_code)]
-unsafe fn NonMaskableInt() {
-    pac::FLASH.eccr().modify(|w| w.set_eccd(true));
 }

@@ -27,7 +27,7 @@ pub enum ResetCause {
     Software,
     /// The reset pin or a debugger.
     Pin,
-    /// Loading of option bytes, or low power: not used here.
+    /// Loading of option bytes; low power, which is not used here.
     Other,
 }
 
@@ -72,7 +72,7 @@ impl Housekeeping {
 
     /// Temperature of the chip, degrees Celsius, with converters supplied by `vdda_millivolt`.
     pub fn temperature_degc(&mut self, vdda_millivolt: u32) -> f32 {
-        // 247.5 cycles are 5.8 us; the sensor wants at least 5.
+        // 247.5 cycles are 6.2 us; the sensor wants at least 5.
         let code = self
             .adc
             .blocking_read(&mut self.temperature, SampleTime::CYCLES247_5);
@@ -84,7 +84,7 @@ impl Housekeeping {
     /// Supply of the converters, mV; 0 when the reference shows nothing.
     pub fn vdda_millivolt(&mut self) -> u32 {
         let calibrated = u32::from(self.reference.calibrated_value());
-        // 247.5 cycles are 5.8 us; the reference wants at least 4.
+        // 247.5 cycles are 6.2 us; the reference wants at least 4.
         let measured = self
             .adc
             .blocking_read(&mut self.reference, SampleTime::CYCLES247_5);

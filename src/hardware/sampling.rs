@@ -1,7 +1,7 @@
 //! Acquisition: six channels on one converter and the encoder count, all started by one timer.
 //!
 //! One converter for all channels: two DMA rings of two converters can lose their alignment after an
-//! overrun. Voltage and current of a phase follow each other by 0.59 us (0.011 degrees at 50 Hz).
+//! overrun. Voltage and current of a phase follow each other by 0.63 us (0.011 degrees at 50 Hz).
 
 use embassy_stm32::adc::{Adc, AdcChannel, AdcConfig, Exten, RingBufferedAdc, SampleTime};
 use embassy_stm32::dma::ReadableRingBuffer;
@@ -56,7 +56,11 @@ type Pins = (
     Peri<'static, PC3>,
 );
 
+#[unsafe(link_section = ".dma.codes")]
+#[allow(unsafe_code)]
 static CODES: Ring<{ RING * CHANNELS / 2 }> = Ring::new();
+#[unsafe(link_section = ".dma.counts")]
+#[allow(unsafe_code)]
 static COUNTS: Ring<{ RING / 2 }> = Ring::new();
 
 /// The latest instants, in the order in which they were taken.
@@ -182,7 +186,7 @@ fn skew() -> usize {
     (RING + codes - counts) % RING
 }
 
-/// 12.5 cycles at 42.5 MHz: the front end of docs/wiring.md holds the charge (47 nF at the pin).
+/// 12.5 cycles at 40 MHz: the front end of docs/wiring.md holds the charge (47 nF at the pin).
 fn sequence(
     (v_a, i_a, v_b, i_b, v_c, i_c): &mut Pins,
 ) -> [(embassy_stm32::adc::AnyAdcChannel<'_, ADC1>, SampleTime); CHANNELS] {

@@ -59,6 +59,8 @@ pub struct Overrides {
     pub refused: bool,
     /// The calibration in flash is ignored, and nobody has acknowledged it: SENSOR blinks.
     pub calibration_ignored: bool,
+    /// There is a doubt about the board that stops nothing, and nobody has acknowledged it: SENSOR blinks.
+    pub noticed: bool,
 }
 
 impl Overrides {
@@ -70,7 +72,7 @@ impl Overrides {
         if self.refused && shown.fault == Lamp::Off {
             shown.fault = Lamp::Blink;
         }
-        if self.calibration_ignored && shown.sensor == Lamp::Off {
+        if (self.calibration_ignored || self.noticed) && shown.sensor == Lamp::Off {
             shown.sensor = Lamp::Blink;
         }
         if self.instrument_faulty {
@@ -173,6 +175,7 @@ mod tests {
         learning: false,
         refused: false,
         calibration_ignored: false,
+        noticed: false,
     };
 
     fn shown(display: &mut Display, lamps: &Lamps) -> Vec<&'static str> {
@@ -236,5 +239,10 @@ mod tests {
             ([Lamp::Blink; 4], Lamp::Blink, Lamp::Blink)
         );
         assert_eq!(over.over(&FAULTY).fault, Lamp::On);
+        let noticed = Overrides {
+            noticed: true,
+            ..NOTHING
+        };
+        assert_eq!(noticed.over(&Lamps::default()).sensor, Lamp::Blink);
     }
 }

@@ -38,6 +38,8 @@ pub enum Refusal {
     TooLarge = 6,
     /// The calibration could not be stored.
     Store = 7,
+    /// The board doubts something about itself.
+    Instrument = 8,
 }
 
 /// How learning stands, as a number for Modbus.

@@ -17,12 +17,15 @@ mod calibration;
 mod capture;
 mod checksum;
 mod display;
+mod doubt;
+mod fault_record;
 mod frame;
 mod framing;
 mod image;
 mod learn;
 mod message;
 pub mod modbus;
+mod relay;
 mod stuck;
 
 pub use button::{Button, Press};
@@ -31,11 +34,14 @@ pub use calibration::{
     RECORD_BYTES, Store, StoreError,
 };
 pub use capture::{CAPTURE_EVERY, CAPTURE_INSTANTS, Capture, CaptureChunk, CaptureState};
-pub use checksum::{crc32, crc32_words};
+pub use checksum::{Checksum, crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, Overrides, Shown, levels};
+pub use doubt::{Doubt, Doubts};
+pub use fault_record::{FAULT_RECORD_WORDS, FaultCause, FaultRecord};
 pub use frame::Frame;
 pub use framing::{FrameError, MAX_FRAME_BYTES};
 pub use image::{EffectTerms, IMAGE_WORDS, ImageError, MotorImage};
 pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal};
 pub use message::Message;
+pub use relay::{Relay, RelayMode};
 pub use stuck::StuckChannels;

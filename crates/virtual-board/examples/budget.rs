@@ -3,7 +3,7 @@ use monitor::RawSample;
 use motor::MotorFile;
 use scenario::Scenario;
 use scenario::simulate::Simulation;
-use virtual_board::{CORE_HZ, Inputs, Tally, VirtualBoard};
+use virtual_board::{CORE_HZ, TICK_HZ, Inputs, Tally, VirtualBoard};
 
 /// Bytes of flash.
 const MOST_FLASH: f64 = 216.0 * 1024.0;
@@ -127,6 +127,6 @@ fn per_sample(before: Tally, after: Tally) -> f64 {
 }
 
 fn cpu(before: Tally, after: Tally) -> f64 {
-    let seconds = (after.cycles - before.cycles) as f64 / CORE_HZ as f64;
+    let seconds = (after.ticks - before.ticks) as f64 / TICK_HZ as f64;
     100.0 * (after.instructions - before.instructions) as f64 / seconds / CORE_HZ as f64
 }

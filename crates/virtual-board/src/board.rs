@@ -2,7 +2,7 @@
 
 use monitor::RawSample;
 
-use crate::CORE_HZ;
+use crate::TICK_HZ;
 use crate::error::BoardError;
 use crate::firmware::elf::Firmware;
 use crate::firmware::log::Log;
@@ -10,7 +10,7 @@ use crate::machine::{Inputs, Machine, Port, Tally};
 use crate::peripherals::gpio::Pin;
 use crate::peripherals::rcc::Cause;
 use crate::peripherals::usart::{Quality, Sent};
-use crate::processor::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE, UNTOUCHED};
+use crate::processor::cpu::{Cpu, FLASH, FLASH_SIZE, RAM, RAM_SIZE};
 
 /// Lamps in the order run, r1..r4, sensor, line, load, fault; the table of docs/wiring.md.
 pub const LAMPS: [(&str, Pin); 9] = [
@@ -24,6 +24,8 @@ pub const LAMPS: [(&str, Pin); 9] = [
     ("load", Pin(2, 4)),
     ("fault", Pin(2, 5)),
 ];
+/// What the program fills its stack with before it uses it.
+const PAINT: u32 = 0xCCCC_CCCC;
 const BUTTON: Pin = Pin(2, 13);
 
 /// The state of a board at one moment.
@@ -62,7 +64,7 @@ impl VirtualBoard {
     /// # Errors
     /// The program touched something that is not modelled, or crashed.
     pub fn run(&mut self, seconds: f64) -> Result<(), BoardError> {
-        let end = self.cpu.machine().now + (seconds * CORE_HZ as f64) as u64;
+        let end = self.cpu.machine().now + (seconds * TICK_HZ as f64) as u64;
         while self.cpu.machine().now < end {
             self.step()?;
         }
@@ -72,12 +74,15 @@ impl VirtualBoard {
     fn step(&mut self) -> Result<(), BoardError> {
         self.cpu.happen()?;
         let machine = self.cpu.machine();
-        machine.tally.cycles = machine.now;
+        machine.tally.ticks = machine.now;
         if machine.iwdg.deadline().is_some_and(|at| at <= machine.now) {
             return self.reset(Cause::Watchdog);
         }
         if machine.nvic.reset_requested {
             return self.reset(Cause::Software);
+        }
+        if machine.flash.launches {
+            return self.reset(Cause::OptionBytes);
         }
         if machine.flash.has_failed {
             let cause = machine.flash_failure;
@@ -129,6 +134,102 @@ impl VirtualBoard {
     /// Stops or restarts the clock of the sampling converter.
     pub fn stop_converter_clock(&mut self, stopped: bool) {
         self.cpu.machine().adc1.clock_stopped = stopped;
+    }
+
+    /// The crystal oscillates from now on, or is dead.
+    pub fn set_crystal(&mut self, oscillates: bool) {
+        let machine = self.cpu.machine();
+        machine.rcc.set_crystal(oscillates, machine.now);
+        machine.change_clocks();
+    }
+
+    /// Sets the low-speed oscillator, Hz; 29 500 to 34 000 within the chip's temperatures.
+    pub fn set_low_speed_oscillator(&mut self, hz: u64) {
+        self.cpu.machine().lsi_hz = hz;
+    }
+
+    /// Cycles that an instruction takes on average, to halves: wait states, loads, branches, divisions.
+    pub fn set_cycles_per_instruction(&mut self, cycles: f64) {
+        self.cpu.machine().half_cycles = (2.0 * cycles) as u64;
+    }
+
+    /// Puts option bytes in place as a programmer does; power comes anew.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn set_options(&mut self, options: u32) -> Result<(), BoardError> {
+        self.cpu.machine().flash.set_options(options);
+        self.reset(Cause::Power)
+    }
+
+    /// Option bytes in the array.
+    pub fn options(&mut self) -> u32 {
+        self.cpu.machine().flash.options()
+    }
+
+    /// Two wrong bits in the double word of flash at `address` are found, as its reading or fetching does.
+    pub fn detect_flash_error(&mut self, address: u32) {
+        let machine = self.cpu.machine();
+        machine.flash.detect(address);
+        machine.next_event = machine.now;
+    }
+
+    /// A word of the RAM is read whose parity does not hold.
+    pub fn fail_parity(&mut self) {
+        let machine = self.cpu.machine();
+        machine.parity_failed = true;
+        machine.next_event = machine.now;
+    }
+
+    /// Lets the processor go on at `address` with these registers from r0 on, as code does that runs astray.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn go_astray(&mut self, address: u32, registers: &[u32]) -> Result<(), BoardError> {
+        self.cpu.divert(address, registers)
+    }
+
+    /// Moves the stack pointer to `address`, as an overflow does.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn move_stack(&mut self, address: u32) -> Result<(), BoardError> {
+        self.cpu.move_stack(address)
+    }
+
+    /// Faults of the processor since power-up: status register and program counter of each.
+    pub fn processor_faults(&mut self) -> &[(u32, u32)] {
+        &self.cpu.machine().faults
+    }
+
+    /// Holds a bit of the RAM at a level, as a defective cell does.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn stick_ram_bit(&mut self, address: u32, bit: u32, level: bool) -> Result<(), BoardError> {
+        self.cpu.stick_ram_bit(address, bit, level)
+    }
+
+    /// Flips bits of a core register (0 to 12) whenever the instruction at `address` is reached, as a defective register
+    /// does.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn flip_register(
+        &mut self,
+        address: u32,
+        register: usize,
+        bits: u32,
+    ) -> Result<(), BoardError> {
+        self.cpu.flip_register(address, register, bits)
+    }
+
+    /// Word of the RAM or the flash at `address`.
+    ///
+    /// # Errors
+    /// An address outside of both.
+    pub fn word(&mut self, address: u32) -> Result<u32, BoardError> {
+        self.cpu.word(address)
     }
 
     /// Sets the converters' supply, mV (3300 is nominal, > 0).
@@ -253,7 +354,7 @@ impl VirtualBoard {
         let (words, _) = stack.as_chunks::<4>();
         let untouched = words
             .iter()
-            .take_while(|word| u32::from_le_bytes(**word) == UNTOUCHED);
+            .take_while(|word| u32::from_le_bytes(**word) == PAINT);
         Ok(length - 4 * untouched.count() as u32)
     }
 
@@ -289,7 +390,7 @@ impl VirtualBoard {
     /// # Errors
     /// The emulator refuses.
     pub fn hold_up(&mut self, seconds: f64) -> Result<(), BoardError> {
-        let end = self.cpu.machine().now + (seconds * CORE_HZ as f64) as u64;
+        let end = self.cpu.machine().now + (seconds * TICK_HZ as f64) as u64;
         while self.cpu.machine().now < end {
             self.cpu.happen()?;
             let machine = self.cpu.machine();

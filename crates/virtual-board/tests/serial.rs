@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rmodbus::ModbusProto;
 use rmodbus::client::ModbusRequest;
-use virtual_board::{CORE_HZ, Port, Quality, Sent, VirtualBoard};
+use virtual_board::{TICK_HZ, Port, Quality, Sent, VirtualBoard};
 
 const UNIT: u8 = 1;
 /// A character of 11 bits at 19 200 bit/s, s.
@@ -121,11 +121,11 @@ fn the_driver_is_enabled_and_the_answer_comes_soon_but_not_too_soon() {
     master()
         .generate_get_inputs(0, 1, &mut request)
         .expect("a request");
-    let before = board.tally().cycles;
+    let before = board.tally().ticks;
     let answer = ask(&mut board, &request);
     assert_eq!(answer.len(), 7);
     assert!(answer.iter().all(|sent| sent.driven));
-    let seconds = (answer[0].at - before) as f64 / CORE_HZ as f64;
+    let seconds = (answer[0].at - before) as f64 / TICK_HZ as f64;
     let silence = seconds - CHARACTER_S * (request.len() + 1) as f64;
     // 3.5 characters are demanded; a block of samples may come between.
     assert!((3.5 * CHARACTER_S..0.01).contains(&silence), "{silence}");

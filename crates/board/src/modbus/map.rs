@@ -4,6 +4,9 @@ use core::fmt;
 
 use monitor::{FaultId, Reason};
 
+use crate::doubt::Doubt;
+use crate::fault_record::FaultCause;
+
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -47,6 +50,10 @@ pub enum Meaning {
     Reasons,
     /// Number of a [`FaultId`].
     Faults,
+    /// Bits of [`Doubts`](crate::Doubts).
+    Doubts,
+    /// Number of a [`FaultCause`].
+    Crashes,
 }
 
 impl fmt::Display for Meaning {
@@ -69,8 +76,30 @@ impl fmt::Display for Meaning {
                     "; 0 none of them; causes of the same pattern are tied, the first is named",
                 )
             }
+            Meaning::Doubts => {
+                f.write_str("what the board doubts about itself, a bit each from the lowest: ")?;
+                list(f, Doubt::ALL.map(|doubt| (doubt as usize, doubt.label())))
+            }
+            Meaning::Crashes => {
+                f.write_str("what ended the program before its last start: 0 nothing, ")?;
+                list(
+                    f,
+                    FaultCause::ALL.map(|cause| (cause as usize, cause.label())),
+                )
+            }
         }
     }
+}
+
+fn list<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    numbered: [(usize, &'static str); N],
+) -> fmt::Result {
+    for (k, (number, label)) in numbered.into_iter().enumerate() {
+        let before = if k > 0 { ", " } else { "" };
+        write!(f, "{before}{number} {label}")?;
+    }
+    Ok(())
 }
 
 const fn entry(field: Field, kind: Kind, unit: &'static str, meaning: &'static str) -> Entry {
@@ -130,9 +159,28 @@ pub enum Field {
     LearnedWindows,
     Capture,
     CurrentLag,
+    Doubts,
+    Relay,
+    Uptime,
+    Stack,
+    Crashes,
+    CrashCause,
+    CrashProgramCounter,
+    CrashLink,
+    CrashStatus,
+    CrashFaults,
+    CrashHardFault,
+    CrashAddress,
+    CrashStack,
+    CrashLine,
+    CrashLength,
+    CrashUptime,
+    ProgramLength,
+    ProgramChecksum,
+    StoredDataErrors,
 }
 
-const FIELDS: usize = Field::CurrentLag as usize + 1;
+const FIELDS: usize = Field::StoredDataErrors as usize + 1;
 
 /// Every input register, in order of address.
 pub const MAP: [Entry; FIELDS] = {
@@ -143,7 +191,7 @@ pub const MAP: [Entry; FIELDS] = {
             MapVersion,
             Word,
             "",
-            "1; grows when an address changes its meaning",
+            "2; grows when an address changes its meaning",
         ),
         entry(
             MotorIdentification,
@@ -214,7 +262,7 @@ pub const MAP: [Entry; FIELDS] = {
             Learning,
             Word,
             "",
-            "0 idle, 1 learning, 2 stored; refused: 17 sensor, 18 line, 19 unsteady, 20 too few windows, 21 offset, 22 residuals too large, 23 flash",
+            "0 idle, 1 learning, 2 stored; refused: 17 sensor, 18 line, 19 unsteady, 20 too few windows, 21 offset, 22 residuals too large, 23 flash, 24 instrument",
         ),
         entry(
             LearnedWindows,
@@ -233,6 +281,70 @@ pub const MAP: [Entry; FIELDS] = {
             Float,
             "degree",
             "current behind voltage, positive sequence, -180 to 180, to 0.2; beyond 90 the machine gives power, or its currents are measured the wrong way round",
+        ),
+        Entry {
+            field: Doubts,
+            kind: Long,
+            unit: "",
+            meaning: Meaning::Doubts,
+        },
+        entry(Relay, Word, "", "1 energised, 0 open"),
+        entry(Uptime, Long, "s", "since the start"),
+        entry(
+            Stack,
+            Word,
+            "byte",
+            "deepest stack since the start, of 16 384",
+        ),
+        entry(
+            Crashes,
+            Word,
+            "",
+            "crashes without a quiet minute between them; from 3 on nothing is computed until somebody acknowledges",
+        ),
+        Entry {
+            field: CrashCause,
+            kind: Word,
+            unit: "",
+            meaning: Meaning::Crashes,
+        },
+        entry(
+            CrashProgramCounter,
+            Long,
+            "",
+            "of the last crash: program counter",
+        ),
+        entry(CrashLink, Long, "", "link register"),
+        entry(CrashStatus, Long, "", "program status register"),
+        entry(CrashFaults, Long, "", "fault status (CFSR)"),
+        entry(CrashHardFault, Long, "", "hard fault status (HFSR)"),
+        entry(
+            CrashAddress,
+            Long,
+            "",
+            "address that could not be reached or that failed; of a panic where the name of its file lies; of the watchdog the marks that were missing: 1 block, 2 Modbus, 4 self-test",
+        ),
+        entry(CrashStack, Long, "", "stack pointer"),
+        entry(CrashLine, Word, "", "line of a panic"),
+        entry(CrashLength, Word, "byte", "length of its file's name"),
+        entry(CrashUptime, Long, "ms", "from the start to the crash"),
+        entry(
+            ProgramLength,
+            Long,
+            "byte",
+            "of the program in flash, 0 where it was not sealed",
+        ),
+        entry(
+            ProgramChecksum,
+            Long,
+            "",
+            "CRC-32 of the program, as it was sealed",
+        ),
+        entry(
+            StoredDataErrors,
+            Word,
+            "",
+            "double words of stored data that failed their error correction since the start; checksums decided",
         ),
     ]
 };

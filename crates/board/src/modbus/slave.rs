@@ -41,6 +41,8 @@ pub enum Command {
     Acknowledge = 1,
     /// Learn from the running motor, as a very long press.
     Learn = 2,
+    /// Write the option bytes and start again.
+    Prepare = 3,
 }
 
 /// The slave's memory.
@@ -192,6 +194,7 @@ impl Slave {
                 let command = match value {
                     1 => Command::Acknowledge,
                     2 => Command::Learn,
+                    3 => Command::Prepare,
                     _ => return Err(Exception::Value),
                 };
                 self.unlocked_at_ms = None;

@@ -8,6 +8,8 @@ use monitor::{CHANNELS, Lamp, Reason, Report, Suspicion, Window, likely, magnitu
 use super::map::{Field, Image};
 use crate::calibration::CalibrationSource;
 use crate::display::Shown;
+use crate::doubt::Doubts;
+use crate::fault_record::FaultRecord;
 use crate::frame::{packed, why_not_judged};
 use crate::learn::LearnState;
 
@@ -55,6 +57,22 @@ pub struct BoardStatus {
     pub capture: u16,
     /// Thresholds that hold.
     pub thresholds: [f32; 4],
+    /// What the board doubts about itself.
+    pub doubts: Doubts,
+    /// Whether the relay is energised.
+    pub relay: bool,
+    /// Since the start, s.
+    pub uptime_s: u32,
+    /// Deepest stack since the start, bytes.
+    pub stack_bytes: u16,
+    /// Crashes without a quiet minute between them.
+    pub crashes: u16,
+    /// What ended the program before this start.
+    pub crash: Option<FaultRecord>,
+    /// Double words of stored data that failed their error correction since the start.
+    pub stored_data_errors: u16,
+    /// Length and checksum of the program, where it was sealed.
+    pub program: Option<(u32, u32)>,
 }
 
 /// The registers, and what has to be counted for them.
@@ -82,9 +100,11 @@ impl Status {
         image
     }
 
-    /// Puts what the door shows now into registers that were filled before: what changed between two reports.
+    /// Puts what the door shows now, and how the board is, into registers that were filled before: what changed between two
+    /// reports.
     #[inline(never)]
-    pub fn refresh(&self, image: &mut Image, shown: &Shown) {
+    pub fn refresh(&self, image: &mut Image, shown: &Shown, board: &BoardStatus) {
+        put_board(image, board);
         if shown.instrument_faulty {
             image.set_word(Field::NotJudged, u16::from(Reason::Instrument.number()));
             image.set_word(Field::LikelyFault, 0);
@@ -110,7 +130,7 @@ impl Status {
 }
 
 fn put_board(image: &mut Image, board: &BoardStatus) {
-    image.set_word(Field::MapVersion, 1);
+    image.set_word(Field::MapVersion, 2);
     image.set_long(Field::MotorIdentification, board.motor);
     image.set_word(Field::ResetCause, board.reset_cause);
     image.set_word(Field::ConverterSupply, board.vdda_millivolt);
@@ -122,6 +142,41 @@ fn put_board(image: &mut Image, board: &BoardStatus) {
     for (field, threshold) in THRESHOLDS.into_iter().zip(board.thresholds) {
         image.set_float(field, threshold);
     }
+    put_health(image, board);
+    put_crash(image, board.crash.as_ref());
+    let (length, checksum) = board.program.unwrap_or_default();
+    image.set_long(Field::ProgramLength, length);
+    image.set_long(Field::ProgramChecksum, checksum);
+}
+
+fn put_health(image: &mut Image, board: &BoardStatus) {
+    image.set_long(Field::Doubts, board.doubts.bits());
+    image.set_word(Field::Relay, u16::from(board.relay));
+    image.set_long(Field::Uptime, board.uptime_s);
+    image.set_word(Field::Stack, board.stack_bytes);
+    image.set_word(Field::Crashes, board.crashes);
+    image.set_word(Field::StoredDataErrors, board.stored_data_errors);
+}
+
+fn put_crash(image: &mut Image, crash: Option<&FaultRecord>) {
+    let Some(crash) = crash else {
+        return;
+    };
+    image.set_word(Field::CrashCause, crash.cause as u16);
+    for (field, value) in [
+        (Field::CrashProgramCounter, crash.pc),
+        (Field::CrashLink, crash.lr),
+        (Field::CrashStatus, crash.xpsr),
+        (Field::CrashFaults, crash.cfsr),
+        (Field::CrashHardFault, crash.hfsr),
+        (Field::CrashAddress, crash.address),
+        (Field::CrashStack, crash.sp),
+        (Field::CrashUptime, crash.uptime_ms),
+    ] {
+        image.set_long(field, value);
+    }
+    image.set_word(Field::CrashLine, crash.line as u16);
+    image.set_word(Field::CrashLength, crash.length as u16);
 }
 
 fn put_report(image: &mut Image, report: &Report) {
@@ -345,7 +400,7 @@ mod tests {
         let mut image = status.take(&faulty, &shown, &BoardStatus::default());
         let mut doubt = shown;
         (doubt.lamps.sensor, doubt.instrument_faulty) = (Lamp::On, true);
-        status.refresh(&mut image, &doubt);
+        status.refresh(&mut image, &doubt, &BoardStatus::default());
         assert_eq!(image, status_with(&faulty, &doubt));
         assert_eq!(word(&image, Field::NotJudged), 14);
         assert_eq!(word(&image, Field::LikelyFault), 0);

@@ -13,6 +13,8 @@ enum Block {
     Lpuart1,
     Pwr,
     Iwdg,
+    Tamp,
+    Rtc,
     Syscfg,
     Exti,
     Dma1,
@@ -34,6 +36,8 @@ type Enable = (u32, u32);
 const MAP: &[(Block, u32, u32, Option<Enable>)] = &[
     (Block::Tim3, 0x4000_0400, 0x400, Some((APB1ENR1, 1))),
     (Block::Tim4, 0x4000_0800, 0x400, Some((APB1ENR1, 2))),
+    (Block::Tamp, 0x4000_2400, 0x400, Some((APB1ENR1, 10))),
+    (Block::Rtc, 0x4000_2800, 0x400, Some((APB1ENR1, 10))),
     (Block::Iwdg, 0x4000_3000, 0x400, None),
     (Block::Pwr, 0x4000_7000, 0x400, Some((APB1ENR1, 28))),
     (Block::Lpuart1, 0x4000_8000, 0x400, Some((APB1ENR2, 0))),
@@ -96,13 +100,18 @@ impl Machine {
             Block::Tim15 => self.tim15.read(offset, now),
             Block::Usart1 => self.usart1.read(offset),
             Block::Lpuart1 => self.lpuart1.read(offset),
-            Block::Pwr => self.pwr.read(offset),
+            Block::Pwr => Ok(self.pwr.read(offset)? | self.power_flags(offset)),
+            Block::Tamp => self.backup.read(offset),
+            Block::Rtc => self.backup.read_calendar(offset, now, self.lsi_hz),
             Block::Iwdg => self.iwdg.read(offset),
-            Block::Syscfg => self.syscfg.read(offset),
+            Block::Syscfg => {
+                let parity = u32::from(offset == 0x1C && self.parity_failed) << 8;
+                Ok(self.syscfg.read(offset)? | parity)
+            }
             Block::Exti => self.exti.read(offset),
             Block::Dma1 => self.dma.read(offset),
             Block::Dmamux => self.dma.read_multiplexer(offset),
-            Block::Rcc => self.rcc.read(offset),
+            Block::Rcc => self.rcc.read(offset, now),
             Block::Flash => self.flash.read(offset),
             Block::Gpio(port) => self.ports[port].read(offset),
             Block::Adc1 => self.adc1.read(offset),
@@ -123,21 +132,49 @@ impl Machine {
             Block::Tim15 => self.tim15.write(offset, value, now)?,
             Block::Usart1 => self.usart1.write(offset, value, now)?,
             Block::Lpuart1 => self.lpuart1.write(offset, value, now)?,
-            Block::Pwr => self.pwr.write(offset, value)?,
-            Block::Iwdg => self.iwdg.write(offset, value, now)?,
-            Block::Syscfg => self.syscfg.write(offset, value)?,
+            Block::Pwr => {
+                self.pwr.write(offset, value)?;
+                self.follow_clocks()?;
+            }
+            Block::Iwdg => self.iwdg.write(offset, value, now, self.lsi_hz)?,
+            Block::Tamp => {
+                let protected = self.pwr.get(0) >> 8 & 1 == 0;
+                self.backup.write(offset, value, protected)?;
+            }
+            Block::Rtc => {
+                return Err(Unmodelled {
+                    block: "RTC",
+                    access: format!("write of {value:#x}"),
+                    offset,
+                });
+            }
+            Block::Syscfg => {
+                if offset == 0x1C && value >> 8 & 1 == 1 {
+                    self.parity_failed = false;
+                }
+                self.syscfg.write(offset, value & !(1 << 8))?;
+            }
             Block::Exti => self.exti.write(offset, value)?,
             Block::Dma1 => self.dma.write(offset, value)?,
             Block::Dmamux => self.dma.write_multiplexer(offset, value)?,
             Block::Rcc => {
-                self.rcc.write(offset, value)?;
+                self.rcc.write(offset, value, now)?;
                 self.hold_in_reset(offset);
+                self.follow_backup();
+                self.follow_clocks()?;
             }
-            Block::Flash => return self.flash.write(offset, value),
+            Block::Flash => {
+                let erased = self.flash.write(offset, value)?;
+                self.follow_clocks()?;
+                return Ok(erased);
+            }
             Block::Gpio(port) => self.ports[port].write(offset, value)?,
             Block::Adc1 => self.adc1.write(offset, value, now)?,
             Block::Adc5 => self.adc5.write(offset, value, now)?,
-            Block::AdcCommon(k) => self.common[k].write(offset, value)?,
+            Block::AdcCommon(k) => {
+                self.common[k].write(offset, value)?;
+                self.follow_clocks()?;
+            }
             Block::Dbgmcu => self.dbgmcu.write(offset, value)?,
             Block::System => self.nvic.write(offset, value)?,
         }
@@ -162,10 +199,10 @@ impl Machine {
             }
             0x38 => {
                 if is_held(1) {
-                    self.tim3 = crate::peripherals::timer::Timer::new();
+                    self.tim3.reset();
                 }
                 if is_held(2) {
-                    self.tim4 = crate::peripherals::timer::Timer::new();
+                    self.tim4.reset();
                 }
             }
             0x3C if is_held(0) => self.lpuart1.reset(),
@@ -174,7 +211,7 @@ impl Machine {
                     self.usart1.reset();
                 }
                 if is_held(16) {
-                    self.tim15 = crate::peripherals::timer::Timer::new();
+                    self.tim15.reset();
                 }
             }
             _ => {}

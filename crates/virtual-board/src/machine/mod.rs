@@ -1,13 +1,16 @@
 //! All peripherals together, and what happens when.
 
 pub(crate) mod bus;
+mod clocks;
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use monitor::RawSample;
 
+use crate::TICK_HZ;
 use crate::peripherals::adc::Adc;
+use crate::peripherals::backup::Backup;
 use crate::peripherals::dma::{Dma, Transfer};
 use crate::peripherals::flash::Flash;
 use crate::peripherals::gpio::Port as Gpio;
@@ -38,8 +41,8 @@ pub enum Port {
 pub struct Tally {
     /// Instructions executed; code whose condition failed inside an IT block counts too.
     pub instructions: u64,
-    /// Core cycles, sleep included.
-    pub cycles: u64,
+    /// Emulated time, in units of 1/[`crate::TICK_HZ`] s.
+    pub ticks: u64,
     /// Triggers that started a sequence.
     pub conversions: u64,
     /// Triggers that came while the converter was not ready.
@@ -59,8 +62,10 @@ const IRQ_LPUART1: usize = 91;
 const LINE_ADC1: u32 = 5;
 const LINE_TIM4_UP: u32 = 71;
 const LINE_LPUART1_TX: u32 = 35;
-/// Cycles between sampling instants of the simulated sensors.
-const INSTANT: u64 = crate::CORE_HZ / 10_000;
+/// Units of time between sampling instants of the simulated sensors.
+/// Hz of the low-speed oscillator.
+const LSI_HZ: u64 = 32_000;
+const INSTANT: u64 = TICK_HZ / 10_000;
 /// ADC5's channel of the reference.
 const VREFINT_CHANNEL: u32 = 18;
 /// ADC5's channel of the temperature sensor, and its codes at 30 and 130 degrees Celsius (3.0 V).
@@ -87,6 +92,13 @@ pub(crate) struct Machine {
     pub nvic: Nvic,
     pub iwdg: Iwdg,
     pub flash: Flash,
+    pub backup: Backup,
+    /// Frequency of the low-speed oscillator, Hz: 32 000 within 8 %.
+    pub lsi_hz: u64,
+    /// Units of time per core cycle; `None` while the clock stands.
+    pub cycle: Option<u64>,
+    /// Half cycles per instruction: wait states and long instructions, as a mean.
+    pub half_cycles: u64,
     /// What resets the chip when power fails within a step of flash.
     pub flash_failure: Cause,
     pub pwr: Registers,
@@ -106,6 +118,14 @@ pub(crate) struct Machine {
     pub tally: Tally,
     pub event_register: bool,
     pub failure: Option<String>,
+    /// Address that the instruction could not reach.
+    pub unreachable: Option<u32>,
+    /// The program jumped to where memory protection forbids to execute.
+    pub executed_forbidden: bool,
+    /// Faults since power-up: status and program counter.
+    pub faults: Vec<(u32, u32)>,
+    /// A word of the RAM was read whose parity does not hold.
+    pub parity_failed: bool,
     pub stop: bool,
     pub next_event: u64,
     /// DMA answers no request.
@@ -135,6 +155,7 @@ const SYSCFG: &[(u32, u32)] = &[
     (0x0C, 0),
     (0x10, 0),
     (0x14, 0),
+    (0x1C, 0),
 ];
 const EXTI: &[(u32, u32)] = &[(0x00, 0), (0x04, 0), (0x08, 0), (0x0C, 0), (0x14, 0)];
 const DBGMCU: &[(u32, u32)] = &[(0x04, 0)];
@@ -142,9 +163,9 @@ const ADC_COMMON: &[(u32, u32)] = &[(0x00, 0), (0x08, 0)];
 
 impl Machine {
     pub fn new(inputs: Box<dyn Inputs>) -> Self {
-        Machine {
+        let mut machine = Machine {
             now: 0,
-            rcc: Rcc::new(Cause::Power, 0),
+            rcc: Rcc::new(),
             ports: std::array::from_fn(|_| Gpio::new()),
             tim3: Timer::new(),
             tim4: Timer::new(),
@@ -156,8 +177,12 @@ impl Machine {
             common: [0, 1].map(|_| Registers::new("ADC common", ADC_COMMON)),
             dma: Dma::new(),
             nvic: Nvic::new(),
-            iwdg: Iwdg::new(),
+            iwdg: Iwdg::new(false, 0, LSI_HZ),
             flash: Flash::new(),
+            backup: Backup::default(),
+            lsi_hz: LSI_HZ,
+            cycle: None,
+            half_cycles: 2,
             flash_failure: Cause::Power,
             pwr: Registers::new("PWR", PWR),
             syscfg: Registers::new("SYSCFG", SYSCFG),
@@ -172,26 +197,31 @@ impl Machine {
             tally: Tally::default(),
             event_register: false,
             failure: None,
+            unreachable: None,
+            executed_forbidden: false,
+            faults: Vec::new(),
+            parity_failed: false,
             stop: false,
             next_event: 0,
             dma_blocked: false,
             lost_encoder_requests: 0,
             spurious: None,
             profile: None,
-        }
+        };
+        machine.iwdg = Iwdg::new(machine.flash.starts_watchdog(), 0, LSI_HZ);
+        machine.set_clocks();
+        machine
     }
 
     /// What a reset does to the chip: everything but the outside world, the clock on the wall and the flash.
     pub fn reset(&mut self, cause: Cause) {
-        let flags = if cause == Cause::Power {
-            0
-        } else {
-            self.rcc.flags()
-        };
-        self.rcc = Rcc::new(cause, flags);
+        self.rcc.reset(cause);
+        if cause == Cause::Power {
+            self.backup.clear();
+        }
         self.ports.iter_mut().for_each(Gpio::reset);
         for timer in [&mut self.tim3, &mut self.tim4, &mut self.tim15] {
-            *timer = Timer::new();
+            timer.reset();
         }
         self.usart1.reset();
         self.lpuart1.reset();
@@ -199,8 +229,9 @@ impl Machine {
         self.adc5.reset();
         self.dma = Dma::new();
         self.nvic = Nvic::new();
-        self.iwdg = Iwdg::new();
-        self.flash.reset();
+        self.flash
+            .reset(matches!(cause, Cause::Power | Cause::OptionBytes));
+        self.iwdg = Iwdg::new(self.flash.starts_watchdog(), self.now, self.lsi_hz);
         for block in [&mut self.pwr, &mut self.syscfg, &mut self.exti] {
             block.reset();
         }
@@ -208,6 +239,7 @@ impl Machine {
         self.event_register = false;
         self.stop = false;
         self.tally.resets += 1;
+        self.set_clocks();
     }
 
     /// Cycle of the next thing that happens without the program.
@@ -324,6 +356,11 @@ impl Machine {
             writes.push((memory, value));
         }
         Ok(())
+    }
+
+    /// Whether anything asserts the non-maskable interrupt.
+    pub fn non_maskable(&self) -> bool {
+        self.flash.interrupt() || self.rcc.interrupt() || self.parity_failed
     }
 
     /// Asserted lines pend their interrupts.

@@ -39,8 +39,6 @@ const OVERRUN: u32 = 1 << 4;
 const SAMPLE_CLOCKS_X2: [u64; 8] = [5, 13, 25, 49, 95, 185, 495, 1281];
 /// Doubled: 12.5 clocks for 12 bits.
 const CONVERSION_CLOCKS_X2: u64 = 25;
-/// Core cycles per converter clock: 170 MHz through the divider by 4 that stays below 60 MHz.
-const CLOCK_DIVIDER: u64 = 4;
 /// EXTSEL of TIM4's trigger output for ADC1 and ADC2 (RM0440, table of regular triggers).
 const EXTSEL_TIM4_TRGO: u32 = 12;
 
@@ -55,6 +53,8 @@ pub struct Adc {
     done_at: u64,
     /// The clock has failed: nothing ever ends.
     pub clock_stopped: bool,
+    /// Units of time per cycle of its clock.
+    pub clock: u64,
 }
 
 impl Adc {
@@ -67,6 +67,7 @@ impl Adc {
             queue: VecDeque::new(),
             done_at: 0,
             clock_stopped: false,
+            clock: 1,
         }
     }
 
@@ -74,6 +75,7 @@ impl Adc {
     pub fn reset(&mut self) {
         *self = Adc {
             clock_stopped: self.clock_stopped,
+            clock: self.clock,
             ..Adc::new()
         };
     }
@@ -97,7 +99,7 @@ impl Adc {
             (SMPR2, channel - 10)
         };
         let code = self.registers.get(register) >> (3 * place) & 7;
-        (SAMPLE_CLOCKS_X2[code as usize] + CONVERSION_CLOCKS_X2) * CLOCK_DIVIDER / 2
+        (SAMPLE_CLOCKS_X2[code as usize] + CONVERSION_CLOCKS_X2) * self.clock / 2
     }
 
     fn sequence(&self) -> impl Iterator<Item = u32> + use<> {

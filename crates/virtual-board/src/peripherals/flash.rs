@@ -7,8 +7,23 @@ const KEYR: u32 = 0x08;
 const SR: u32 = 0x10;
 const CR: u32 = 0x14;
 const ECCR: u32 = 0x18;
-/// ECCR: two wrong bits in a double word were read; written as 1 to clear.
+/// ECCR: two wrong bits in a double word were read; written as 1 to clear. Its address within the bank, and the bank.
 const ECC_DETECTED: u32 = 1 << 31;
+const ECC_ADDRESS: u32 = 0x7_FFFF;
+const ECC_BANK: u32 = 1 << 21;
+const OPTKEYR: u32 = 0x0C;
+const OPTR: u32 = 0x20;
+const OPTION_LOCK: u32 = 1 << 30;
+const OPTION_START: u32 = 1 << 17;
+const OPTION_LAUNCH: u32 = 1 << 27;
+/// Option bytes: the watchdog starts by software only.
+const SOFTWARE_WATCHDOG: u32 = 1 << 16;
+/// Option bytes as ST ships the chip: two banks, everything else off.
+pub const SHIPPED_OPTIONS: u32 = 0xFFEF_F8AA;
+/// As docs/firmware.md wants them: watchdog started by hardware, parity of the RAM, brown-out level 4.
+pub const PREPARED_OPTIONS: u32 = 0xFEEE_FCAA;
+const BANK: u32 = PAGES_PER_BANK * PAGE;
+const FIRST: u32 = 0x0800_0000;
 const LOCK: u32 = 1 << 31;
 const PROGRAM: u32 = 1;
 const PAGE_ERASE: u32 = 1 << 1;
@@ -17,8 +32,7 @@ const END_OF_OPERATION: u32 = 1;
 const RESET: &[(u32, u32)] = &[
     (0x00, 0x0004_0600), // ACR
     (CR, 0xC000_0000),
-    // DBANK, and every other option as shipped.
-    (0x20, 0xFFEF_F8AA),
+    (OPTR, PREPARED_OPTIONS),
 ];
 /// Bytes of a page in dual-bank mode.
 pub const PAGE: u32 = 2048;
@@ -36,7 +50,14 @@ pub struct Flash {
     pub has_failed: bool,
     /// Double words whose programming was cut off: their error correction does not hold.
     broken: Vec<u32>,
-    ecc_detected: bool,
+    /// ECCR.
+    ecc: u32,
+    option_key: u32,
+    /// Option bytes in the array, which are loaded at power-up and when the program asks for it.
+    stored_options: u32,
+    loaded_options: u32,
+    /// The program asks for the option bytes to be loaded, with a reset.
+    pub launches: bool,
     noise: u64,
 }
 
@@ -60,18 +81,57 @@ impl Flash {
             steps_left: None,
             has_failed: false,
             broken: Vec::new(),
-            ecc_detected: false,
+            ecc: 0,
+            option_key: 0,
+            stored_options: PREPARED_OPTIONS,
+            loaded_options: PREPARED_OPTIONS,
+            launches: false,
             noise: 1,
         }
     }
 
-    /// A reset: the interface is as new, the array is not.
-    pub fn reset(&mut self) {
+    /// A reset: the interface is as new, the array is not. Option bytes are loaded where the cause says so.
+    pub fn reset(&mut self, loads_options: bool) {
+        let loaded = match loads_options {
+            true => self.stored_options,
+            false => self.loaded_options,
+        };
         *self = Flash {
             broken: std::mem::take(&mut self.broken),
             noise: self.noise,
+            stored_options: self.stored_options,
+            loaded_options: loaded,
             ..Flash::new()
         };
+        self.registers.set(OPTR, loaded);
+    }
+
+    /// Puts option bytes in place as a programmer does, before power-up.
+    pub fn set_options(&mut self, options: u32) {
+        (self.stored_options, self.loaded_options) = (options, options);
+        self.registers.set(OPTR, options);
+    }
+
+    /// Option bytes in the array.
+    pub fn options(&self) -> u32 {
+        self.stored_options
+    }
+
+    /// Whether hardware starts the watchdog.
+    pub fn starts_watchdog(&self) -> bool {
+        self.loaded_options & SOFTWARE_WATCHDOG == 0
+    }
+
+    /// Wait states of a read.
+    pub fn wait_states(&self) -> u64 {
+        u64::from(self.registers.get(0x00) & 0xF)
+    }
+
+    /// A double word with two wrong bits was read or fetched at `address`.
+    pub fn detect(&mut self, address: u32) {
+        let offset = address - FIRST;
+        let bank = if offset < BANK { 0 } else { ECC_BANK };
+        self.ecc = ECC_DETECTED | bank | offset % BANK & ECC_ADDRESS & !7;
     }
 
     /// Lets power fail within the step after `steps` whole ones.
@@ -121,15 +181,17 @@ impl Flash {
     /// A read of the array; whether it raises the non-maskable interrupt. The emulator shows only the first read of each
     /// kibibyte, so all reads beside a broken double word count as reads of it.
     pub fn check(&mut self, address: u32) -> bool {
-        let beside = |broken: &u32| broken & !0x3FF == address & !0x3FF;
-        let found = self.broken.iter().any(beside);
-        self.ecc_detected |= found;
-        found
+        let beside = |broken: &&u32| **broken & !0x3FF == address & !0x3FF;
+        let found = self.broken.iter().find(beside).copied();
+        if let Some(broken) = found {
+            self.detect(broken);
+        }
+        found.is_some()
     }
 
     /// Whether the interrupt of the error correction is asserted.
     pub fn interrupt(&self) -> bool {
-        self.ecc_detected
+        self.ecc & ECC_DETECTED != 0
     }
 
     /// Whether the program may write to the array now.
@@ -147,7 +209,7 @@ impl Flash {
     pub fn read(&self, offset: u32) -> Result<u32, Unmodelled> {
         match offset {
             SR => Ok(self.status),
-            ECCR => Ok(if self.ecc_detected { ECC_DETECTED } else { 0 }),
+            ECCR => Ok(self.ecc),
             _ => self.registers.read(offset),
         }
     }
@@ -162,13 +224,37 @@ impl Flash {
                 self.key = value;
             }
             SR => self.status &= !value,
-            ECCR => self.ecc_detected &= value & ECC_DETECTED == 0,
+            ECCR => {
+                if value & ECC_DETECTED != 0 {
+                    self.ecc = 0;
+                }
+            }
+            OPTKEYR => {
+                let locked = self.registers.get(CR) & LOCK != 0;
+                if !locked && self.option_key == 0x0819_2A3B && value == 0x4C5D_6E7F {
+                    self.registers
+                        .set(CR, self.registers.get(CR) & !OPTION_LOCK);
+                }
+                self.option_key = value;
+            }
+            OPTR if self.registers.get(CR) & OPTION_LOCK != 0 => {
+                let access = format!("write of {value:#x} while locked");
+                return Err(self.registers.unmodelled(access, offset));
+            }
             CR if self.registers.get(CR) & LOCK != 0 => {
                 let access = format!("write of {value:#x} while locked");
                 return Err(self.registers.unmodelled(access, offset));
             }
             CR => {
-                self.registers.set(CR, value & !START);
+                let open = self.registers.get(CR) & OPTION_LOCK == 0;
+                if open && value & OPTION_START != 0 {
+                    self.stored_options = self.registers.get(OPTR);
+                }
+                self.launches |= open && value & OPTION_LAUNCH != 0;
+                // Locks are closed by writing and opened by keys only.
+                let locks = value | self.registers.get(CR) & (LOCK | OPTION_LOCK);
+                let kept = !(START | OPTION_START | OPTION_LAUNCH);
+                self.registers.set(CR, locks & kept);
                 return Ok(self.erased(value));
             }
             _ => self.registers.write(offset, value)?,

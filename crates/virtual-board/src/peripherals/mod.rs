@@ -1,6 +1,7 @@
 //! Models of the peripherals, register by register, after the reference manual.
 
 pub(crate) mod adc;
+pub(crate) mod backup;
 pub(crate) mod dma;
 pub(crate) mod flash;
 pub(crate) mod gpio;

@@ -39,6 +39,8 @@ pub struct Timer {
     status: u32,
     /// Prescaler in force; the register takes effect at an update.
     prescaler: u64,
+    /// Units of time per cycle of its clock.
+    clock: u64,
     /// Count at `since`, and the cycle from which it counts.
     count: u64,
     since: u64,
@@ -80,6 +82,7 @@ impl Timer {
             registers: Registers::new("TIM", RESET),
             status: 0,
             prescaler: 1,
+            clock: 1,
             count: 0,
             since: 0,
             evaluated: 0,
@@ -89,6 +92,28 @@ impl Timer {
             encoder: 0,
             edges: 0,
         }
+    }
+
+    /// Its clock takes `clock` units of time a cycle from now on.
+    pub fn set_clock(&mut self, clock: u64, now: u64) {
+        if clock != self.clock {
+            self.rebase(now);
+            self.clock = clock;
+            self.look_ahead();
+        }
+    }
+
+    /// A reset; the clock stays.
+    pub fn reset(&mut self) {
+        *self = Timer {
+            clock: self.clock,
+            ..Timer::new()
+        };
+    }
+
+    /// Units of time per count.
+    fn step(&self) -> u64 {
+        self.prescaler * self.clock
     }
 
     fn is_counting(&self) -> bool {
@@ -105,7 +130,7 @@ impl Timer {
 
     fn ticks(&self, now: u64) -> u64 {
         if self.is_counting() {
-            (now - self.since) / self.prescaler
+            (now - self.since) / self.step()
         } else {
             0
         }
@@ -123,7 +148,7 @@ impl Timer {
         self.count = self.count_now(now);
         // Not simply `now`: the prescaler keeps its place within a tick.
         self.since = if self.is_counting() {
-            self.since + self.ticks(now) * self.prescaler
+            self.since + self.ticks(now) * self.step()
         } else {
             now
         };
@@ -185,7 +210,7 @@ impl Timer {
         let ticks = marks
             .filter(|(_, flag)| flags & flag != 0)
             .map(|(value, _)| self.next_tick(value));
-        Some(self.since + ticks.min()? * self.prescaler)
+        Some(self.since + ticks.min()? * self.step())
     }
 
     fn triggers(&self) -> u32 {

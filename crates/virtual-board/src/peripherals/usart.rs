@@ -73,6 +73,8 @@ pub struct Usart {
     registers: Registers,
     /// Bits of a unit of BRR: an LPUART counts in 256ths.
     divider: u64,
+    /// Units of time per cycle of its clock.
+    pub clock: u64,
     status: u32,
     waiting: VecDeque<u8>,
     /// Byte on the wire, and the cycle at which it ends.
@@ -91,6 +93,7 @@ impl Usart {
         Usart {
             registers: Registers::new("USART", RESET),
             divider: if low_power { 256 } else { 1 },
+            clock: 1,
             status: COMPLETE | NOT_FULL,
             waiting: VecDeque::new(),
             shifting: None,
@@ -106,6 +109,7 @@ impl Usart {
         *self = Usart {
             incoming: std::mem::take(&mut self.incoming),
             sent: std::mem::take(&mut self.sent),
+            clock: self.clock,
             ..Usart::new(self.divider != 1)
         };
     }
@@ -119,7 +123,7 @@ impl Usart {
         let prescaler = PRESCALERS[(self.registers.get(PRESC) & 0xF).min(11) as usize];
         let bit = u64::from(self.registers.get(BRR)) * prescaler;
         let data = if self.has(CR1, NINE_BITS) { 9 } else { 8 };
-        ((data + 2) * bit / self.divider).max(1)
+        ((data + 2) * bit * self.clock / self.divider).max(1)
     }
 
     /// Puts bytes on the wire towards the chip, one behind the other from `now` on, at the speed that the port is set to.

@@ -5,6 +5,7 @@
 
 use unicorn_engine::{Arch, Mode, Prot, RegisterARM as R, Unicorn, uc_error};
 
+use crate::TICK_HZ;
 use crate::error::BoardError;
 use crate::machine::Machine;
 use crate::machine::bus::FACTORY_VALUES;
@@ -31,9 +32,30 @@ const NOP: u16 = 0xBF00;
 /// xPSR: stack pointer was padded to 8 bytes.
 const PADDED: u32 = 1 << 9;
 const THUMB: u32 = 1 << 24;
+/// CFSR: precise bus error with its address, on stacking, on fetching; execution forbidden; undefined instruction.
+const PRECISE: u32 = 1 << 9 | 1 << 15;
+const ON_STACKING: u32 = 1 << 12;
+const ON_FETCH: u32 = 1 << 8;
+const FORBIDDEN: u32 = 1;
+const UNDEFINED: u32 = 1 << 16;
 /// CONTROL: the interrupted code has used the floating-point unit.
 const FPCA: u64 = 4;
 const BASIC: [R; 7] = [R::R0, R::R1, R::R2, R::R3, R::R12, R::LR, R::PC];
+const CORE_REGISTERS: [R; 13] = [
+    R::R0,
+    R::R1,
+    R::R2,
+    R::R3,
+    R::R4,
+    R::R5,
+    R::R6,
+    R::R7,
+    R::R8,
+    R::R9,
+    R::R10,
+    R::R11,
+    R::R12,
+];
 const FLOATS: [R; 16] = [
     R::S0,
     R::S1,
@@ -62,6 +84,8 @@ pub(crate) struct Cpu {
     pub stacks_floats: bool,
     /// Address of the WFE at which the program sleeps.
     asleep: Option<u32>,
+    /// A fault within the handler of a fault: nothing runs until a reset.
+    pub locked_up: bool,
 }
 
 impl Cpu {
@@ -76,12 +100,14 @@ impl Cpu {
             core,
             stacks_floats: true,
             asleep: None,
+            locked_up: false,
         })
     }
 
     /// Loads stack pointer and program counter from the vector table.
     pub fn reset(&mut self) -> Result<(), BoardError> {
         self.asleep = None;
+        self.locked_up = false;
         for register in BASIC.into_iter().chain(FLOATS) {
             self.core.reg_write(register, 0)?;
         }
@@ -101,6 +127,9 @@ impl Cpu {
 
     /// Executes until something happens that is not an instruction.
     pub fn run(&mut self) -> Result<(), BoardError> {
+        if self.locked_up || self.core.get_data().cycle.is_none() {
+            return self.stand_still();
+        }
         if let Some(pc) = self.asleep {
             return self.wait_for_event(pc);
         }
@@ -110,6 +139,9 @@ impl Cpu {
             return Err(self.stopped(failure));
         }
         let pc = self.core.reg_read(R::PC)? as u32;
+        if std::mem::take(&mut self.machine().executed_forbidden) {
+            return self.fault(uc_error::FETCH_PROT);
+        }
         if u64::from(pc) >= RETURNS {
             return self.leave_exception(pc | 1);
         }
@@ -117,8 +149,43 @@ impl Cpu {
             Ok(()) => Ok(()),
             // The emulator gives up behind the instruction.
             Err(_) if self.halfword(pc - 2)? == WFE => self.wait_for_event(pc - 2),
-            Err(error) => Err(self.stopped(format!("{error:?}"))),
+            Err(error) => self.fault(error),
         }
+    }
+
+    /// An instruction that cannot be executed: a hard fault, because no other handler is enabled.
+    fn fault(&mut self, error: uc_error) -> Result<(), BoardError> {
+        let pc = self.core.reg_read(R::PC)? as u32;
+        let status = match error {
+            uc_error::READ_UNMAPPED | uc_error::WRITE_UNMAPPED => PRECISE,
+            uc_error::FETCH_UNMAPPED => ON_FETCH,
+            uc_error::FETCH_PROT => FORBIDDEN,
+            uc_error::INSN_INVALID | uc_error::EXCEPTION => UNDEFINED,
+            _ => return Err(self.stopped(format!("{error:?}"))),
+        };
+        let address = self.machine().unreachable.take();
+        self.hard_fault(status, address.filter(|_| status == PRECISE), pc)
+    }
+
+    fn hard_fault(
+        &mut self,
+        status: u32,
+        address: Option<u32>,
+        pc: u32,
+    ) -> Result<(), BoardError> {
+        self.machine().faults.push((status, pc));
+        if self.machine().nvic.take_hard_fault(status, address) {
+            return self.enter(3);
+        }
+        self.locked_up = true;
+        Ok(())
+    }
+
+    /// Nothing is executed: time goes on to whatever happens without the program.
+    fn stand_still(&mut self) -> Result<(), BoardError> {
+        let machine = self.machine();
+        machine.now = machine.horizon().clamp(machine.now + 1, machine.now + TICK_HZ / 1_000);
+        Ok(())
     }
 
     fn stopped(&mut self, what: String) -> BoardError {
@@ -181,7 +248,7 @@ impl Cpu {
     /// Takes the non-maskable interrupt of the flash, or a waiting interrupt unless PRIMASK forbids it.
     pub fn enter_exception(&mut self) -> Result<(), BoardError> {
         let machine = self.machine();
-        if machine.flash.interrupt() && machine.nvic.take_non_maskable() {
+        if machine.non_maskable() && machine.nvic.take_non_maskable() {
             return self.enter(2);
         }
         if self.core.reg_read(R::PRIMASK)? & 1 == 1 {
@@ -197,14 +264,10 @@ impl Cpu {
         self.machine().tally.exceptions += 1;
         self.asleep = None;
         let with_floats = self.core.reg_read(R::CONTROL)? & FPCA != 0;
-        self.push_frame(with_floats)?;
-        let vector = self.machine().nvic.vector_table() + 4 * exception;
-        let vector = if vector < FLASH {
-            vector + FLASH
-        } else {
-            vector
-        };
-        let handler = self.word(vector)?;
+        if let Err(error) = self.push_frame(with_floats) {
+            return self.fault_on_stacking(exception, error);
+        }
+        let handler = self.vector(exception)?;
         let exc_return: u32 = if with_floats {
             0xFFFF_FFE9
         } else {
@@ -213,6 +276,36 @@ impl Cpu {
         self.core.reg_write(R::LR, u64::from(exc_return))?;
         self.core.reg_write(R::PC, u64::from(handler))?;
         Ok(())
+    }
+
+    /// The stack is out of memory: the hard fault's handler begins without a frame.
+    fn fault_on_stacking(&mut self, exception: u32, error: BoardError) -> Result<(), BoardError> {
+        if !matches!(
+            error,
+            BoardError::Emulator(uc_error::WRITE_UNMAPPED | uc_error::WRITE_PROT)
+        ) {
+            return Err(error);
+        }
+        let pc = self.core.reg_read(R::PC)? as u32;
+        self.machine().faults.push((ON_STACKING, pc));
+        if exception != 3 && !self.machine().nvic.take_hard_fault(ON_STACKING, None) {
+            self.locked_up = true;
+            return Ok(());
+        }
+        let handler = self.vector(3)?;
+        self.core.reg_write(R::LR, 0xFFFF_FFF9)?;
+        self.core.reg_write(R::XPSR, u64::from(THUMB))?;
+        self.core.reg_write(R::PC, u64::from(handler))?;
+        Ok(())
+    }
+
+    fn vector(&mut self, exception: u32) -> Result<u32, BoardError> {
+        let vector = self.machine().nvic.vector_table() + 4 * exception;
+        self.word(if vector < FLASH {
+            vector + FLASH
+        } else {
+            vector
+        })
     }
 
     fn push_frame(&mut self, with_floats: bool) -> Result<(), BoardError> {
@@ -236,8 +329,8 @@ impl Cpu {
             self.core.reg_write(R::CONTROL, control & !FPCA)?;
         }
         let bytes: Vec<u8> = frame.iter().flat_map(|word| word.to_le_bytes()).collect();
-        self.core.mem_write(u64::from(base), &bytes)?;
         self.core.reg_write(R::SP, u64::from(base))?;
+        self.core.mem_write(u64::from(base), &bytes)?;
         // The handler starts outside any IT block.
         self.core
             .reg_write(R::XPSR, u64::from(xpsr & 0xF80F_0000 | THUMB))?;
@@ -283,6 +376,55 @@ impl Cpu {
         let machine = self.machine();
         machine.event_register = true;
         machine.update_lines();
+        Ok(())
+    }
+
+    /// Goes on at `address` with registers from r0 on.
+    pub fn divert(&mut self, address: u32, registers: &[u32]) -> Result<(), BoardError> {
+        self.asleep = None;
+        for (register, value) in BASIC.into_iter().zip(registers) {
+            self.core.reg_write(register, u64::from(*value))?;
+        }
+        self.core.reg_write(R::PC, u64::from(address) | 1)?;
+        Ok(())
+    }
+
+    /// Moves the stack pointer.
+    pub fn move_stack(&mut self, address: u32) -> Result<(), BoardError> {
+        Ok(self.core.reg_write(R::SP, u64::from(address))?)
+    }
+
+    /// Holds a bit of memory at a level.
+    pub fn stick_ram_bit(&mut self, address: u32, bit: u32, level: bool) -> Result<(), BoardError> {
+        use unicorn_engine::{HookType, MemType};
+        let first = u64::from(address & !3);
+        let hook = move |core: &mut Unicorn<'_, Machine>, _: MemType, _: u64, _: usize, _: i64| {
+            let mut bytes = [0; 4];
+            if core.mem_read(first, &mut bytes).is_ok() {
+                let word = u32::from_le_bytes(bytes) & !(1 << bit) | u32::from(level) << bit;
+                let _ = core.mem_write(first, &word.to_le_bytes());
+            }
+            true
+        };
+        self.core
+            .add_mem_hook(HookType::MEM_READ, first, first + 3, hook)?;
+        Ok(())
+    }
+
+    /// Flips bits of a register before the instruction at `address`.
+    pub fn flip_register(
+        &mut self,
+        address: u32,
+        register: usize,
+        bits: u32,
+    ) -> Result<(), BoardError> {
+        let register = CORE_REGISTERS[register.min(12)];
+        let at = u64::from(address & !1);
+        let hook = move |core: &mut Unicorn<'_, Machine>, _: u64, _: u32| {
+            let value = core.reg_read(register).unwrap_or(0) ^ u64::from(bits);
+            let _ = core.reg_write(register, value);
+        };
+        self.core.add_code_hook(at, at, hook)?;
         Ok(())
     }
 
@@ -423,13 +565,20 @@ fn hook_blocks(core: &mut Core) -> Result<(), uc_error> {
             let _ = core.emu_stop();
             return;
         }
+        let outside = !(u64::from(FLASH)..u64::from(RAM)).contains(&address);
+        if outside && machine.nvic.forbids_execution(address as u32) {
+            machine.executed_forbidden = true;
+            let _ = core.emu_stop();
+            return;
+        }
         let block = known.entry((address, size)).or_insert_with(|| {
             let bytes = core.mem_read_as_vec(address, size as usize);
             Block::of(&bytes.unwrap_or_default())
         });
         conditions.pass(block, address + u64::from(size));
         let machine = core.get_data_mut();
-        machine.now += u64::from(block.instructions);
+        let cycle = machine.cycle.unwrap_or(0);
+        machine.now += u64::from(block.instructions) * cycle * machine.half_cycles / 2;
         machine.tally.instructions += u64::from(block.instructions);
         machine.event_register |= block.sends;
         if let Some(profile) = &mut machine.profile {
@@ -452,6 +601,11 @@ fn hook_flash(core: &mut Core) -> Result<(), uc_error> {
             program(core, address, &value.to_le_bytes()[..size.min(8)]).is_ok()
         };
     core.add_mem_hook(HookType::MEM_WRITE_PROT, 1, 0, write)?;
+    let unreachable = |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, _: usize, _: i64| {
+        core.get_data_mut().unreachable = Some(address as u32);
+        false
+    };
+    core.add_mem_hook(HookType::MEM_UNMAPPED, 1, 0, unreachable)?;
     let read = |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, _: usize, _: i64| {
         let machine = core.get_data_mut();
         if machine.flash.check(address as u32) {

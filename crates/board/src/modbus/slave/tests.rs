@@ -217,9 +217,10 @@ impl Law {
                     self.unlocked = false;
                     return None;
                 }
-                (1, [0, code @ (1 | 2)]) if self.unlocked => {
+                (1, [0, code @ (1..=3)]) if self.unlocked => {
                     self.unlocked = false;
-                    command = Some([Command::Acknowledge, Command::Learn][usize::from(code) - 1]);
+                    let commands = [Command::Acknowledge, Command::Learn, Command::Prepare];
+                    command = Some(commands[usize::from(code) - 1]);
                 }
                 _ => return None,
             }
@@ -231,7 +232,7 @@ impl Law {
 fn random_frame(random: &mut Pcg64Mcg) -> Vec<u8> {
     let length = random.random_range(0..=MAX_REQUEST_BYTES + 8);
     let mut bytes: Vec<u8> = (0..length).map(|_| random.random()).collect();
-    let values = [0, 1, 2, 0x4D, 0x4D, random.random()];
+    let values = [0, 1, 2, 3, 0x4D, 0x4D, random.random()];
     let mut pick = || values[random.random_range(0..values.len())];
     match pick() % 4 {
         0 => bytes,

@@ -1,0 +1,198 @@
+//! What a person sees and touches, and what looks after the board itself.
+
+use board::modbus::Command;
+use board::{
+    Button, Calibration, Display, Doubt, Doubts, Press, Relay, Shown, StuckChannels, levels,
+};
+use embassy_stm32::gpio::Input;
+use embassy_time::{Duration, Instant, Timer};
+use monitor::{Lamps, Monitor, Report};
+
+use crate::commissioning::Commissioning;
+use crate::hardware::housekeeping::{Housekeeping, is_vdda_credible};
+use crate::hardware::lamps::{Lamps as LampWires, RelayWires};
+use crate::hardware::serial;
+use crate::record::Record;
+use crate::safety::protection::StackMark;
+use crate::safety::selftest::SelfTest;
+use crate::safety::watchdog::Watchdog;
+use crate::safety::{options, retained};
+
+/// Blocks between two looks at the converters' supply: about a second.
+const SECOND_BLOCKS: u32 = 312;
+/// Half of a 1 Hz blink, in blocks of 3.2 ms.
+const BLINK_BLOCKS: u32 = 156;
+/// Blocks without a crash after which earlier ones are forgotten: a minute.
+const QUIET_BLOCKS: u32 = 60 * SECOND_BLOCKS;
+/// While nothing is computed.
+const IDLE: Duration = Duration::from_millis(100);
+
+/// The door, and the board's own health.
+pub struct Panel {
+    /// Lamps.
+    pub wires: LampWires,
+    /// Relay and its contact.
+    pub relay_wires: RelayWires,
+    /// What the relay shall do.
+    pub relay: Relay,
+    /// Fed when all is well.
+    pub watchdog: Watchdog,
+    /// The button and what it means.
+    pub button: Input<'static>,
+    /// See `button`.
+    pub press: Button,
+    /// Supply and temperature of the chip.
+    pub housekeeping: Housekeeping,
+    /// What is told.
+    pub record: Record,
+    /// Calibration and learning.
+    pub commissioning: Commissioning,
+    /// Lamps that stay.
+    pub display: Display,
+    /// Tests of the board by itself.
+    pub selftest: SelfTest,
+    /// Channels that do not move.
+    pub channels: StuckChannels,
+    /// Depth of the stack.
+    pub stack: StackMark,
+    /// Doubts that are found elsewhere than in the tests.
+    pub doubts: Doubts,
+    /// Doubts that a person has seen.
+    pub acknowledged: Doubts,
+    /// A window was judged in this block.
+    pub judged: bool,
+    /// Blocks since the start.
+    pub blocks: u32,
+}
+
+impl Panel {
+    /// Takes one window's result: shown and told everywhere. A calibration may come out of it.
+    pub fn take(&mut self, report: &Report, monitor: &Monitor) -> Option<Calibration> {
+        self.judged |= report.is_judged();
+        let shown = self.show(&report.lamps);
+        self.record
+            .tell(report, &shown, monitor, &self.commissioning);
+        let doubts = self.all_doubts();
+        self.commissioning.observe(report, monitor, doubts)
+    }
+
+    /// After a block: the only place from which the watchdog is fed while sampling.
+    pub fn after_block(&mut self, lamps: &Lamps) {
+        self.blocks = self.blocks.wrapping_add(1);
+        self.selftest.step(self.blocks);
+        if self.blocks.is_multiple_of(SECOND_BLOCKS) {
+            self.every_second();
+        }
+        self.watchdog.look();
+        self.obey_button();
+        self.obey_master();
+        self.doubts.set(Doubt::Channel, self.channels.is_any());
+        self.doubts.set(Doubt::Lamps, self.wires.contradict());
+        self.put_out(lamps);
+    }
+
+    /// Levels for lamps and relay, and registers for masters.
+    fn put_out(&mut self, lamps: &Lamps) {
+        let bright = (self.blocks / BLINK_BLOCKS).is_multiple_of(2);
+        let shown = self.show(lamps);
+        let closed = self.relay_wires.is_closed();
+        let (level, contradicts) = self.relay.step(&shown, self.judged, closed);
+        self.judged = false;
+        self.doubts.set(Doubt::Relay, contradicts);
+        self.relay_wires.set(level);
+        let (doubts, energised) = (self.all_doubts(), self.relay.is_energised());
+        self.record.note_health(doubts, energised);
+        self.record.refresh(&shown);
+        self.wires.set(levels(&shown.lamps, bright));
+    }
+
+    fn every_second(&mut self) {
+        self.look_after_supply();
+        self.stack.look();
+        self.doubts.set(Doubt::Stack, self.stack.is_nearly_full());
+        if self.blocks == QUIET_BLOCKS {
+            retained::forget_crashes();
+        }
+        self.record.note_second(
+            Instant::now().as_secs() as u32,
+            self.stack.deepest_bytes(),
+            retained::crashes(),
+        );
+    }
+
+    fn obey_button(&mut self) {
+        match self.press.look(self.button.is_high()) {
+            Some(Press::Short) => self.acknowledge(),
+            Some(Press::Long) => self.display.set_latched(!self.display.is_latched()),
+            Some(Press::VeryLong) => {
+                // On the way here the press was a long one; the lamp mode stays what it was.
+                self.display.set_latched(!self.display.is_latched());
+                self.commissioning.begin(self.all_doubts());
+            }
+            None => {}
+        }
+    }
+
+    fn obey_master(&mut self) {
+        match serial::take_command() {
+            Some(Command::Acknowledge) => self.acknowledge(),
+            Some(Command::Learn) => self.commissioning.begin(self.all_doubts()),
+            Some(Command::Prepare) => options::prepare(),
+            None => {}
+        }
+    }
+
+    fn acknowledge(&mut self) {
+        self.display.acknowledge();
+        self.commissioning.acknowledge();
+        self.record.acknowledge();
+        self.acknowledged = self.all_doubts();
+    }
+
+    /// What the tests have found, and what was found elsewhere.
+    pub fn all_doubts(&self) -> Doubts {
+        Doubts::from_bits(self.doubts.bits() | self.selftest.doubts().bits())
+    }
+
+    /// The monitor's lamps with what the board knows beside them. A board that cannot measure says so, whatever its numbers say about the motor.
+    fn show(&mut self, lamps: &Lamps) -> Shown {
+        let doubts = self.all_doubts();
+        let noticed = doubts.bits() & !self.acknowledged.bits() != 0;
+        let overrides = self.commissioning.overrides(doubts, noticed);
+        self.display.show(lamps, &overrides)
+    }
+
+    /// Measures the supply of the converters and the chip's temperature.
+    pub fn look_after_supply(&mut self) {
+        let millivolt = self.housekeeping.vdda_millivolt();
+        if self.doubts.set(Doubt::Supply, !is_vdda_credible(millivolt)) {
+            defmt::warn!("VDDA {=u32} mV", millivolt);
+        }
+        let degc = self.housekeeping.temperature_degc(millivolt);
+        self.record.note_chip(millivolt as u16, degc);
+    }
+
+    /// Nothing is computed: SENSOR and FAULT light, RUN stays dark, the relay is open; masters are answered, and the button
+    /// or an acknowledgement starts the board again.
+    pub async fn refuse(&mut self, doubt: Doubt) -> ! {
+        defmt::error!("nothing is computed: {=str}", doubt.label());
+        self.doubts.set(doubt, true);
+        loop {
+            self.blocks = self.blocks.wrapping_add(1);
+            self.put_out(&Lamps::default());
+            self.watchdog.feed_while_waiting();
+            let asked = match serial::take_command() {
+                Some(Command::Prepare) => {
+                    options::prepare();
+                    false
+                }
+                command => command == Some(Command::Acknowledge),
+            };
+            if asked || self.button.is_high() {
+                retained::forget_crashes();
+                cortex_m::peripheral::SCB::sys_reset();
+            }
+            Timer::after(IDLE).await;
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Tests of the board by itself: at the start, and slice by slice while it runs (docs/firmware.md, "Tests of itself").
+
+mod clock;
+mod flash;
+mod processor;
+mod ram;
+mod settings;
+
+use board::{Doubt, Doubts};
+
+use super::marks::{self, Mark};
+use super::{faults, seal};
+use clock::Calendar;
+use flash::FlashTest;
+use ram::RamTest;
+use settings::Settings;
+
+/// Blocks of 3.2 ms between two looks of once a second.
+const SECOND: u32 = 312;
+
+/// What has been tested how far.
+pub struct SelfTest {
+    flash: FlashTest,
+    ram: RamTest,
+    settings: Settings,
+    calendar: Calendar,
+    doubts: Doubts,
+}
+
+impl SelfTest {
+    /// Tests processor and flash as a whole; the RAM was tested before anything else. Takes some 20 ms.
+    pub fn at_start() -> Self {
+        let mut doubts = Doubts::default();
+        doubts.set(Doubt::Processor, !processor::passes());
+        let sealed = seal::read();
+        doubts.set(Doubt::Unsealed, sealed.is_none());
+        let mut flash = FlashTest::new(sealed);
+        doubts.set(Doubt::Program, flash.whole().is_err());
+        SelfTest {
+            flash,
+            ram: RamTest::default(),
+            settings: Settings::default(),
+            calendar: Calendar::default(),
+            doubts,
+        }
+    }
+
+    /// What the tests have found so far.
+    pub fn doubts(&self) -> Doubts {
+        self.doubts
+    }
+
+    /// Remembers the settings of the peripherals that are meant to hold from now on.
+    pub fn remember_settings(&mut self) {
+        self.settings = Settings::read();
+    }
+
+    /// Time is not counted over a pause.
+    pub fn resume(&mut self) {
+        self.calendar = Calendar::default();
+    }
+
+    /// One slice, after block number `block`. A slice takes some hundred cycles.
+    #[inline(never)]
+    pub fn step(&mut self, block: u32) {
+        match block % SECOND {
+            0 => self.look_at_clock(),
+            1 => self.look_at_settings(),
+            2 => {
+                if !processor::passes() {
+                    faults::end_untrusted();
+                }
+            }
+            3 => {
+                let sound = self.ram.slice();
+                self.doubts
+                    .set(Doubt::Ram, self.doubts.has(Doubt::Ram) || !sound);
+            }
+            slice if slice.is_multiple_of(16) => {
+                if let Some(sound) = self.flash.slice() {
+                    self.doubts.set(Doubt::Program, !sound);
+                }
+            }
+            _ => {}
+        }
+        marks::leave(Mark::SelfTest);
+    }
+
+    fn look_at_clock(&mut self) {
+        let Some(found) = self.calendar.look() else {
+            return;
+        };
+        self.doubts.set(Doubt::ClockRatio, !found.clock_is_sound);
+        self.doubts.set(Doubt::Blocks, !found.blocks_are_sound);
+    }
+
+    fn look_at_settings(&mut self) {
+        let changed = Settings::read() != self.settings;
+        self.doubts.set(Doubt::Settings, changed);
+    }
+}
