@@ -68,6 +68,8 @@ async fn main(spawner: Spawner) -> ! {
         stack: StackMark::new(),
         doubts: doubts_of(source),
         acknowledged: Doubts::default(),
+        told: Doubts::default(),
+        prepares_at: None,
         judged: false,
         blocks: 0,
     };
@@ -75,6 +77,7 @@ async fn main(spawner: Spawner) -> ! {
     let mut monitor = panel.commissioning.monitor();
     match &mut monitor {
         _ if start.gives_up => panel.refuse(Doubt::Restarts).await,
+        _ if panel.all_doubts().has(Doubt::Processor) => panel.refuse(Doubt::Processor).await,
         Some(monitor) => run(monitor, &mut panel, board.sources).await,
         None => panel.refuse(Doubt::Constants).await,
     }

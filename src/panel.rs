@@ -24,6 +24,8 @@ const SECOND_BLOCKS: u32 = 312;
 const BLINK_BLOCKS: u32 = 156;
 /// Blocks without a crash after which earlier ones are forgotten: a minute.
 const QUIET_BLOCKS: u32 = 60 * SECOND_BLOCKS;
+/// Until the answer to a command is out that starts the board again.
+const ANSWER_BLOCKS: u32 = 32;
 /// While nothing is computed.
 const IDLE: Duration = Duration::from_millis(100);
 
@@ -59,6 +61,10 @@ pub struct Panel {
     pub doubts: Doubts,
     /// Doubts that a person has seen.
     pub acknowledged: Doubts,
+    /// Doubts that were logged.
+    pub told: Doubts,
+    /// The block after which the option bytes are written.
+    pub prepares_at: Option<u32>,
     /// A window was judged in this block.
     pub judged: bool,
     /// Blocks since the start.
@@ -101,9 +107,19 @@ impl Panel {
         self.doubts.set(Doubt::Relay, contradicts);
         self.relay_wires.set(level);
         let (doubts, energised) = (self.all_doubts(), self.relay.is_energised());
+        self.tell(doubts);
         self.record.note_health(doubts, energised);
         self.record.refresh(&shown);
         self.wires.set(levels(&shown.lamps, bright));
+    }
+
+    /// Logs every doubt that is new.
+    fn tell(&mut self, doubts: Doubts) {
+        let new = doubts.bits() & !self.told.bits();
+        for doubt in Doubts::from_bits(new).iter() {
+            defmt::error!("doubt: {=str}", doubt.label());
+        }
+        self.told = doubts;
     }
 
     fn every_second(&mut self) {
@@ -137,8 +153,13 @@ impl Panel {
         match serial::take_command() {
             Some(Command::Acknowledge) => self.acknowledge(),
             Some(Command::Learn) => self.commissioning.begin(self.all_doubts()),
-            Some(Command::Prepare) => options::prepare(),
+            Some(Command::Prepare) => {
+                self.prepares_at = Some(self.blocks.wrapping_add(ANSWER_BLOCKS))
+            }
             None => {}
+        }
+        if self.prepares_at == Some(self.blocks) {
+            options::prepare();
         }
     }
 
@@ -165,7 +186,8 @@ impl Panel {
     /// Measures the supply of the converters and the chip's temperature.
     pub fn look_after_supply(&mut self) {
         let millivolt = self.housekeeping.vdda_millivolt();
-        if self.doubts.set(Doubt::Supply, !is_vdda_credible(millivolt)) {
+        let faulty = !is_vdda_credible(millivolt);
+        if self.doubts.set(Doubt::Supply, faulty) {
             defmt::warn!("VDDA {=u32} mV", millivolt);
         }
         let degc = self.housekeeping.temperature_degc(millivolt);
@@ -181,18 +203,15 @@ impl Panel {
             self.blocks = self.blocks.wrapping_add(1);
             self.put_out(&Lamps::default());
             self.watchdog.feed_while_waiting();
-            let asked = match serial::take_command() {
-                Some(Command::Prepare) => {
-                    options::prepare();
-                    false
-                }
-                command => command == Some(Command::Acknowledge),
-            };
-            if asked || self.button.is_high() {
+            let command = serial::take_command();
+            Timer::after(IDLE).await;
+            if command == Some(Command::Prepare) {
+                options::prepare();
+            }
+            if command == Some(Command::Acknowledge) || self.button.is_high() {
                 retained::forget_crashes();
                 cortex_m::peripheral::SCB::sys_reset();
             }
-            Timer::after(IDLE).await;
         }
     }
 }

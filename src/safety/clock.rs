@@ -69,6 +69,7 @@ pub fn config(source: Source) -> Config {
     config.rcc.hsi48 = None;
     // The calendar counts the low-speed oscillator: the witness of the crystal (src/safety/selftest/clock.rs).
     config.rcc.ls = LsConfig::default_lsi();
+    config.rcc.mux.rtcsel = mux::Rtcsel::LSI;
     config.rcc.mux.adc12sel = mux::Adcsel::SYS;
     config.rcc.mux.adc345sel = mux::Adcsel::SYS;
     config

@@ -3,9 +3,10 @@
 #![allow(unsafe_code)]
 
 use cortex_m::peripheral::MPU;
+use embassy_stm32::pac;
 
 /// Bytes of the stack's memory.
-const STACK_BYTES: u32 = 16 * 1024;
+const STACK_BYTES: u32 = 20 * 1024;
 /// What cortex-m-rt paints it with.
 const PAINT: u32 = 0xCCCC_CCCC;
 /// Above three quarters it is nearly full.
@@ -26,8 +27,10 @@ const REGIONS: [(u32, u32); 2] = [
     (0x0000_0000, attributes(27, NO_ACCESS)),
 ];
 
-/// Switches memory protection on; whatever no region names is as without it.
+/// Lets the parity of the RAM be asked about, and switches memory protection on; whatever no region names is as without it.
 pub fn start() {
+    // The handler of a parity error reads its flag there.
+    pac::RCC.apb2enr().modify(|w| w.set_syscfgen(true));
     // Safety: the program never executes from RAM and never reads below the flash's own address.
     unsafe {
         let mpu = &*MPU::PTR;

@@ -60,7 +60,9 @@ impl Watchdog {
     pub fn feed_while_waiting(&mut self) {
         let now = Instant::now();
         marks::note_time(now);
-        self.feed(now);
+        if now - self.fed >= INTERVAL {
+            self.feed(now);
+        }
     }
 
     fn feed(&mut self, now: Instant) {

@@ -3,7 +3,7 @@ use monitor::RawSample;
 use motor::MotorFile;
 use scenario::Scenario;
 use scenario::simulate::Simulation;
-use virtual_board::{CORE_HZ, TICK_HZ, Inputs, Tally, VirtualBoard};
+use virtual_board::{CORE_HZ, Inputs, TICK_HZ, Tally, VirtualBoard};
 
 /// Bytes of flash.
 const MOST_FLASH: f64 = 216.0 * 1024.0;
@@ -117,7 +117,8 @@ fn show_profile(board: &mut VirtualBoard, samples: u64) {
 }
 
 fn ram(board: &mut VirtualBoard) -> Result<f64, Box<dyn std::error::Error>> {
-    let fixed = board.symbol("__ebss").ok_or("no symbol __ebss")? - 0x2000_0000;
+    let symbol = |name: &str| board.symbol(name).ok_or(format!("no symbol {name}"));
+    let fixed = symbol("__euninit")? - symbol("__sdata")?;
     Ok(f64::from(fixed + board.stack_used()?))
 }
 

@@ -6,6 +6,7 @@ use crate::TICK_HZ;
 use crate::error::BoardError;
 use crate::firmware::elf::Firmware;
 use crate::firmware::log::Log;
+use crate::machine::relay::Contact;
 use crate::machine::{Inputs, Machine, Port, Tally};
 use crate::peripherals::gpio::Pin;
 use crate::peripherals::rcc::Cause;
@@ -122,7 +123,7 @@ impl VirtualBoard {
     }
 
     fn level(&mut self, Pin(port, number): Pin) -> bool {
-        self.cpu.machine().ports[port].driven(number) == Some(true)
+        self.cpu.machine().ports[port].shown(number)
     }
 
     /// Presses or releases the button.
@@ -134,6 +135,22 @@ impl VirtualBoard {
     /// Stops or restarts the clock of the sampling converter.
     pub fn stop_converter_clock(&mut self, stopped: bool) {
         self.cpu.machine().adc1.clock_stopped = stopped;
+    }
+
+    /// Whether the relay is energised.
+    pub fn relay(&mut self) -> bool {
+        let machine = self.cpu.machine();
+        machine.relay.is_energised(machine.now)
+    }
+
+    /// Lets the relay's contact behave so.
+    pub fn set_contact(&mut self, contact: Contact) {
+        self.cpu.machine().relay.contact = contact;
+    }
+
+    /// Shorts a wire to a level, or takes the short away.
+    pub fn short(&mut self, Pin(port, number): Pin, to: Option<bool>) {
+        self.cpu.machine().ports[port].short(number, to);
     }
 
     /// The crystal oscillates from now on, or is dead.
@@ -224,6 +241,32 @@ impl VirtualBoard {
         self.cpu.flip_register(address, register, bits)
     }
 
+    /// The words of the backup domain.
+    pub fn backup_words(&mut self) -> [u32; 32] {
+        self.cpu.machine().backup.words()
+    }
+
+    /// Lets the voltage detector see this supply, mV, whatever the converters have.
+    pub fn set_detector_sees(&mut self, millivolt: Option<u32>) {
+        self.cpu.machine().detector_millivolt = millivolt;
+    }
+
+    /// Leaves a function out from now on: its instruction at `address` returns at once, as a task does that is never woken.
+    ///
+    /// # Errors
+    /// The emulator refuses.
+    pub fn leave_out(&mut self, address: u32) -> Result<(), BoardError> {
+        self.cpu.leave_out(address)
+    }
+
+    /// Writes a word of RAM, or a register of a peripheral, behind the program's back.
+    ///
+    /// # Errors
+    /// Nothing is there.
+    pub fn poke(&mut self, address: u32, value: u32) -> Result<(), BoardError> {
+        self.cpu.poke(address, value)
+    }
+
     /// Word of the RAM or the flash at `address`.
     ///
     /// # Errors
@@ -292,6 +335,11 @@ impl VirtualBoard {
             .core
             .mem_write(u64::from(address), &word.to_le_bytes())?;
         Ok(())
+    }
+
+    /// Names of all symbols that contain `part`, with their addresses.
+    pub fn symbols(&self, part: &str) -> Vec<(String, u32)> {
+        self.firmware.symbols(part)
     }
 
     /// Address of the symbol whose name contains `part`.
@@ -417,9 +465,10 @@ impl VirtualBoard {
         sorted
     }
 
-    /// Interrupts the program every `cycles` for nothing, with the DMA channel of the converter.
+    /// Interrupts the program every `cycles` of 80 MHz for nothing, with the DMA channel of the converter.
     pub fn interrupt_for_nothing(&mut self, cycles: u64) {
         let machine = self.cpu.machine();
+        let cycles = cycles * (TICK_HZ / crate::CORE_HZ);
         machine.spurious = Some((cycles, machine.now + cycles));
     }
 

@@ -14,6 +14,7 @@ mod processor;
 
 pub use board::{LAMPS, Snapshot, VirtualBoard};
 pub use error::BoardError;
+pub use machine::relay::Contact;
 pub use machine::{Inputs, Port, Tally};
 pub use peripherals::flash::{PREPARED_OPTIONS, SHIPPED_OPTIONS};
 pub use peripherals::gpio::Pin;

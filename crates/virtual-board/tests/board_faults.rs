@@ -121,7 +121,7 @@ fn a_converter_supply_5_percent_off_lights_sensor_from_power_up_on() {
         let mut board = board(&scenario(2.0));
         board.set_vdda(millivolt);
         // Two blocks behind the lamp test: long before the first look of once a second.
-        board.run(LAMP_TEST_S + 0.01).expect("a run");
+        board.run(LAMP_TEST_S + 0.03).expect("a run");
         let lamps = board.lamps();
         assert!(lamps[SENSOR] && lamps[FAULT], "{millivolt} mV: {lamps:?}");
     }
@@ -255,7 +255,7 @@ fn is_disturbed_by_interrupts(stacks_floats: bool) -> bool {
         board.forget_float_stacking();
     }
     // A prime, so that the interruptions wander through the program; 24 a block.
-    board.interrupt_for_nothing(22_679);
+    board.interrupt_for_nothing(10_657);
     board.run(LAMP_TEST_S).expect("a lamp test");
     (0..50).any(|_| {
         board.run(0.1).expect("a run");

@@ -90,7 +90,14 @@ fn expected(
         .filter_map(|raw| monitor.update_raw(&mut state, raw));
     reports
         .zip(seen)
-        .map(|(report, frame)| Frame::new(&report, &Shown::only(report.lamps), frame.sequence, frame.vdda_millivolt))
+        .map(|(report, frame)| {
+            Frame::new(
+                &report,
+                &Shown::only(report.lamps),
+                frame.sequence,
+                frame.vdda_millivolt,
+            )
+        })
         .collect()
 }
 

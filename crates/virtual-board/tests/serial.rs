@@ -2,18 +2,14 @@
 
 mod common;
 
-use board::modbus::{Field, UNLOCK_KEY, WORDS, address};
+use board::modbus::{Field, UNLOCK_KEY, address};
 use board::{Frame, LAMP_NAMES};
+use common::master::{CHARACTER_S, Master, UNIT, ask, bytes};
 use common::{LAMP_TEST_S, board as board_of, scenario};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use rmodbus::ModbusProto;
 use rmodbus::client::ModbusRequest;
-use virtual_board::{TICK_HZ, Port, Quality, Sent, VirtualBoard};
-
-const UNIT: u8 = 1;
-/// A character of 11 bits at 19 200 bit/s, s.
-const CHARACTER_S: f64 = 11.0 / 19_200.0;
+use virtual_board::{Port, Quality, Sent, TICK_HZ, VirtualBoard};
 
 fn running() -> VirtualBoard {
     let mut board = board_of(&scenario(60.0));
@@ -22,40 +18,11 @@ fn running() -> VirtualBoard {
 }
 
 fn master() -> ModbusRequest {
-    ModbusRequest::new(UNIT, ModbusProto::Rtu)
+    Master::new(UNIT).request()
 }
 
-fn good(bytes: &[u8]) -> Vec<(u8, Quality)> {
-    bytes.iter().map(|byte| (*byte, Quality::Good)).collect()
-}
-
-/// Sends a request and waits for the answer.
-fn ask(board: &mut VirtualBoard, request: &[u8]) -> Vec<Sent> {
-    board.take_sent(Port::Modbus);
-    board.deliver(Port::Modbus, &good(request));
-    board
-        .run(CHARACTER_S * (request.len() + 20) as f64 + 0.1)
-        .expect("a run");
-    board.take_sent(Port::Modbus)
-}
-
-fn bytes(sent: &[Sent]) -> Vec<u8> {
-    sent.iter().map(|sent| sent.byte).collect()
-}
-
-/// All registers as the master understands them.
 fn registers(board: &mut VirtualBoard) -> Vec<u16> {
-    let mut master = master();
-    let mut request = Vec::new();
-    master
-        .generate_get_inputs(0, WORDS as u16, &mut request)
-        .expect("a request");
-    let answer = ask(board, &request);
-    let mut words: Vec<u16> = Vec::new();
-    master
-        .parse_u16(&bytes(&answer), &mut words)
-        .expect("an answer");
-    words
+    Master::new(UNIT).registers(board)
 }
 
 fn float(words: &[u16], field: Field) -> f64 {
@@ -70,13 +37,7 @@ fn word(words: &[u16], field: Field) -> u16 {
 }
 
 fn write(board: &mut VirtualBoard, register: u16, value: u16) -> bool {
-    let mut master = master();
-    let mut request = Vec::new();
-    master
-        .generate_set_holding(register, value, &mut request)
-        .expect("a request");
-    let answer = ask(board, &request);
-    master.parse_ok(&bytes(&answer)).is_ok()
+    Master::new(UNIT).write(board, register, value)
 }
 
 #[test]

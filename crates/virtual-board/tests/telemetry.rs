@@ -50,7 +50,12 @@ fn every_frame_is_the_hosts_report_bit_for_bit() {
     );
     let mut with_residuals = 0;
     for (frame, report) in frames.iter().zip(&reports) {
-        let expected = Frame::new(report, &Shown::only(report.lamps), frame.sequence, frame.vdda_millivolt);
+        let expected = Frame::new(
+            report,
+            &Shown::only(report.lamps),
+            frame.sequence,
+            frame.vdda_millivolt,
+        );
         assert_eq!(
             bits(frame),
             bits(&expected),

@@ -294,7 +294,7 @@ pub const MAP: [Entry; FIELDS] = {
             Stack,
             Word,
             "byte",
-            "deepest stack since the start, of 16 384",
+            "deepest stack since the start, of 20 480",
         ),
         entry(
             Crashes,

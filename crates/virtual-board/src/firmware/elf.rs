@@ -49,6 +49,12 @@ impl Firmware {
             .map_or("?", |(name, _)| name)
     }
 
+    /// All symbols whose name contains `part`.
+    pub fn symbols(&self, part: &str) -> Vec<(String, u32)> {
+        let found = self.symbols.iter().filter(|(name, _)| name.contains(part));
+        found.cloned().collect()
+    }
+
     /// Address of the first symbol whose name contains `part`.
     pub fn symbol(&self, part: &str) -> Option<u32> {
         let found = self.symbols.iter().find(|(name, _)| name.contains(part));

@@ -113,7 +113,10 @@ impl Machine {
             Block::Dmamux => self.dma.read_multiplexer(offset),
             Block::Rcc => self.rcc.read(offset, now),
             Block::Flash => self.flash.read(offset),
-            Block::Gpio(port) => self.ports[port].read(offset),
+            Block::Gpio(port) => {
+                self.apply_contact();
+                self.ports[port].read(offset)
+            }
             Block::Adc1 => self.adc1.read(offset),
             Block::Adc5 => self.adc5.read(offset),
             Block::AdcCommon(k) => self.common[k].read(offset),
@@ -168,7 +171,10 @@ impl Machine {
                 self.follow_clocks()?;
                 return Ok(erased);
             }
-            Block::Gpio(port) => self.ports[port].write(offset, value)?,
+            Block::Gpio(port) => {
+                self.ports[port].write(offset, value)?;
+                self.follow_relay();
+            }
             Block::Adc1 => self.adc1.write(offset, value, now)?,
             Block::Adc5 => self.adc5.write(offset, value, now)?,
             Block::AdcCommon(k) => {

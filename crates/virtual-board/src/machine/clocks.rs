@@ -83,7 +83,8 @@ impl Machine {
     pub(super) fn power_flags(&self, offset: u32) -> u32 {
         let control = self.pwr.get(CR2);
         let level = DETECTOR_MILLIVOLT[(control >> 1 & 7) as usize];
-        let low = control & 1 == 1 && self.vdda_millivolt < level;
+        let supply = self.detector_millivolt.unwrap_or(self.vdda_millivolt);
+        let low = control & 1 == 1 && supply < level;
         if offset == SR2 && low {
             DETECTOR_OUTPUT
         } else {

@@ -2,6 +2,7 @@
 
 pub(crate) mod bus;
 mod clocks;
+pub(crate) mod relay;
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -93,6 +94,7 @@ pub(crate) struct Machine {
     pub iwdg: Iwdg,
     pub flash: Flash,
     pub backup: Backup,
+    pub relay: relay::Relay,
     /// Frequency of the low-speed oscillator, Hz: 32 000 within 8 %.
     pub lsi_hz: u64,
     /// Units of time per core cycle; `None` while the clock stands.
@@ -113,6 +115,8 @@ pub(crate) struct Machine {
     pub taken: Option<Vec<RawSample>>,
     /// Converter supply, mV.
     pub vdda_millivolt: u32,
+    /// What the voltage detector sees, mV, where it is not the converters' supply.
+    pub detector_millivolt: Option<u32>,
     /// Temperature of the chip, degrees Celsius.
     pub temperature_degc: f64,
     pub tally: Tally,
@@ -180,6 +184,7 @@ impl Machine {
             iwdg: Iwdg::new(false, 0, LSI_HZ),
             flash: Flash::new(),
             backup: Backup::default(),
+            relay: relay::Relay::default(),
             lsi_hz: LSI_HZ,
             cycle: None,
             half_cycles: 2,
@@ -193,6 +198,7 @@ impl Machine {
             first_instant: None,
             taken: Some(Vec::new()),
             vdda_millivolt: 3_300,
+            detector_millivolt: None,
             temperature_degc: 40.0,
             tally: Tally::default(),
             event_register: false,
@@ -236,6 +242,7 @@ impl Machine {
             block.reset();
         }
         self.common.iter_mut().for_each(Registers::reset);
+        self.parity_failed = false;
         self.event_register = false;
         self.stop = false;
         self.tally.resets += 1;

@@ -31,6 +31,11 @@ impl Backup {
         };
     }
 
+    /// All words.
+    pub fn words(&self) -> [u32; WORDS] {
+        self.words
+    }
+
     /// A read of the words' block.
     pub fn read(&self, offset: u32) -> Result<u32, Unmodelled> {
         self.place(offset)

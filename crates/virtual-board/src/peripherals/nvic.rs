@@ -94,7 +94,11 @@ impl Nvic {
 
     fn find_candidate(&self) -> Option<usize> {
         let running = self.active.last().map_or(u16::MAX, |(_, p)| u16::from(*p));
-        if self.active.last().is_some_and(|(irq, _)| *irq >= HARD_FAULT) {
+        if self
+            .active
+            .last()
+            .is_some_and(|(irq, _)| *irq >= HARD_FAULT)
+        {
             return None;
         }
         let ready = (0..IRQS).filter(|&irq| self.enabled[irq] && self.pending[irq]);

@@ -171,8 +171,7 @@ impl Rcc {
         self.registers.set(CR, (cr | HSI_ON) & !off);
         if used {
             let cfgr = self.registers.get(CFGR);
-            self.registers
-                .set(CFGR, cfgr & !0xF | BY_HSI << 2 | BY_HSI);
+            self.registers.set(CFGR, cfgr & !0xF | BY_HSI << 2 | BY_HSI);
         }
     }
 
@@ -225,6 +224,19 @@ impl Rcc {
         input / divided * times / (2 * ((word >> 25 & 3) + 1))
     }
 
+    /// What a write to the backup domain's control changes: its reset clears everything, and a clock of the calendar that
+    /// was chosen once stays until then.
+    fn backup_control(&self, value: u32) -> u32 {
+        const RESET: u32 = 1 << 16;
+        const CALENDAR_CLOCK: u32 = 3 << 8;
+        let chosen = self.registers.get(BDCR) & CALENDAR_CLOCK;
+        match (value & RESET, chosen) {
+            (0, 0) => value,
+            (0, chosen) => value & !CALENDAR_CLOCK | chosen,
+            _ => RESET,
+        }
+    }
+
     /// A bus read.
     pub fn read(&self, offset: u32, now: u64) -> Result<u32, Unmodelled> {
         let value = self.registers.read(offset)?;
@@ -273,7 +285,7 @@ impl Rcc {
                 self.registers.set(CIFR, left);
                 0
             }
-            BDCR => follow(value, 0, 1),
+            BDCR => follow(self.backup_control(value), 0, 1),
             CRRCR => follow(value, 0, 1),
             CSR => {
                 let kept = if value >> 23 & 1 == 1 {

@@ -167,12 +167,7 @@ impl Cpu {
         self.hard_fault(status, address.filter(|_| status == PRECISE), pc)
     }
 
-    fn hard_fault(
-        &mut self,
-        status: u32,
-        address: Option<u32>,
-        pc: u32,
-    ) -> Result<(), BoardError> {
+    fn hard_fault(&mut self, status: u32, address: Option<u32>, pc: u32) -> Result<(), BoardError> {
         self.machine().faults.push((status, pc));
         if self.machine().nvic.take_hard_fault(status, address) {
             return self.enter(3);
@@ -184,7 +179,9 @@ impl Cpu {
     /// Nothing is executed: time goes on to whatever happens without the program.
     fn stand_still(&mut self) -> Result<(), BoardError> {
         let machine = self.machine();
-        machine.now = machine.horizon().clamp(machine.now + 1, machine.now + TICK_HZ / 1_000);
+        machine.now = machine
+            .horizon()
+            .clamp(machine.now + 1, machine.now + TICK_HZ / 1_000);
         Ok(())
     }
 
@@ -382,7 +379,7 @@ impl Cpu {
     /// Goes on at `address` with registers from r0 on.
     pub fn divert(&mut self, address: u32, registers: &[u32]) -> Result<(), BoardError> {
         self.asleep = None;
-        for (register, value) in BASIC.into_iter().zip(registers) {
+        for (register, value) in CORE_REGISTERS.into_iter().zip(registers) {
             self.core.reg_write(register, u64::from(*value))?;
         }
         self.core.reg_write(R::PC, u64::from(address) | 1)?;
@@ -392,6 +389,12 @@ impl Cpu {
     /// Moves the stack pointer.
     pub fn move_stack(&mut self, address: u32) -> Result<(), BoardError> {
         Ok(self.core.reg_write(R::SP, u64::from(address))?)
+    }
+
+    /// Code that was translated before a hook was added does not call it.
+    fn forget_translation(&mut self) -> Result<(), BoardError> {
+        self.core.ctl_flush_tb()?;
+        Ok(self.core.ctl_flush_tlb()?)
     }
 
     /// Holds a bit of memory at a level.
@@ -408,7 +411,31 @@ impl Cpu {
         };
         self.core
             .add_mem_hook(HookType::MEM_READ, first, first + 3, hook)?;
-        Ok(())
+        self.forget_translation()
+    }
+
+    /// Returns from the function at `address` before it does anything.
+    pub fn leave_out(&mut self, address: u32) -> Result<(), BoardError> {
+        let at = u64::from(address & !1);
+        let hook = |core: &mut Unicorn<'_, Machine>, _: u64, _: u32| {
+            let back = core.reg_read(R::LR).unwrap_or(0);
+            let _ = core.reg_write(R::PC, back);
+        };
+        self.core.add_code_hook(at, at, hook)?;
+        self.forget_translation()
+    }
+
+    /// Writes a word of RAM or a register.
+    pub fn poke(&mut self, address: u32, value: u32) -> Result<(), BoardError> {
+        if (RAM..RAM + RAM_SIZE).contains(&address) {
+            return Ok(self
+                .core
+                .mem_write(u64::from(address), &value.to_le_bytes())?);
+        }
+        match self.machine().write(address, value) {
+            Ok(_) => Ok(()),
+            Err(unmodelled) => Err(self.stopped(unmodelled.to_string())),
+        }
     }
 
     /// Flips bits of a register before the instruction at `address`.
@@ -425,7 +452,7 @@ impl Cpu {
             let _ = core.reg_write(register, value);
         };
         self.core.add_code_hook(at, at, hook)?;
-        Ok(())
+        self.forget_translation()
     }
 
     /// Goes on from registers and memory that were put in place from outside.
@@ -601,10 +628,11 @@ fn hook_flash(core: &mut Core) -> Result<(), uc_error> {
             program(core, address, &value.to_le_bytes()[..size.min(8)]).is_ok()
         };
     core.add_mem_hook(HookType::MEM_WRITE_PROT, 1, 0, write)?;
-    let unreachable = |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, _: usize, _: i64| {
-        core.get_data_mut().unreachable = Some(address as u32);
-        false
-    };
+    let unreachable =
+        |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, _: usize, _: i64| {
+            core.get_data_mut().unreachable = Some(address as u32);
+            false
+        };
     core.add_mem_hook(HookType::MEM_UNMAPPED, 1, 0, unreachable)?;
     let read = |core: &mut Unicorn<'_, Machine>, _: MemType, address: u64, _: usize, _: i64| {
         let machine = core.get_data_mut();

@@ -1,0 +1,92 @@
+//! A Modbus master from elsewhere (`rmodbus`), on the emulated wire.
+
+use board::modbus::{Field, UNLOCK_KEY, WORDS, address};
+use rmodbus::ModbusProto;
+use rmodbus::client::ModbusRequest;
+use virtual_board::{Port, Quality, Sent, VirtualBoard};
+
+/// The slave's address.
+pub const UNIT: u8 = 1;
+/// A character of 11 bits at 19 200 bit/s, s.
+pub const CHARACTER_S: f64 = 11.0 / 19_200.0;
+
+/// One master for one slave.
+pub struct Master {
+    unit: u8,
+}
+
+impl Master {
+    /// Talks to this slave.
+    pub fn new(unit: u8) -> Self {
+        Master { unit }
+    }
+
+    /// A request to be filled.
+    pub fn request(&self) -> ModbusRequest {
+        ModbusRequest::new(self.unit, ModbusProto::Rtu)
+    }
+
+    /// All input registers.
+    pub fn registers(&self, board: &mut VirtualBoard) -> Vec<u16> {
+        let mut master = self.request();
+        let mut request = Vec::new();
+        master
+            .generate_get_inputs(0, WORDS as u16, &mut request)
+            .expect("a request");
+        let answer = ask(board, &request);
+        let mut words: Vec<u16> = Vec::new();
+        master
+            .parse_u16(&bytes(&answer), &mut words)
+            .expect("an answer");
+        words
+    }
+
+    /// A value of one register.
+    pub fn word(&self, board: &mut VirtualBoard, field: Field) -> u16 {
+        self.registers(board)[usize::from(address(field))]
+    }
+
+    /// A value of two registers.
+    pub fn long(&self, board: &mut VirtualBoard, field: Field) -> u32 {
+        let at = usize::from(address(field));
+        let words = self.registers(board);
+        u32::from(words[at]) << 16 | u32::from(words[at + 1])
+    }
+
+    /// Writes a holding register; whether it was taken.
+    pub fn write(&self, board: &mut VirtualBoard, register: u16, value: u16) -> bool {
+        let mut master = self.request();
+        let mut request = Vec::new();
+        master
+            .generate_set_holding(register, value, &mut request)
+            .expect("a request");
+        let answer = ask(board, &request);
+        master.parse_ok(&bytes(&answer)).is_ok()
+    }
+
+    /// Key and command.
+    pub fn command(&self, board: &mut VirtualBoard, command: u16) {
+        assert!(self.write(board, 0, UNLOCK_KEY), "the key");
+        assert!(self.write(board, 1, command), "the command");
+    }
+}
+
+/// Undisturbed bytes.
+pub fn good(bytes: &[u8]) -> Vec<(u8, Quality)> {
+    bytes.iter().map(|byte| (*byte, Quality::Good)).collect()
+}
+
+/// The bytes alone.
+pub fn bytes(sent: &[Sent]) -> Vec<u8> {
+    sent.iter().map(|sent| sent.byte).collect()
+}
+
+/// Sends a request and waits for the answer.
+pub fn ask(board: &mut VirtualBoard, request: &[u8]) -> Vec<Sent> {
+    board.take_sent(Port::Modbus);
+    board.deliver(Port::Modbus, &good(request));
+    board
+        .run(CHARACTER_S * (request.len() + 20) as f64 + 0.15)
+        .expect("a run");
+    board.take_sent(Port::Modbus)
+}
