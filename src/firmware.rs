@@ -71,7 +71,9 @@ async fn main(spawner: Spawner) -> ! {
         told: Doubts::default(),
         prepares_at: None,
         judged: false,
+        reported: false,
         blocks: 0,
+        second_at: 0,
     };
     panel.look_after_supply();
     let mut monitor = panel.commissioning.monitor();

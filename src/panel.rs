@@ -67,14 +67,19 @@ pub struct Panel {
     pub prepares_at: Option<u32>,
     /// A window was judged in this block.
     pub judged: bool,
-    /// Blocks since the start.
+    /// A window ended in this block: its work is enough.
+    pub reported: bool,
+    /// Blocks since the start, and at the last look of once a second.
     pub blocks: u32,
+    /// See `blocks`.
+    pub second_at: u32,
 }
 
 impl Panel {
     /// Takes one window's result: shown and told everywhere. A calibration may come out of it.
     pub fn take(&mut self, report: &Report, monitor: &Monitor) -> Option<Calibration> {
         self.judged |= report.is_judged();
+        self.reported = true;
         let shown = self.show(&report.lamps);
         self.record
             .tell(report, &shown, monitor, &self.commissioning);
@@ -85,8 +90,9 @@ impl Panel {
     /// After a block: the only place from which the watchdog is fed while sampling.
     pub fn after_block(&mut self, lamps: &Lamps) {
         self.blocks = self.blocks.wrapping_add(1);
-        self.selftest.step(self.blocks);
-        if self.blocks.is_multiple_of(SECOND_BLOCKS) {
+        self.selftest.step(self.blocks, self.reported);
+        if !self.reported && self.blocks.wrapping_sub(self.second_at) >= SECOND_BLOCKS {
+            self.second_at = self.blocks;
             self.every_second();
         }
         self.watchdog.look();
@@ -103,7 +109,7 @@ impl Panel {
         let shown = self.show(lamps);
         let closed = self.relay_wires.is_closed();
         let (level, contradicts) = self.relay.step(&shown, self.judged, closed);
-        self.judged = false;
+        (self.judged, self.reported) = (false, false);
         self.doubts.set(Doubt::Relay, contradicts);
         self.relay_wires.set(level);
         let (doubts, energised) = (self.all_doubts(), self.relay.is_energised());
@@ -126,7 +132,7 @@ impl Panel {
         self.look_after_supply();
         self.stack.look();
         self.doubts.set(Doubt::Stack, self.stack.is_nearly_full());
-        if self.blocks == QUIET_BLOCKS {
+        if self.blocks >= QUIET_BLOCKS {
             retained::forget_crashes();
         }
         self.record.note_second(

@@ -50,18 +50,24 @@ unsafe extern "C" {
     static _stack_end: u32;
 }
 
-/// Looks for the deepest word of the stack that was ever written, a few words at a time.
-#[derive(Clone, Copy, Debug, Default)]
+/// Words that one look takes: the whole stack is seen in ten.
+const LOOK_WORDS: u32 = 512;
+
+/// Looks for the deepest word of the stack that was ever written, some words at a time.
+#[derive(Clone, Copy, Debug)]
 pub struct StackMark {
-    /// Words from the stack's end on that still hold their paint.
+    /// Words from the stack's end on that still hold their paint, as far as was seen.
     painted: u32,
+    /// The next word to look at.
+    at: u32,
 }
 
 impl StackMark {
-    /// The mark at the start: everything seems free, and is looked at from the end on.
+    /// The mark at the start: everything seems free.
     pub fn new() -> Self {
         StackMark {
             painted: STACK_BYTES / 4,
+            at: 0,
         }
     }
 
@@ -75,12 +81,13 @@ impl StackMark {
         self.deepest_bytes() > ALARM_BYTES
     }
 
-    /// Looks anew, which takes some cycles a free word; once a second.
+    /// Goes on looking, from the stack's end towards what is known to be used.
     pub fn look(&mut self) {
         let end = &raw const _stack_end;
+        let to = (self.at + LOOK_WORDS).min(self.painted);
         // Safety: words of the stack's memory, below whatever is in use.
-        let is_free = |k: &u32| unsafe { end.add(*k as usize).read_volatile() } == PAINT;
-        let free = (0..self.painted).take_while(is_free).count();
-        self.painted = free as u32;
+        let is_used = |k: &u32| unsafe { end.add(*k as usize).read_volatile() } != PAINT;
+        self.painted = (self.at..to).find(is_used).unwrap_or(self.painted);
+        self.at = if to < self.painted { to } else { 0 };
     }
 }

@@ -1,4 +1,4 @@
-//! Listening to a running board: frames from a serial port or a debug probe.
+//! A running board: its frames from a serial port or a debug probe, and questions to it over Modbus.
 //!
 //! ```
 //! let mut decoder = live::Decoder::default();
@@ -9,6 +9,7 @@
 mod capture;
 mod decoder;
 mod log;
+mod modbus;
 #[cfg(feature = "probe")]
 mod probe;
 mod source;
@@ -16,4 +17,5 @@ mod source;
 pub use capture::{CaptureError, Collector, Fetched, recording};
 pub use decoder::Decoder;
 pub use log::{LogSplitter, SplitLog};
+pub use modbus::{LineParity, LineSettings, ModbusError, ModbusLine};
 pub use source::{Source, SourceError, open_probe, open_serial};

@@ -56,12 +56,18 @@ impl Source for Serial {
 /// No such port, no permission, or a rate that it cannot do.
 pub fn open_serial(port: &str, baud: u32) -> Result<Box<dyn Source>, SourceError> {
     let opened = serialport::new(port, baud).timeout(PATIENCE).open();
-    let port = |error| SourceError::Port {
+    Ok(Box::new(Serial(
+        opened.map_err(|error| port_error(port, error))?,
+    )))
+}
+
+/// Why a port could not be opened, and what helps.
+pub(crate) fn port_error(port: &str, error: serialport::Error) -> SourceError {
+    SourceError::Port {
         port: port.to_owned(),
         remedy: remedy(&error),
         error,
-    };
-    Ok(Box::new(Serial(opened.map_err(port)?)))
+    }
 }
 
 fn remedy(error: &serialport::Error) -> String {

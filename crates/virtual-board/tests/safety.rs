@@ -82,6 +82,8 @@ fn a_crystal_that_stops_while_running_is_left_and_recorded() {
     board.set_crystal(false);
     board.run(0.001).expect("a run");
     assert_eq!(board.tally().resets, 1, "at once");
+    // One that comes back is not trusted before the next start.
+    board.set_crystal(true);
     board.run(LAMP_TEST_S + 1.0).expect("a run");
     assert_eq!(cause(&mut board), Some(FaultCause::ClockFailure));
     assert!(doubts(&mut board).has(Doubt::Clock));

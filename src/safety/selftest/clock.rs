@@ -11,9 +11,9 @@ const ROUND: u32 = 60 * SUBSECONDS;
 /// Per cent by which the two clocks may differ: the low-speed oscillator is within 8 % at all temperatures. It finds a wrong
 /// crystal or one on an overtone, not 0.1 %.
 const CLOCK_TOLERANCE: u32 = 12;
-/// Blocks of one look, and what they take.
-const LOOK_MICROS: u32 = 312 * 3_200;
-/// Per cent of it by which they may come too soon or too late.
+/// What a block takes.
+const BLOCK_MICROS: u32 = 3_200;
+/// Per cent of it by which blocks may come too soon or too late, on average from look to look.
 const BLOCK_TOLERANCE: u32 = 2;
 
 /// What a look found.
@@ -27,20 +27,24 @@ pub struct Found {
 /// The last look.
 #[derive(Default)]
 pub struct Calendar {
-    last: Option<(Instant, u32)>,
+    last: Option<(Instant, u32, u32)>,
 }
 
 impl Calendar {
-    /// Looks after every 312 blocks; `None` the first time.
-    pub fn look(&mut self) -> Option<Found> {
-        let now = (Instant::now(), subseconds());
-        let (then, before) = self.last.replace(now)?;
+    /// Looks after block number `block`, about once a second; `None` the first time.
+    pub fn look(&mut self, block: u32) -> Option<Found> {
+        let now = (Instant::now(), subseconds(), block);
+        let (then, before, first) = self.last.replace(now)?;
         let passed = (now.0 - then).as_micros().min(10_000_000) as u32;
         let counted = (now.1 + ROUND - before) % ROUND;
         let expected = passed / (1_000_000 / SUBSECONDS_HZ);
         Some(Found {
             clock_is_sound: is_near(counted, expected, CLOCK_TOLERANCE),
-            blocks_are_sound: is_near(passed, LOOK_MICROS, BLOCK_TOLERANCE),
+            blocks_are_sound: is_near(
+                passed,
+                block.wrapping_sub(first) * BLOCK_MICROS,
+                BLOCK_TOLERANCE,
+            ),
         })
     }
 }

@@ -7,6 +7,9 @@ use monitor::{FaultId, Reason};
 use crate::doubt::Doubt;
 use crate::fault_record::FaultCause;
 
+/// Grows when an address changes its meaning.
+pub const MAP_VERSION: u16 = 2;
+
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {

@@ -7,6 +7,6 @@ mod map;
 mod slave;
 mod status;
 
-pub use map::{Entry, Field, Image, Kind, MAP, Meaning, WORDS, address};
+pub use map::{Entry, Field, Image, Kind, MAP, MAP_VERSION, Meaning, WORDS, address};
 pub use slave::{Collector, Command, MAX_REQUEST_BYTES, MAX_RESPONSE_BYTES, Slave, UNLOCK_KEY};
 pub use status::{BoardStatus, Status};

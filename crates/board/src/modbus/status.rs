@@ -5,7 +5,7 @@ use core::f32::consts::{SQRT_2, TAU};
 use micromath::F32Ext;
 use monitor::{CHANNELS, Lamp, Reason, Report, Suspicion, Window, likely, magnitude};
 
-use super::map::{Field, Image};
+use super::map::{Field, Image, MAP_VERSION};
 use crate::calibration::CalibrationSource;
 use crate::display::Shown;
 use crate::doubt::Doubts;
@@ -130,7 +130,7 @@ impl Status {
 }
 
 fn put_board(image: &mut Image, board: &BoardStatus) {
-    image.set_word(Field::MapVersion, 2);
+    image.set_word(Field::MapVersion, MAP_VERSION);
     image.set_long(Field::MotorIdentification, board.motor);
     image.set_word(Field::ResetCause, board.reset_cause);
     image.set_word(Field::ConverterSupply, board.vdda_millivolt);

@@ -38,6 +38,7 @@ First steps:
   drivemon calibrate healthy.csv.gz --motor motor.toml -o calibrated.toml
   drivemon panel                                       the lamps in a browser, on a simulated motor
   drivemon flash --motor motor.toml                    build the firmware for this motor and write it to the board
+  drivemon board read --serial PORT                    ask a board in the field
 
 Exit codes: 0 fine or healthy, 1 a finding (a fault was lit), 2 bad input or usage, 3 the data do not support an answer.
 Colour is left out when NO_COLOR is set or the output is not a terminal.
@@ -60,6 +61,7 @@ enum Command {
     #[cfg(feature = "panel")]
     Panel(commands::panel::Panel),
     Flash(commands::flash::Flash),
+    Board(commands::board::Board),
     Completions(commands::completions::Completions),
     Man(commands::completions::Man),
 }
@@ -90,6 +92,7 @@ impl Cli {
             #[cfg(feature = "panel")]
             Command::Panel(panel) => panel.run(),
             Command::Flash(flash) => flash.run(),
+            Command::Board(board) => board.run(),
             Command::Completions(completions) => completions.run(),
             Command::Man(man) => man.run(),
         };

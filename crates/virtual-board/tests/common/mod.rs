@@ -3,6 +3,7 @@
 
 pub mod flash_image;
 pub mod master;
+pub mod wire;
 
 use std::path::{Path, PathBuf};
 
@@ -34,7 +35,8 @@ pub fn firmware() -> Vec<u8> {
     read(&elf_path())
 }
 
-fn elf_path() -> PathBuf {
+/// Where it is.
+pub fn elf_path() -> PathBuf {
     let default = root().join("target/thumbv7em-none-eabihf/release/drive-monitor");
     std::env::var_os("DRIVE_MONITOR_ELF").map_or(default, PathBuf::from)
 }

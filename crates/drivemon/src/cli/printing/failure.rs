@@ -58,6 +58,9 @@ pub enum Failure {
     /// Results of a campaign.
     #[error(transparent)]
     Store(#[from] campaign::StoreError),
+    /// A board on its Modbus line.
+    #[error(transparent)]
+    Board(#[from] live::ModbusError),
     /// The data do not support an answer.
     #[error("{0}")]
     Unsupported(String),

@@ -1,0 +1,51 @@
+//! `drivemon board`: a board in the field, over its Modbus line.
+
+mod line;
+mod order;
+mod places;
+mod read;
+mod record;
+mod registers;
+
+use clap::{Args, Subcommand};
+
+use crate::cli::printing::failure::{Failure, Finding};
+
+/// Ask a board in the field, and tell it what to do, over its Modbus line (RS-485).
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Board {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  drivemon board read --serial /dev/ttyUSB0              every value of the register map, with its unit
+  drivemon board record --serial /dev/ttyUSB0            what ended the program, and what the board doubts about itself
+  drivemon board record --serial /dev/ttyUSB0 --elf drive-monitor     the same with function, file and line
+  drivemon board prepare --serial COM4                   a new board: write its option bytes, once
+Needs: an RS-485 adapter on the board's A and B (docs/wiring.md). Factory settings: 19200 bit/s, even parity, unit 1.
+Exit codes: 0 done and nothing found, 1 a doubt or a crash, 2 bad usage, no answer, or a refusal.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Read(read::ReadBoard),
+    Record(record::Record),
+    Prepare(order::Prepare),
+    Acknowledge(order::Acknowledge),
+    Learn(order::Learn),
+}
+
+impl Board {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        match &self.command {
+            Command::Read(read) => read.run(),
+            Command::Record(record) => record.run(),
+            Command::Prepare(prepare) => prepare.run(),
+            Command::Acknowledge(acknowledge) => acknowledge.run(),
+            Command::Learn(learn) => learn.run(),
+        }
+    }
+}

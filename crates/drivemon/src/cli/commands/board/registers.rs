@@ -1,0 +1,133 @@
+//! The register map of a board, read and put into words.
+
+use board::modbus::{Entry, Field, Kind, MAP, MAP_VERSION, WORDS, address};
+use board::{Doubts, FaultCause, FaultRecord, LAMP_NAMES, LAMPS};
+use live::ModbusLine;
+
+use crate::cli::printing::failure::Failure;
+
+/// All input registers.
+pub struct Registers(Vec<u16>);
+
+impl Registers {
+    /// Reads them.
+    ///
+    /// # Errors
+    /// No answer, or a map of another version.
+    pub fn read(line: &mut ModbusLine) -> Result<Self, Failure> {
+        let [version] = line.read_inputs(0, 1)?[..] else {
+            return Err(Failure::Usage("the board sent no register".into()));
+        };
+        if version != MAP_VERSION {
+            return Err(Failure::Usage(format!(
+                "the board's register map has version {version}, this drivemon knows {MAP_VERSION}: use the drivemon of the firmware's version"
+            )));
+        }
+        Ok(Registers(line.read_inputs(0, WORDS as u16)?))
+    }
+
+    /// A value of one register.
+    pub fn word(&self, field: Field) -> u16 {
+        let at = usize::from(address(field));
+        self.0.get(at).copied().unwrap_or(0)
+    }
+
+    /// A value of two registers.
+    pub fn long(&self, field: Field) -> u32 {
+        let at = usize::from(address(field));
+        let low = self.0.get(at + 1).copied().unwrap_or(0);
+        u32::from(self.word(field)) << 16 | u32::from(low)
+    }
+
+    /// A number; `None` where there is no value.
+    pub fn number(&self, field: Field) -> Option<f32> {
+        Some(f32::from_bits(self.long(field))).filter(|x| !x.is_nan())
+    }
+
+    /// What the board doubts about itself.
+    pub fn doubts(&self) -> Doubts {
+        Doubts::from_bits(self.long(Field::Doubts))
+    }
+
+    /// The crash before the last start.
+    pub fn crash(&self) -> Option<FaultRecord> {
+        let cause = FaultCause::by_number(u32::from(self.word(Field::CrashCause)))?;
+        Some(FaultRecord {
+            cause,
+            pc: self.long(Field::CrashProgramCounter),
+            lr: self.long(Field::CrashLink),
+            xpsr: self.long(Field::CrashStatus),
+            cfsr: self.long(Field::CrashFaults),
+            hfsr: self.long(Field::CrashHardFault),
+            address: self.long(Field::CrashAddress),
+            sp: self.long(Field::CrashStack),
+            line: u32::from(self.word(Field::CrashLine)),
+            length: u32::from(self.word(Field::CrashLength)),
+            uptime_ms: self.long(Field::CrashUptime),
+        })
+    }
+
+    /// Name, value and unit of each entry.
+    pub fn rows(&self) -> Vec<(String, String, &'static str)> {
+        let row = |entry: &Entry| {
+            let name = format!("{:?}", entry.field);
+            (name, self.told(entry), entry.unit)
+        };
+        MAP.iter().map(row).collect()
+    }
+
+    fn told(&self, entry: &Entry) -> String {
+        match (entry.field, entry.kind) {
+            (Field::Lamps, _) => lamps(self.long(Field::Lamps)),
+            (Field::Doubts, _) => doubts(self.doubts()),
+            (Field::CrashCause, _) => self
+                .crash()
+                .map_or("none", |crash| crash.cause.label())
+                .into(),
+            (field, _) if is_code(field) => format!("{:#010x}", self.long(field)),
+            (field, Kind::Word) => self.word(field).to_string(),
+            (field, Kind::Long) => self.long(field).to_string(),
+            (field, Kind::Float) => self
+                .number(field)
+                .map_or("-".into(), |number| format!("{number:.6}")),
+        }
+    }
+}
+
+/// Addresses, checksums and status words read better in hexadecimal digits.
+fn is_code(field: Field) -> bool {
+    use Field::*;
+    matches!(
+        field,
+        MotorIdentification
+            | CrashProgramCounter
+            | CrashLink
+            | CrashStatus
+            | CrashFaults
+            | CrashHardFault
+            | CrashAddress
+            | CrashStack
+            | ProgramChecksum
+    )
+}
+
+fn lamps(word: u32) -> String {
+    let lit = (0..LAMPS).filter_map(|k| match word >> (2 * k) & 3 {
+        1 => Some(LAMP_NAMES[k].to_owned()),
+        2 => Some(format!("{} blinks", LAMP_NAMES[k])),
+        _ => None,
+    });
+    joined(lit.collect())
+}
+
+/// Doubts in words.
+pub fn doubts(doubts: Doubts) -> String {
+    joined(doubts.iter().map(|doubt| doubt.label().into()).collect())
+}
+
+fn joined(words: Vec<String>) -> String {
+    match words.is_empty() {
+        true => "none".into(),
+        false => words.join(", "),
+    }
+}
