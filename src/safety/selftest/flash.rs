@@ -6,8 +6,8 @@ use board::Checksum;
 
 use super::seal::{LEFT_OUT, PROGRAM};
 
-/// Bytes of a slice: 4.8 kilobytes a second.
-const SLICE: u32 = 256;
+/// Bytes of a slice: ten kilobytes a second.
+const SLICE: u32 = 512;
 
 /// How far the running test has come.
 pub struct FlashTest {

@@ -6,7 +6,9 @@
 mod map;
 mod slave;
 mod status;
+mod table;
 
-pub use map::{Entry, Field, Image, Kind, MAP, MAP_VERSION, Meaning, WORDS, address};
+pub use map::{Entry, Image, Kind, MAP_VERSION, Meaning, WORDS, address};
 pub use slave::{Collector, Command, MAX_REQUEST_BYTES, MAX_RESPONSE_BYTES, Slave, UNLOCK_KEY};
 pub use status::{BoardStatus, Status};
+pub use table::{Field, MAP};

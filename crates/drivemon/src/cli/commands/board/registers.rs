@@ -89,7 +89,7 @@ impl Registers {
             (field, Kind::Long) => self.long(field).to_string(),
             (field, Kind::Float) => self
                 .number(field)
-                .map_or("-".into(), |number| format!("{number:.6}")),
+                .map_or("-".into(), |number| format!("{number:.4}")),
         }
     }
 }

@@ -1,0 +1,251 @@
+//! The register map itself: what stands where, in order of address.
+
+use super::map::{Entry, Kind, Meaning};
+
+const fn entry(field: Field, kind: Kind, unit: &'static str, meaning: &'static str) -> Entry {
+    Entry {
+        field,
+        kind,
+        unit,
+        meaning: Meaning::Words(meaning),
+    }
+}
+
+const fn numbered(field: Field, meaning: Meaning) -> Entry {
+    Entry {
+        field,
+        kind: Kind::Word,
+        unit: "",
+        meaning,
+    }
+}
+
+/// Names of the values, in the order of [`MAP`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // MAP says it once, for the documentation too.
+pub enum Field {
+    MapVersion,
+    MotorIdentification,
+    ResetCause,
+    Lamps,
+    NotJudged,
+    Verdict,
+    LikelyFault,
+    FaultProbability,
+    Windows,
+    WindowsJudged,
+    Residual1,
+    Residual2,
+    Residual3,
+    Residual4,
+    Threshold1,
+    Threshold2,
+    Threshold3,
+    Threshold4,
+    Voltage,
+    VoltageA,
+    VoltageB,
+    VoltageC,
+    Current,
+    CurrentA,
+    CurrentB,
+    CurrentC,
+    SupplyFrequency,
+    Speed,
+    Temperature,
+    ConverterSupply,
+    Calibration,
+    Learning,
+    LearnedWindows,
+    Capture,
+    CurrentLag,
+    Doubts,
+    Relay,
+    Uptime,
+    Stack,
+    Crashes,
+    CrashCause,
+    CrashProgramCounter,
+    CrashLink,
+    CrashStatus,
+    CrashFaults,
+    CrashHardFault,
+    CrashAddress,
+    CrashStack,
+    CrashLine,
+    CrashLength,
+    CrashUptime,
+    ProgramLength,
+    ProgramChecksum,
+    StoredDataErrors,
+}
+
+/// Number of values.
+pub(super) const FIELDS: usize = Field::StoredDataErrors as usize + 1;
+
+/// Every input register, in order of address.
+pub const MAP: [Entry; FIELDS] = {
+    use Field::*;
+    use Kind::*;
+    [
+        entry(
+            MapVersion,
+            Word,
+            "",
+            "2; grows when an address changes its meaning",
+        ),
+        entry(
+            MotorIdentification,
+            Long,
+            "",
+            "checksum of the motor constants in flash",
+        ),
+        entry(
+            ResetCause,
+            Word,
+            "",
+            "1 power or brown-out, 2 watchdog, 3 program, 4 reset pin, 5 other",
+        ),
+        entry(
+            Lamps,
+            Long,
+            "",
+            "two bits per lamp from the lowest, in the order RUN r1 r2 r3 r4 SENSOR LINE LOAD FAULT: 0 off, 1 on, 2 blinking",
+        ),
+        numbered(NotJudged, Meaning::Reasons),
+        entry(
+            Verdict,
+            Word,
+            "",
+            "0 not judged yet or SENSOR lit, 1 healthy, 2 FAULT lit",
+        ),
+        numbered(LikelyFault, Meaning::Faults),
+        entry(FaultProbability, Word, "per mille", "its probability"),
+        entry(Windows, Long, "", "windows since the start"),
+        entry(WindowsJudged, Long, "", "of these judged"),
+        entry(Residual1, Float, "", "r1, share of its scale"),
+        entry(Residual2, Float, "", "r2"),
+        entry(Residual3, Float, "", "r3"),
+        entry(Residual4, Float, "", "r4"),
+        entry(Threshold1, Float, "", "threshold of r1, share of its scale"),
+        entry(Threshold2, Float, "", "of r2"),
+        entry(Threshold3, Float, "", "of r3"),
+        entry(Threshold4, Float, "", "of r4"),
+        entry(Voltage, Float, "V", "phase voltage, positive sequence, RMS"),
+        entry(VoltageA, Float, "V", "phase a, fundamental, RMS"),
+        entry(VoltageB, Float, "V", "phase b"),
+        entry(VoltageC, Float, "V", "phase c"),
+        entry(Current, Float, "A", "phase current, positive sequence, RMS"),
+        entry(CurrentA, Float, "A", "phase a, fundamental, RMS"),
+        entry(CurrentB, Float, "A", "phase b"),
+        entry(CurrentC, Float, "A", "phase c"),
+        entry(SupplyFrequency, Float, "Hz", "of the supply"),
+        entry(Speed, Float, "1/min", "of the shaft"),
+        entry(
+            Temperature,
+            Float,
+            "degC",
+            "of the chip, some 5 K uncertain; not of the motor",
+        ),
+        entry(
+            ConverterSupply,
+            Word,
+            "mV",
+            "supply of the converters, 3300 is nominal",
+        ),
+        entry(
+            Calibration,
+            Word,
+            "",
+            "0 motor file's values, 1 learnt ones, 2 learnt ones lost, 3 learnt ones are another motor's",
+        ),
+        entry(
+            Learning,
+            Word,
+            "",
+            "0 idle, 1 learning, 2 stored; refused: 17 sensor, 18 line, 19 unsteady, 20 too few windows, 21 offset, 22 residuals too large, 23 flash, 24 instrument",
+        ),
+        entry(
+            LearnedWindows,
+            Word,
+            "",
+            "windows judged while learning, 600 are needed",
+        ),
+        entry(
+            Capture,
+            Word,
+            "",
+            "0 waiting for an alarm, 1 taking the samples around it, 2 complete",
+        ),
+        entry(
+            CurrentLag,
+            Float,
+            "degree",
+            "current behind voltage, positive sequence, -180 to 180, to 0.2; beyond 90 the machine gives power, or its currents are measured the wrong way round",
+        ),
+        Entry {
+            field: Doubts,
+            kind: Long,
+            unit: "",
+            meaning: Meaning::Doubts,
+        },
+        entry(Relay, Word, "", "1 energised, 0 open"),
+        entry(Uptime, Long, "s", "since the start"),
+        entry(
+            Stack,
+            Word,
+            "byte",
+            "deepest stack since the start, of 20 480",
+        ),
+        entry(
+            Crashes,
+            Word,
+            "",
+            "crashes without a quiet minute between them; from 3 on nothing is computed until somebody acknowledges",
+        ),
+        Entry {
+            field: CrashCause,
+            kind: Word,
+            unit: "",
+            meaning: Meaning::Crashes,
+        },
+        entry(
+            CrashProgramCounter,
+            Long,
+            "",
+            "of the last crash: program counter",
+        ),
+        entry(CrashLink, Long, "", "link register"),
+        entry(CrashStatus, Long, "", "program status register"),
+        entry(CrashFaults, Long, "", "fault status (CFSR)"),
+        entry(CrashHardFault, Long, "", "hard fault status (HFSR)"),
+        entry(
+            CrashAddress,
+            Long,
+            "",
+            "address that could not be reached or that failed; of a panic where the name of its file lies; of the watchdog the marks that were missing: 1 block, 2 Modbus, 4 self-test",
+        ),
+        entry(CrashStack, Long, "", "stack pointer"),
+        entry(CrashLine, Word, "", "line of a panic"),
+        entry(CrashLength, Word, "byte", "length of its file's name"),
+        entry(CrashUptime, Long, "ms", "from the start to the crash"),
+        entry(
+            ProgramLength,
+            Long,
+            "byte",
+            "of the program in flash, 0 where it was not sealed",
+        ),
+        entry(
+            ProgramChecksum,
+            Long,
+            "",
+            "CRC-32 of the program, as it was sealed",
+        ),
+        entry(
+            StoredDataErrors,
+            Word,
+            "",
+            "double words of stored data that failed their error correction since the start; checksums decided",
+        ),
+    ]
+};
