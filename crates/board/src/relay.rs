@@ -105,8 +105,10 @@ mod tests {
             [true, false, true, false]
         );
         assert_eq!(levels(&mut relay, &faulty(), 3), [false; 3]);
-        let mut doubted = Shown::default();
-        doubted.instrument_faulty = true;
+        let doubted = Shown {
+            instrument_faulty: true,
+            ..Shown::default()
+        };
         assert_eq!(levels(&mut relay, &doubted, 3), [false; 3]);
     }
 

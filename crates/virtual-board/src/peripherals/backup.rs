@@ -72,7 +72,7 @@ impl Backup {
         let seconds = (counted / SUBSECONDS % 60) as u32;
         match offset {
             // Tens and units, in decimal digits.
-            0x0 => Ok(seconds / 10 << 4 | seconds % 10),
+            0x0 => Ok(((seconds / 10) << 4) | (seconds % 10)),
             0x4 => Ok(0),
             0x8 => Ok((SUBSECONDS - 1 - counted % SUBSECONDS) as u32),
             _ => Err(unmodelled("RTC", "read".into(), offset)),

@@ -131,7 +131,7 @@ impl Flash {
     pub fn detect(&mut self, address: u32) {
         let offset = address - FIRST;
         let bank = if offset < BANK { 0 } else { ECC_BANK };
-        self.ecc = ECC_DETECTED | bank | offset % BANK & ECC_ADDRESS & !7;
+        self.ecc = ECC_DETECTED | bank | ((offset % BANK) & ECC_ADDRESS & !7);
     }
 
     /// Lets power fail within the step after `steps` whole ones.
