@@ -9,7 +9,7 @@ use common::{LAMP_TEST_S, board as board_of, scenario};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rmodbus::client::ModbusRequest;
-use virtual_board::{Port, Quality, Sent, TICK_HZ, VirtualBoard};
+use virtual_board::{Port, Quality, TICK_HZ, VirtualBoard};
 
 fn running() -> VirtualBoard {
     let mut board = board_of(&scenario(60.0));
