@@ -13,3 +13,4 @@ mod motion;
 pub(crate) mod report;
 mod screen;
 pub(crate) mod search;
+mod sensitivity;

@@ -155,6 +155,24 @@ pub(crate) fn likely(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
     }
 }
 
+/// The likeliest effects on top of a model that is taken for granted, refitted.
+pub(crate) fn seconds(
+    study: &Study,
+    base: &Trial,
+    excluded: &[&str],
+    count: usize,
+) -> Vec<Candidate> {
+    let screened = screen(&study.fitted.case, &study.prior, &base.fit, excluded);
+    let start = |group: Vec<Screened>| Start {
+        hypothesis: base.fit.hypothesis.clone(),
+        group,
+        observer: base.fit.observer,
+    };
+    let groups = ranked(&screened, STARTS).into_iter().take(count);
+    let starts: Vec<Start> = groups.map(start).collect();
+    confirm(study, base, &starts)
+}
+
 /// Starts again from the priors with the speed drawn to the measured one.
 fn refitted_with_observer(
     study: &Study,

@@ -26,6 +26,8 @@ pub(crate) mod signals;
 mod simulate;
 #[cfg(feature = "std")]
 mod stack;
+#[cfg(feature = "std")]
+pub mod tangent;
 pub(crate) mod steady;
 
 #[cfg(feature = "std")]

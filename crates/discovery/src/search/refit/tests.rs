@@ -345,8 +345,8 @@ fn a_hopeless_refit_of_a_poor_model_is_given_up() {
             found.hypothesis.z,
         )
     };
-    let squares = after(4).0;
-    let (given_up, finished) = (after(5).1, after(14).1);
+    let squares = after(2).0;
+    let (given_up, finished) = (after(3).1, after(14).1);
     assert_ne!(given_up, finished);
     let refitted = |error: f64, without: f64| {
         let trial = specimen::trial_with(&study, &[]);
@@ -356,7 +356,8 @@ fn a_hopeless_refit_of_a_poor_model_is_given_up() {
         found.trial.fit.hypothesis.z
     };
     assert_eq!(refitted(3.0, 1.01), given_up);
-    assert_eq!(refitted(3.0, 1.05), finished);
+    // On its way the squared error rises once by an eighth: the pull of the priors falls more.
+    assert_eq!(refitted(3.0, 1.2), finished);
     assert_eq!(
         refitted(1.05, 1.01),
         finished,

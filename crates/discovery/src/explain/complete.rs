@@ -1,0 +1,61 @@
+//! What the library leaves: a law instead of its effects, a law on top of them, a pair of which neither is proven alone,
+//! or a lead.
+
+use super::pairs::pair;
+use super::{Explanation, mostly_explained};
+use crate::data::study::{Study, Trial};
+use crate::laws::search::{LawSearch, LawStep};
+use crate::search::accept::{adequate, beats};
+
+/// Completes an explanation of the library's with what it does not hold.
+///
+/// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
+/// them it must make the model adequate.
+pub(super) fn complete(
+    study: &Study,
+    found: &mut Explanation,
+    excluded: &[&str],
+    progress: &mut dyn FnMut(&str, f64),
+) {
+    let mut tell = |what: &str, share: f64| progress(what, 0.6 + 0.1 * share);
+    let alone = LawSearch::new(study, &found.baseline, &mut tell).refitted(&mut tell);
+    let best = alone.best(study, &found.baseline);
+    let last = found.steps.last().map(|step| step.trial.clone());
+    if let Some(law) = best.as_ref().filter(|law| replaces(study, found, law, last.as_ref())) {
+        found.steps.clear();
+        found.laws = vec![law.clone()];
+        found.nameable = true;
+        return;
+    }
+    if let Some(last) = &last {
+        let mut tell = |what: &str, share: f64| progress(what, 0.7 + 0.05 * share);
+        let search = LawSearch::new(study, last, &mut tell);
+        let more = search.refitted(&mut tell).best(study, last);
+        if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
+            found.laws = vec![law];
+            found.nameable = true;
+            return;
+        }
+    }
+    progress("looking for pairs that hide each other", 0.75);
+    if let Some(pair) = pair(study, &found.baseline, &found.first, &alone, excluded)
+        && last.as_ref().is_none_or(|last| beats(pair.last(), last))
+    {
+        (found.steps, found.laws) = (pair.steps, pair.laws);
+        found.nameable = true;
+        return;
+    }
+    if !found.nameable {
+        found.laws.extend(best.map(|law| LawStep {
+            proven: false,
+            ..law
+        }));
+    }
+}
+
+/// Whether a law on the bare motor takes the place of what the library found.
+fn replaces(study: &Study, found: &Explanation, law: &LawStep, last: Option<&Trial>) -> bool {
+    let enough =
+        adequate(study, &law.trial) || mostly_explained(study, &found.baseline, &law.trial);
+    law.proven && enough && last.is_none_or(|last| beats(&law.trial, last))
+}
