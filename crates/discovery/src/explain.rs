@@ -2,6 +2,7 @@
 
 mod complete;
 mod contests;
+mod disguise;
 mod pairs;
 
 use crate::data::study::{Study, Trial};
@@ -10,9 +11,10 @@ use crate::laws::formula::prove::formulas;
 use crate::laws::search::{LawSearch, LawStep};
 use crate::model::prior::{N_NOMINAL, NOMINALS};
 use crate::search::accept::{adequate, beats, explained, proven};
-use crate::search::refit::{Candidate, Round, combined, round};
+use crate::search::refit::{Candidate, Round, begin, combined};
 use complete::complete;
 use contests::contests;
+use disguise::disguised;
 pub(crate) use contests::stands_for;
 
 /// Most effects that are added.
@@ -108,9 +110,21 @@ fn library(
     for number in 0..MOST_EFFECTS {
         let share = 0.15 + 0.15 * number as f64;
         let mut tell = |what: &str| progress(what, share);
-        let mut found = round(study, &base, &at_prior(&base), excluded, &mut tell);
+        let begun = begin(study, &base, excluded, &mut tell);
+        let rival = begun.proven().map_or(&base, |c| &c.trial);
+        if let Some(law) = decisive_law(study, &base, rival, &mut tell) {
+            let begun = begun.enough();
+            match behind(study, &base, &law, &begun, excluded) {
+                Some(effect) => steps.push(effect),
+                None => laws.push(law),
+            }
+            first.get_or_insert(begun);
+            break;
+        }
+        tell("refitting the likeliest");
+        let mut found = begun.finish(&at_prior(&base));
         if let Some(deeper) = lower_minimum(study, &base, &found) {
-            found = round(study, &deeper, &at_prior(&deeper), excluded, &mut tell);
+            found = begin(study, &deeper, excluded, &mut tell).finish(&at_prior(&deeper));
             base = deeper;
         }
         if steps.is_empty() {
@@ -126,11 +140,6 @@ fn library(
             tied: tied(study, &base, best, &found.candidates),
         });
         first.get_or_insert(found);
-        let rival = step.as_ref().map_or(&base, |step| &step.trial);
-        if let Some(law) = decisive_law(study, &base, rival, &mut |what, _| progress(what, share)) {
-            laws.push(law);
-            break;
-        }
         let Some(step) = step else { break };
         base = step.trial.clone();
         steps.push(step);
@@ -155,18 +164,39 @@ fn library(
     }
 }
 
+/// The effect of the library that a law is in disguise, as a step on `base`.
+fn behind(
+    study: &Study,
+    base: &Trial,
+    law: &LawStep,
+    begun: &Round,
+    excluded: &[&str],
+) -> Option<Step> {
+    let effects = disguised(study, base, law, excluded);
+    let best = effects.first()?;
+    let mut all = begun.candidates.clone();
+    all.retain(|c| effects.iter().all(|effect| effect.name != c.name));
+    all.extend(effects.iter().cloned());
+    Some(Step {
+        trial: best.trial.clone(),
+        before: base.clone(),
+        tied: tied(study, base, best, &all),
+    })
+}
+
 /// A law on top of `base` that makes the model adequate where `rival` does not, and beats it.
 fn decisive_law(
     study: &Study,
     base: &Trial,
     rival: &Trial,
-    progress: &mut dyn FnMut(&str, f64),
+    tell: &mut dyn FnMut(&str),
 ) -> Option<LawStep> {
     let over_time = study.fitted.case.table.is_none();
     if !over_time || study.proofs.is_empty() || adequate(study, rival) {
         return None;
     }
-    let law = LawSearch::new(study, base, progress).better_than(rival, progress)?;
+    let mut tell = |what: &str, _| tell(what);
+    let law = LawSearch::new(study, base, &mut tell).better_than(rival, &mut tell)?;
     let wins = law.proven && adequate(study, &law.trial) && beats(&law.trial, rival);
     wins.then_some(law)
 }

@@ -2,7 +2,7 @@
 //! or a lead.
 
 use super::pairs::pair;
-use super::{Explanation, mostly_explained};
+use super::{Explanation, behind, mostly_explained};
 use crate::data::study::{Study, Trial};
 use crate::laws::search::{LawSearch, LawStep};
 use crate::search::accept::{adequate, beats};
@@ -23,7 +23,10 @@ pub(super) fn complete(
     let last = found.steps.last().map(|step| step.trial.clone());
     if let Some(law) = best.as_ref().filter(|law| replaces(study, found, law, last.as_ref())) {
         found.steps.clear();
-        found.laws = vec![law.clone()];
+        match behind(study, &found.baseline, law, &found.first, excluded) {
+            Some(effect) => found.steps.push(effect),
+            None => found.laws.push(law.clone()),
+        }
         found.nameable = true;
         return;
     }
