@@ -14,8 +14,8 @@ use crate::search::accept::{adequate, beats, explained, proven};
 use crate::search::refit::{Candidate, Round, begin, combined};
 use complete::complete;
 use contests::contests;
-use disguise::disguised;
 pub(crate) use contests::stands_for;
+use disguise::disguised;
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
@@ -83,7 +83,7 @@ pub(crate) fn explain(
     if laws_are_asked(study, &explanation) {
         complete(study, &mut explanation, excluded, progress);
     }
-    let proven = |law: &&mut LawStep| law.proven;
+    let proven = |law: &&mut LawStep| law.proven && law.bursts.is_empty();
     for law in explanation.laws.iter_mut().filter(proven) {
         progress("holding formulas against the curve", 0.9);
         law.formulas = formulas(study, law.as_curve());

@@ -3,6 +3,7 @@
 
 use super::pairs::pair;
 use super::{Explanation, behind, mostly_explained};
+use crate::bursts::search as bursts;
 use crate::data::study::{Study, Trial};
 use crate::laws::search::{LawSearch, LawStep};
 use crate::search::accept::{adequate, beats};
@@ -21,7 +22,10 @@ pub(super) fn complete(
     let alone = LawSearch::new(study, &found.baseline, &mut tell).refitted(&mut tell);
     let best = alone.best(study, &found.baseline);
     let last = found.steps.last().map(|step| step.trial.clone());
-    if let Some(law) = best.as_ref().filter(|law| replaces(study, found, law, last.as_ref())) {
+    if let Some(law) = best
+        .as_ref()
+        .filter(|law| replaces(study, found, law, last.as_ref()))
+    {
         found.steps.clear();
         match behind(study, &found.baseline, law, &found.first, excluded) {
             Some(effect) => found.steps.push(effect),
@@ -48,7 +52,15 @@ pub(super) fn complete(
         found.nameable = true;
         return;
     }
-    if !found.nameable {
+    if found.nameable {
+        return;
+    }
+    progress("looking for what comes and goes", 0.8);
+    let base = last.as_ref().unwrap_or(&found.baseline);
+    if let Some(law) = bursts::search(study, base).filter(|law| law.proven) {
+        found.laws = vec![law];
+        found.nameable = true;
+    } else {
         found.laws.extend(best.map(|law| LawStep {
             proven: false,
             ..law

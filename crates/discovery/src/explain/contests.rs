@@ -42,4 +42,3 @@ pub(crate) fn stands_for(k: usize, candidate: &Candidate) -> bool {
         .last()
         .is_some_and(|last| last.effect.is_taken_for(nominal))
 }
-

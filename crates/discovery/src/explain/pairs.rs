@@ -51,7 +51,9 @@ pub(super) fn pair(
     let error = |trial: &Trial| combined(study, trial);
     singles.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let beams = singles.iter().take(BEAMS);
-    let mut pairs: Vec<Trial> = beams.flat_map(|beam| on_top(study, beam, excluded)).collect();
+    let mut pairs: Vec<Trial> = beams
+        .flat_map(|beam| on_top(study, beam, excluded))
+        .collect();
     pairs.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let best = pairs.into_iter().next()?;
     let proven = adequate(study, &best) && beats(&best, baseline);
@@ -74,7 +76,10 @@ fn on_top(study: &Study, beam: &Trial, excluded: &[&str]) -> Vec<Trial> {
 /// The different actions of the laws of a trial.
 fn actions(trial: &Trial) -> std::collections::BTreeSet<motor::effect::curve::Action> {
     let effects = trial.fit.hypothesis.effects.iter();
-    effects.filter_map(Modes::of).map(|law| law.action).collect()
+    effects
+        .filter_map(Modes::of)
+        .map(|law| law.action)
+        .collect()
 }
 
 /// The pair as steps, effects first; `None` if one of the two is not needed.
@@ -120,6 +125,7 @@ fn told(study: &Study, baseline: &Trial, pair: &Trial) -> Option<Pair> {
                 tied: Vec::new(),
                 proven: true,
                 formulas: Vec::new(),
+                bursts: Vec::new(),
             }),
         }
         before = trial;

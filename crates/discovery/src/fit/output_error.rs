@@ -384,7 +384,10 @@ fn correct(linear: &mut Linear, moves: &[f64], before: &[f64], after: &[f64]) {
     }
     for ((column, m), s) in linear.jacobian.iter_mut().zip(moves).zip(&scale) {
         let share = m * s / length;
-        column.iter_mut().zip(&missed).for_each(|(c, x)| *c += share * x);
+        column
+            .iter_mut()
+            .zip(&missed)
+            .for_each(|(c, x)| *c += share * x);
     }
 }
 

@@ -198,6 +198,7 @@ pub(crate) fn stiffen(config: &mut EffectConfig, stiffness: f64) {
 }
 
 /// Indices of the sizes among the values.
+#[cfg(test)]
 pub(crate) fn sizes(config: &EffectConfig) -> std::ops::Range<usize> {
     SHAPES..config.values.len()
 }

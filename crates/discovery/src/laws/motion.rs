@@ -56,8 +56,13 @@ impl Motion {
             frequency: steps.clone().map(|k| omega_sync(k) / TAU).collect(),
             voltage: steps.clone().map(|k| u_s(k).norm()).collect(),
             angle_electrical: steps.clone().map(|k| u_s(k).arg()).collect(),
-            load: steps.clone().map(|k| case.inputs.tau_load[k * stride]).collect(),
-            time: steps.map(|k| case.timeline.clock(t_step * k as f64)).collect(),
+            load: steps
+                .clone()
+                .map(|k| case.inputs.tau_load[k * stride])
+                .collect(),
+            time: steps
+                .map(|k| case.timeline.clock(t_step * k as f64))
+                .collect(),
             stator: i_s.iter().map(|i| i.norm()).collect(),
             rotor: fluxes.iter().zip(&i_s).map(rotor).collect(),
             flux: fluxes.iter().map(|flux| flux.norm()).collect(),

@@ -1,5 +1,6 @@
 //! Which law is missing: screened, refitted, proven as an effect must be.
 
+use crate::bursts::pulse::Pulse;
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::{Effort, fit, fit_knowing};
 use crate::laws::formula::prove::{Curve, Proven};
@@ -52,6 +53,8 @@ pub(crate) struct LawStep {
     pub proven: bool,
     /// Formulas that explain the recordings as well as the curve, simplest first.
     pub formulas: Vec<Proven>,
+    /// Bursts of each recording, the fitted one first, where the law comes and goes; empty for a curve.
+    pub bursts: Vec<Vec<Pulse>>,
 }
 
 impl LawStep {
@@ -169,6 +172,7 @@ impl Laws {
             tied: tied(study, base, best, &self.refitted),
             proven: is_proven,
             formulas: Vec::new(),
+            bursts: Vec::new(),
         })
     }
 }
@@ -179,12 +183,7 @@ fn action(law: &Screened) -> Option<Action> {
 
 /// A law with all parameters free; the stiffness is chosen once more where the fit has arrived. `columns`: what its modes do
 /// to the outputs of the base.
-fn refit(
-    study: &Study,
-    base: &Trial,
-    law: &Screened,
-    columns: Vec<Vec<f64>>,
-) -> Option<Refitted> {
+fn refit(study: &Study, base: &Trial, law: &Screened, columns: Vec<Vec<f64>>) -> Option<Refitted> {
     let (case, prior) = (&study.fitted.case, &study.prior);
     let effort = |iterations| Effort {
         iterations,

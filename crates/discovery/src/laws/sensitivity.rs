@@ -1,18 +1,17 @@
 //! What a little of each mode of a law does to the outputs of a fitted model.
 //!
-//! One linearised run of the model serves all laws inside the motor: at each place the amount of a law follows its modes
-//! along the run. Laws of instruments change the outputs alone.
+//! One linearised run of the model serves all laws: at each place the amount of a law follows its modes along the run.
 
 use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
 use crate::fit::output_error::Fit;
-use crate::laws::modes::{self, Modes, SPLINES, TURN_MODES, harmonics, spline_modes};
+use crate::laws::modes::{Modes, SPLINES, TURN_MODES, harmonics, spline_modes};
 use crate::laws::motion::Motion;
-use crate::model::prediction::{Drive, driven, weighted};
+use crate::model::prediction::{Drive, driven};
 use crate::model::prior::Prior;
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::tangent::{Addition, Push, Response, Tangent};
-use motor::effect::{EffectConfig, Hook, Outputs, Plant};
+use motor::effect::{EffectConfig, Hook, Plant};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -28,8 +27,6 @@ pub(crate) struct Sensitivities<'a> {
     plant: Plant,
     drive: Drive<'a>,
     tangent: Tangent,
-    /// True outputs.
-    outputs: Outputs,
     motion: Motion,
     pushes: Mutex<BTreeMap<(Place, bool), Arc<Push>>>,
 }
@@ -51,7 +48,6 @@ impl<'a> Sensitivities<'a> {
             plant,
             drive,
             tangent,
-            outputs,
             motion,
             pushes: Mutex::default(),
         }
@@ -62,6 +58,11 @@ impl<'a> Sensitivities<'a> {
         &self.motion
     }
 
+    /// The fit that was linearised.
+    pub fn fit(&self) -> &Fit {
+        self.fit
+    }
+
     /// The model that was linearised.
     pub fn plant(&self) -> &Plant {
         &self.plant
@@ -70,18 +71,15 @@ impl<'a> Sensitivities<'a> {
     /// Change of the weighted outputs by a typical size of each mode; `None` for a law that the model cannot bear.
     pub fn columns(&self, law: &EffectConfig) -> Option<Vec<Vec<f64>>> {
         let modes = Modes::of(law)?;
-        let columns = match modes.action.hooks() {
-            [Hook::Outputs] => self.of_instrument(law),
-            _ if modes.action.coordinate.is_angle() => {
-                self.inside::<TURN_MODES>(modes, |x| harmonics(x))
-            }
-            _ => self.inside::<SPLINES>(modes, |x| spline_modes(&law.values, x)),
+        let columns = match modes.action.coordinate.is_angle() {
+            true => self.along::<TURN_MODES>(modes, harmonics),
+            false => self.along::<SPLINES>(modes, |x| spline_modes(&law.values, x)),
         };
         let finite = columns.iter().flatten().all(|x| x.is_finite());
         finite.then_some(columns)
     }
 
-    fn inside<const M: usize>(
+    fn along<const M: usize>(
         &self,
         modes: &Modes,
         shares: impl Fn(f64) -> [f64; M],
@@ -104,7 +102,7 @@ impl<'a> Sensitivities<'a> {
     }
 
     /// Responses of what is recorded, one row of the case after the other.
-    fn shown<const M: usize>(&self, additions: &[Addition<'_, M>]) -> Vec<Response> {
+    pub fn shown<const M: usize>(&self, additions: &[Addition<'_, M>]) -> Vec<Response> {
         let sees = |e: &EffectConfig| e.effect.hooks().contains(&Hook::Outputs);
         let keep = self.case.decimation;
         if !self.plant.effects.iter().any(sees) {
@@ -121,7 +119,8 @@ impl<'a> Sensitivities<'a> {
         every.iter().map(seen).collect()
     }
 
-    fn weighted(&self, response: &Response) -> Vec<f64> {
+    /// A response as rows of the case.
+    pub fn weighted(&self, response: &Response) -> Vec<f64> {
         let mut column = Vec::with_capacity(response.len() * N_CHANNELS);
         for ([a, b, c, omega], w) in response.iter().zip(&self.case.weight) {
             column.extend([a * w[0], b * w[1], c * w[2], omega * w[3], 0.0]);
@@ -129,8 +128,16 @@ impl<'a> Sensitivities<'a> {
         column
     }
 
+    /// The linearised run.
+    pub fn tangent(&self) -> &Tangent {
+        &self.tangent
+    }
+
     /// What one of a place's quantity does within each step.
-    fn push(&self, part: Action) -> Arc<Push> {
+    pub fn push(&self, part: Action) -> Arc<Push> {
+        if let Some(channel) = part.place.reading() {
+            return Arc::new(self.tangent.reading(channel));
+        }
         let key = (part.place, part.coordinate == Coordinate::PhaseCurrent);
         let mut known = self.pushes.lock().unwrap_or_else(PoisonError::into_inner);
         let push = known.entry(key).or_insert_with(|| {
@@ -147,24 +154,6 @@ impl<'a> Sensitivities<'a> {
         });
         push.clone()
     }
-
-    /// Columns of a law that changes the outputs alone.
-    fn of_instrument(&self, law: &EffectConfig) -> Vec<Vec<f64>> {
-        let rated = &self.plant.rated;
-        let column = |k: usize| {
-            let mut there = law.clone();
-            let p = &law.effect.descriptor().parameters[k];
-            there.values[k] = AMOUNT * p.typical * p.scale.of(rated);
-            let mut shown = self.outputs.clone();
-            let prepared = law.effect.prepared(&there.values, rated);
-            law.effect.outputs(&prepared, rated, &mut shown);
-            let base = weighted(self.case, &self.outputs);
-            let shown = weighted(self.case, &shown);
-            let change = shown.iter().zip(&base).map(|(x, b)| (x - b) / AMOUNT);
-            change.collect()
-        };
-        modes::sizes(law).map(column).collect()
-    }
 }
 
 /// A law as laws whose amounts are one number each: a drop over each phase's own current is three.
@@ -175,9 +164,9 @@ fn parts(action: Action) -> Vec<Action> {
         Place::StatorPhaseC,
     ];
     match (action.place, action.coordinate) {
-        (Place::Stator, coordinate @ Coordinate::PhaseCurrent) => of_phases
-            .map(|place| Action { place, coordinate })
-            .to_vec(),
+        (Place::Stator, coordinate @ Coordinate::PhaseCurrent) => {
+            of_phases.map(|place| Action { place, coordinate }).to_vec()
+        }
         _ => vec![action],
     }
 }
@@ -187,6 +176,7 @@ mod tests {
     use super::*;
     use crate::fit::output_error::{Effort, fit};
     use crate::laws::menu::menu;
+    use crate::laws::modes::sizes;
     use crate::model::prediction::outputs;
     use crate::tests::specimen;
 
@@ -206,7 +196,7 @@ mod tests {
             let columns = sensitivities.columns(law).expect("bearable");
             let mut missed = 0.0;
             let mut all = 0.0;
-            for (column, k) in columns.iter().zip(modes::sizes(law)) {
+            for (column, k) in columns.iter().zip(sizes(law)) {
                 let mut there = law.clone();
                 let p = &law.effect.descriptor().parameters[k];
                 there.values[k] = 0.01 * p.typical * p.scale.of(rated);

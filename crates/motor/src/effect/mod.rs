@@ -26,9 +26,9 @@ pub(crate) mod signals;
 mod simulate;
 #[cfg(feature = "std")]
 mod stack;
+pub(crate) mod steady;
 #[cfg(feature = "std")]
 pub mod tangent;
-pub(crate) mod steady;
 
 #[cfg(feature = "std")]
 pub use config::{EffectConfig, EffectError};

@@ -365,7 +365,9 @@ impl Task for Integrate {
             out.theta_mech.push(shown.theta_mech);
         }
         let stride = ready.run.between.stride();
-        out.u_measured = (0..=steps).map(|k| ready.run.inputs.u_s[k * stride]).collect();
+        out.u_measured = (0..=steps)
+            .map(|k| ready.run.inputs.u_s[k * stride])
+            .collect();
         out
     }
 }

@@ -49,6 +49,20 @@ pub struct Push {
     seen: Vec<[f64; SEEN]>,
 }
 
+impl Push {
+    /// What it adds to the state at the end of a step.
+    pub fn to_state(&self, step: usize) -> &[f64] {
+        let n = self.state.len() / self.seen.len();
+        &self.state[step * n..(step + 1) * n]
+    }
+
+    /// What it adds to the three currents and the speed at the beginning of a step.
+    pub fn to_seen(&self, step: usize) -> [f64; 4] {
+        let [a, b, c, omega, _] = self.seen[step];
+        [a, b, c, omega]
+    }
+}
+
 impl Tangent {
     /// Simulates a plant and its derivatives.
     ///
@@ -63,6 +77,35 @@ impl Tangent {
             &corrected(plant, run.inputs),
             Linearise { scales },
         )
+    }
+
+    /// Number of states.
+    pub fn states(&self) -> usize {
+        self.n
+    }
+
+    /// `Phi` of a step, row after row.
+    pub fn phi(&self, step: usize) -> &[f64] {
+        &self.phi[step * self.n * self.n..(step + 1) * self.n * self.n]
+    }
+
+    /// `C` of a step: the rows of the three currents and of the speed.
+    pub fn gain(&self, step: usize) -> [&[f64]; 4] {
+        let first = step * SEEN * self.n;
+        core::array::from_fn(|row| &self.gain[first + row * self.n..first + (row + 1) * self.n])
+    }
+
+    /// A relative error of a reading: 0 to 2 the currents, 3 the speed.
+    pub fn reading(&self, channel: usize) -> Push {
+        let one = |seen: &[f64; SEEN]| {
+            let mut push = [0.0; SEEN];
+            push[channel] = seen[channel];
+            push
+        };
+        Push {
+            state: vec![0.0; self.len() * self.n],
+            seen: self.seen.iter().map(one).collect(),
+        }
     }
 
     /// Number of steps at which something is seen.
@@ -163,15 +206,14 @@ impl Tangent {
                     response.push(core::array::from_fn(|c| seen[c][m]));
                 }
             }
-            let phi = &self.phi[step * n * n..(step + 1) * n * n];
-            for (row, to) in phi.chunks_exact(n).zip(&mut next) {
+            for (row, to) in self.phi(step).chunks_exact(n).zip(&mut next) {
                 *to = [0.0; M];
                 row.iter().zip(&x).for_each(|(f, from)| add(to, *f, from));
             }
             for addition in additions {
                 let within = addition.within(step);
-                let push = &addition.push.state[step * n..(step + 1) * n];
-                push.iter().zip(&mut next).for_each(|(d, to)| add(to, *d, &within));
+                let push = addition.push.to_state(step).iter();
+                push.zip(&mut next).for_each(|(d, to)| add(to, *d, &within));
             }
             core::mem::swap(&mut x, &mut next);
         }
@@ -198,7 +240,12 @@ impl Tangent {
     }
 
     /// What the instruments of a plant make of a response of the true outputs, which holds every step.
-    pub fn through_instruments(&self, plant: &Plant, run: &Run<'_>, response: &Response) -> Response {
+    pub fn through_instruments(
+        &self,
+        plant: &Plant,
+        run: &Run<'_>,
+        response: &Response,
+    ) -> Response {
         let base = self.outputs(run);
         let mut moved = base.clone();
         for (k, dy) in response.iter().enumerate() {
