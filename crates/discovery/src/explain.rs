@@ -5,6 +5,7 @@ mod contests;
 mod disguise;
 mod pairs;
 
+use crate::bursts::search::bursts;
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
 use crate::laws::formula::prove::formulas;
@@ -112,6 +113,11 @@ fn library(
         let mut tell = |what: &str| progress(what, share);
         let begun = begin(study, &base, excluded, &mut tell);
         let rival = begun.proven().map_or(&base, |c| &c.trial);
+        if let Some(law) = decisive_bursts(study, &base, rival, &mut tell) {
+            first.get_or_insert(begun.enough());
+            laws.push(law);
+            break;
+        }
         if let Some(law) = decisive_law(study, &base, rival, &mut tell) {
             let begun = begun.enough();
             match behind(study, &base, &law, &begun, excluded) {
@@ -182,6 +188,22 @@ fn behind(
         before: base.clone(),
         tied: tied(study, base, best, &all),
     })
+}
+
+/// What comes and goes on top of `base`, and makes the model adequate where `rival` does not.
+fn decisive_bursts(
+    study: &Study,
+    base: &Trial,
+    rival: &Trial,
+    tell: &mut dyn FnMut(&str),
+) -> Option<LawStep> {
+    let over_time = study.fitted.case.table.is_none();
+    if !over_time || study.proofs.is_empty() || adequate(study, rival) {
+        return None;
+    }
+    tell("looking for what comes and goes");
+    let law = bursts(study, base)?;
+    (adequate(study, &law.trial) && beats(&law.trial, rival)).then_some(law)
 }
 
 /// A law on top of `base` that makes the model adequate where `rival` does not, and beats it.

@@ -20,7 +20,7 @@ const STEPS: usize = 5;
 /// Time over which a free amount forgets, s: bursts have edges.
 const MEMORY: f64 = 0.01;
 /// Typical sizes that a free amount may have, in those of its place.
-pub(crate) const DEVIATIONS: [f64; 3] = [1.0, 5.0, 25.0];
+const DEVIATIONS: [f64; 3] = [1.0, 5.0, 25.0];
 /// Prior standard deviation of a size (typical sizes of its place) ...
 const SIZE: f64 = 100.0;
 /// ... and of an edge, s.
@@ -78,22 +78,44 @@ impl Scene<'_> {
         fit(self.case, self.prior, h, effort)
     }
 
-    /// Free amounts of all places on top of the model without bursts, each with the deviation that suits it best.
-    pub fn asked(&self, places: &[Place]) -> Vec<(Place, Wander, f64)> {
+    /// The likeliest places of something that wanders, best first; empty where nothing comes and goes at the best one.
+    pub fn suspected(&self, places: &[Place], count: usize) -> Vec<(Place, Wander)> {
         let fit = self.fitted(&self.without, Effort::NONE);
-        let sensitivities = Sensitivities::of(self.case, self.prior, &fit);
-        let one = |&place: &Place| {
-            let tried = DEVIATIONS.map(|deviation| {
-                let wander = Wander {
-                    deviation: deviation * self.typical(place),
-                    memory: MEMORY,
-                };
-                let found = self.smoothed(&sensitivities, place, wander);
-                (place, wander, found.evidence)
-            });
-            tried.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))
-        };
-        places.iter().filter_map(one).collect()
+        let of = Sensitivities::of(self.case, self.prior, &fit);
+        let ask = |&place: &Place| (place, self.smoothed(&of, place, self.wander(place, 1)));
+        let mut all: Vec<(Place, Smoothed)> = places.iter().map(ask).collect();
+        all.sort_by(|a, b| b.1.evidence.total_cmp(&a.1.evidence));
+        let comes_and_goes =
+            |(_, found): &(Place, Smoothed)| !pulses(&found.amount, self.t_step()).is_empty();
+        if !all.first().is_some_and(comes_and_goes) {
+            return Vec::new();
+        }
+        let likeliest = all.iter().take(count).map(|(place, _)| *place);
+        likeliest
+            .map(|place| (place, self.suited(&of, place)))
+            .collect()
+    }
+
+    /// How something wanders at a place, by what suits the recording best.
+    pub fn wandering(&self, place: Place) -> Wander {
+        let fit = self.fitted(&self.without, Effort::NONE);
+        self.suited(&Sensitivities::of(self.case, self.prior, &fit), place)
+    }
+
+    fn suited(&self, of: &Sensitivities<'_>, place: Place) -> Wander {
+        let tried = (0..DEVIATIONS.len()).map(|k| {
+            let wander = self.wander(place, k);
+            (wander, self.smoothed(of, place, wander).evidence)
+        });
+        let best = tried.max_by(|a, b| a.1.total_cmp(&b.1));
+        best.map_or_else(|| self.wander(place, 1), |(wander, _)| wander)
+    }
+
+    fn wander(&self, place: Place, k: usize) -> Wander {
+        Wander {
+            deviation: DEVIATIONS[k] * self.typical(place),
+            memory: MEMORY,
+        }
     }
 
     fn smoothed(&self, of: &Sensitivities<'_>, place: Place, wander: Wander) -> Smoothed {

@@ -2,6 +2,7 @@
 
 use super::fit::{Fitted, Scene};
 use super::pulse::Pulse;
+use super::smoother::Wander;
 use super::trace::{action, places};
 use crate::data::study::{Study, Subject, Trial};
 use crate::fit::normal_equations;
@@ -24,20 +25,18 @@ struct Candidate {
 }
 
 /// What comes and goes on top of a model; `None` where nothing does, or where it is not the same in all recordings.
-pub(crate) fn search(study: &Study, base: &Trial) -> Option<LawStep> {
+pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
     if !study.fitted.case.timeline.cuts.is_empty() {
         return None;
     }
     let scene = scene(study, &study.fitted, &base.fit.hypothesis, true);
     let asked: Vec<Place> = places().filter(|place| is_judged(study, *place)).collect();
-    let mut found = scene.asked(&asked);
-    found.sort_by(|a, b| b.2.total_cmp(&a.2));
-    found.truncate(FITTED);
-    let one = |(place, wander, _): &(Place, _, f64)| {
+    let one = |(place, wander): &(Place, Wander)| {
         let fitted = scene.bursts(*place, *wander)?;
         everywhere(study, *place, fitted)
     };
-    let mut all: Vec<Candidate> = found.par_iter().filter_map(one).collect();
+    let suspected = scene.suspected(&asked, FITTED);
+    let mut all: Vec<Candidate> = suspected.par_iter().filter_map(one).collect();
     let error = |c: &Candidate| study.fold_error(&c.trial.folds) * study.proof_error(&c.trial);
     all.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let best = all.first()?;
@@ -85,8 +84,7 @@ fn everywhere(study: &Study, place: Place, fitted: Fitted) -> Option<Candidate> 
     let mut proof = Vec::new();
     for subject in &study.proofs {
         let scene = scene(study, subject, &parameters, false);
-        let wander = scene.asked(&[place]).first()?.1;
-        let there = scene.bursts(place, wander)?;
+        let there = scene.bursts(place, scene.wandering(place))?;
         let rows = subject.case.blocks();
         let blocks = normal_equations::blocks(&rows, &there.fit.residual, &[]);
         proof.extend(blocks.iter().map(|block| block.sse));

@@ -3,7 +3,7 @@
 
 use super::pairs::pair;
 use super::{Explanation, behind, mostly_explained};
-use crate::bursts::search as bursts;
+use crate::bursts::search::bursts;
 use crate::data::study::{Study, Trial};
 use crate::laws::search::{LawSearch, LawStep};
 use crate::search::accept::{adequate, beats};
@@ -57,7 +57,7 @@ pub(super) fn complete(
     }
     progress("looking for what comes and goes", 0.8);
     let base = last.as_ref().unwrap_or(&found.baseline);
-    if let Some(law) = bursts::search(study, base).filter(|law| law.proven) {
+    if let Some(law) = bursts(study, base).filter(|law| law.proven) {
         found.laws = vec![law];
         found.nameable = true;
     } else {
