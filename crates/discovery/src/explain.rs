@@ -11,7 +11,8 @@ use crate::fit::output_error::Effort;
 use crate::laws::formula::prove::formulas;
 use crate::laws::search::{LawSearch, LawStep};
 use crate::model::prior::{N_NOMINAL, NOMINALS};
-use crate::search::accept::{adequate, beats, explained, proven};
+use crate::search::accept::{adequate, beats, explained, proven, surpasses};
+use crate::search::off::{SIGNIFICANT, strains};
 use crate::search::refit::{Candidate, Round, begin, combined};
 use complete::complete;
 use contests::contests;
@@ -27,6 +28,9 @@ const NAMED_SHARE: f64 = 0.85;
 const DEEPER: f64 = 0.98;
 /// Error over noise above which nothing is named, however large the explained share.
 const NAMED_ERROR: f64 = 1.25;
+/// Sum of squares of the nominals' distances from their priors, in standard deviations, by which an explanation is stranger
+/// than one that leaves them where they are believed: three standard deviations of one of them.
+const STRAINED: f64 = SIGNIFICANT * SIGNIFICANT;
 /// Share of the first excess that a later effect explains at least, unless it makes the model adequate.
 const PATCH_SHARE: f64 = 0.03;
 /// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: priors are commonly
@@ -223,10 +227,16 @@ fn decisive_law(
     wins.then_some(law)
 }
 
+/// Whether effects were accepted with parameters that are far from what is believed: another explanation may need less.
+fn is_strained(study: &Study, found: &Explanation) -> bool {
+    let last = found.steps.last();
+    last.is_some_and(|step| strains(&step.trial, &study.prior.deviations) > STRAINED)
+}
+
 /// Whether laws are asked about: the library leaves something, and samples over time can show where.
 fn laws_are_asked(study: &Study, found: &Explanation) -> bool {
     let last = found.steps.last().map_or(&found.baseline, |s| &s.trial);
-    let settled = found.nameable && adequate(study, last);
+    let settled = found.nameable && adequate(study, last) && !is_strained(study, found);
     study.fitted.case.table.is_none() && found.laws.is_empty() && !settled
 }
 
@@ -277,7 +287,9 @@ fn at_prior(trial: &Trial) -> crate::model::prior::Hypothesis {
 /// Candidates over which the best has no proven advantage.
 fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<String> {
     let equal = |c: &&Candidate| {
-        c.name != best.name && proven(study, base, &c.trial) && !beats(&best.trial, &c.trial)
+        c.name != best.name
+            && proven(study, base, &c.trial)
+            && !surpasses(study, &best.trial, &c.trial)
     };
     all.iter()
         .filter(equal)

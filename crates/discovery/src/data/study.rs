@@ -162,6 +162,13 @@ impl Study {
         !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
     }
 
+    /// Whether the fitted recording cannot tell two trials apart.
+    pub fn fit_is_silent(&self, one: &Trial, other: &Trial) -> bool {
+        let outputs = one.fit.outputs.iter().zip(&other.fit.outputs);
+        let squares: f64 = outputs.map(|(a, b)| (a - b).powi(2)).sum();
+        squares < SILENT * self.fitted.floor.mean * self.fitted.case.judged()
+    }
+
     /// Share of the floor below which a typical effect cannot be seen in a recording.
     pub const VISIBLE: f64 = 0.02;
 

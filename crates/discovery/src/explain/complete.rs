@@ -2,11 +2,12 @@
 //! or a lead.
 
 use super::pairs::pair;
-use super::{Explanation, behind, mostly_explained};
+use super::{Explanation, STRAINED, behind, mostly_explained};
 use crate::bursts::search::bursts;
 use crate::data::study::{Study, Trial};
 use crate::laws::search::{LawSearch, LawStep};
 use crate::search::accept::{adequate, beats};
+use crate::search::off::strains;
 
 /// Completes an explanation of the library's with what it does not hold.
 ///
@@ -32,6 +33,9 @@ pub(super) fn complete(
             None => found.laws.push(law.clone()),
         }
         found.nameable = true;
+        return;
+    }
+    if found.nameable && last.as_ref().is_some_and(|last| adequate(study, last)) {
         return;
     }
     if let Some(last) = &last {
@@ -70,7 +74,11 @@ pub(super) fn complete(
 
 /// Whether a law on the bare motor takes the place of what the library found.
 fn replaces(study: &Study, found: &Explanation, law: &LawStep, last: Option<&Trial>) -> bool {
-    let enough =
-        adequate(study, &law.trial) || mostly_explained(study, &found.baseline, &law.trial);
-    law.proven && enough && last.is_none_or(|last| beats(&law.trial, last))
+    let fits = adequate(study, &law.trial);
+    let enough = fits || mostly_explained(study, &found.baseline, &law.trial);
+    let strain = |trial: &Trial| strains(trial, &study.prior.deviations);
+    let plainer = |last: &Trial| {
+        fits && !beats(last, &law.trial) && strain(last) > strain(&law.trial) + STRAINED
+    };
+    law.proven && enough && last.is_none_or(|last| beats(&law.trial, last) || plainer(last))
 }

@@ -9,7 +9,7 @@ use crate::laws::modes::{self, Modes};
 use crate::laws::screen::{Screened, best_stiffness, screen};
 use crate::laws::sensitivity::Sensitivities;
 use crate::model::prediction::SpeedObserver;
-use crate::search::accept::{beats, explained, proven};
+use crate::search::accept::{explained, proven, surpasses};
 use crate::search::refit::combined;
 use motor::effect::curve::Action;
 use rayon::prelude::*;
@@ -227,7 +227,7 @@ fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<A
         law.action != best.action
             && fold > TIED * most.0
             && proof > TIED * most.1
-            && !beats(&best.trial, &law.trial)
+            && !surpasses(study, &best.trial, &law.trial)
     };
     all.iter().filter(equal).map(|law| law.action).collect()
 }

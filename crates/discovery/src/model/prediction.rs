@@ -80,8 +80,8 @@ pub(crate) fn driven<T>(
         false => measured,
     };
     let cuts = speeds.timeline.cuts.iter().zip(&speeds.running_at_cuts);
-    let running_at_cuts: Vec<f64> = cuts
-        .map(|(cut, &omega)| starts(omega, cut.sample))
+    let running_at_cuts: Vec<Option<f64>> = cuts
+        .map(|(cut, omega)| omega.map(|omega| starts(omega, cut.sample)))
         .collect();
     of(&Run {
         inputs: &drive.inputs,

@@ -334,7 +334,6 @@ pub struct ExplainReport {
     /// Effects that a typical size would not show in this recording.
     pub not_testable: Vec<String>,
     /// Laws that no library holds, in the order in which they were found.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub laws: Vec<LawReport>,
     /// What is left, if the library does not explain it.
     pub unexplained: Option<Unexplained>,

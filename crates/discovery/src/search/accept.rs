@@ -85,6 +85,22 @@ pub(crate) fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
         && !worse_on_proof(before, after)
 }
 
+/// Whether the data tell `better` from `worse`: it beats it, or it does so on the recordings that tell the two apart while
+/// the others, in which both predict the same, say nothing.
+pub(crate) fn surpasses(study: &Study, better: &Trial, worse: &Trial) -> bool {
+    if beats(better, worse) {
+        return true;
+    }
+    let folds = gain(&worse.folds, &better.folds);
+    let proof = gain(&worse.proof, &better.proof);
+    if folds > GAIN {
+        return !worse_on_proof(worse, better) && study.proof_is_silent(better, worse);
+    }
+    let no_worse =
+        better.folds.iter().sum::<f64>() < (1.0 + LESSER_GAIN) * worse.folds.iter().sum::<f64>();
+    proof > GAIN && no_worse && study.fit_is_silent(better, worse)
+}
+
 /// Whether `better` beats `worse` on the fitted recording alone.
 fn beats_on_folds(better: &Trial, worse: &Trial) -> bool {
     gain(&worse.folds, &better.folds) > GAIN

@@ -70,8 +70,8 @@ pub struct Run<'a> {
     pub timeline: &'a Arc<Timeline>,
     /// Speed at the first sample, rad/s; `None` starts de-energised from standstill.
     pub running_at: Option<f64>,
-    /// Speed at the first sample after each cut of the timeline, rad/s: the motor runs there.
-    pub running_at_cuts: &'a [f64],
+    /// The same at the first sample after each cut of the timeline.
+    pub running_at_cuts: &'a [Option<f64>],
     /// Input samples at which the terminals are open: no current flows, the rotor flux decays alone.
     pub open: &'a [Range<usize>],
 }
@@ -161,7 +161,7 @@ pub(super) struct Ready<'a, H: Hooks> {
     model: Dynamic<H>,
     /// State at the first sample.
     pub start: DynamicState<H::Extra>,
-    restarts: Vec<(usize, DynamicState)>,
+    restarts: Vec<Restart>,
     run: &'a Run<'a>,
     inputs: &'a Inputs,
     /// Stator inductance while the rotor flux stands still, H.
@@ -257,8 +257,12 @@ impl<'a, H: Hooks> Ready<'a, H> {
     #[inline(always)]
     fn begin(&self, state: &mut DynamicState<H::Extra>, step: usize, restart: Option<usize>) {
         let k = step * self.run.between.stride();
-        if let Some(there) = restart.map(|cut| &self.restarts[cut].1) {
-            // Angle and extra states go on: nothing tells them better than the last stretch.
+        if let Some(restart) = restart.map(|cut| &self.restarts[cut]) {
+            if restart.is_new {
+                *state = DynamicState::rest();
+            }
+            // Within a recording angle and extra states go on: nothing tells them better than the last stretch.
+            let there = &restart.state;
             (state.psi_s, state.psi_r) = (there.psi_s, there.psi_r);
             state.omega_mech = there.omega_mech;
         }
@@ -296,8 +300,8 @@ impl<'a, H: Hooks> Ready<'a, H> {
     #[inline(always)]
     pub fn restart(&self, step: usize, next: usize) -> Option<usize> {
         let k = step * self.run.between.stride();
-        let cut = self.restarts.get(next)?;
-        (cut.0 <= k).then_some(next)
+        let restart = self.restarts.get(next)?;
+        (restart.sample <= k).then_some(next)
     }
 }
 
@@ -307,8 +311,27 @@ fn start_state(
     run: &Run<'_>,
     inputs: &Inputs,
 ) -> DynamicState {
-    let at_speed = |omega_mech| running(plant, motor, run, inputs, 0, omega_mech);
-    run.running_at.map_or_else(DynamicState::rest, at_speed)
+    begins(plant, motor, run, inputs, 0, run.running_at)
+}
+
+/// The state with which a motor begins at sample `k`: running, or at rest without current.
+fn begins(
+    plant: &Plant,
+    motor: &TParams<f64>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+    k: usize,
+    running_at: Option<f64>,
+) -> DynamicState {
+    let at_speed = |omega_mech| running(plant, motor, run, inputs, k, omega_mech);
+    running_at.map_or_else(DynamicState::rest, at_speed)
+}
+
+/// The motor at the first sample after a cut.
+struct Restart {
+    sample: usize,
+    state: DynamicState,
+    is_new: bool,
 }
 
 /// Steady state at sample `k` and this speed (rad/s).
@@ -326,16 +349,12 @@ fn running(
 }
 
 /// The samples after the cuts of a recording, and the state of the motor there.
-fn restarts(
-    plant: &Plant,
-    motor: &TParams<f64>,
-    run: &Run<'_>,
-    inputs: &Inputs,
-) -> Vec<(usize, DynamicState)> {
+fn restarts(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &Inputs) -> Vec<Restart> {
     let cuts = run.timeline.cuts.iter().zip(run.running_at_cuts);
-    let at = |(cut, &omega): (&Cut, &f64)| {
-        let state = running(plant, motor, run, inputs, cut.sample, omega);
-        (cut.sample, state)
+    let at = |(cut, running_at): (&Cut, &Option<f64>)| Restart {
+        sample: cut.sample,
+        state: begins(plant, motor, run, inputs, cut.sample, *running_at),
+        is_new: cut.is_new,
     };
     cuts.map(at).collect()
 }
