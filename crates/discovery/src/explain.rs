@@ -4,6 +4,7 @@ mod complete;
 mod contests;
 mod disguise;
 mod pairs;
+mod rebuilt;
 
 use crate::bursts::search::bursts;
 use crate::data::study::{Study, Trial};
@@ -14,7 +15,7 @@ use crate::model::prior::{N_NOMINAL, NOMINALS};
 use crate::search::accept::{adequate, beats, explained, proven, surpasses};
 use crate::search::off::{SIGNIFICANT, strains};
 use crate::search::refit::{Candidate, Round, begin, combined};
-use complete::complete;
+use complete::{complete, put_on_top};
 use contests::contests;
 pub(crate) use contests::stands_for;
 use disguise::disguised;
@@ -85,6 +86,11 @@ pub(crate) fn explain(
     progress("refitting the parameters", 0.1);
     let baseline = study.trial(&study.at_prior(), Effort::FULL);
     let mut explanation = library(study, baseline, excluded, progress);
+    if !explanation.steps.is_empty()
+        && let Some(law) = explanation.laws.pop()
+    {
+        put_on_top(study, &mut explanation, law);
+    }
     if laws_are_asked(study, &explanation) {
         complete(study, &mut explanation, excluded, progress);
     }

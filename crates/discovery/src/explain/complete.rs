@@ -2,12 +2,15 @@
 //! or a lead.
 
 use super::pairs::pair;
-use super::{Explanation, STRAINED, behind, mostly_explained};
+use super::rebuilt::{effects_of, refitted};
+use super::{Explanation, STRAINED, Step, behind, mostly_explained};
 use crate::bursts::search::bursts;
 use crate::data::study::{Study, Trial};
+use crate::laws::formula::prove::law_of;
 use crate::laws::search::{LawSearch, LawStep};
 use crate::search::accept::{adequate, beats};
 use crate::search::off::strains;
+use motor::effect::EffectConfig;
 
 /// Completes an explanation of the library's with what it does not hold.
 ///
@@ -43,8 +46,7 @@ pub(super) fn complete(
         let search = LawSearch::new(study, last, &mut tell);
         let more = search.refitted(&mut tell).best(study, last);
         if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
-            found.laws = vec![law];
-            found.nameable = true;
+            put_on_top(study, found, law);
             return;
         }
     }
@@ -70,6 +72,67 @@ pub(super) fn complete(
             ..law
         }));
     }
+}
+
+/// A law on top of the library's effects; those that are not needed beside it go.
+pub(super) fn put_on_top(study: &Study, found: &mut Explanation, law: LawStep) {
+    found.nameable = true;
+    let Some(curve) = law_of(study, &law.trial).map(|(_, config)| config) else {
+        found.laws = vec![law];
+        return;
+    };
+    let mut effects = effects_of(study, &found.steps);
+    let mut with = law.trial.clone();
+    let mut k = 0;
+    while k < effects.len() {
+        let mut fewer = effects.clone();
+        fewer.remove(k);
+        let without = refitted(study, &fewer, Some(&curve), &with);
+        match adequate(study, &without) && !beats(&with, &without) {
+            true => (effects, with) = (fewer, without),
+            false => k += 1,
+        }
+    }
+    if effects.len() == found.steps.len() {
+        found.laws = vec![law];
+        return;
+    }
+    found.steps = steps_of(study, &found.baseline, &found.steps, &effects, &with);
+    let before = found.steps.last().map_or(&found.baseline, |s| &s.trial);
+    found.laws = vec![LawStep {
+        before: before.clone(),
+        trial: with,
+        ..law
+    }];
+}
+
+/// The steps that are left, refitted one after the other.
+fn steps_of(
+    study: &Study,
+    baseline: &Trial,
+    old: &[Step],
+    effects: &[EffectConfig],
+    from: &Trial,
+) -> Vec<Step> {
+    let mut before = baseline.clone();
+    let mut steps = Vec::new();
+    for k in 0..effects.len() {
+        let trial = refitted(study, &effects[..=k], None, from);
+        let name = effects[k].effect.descriptor().name;
+        let same = old.iter().find(|step| named(study, step) == Some(name));
+        steps.push(Step {
+            trial: trial.clone(),
+            before: std::mem::replace(&mut before, trial),
+            tied: same.map_or_else(Vec::new, |step| step.tied.clone()),
+        });
+    }
+    steps
+}
+
+/// Name of the effect that a step added.
+fn named(study: &Study, step: &Step) -> Option<&'static str> {
+    let effects = effects_of(study, std::slice::from_ref(step));
+    effects.last().map(|config| config.effect.descriptor().name)
 }
 
 /// Whether a law on the bare motor takes the place of what the library found.

@@ -4,11 +4,10 @@
 //! is proven as a whole, and each of the two must be needed beside the other.
 
 use super::Step;
+use super::rebuilt::refitted;
 use crate::data::study::{Study, Trial};
-use crate::fit::output_error::Effort;
 use crate::laws::modes::Modes;
 use crate::laws::search::{LawSearch, LawStep, Laws};
-use crate::model::prior::{Hypothesis, N_NOMINAL};
 use crate::search::accept::{adequate, beats};
 use crate::search::refit::{Round, combined, seconds};
 use motor::effect::EffectConfig;
@@ -91,18 +90,8 @@ fn told(study: &Study, baseline: &Trial, pair: &Trial) -> Option<Pair> {
         return None;
     }
     two.sort_by_key(|config| Modes::of(config).is_some());
-    let nominals = &pair.fit.hypothesis.z[..N_NOMINAL];
-    let with = |configs: &[&EffectConfig]| {
-        let rated = &study.prior.plant.rated;
-        let mut h: Hypothesis = study.at_prior();
-        for config in configs {
-            h = h.with((*config).clone(), rated);
-        }
-        h.z[..N_NOMINAL].copy_from_slice(nominals);
-        study.trial(&h, Effort::FULL)
-    };
-    let (one, other) = (with(&[&two[0]]), with(&[&two[1]]));
-    let both = with(&[&two[0], &two[1]]);
+    let with = |configs: &[EffectConfig]| refitted(study, configs, None, pair);
+    let (one, other, both) = (with(&two[..1]), with(&two[1..]), with(&two));
     if !adequate(study, &both) || !beats(&both, &one) || !beats(&both, &other) {
         return None;
     }
