@@ -24,8 +24,10 @@ const REFITTED_ASTRAY: usize = 4;
 const OBSERVER: f64 = 15.0;
 /// Share of the best law's gain that a tied one reaches.
 const TIED: f64 = 0.5;
+/// Share of the first law's gain that another one reaches soon, or is given up.
+const HOPEFUL: f64 = 0.3;
 /// First refit and the one after the stiffness was chosen anew, iterations.
-const ITERATIONS: [usize; 2] = [8, 4];
+const ITERATIONS: [usize; 2] = [5, 3];
 
 /// A law that was refitted.
 #[derive(Clone, Debug)]
@@ -128,12 +130,22 @@ impl<'a> LawSearch<'a> {
         self.refits(&starts)
     }
 
+    /// The first one to its end; the others as long as they may tie with it.
     fn refits(&self, starts: &[&Screened]) -> Laws {
-        let one = |law: &&Screened| {
+        let one = |law: &Screened, abandon_above: f64| {
             let columns = self.sensitivities.columns(&law.config)?;
-            refit(self.study, self.base, law, columns)
+            refit(self.study, self.base, law, columns, abandon_above)
         };
-        let mut refitted: Vec<Refitted> = starts.par_iter().filter_map(one).collect();
+        let (first, others) = starts.split_at(starts.len().min(1));
+        let first = first.first().and_then(|law| one(law, f64::INFINITY));
+        let sse = |trial: &Trial| signal::dot(&trial.fit.residual, &trial.fit.residual);
+        let limit = first.as_ref().map_or(f64::INFINITY, |first| {
+            let (best, base) = (sse(&first.trial), sse(self.base));
+            base - HOPEFUL * (base - best).max(0.0)
+        });
+        let rest = others.par_iter().filter_map(|law| one(law, limit));
+        let mut refitted: Vec<Refitted> = rest.collect();
+        refitted.extend(first);
         refitted.sort_by(|a, b| a.error.total_cmp(&b.error));
         Laws { refitted }
     }
@@ -183,10 +195,17 @@ fn action(law: &Screened) -> Option<Action> {
 
 /// A law with all parameters free; the stiffness is chosen once more where the fit has arrived. `columns`: what its modes do
 /// to the outputs of the base.
-fn refit(study: &Study, base: &Trial, law: &Screened, columns: Vec<Vec<f64>>) -> Option<Refitted> {
+fn refit(
+    study: &Study,
+    base: &Trial,
+    law: &Screened,
+    columns: Vec<Vec<f64>>,
+    abandon_above: f64,
+) -> Option<Refitted> {
     let (case, prior) = (&study.fitted.case, &study.prior);
     let effort = |iterations| Effort {
         iterations,
+        abandon_above,
         ..Effort::FULL
     };
     let start = base
