@@ -12,7 +12,7 @@ use crate::fit::output_error::Effort;
 use crate::laws::formula::prove::formulas;
 use crate::laws::search::{LawSearch, LawStep};
 use crate::model::prior::{N_NOMINAL, NOMINALS};
-use crate::search::accept::{adequate, beats, explained, proven, surpasses};
+use crate::search::accept::{adequate, beats, even, explained, proven, surpasses};
 use crate::search::off::{SIGNIFICANT, strains};
 use crate::search::refit::{Candidate, Round, begin, combined};
 use complete::{complete, put_on_top};
@@ -242,7 +242,8 @@ fn is_strained(study: &Study, found: &Explanation) -> bool {
 /// Whether laws are asked about: the library leaves something, and samples over time can show where.
 fn laws_are_asked(study: &Study, found: &Explanation) -> bool {
     let last = found.steps.last().map_or(&found.baseline, |s| &s.trial);
-    let settled = found.nameable && adequate(study, last) && !is_strained(study, found);
+    let settled =
+        found.nameable && adequate(study, last) && even(study, last) && !is_strained(study, found);
     study.fitted.case.table.is_none() && found.laws.is_empty() && !settled
 }
 

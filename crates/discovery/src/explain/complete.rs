@@ -8,7 +8,7 @@ use crate::bursts::search::bursts;
 use crate::data::study::{Study, Trial};
 use crate::laws::formula::prove::law_of;
 use crate::laws::search::{LawSearch, LawStep};
-use crate::search::accept::{adequate, beats};
+use crate::search::accept::{adequate, beats, even, helps};
 use crate::search::off::strains;
 use motor::effect::EffectConfig;
 
@@ -143,5 +143,8 @@ fn replaces(study: &Study, found: &Explanation, law: &LawStep, last: Option<&Tri
     let plainer = |last: &Trial| {
         fits && !beats(last, &law.trial) && strain(last) > strain(&law.trial) + STRAINED
     };
-    law.proven && enough && last.is_none_or(|last| beats(&law.trial, last) || plainer(last))
+    let evener =
+        |last: &Trial| !even(study, last) && even(study, &law.trial) && helps(&law.trial, last);
+    let better = |last: &Trial| beats(&law.trial, last) || plainer(last) || evener(last);
+    law.proven && enough && last.is_none_or(better)
 }
