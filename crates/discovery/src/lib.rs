@@ -19,6 +19,7 @@
 //! ```
 
 mod api;
+mod bursts;
 mod compare;
 mod data;
 mod explain;
@@ -44,8 +45,8 @@ pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use laws::formula::dictionary::{Laws, Shapes};
 pub use model::prediction::simulations;
 pub use report::types::{
-    AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,
-    FitReport, FormulaReport, FrameBand, FrameReport, Inconclusive, LawCurve, LawPlace, LawReport,
-    NominalReport, OrderReport, Overall, ParameterReport, RankReport, RegionReport, SignalReport,
-    SpeedScaleReport, StepReport, Unexplained, Verdict,
+    AdoptReport, AtRest, BandReport, BurstReport, BurstsReport, CompareReport, ErrorReport,
+    ErrorSource, ExplainReport, FitReport, FormulaReport, FrameBand, FrameReport, Inconclusive,
+    LawCurve, LawPlace, LawReport, NominalReport, OrderReport, Overall, ParameterReport,
+    RankReport, RegionReport, SignalReport, SpeedScaleReport, StepReport, Unexplained, Verdict,
 };

@@ -125,6 +125,13 @@ fn adopted_law(
         let message = "no law explains these recordings better than the library does: `drivemon explain` says what is missing";
         return Err(Error::UnknownEffect(message.to_owned()));
     };
+    if !law.bursts.is_empty() {
+        let message = format!(
+            "what is missing at `{}` comes and goes: it is a fault to be found and mended, and no law that a model could hold",
+            law.action.place.name()
+        );
+        return Err(Error::UnknownEffect(message));
+    }
     let after = match formula {
         Some(number) => chosen_formula(law, number)?,
         None => &law.trial,

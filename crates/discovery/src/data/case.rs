@@ -54,7 +54,7 @@ pub(crate) struct Speeds<'a> {
     /// Speed at the start, rad/s.
     pub running_at: Option<f64>,
     /// Speeds after the cuts of the timeline, rad/s.
-    pub running_at_cuts: Vec<f64>,
+    pub running_at_cuts: Vec<Option<f64>>,
     /// Supply and measured angle.
     pub timeline: Arc<Timeline>,
 }
@@ -74,8 +74,8 @@ pub(crate) struct Case {
     pub speed_is_input: bool,
     /// Speed at the start unless from standstill.
     pub running_at: Option<f64>,
-    /// Speed at the first sample after each cut of the timeline.
-    pub running_at_cuts: Vec<f64>,
+    /// Speed at the first sample after each cut of the timeline; `None` from standstill.
+    pub running_at_cuts: Vec<Option<f64>>,
     /// Whether the speed at the start is not measured, but that at which the model carries the load.
     pub settles: bool,
     /// Samples at which a switch has taken the motor off the supply.
@@ -264,7 +264,11 @@ impl Case {
         Speeds {
             speed: Cow::Owned(over(speed)),
             running_at: self.running_at.map(|x| x / gain),
-            running_at_cuts: over(&self.running_at_cuts),
+            running_at_cuts: self
+                .running_at_cuts
+                .iter()
+                .map(|omega| omega.map(|x| x / gain))
+                .collect(),
             timeline: Arc::new(Timeline {
                 theta_mech: over(&self.timeline.theta_mech),
                 ..(*self.timeline).clone()

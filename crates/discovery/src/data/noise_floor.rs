@@ -25,6 +25,8 @@ pub(crate) struct Floor {
     pub mean: f64,
     /// Standard deviation of the mean between draws.
     pub sd: f64,
+    /// Expected mean squared error of each channel.
+    pub channel: [f64; N_CHANNELS],
 }
 
 impl Floor {
@@ -47,6 +49,7 @@ pub(crate) fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
             block: rows.iter().map(|r| judged(case, r)).collect(),
             mean: 1.0,
             sd: 0.0,
+            channel: [1.0; N_CHANNELS],
         };
     }
     let squares = |change: Vec<f64>| {
@@ -54,9 +57,12 @@ pub(crate) fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
             let part = &change[r.start * N_CHANNELS..r.end * N_CHANNELS];
             dot(part, part)
         };
-        rows.iter().map(error).collect::<Vec<f64>>()
+        let blocks = rows.iter().map(error).collect::<Vec<f64>>();
+        (blocks, by_channel(&change))
     };
-    let draws = noise_draws(case, plant, seed, DRAWS, squares);
+    let (draws, channels): (Vec<_>, Vec<_>) = noise_draws(case, plant, seed, DRAWS, squares)
+        .into_iter()
+        .unzip();
     let mut block: Vec<f64> = rows.iter().map(|r| judged(case, r)).collect();
     for draw in &draws {
         block
@@ -71,11 +77,33 @@ pub(crate) fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
         .collect();
     let mean_draw = sums.iter().sum::<f64>() / DRAWS as f64;
     let variance = sums.iter().map(|s| (s - mean_draw).powi(2)).sum::<f64>() / (DRAWS - 1) as f64;
+    let channel = |k: usize| {
+        let drawn: f64 = channels
+            .iter()
+            .map(|sums: &[f64; N_CHANNELS]| sums[k])
+            .sum();
+        1.0 + drawn / DRAWS as f64 / judged_of(case, k).max(1.0)
+    };
     Floor {
+        channel: core::array::from_fn(channel),
         mean: block.iter().sum::<f64>() / total,
         block,
         sd: variance.sqrt(),
     }
+}
+
+/// Sum of squares of each channel.
+pub(crate) fn by_channel(rows: &[f64]) -> [f64; N_CHANNELS] {
+    let mut sums = [0.0; N_CHANNELS];
+    for row in rows.chunks_exact(N_CHANNELS) {
+        sums.iter_mut().zip(row).for_each(|(sum, x)| *sum += x * x);
+    }
+    sums
+}
+
+/// Number of judged values of a channel.
+pub(crate) fn judged_of(case: &Case, channel: usize) -> f64 {
+    case.weight.iter().filter(|w| w[channel] > 0.0).count() as f64
 }
 
 fn judged(case: &Case, rows: &Range<usize>) -> f64 {
@@ -168,6 +196,7 @@ mod tests {
             block: Vec::new(),
             mean: 1.5,
             sd: 0.03,
+            channel: [1.5; N_CHANNELS],
         };
         assert!((floor.error_over_noise(4.0 * 1.5 * 200.0, 200.0) - 2.0).abs() < 1e-12);
         assert!((floor.allowance() - 0.02).abs() < 1e-12);

@@ -1,6 +1,7 @@
 //! From files to a study: audit, preparation, errors.
 
 use crate::data::case::Case;
+use crate::data::joined::shared;
 use crate::data::stretches::{cut, stretches, told};
 use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
@@ -99,10 +100,11 @@ impl Question {
             return Err(Error::Recordings(message.to_owned()));
         }
         progress("propagating the noise", 0.05);
-        let fitted = cases.remove(0);
+        let none = || Error::Recordings("give at least one recording".to_owned());
+        let (fitted, proofs) = shared(cases).ok_or_else(none)?;
         Ok(Self {
             audit: audited,
-            study: Study::new(prior, fitted, cases, scale),
+            study: Study::new(prior, fitted, proofs, scale),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! The recordings of one question: the first is fitted, the others prove.
 
 use crate::data::case::Case;
-use crate::data::noise_floor::{Floor, floor};
+use crate::data::noise_floor::{Floor, by_channel, floor, judged_of};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, Fit, fit};
 use crate::laws::formula::dictionary::Shapes;
@@ -160,6 +160,21 @@ impl Study {
             squares.sum::<f64>() / (s.floor.mean * s.case.judged())
         };
         !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
+    }
+
+    /// Error over noise of each current and of the speed in the fitted recording; zero where nothing is judged.
+    pub fn channel_errors(&self, trial: &Trial) -> [f64; 4] {
+        let (case, floor) = (&self.fitted.case, &self.fitted.floor);
+        let sums = by_channel(&trial.fit.residual);
+        let one = |k: usize| (sums[k] / judged_of(case, k).max(1.0) / floor.channel[k]).sqrt();
+        core::array::from_fn(one)
+    }
+
+    /// Whether the fitted recording cannot tell two trials apart.
+    pub fn fit_is_silent(&self, one: &Trial, other: &Trial) -> bool {
+        let outputs = one.fit.outputs.iter().zip(&other.fit.outputs);
+        let squares: f64 = outputs.map(|(a, b)| (a - b).powi(2)).sum();
+        squares < SILENT * self.fitted.floor.mean * self.fitted.case.judged()
     }
 
     /// Share of the floor below which a typical effect cannot be seen in a recording.

@@ -1,4 +1,6 @@
+use super::contests::contest;
 use super::*;
+use crate::model::prior::{FRICTION, LEAKAGE};
 use crate::tests::specimen;
 use motor::effect::Plant;
 use motor::effects::names;
@@ -258,7 +260,7 @@ fn two_effects_are_found_in_two_rounds() {
     assert_eq!(found.steps.len(), 2);
     assert!(found.nameable && adequate(&study, found.last()));
     assert!(!adequate(&study, &found.steps[0].trial));
-    let expected = [0.1, 0.15, 0.35, 0.8];
+    let expected = [0.1, 0.15, 0.3, 0.92];
     let got = shares(&told);
     assert_eq!(got.len(), expected.len(), "{got:?}");
     assert!(

@@ -5,6 +5,7 @@ use crate::fit::normal_equations::{self, Block, Penalty};
 use crate::model::prediction::{SpeedObserver, jacobian, outputs, residual};
 use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
 use nalgebra::DVector;
+use std::ops::Range;
 
 /// Limits of the inflation of the nominals' prior weight.
 pub(crate) const INFLATION: [f64; 2] = [30.0, 400.0];
@@ -12,9 +13,13 @@ pub(crate) const INFLATION: [f64; 2] = [30.0, 400.0];
 const INFLATION_TABLE: [f64; 2] = [1.0, 30.0];
 
 /// Iterations after which a hopeless fit may be given up.
-const PATIENCE: usize = 4;
+const PATIENCE: usize = 2;
 /// Relative gain of an iteration below which a fit has arrived.
 const ARRIVED: f64 = 3e-5;
+/// Most steps that are taken with the same derivatives.
+const CHORDS: usize = 3;
+/// Relative gain of such a step below which new derivatives are worth their price.
+const REFRESH: f64 = 1e-3;
 
 /// A fitted hypothesis with everything that proofs need.
 #[derive(Clone, Debug)]
@@ -113,92 +118,213 @@ fn moved(prior: &Prior, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> 
 }
 
 /// Fits the free coordinates of `start` to a case.
+///
+/// Derivatives cost as many simulations as there are coordinates. Between two sets of them up to [`CHORDS`] steps use
+/// the last set, corrected by what each step has shown (Broyden, 1965, doi:10.1090/S0025-5718-1965-0198670-6).
 pub(crate) fn fit(case: &Case, prior: &Prior, start: &Hypothesis, effort: Effort) -> Fit {
-    let free: Vec<usize> = (0..start.z.len()).filter(|&k| start.free[k]).collect();
-    let rows = case.blocks();
-    let mut h = start.clone();
-    let mut out = outputs(case, prior, &h, effort.observer);
-    let mut damping = 1e-4;
-    let mut linear = None;
-    let limits = if case.table.is_some() {
-        INFLATION_TABLE
-    } else {
-        INFLATION
-    };
-    let mut inflation = limits[0];
-    for iteration in 0..effort.iterations {
-        let r = residual(case, &out);
-        let sse = signal::dot(&r, &r);
-        let j = jacobian(case, prior, &h, &out, effort.observer);
-        let blocks = normal_equations::blocks(&rows, &r, &j);
-        let nominals = free.iter().filter(|&&k| k < N_NOMINAL).count();
-        inflation =
-            normal_equations::score_inflation(&blocks, nominals).clamp(limits[0], limits[1]);
-        let here = penalty(prior, &h, &free, inflation);
-        let search = Search {
-            case,
-            prior,
-            free: &free,
-            inflation,
-            observer: effort.observer,
-        };
-        let better = search.step(
-            &h,
-            &r,
-            &here,
-            &normal_equations::total(&blocks),
-            &mut damping,
-        );
-        linear = Some((r, j, blocks));
-        let Some((next, next_out, gain)) = better else {
-            break;
-        };
-        (h, out) = (next, next_out);
-        linear = None;
-        let hopeless = iteration >= PATIENCE && sse > effort.abandon_above;
-        if gain < ARRIVED || hopeless {
-            break;
-        }
-    }
-    let (r, j, blocks) = linear.unwrap_or_else(|| {
-        let r = residual(case, &out);
-        let j = jacobian(case, prior, &h, &out, effort.observer);
-        let blocks = normal_equations::blocks(&rows, &r, &j);
-        (r, j, blocks)
-    });
-    Fit {
-        penalty: penalty(prior, &h, &free, inflation),
-        hypothesis: h,
-        free,
-        residual: r,
-        jacobian: j,
-        blocks,
-        outputs: out,
-        inflation,
-        observer: effort.observer,
-    }
+    Search::new(case, prior, start, effort.observer).run(effort)
 }
 
-/// One damped step of a fit.
+/// As [`fit`], from a start whose derivatives are known.
+pub(crate) fn fit_knowing(
+    case: &Case,
+    prior: &Prior,
+    start: &Hypothesis,
+    effort: Effort,
+    jacobian: Vec<Vec<f64>>,
+) -> Fit {
+    let mut search = Search::new(case, prior, start, effort.observer);
+    search.linearise(jacobian);
+    search.inflate();
+    search.run(effort)
+}
+
+/// A fit on its way.
 struct Search<'a> {
     case: &'a Case,
     prior: &'a Prior,
-    free: &'a [usize],
-    inflation: f64,
+    free: Vec<usize>,
+    rows: Vec<Range<usize>>,
     observer: SpeedObserver,
+    limits: [f64; 2],
+    hypothesis: Hypothesis,
+    outputs: Vec<f64>,
+    residual: Vec<f64>,
+    damping: f64,
+    inflation: f64,
+    linear: Option<Linear>,
 }
 
-impl Search<'_> {
+/// Derivatives, and how far the fit has moved since they were taken.
+struct Linear {
+    jacobian: Vec<Vec<f64>>,
+    blocks: Vec<Block>,
+    total: Block,
+    /// Whether the last step since then was worth new derivatives.
+    stale: bool,
+}
+
+/// A better place: coordinates, outputs, cost before and after.
+struct Better {
+    hypothesis: Hypothesis,
+    outputs: Vec<f64>,
+    gain: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(case: &'a Case, prior: &'a Prior, start: &Hypothesis, observer: SpeedObserver) -> Self {
+        let limits = match case.table {
+            Some(_) => INFLATION_TABLE,
+            None => INFLATION,
+        };
+        let outputs = outputs(case, prior, start, observer);
+        Self {
+            case,
+            prior,
+            free: (0..start.z.len()).filter(|&k| start.free[k]).collect(),
+            rows: case.blocks(),
+            observer,
+            limits,
+            hypothesis: start.clone(),
+            residual: residual(case, &outputs),
+            outputs,
+            damping: 1e-4,
+            inflation: limits[0],
+            linear: None,
+        }
+    }
+
+    fn run(mut self, effort: Effort) -> Fit {
+        for iteration in 0..effort.iterations {
+            if iteration > 0 || self.linear.is_none() {
+                self.differentiate();
+            }
+            let sse = self.sse();
+            let Some(gain) = self.step() else { break };
+            if gain < ARRIVED {
+                break;
+            }
+            for _ in 0..CHORDS {
+                if self.chord().is_none_or(|gain| gain < REFRESH) {
+                    break;
+                }
+            }
+            if iteration >= PATIENCE && sse > effort.abandon_above {
+                break;
+            }
+        }
+        self.finish()
+    }
+
+    fn sse(&self) -> f64 {
+        signal::dot(&self.residual, &self.residual)
+    }
+
+    /// Derivatives where the fit is.
+    fn differentiate(&mut self) {
+        let (case, prior) = (self.case, self.prior);
+        let jacobian = jacobian(case, prior, &self.hypothesis, &self.outputs, self.observer);
+        self.linearise(jacobian);
+        self.inflate();
+    }
+
+    /// Takes the inflation from the present derivatives.
+    fn inflate(&mut self) {
+        let nominals = self.free.iter().filter(|&&k| k < N_NOMINAL).count();
+        if let Some(linear) = &self.linear {
+            let inflation = normal_equations::score_inflation(&linear.blocks, nominals);
+            self.inflation = inflation.clamp(self.limits[0], self.limits[1]);
+        }
+    }
+
+    /// Normal equations of these derivatives and the present residual.
+    fn linearise(&mut self, jacobian: Vec<Vec<f64>>) {
+        let blocks = normal_equations::blocks(&self.rows, &self.residual, &jacobian);
+        self.linear = Some(Linear {
+            total: normal_equations::total(&blocks),
+            blocks,
+            jacobian,
+            stale: false,
+        });
+    }
+
+    fn penalty(&self, h: &Hypothesis) -> Penalty {
+        penalty(self.prior, h, &self.free, self.inflation)
+    }
+
+    /// A damped step from fresh derivatives: its relative gain, `None` if there is nothing better nearby.
+    fn step(&mut self) -> Option<f64> {
+        let better = self.better(7)?;
+        let gain = better.gain;
+        self.go(better);
+        if let Some(linear) = &mut self.linear {
+            linear.stale = gain >= ARRIVED;
+        }
+        Some(gain)
+    }
+
+    /// A step from corrected derivatives: its relative gain, `None` if it leads nowhere.
+    fn chord(&mut self) -> Option<f64> {
+        let jacobian = self.linear.take()?.jacobian;
+        self.linearise(jacobian);
+        let better = self.better(1);
+        if let Some(linear) = &mut self.linear {
+            linear.stale = true;
+        }
+        let gain = better.as_ref().map(|better| better.gain);
+        better.map(|better| self.go(better));
+        gain
+    }
+
+    /// Moves there and corrects the derivatives by what the move has shown.
+    fn go(&mut self, better: Better) {
+        let Better {
+            hypothesis,
+            outputs,
+            ..
+        } = better;
+        let moves: Vec<f64> = self
+            .free
+            .iter()
+            .map(|&k| hypothesis.z[k] - self.hypothesis.z[k])
+            .collect();
+        if let Some(linear) = &mut self.linear {
+            correct(linear, &moves, &self.outputs, &outputs);
+        }
+        self.residual = residual(self.case, &outputs);
+        (self.hypothesis, self.outputs) = (hypothesis, outputs);
+    }
+
+    fn finish(mut self) -> Fit {
+        if self.linear.as_ref().is_none_or(|linear| linear.stale) {
+            let keep = self.inflation;
+            self.differentiate();
+            self.inflation = keep;
+        } else if let Some(linear) = self.linear.take() {
+            self.linearise(linear.jacobian);
+        }
+        let penalty = self.penalty(&self.hypothesis);
+        let (jacobian, blocks) = self
+            .linear
+            .map_or_else(Default::default, |linear| (linear.jacobian, linear.blocks));
+        Fit {
+            penalty,
+            hypothesis: self.hypothesis,
+            free: self.free,
+            residual: self.residual,
+            jacobian,
+            blocks,
+            outputs: self.outputs,
+            inflation: self.inflation,
+            observer: self.observer,
+        }
+    }
+
     /// The damped step; coordinates that it would push out of their bounds stay, the others make up for it.
-    fn inside(
-        &self,
-        h: &Hypothesis,
-        here: &Penalty,
-        normal: &Block,
-        damping: f64,
-    ) -> Option<DVector<f64>> {
+    fn inside(&self, here: &Penalty, normal: &Block) -> Option<DVector<f64>> {
+        let h = &self.hypothesis;
         let mut held = here.clone();
-        let mut step = held.solve(normal, damping)?;
+        let mut step = held.solve(normal, self.damping)?;
         for _ in 0..3 {
             let mut again = false;
             for (i, &k) in self.free.iter().enumerate() {
@@ -213,35 +339,55 @@ impl Search<'_> {
             if !again {
                 break;
             }
-            step = held.solve(normal, damping)?;
+            step = held.solve(normal, self.damping)?;
         }
         Some(step)
     }
 
-    /// A better hypothesis, its outputs and the relative gain; `None` if there is none nearby.
-    fn step(
-        &self,
-        h: &Hypothesis,
-        r: &[f64],
-        here: &Penalty,
-        normal: &Block,
-        damping: &mut f64,
-    ) -> Option<(Hypothesis, Vec<f64>, f64)> {
-        let before = cost(r, here);
-        for _ in 0..7 {
-            if let Some(step) = self.inside(h, here, normal, *damping) {
-                let next = moved(self.prior, h, self.free, &step);
+    /// A better hypothesis within so many tries, each more damped; `None` if there is none.
+    fn better(&mut self, tries: usize) -> Option<Better> {
+        let here = self.penalty(&self.hypothesis);
+        let normal = self.linear.as_ref()?.total.clone();
+        let before = cost(&self.residual, &here);
+        for _ in 0..tries {
+            if let Some(step) = self.inside(&here, &normal) {
+                let next = moved(self.prior, &self.hypothesis, &self.free, &step);
                 let out = outputs(self.case, self.prior, &next, self.observer);
-                let there = penalty(self.prior, &next, self.free, self.inflation);
-                let after = cost(&residual(self.case, &out), &there);
+                let after = cost(&residual(self.case, &out), &self.penalty(&next));
                 if after < before {
-                    *damping = (*damping * 0.2).max(1e-7);
-                    return Some((next, out, 1.0 - after / before));
+                    self.damping = (self.damping * 0.2).max(1e-7);
+                    return Some(Better {
+                        hypothesis: next,
+                        outputs: out,
+                        gain: 1.0 - after / before,
+                    });
                 }
             }
-            *damping = (*damping * 8.0).max(1e-5);
+            self.damping = (self.damping * 8.0).max(1e-5);
         }
         None
+    }
+}
+
+/// The least change of the derivatives that makes them predict what a step did, each coordinate in its own scale.
+fn correct(linear: &mut Linear, moves: &[f64], before: &[f64], after: &[f64]) {
+    let scale: Vec<f64> = (0..moves.len())
+        .map(|k| linear.total.gram[(k, k)].max(f64::MIN_POSITIVE))
+        .collect();
+    let length: f64 = moves.iter().zip(&scale).map(|(m, s)| m * m * s).sum();
+    if length <= 0.0 {
+        return;
+    }
+    let mut missed: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+    for (column, m) in linear.jacobian.iter().zip(moves) {
+        missed.iter_mut().zip(column).for_each(|(x, c)| *x -= m * c);
+    }
+    for ((column, m), s) in linear.jacobian.iter_mut().zip(moves).zip(&scale) {
+        let share = m * s / length;
+        column
+            .iter_mut()
+            .zip(&missed)
+            .for_each(|(c, x)| *c += share * x);
     }
 }
 

@@ -18,11 +18,10 @@ const LEAST_VOLTAGE: f64 = 0.1;
 const LEAST_RANGE: f64 = 1e-3;
 
 /// Laws of nothing over what the recording visits.
-pub(crate) fn menu(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
-    let motion = Motion::of(case, plant);
+pub(crate) fn menu(case: &Case, plant: &Plant, motion: &Motion) -> Vec<EffectConfig> {
     let ask = |action: Action| {
         let range = motion.range(action.place, action.coordinate);
-        let asked = is_judged(case, action) && varies(&motion, plant, action, range);
+        let asked = is_judged(case, action) && varies(motion, plant, action, range);
         asked.then(|| Modes::absent(action, range))
     };
     Action::all().filter_map(ask).collect()

@@ -1,5 +1,6 @@
 //! A law as a report shows it.
 
+use crate::bursts::report::{bursts_report, corners};
 use crate::data::study::{Study, Trial};
 use crate::laws::curve::as_knots;
 use crate::laws::formula::prove::{coordinates_of, law_of};
@@ -29,7 +30,11 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
         place: at.place,
         coordinate: at.coordinate,
         meaning: step.action.place.meaning(step.action.coordinate).to_owned(),
-        curve: curve(study, &step.trial),
+        curve: match step.bursts.first() {
+            Some(pulses) => corners(step.action.place, pulses, duration(study)),
+            None => curve(study, &step.trial),
+        },
+        bursts: bursts_report(study, step.action.place, &step.trial, &step.bursts),
         formula: first.map(|f| f.formula.clone()),
         formula_parameters: first.map_or_else(Vec::new, |f| f.parameters.clone()),
         formulas,
@@ -42,6 +47,12 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
             .and_then(|(_, config)| as_knots(&config))
             .map(|config| to_entry(&config)),
     }
+}
+
+/// Time from the first to the last sample of the fitted recording, s.
+fn duration(study: &Study) -> f64 {
+    let case = &study.fitted.case;
+    case.time_of(case.measured.len().saturating_sub(1))
 }
 
 /// Other places and coordinates, each once: friction and torque over time have one name.

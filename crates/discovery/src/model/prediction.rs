@@ -54,7 +54,19 @@ pub(crate) fn run(
     drive: &Drive<'_>,
     observer: SpeedObserver,
 ) -> Outputs {
-    SIMULATIONS.fetch_add(1, Ordering::Relaxed);
+    driven(case, plant, drive, observer, 1, |run| simulate(plant, run))
+}
+
+/// Does something with the run of a plant that costs as much as so many simulations.
+pub(crate) fn driven<T>(
+    case: &Case,
+    plant: &Plant,
+    drive: &Drive<'_>,
+    observer: SpeedObserver,
+    simulations: u64,
+    of: impl FnOnce(&Run<'_>) -> T,
+) -> T {
+    SIMULATIONS.fetch_add(simulations, Ordering::Relaxed);
     let speeds = case.speeds(plant, &drive.speed);
     let speed = match observer {
         _ if case.speed_is_input => SpeedSource::Imposed(&speeds.speed),
@@ -68,10 +80,10 @@ pub(crate) fn run(
         false => measured,
     };
     let cuts = speeds.timeline.cuts.iter().zip(&speeds.running_at_cuts);
-    let running_at_cuts: Vec<f64> = cuts
-        .map(|(cut, &omega)| starts(omega, cut.sample))
+    let running_at_cuts: Vec<Option<f64>> = cuts
+        .map(|(cut, omega)| omega.map(|omega| starts(omega, cut.sample)))
         .collect();
-    let run = Run {
+    of(&Run {
         inputs: &drive.inputs,
         between: case.between,
         speed,
@@ -79,8 +91,7 @@ pub(crate) fn run(
         running_at: speeds.running_at.map(|measured| starts(measured, 0)),
         running_at_cuts: &running_at_cuts,
         open: &case.open,
-    };
-    simulate(plant, &run)
+    })
 }
 
 /// Speed at which the motor carries what sample `k` asks of it, rad/s.
@@ -94,7 +105,7 @@ fn settled(plant: &Plant, drive: &Drive<'_>, omega_sync: f64, k: usize) -> Optio
 }
 
 /// Weighted model outputs, row after row. A model that left the finite numbers counts as infinitely wrong.
-fn weighted(case: &Case, outputs: &Outputs) -> Vec<f64> {
+pub(crate) fn weighted(case: &Case, outputs: &Outputs) -> Vec<f64> {
     let mut out = Vec::with_capacity(case.measured.len() * N_CHANNELS);
     for (row, w) in case.weight.iter().enumerate() {
         let k = row * case.decimation;

@@ -98,6 +98,9 @@ pub struct LawReport {
     pub held_out_error_over_noise_without: f64,
     /// Whether a recording that was not fitted proves it; one recording alone gives a lead.
     pub proven: bool,
+    /// What comes and goes instead of following a curve.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bursts: Option<BurstsReport>,
     /// The law as a motor file holds it.
     #[serde(skip)]
     pub entry: Option<EffectEntry>,
@@ -106,8 +109,43 @@ pub struct LawReport {
 impl LawReport {
     /// Place and coordinate in words.
     pub fn name(&self) -> String {
-        format!("{} over {}", self.place, self.coordinate)
+        match self.bursts {
+            Some(_) => format!("{} that comes and goes", self.place),
+            None => format!("{} over {}", self.place, self.coordinate),
+        }
     }
+}
+
+/// What comes and goes: all bursts of all recordings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BurstsReport {
+    /// How many there are.
+    pub count: usize,
+    /// Share of the time of the recordings that they take, percent.
+    pub share_of_time_percent: f64,
+    /// Smallest size ...
+    pub smallest: f64,
+    /// ... median ...
+    pub median: f64,
+    /// ... and largest.
+    pub largest: f64,
+    /// Unit of the sizes: ohm, N m, or percent of a reading.
+    pub unit: String,
+    /// Each of them.
+    pub bursts: Vec<BurstReport>,
+}
+
+/// One burst.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BurstReport {
+    /// Number of the recording, from 1.
+    pub recording: usize,
+    /// Beginning, s from the beginning of the recording.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+    /// Size.
+    pub size: f64,
 }
 
 /// A nominal parameter, believed and fitted.
@@ -296,7 +334,6 @@ pub struct ExplainReport {
     /// Effects that a typical size would not show in this recording.
     pub not_testable: Vec<String>,
     /// Laws that no library holds, in the order in which they were found.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub laws: Vec<LawReport>,
     /// What is left, if the library does not explain it.
     pub unexplained: Option<Unexplained>,

@@ -14,6 +14,8 @@ const P_LIMIT: f64 = 0.005;
 const SHARE: f64 = 0.2;
 /// Error over noise below which a model is adequate.
 const ADEQUATE: f64 = 1.02;
+/// Error over noise of a single channel from which something may be left there.
+const EVEN: f64 = 1.05;
 /// Least size, in typical sizes.
 const LEAST_SIZE: f64 = 0.05;
 
@@ -85,6 +87,22 @@ pub(crate) fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
         && !worse_on_proof(before, after)
 }
 
+/// Whether the data tell `better` from `worse`: it beats it, or it does so on the recordings that tell the two apart while
+/// the others, in which both predict the same, say nothing.
+pub(crate) fn surpasses(study: &Study, better: &Trial, worse: &Trial) -> bool {
+    if beats(better, worse) {
+        return true;
+    }
+    let folds = gain(&worse.folds, &better.folds);
+    let proof = gain(&worse.proof, &better.proof);
+    if folds > GAIN {
+        return !worse_on_proof(worse, better) && study.proof_is_silent(better, worse);
+    }
+    let no_worse =
+        better.folds.iter().sum::<f64>() < (1.0 + LESSER_GAIN) * worse.folds.iter().sum::<f64>();
+    proof > GAIN && no_worse && study.fit_is_silent(better, worse)
+}
+
 /// Whether `better` beats `worse` on the fitted recording alone.
 fn beats_on_folds(better: &Trial, worse: &Trial) -> bool {
     gain(&worse.folds, &better.folds) > GAIN
@@ -123,6 +141,21 @@ fn large_enough(trial: &Trial) -> bool {
     let mut coordinates = (crate::model::prior::N_NOMINAL..h.z.len()).filter(mine);
     let resonance = h.effects[last].effect.descriptor().is_resonance();
     resonance || coordinates.any(|k| h.parameter(k).role == Role::Size && h.z[k].abs() > LEAST_SIZE)
+}
+
+/// Whether no single channel stands out, which the error of all together would hide.
+pub(crate) fn even(study: &Study, trial: &Trial) -> bool {
+    let gate = EVEN * (1.0 + 2.0 * study.allowance());
+    study
+        .channel_errors(trial)
+        .iter()
+        .all(|error| *error < gate)
+}
+
+/// Whether `better` is somewhat better by folds and on the proving recordings, each time beyond chance.
+pub(crate) fn helps(better: &Trial, worse: &Trial) -> bool {
+    let folds = gain(&worse.folds, &better.folds);
+    folds.min(gain(&worse.proof, &better.proof)) > LESSER_GAIN
 }
 
 /// Whether nothing provable is left.

@@ -39,7 +39,7 @@ pub(crate) fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
 ///
 /// One operating point never shows all of them: held at its prior, a parameter can be replaced by others. They do not
 /// explain the recording if they have to leave their priors further than the parameter itself.
-fn strains(trial: &Trial, deviations: &[f64; N_NOMINAL]) -> f64 {
+pub(crate) fn strains(trial: &Trial, deviations: &[f64; N_NOMINAL]) -> f64 {
     let nominals = trial.fit.hypothesis.z.iter().zip(deviations);
     nominals.map(|(z, deviation)| (z / deviation).powi(2)).sum()
 }

@@ -30,7 +30,7 @@ pub(crate) fn cut(whole: &Case, rated: &Rated<f64>, stretches: &[Stretch]) -> Ca
         speed: taken(&whole.speed, &samples),
         running_at_cuts: samples[1..]
             .iter()
-            .map(|part| running_at(whole, rated, part.start))
+            .map(|part| Some(running_at(whole, rated, part.start)))
             .collect(),
         open: intersections(&whole.open, &samples),
         measured: taken(&whole.measured, &rows),
@@ -114,7 +114,11 @@ fn timeline(whole: &Case, samples: &[Range<usize>]) -> Timeline {
     for part in samples {
         if sample > 0 {
             let t = t_sample * part.start as f64;
-            cuts.push(Cut { sample, t });
+            cuts.push(Cut {
+                sample,
+                t,
+                is_new: false,
+            });
         }
         sample += part.len();
     }
