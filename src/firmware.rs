@@ -130,6 +130,7 @@ async fn run(monitor: &mut Monitor, panel: &mut Panel, mut sources: Sources) -> 
             Pause::Gap(gap) => {
                 defmt::warn!("samples are missing: {}", gap);
                 panel.record.interrupt();
+                panel.watchdog.starve();
             }
             Pause::Learnt(calibration) => {
                 panel.commissioning.store(&calibration);

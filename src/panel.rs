@@ -115,12 +115,13 @@ impl Panel {
         let (doubts, energised) = (self.all_doubts(), self.relay.is_energised());
         self.tell(doubts);
         self.record.note_health(doubts, energised);
-        self.record.refresh(&shown);
+        self.record.refresh(&shown, &self.commissioning);
         self.wires.set(levels(&shown.lamps, bright));
     }
 
-    /// Logs every doubt that is new.
+    /// Logs every doubt that is new. One that has gone and comes back is new to people, too.
     fn tell(&mut self, doubts: Doubts) {
+        self.acknowledged = Doubts::from_bits(self.acknowledged.bits() & doubts.bits());
         let new = doubts.bits() & !self.told.bits();
         for doubt in Doubts::from_bits(new).iter() {
             defmt::error!("doubt: {=str}", doubt.label());

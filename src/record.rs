@@ -2,7 +2,7 @@
 
 use board::modbus::{BoardStatus, Image, Status};
 use board::{CAPTURE_EVERY, Capture, Doubts, Shown};
-use monitor::{Lamp, Monitor, NotJudged, RawSample, Report};
+use monitor::{Lamp, Monitor, RawSample, Report};
 
 use crate::commissioning::Commissioning;
 use crate::hardware::serial;
@@ -32,16 +32,12 @@ impl Record {
             program: safety::program(),
             ..BoardStatus::default()
         };
-        let nothing_yet = Report {
-            not_judged: Some(NotJudged::NotLocked),
-            ..Report::default()
-        };
-        let shown = Shown::default();
+        let (shown, status) = (Shown::default(), Status::default());
         Record {
             telemetry,
-            registers: Status::default().take(&nothing_yet, &shown, &board),
+            registers: status.nothing_yet(&shown, &board),
             shown,
-            status: Status::default(),
+            status,
             board,
             capture,
             was_lit: false,
@@ -67,7 +63,8 @@ impl Record {
         self.board.uptime_s = uptime_s;
         self.board.stack_bytes = stack_bytes as u16;
         self.board.crashes = crashes as u16;
-        self.board.stored_data_errors = safety::faults::stored_data_errors() as u16;
+        let errors = safety::faults::stored_data_errors();
+        self.board.stored_data_errors = errors.min(u32::from(u16::MAX)) as u16;
         self.stale = true;
     }
 
@@ -117,8 +114,9 @@ impl Record {
 
     /// Tells a master at once what the door shows now, where it changed since the last report.
     #[inline(never)]
-    pub fn refresh(&mut self, shown: &Shown) {
+    pub fn refresh(&mut self, shown: &Shown, commissioning: &Commissioning) {
         if self.shown != *shown || self.stale {
+            commissioning.describe(&mut self.board);
             self.shown = *shown;
             self.stale = false;
             self.status.refresh(&mut self.registers, shown, &self.board);

@@ -51,8 +51,13 @@ impl NorFlashError for FlashError {
     }
 }
 
+/// Whether the supply is below the voltage detector's level.
+pub fn is_supply_low() -> bool {
+    pac::PWR.sr2().read().pvdo()
+}
+
 fn supplied() -> Result<(), FlashError> {
-    match pac::PWR.sr2().read().pvdo() {
+    match is_supply_low() {
         true => Err(FlashError::LowSupply),
         false => Ok(()),
     }

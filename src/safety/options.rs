@@ -3,6 +3,8 @@
 use embassy_stm32::pac;
 use embassy_stm32::pac::flash::regs::Optr;
 
+use crate::hardware::flash_store;
+
 /// About 2.8 V: below it flash cannot be trusted to be programmed.
 const BROWN_OUT_LEVEL: u8 = 4;
 const KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
@@ -26,8 +28,12 @@ pub fn are_prepared() -> bool {
     options == prepared(options)
 }
 
-/// Writes them and starts the board with them.
+/// Writes them and starts the board with them; where the supply is low nothing is written, and SENSOR blinks on.
 pub fn prepare() {
+    if flash_store::is_supply_low() {
+        defmt::error!("option bytes not written: low supply");
+        return;
+    }
     let options = prepared(pac::FLASH.optr().read());
     while pac::FLASH.sr().read().bsy() {}
     FLASH_KEYS

@@ -35,6 +35,7 @@ impl Watchdog {
         pac::IWDG
             .winr()
             .write(|w| w.set_win(TIMEOUT_COUNTS - CLOSED_COUNTS));
+        note(Instant::now());
         Watchdog {
             _peripheral: peripheral,
             fed: Instant::now(),
@@ -52,8 +53,13 @@ impl Watchdog {
         if missing == 0 {
             self.feed(now);
         } else {
-            retained::note(missing, marks::uptime_ms());
+            note(now);
         }
+    }
+
+    /// Does not feed it: there was no good block. Should it end the program, it is told what else was missing.
+    pub fn starve(&self) {
+        note(Instant::now());
     }
 
     /// Feeds it while no samples are taken: during the lamp test, and where nothing is computed.
@@ -68,6 +74,14 @@ impl Watchdog {
     fn feed(&mut self, now: Instant) {
         pac::IWDG.kr().write(|w| w.set_key(Key::RESET));
         marks::wipe();
+        // Should the program never look again, all of them were missing.
+        note(now);
         self.fed = now;
     }
+}
+
+/// Notes which marks are missing now, should the watchdog end the program.
+fn note(now: Instant) {
+    marks::note_time(now);
+    retained::note(marks::missing(), marks::uptime_ms());
 }

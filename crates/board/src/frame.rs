@@ -80,7 +80,7 @@ impl Frame {
 }
 
 /// Number of the reason why a window counts for nothing; 0 where it was judged.
-pub(crate) fn why_not_judged(report: &Report, shown: &Shown) -> u8 {
+fn why_not_judged(report: &Report, shown: &Shown) -> u8 {
     match shown.instrument_faulty {
         true => Reason::Instrument.number(),
         false => report.not_judged.map_or(0, |why| why.reason().number()),

@@ -2,6 +2,8 @@
 
 mod common;
 
+use board::modbus::Field;
+use common::master::{Master, UNIT};
 use common::{LAMP_TEST_S, Sensors, board, firmware, host_lamps, scenario, watch};
 use monitor::RawSample;
 use motor::load::Load;
@@ -99,6 +101,9 @@ fn a_stopped_converter_clock_resets_the_board_and_its_return_brings_it_back() {
     board.stop_converter_clock(false);
     board.run(LAMP_TEST_S + 1.5).expect("a run");
     assert_eq!(board.lamps(), HEALTHY);
+    // Without blocks there are no self-tests either; Modbus was alive.
+    let missing = Master::new(UNIT).long(&mut board, Field::CrashAddress);
+    assert_eq!(missing, 1 | 4, "marks that were missing");
 }
 
 #[test]

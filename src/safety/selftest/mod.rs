@@ -22,7 +22,7 @@ const SECOND: u32 = 250;
 pub struct SelfTest {
     flash: FlashTest,
     ram: RamTest,
-    settings: Settings,
+    settings: Option<Settings>,
     calendar: Calendar,
     doubts: Doubts,
     steps: u32,
@@ -40,7 +40,7 @@ impl SelfTest {
         SelfTest {
             flash,
             ram: RamTest::default(),
-            settings: Settings::default(),
+            settings: None,
             calendar: Calendar::default(),
             doubts,
             steps: 0,
@@ -54,7 +54,10 @@ impl SelfTest {
 
     /// Remembers the settings of the peripherals that are meant to hold from now on.
     pub fn remember_settings(&mut self) {
-        self.settings = Settings::read();
+        let now = self
+            .settings
+            .map_or_else(Settings::read, Settings::read_after);
+        self.settings = Some(now);
     }
 
     /// Time is not counted over a pause.
@@ -105,7 +108,9 @@ impl SelfTest {
     }
 
     fn look_at_settings(&mut self) {
-        let changed = Settings::read() != self.settings;
+        let changed = self
+            .settings
+            .is_some_and(|settings| settings != Settings::read());
         self.doubts.set(Doubt::Settings, changed);
     }
 }

@@ -5,13 +5,13 @@ use core::f32::consts::{SQRT_2, TAU};
 use micromath::F32Ext;
 use monitor::{CHANNELS, Lamp, Reason, Report, Suspicion, Window, likely, magnitude};
 
+use super::entry::Field;
 use super::map::{Image, MAP_VERSION};
-use super::table::Field;
 use crate::calibration::CalibrationSource;
 use crate::display::Shown;
 use crate::doubt::Doubts;
 use crate::fault_record::FaultRecord;
-use crate::frame::{packed, why_not_judged};
+use crate::frame::packed;
 use crate::learn::LearnState;
 
 /// Rad/s of one turn per minute.
@@ -76,11 +76,54 @@ pub struct BoardStatus {
     pub program: Option<(u32, u32)>,
 }
 
-/// The registers, and what has to be counted for them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What the monitor says of its last window; nothing of it is told while the board doubts what it measures.
+#[derive(Clone, Copy, Debug)]
+struct Judgement {
+    not_judged: u8,
+    fault: u16,
+    per_mille: u16,
+    residuals: [f32; RESIDUALS.len()],
+}
+
+impl Judgement {
+    /// Of nothing, because of `why`.
+    fn missing(why: Reason) -> Self {
+        Judgement {
+            not_judged: why.number(),
+            fault: 0,
+            per_mille: 0,
+            residuals: [f32::NAN; RESIDUALS.len()],
+        }
+    }
+
+    fn of(report: &Report) -> Self {
+        let (fault, probability) = likeliest(report);
+        let residuals = report.residuals.map(|residuals| residuals.r);
+        Judgement {
+            not_judged: report.not_judged.map_or(0, |why| why.reason().number()),
+            fault,
+            per_mille: (1000.0 * probability) as u16,
+            residuals: residuals.unwrap_or([f32::NAN; RESIDUALS.len()]),
+        }
+    }
+}
+
+/// The registers, and what has to be remembered for them.
+#[derive(Clone, Copy, Debug)]
 pub struct Status {
     windows: u32,
     judged: u32,
+    last: Judgement,
+}
+
+impl Default for Status {
+    fn default() -> Self {
+        Status {
+            windows: 0,
+            judged: 0,
+            last: Judgement::missing(Reason::NotLocked),
+        }
+    }
 }
 
 impl Status {
@@ -89,15 +132,21 @@ impl Status {
     pub fn take(&mut self, report: &Report, shown: &Shown, board: &BoardStatus) -> Image {
         self.windows = self.windows.wrapping_add(1);
         self.judged = self.judged.wrapping_add(u32::from(report.is_judged()));
+        self.last = Judgement::of(report);
+        self.fill(report.window.as_ref(), shown, board)
+    }
+
+    /// Registers before the first report.
+    pub fn nothing_yet(&self, shown: &Shown, board: &BoardStatus) -> Image {
+        self.fill(None, shown, board)
+    }
+
+    fn fill(&self, window: Option<&Window>, shown: &Shown, board: &BoardStatus) -> Image {
         let mut image = Image::default();
         image.set_long(Field::Windows, self.windows);
         image.set_long(Field::WindowsJudged, self.judged);
-        put_board(&mut image, board);
-        put_report(&mut image, report);
-        put_cause(&mut image, report, shown);
-        image.set_word(Field::NotJudged, u16::from(why_not_judged(report, shown)));
-        put_window(&mut image, report.window.as_ref());
-        self.put_shown(&mut image, shown);
+        put_window(&mut image, window);
+        self.refresh(&mut image, shown, board);
         image
     }
 
@@ -106,15 +155,13 @@ impl Status {
     #[inline(never)]
     pub fn refresh(&self, image: &mut Image, shown: &Shown, board: &BoardStatus) {
         put_board(image, board);
-        if shown.instrument_faulty {
-            image.set_word(Field::NotJudged, u16::from(Reason::Instrument.number()));
-            image.set_word(Field::LikelyFault, 0);
-            image.set_word(Field::FaultProbability, 0);
-        }
-        self.put_shown(image, shown);
-    }
-
-    fn put_shown(&self, image: &mut Image, shown: &Shown) {
+        put_judgement(
+            image,
+            &match shown.instrument_faulty {
+                true => Judgement::missing(Reason::Instrument),
+                false => self.last,
+            },
+        );
         image.set_long(Field::Lamps, packed(&shown.lamps));
         image.set_word(Field::Verdict, self.verdict(shown));
     }
@@ -180,22 +227,13 @@ fn put_crash(image: &mut Image, crash: Option<&FaultRecord>) {
     image.set_word(Field::CrashLength, crash.length as u16);
 }
 
-fn put_report(image: &mut Image, report: &Report) {
-    let residuals = report
-        .residuals
-        .map_or([f32::NAN; 4], |residuals| residuals.r);
-    for (field, residual) in RESIDUALS.into_iter().zip(residuals) {
+fn put_judgement(image: &mut Image, judgement: &Judgement) {
+    image.set_word(Field::NotJudged, u16::from(judgement.not_judged));
+    image.set_word(Field::LikelyFault, judgement.fault);
+    image.set_word(Field::FaultProbability, judgement.per_mille);
+    for (field, residual) in RESIDUALS.into_iter().zip(judgement.residuals) {
         image.set_float(field, residual);
     }
-}
-
-fn put_cause(image: &mut Image, report: &Report, shown: &Shown) {
-    let (fault, probability) = match shown.instrument_faulty {
-        true => (0, 0.0),
-        false => likeliest(report),
-    };
-    image.set_word(Field::LikelyFault, fault);
-    image.set_word(Field::FaultProbability, (1000.0 * probability) as u16);
 }
 
 /// Number of the likeliest cause while FAULT is lit, the first of equals; 0 when it is none that has a number.

@@ -1,6 +1,6 @@
 //! The register map itself: what stands where, in order of address.
 
-use super::map::{Entry, Kind, Meaning};
+use super::entry::{Entry, FIELDS, Field, Kind, Meaning};
 
 const fn entry(field: Field, kind: Kind, unit: &'static str, meaning: &'static str) -> Entry {
     Entry {
@@ -19,69 +19,6 @@ const fn numbered(field: Field, meaning: Meaning) -> Entry {
         meaning,
     }
 }
-
-/// Names of the values, in the order of [`MAP`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // MAP says it once, for the documentation too.
-pub enum Field {
-    MapVersion,
-    MotorIdentification,
-    ResetCause,
-    Lamps,
-    NotJudged,
-    Verdict,
-    LikelyFault,
-    FaultProbability,
-    Windows,
-    WindowsJudged,
-    Residual1,
-    Residual2,
-    Residual3,
-    Residual4,
-    Threshold1,
-    Threshold2,
-    Threshold3,
-    Threshold4,
-    Voltage,
-    VoltageA,
-    VoltageB,
-    VoltageC,
-    Current,
-    CurrentA,
-    CurrentB,
-    CurrentC,
-    SupplyFrequency,
-    Speed,
-    Temperature,
-    ConverterSupply,
-    Calibration,
-    Learning,
-    LearnedWindows,
-    Capture,
-    CurrentLag,
-    Doubts,
-    Relay,
-    Uptime,
-    Stack,
-    Crashes,
-    CrashCause,
-    CrashProgramCounter,
-    CrashLink,
-    CrashStatus,
-    CrashFaults,
-    CrashHardFault,
-    CrashAddress,
-    CrashStack,
-    CrashLine,
-    CrashLength,
-    CrashUptime,
-    ProgramLength,
-    ProgramChecksum,
-    StoredDataErrors,
-}
-
-/// Number of values.
-pub(super) const FIELDS: usize = Field::StoredDataErrors as usize + 1;
 
 /// Every input register, in order of address.
 pub const MAP: [Entry; FIELDS] = {

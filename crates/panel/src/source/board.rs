@@ -164,7 +164,7 @@ impl Source for BoardSource {
 mod tests {
     use super::*;
     use ::board::modbus::{BoardStatus, Field, Image, Status, address};
-    use ::board::{Display, MAX_FRAME_BYTES, Overrides, Shown, levels};
+    use ::board::{Display, MAX_FRAME_BYTES, Overrides, Relay, Shown, levels};
     use live::SourceError;
     use monitor::{Lamps, NotJudged, Residuals, Window};
     use proptest::prelude::*;
@@ -287,12 +287,19 @@ mod tests {
     }
 
     fn any_overrides() -> impl Strategy<Value = Overrides> {
-        any::<[bool; 4]>().prop_map(
-            |[instrument_faulty, learning, refused, calibration_ignored]| Overrides {
+        any::<[bool; 5]>().prop_map(
+            |[
                 instrument_faulty,
                 learning,
                 refused,
                 calibration_ignored,
+                noticed,
+            ]| Overrides {
+                instrument_faulty,
+                learning,
+                refused,
+                calibration_ignored,
+                noticed,
             },
         )
     }
@@ -341,48 +348,61 @@ mod tests {
             over_before in any_overrides(),
             over_now in any_overrides(),
             latched: bool,
+            judged_before: bool,
             judged: bool,
             acknowledged: bool,
         ) {
+            let report_of = |lamps: Lamps, judged: bool| Report {
+                lamps,
+                not_judged: (!judged).then_some(NotJudged::Transient),
+                residuals: report().residuals.filter(|_| judged),
+                ..report()
+            };
             let mut display = Display::default();
             display.set_latched(latched);
             let mut status = Status::default();
-            let judged_report = report();
-            let first = display.show(&before, &over_before);
-            let mut refreshed = status.take(&judged_report, &first, &BoardStatus::default());
+            let first = report_of(before, judged_before);
+            let shown_first = display.show(&before, &over_before);
+            let mut refreshed = status.take(&first, &shown_first, &BoardStatus::default());
             if acknowledged {
                 display.acknowledge();
             }
             let shown = display.show(&now, &over_now);
-            status.refresh(&mut refreshed, &shown);
-            let report = Report {
-                lamps: now,
-                not_judged: (!judged).then_some(NotJudged::Transient),
-                ..report()
-            };
-            let registers = status.take(&report, &shown, &BoardStatus::default());
-            let frame = Frame::new(&report, &shown, 0, 3_300);
-            let [page] = told(&[frame]).try_into().expect("one window");
+            status.refresh(&mut refreshed, &shown, &BoardStatus::default());
+            // Between two reports a master reads what it would have read had the door shown this from the first.
+            let anew = Status::default().take(&first, &shown, &BoardStatus::default());
+            prop_assert_eq!(refreshed, anew);
 
+            let second = report_of(now, judged);
+            let registers = status.take(&second, &shown, &BoardStatus::default());
+            let frames = [(&first, 0), (&second, 1)]
+                .map(|(report, sequence)| Frame::new(report, &shown, sequence, 3_300));
+            let [page_refreshed, page] = told(&frames).try_into().expect("two windows");
             let door = by_wires(&shown);
-            prop_assert_eq!(&by_master(&registers), &door);
-            prop_assert_eq!(&by_master(&refreshed), &door);
-            prop_assert_eq!(&by_page(&page.lamps), &door);
+            let mut relay = Relay::default();
+            relay.step(&shown, judged, true);
+            prop_assert_eq!(relay.is_energised(), door[8] != Lamp::On && !over_now.instrument_faulty);
 
             let [sensor, fault] = [door[5], door[8]];
-            for registers in [&registers, &refreshed] {
+            for (registers, page) in [(&registers, &page), (&refreshed, &page_refreshed)] {
+                prop_assert_eq!(&by_master(registers), &door);
+                prop_assert_eq!(&by_page(&page.lamps), &door);
                 let verdict = words_of(registers, Field::Verdict, 1)[0];
                 prop_assert_eq!(verdict == 2, fault == Lamp::On);
                 prop_assert!(verdict != 1 || sensor != Lamp::On);
+                let reason = words_of(registers, Field::NotJudged, 1)[0];
+                prop_assert_eq!(&page.not_judged, &words::reason(reason as u8));
+                let residual = words_of(registers, Field::Residual1, 2);
+                let residual = f32::from_bits(u32::from(residual[0]) << 16 | u32::from(residual[1]));
+                prop_assert_eq!(residual.is_nan(), page.r_percent.is_none());
             }
-            let reason = words_of(&registers, Field::NotJudged, 1)[0];
-            prop_assert_eq!(page.not_judged, words::reason(reason as u8));
             // A board that doubts itself blames nothing on the motor.
             if over_now.instrument_faulty {
                 prop_assert!(page.causes.is_empty() && page.r_percent.is_none());
-                prop_assert_eq!(words_of(&registers, Field::LikelyFault, 1)[0], 0);
-                prop_assert_eq!(words_of(&refreshed, Field::LikelyFault, 1)[0], 0);
-                prop_assert_eq!(reason, 14);
+                for registers in [&registers, &refreshed] {
+                    prop_assert_eq!(words_of(registers, Field::LikelyFault, 1)[0], 0);
+                    prop_assert_eq!(words_of(registers, Field::NotJudged, 1)[0], 14);
+                }
             }
         }
     }

@@ -7,8 +7,8 @@ use rand_pcg::Pcg64Mcg;
 use rmodbus::ModbusProto;
 use rmodbus::client::ModbusRequest;
 
+use super::super::entry::Field;
 use super::super::map::address;
-use super::super::table::Field;
 use super::*;
 
 const UNIT: u8 = 17;
