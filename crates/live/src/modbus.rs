@@ -50,8 +50,8 @@ pub enum ModbusError {
     Port(#[from] SourceError),
     /// Nothing came back.
     #[error(
-        "no answer from unit {unit} at {baud} bit/s; is this the RS-485 line (not the debugger's port), and are unit, \
-         speed and parity the board's? Holding the button while power returns sets 19200 bit/s, even parity, unit 1"
+        "no answer from unit {unit} at {baud} bit/s; is this the RS-485 line (not the debugger's port)? The board speaks \
+         19200 bit/s, even parity, unit 1"
     )]
     Silent {
         /// Who was asked.

@@ -1,6 +1,8 @@
 //! The board's own defects: each is found in its time, recorded, and opens the relay or blinks SENSOR.
 
 mod common;
+#[path = "safety/rates_and_learning.rs"]
+mod rates_and_learning;
 
 use board::modbus::Field;
 use board::{Doubt, Doubts, FaultCause};

@@ -170,9 +170,10 @@ fn marks(missing: u32) -> String {
         .enumerate()
         .filter(|(k, _)| missing >> k & 1 == 1);
     let named: Vec<&str> = named.map(|(_, name)| name).collect();
-    match named.is_empty() {
-        true => "nothing that was noted: the processor stood".into(),
-        false => named.join(", "),
+    match named.len() {
+        0 => "nothing that was noted".into(),
+        3 => format!("{}: the program stood", named.join(", ")),
+        _ => named.join(", "),
     }
 }
 
