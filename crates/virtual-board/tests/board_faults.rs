@@ -101,9 +101,9 @@ fn a_stopped_converter_clock_resets_the_board_and_its_return_brings_it_back() {
     board.stop_converter_clock(false);
     board.run(LAMP_TEST_S + 1.5).expect("a run");
     assert_eq!(board.lamps(), HEALTHY);
-    // Without blocks there are no self-tests either; Modbus was alive.
+    // Calibrating the converter anew never ends: no good block, whatever else was missing when it began.
     let missing = Master::new(UNIT).long(&mut board, Field::CrashAddress);
-    assert_eq!(missing, 1 | 4, "marks that were missing");
+    assert_eq!(missing & 1, 1, "{missing}");
 }
 
 #[test]

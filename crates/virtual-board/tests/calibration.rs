@@ -157,9 +157,11 @@ const BETWEEN_LESSONS_S: f64 = 22.0;
 
 /// A board with an old calibration, about to store a new one, and the old one.
 fn about_to_store() -> (VirtualBoard, Calibration) {
-    // One offset goes between the two lessons: what they teach can then be told apart by the frames.
+    // The offsets go between the two lessons: what they teach can then be told apart by the frames.
     let mut scenario = offsets();
-    scenario.faults[1].to_s = BETWEEN_LESSONS_S;
+    for fault in &mut scenario.faults {
+        fault.to_s = BETWEEN_LESSONS_S;
+    }
     let inputs = Remembered {
         sensors: Sensors::new(&scenario),
         seen: Vec::new(),

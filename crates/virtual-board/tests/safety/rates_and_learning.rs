@@ -34,8 +34,10 @@ fn a_stack_that_is_nearly_full_is_told() {
 fn a_program_that_feeds_the_watchdog_in_a_tight_loop_is_ended() {
     let mut board = running();
     for _ in 0..2 {
-        board.poke(WATCHDOG_KEY, FEED).expect("a register");
-        board.run(0.001).expect("a run");
+        if board.tally().resets == 0 {
+            board.poke(WATCHDOG_KEY, FEED).expect("a register");
+            board.run(0.001).expect("a run");
+        }
     }
     assert_starts_again(&mut board, 0.001, FaultCause::Watchdog);
 }
