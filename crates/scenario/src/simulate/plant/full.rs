@@ -2,10 +2,10 @@
 
 use super::presence::{Presence, common_series};
 use super::waveform::Waveform;
+use crate::Load;
 use crate::simulate::{SimulationError, Truth};
 use crate::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::{Dynamic, DynamicState, Extra, Hooks, phases};
-use motor::load::Load;
 use motor::steady_state::SteadyState;
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
@@ -14,7 +14,7 @@ use num_complex::Complex64;
 const LARGEST_STEP_S: f64 = 100e-6;
 /// RK4 is stable up to 2.78 over the fastest rate; this keeps it accurate as well.
 const STEP_TIMES_RATE: f64 = 0.5;
-/// Width of the band of speeds in which a passive load changes its sign, rad/s (see `motor::load`).
+/// Width of the band of speeds in which a passive load changes its sign, rad/s (see [`Load`]).
 const STANDSTILL_RAD_S: f64 = 0.1;
 
 /// Builds the motor from its parameters and the faults in force, which may bring effects along.
