@@ -127,9 +127,9 @@ impl Case {
         self.coarse = self
             .coarse
             .as_ref()
-            .map(|x| x.taken(&[of_recording.clone()]));
+            .map(|x| x.taken(std::slice::from_ref(&of_recording)));
         self.supply = self.supply.taken(&[all]);
-        self.load_windows = self.load_windows.taken(&[of_recording.clone()]);
+        self.load_windows = self.load_windows.taken(std::slice::from_ref(&of_recording));
         self.speed_windows = self.speed_windows.taken(&[of_recording]);
     }
 }

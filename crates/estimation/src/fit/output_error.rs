@@ -271,9 +271,10 @@ impl<'a> Search<'a> {
         if let Some(linear) = &mut self.linear {
             linear.stale = true;
         }
-        let gain = better.as_ref().map(|better| better.gain);
-        better.map(|better| self.go(better));
-        gain
+        let better = better?;
+        let gain = better.gain;
+        self.go(better);
+        Some(gain)
     }
 
     /// Moves there and corrects the derivatives by what the move has shown.
