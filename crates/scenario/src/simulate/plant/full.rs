@@ -96,7 +96,7 @@ impl<H: Hooks> Full<H> {
     }
 
     pub(super) fn truth(&self, t: f64) -> Truth {
-        let supply = self.waveform.at(t);
+        let supply = self.voltage(t);
         let omega_mech = self.state.omega_mech;
         let tau_load = self.load.torque(t, omega_mech);
         let flow = self.model.flow(t, &self.state, supply, tau_load);
@@ -112,6 +112,14 @@ impl<H: Hooks> Full<H> {
         }
     }
 
+    /// Voltage at the terminals, V: the supply's, or what the rotor induces in an open stator.
+    fn voltage(&self, t: f64) -> Complex64 {
+        match self.waveform.is_closed(t) {
+            true => self.waveform.at(t),
+            false => self.model.open_voltage(t, &self.state),
+        }
+    }
+
     pub(super) fn advance(&mut self, t: f64, t_next: f64) {
         let steps = ((t_next - t) / self.largest_step - 1e-9).ceil().max(1.0);
         let h = (t_next - t) / steps;
@@ -121,8 +129,22 @@ impl<H: Hooks> Full<H> {
         let load = |time: f64, omega: f64| self.load.torque(time.min(last), omega);
         let mut k = 0.0;
         while k < steps {
-            self.model.step(&mut self.state, t + k * h, h, supply, load);
+            let begin = t + k * h;
+            if self.waveform.is_closed(begin) {
+                self.model.step(&mut self.state, begin, h, supply, load);
+            } else {
+                self.model
+                    .interrupt(&mut self.state, begin, Complex64::ZERO);
+                let u = self.model.open_voltage(begin, &self.state);
+                let omega_el = self.now.1.n_p * self.state.omega_mech;
+                let turned = |time: f64| u * Complex64::from_polar(1.0, omega_el * (time - begin));
+                self.model.step(&mut self.state, begin, h, turned, load);
+            }
             k += 1.0;
+        }
+        if !self.waveform.is_closed(t_next) {
+            self.model
+                .interrupt(&mut self.state, t_next, Complex64::ZERO);
         }
     }
 }

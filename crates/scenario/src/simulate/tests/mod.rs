@@ -2,6 +2,7 @@
 
 mod asymmetry;
 mod chain;
+mod coast_down;
 mod instruments;
 mod switching;
 
