@@ -7,18 +7,19 @@ mod pairs;
 mod rebuilt;
 
 use crate::bursts::search::bursts;
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::Effort;
+use crate::laws::formula::dictionary::Shapes;
 use crate::laws::formula::prove::formulas;
 use crate::laws::search::{LawSearch, LawStep};
-use crate::model::prior::{N_NOMINAL, NOMINALS};
-use crate::search::accept::{adequate, beats, even, explained, proven, surpasses};
-use crate::search::off::{SIGNIFICANT, strains};
 use crate::search::refit::{Candidate, Round, begin, combined};
 use complete::{complete, put_on_top};
 use contests::contests;
 pub(crate) use contests::stands_for;
 use disguise::disguised;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::Effort;
+use estimation::model::prior::{N_NOMINAL, NOMINALS};
+use estimation::proof::accept::{adequate, beats, even, explained, proven, surpasses};
+use estimation::proof::off::{SIGNIFICANT, strains};
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
@@ -77,10 +78,11 @@ impl Explanation {
     }
 }
 
-/// Explains a study. `excluded` effects are not asked about; `progress` hears what is being done.
+/// Explains a study. `excluded` effects are not asked about, curves are held against `shapes`; `progress` hears what is being done.
 pub(crate) fn explain(
     study: &Study,
     excluded: &[&str],
+    shapes: Shapes,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
     progress("refitting the parameters", 0.1);
@@ -97,7 +99,7 @@ pub(crate) fn explain(
     let proven = |law: &&mut LawStep| law.proven && law.bursts.is_empty();
     for law in explanation.laws.iter_mut().filter(proven) {
         progress("holding formulas against the curve", 0.9);
-        law.formulas = formulas(study, law.as_curve());
+        law.formulas = formulas(study, shapes, law.as_curve());
     }
     if explanation.nameable && explanation.laws.is_empty() {
         progress("contesting the parameters that moved", 0.92);
@@ -283,7 +285,7 @@ fn drop_patches(study: &Study, baseline: &Trial, steps: &mut Vec<Step>) {
 }
 
 /// The effects of a trial with the nominals at their priors.
-fn at_prior(trial: &Trial) -> crate::model::prior::Hypothesis {
+fn at_prior(trial: &Trial) -> estimation::model::prior::Hypothesis {
     let mut h = trial.fit.hypothesis.clone();
     for k in (0..N_NOMINAL).filter(|&k| h.free[k]) {
         h.z[k] = 0.0;

@@ -6,7 +6,7 @@ use board::modbus::Field;
 use common::master::{Master, UNIT};
 use common::{LAMP_TEST_S, Sensors, board, firmware, host_lamps, scenario, watch};
 use monitor::RawSample;
-use motor::load::Load;
+use scenario::Load;
 use motor::motor_file::Frame as MotorFrame;
 use scenario::{Fault, Start};
 use virtual_board::{Cause, Inputs, VirtualBoard};

@@ -1,20 +1,19 @@
 //! Which effect is missing, as a report.
 
-use crate::data::case::Case;
-use crate::data::question::{Error, Question};
-use crate::data::study::{Study, Trial};
 use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
 use crate::report::frame;
 use crate::report::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
 use crate::report::types::FrameReport;
-use crate::report::types::{
-    ExplainReport, RankReport, SpeedScaleReport, StepReport, Unexplained, Verdict,
-};
+use crate::report::types::{ExplainReport, RankReport, StepReport, Unexplained, Verdict};
 use crate::report::unexplained;
-use crate::search::accept::explained;
 use crate::search::inconclusive::{self, Uncertainty};
+use estimation::data::case::Case;
+use estimation::data::question::{Error, Question};
+use estimation::data::study::{Study, Trial};
+use estimation::model::speed_scale::SpeedScaleReport;
+use estimation::proof::accept::explained;
 use motor::MotorFile;
 use motor::effect::Descriptor;
 use recording::Source;
@@ -69,9 +68,8 @@ fn explained_by(
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
     match Question::new(sources, motor, progress) {
-        Ok(mut question) => {
-            question.study.shapes = laws.shapes;
-            let found = explain::explain(&question.study, excluded, progress);
+        Ok(question) => {
+            let found = explain::explain(&question.study, excluded, laws.shapes, progress);
             let frame = judged_frame(&question, motor, found.last());
             progress("done", 1.0);
             Ok(report(&question, &found, frame))

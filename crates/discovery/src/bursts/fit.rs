@@ -3,12 +3,12 @@
 use super::pulse::{Pulse, drawn, pulses};
 use super::smoother::{Measured, Smoothed, Wander, smooth};
 use super::trace::{action, trace};
-use crate::data::case::Case;
-use crate::data::channels::N_CHANNELS;
-use crate::fit::normal_equations::{self, Penalty};
-use crate::fit::output_error::{Effort, Fit, fit};
 use crate::laws::sensitivity::Sensitivities;
-use crate::model::prior::{Hypothesis, Prior};
+use estimation::data::case::Case;
+use estimation::data::channels::N_CHANNELS;
+use estimation::fit::normal_equations::{self, Penalty};
+use estimation::fit::output_error::{Effort, Fit, fit};
+use estimation::model::prior::{Hypothesis, Prior};
 use motor::effect::curve::Place;
 use motor::effect::tangent::Addition;
 use nalgebra::DVector;

@@ -2,8 +2,8 @@
 
 use super::pulse::Pulse;
 use super::trace::action;
-use crate::data::study::{Study, Trial};
 use crate::report::types::{BurstReport, BurstsReport, LawCurve};
+use estimation::data::study::{Study, Trial};
 use motor::effect::curve::Place;
 
 /// Bursts of all recordings, in units that a person measures in.

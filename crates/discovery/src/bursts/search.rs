@@ -4,11 +4,11 @@ use super::fit::{Fitted, Scene};
 use super::pulse::Pulse;
 use super::smoother::Wander;
 use super::trace::{action, places};
-use crate::data::study::{Study, Subject, Trial};
-use crate::fit::normal_equations;
 use crate::laws::search::LawStep;
-use crate::model::prior::Hypothesis;
-use crate::search::accept::{adequate, beats, explained};
+use estimation::data::study::{Study, Subject, Trial};
+use estimation::fit::normal_equations;
+use estimation::model::prior::Hypothesis;
+use estimation::proof::accept::{adequate, beats, explained};
 use motor::effect::curve::Place;
 use rayon::prelude::*;
 

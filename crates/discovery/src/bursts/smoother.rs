@@ -233,10 +233,10 @@ mod tests {
     use super::*;
     use crate::bursts::pulse::{Pulse, drawn};
     use crate::bursts::trace::{action, trace};
-    use crate::fit::output_error::{Effort, fit};
     use crate::laws::sensitivity::Sensitivities;
-    use crate::model::prediction::{SpeedObserver, outputs};
-    use crate::tests::specimen;
+    use estimation::fit::output_error::{Effort, fit};
+    use estimation::model::prediction::{SpeedObserver, outputs};
+    use estimation::specimen;
     use motor::effect::curve::Place;
 
     /// A torque that comes for 40 ms in a simulation without noise: the smoothed amount is there when it is, and no other

@@ -5,11 +5,11 @@ use super::pairs::pair;
 use super::rebuilt::{effects_of, refitted};
 use super::{Explanation, STRAINED, Step, behind, mostly_explained};
 use crate::bursts::search::bursts;
-use crate::data::study::{Study, Trial};
 use crate::laws::formula::prove::law_of;
 use crate::laws::search::{LawSearch, LawStep};
-use crate::search::accept::{adequate, beats, even, helps};
-use crate::search::off::strains;
+use estimation::data::study::{Study, Trial};
+use estimation::proof::accept::{adequate, beats, even, helps};
+use estimation::proof::off::strains;
 use motor::effect::EffectConfig;
 
 /// Completes an explanation of the library's with what it does not hold.

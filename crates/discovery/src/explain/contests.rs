@@ -1,11 +1,11 @@
 //! Parameters that moved against effects that they may stand for.
 
 use super::{Explanation, WORTH_A_CABLE};
-use crate::data::study::{Study, Trial};
-use crate::model::prior::{FRICTION, LEAKAGE};
-use crate::search::accept::{beats, proven};
-use crate::search::off;
 use crate::search::refit::{Candidate, likely};
+use estimation::data::study::{Study, Trial};
+use estimation::model::prior::{FRICTION, LEAKAGE};
+use estimation::proof::accept::{beats, proven};
+use estimation::proof::off;
 use motor::effect::Nominal;
 
 /// Effects that explain the recording as well as a parameter that moved, for parameters that can stand for one.

@@ -4,13 +4,13 @@
 //! they belong; from there an effect of the library may explain the recordings as well, and then it is named.
 
 use super::STRAINED;
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::Effort;
 use crate::laws::search::LawStep;
-use crate::model::prior::N_NOMINAL;
-use crate::search::accept::{adequate, beats, proven};
-use crate::search::off::strains;
 use crate::search::refit::{Candidate, seconds};
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::Effort;
+use estimation::model::prior::N_NOMINAL;
+use estimation::proof::accept::{adequate, beats, proven};
+use estimation::proof::off::strains;
 
 /// Effects that are refitted.
 const ASKED: usize = 4;

@@ -5,11 +5,11 @@
 
 use super::Step;
 use super::rebuilt::refitted;
-use crate::data::study::{Study, Trial};
 use crate::laws::modes::Modes;
 use crate::laws::search::{LawSearch, LawStep, Laws};
-use crate::search::accept::{adequate, beats};
 use crate::search::refit::{Round, combined, seconds};
+use estimation::data::study::{Study, Trial};
+use estimation::proof::accept::{adequate, beats};
 use motor::effect::EffectConfig;
 
 /// Single ones on top of which everything is asked again.

@@ -1,9 +1,9 @@
 //! Models put together again from what other fits found.
 
 use super::Step;
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::Effort;
-use crate::model::prior::N_NOMINAL;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::Effort;
+use estimation::model::prior::N_NOMINAL;
 use motor::effect::EffectConfig;
 
 /// The effects of steps as they were fitted.

@@ -1,7 +1,7 @@
 use super::contests::contest;
 use super::*;
-use crate::model::prior::{FRICTION, LEAKAGE};
-use crate::tests::specimen;
+use estimation::model::prior::{FRICTION, LEAKAGE};
+use estimation::specimen;
 use motor::effect::Plant;
 use motor::effects::names;
 use std::collections::BTreeSet;
@@ -244,7 +244,9 @@ fn two_effects_are_found_in_two_rounds() {
     });
     let mut told = Vec::new();
     let excluded = all_but(&["windage", "speed-scale"]);
-    let found = explain(&study, &excluded, &mut |_, share| told.push(share));
+    let found = explain(&study, &excluded, Shapes::default(), &mut |_, share| {
+        told.push(share)
+    });
     let names: Vec<&str> = found
         .last()
         .fit
@@ -274,7 +276,9 @@ fn two_effects_are_found_in_two_rounds() {
 fn what_cannot_be_named_is_not_contested() {
     let study = specimen::table_study(with("speed-scale", 2.0));
     let mut told = Vec::new();
-    let found = explain(&study, &names(), &mut |_, share| told.push(share));
+    let found = explain(&study, &names(), Shapes::default(), &mut |_, share| {
+        told.push(share)
+    });
     assert!(!found.nameable && found.steps.is_empty() && found.first.screened.is_empty());
     let got = shares(&told);
     assert!(
@@ -291,13 +295,13 @@ fn what_little_a_table_leaves_over_is_no_evidence() {
         with("speed-scale", 1.0)(plant);
     });
     let excluded = all_but(&["windage", "speed-scale", "core-loss"]);
-    let found = explain(&study, &excluded, &mut |_, _| ());
+    let found = explain(&study, &excluded, Shapes::default(), &mut |_, _| ());
     assert_eq!(found.steps.len(), 1);
     let last = &found.steps[0].trial;
     assert!(!adequate(&study, last), "{}", study.fold_error(&last.folds));
     assert!(explained(&study, &found.baseline, last) > NAMED_SHARE);
     // A table measured ten times as badly shows only the larger of the two.
     study.fitted.floor.mean = 100.0;
-    let found = explain(&study, &excluded, &mut |_, _| ());
+    let found = explain(&study, &excluded, Shapes::default(), &mut |_, _| ());
     assert!(found.steps.len() == 1 && adequate(&study, found.last()));
 }

@@ -1,8 +1,8 @@
 //! Which laws can be asked about in a recording.
 
-use crate::data::case::Case;
 use crate::laws::modes::Modes;
 use crate::laws::motion::Motion;
+use estimation::data::case::Case;
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::{EffectConfig, Plant};
 

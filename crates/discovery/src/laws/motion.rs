@@ -1,6 +1,6 @@
 //! What a recording visits: the quantities over which a law may act, as the fitted model has them.
 
-use crate::data::case::Case;
+use estimation::data::case::Case;
 use motor::dynamic::clarke;
 use motor::effect::curve::{Coordinate, Place};
 use motor::effect::tangent::Tangent;

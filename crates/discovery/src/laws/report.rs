@@ -1,14 +1,14 @@
 //! A law as a report shows it.
 
 use crate::bursts::report::{bursts_report, corners};
-use crate::data::study::{Study, Trial};
 use crate::laws::curve::as_knots;
 use crate::laws::formula::prove::{coordinates_of, law_of};
 use crate::laws::formula::report::formula_report;
 use crate::laws::modes::{self, Modes};
 use crate::laws::search::LawStep;
 use crate::report::types::{LawCurve, LawPlace, LawReport};
-use crate::search::accept::explained;
+use estimation::data::study::{Study, Trial};
+use estimation::proof::accept::explained;
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::to_entry;
 use nalgebra::DVector;

@@ -1,10 +1,10 @@
 //! Tries every law at once: sensitivities of its modes against the normal equations of the present fit.
 
-use crate::data::case::Case;
-use crate::fit::normal_equations::{self, Block, Penalty};
-use crate::fit::output_error::Fit;
 use crate::laws::modes::{self, Modes};
 use crate::laws::sensitivity::Sensitivities;
+use estimation::data::case::Case;
+use estimation::fit::normal_equations::{self, Block, Penalty};
+use estimation::fit::output_error::Fit;
 use motor::effect::EffectConfig;
 use nalgebra::DVector;
 use rayon::prelude::*;

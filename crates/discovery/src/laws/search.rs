@@ -1,16 +1,16 @@
 //! Which law is missing: screened, refitted, proven as an effect must be.
 
 use crate::bursts::pulse::Pulse;
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::{Effort, fit, fit_knowing};
 use crate::laws::formula::prove::{Curve, Proven};
 use crate::laws::menu::menu;
 use crate::laws::modes::{self, Modes};
 use crate::laws::screen::{Screened, best_stiffness, screen};
 use crate::laws::sensitivity::Sensitivities;
-use crate::model::prediction::SpeedObserver;
-use crate::search::accept::{explained, proven, surpasses};
 use crate::search::refit::combined;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::{Effort, fit, fit_knowing};
+use estimation::model::prediction::SpeedObserver;
+use estimation::proof::accept::{explained, proven, surpasses};
 use motor::effect::curve::Action;
 use rayon::prelude::*;
 

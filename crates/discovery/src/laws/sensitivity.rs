@@ -2,13 +2,13 @@
 //!
 //! One linearised run of the model serves all laws: at each place the amount of a law follows its modes along the run.
 
-use crate::data::case::Case;
-use crate::data::channels::N_CHANNELS;
-use crate::fit::output_error::Fit;
 use crate::laws::modes::{Modes, SPLINES, TURN_MODES, harmonics, spline_modes};
 use crate::laws::motion::Motion;
-use crate::model::prediction::{Drive, driven};
-use crate::model::prior::Prior;
+use estimation::data::case::Case;
+use estimation::data::channels::N_CHANNELS;
+use estimation::fit::output_error::Fit;
+use estimation::model::prediction::{Drive, driven};
+use estimation::model::prior::Prior;
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::tangent::{Addition, Push, Response, Tangent};
 use motor::effect::{EffectConfig, Hook, Plant};
@@ -174,11 +174,11 @@ fn parts(action: Action) -> Vec<Action> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::output_error::{Effort, fit};
     use crate::laws::menu::menu;
     use crate::laws::modes::sizes;
-    use crate::model::prediction::outputs;
-    use crate::tests::specimen;
+    use estimation::fit::output_error::{Effort, fit};
+    use estimation::model::prediction::outputs;
+    use estimation::specimen;
 
     /// A simulation with a little of a mode, held against the linearised run: for every law that the recording asks about.
     ///

@@ -1,12 +1,12 @@
 //! Refits the best candidates with free shapes.
 
-use crate::data::case::Case;
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::{Effort, Fit, fit};
-use crate::model::prediction::SpeedObserver;
-use crate::model::prior::Hypothesis;
-use crate::search::accept::{adequate, explained, proven};
 use crate::search::screen::{Screened, ranked, screen};
+use estimation::data::case::Case;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::{Effort, Fit, fit};
+use estimation::model::prediction::SpeedObserver;
+use estimation::model::prior::Hypothesis;
+use estimation::proof::accept::{adequate, explained, proven};
 use motor::effect::expression;
 use motor::effects::names;
 use rayon::prelude::*;

@@ -164,8 +164,6 @@ pub(super) struct Ready<'a, H: Hooks> {
     restarts: Vec<Restart>,
     run: &'a Run<'a>,
     inputs: &'a Inputs,
-    /// Stator inductance while the rotor flux stands still, H.
-    transient: f64,
 }
 
 /// Chooses the cheapest set of hooks that holds the plant's effects.
@@ -238,7 +236,6 @@ impl<'a, H: Hooks> Ready<'a, H> {
             restarts: restarts(plant, motor, run, inputs),
             run,
             inputs,
-            transient: motor.l_ls + motor.l_lr * motor.l_m / motor.l_r(),
         }
     }
 
@@ -269,7 +266,7 @@ impl<'a, H: Hooks> Ready<'a, H> {
         steer(state, self.run.speed, k, self.t_step());
         if self.run.open.iter().any(|open| open.contains(&k)) {
             let t = self.inputs.t_sample * k as f64;
-            interrupt(&self.model, state, t, self.inputs.u_s[k], self.transient);
+            self.model.interrupt(state, t, self.inputs.u_s[k]);
         }
     }
 
@@ -388,21 +385,6 @@ impl Task for Integrate {
             .map(|k| ready.run.inputs.u_s[k * stride])
             .collect();
         out
-    }
-}
-
-/// Takes the current out of the stator: its flux jumps by the leakage flux, the rotor's stays.
-///
-/// Newton's steps with the unsaturated inductance; saturation and losses at the terminals need the second one.
-fn interrupt<H: Hooks>(
-    model: &Dynamic<H>,
-    state: &mut DynamicState<H::Extra>,
-    t: f64,
-    u: Complex64,
-    transient: f64,
-) {
-    for _ in 0..2 {
-        state.psi_s -= model.current(t, state, u) * transient;
     }
 }
 

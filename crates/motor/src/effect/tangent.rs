@@ -249,8 +249,8 @@ impl Tangent {
         let base = self.outputs(run);
         let mut moved = base.clone();
         for (k, dy) in response.iter().enumerate() {
-            for phase in 0..3 {
-                moved.i_s_abc[k][phase] += dy[phase];
+            for (current, change) in moved.i_s_abc[k].iter_mut().zip(dy) {
+                *current += change;
             }
             moved.omega_mech[k] += dy[3];
         }

@@ -1,10 +1,10 @@
 use super::*;
 use crate::api::errors;
 use crate::explain::Step;
-use crate::model::prior::{FRICTION, MAGNETIZING};
 use crate::search::refit::{Candidate, Round, combined};
 use crate::search::screen::Screened;
-use crate::tests::specimen::{self, apparent_power, with};
+use estimation::model::prior::{FRICTION, MAGNETIZING};
+use estimation::specimen::{self, apparent_power, with};
 use motor::effects::names;
 
 fn question(sources: &[Source]) -> Question {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::tests::specimen;
+use estimation::specimen;
 use motor::effect::Plant;
 
 fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
@@ -279,10 +279,10 @@ fn ringing(frequency_hz: f64) -> Study {
     let mut plant = study.prior.plant.clone();
     plant.effects = shaft;
     let case = &mut study.fitted.case;
-    let out = crate::model::prediction::run(
+    let out = estimation::model::prediction::run(
         case,
         &plant,
-        &crate::model::prediction::Drive::of(case),
+        &estimation::model::prediction::Drive::of(case),
         SpeedObserver::Off,
     );
     for (row, measured) in case.measured.iter_mut().enumerate() {
