@@ -15,17 +15,22 @@ pub struct Fault {
 }
 
 /// What is seen of a fault, by the name of the patch that takes its handling out.
-const SEEN: [(&str, &str); 20] = [
+const SEEN: [(&str, &str); 47] = [
     (
         "block-overwritten",
         "the gap is logged; the lamps stay as they are; no reset",
     ),
+    ("block-rate", "SENSOR and FAULT on within two seconds"),
     (
         "brown-out",
         "the board starts again, tells the cause, and shows what it showed",
     ),
     ("channel-dead", "SENSOR on, FAULT on"),
     ("channel-stuck", "SENSOR on, FAULT on"),
+    (
+        "clock-ratio",
+        "SENSOR and FAULT on within three seconds; an oscillator that is merely hot or cold changes nothing",
+    ),
     (
         "clock-stopped",
         "the watchdog starts the board again; with the clock back the lamps are as before",
@@ -35,34 +40,104 @@ const SEEN: [(&str, &str); 20] = [
         "SENSOR and FAULT on, RUN dark; nothing is sampled or computed",
     ),
     (
+        "crystal-dead",
+        "SENSOR and FAULT on, nothing is judged; the relay is open",
+    ),
+    (
+        "crystal-distrusted",
+        "SENSOR and FAULT on, nothing is judged, until the next start",
+    ),
+    (
+        "crystal-stops",
+        "the board starts again at once and tells the cause; SENSOR and FAULT on",
+    ),
+    (
         "dma-overrun",
         "the gap is logged; the lamps stay as they are; no reset",
     ),
+    ("doubt-returns", "SENSOR blinks again"),
     ("encoder-storm", "no sample is lost, no time either"),
     ("encoder-unplugged", "SENSOR on"),
+    (
+        "fault-record",
+        "the board starts again and tells where and why",
+    ),
     (
         "flash-nmi",
         "the old or the new calibration, never half of one",
     ),
+    ("lamp-wires", "SENSOR blinks; nothing is learnt"),
+    (
+        "learn-doubted",
+        "refused with the reason; the old values stay",
+    ),
+    ("low-supply", "nothing is written; learning says so"),
     ("modbus-damaged", "no answer; nothing changes"),
     ("modbus-endless", "no answer; the next request is answered"),
-    ("modbus-locked-host", "an exception; nothing changes"),
     ("modbus-locked", "an exception; nothing changes"),
+    ("modbus-locked-host", "an exception; nothing changes"),
     ("modbus-other-unit", "no answer; nothing changes"),
+    (
+        "option-bytes",
+        "SENSOR blinks until they are written; nothing is learnt",
+    ),
+    (
+        "panic-record",
+        "the board starts again and tells file and line",
+    ),
+    (
+        "processor",
+        "the board starts again; then SENSOR and FAULT on, RUN dark, nothing is computed",
+    ),
+    (
+        "program-checksum",
+        "SENSOR and FAULT on within half a minute, and at every start",
+    ),
+    (
+        "program-error",
+        "the board starts again and tells the address; in stored data it is counted",
+    ),
+    (
+        "ram-at-start",
+        "SENSOR and FAULT on, RUN dark, no lamp test",
+    ),
+    ("ram-executed", "the board starts again and tells why"),
+    ("ram-parity", "the board starts again and tells the cause"),
+    (
+        "ram-running",
+        "SENSOR and FAULT on once the cell's turn has come, within twenty minutes",
+    ),
     ("record-overwritten", "the old calibration"),
     ("record-torn", "the old calibration"),
+    ("relay-pin", "the relay opens; SENSOR blinks"),
+    (
+        "restarts",
+        "SENSOR and FAULT on, RUN dark, nothing is computed until somebody acknowledges",
+    ),
     (
         "rings-misaligned",
         "the gap is logged; the lamps stay as they are; no reset",
+    ),
+    ("settings", "SENSOR and FAULT on within a second"),
+    ("stack-deep", "SENSOR blinks within ten seconds"),
+    (
+        "stack-overflow",
+        "the board starts again and tells the stack pointer",
+    ),
+    (
+        "task-silent",
+        "the watchdog starts the board again and names the task",
+    ),
+    ("unsealed", "SENSOR blinks; nothing is learnt"),
+    (
+        "vdda",
+        "SENSOR and FAULT on; they go out when the supply is back",
     ),
     (
         "vdda-at-power-up",
         "SENSOR and FAULT on from the first sample",
     ),
-    (
-        "vdda",
-        "SENSOR and FAULT on; they go out when the supply is back",
-    ),
+    ("watchdog-window", "the watchdog starts the board again"),
 ];
 
 /// What reaches the core or the wire besides.
@@ -213,6 +288,7 @@ fn of_patch(path: &Path) -> Fault {
     let (place, name) = test.split_once(' ').expect("file and test");
     let file = match place {
         "board" | "monitor" => format!("crates/{place}"),
+        "safety" => "crates/virtual-board/tests/safety".to_owned(),
         file => format!("crates/virtual-board/tests/{file}.rs"),
     };
     Fault {

@@ -1,7 +1,7 @@
 //! The board's own defects: each is found in its time, recorded, and opens the relay or blinks SENSOR.
 
+#[path = "../common/mod.rs"]
 mod common;
-#[path = "safety/rates_and_learning.rs"]
 mod rates_and_learning;
 
 use board::modbus::Field;
