@@ -47,7 +47,15 @@ pub(crate) struct Step {
     /// The model before it.
     pub before: Trial,
     /// What explains the recording as well.
-    pub tied: Vec<String>,
+    pub rivals: Vec<Candidate>,
+}
+
+impl Step {
+    /// Names of what explains the recording as well.
+    pub fn tied(&self) -> Vec<String> {
+        let names = self.rivals.iter().map(|rival| rival.name.to_owned());
+        names.collect()
+    }
 }
 
 /// Everything that was learnt.
@@ -155,7 +163,7 @@ fn library(
         let step = best.map(|best| Step {
             trial: best.trial.clone(),
             before: base.clone(),
-            tied: tied(study, &base, best, &found.candidates),
+            rivals: tied(study, &base, best, &found.candidates),
         });
         first.get_or_insert(found);
         let Some(step) = step else { break };
@@ -198,7 +206,7 @@ fn behind(
     Some(Step {
         trial: best.trial.clone(),
         before: base.clone(),
-        tied: tied(study, base, best, &all),
+        rivals: tied(study, base, best, &all),
     })
 }
 
@@ -294,16 +302,13 @@ fn at_prior(trial: &Trial) -> estimation::model::prior::Hypothesis {
 }
 
 /// Candidates over which the best has no proven advantage.
-fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<String> {
+fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<Candidate> {
     let equal = |c: &&Candidate| {
         c.name != best.name
             && proven(study, base, &c.trial)
             && !surpasses(study, &best.trial, &c.trial)
     };
-    all.iter()
-        .filter(equal)
-        .map(|c| c.name.to_owned())
-        .collect()
+    all.iter().filter(equal).cloned().collect()
 }
 
 /// Name of a nominal.

@@ -58,7 +58,7 @@ fn duration(study: &Study) -> f64 {
 /// Other places and coordinates, each once: friction and torque over time have one name.
 fn ties(step: &LawStep, at: &LawPlace) -> Vec<LawPlace> {
     let mut ties: Vec<LawPlace> = Vec::new();
-    for tie in step.tied.iter().map(|action| named(*action)) {
+    for tie in step.rivals.iter().map(|rival| named(rival.action)) {
         if tie != *at && !ties.contains(&tie) {
             ties.push(tie);
         }

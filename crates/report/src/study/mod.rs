@@ -17,7 +17,7 @@ pub use places::{Place, worst};
 use std::borrow::Cow;
 
 pub use discovery::PARAMETERS;
-use discovery::{Laws, SpeedScaleReport};
+use discovery::{Laws, NextRun, SpeedScaleReport};
 use monitor::MonitorConfig;
 use motor::MotorFile;
 use recording::Source;
@@ -33,6 +33,8 @@ pub struct Inputs<'a> {
     pub motor: &'a MotorFile,
     /// What laws are held against, and which formula is taken over.
     pub laws: Laws,
+    /// The next experiment, where an explanation is asked for one.
+    pub next_run: Option<&'a NextRun>,
 }
 
 /// A source as figures show it: a speed of unknown scale in the scale that was fitted.
