@@ -31,7 +31,13 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
         coordinate: at.coordinate,
         meaning: step.action.place.meaning(step.action.coordinate).to_owned(),
         curve: match step.bursts.first() {
-            Some(pulses) => corners(step.action.place, pulses, duration(study)),
+            Some(pulses) => corners(
+                study,
+                step.action.place,
+                &step.trial,
+                pulses,
+                duration(study),
+            ),
             None => curve(study, &step.trial),
         },
         bursts: bursts_report(study, step.action.place, &step.trial, &step.bursts),
