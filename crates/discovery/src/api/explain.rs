@@ -23,7 +23,8 @@ use recording::Source;
 
 use super::Progress;
 
-/// Which effect is missing. The first source is fitted, the others prove; with one source block folds prove.
+/// Which effect is missing. The first source is fitted, the second proves; of more, the first, third, ... are fitted
+/// together. With one source block folds prove.
 ///
 /// # Errors
 /// Wrong effects in the motor file or no usable set of sources. A recording that cannot be judged is a report

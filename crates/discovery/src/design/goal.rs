@@ -1,6 +1,6 @@
 //! What the recordings leave open.
 
-use super::score::{Predicted, error, known};
+use super::score::{Predicted, Refit, error, known};
 use crate::explain::Explanation;
 use estimation::data::case::Case;
 use estimation::data::study::{Study, Trial};
@@ -171,6 +171,7 @@ fn rivals(found: &Explanation) -> Vec<Candidate> {
 fn show(study: &Study, found: &Explanation) -> Option<Goal> {
     let last = found.last();
     let rated = &study.prior.plant.rated;
+    let refit = Refit::of(study, last);
     let mut effects: Vec<(String, Hypothesis, f64)> = Vec::new();
     for screened in &found.first.screened {
         let seen = study.visibility(screened.visible);
@@ -180,7 +181,7 @@ fn show(study: &Study, found: &Explanation) -> Option<Goal> {
             let typical = typical(&screened.config, rated);
             effects.push((
                 name.to_owned(),
-                last.fit.hypothesis.with(typical, rated),
+                refit.hidden(study, last, last.fit.hypothesis.with(typical, rated)),
                 seen,
             ));
         }

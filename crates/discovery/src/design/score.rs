@@ -15,6 +15,50 @@ pub(super) fn known(trial: &Trial) -> DMatrix<f64> {
     all.gram + DMatrix::from_diagonal(&trial.fit.penalty.weight)
 }
 
+/// Refits the parameters of a model, linearised, to what it would have shown beside a further effect.
+pub(super) struct Refit {
+    jacobian: Vec<Vec<f64>>,
+    known: DMatrix<f64>,
+}
+
+impl Refit {
+    /// Of the fitted recording.
+    pub fn of(study: &Study, trial: &Trial) -> Self {
+        let (case, fit) = (&study.fitted.case, &trial.fit);
+        let off = SpeedObserver::Off;
+        Self {
+            jacobian: jacobian(case, &study.prior, &fit.hypothesis, &fit.outputs, off),
+            known: known(trial),
+        }
+    }
+
+    /// The model of `trial` with a further effect and the parameters with which the fitted recording looks the same as
+    /// without it, as far as they can: an effect that was there all the time.
+    pub fn hidden(&self, study: &Study, trial: &Trial, mut with: Hypothesis) -> Hypothesis {
+        let case = &study.fitted.case;
+        let there = outputs(case, &study.prior, &with, SpeedObserver::Off);
+        let change: Vec<f64> = trial
+            .fit
+            .outputs
+            .iter()
+            .zip(&there)
+            .map(|(y, t)| y - t)
+            .collect();
+        let whole = 0..change.len() / N_CHANNELS;
+        let blocks =
+            normal_equations::blocks(std::slice::from_ref(&whole), &change, &self.jacobian);
+        let Some(solver) = nalgebra::Cholesky::new(self.known.clone()) else {
+            return with;
+        };
+        let step = solver.solve(&blocks[0].score);
+        for (&k, step) in trial.fit.free.iter().zip(step.iter()) {
+            let [low, high] = with.bounds(k, &study.prior);
+            with.z[k] = (with.z[k] + step).clamp(low, high);
+        }
+        with
+    }
+}
+
 /// An explanation on a run that nobody made yet.
 pub(super) struct Predicted {
     outputs: Vec<f64>,

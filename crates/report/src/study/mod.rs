@@ -27,7 +27,7 @@ use recording::Source;
 pub struct Inputs<'a> {
     /// The recordings' names as people know them, in the order of `sources`.
     pub names: &'a [String],
-    /// The first is fitted, the others prove.
+    /// The first is fitted, the second proves; of more, the first, third, ... are fitted together.
     pub sources: &'a [Source],
     /// What is believed of the motor.
     pub motor: &'a MotorFile,
