@@ -131,7 +131,8 @@ fn library(
     for number in 0..MOST_EFFECTS {
         let share = 0.15 + 0.15 * number as f64;
         let mut tell = |what: &str| progress(what, share);
-        let begun = begin(study, &base, excluded, &mut tell);
+        let mut begun = begin(study, &base, excluded, &mut tell);
+        begun.lead(&at_prior(&base));
         let rival = begun.proven().map_or(&base, |c| &c.trial);
         if let Some(law) = decisive_bursts(study, &base, rival, &mut tell) {
             first.get_or_insert(begun.enough());

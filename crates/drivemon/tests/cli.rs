@@ -390,7 +390,11 @@ fn a_designed_run_shows_what_one_load_could_not() {
         "duration_s = 3.000",
         "duration_s = 3.000\nsample_rate_hz = 4000\nseed = 4",
     );
-    simulate("second-scene.toml", "two.csv", &format!("{recorded}{truth}"));
+    simulate(
+        "second-scene.toml",
+        "two.csv",
+        &format!("{recorded}{truth}"),
+    );
     let second = explain(&[&path("two.csv"), &path("one.csv")], "second.json");
     let steps = second["steps"].as_array().expect("a list");
     assert!(

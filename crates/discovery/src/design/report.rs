@@ -132,27 +132,38 @@ fn told(goal: &Goal, verdict: &Verdict) -> Vec<DecidesReport> {
 }
 
 fn summary(goal: &Goal, decides: &[DecidesReport]) -> String {
-    let (verb, names) = match goal {
+    let (verb, all): (&str, Vec<&str>) = match goal {
         Goal::Tell(all) => ("tells apart", all.iter().map(|c| c.name.as_str()).collect()),
-        Goal::Show(_, all) => ("shows, present or not,", first_names(all)),
+        Goal::Show(_, all) => ("shows, present or not:", first_names(all)),
         Goal::Narrow(_, all) => ("narrows", first_names(all)),
     };
-    let names = listed(&names);
-    let count = |how: &str| decides.iter().filter(|d| d.how_surely == how).count();
-    let (all, sure, likely) = (decides.len(), count("sure"), count("likely"));
-    let of = match goal {
-        Goal::Tell(_) => "pairs",
-        Goal::Show(..) => "effects",
-        Goal::Narrow(..) => "parameters",
-    };
-    match sure + likely {
-        0 => format!(
-            "No run within these limits {verb} {names}: allow more loads, voltages or speeds."
-        ),
-        n if n < all => format!("This run {verb} {names}: {n} of {all} {of}."),
-        _ if sure == all => format!("This run {verb} {names}, surely."),
-        _ => format!("This run {verb} {names}, probably."),
+    let is_decided = |d: &&DecidesReport| d.how_surely != "unlikely";
+    let (decided, open): (Vec<_>, Vec<_>) = decides.iter().partition(is_decided);
+    let names =
+        |of: &[&DecidesReport]| listed(&of.iter().map(|d| d.what.as_str()).collect::<Vec<_>>());
+    if decided.is_empty() {
+        let all = listed(&all);
+        return format!(
+            "No run within these limits {verb} {all}. Allow more loads, voltages or speeds."
+        );
     }
+    let surely = match decided.iter().all(|d| d.how_surely == "sure") {
+        true => "surely",
+        false => "probably",
+    };
+    if open.is_empty() {
+        return format!("This run {verb} {}, {surely}.", listed(&all));
+    }
+    let verb = if matches!(goal, Goal::Tell(_)) {
+        "tells"
+    } else {
+        verb
+    };
+    format!(
+        "This run {verb} {}, {surely}. Not: {}.",
+        names(&decided),
+        names(&open)
+    )
 }
 
 fn first_names<T>(all: &[(String, T)]) -> Vec<&str> {

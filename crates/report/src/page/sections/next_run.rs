@@ -13,6 +13,7 @@ pub fn section(result: &Place<'_>) -> Markup {
     let decides = result.items("next_run/decides");
     let gain = match result.text("next_run/goal") {
         "narrow" => "less of the standard error, %",
+        "show" => "larger error of a model without it, %",
         _ => "larger error of the wrong explanation, %",
     };
     html! {

@@ -18,12 +18,12 @@ pub fn print(design: Option<&DesignReport>, written: Option<&Path>) {
     for (number, line) in design.instructions.iter().enumerate() {
         say!("{}", wrapped(&format!("  {}. {line}", number + 1)));
     }
-    let narrows = design.goal == "narrow";
     say!(
         "{}",
-        match narrows {
-            true => "It takes away, of each standard error:",
-            false => "By so much the error of the wrong explanation would be larger:",
+        match design.goal.as_str() {
+            "narrow" => "Of each standard error goes:",
+            "show" => "By so much the error of a model without it would be larger:",
+            _ => "By so much the error of the wrong explanation would be larger:",
         }
     );
     for decides in &design.decides {
