@@ -138,31 +138,43 @@ fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &I
         let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
         return integrate(&model, start, &restarts, run, inputs, transient);
     }
-    let (mechanics, timeline) = (&plant.mechanics, run.timeline.clone());
-    if extra_states(&plant.effects) == 0 {
-        let stack = EffectStack::<0>::new(&plant.effects, motor, &plant.rated, timeline);
-        let model = Dynamic::with_effects(motor, mechanics, stack);
-        return integrate(
-            &model,
-            DynamicState::with_extra(&start),
-            &restarts,
-            run,
-            inputs,
-            transient,
-        );
-    }
-    // Those of a motor file, and the library's once more: what `explain` may add to them.
-    let stack =
-        EffectStack::<{ 2 * MAX_FILE_STATES }>::new(&plant.effects, motor, &plant.rated, timeline);
-    let model = Dynamic::with_effects(motor, mechanics, stack);
-    integrate(
-        &model,
-        DynamicState::with_extra(&start),
-        &restarts,
-        run,
-        inputs,
+    let at = Course {
+        start,
+        restarts,
         transient,
-    )
+    };
+    // Each state is carried through every step: one effect's few cost less than room for all of the library.
+    match extra_states(&plant.effects) {
+        0 => run_with_states::<0>(plant, motor, run, inputs, &at),
+        1..=FEW_STATES => run_with_states::<FEW_STATES>(plant, motor, run, inputs, &at),
+        // Those of a motor file, and the library's once more: what `explain` may add to them.
+        _ => run_with_states::<{ 2 * MAX_FILE_STATES }>(plant, motor, run, inputs, &at),
+    }
+}
+
+/// As many extra states as any one effect has.
+const FEW_STATES: usize = 4;
+
+/// Where a simulation begins, and begins again.
+struct Course {
+    start: DynamicState,
+    restarts: Vec<(usize, DynamicState)>,
+    /// Stator inductance while the rotor flux stands still, H.
+    transient: f64,
+}
+
+/// Simulates with room for so many extra states.
+fn run_with_states<const N: usize>(
+    plant: &Plant,
+    motor: &TParams<f64>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+    at: &Course,
+) -> Outputs {
+    let stack = EffectStack::<N>::new(&plant.effects, motor, &plant.rated, run.timeline.clone());
+    let model = Dynamic::with_effects(motor, &plant.mechanics, stack);
+    let start = DynamicState::with_extra(&at.start);
+    integrate(&model, start, &at.restarts, run, inputs, at.transient)
 }
 
 fn start_state(
