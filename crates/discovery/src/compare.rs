@@ -1,17 +1,17 @@
 //! Where the model fails, as the motor file says it, nothing refitted.
 
 use crate::api::{Progress, speed_scale_report};
-use crate::data::case::Case;
-use crate::data::channels::N_CHANNELS;
-use crate::data::question::{Error, Question};
-use crate::data::study::Study;
-use crate::fit::output_error::Effort;
-use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::report::types::{
     BandReport, CompareReport, Inconclusive, OrderReport, Overall, RegionReport, SignalReport,
-    SpeedScaleReport,
 };
 use crate::search::inconclusive;
+use estimation::data::case::Case;
+use estimation::data::channels::N_CHANNELS;
+use estimation::data::question::{Error, Question};
+use estimation::data::study::Study;
+use estimation::fit::output_error::Effort;
+use estimation::model::prediction::{SpeedObserver, outputs, residual};
+use estimation::model::speed_scale::SpeedScaleReport;
 use motor::MotorFile;
 use motor::dynamic::clarke;
 use num_complex::Complex64;

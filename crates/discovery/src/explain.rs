@@ -1,14 +1,25 @@
 //! Which physical effect is missing: step by step, each proven on data that was not fitted.
 
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::Effort;
+mod complete;
+mod contests;
+mod disguise;
+mod pairs;
+mod rebuilt;
+
+use crate::bursts::search::bursts;
+use crate::laws::formula::dictionary::Shapes;
 use crate::laws::formula::prove::formulas;
-use crate::laws::search::{LawStep, search};
-use crate::model::prior::{FRICTION, LEAKAGE, N_NOMINAL, NOMINALS};
-use crate::search::accept::{adequate, beats, explained, proven};
-use crate::search::off;
-use crate::search::refit::{Candidate, Round, combined, likely, round};
-use motor::effect::Nominal;
+use crate::laws::search::{LawSearch, LawStep};
+use crate::search::refit::{Candidate, Round, begin, combined};
+use complete::{complete, put_on_top};
+use contests::contests;
+pub(crate) use contests::stands_for;
+use disguise::disguised;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::Effort;
+use estimation::model::prior::{N_NOMINAL, NOMINALS};
+use estimation::proof::accept::{adequate, beats, even, explained, proven, surpasses};
+use estimation::proof::off::{SIGNIFICANT, strains};
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
@@ -19,6 +30,9 @@ const NAMED_SHARE: f64 = 0.85;
 const DEEPER: f64 = 0.98;
 /// Error over noise above which nothing is named, however large the explained share.
 const NAMED_ERROR: f64 = 1.25;
+/// Sum of squares of the nominals' distances from their priors, in standard deviations, by which an explanation is stranger
+/// than one that leaves them where they are believed: three standard deviations of one of them.
+const STRAINED: f64 = SIGNIFICANT * SIGNIFICANT;
 /// Share of the first excess that a later effect explains at least, unless it makes the model adequate.
 const PATCH_SHARE: f64 = 0.03;
 /// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: priors are commonly
@@ -33,7 +47,15 @@ pub(crate) struct Step {
     /// The model before it.
     pub before: Trial,
     /// What explains the recording as well.
-    pub tied: Vec<String>,
+    pub rivals: Vec<Candidate>,
+}
+
+impl Step {
+    /// Names of what explains the recording as well.
+    pub fn tied(&self) -> Vec<String> {
+        let names = self.rivals.iter().map(|rival| rival.name.to_owned());
+        names.collect()
+    }
 }
 
 /// Everything that was learnt.
@@ -64,23 +86,72 @@ impl Explanation {
     }
 }
 
-/// Explains a study. `excluded` effects are not asked about; `progress` hears what is being done.
+/// Explains a study. `excluded` effects are not asked about, curves are held against `shapes`; `progress` hears what is being done.
 pub(crate) fn explain(
     study: &Study,
     excluded: &[&str],
+    shapes: Shapes,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
     progress("refitting the parameters", 0.1);
-    let mut baseline = study.trial(&study.at_prior(), Effort::FULL);
+    let baseline = study.trial(&study.at_prior(), Effort::FULL);
+    let mut explanation = library(study, baseline, excluded, progress);
+    if !explanation.steps.is_empty()
+        && let Some(law) = explanation.laws.pop()
+    {
+        put_on_top(study, &mut explanation, law);
+    }
+    if laws_are_asked(study, &explanation) {
+        complete(study, &mut explanation, excluded, progress);
+    }
+    let proven = |law: &&mut LawStep| law.proven && law.bursts.is_empty();
+    for law in explanation.laws.iter_mut().filter(proven) {
+        progress("holding formulas against the curve", 0.9);
+        law.formulas = formulas(study, shapes, law.as_curve());
+    }
+    if explanation.nameable && explanation.laws.is_empty() {
+        progress("contesting the parameters that moved", 0.92);
+        explanation.contests = contests(study, &explanation, excluded);
+    }
+    explanation
+}
+
+/// One effect of the library after the other, each proven, until the model is adequate; a law that makes it adequate
+/// where the library's best effect does not comes first.
+fn library(
+    study: &Study,
+    mut baseline: Trial,
+    excluded: &[&str],
+    progress: &mut dyn FnMut(&str, f64),
+) -> Explanation {
     let mut steps: Vec<Step> = Vec::new();
+    let mut laws = Vec::new();
     let mut first = None;
     let mut base = baseline.clone();
     for number in 0..MOST_EFFECTS {
-        let share = 0.15 + 0.2 * number as f64;
+        let share = 0.15 + 0.15 * number as f64;
         let mut tell = |what: &str| progress(what, share);
-        let mut found = round(study, &base, &at_prior(&base), excluded, &mut tell);
+        let mut begun = begin(study, &base, excluded, &mut tell);
+        begun.lead(&at_prior(&base));
+        let rival = begun.proven().map_or(&base, |c| &c.trial);
+        if let Some(law) = decisive_bursts(study, &base, rival, &mut tell) {
+            first.get_or_insert(begun.enough());
+            laws.push(law);
+            break;
+        }
+        if let Some(law) = decisive_law(study, &base, rival, &mut tell) {
+            let begun = begun.enough();
+            match behind(study, &base, &law, &begun, excluded) {
+                Some(effect) => steps.push(effect),
+                None => laws.push(law),
+            }
+            first.get_or_insert(begun);
+            break;
+        }
+        tell("refitting the likeliest");
+        let mut found = begun.finish(&at_prior(&base));
         if let Some(deeper) = lower_minimum(study, &base, &found) {
-            found = round(study, &deeper, &at_prior(&deeper), excluded, &mut tell);
+            found = begin(study, &deeper, excluded, &mut tell).finish(&at_prior(&deeper));
             base = deeper;
         }
         if steps.is_empty() {
@@ -93,7 +164,7 @@ pub(crate) fn explain(
         let step = best.map(|best| Step {
             trial: best.trial.clone(),
             before: base.clone(),
-            tied: tied(study, &base, best, &found.candidates),
+            rivals: tied(study, &base, best, &found.candidates),
         });
         first.get_or_insert(found);
         let Some(step) = step else { break };
@@ -105,70 +176,86 @@ pub(crate) fn explain(
             break;
         }
     }
-    drop_patches(study, &baseline, &mut steps);
+    if laws.is_empty() {
+        drop_patches(study, &baseline, &mut steps);
+    }
     let base = steps.last().map_or(&baseline, |s| &s.trial);
-    let nameable = adequate(study, base) || mostly_explained(study, &baseline, base);
-    let mut explanation = Explanation {
+    let named = adequate(study, base) || mostly_explained(study, &baseline, base);
+    Explanation {
         first: first.unwrap_or_else(Round::empty),
         contests: Vec::new(),
-        laws: Vec::new(),
+        nameable: named || !laws.is_empty(),
+        laws,
         baseline,
         steps,
-        nameable,
-    };
-    if laws_are_asked(study, &explanation) {
-        complete_with_law(study, &mut explanation, progress);
-        progress("holding formulas against the curve", 0.78);
-        for law in explanation.laws.iter_mut().filter(|law| law.proven) {
-            law.formulas = formulas(study, law.as_curve());
-        }
     }
-    if explanation.nameable && explanation.laws.is_empty() {
-        progress("contesting the parameters that moved", 0.8);
-        explanation.contests = contests(study, &explanation, excluded);
+}
+
+/// The effect of the library that a law is in disguise, as a step on `base`.
+fn behind(
+    study: &Study,
+    base: &Trial,
+    law: &LawStep,
+    begun: &Round,
+    excluded: &[&str],
+) -> Option<Step> {
+    let effects = disguised(study, base, law, excluded);
+    let best = effects.first()?;
+    let mut all = begun.candidates.clone();
+    all.retain(|c| effects.iter().all(|effect| effect.name != c.name));
+    all.extend(effects.iter().cloned());
+    Some(Step {
+        trial: best.trial.clone(),
+        before: base.clone(),
+        rivals: tied(study, base, best, &all),
+    })
+}
+
+/// What comes and goes on top of `base`, and makes the model adequate where `rival` does not.
+fn decisive_bursts(
+    study: &Study,
+    base: &Trial,
+    rival: &Trial,
+    tell: &mut dyn FnMut(&str),
+) -> Option<LawStep> {
+    let over_time = study.fitted.case.table.is_none();
+    if !over_time || study.proofs.is_empty() || adequate(study, rival) {
+        return None;
     }
-    explanation
+    tell("looking for what comes and goes");
+    let law = bursts(study, base)?;
+    (adequate(study, &law.trial) && beats(&law.trial, rival)).then_some(law)
+}
+
+/// A law on top of `base` that makes the model adequate where `rival` does not, and beats it.
+fn decisive_law(
+    study: &Study,
+    base: &Trial,
+    rival: &Trial,
+    tell: &mut dyn FnMut(&str),
+) -> Option<LawStep> {
+    let over_time = study.fitted.case.table.is_none();
+    if !over_time || study.proofs.is_empty() || adequate(study, rival) {
+        return None;
+    }
+    let mut tell = |what: &str, _| tell(what);
+    let law = LawSearch::new(study, base, &mut tell).better_than(rival, &mut tell)?;
+    let wins = law.proven && adequate(study, &law.trial) && beats(&law.trial, rival);
+    wins.then_some(law)
+}
+
+/// Whether effects were accepted with parameters that are far from what is believed: another explanation may need less.
+fn is_strained(study: &Study, found: &Explanation) -> bool {
+    let last = found.steps.last();
+    last.is_some_and(|step| strains(&step.trial, &study.prior.deviations) > STRAINED)
 }
 
 /// Whether laws are asked about: the library leaves something, and samples over time can show where.
 fn laws_are_asked(study: &Study, found: &Explanation) -> bool {
     let last = found.steps.last().map_or(&found.baseline, |s| &s.trial);
-    study.fitted.case.table.is_none() && !(found.nameable && adequate(study, last))
-}
-
-/// Looks for the law that the library does not hold and completes an explanation with it.
-///
-/// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
-/// them it must make the model adequate.
-fn complete_with_law(study: &Study, found: &mut Explanation, progress: &mut dyn FnMut(&str, f64)) {
-    let mut tell = |what: &str, share: f64| progress(what, 0.5 + 0.25 * share);
-    let alone = search(study, &found.baseline, &mut tell);
-    let last = found.steps.last().map(|step| step.trial.clone());
-    let wins = |law: &LawStep| {
-        law.proven
-            && (adequate(study, &law.trial) || mostly_explained(study, &found.baseline, &law.trial))
-            && last.as_ref().is_none_or(|last| beats(&law.trial, last))
-    };
-    if let Some(law) = alone.as_ref().filter(|law| wins(law)) {
-        found.steps.clear();
-        found.laws = vec![law.clone()];
-        found.nameable = true;
-        return;
-    }
-    if let Some(last) = last {
-        let more = search(study, &last, &mut tell);
-        if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
-            found.laws = vec![law];
-            found.nameable = true;
-            return;
-        }
-    }
-    if !found.nameable {
-        found.laws.extend(alone.map(|law| LawStep {
-            proven: false,
-            ..law
-        }));
-    }
+    let settled =
+        found.nameable && adequate(study, last) && even(study, last) && !is_strained(study, found);
+    study.fitted.case.table.is_none() && found.laws.is_empty() && !settled
 }
 
 /// The base once more from where its best candidate ended, if that is better without the candidate too: then the
@@ -207,7 +294,7 @@ fn drop_patches(study: &Study, baseline: &Trial, steps: &mut Vec<Step>) {
 }
 
 /// The effects of a trial with the nominals at their priors.
-fn at_prior(trial: &Trial) -> crate::model::prior::Hypothesis {
+fn at_prior(trial: &Trial) -> estimation::model::prior::Hypothesis {
     let mut h = trial.fit.hypothesis.clone();
     for k in (0..N_NOMINAL).filter(|&k| h.free[k]) {
         h.z[k] = 0.0;
@@ -216,49 +303,13 @@ fn at_prior(trial: &Trial) -> crate::model::prior::Hypothesis {
 }
 
 /// Candidates over which the best has no proven advantage.
-fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<String> {
+fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<Candidate> {
     let equal = |c: &&Candidate| {
-        c.name != best.name && proven(study, base, &c.trial) && !beats(&best.trial, &c.trial)
+        c.name != best.name
+            && proven(study, base, &c.trial)
+            && !surpasses(study, &best.trial, &c.trial)
     };
-    all.iter()
-        .filter(equal)
-        .map(|c| c.name.to_owned())
-        .collect()
-}
-
-/// Effects that explain the recording as well as a parameter that moved, for parameters that can stand for one.
-fn contests(
-    study: &Study,
-    explanation: &Explanation,
-    excluded: &[&str],
-) -> Vec<(usize, Vec<Candidate>)> {
-    let last = explanation.last();
-    let moved = |k: usize| last.fit.hypothesis.z[k];
-    let doubtful = |&k: &usize| k == FRICTION || k == LEAKAGE && moved(k) > WORTH_A_CABLE;
-    let contest = |k: usize| (k, contest(study, last, k, excluded));
-    let off = study.off(last).iter().copied();
-    off.filter(doubtful).map(contest).collect()
-}
-
-fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) -> Vec<Candidate> {
-    let base = off::held(study, last, k);
-    let found = likely(study, &base, excluded);
-    let equal = |c: &Candidate| proven(study, &base, &c.trial) && !beats(last, &c.trial);
-    found.candidates.into_iter().filter(equal).collect()
-}
-
-/// Whether a candidate is the physics that a moved parameter may stand for: friction for every loss torque, leakage
-/// for a cable or filter in series.
-pub(crate) fn stands_for(k: usize, candidate: &Candidate) -> bool {
-    let effects = &candidate.trial.fit.hypothesis.effects;
-    let nominal = match k {
-        FRICTION => Nominal::Friction,
-        LEAKAGE => Nominal::Leakage,
-        _ => return false,
-    };
-    effects
-        .last()
-        .is_some_and(|last| last.effect.is_taken_for(nominal))
+    all.iter().filter(equal).cloned().collect()
 }
 
 /// Name of a nominal.

@@ -7,12 +7,12 @@ use recording::Source;
 use serde::Serialize;
 
 use crate::api::{Progress, as_believed, errors, updated};
-use crate::data::question::{Error, Question};
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::Effort;
-use crate::model::prior::{FRICTION, LEAKAGE, NOMINALS};
 use crate::report::present::{effect_parameters, fit_report};
 use crate::report::types::ErrorReport;
+use estimation::data::question::{Error, Question};
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::Effort;
+use estimation::model::prior::{FRICTION, LEAKAGE, NOMINALS};
 
 /// Parameters before and after, and what would tell those that the recordings did not.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -19,33 +19,33 @@
 //! ```
 
 mod api;
+mod bursts;
 mod compare;
-mod data;
+mod design;
 mod explain;
-mod fit;
 mod identify;
 mod laws;
-mod model;
 mod report;
 mod search;
-#[cfg(test)]
-mod tests;
 
 pub use api::{
-    LAW, PARAMETERS, Progress, adopt, adopt_with, explain, explain_with, explain_without,
+    Asked, LAW, PARAMETERS, Progress, adopt, adopt_with, explain, explain_with, explain_without,
 };
 pub use compare::compare;
-pub use data::instrument_class;
-pub use data::load_table::table_values;
-pub use data::question::Error;
-pub use data::stretches::told as told_stretches;
-pub use data::unsupported::Unsupported;
+pub use design::limits::{Limits, NextRun};
+pub use design::report::{DecidesReport, DesignReport, LevelReport, RunReport};
+pub use estimation::data::instrument_class;
+pub use estimation::data::load_table::table_values;
+pub use estimation::data::question::Error;
+pub use estimation::data::stretches::told as told_stretches;
+pub use estimation::data::unsupported::Unsupported;
+pub use estimation::model::prediction::simulations;
+pub use estimation::model::speed_scale::{AtRest, ErrorSource, SpeedScaleReport};
 pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use laws::formula::dictionary::{Laws, Shapes};
-pub use model::prediction::simulations;
 pub use report::types::{
-    AdoptReport, AtRest, BandReport, CompareReport, ErrorReport, ErrorSource, ExplainReport,
+    AdoptReport, BandReport, BurstReport, BurstsReport, CompareReport, ErrorReport, ExplainReport,
     FitReport, FormulaReport, FrameBand, FrameReport, Inconclusive, LawCurve, LawPlace, LawReport,
     NominalReport, OrderReport, Overall, ParameterReport, RankReport, RegionReport, SignalReport,
-    SpeedScaleReport, StepReport, Unexplained, Verdict,
+    StepReport, Unexplained, Verdict,
 };

@@ -26,15 +26,9 @@ pub mod dynamic;
 pub mod effect;
 pub mod effects;
 mod fault;
-#[cfg(feature = "std")]
-pub mod linear_plant;
-#[cfg(feature = "std")]
-pub mod load;
 #[cfg(feature = "file")]
 pub mod motor_file;
 mod params;
-#[cfg(feature = "std")]
-pub mod parity;
 pub mod steady_state;
 pub mod temperature;
 

@@ -30,7 +30,7 @@ pub(crate) mod tests;
 
 pub use chain::{CHANNELS, Carrier, ChannelChain, Inl, InlShape, Reference, SEQUENCE, SignalChain};
 pub use faults::{Asymmetry, Change, DqSignal, Fault, Parameter, Probe, Target};
-pub use load::LoadSpec;
+pub use load::{Interpolation, Load, LoadSpec, Profile, ProfileError};
 pub use sensors::{SensorSpec, SpeedSensor};
 pub use supply::{Piecewise, SupplySpec};
 

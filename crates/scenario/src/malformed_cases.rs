@@ -2,7 +2,7 @@
 
 /// `(text after the motor's line, line, key, remedy)`.
 #[rustfmt::skip]
-pub const CASES: [(&str, usize, &str, &str); 52] = [
+pub const CASES: [(&str, usize, &str, &str); 54] = [
     ("", 1, "duration_s", "is missing: add length of the experiment"),
     ("duration = 3", 2, "duration", "did you mean `duration_s`?"),
     ("duration_s = 0", 2, "duration_s", "above 0"),
@@ -17,6 +17,8 @@ pub const CASES: [(&str, usize, &str, &str); 52] = [
     ("duration_s = 1\nseed = 1.5", 3, "seed", "not a whole number"),
     ("duration_s = 1\n[supply]\nfrequency_hz = 0", 4, "supply.frequency_hz", "at least 1"),
     ("duration_s = 1\n[supply]\nvoltage = 230", 4, "supply.voltage", "did you mean `voltage_line_rms_volt`?"),
+    ("duration_s = 1\n[supply]\nswitch_on_s = 0.5\nswitch_off_s = 0.4", 5, "supply.switch_off_s", "write a later time"),
+    ("duration_s = 1\nplant = \"linear\"\n[supply]\nswitch_off_s = 0.4", 4, "supply", "switch_off_s has no place in the linear model"),
     ("duration_s = 1\n[supply]\nunbalance_percent = 80", 4, "supply.unbalance_percent", "at most 50 percent"),
     ("duration_s = 1\n[[supply.harmonics]]\norder = 1\npercent = 5", 4, "supply.harmonics[1].order", "unbalance has its own key"),
     ("duration_s = 1\n[[supply.harmonics]]\npercent = 5", 3, "supply.harmonics[1].order", "is missing"),

@@ -149,6 +149,11 @@ fn check_plant(root: &Section<'_>, scenario: &Scenario) {
             !scenario.supply.is_clean(),
             "unbalance and harmonics have",
         ),
+        (
+            "supply",
+            scenario.supply.switch_off_s.is_some(),
+            "switch_off_s has",
+        ),
         ("effects", !scenario.effects.is_empty(), "effects have"),
         (
             "load",

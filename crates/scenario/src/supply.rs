@@ -91,6 +91,8 @@ pub struct SupplySpec {
     pub phase_rad: f64,
     /// Time at which the motor is switched on, s; before it the terminals carry no voltage.
     pub switch_on_s: f64,
+    /// Time at which the motor is switched off, s: its terminals are open from then on.
+    pub switch_off_s: Option<f64>,
     /// Further rotating components relative to the positive sequence: negative sequence (order -1) and
     /// harmonics.
     pub components: Vec<Harmonic>,
@@ -104,8 +106,14 @@ impl SupplySpec {
             frequency_hz: Piecewise::constant(nameplate.frequency_hz),
             phase_rad: 0.0,
             switch_on_s: 0.0,
+            switch_off_s: None,
             components: Vec::new(),
         }
+    }
+
+    /// Whether the motor is connected at time `t`, s, or was never yet.
+    pub fn is_closed(&self, t: f64) -> bool {
+        self.switch_off_s.is_none_or(|off| t < off)
     }
 
     /// Whether there is neither unbalance nor a harmonic.
@@ -142,6 +150,7 @@ fn read_values(section: &Section<'_>, nameplate: &Nameplate) -> Option<SupplySpe
     let frequency = section.number_or("frequency_hz", &FREQUENCY, nameplate.frequency_hz);
     let phase = section.number_or("phase_deg", &ANGLE, 0.0);
     let switch_on = section.number_or("switch_on_s", &TIME, 0.0);
+    let switch_off = read_switch_off(section, switch_on);
     let unbalance = read_unbalance(section);
     let harmonics = read_harmonics(section);
     let amplitude = line_rms.map(phase_amplitude_of_line_rms);
@@ -154,8 +163,22 @@ fn read_values(section: &Section<'_>, nameplate: &Nameplate) -> Option<SupplySpe
         frequency_hz,
         phase_rad: phase?.to_radians(),
         switch_on_s: switch_on?,
+        switch_off_s: switch_off?,
         components,
     })
+}
+
+fn read_switch_off(section: &Section<'_>, on: Option<f64>) -> Option<Option<f64>> {
+    let off = section.optional_number("switch_off_s", &TIME)?;
+    if let (Some(on), Some(off)) = (on, off)
+        && off <= on
+    {
+        section.report(
+            "switch_off_s",
+            format!("{off} s is not after switch_on_s = {on}: write a later time"),
+        );
+    }
+    Some(off)
 }
 
 fn read_unbalance(section: &Section<'_>) -> Option<Vec<Harmonic>> {

@@ -1,5 +1,5 @@
 use super::*;
-use motor::load::Load;
+use crate::Load;
 use motor::motor_file::Frame;
 
 pub(crate) fn folder() -> PathBuf {

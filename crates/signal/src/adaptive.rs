@@ -109,6 +109,15 @@ impl Windows {
         }
     }
 
+    /// The windows of this signal and of another one behind it, which were smoothed alike.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        Self {
+            level: [&self.level[..], &other.level].concat(),
+            shortest: self.shortest,
+        }
+    }
+
     /// The same for a signal of one axis.
     pub fn smooth_real(&self, x: &[f64]) -> Vec<f64> {
         let x: Vec<_> = x.iter().map(|&x| Complex64::new(x, 0.0)).collect();

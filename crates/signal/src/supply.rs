@@ -172,6 +172,26 @@ impl Supply {
         taken
     }
 
+    /// This supply and another one behind it, which was denoised alike.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        let from = self.u_s.len();
+        let behind = |r: &Range<usize>| r.start + from..r.end + from;
+        let both = |a: &[Range<usize>], b: &[Range<usize>]| {
+            let all = a.iter().cloned();
+            all.chain(b.iter().map(behind)).collect::<Vec<_>>()
+        };
+        Self {
+            u_s: [&self.u_s[..], &other.u_s].concat(),
+            omega_sync: [&self.omega_sync[..], &other.omega_sync].concat(),
+            theta: [&self.theta[..], &other.theta].concat(),
+            segments: both(&self.segments, &other.segments),
+            raw: both(&self.raw, &other.raw),
+            windows: [&self.windows[..], &other.windows].concat(),
+            ..self.clone()
+        }
+    }
+
     /// `raw` without its harmonics.
     fn cleaned(&self, raw: &[Complex64]) -> Vec<Complex64> {
         let harmonic = |(k, u): (usize, &Complex64)| {

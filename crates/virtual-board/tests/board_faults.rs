@@ -4,7 +4,7 @@ mod common;
 
 use common::{LAMP_TEST_S, Sensors, board, firmware, host_lamps, scenario, watch};
 use monitor::RawSample;
-use motor::load::Load;
+use scenario::Load;
 use motor::motor_file::Frame as MotorFrame;
 use scenario::{Fault, Start};
 use virtual_board::{Cause, Inputs, VirtualBoard};

@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample, Report};
 use motor::MotorFile;
 use motor::dynamic::Harmonic;
-use motor::load::{Interpolation, Load, Profile};
 use motor::motor_file::{LoadKind, Sensors};
 use motor::temperature::copper_resistance_at;
 use num_complex::Complex64;
@@ -17,7 +16,10 @@ use crate::planned::axis::{Axis, Conditions, FIRST_STREAM};
 use crate::planned::plan::{LoadKnowledge, Place, Plan};
 use crate::runs::outcome::Outcome;
 use scenario::simulate::{Measured, Simulation};
-use scenario::{LoadSpec, Piecewise, Scenario, SensorSpec, SpeedSensor, Start, SupplySpec};
+use scenario::{
+    Interpolation, Load, LoadSpec, Piecewise, Profile, Scenario, SensorSpec, SpeedSensor, Start,
+    SupplySpec,
+};
 
 /// The board's sampling time, s.
 pub const T_SAMPLE_S: f64 = 1e-4;

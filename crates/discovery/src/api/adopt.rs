@@ -1,10 +1,6 @@
 //! Taking over what was found: the motor file with an effect, with refitted parameters, or with a law.
 
-use crate::data::question::{Error, Question};
-use crate::data::study::{Study, Trial};
 use crate::explain;
-use crate::fit::output_error::Effort;
-use crate::fit::polish::with_nominals;
 use crate::laws::curve::as_knots;
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
@@ -12,9 +8,13 @@ use crate::laws::search::LawStep;
 use crate::report::frame;
 use crate::report::present::{effect_parameters, fit_report};
 use crate::report::types::{AdoptReport, ErrorReport};
-use crate::search::accept::{gained, proven};
 use crate::search::inconclusive::{self};
 use crate::search::refit::{best_of, only};
+use estimation::data::question::{Error, Question};
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::Effort;
+use estimation::fit::polish::with_nominals;
+use estimation::proof::accept::{gained, proven};
 use motor::MotorFile;
 use motor::effect::{EffectConfig, expression, to_entry};
 use motor::effects::{find, names};
@@ -58,13 +58,12 @@ pub fn adopt_with(
         );
         return Err(Error::UnknownEffect(message));
     }
-    let mut question = Question::new(sources, motor, progress)?;
-    question.study.shapes = laws.shapes;
+    let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
     progress("refitting the parameters", 0.2);
     let refitted = study.trial(&study.at_prior(), Effort::FULL);
     if effect == LAW {
-        return adopted_law(&question, motor, laws.formula, progress);
+        return adopted_law(&question, motor, laws, progress);
     }
     if effect == frame::NAME {
         return adopted_frame(&question, motor, &refitted);
@@ -115,17 +114,24 @@ pub(crate) fn as_believed(study: &Study) -> Trial {
 fn adopted_law(
     question: &Question,
     motor: &MotorFile,
-    formula: Option<usize>,
+    laws: Laws,
     progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
     let study = &question.study;
-    let found = explain::explain(study, &[], progress);
+    let found = explain::explain(study, &[], laws.shapes, progress);
     progress("done", 1.0);
     let Some(law) = found.laws.last() else {
         let message = "no law explains these recordings better than the library does: `drivemon explain` says what is missing";
         return Err(Error::UnknownEffect(message.to_owned()));
     };
-    let after = match formula {
+    if !law.bursts.is_empty() {
+        let message = format!(
+            "what is missing at `{}` comes and goes: it is a fault to be found and mended, and no law that a model could hold",
+            law.action.place.name()
+        );
+        return Err(Error::UnknownEffect(message));
+    }
+    let after = match laws.formula {
         Some(number) => chosen_formula(law, number)?,
         None => &law.trial,
     };

@@ -1,5 +1,5 @@
 use super::*;
-use crate::tests::specimen;
+use estimation::specimen;
 
 /// A model that is exactly right, but for what `error` adds to a channel in units of its noise.
 fn residual_of(study: &Study, error: impl Fn(usize, usize) -> f64) -> Vec<f64> {

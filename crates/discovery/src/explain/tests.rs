@@ -1,5 +1,7 @@
+use super::contests::contest;
 use super::*;
-use crate::tests::specimen;
+use estimation::model::prior::{FRICTION, LEAKAGE};
+use estimation::specimen;
 use motor::effect::Plant;
 use motor::effects::names;
 use std::collections::BTreeSet;
@@ -21,7 +23,7 @@ fn steps(study: &Study, errors: &[f64]) -> Vec<Step> {
     let one = |pair: &[f64]| Step {
         before: bare(study, pair[0]),
         trial: bare(study, pair[1]),
-        tied: Vec::new(),
+        rivals: Vec::new(),
     };
     errors.windows(2).map(one).collect()
 }
@@ -118,7 +120,9 @@ fn tied_is_what_is_proven_and_not_beaten() {
         // As good, but too small to be named.
         candidate(&study, "current-gain", 0.01, 2.0),
     ];
-    assert_eq!(tied(&study, &base, &best, &all), ["windage"]);
+    let rivals = tied(&study, &base, &best, &all);
+    let names: Vec<&str> = rivals.iter().map(|rival| rival.name).collect();
+    assert_eq!(names, ["windage"]);
     assert!(tied(&study, &base, &best, &all[..1]).is_empty());
 }
 
@@ -242,7 +246,9 @@ fn two_effects_are_found_in_two_rounds() {
     });
     let mut told = Vec::new();
     let excluded = all_but(&["windage", "speed-scale"]);
-    let found = explain(&study, &excluded, &mut |_, share| told.push(share));
+    let found = explain(&study, &excluded, Shapes::default(), &mut |_, share| {
+        told.push(share)
+    });
     let names: Vec<&str> = found
         .last()
         .fit
@@ -258,7 +264,7 @@ fn two_effects_are_found_in_two_rounds() {
     assert_eq!(found.steps.len(), 2);
     assert!(found.nameable && adequate(&study, found.last()));
     assert!(!adequate(&study, &found.steps[0].trial));
-    let expected = [0.1, 0.15, 0.35, 0.8];
+    let expected = [0.1, 0.15, 0.3, 0.92];
     let got = shares(&told);
     assert_eq!(got.len(), expected.len(), "{got:?}");
     assert!(
@@ -272,7 +278,9 @@ fn two_effects_are_found_in_two_rounds() {
 fn what_cannot_be_named_is_not_contested() {
     let study = specimen::table_study(with("speed-scale", 2.0));
     let mut told = Vec::new();
-    let found = explain(&study, &names(), &mut |_, share| told.push(share));
+    let found = explain(&study, &names(), Shapes::default(), &mut |_, share| {
+        told.push(share)
+    });
     assert!(!found.nameable && found.steps.is_empty() && found.first.screened.is_empty());
     let got = shares(&told);
     assert!(
@@ -289,13 +297,13 @@ fn what_little_a_table_leaves_over_is_no_evidence() {
         with("speed-scale", 1.0)(plant);
     });
     let excluded = all_but(&["windage", "speed-scale", "core-loss"]);
-    let found = explain(&study, &excluded, &mut |_, _| ());
+    let found = explain(&study, &excluded, Shapes::default(), &mut |_, _| ());
     assert_eq!(found.steps.len(), 1);
     let last = &found.steps[0].trial;
     assert!(!adequate(&study, last), "{}", study.fold_error(&last.folds));
     assert!(explained(&study, &found.baseline, last) > NAMED_SHARE);
     // A table measured ten times as badly shows only the larger of the two.
     study.fitted.floor.mean = 100.0;
-    let found = explain(&study, &excluded, &mut |_, _| ());
+    let found = explain(&study, &excluded, Shapes::default(), &mut |_, _| ());
     assert!(found.steps.len() == 1 && adequate(&study, found.last()));
 }

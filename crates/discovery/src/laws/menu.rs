@@ -1,8 +1,8 @@
 //! Which laws can be asked about in a recording.
 
-use crate::data::case::Case;
 use crate::laws::modes::Modes;
 use crate::laws::motion::Motion;
+use estimation::data::case::Case;
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::{EffectConfig, Plant};
 
@@ -18,11 +18,10 @@ const LEAST_VOLTAGE: f64 = 0.1;
 const LEAST_RANGE: f64 = 1e-3;
 
 /// Laws of nothing over what the recording visits.
-pub(crate) fn menu(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
-    let motion = Motion::of(case, plant);
+pub(crate) fn menu(case: &Case, plant: &Plant, motion: &Motion) -> Vec<EffectConfig> {
     let ask = |action: Action| {
         let range = motion.range(action.place, action.coordinate);
-        let asked = is_judged(case, action) && varies(&motion, plant, action, range);
+        let asked = is_judged(case, action) && varies(motion, plant, action, range);
         asked.then(|| Modes::absent(action, range))
     };
     Action::all().filter_map(ask).collect()

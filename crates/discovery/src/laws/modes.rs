@@ -15,9 +15,11 @@ use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 /// B-splines of a curve.
-const SPLINES: usize = 10;
+pub(crate) const SPLINES: usize = 10;
 /// Harmonics of a curve over an angle.
 const HARMONICS: usize = 8;
+/// Modes of a curve over an angle.
+pub(crate) const TURN_MODES: usize = 1 + 2 * HARMONICS;
 /// Parameters before the sizes: lowest and highest coordinate, width of the crowded knots (0: none), stiffness.
 const SHAPES: usize = 4;
 const WARP: usize = 2;
@@ -106,6 +108,22 @@ impl Modes {
         EffectConfig { effect, values }
     }
 
+    /// A law of one value everywhere.
+    pub fn constant(action: Action, range: [f64; 2], value: f64) -> EffectConfig {
+        let mut config = Self::absent(action, range);
+        let sizes = &mut config.values[SHAPES..];
+        match action.coordinate.is_angle() {
+            true => sizes[0] = value,
+            // The splines sum to one.
+            false => {
+                for (mode, size) in sizes.iter_mut().enumerate() {
+                    *size = value * AXES.1.column(mode).sum();
+                }
+            }
+        }
+        config
+    }
+
     /// The law behind an effect of a hypothesis; `None` for any other effect.
     pub fn of(config: &EffectConfig) -> Option<&'static Modes> {
         let descriptor = config.effect.descriptor();
@@ -113,19 +131,12 @@ impl Modes {
             .find(|law| std::ptr::eq(law.descriptor, descriptor))
     }
 
-    /// Value of each mode at `x`, typical sizes.
+    /// Value of each mode at `x`, for sizes of one.
     pub fn shares(&self, p: &[f64], x: f64) -> Vec<f64> {
-        if self.action.coordinate.is_angle() {
-            return harmonics(x);
+        match self.action.coordinate.is_angle() {
+            true => harmonics(x).to_vec(),
+            false => spline_modes(p, x).to_vec(),
         }
-        let splines = splines(place(p, x));
-        let mut shares = vec![0.0; SPLINES];
-        for (spline, weight) in splines {
-            for (mode, share) in shares.iter_mut().enumerate() {
-                *share += weight * AXES.1[(spline, mode)];
-            }
-        }
-        shares
     }
 
     /// Value of the curve at `x`, in the unit of its place.
@@ -176,7 +187,7 @@ pub(crate) fn weight(stiffness: f64, of_mode: f64) -> f64 {
 /// Number of modes.
 pub(crate) fn count(coordinate: Coordinate) -> usize {
     match coordinate.is_angle() {
-        true => 1 + 2 * HARMONICS,
+        true => TURN_MODES,
         false => SPLINES,
     }
 }
@@ -187,6 +198,7 @@ pub(crate) fn stiffen(config: &mut EffectConfig, stiffness: f64) {
 }
 
 /// Indices of the sizes among the values.
+#[cfg(test)]
 pub(crate) fn sizes(config: &EffectConfig) -> std::ops::Range<usize> {
     SHAPES..config.values.len()
 }
@@ -237,12 +249,27 @@ fn splines(place: f64) -> [(usize, f64); 4] {
     ]
 }
 
-fn harmonics(x: f64) -> Vec<f64> {
-    let orders = || (1..=HARMONICS).map(|k| k as f64 * x);
-    std::iter::once(1.0)
-        .chain(orders().map(f64::cos))
-        .chain(orders().map(f64::sin))
-        .collect()
+/// Value of each mode of a curve of splines at `x`, for sizes of one.
+pub(crate) fn spline_modes(p: &[f64], x: f64) -> [f64; SPLINES] {
+    let mut shares = [0.0; SPLINES];
+    for (spline, weight) in splines(place(p, x)) {
+        for (mode, share) in shares.iter_mut().enumerate() {
+            *share += weight * AXES.1[(spline, mode)];
+        }
+    }
+    shares
+}
+
+/// A constant, then cosines, then sines of the harmonics of an angle.
+pub(crate) fn harmonics(x: f64) -> [f64; TURN_MODES] {
+    let mut shares = [1.0; TURN_MODES];
+    let (sin, cos) = x.sin_cos();
+    let (mut c, mut s) = (1.0, 0.0);
+    for k in 1..=HARMONICS {
+        (c, s) = (c * cos - s * sin, s * cos + c * sin);
+        (shares[k], shares[HARMONICS + k]) = (c, s);
+    }
+    shares
 }
 
 impl SteadyEffect for Modes {

@@ -1,11 +1,10 @@
 //! What a recording visits: the quantities over which a law may act, as the fitted model has them.
 
-use crate::data::case::Case;
-use crate::model::prediction::{Drive, SpeedObserver, run};
-use motor::TParams;
+use estimation::data::case::Case;
 use motor::dynamic::clarke;
-use motor::effect::Plant;
 use motor::effect::curve::{Coordinate, Place};
+use motor::effect::tangent::Tangent;
+use motor::effect::{Outputs, Plant};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -25,18 +24,19 @@ pub(crate) struct Motion {
     slip: Vec<f64>,
     stator: Vec<f64>,
     rotor: Vec<f64>,
-    phase: Vec<f64>,
+    phases: [Vec<f64>; 3],
     flux: Vec<f64>,
     frequency: Vec<f64>,
     voltage: Vec<f64>,
     load: Vec<f64>,
+    angle: Vec<f64>,
+    angle_electrical: Vec<f64>,
+    time: Vec<f64>,
 }
 
 impl Motion {
-    /// The motion of a plant on what drives a recording.
-    pub fn of(case: &Case, plant: &Plant) -> Self {
-        let drive = Drive::of(case);
-        let outputs = run(case, plant, &drive, SpeedObserver::Off);
+    /// The motion of a plant on what drives a recording, of a linearised run and its true outputs.
+    pub fn of(case: &Case, plant: &Plant, tangent: &Tangent, outputs: &Outputs) -> Self {
         let stride = case.between.stride();
         let t_step = case.inputs.t_sample * stride as f64;
         let n_p = plant.mechanics.n_p;
@@ -45,40 +45,50 @@ impl Motion {
             all[(k * stride).min(all.len() - 1)]
         };
         let i_s: Vec<Complex64> = outputs.i_s_abc.iter().map(|i| clarke(*i)).collect();
-        let fluxes = air_gap_flux(&plant.motor, &i_s, &outputs.omega_mech, n_p, t_step);
+        let air_gap = |(psi_s, i_s): (Complex64, &Complex64)| psi_s - i_s * plant.motor.l_ls;
+        let fluxes: Vec<Complex64> = tangent.psi_s().zip(&i_s).map(air_gap).collect();
         let rotor = |(flux, i): (&Complex64, &Complex64)| (flux / plant.motor.l_m - i).norm();
         let slip = |(k, w): (usize, &f64)| (omega_sync(k) - n_p * w) / TAU;
+        let steps = 0..i_s.len();
+        let u_s = |k: usize| case.inputs.u_s[k * stride];
         Self {
             slip: outputs.omega_mech.iter().enumerate().map(slip).collect(),
-            frequency: (0..i_s.len()).map(|k| omega_sync(k) / TAU).collect(),
-            voltage: (0..i_s.len())
-                .map(|k| case.inputs.u_s[k * stride].norm())
-                .collect(),
-            load: (0..i_s.len())
+            frequency: steps.clone().map(|k| omega_sync(k) / TAU).collect(),
+            voltage: steps.clone().map(|k| u_s(k).norm()).collect(),
+            angle_electrical: steps.clone().map(|k| u_s(k).arg()).collect(),
+            load: steps
+                .clone()
                 .map(|k| case.inputs.tau_load[k * stride])
+                .collect(),
+            time: steps
+                .map(|k| case.timeline.clock(t_step * k as f64))
                 .collect(),
             stator: i_s.iter().map(|i| i.norm()).collect(),
             rotor: fluxes.iter().zip(&i_s).map(rotor).collect(),
             flux: fluxes.iter().map(|flux| flux.norm()).collect(),
-            phase: outputs.i_s_abc.iter().map(|i| i[0]).collect(),
+            phases: [0, 1, 2].map(|p| outputs.i_s_abc.iter().map(|i| i[p]).collect()),
             duration: case.timeline.clock(t_step * i_s.len() as f64),
-            speed: outputs.omega_mech,
+            speed: outputs.omega_mech.clone(),
+            angle: outputs.theta_mech.clone(),
             t_step,
         }
     }
 
-    fn values(&self, place: Place, coordinate: Coordinate) -> &[f64] {
+    /// Values of a coordinate, one per step.
+    pub fn values(&self, place: Place, coordinate: Coordinate) -> &[f64] {
         match coordinate {
             Coordinate::Speed => &self.speed,
             Coordinate::Slip => &self.slip,
             Coordinate::Current if place == Place::Rotor => &self.rotor,
             Coordinate::Current => &self.stator,
-            Coordinate::PhaseCurrent => &self.phase,
+            Coordinate::PhaseCurrent => &self.phases[place.phase().unwrap_or(0)],
             Coordinate::Flux => &self.flux,
             Coordinate::Frequency => &self.frequency,
             Coordinate::Voltage => &self.voltage,
             Coordinate::LoadTorque => &self.load,
-            Coordinate::Angle | Coordinate::AngleElectrical | Coordinate::Time => &[],
+            Coordinate::Angle => &self.angle,
+            Coordinate::AngleElectrical => &self.angle_electrical,
+            Coordinate::Time => &self.time,
         }
     }
 
@@ -111,24 +121,4 @@ impl Motion {
             _ => [low, high],
         }
     }
-}
-
-/// Air-gap flux linkage, V s, by the rotor's own equation from stator current and speed (theory, section 2).
-fn air_gap_flux(
-    motor: &TParams<f64>,
-    i_s: &[Complex64],
-    omega_mech: &[f64],
-    n_p: f64,
-    h: f64,
-) -> Vec<Complex64> {
-    let l_r = motor.l_r();
-    let (decay, coupling) = (motor.r_r / l_r, motor.l_m / l_r);
-    let mut psi_r = Complex64::new(0.0, 0.0);
-    let step = |(i, w): (&Complex64, &f64)| {
-        let flux = (psi_r + i * motor.l_lr) * coupling;
-        let fed = psi_r + (i * motor.l_m - psi_r) * (1.0 - (-decay * h).exp());
-        psi_r = fed * Complex64::from_polar(1.0, n_p * w * h);
-        flux
-    };
-    i_s.iter().zip(omega_mech).map(step).collect()
 }

@@ -1,13 +1,14 @@
 //! A law as a report shows it.
 
-use crate::data::study::{Study, Trial};
+use crate::bursts::report::{bursts_report, corners};
 use crate::laws::curve::as_knots;
 use crate::laws::formula::prove::{coordinates_of, law_of};
 use crate::laws::formula::report::formula_report;
 use crate::laws::modes::{self, Modes};
 use crate::laws::search::LawStep;
 use crate::report::types::{LawCurve, LawPlace, LawReport};
-use crate::search::accept::explained;
+use estimation::data::study::{Study, Trial};
+use estimation::proof::accept::explained;
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::to_entry;
 use nalgebra::DVector;
@@ -29,7 +30,17 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
         place: at.place,
         coordinate: at.coordinate,
         meaning: step.action.place.meaning(step.action.coordinate).to_owned(),
-        curve: curve(study, &step.trial),
+        curve: match step.bursts.first() {
+            Some(pulses) => corners(
+                study,
+                step.action.place,
+                &step.trial,
+                pulses,
+                duration(study),
+            ),
+            None => curve(study, &step.trial),
+        },
+        bursts: bursts_report(study, step.action.place, &step.trial, &step.bursts),
         formula: first.map(|f| f.formula.clone()),
         formula_parameters: first.map_or_else(Vec::new, |f| f.parameters.clone()),
         formulas,
@@ -44,10 +55,16 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
     }
 }
 
+/// Time from the first to the last sample of the fitted recording, s.
+fn duration(study: &Study) -> f64 {
+    let case = &study.fitted.case;
+    case.time_of(case.measured.len().saturating_sub(1))
+}
+
 /// Other places and coordinates, each once: friction and torque over time have one name.
 fn ties(step: &LawStep, at: &LawPlace) -> Vec<LawPlace> {
     let mut ties: Vec<LawPlace> = Vec::new();
-    for tie in step.tied.iter().map(|action| named(*action)) {
+    for tie in step.rivals.iter().map(|rival| named(rival.action)) {
         if tie != *at && !ties.contains(&tie) {
             ties.push(tie);
         }

@@ -1,17 +1,14 @@
 //! Tries every law at once: sensitivities of its modes against the normal equations of the present fit.
 
-use crate::data::case::Case;
-use crate::fit::normal_equations::{self, Block, Penalty};
-use crate::fit::output_error::Fit;
 use crate::laws::modes::{self, Modes};
-use crate::model::prediction::outputs;
-use crate::model::prior::Prior;
+use crate::laws::sensitivity::Sensitivities;
+use estimation::data::case::Case;
+use estimation::fit::normal_equations::{self, Block, Penalty};
+use estimation::fit::output_error::Fit;
 use motor::effect::EffectConfig;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-/// Size of the secant, typical sizes.
-const SECANT: f64 = 0.25;
 /// Stiffnesses that are tried, in units of the information over the stiffness of the mean mode.
 const STIFFNESSES: [f64; 7] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 /// Relative gain of held-out error that a softer curve must bring.
@@ -36,13 +33,13 @@ impl Screened {
 /// All laws on top of a fit, best first.
 pub(crate) fn screen(
     case: &Case,
-    prior: &Prior,
     fit: &Fit,
+    sensitivities: &Sensitivities<'_>,
     menu: &[EffectConfig],
 ) -> Vec<Screened> {
     let rows = case.blocks();
     let one = |law: &EffectConfig| {
-        let columns = columns(case, prior, fit, law)?;
+        let columns = sensitivities.columns(law)?;
         let blocks =
             normal_equations::extended(&fit.blocks, &rows, &fit.residual, &fit.jacobian, &columns);
         Some(judged(fit, law, &blocks))
@@ -50,29 +47,6 @@ pub(crate) fn screen(
     let mut all: Vec<Screened> = menu.par_iter().filter_map(one).collect();
     all.sort_by(|a, b| a.total().total_cmp(&b.total()));
     all
-}
-
-/// Change of the outputs by a typical size of each mode; `None` for a law that the model cannot bear.
-fn columns(case: &Case, prior: &Prior, fit: &Fit, law: &EffectConfig) -> Option<Vec<Vec<f64>>> {
-    let rated = &prior.plant.rated;
-    let column = |k: usize| {
-        let mut there = law.clone();
-        let p = &law.effect.descriptor().parameters[k];
-        there.values[k] = SECANT * p.typical * p.scale.of(rated);
-        let mut column = outputs(
-            case,
-            prior,
-            &fit.hypothesis.with(there, rated),
-            fit.observer,
-        );
-        for (x, base) in column.iter_mut().zip(&fit.outputs) {
-            *x = (*x - base) / SECANT;
-        }
-        column
-    };
-    let columns: Vec<Vec<f64>> = modes::sizes(law).into_par_iter().map(column).collect();
-    let finite = columns.iter().flatten().all(|x| x.is_finite());
-    finite.then_some(columns)
 }
 
 /// The stiffness that predicts blocks best which were not fitted.

@@ -1,14 +1,16 @@
 //! Which law is missing: screened, refitted, proven as an effect must be.
 
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::{Effort, fit};
+use crate::bursts::pulse::Pulse;
 use crate::laws::formula::prove::{Curve, Proven};
 use crate::laws::menu::menu;
 use crate::laws::modes::{self, Modes};
 use crate::laws::screen::{Screened, best_stiffness, screen};
-use crate::model::prediction::SpeedObserver;
-use crate::search::accept::{beats, explained, proven};
+use crate::laws::sensitivity::Sensitivities;
 use crate::search::refit::combined;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::{Effort, fit, fit_knowing};
+use estimation::model::prediction::SpeedObserver;
+use estimation::proof::accept::{explained, proven, surpasses};
 use motor::effect::curve::Action;
 use rayon::prelude::*;
 
@@ -22,8 +24,10 @@ const REFITTED_ASTRAY: usize = 4;
 const OBSERVER: f64 = 15.0;
 /// Share of the best law's gain that a tied one reaches.
 const TIED: f64 = 0.5;
+/// Share of the first law's gain that another one reaches soon, or is given up.
+const HOPEFUL: f64 = 0.3;
 /// First refit and the one after the stiffness was chosen anew, iterations.
-const ITERATIONS: [usize; 2] = [8, 4];
+const ITERATIONS: [usize; 2] = [5, 3];
 
 /// A law that was refitted.
 #[derive(Clone, Debug)]
@@ -46,11 +50,13 @@ pub(crate) struct LawStep {
     /// The model before it.
     pub before: Trial,
     /// Laws that explain the recordings as well.
-    pub tied: Vec<Action>,
+    pub rivals: Vec<Refitted>,
     /// Whether it is proven on a recording that was not fitted.
     pub proven: bool,
     /// Formulas that explain the recordings as well as the curve, simplest first.
     pub formulas: Vec<Proven>,
+    /// Bursts of each recording, the fitted one first, where the law comes and goes; empty for a curve.
+    pub bursts: Vec<Vec<Pulse>>,
 }
 
 impl LawStep {
@@ -63,76 +69,151 @@ impl LawStep {
     }
 }
 
-/// The law on top of a model; `None` where no law explains anything.
-pub(crate) fn search(
-    study: &Study,
-    base: &Trial,
-    progress: &mut dyn FnMut(&str, f64),
-) -> Option<LawStep> {
-    let laws = refitted(study, base, progress);
-    let best = laws.first()?;
-    let is_proven = !study.proofs.is_empty() && proven(study, base, &best.trial);
-    let leads = explained(study, base, &best.trial) > 0.0;
-    leads.then(|| LawStep {
-        action: best.action,
-        trial: best.trial.clone(),
-        before: base.clone(),
-        tied: tied(study, base, best, &laws),
-        proven: is_proven,
-        formulas: Vec::new(),
-    })
+/// Laws on top of a model, screened.
+pub(crate) struct LawSearch<'a> {
+    study: &'a Study,
+    base: &'a Trial,
+    sensitivities: Sensitivities<'a>,
+    screened: Vec<Screened>,
 }
 
-/// The best laws on top of a model, refitted, best first.
-pub(crate) fn refitted(
-    study: &Study,
-    base: &Trial,
-    progress: &mut dyn FnMut(&str, f64),
-) -> Vec<Refitted> {
-    let (case, prior) = (&study.fitted.case, &study.prior);
-    let plant = base.fit.hypothesis.plant(prior);
-    let menu = menu(case, &plant);
-    progress("screening laws that no library holds", 0.0);
-    let screened = screen(case, prior, &base.fit, &menu);
-    let mut starts: Vec<Screened> = screened.into_iter().take(REFITTED).collect();
-    if study.fold_error(&base.folds) > ASTRAY && !case.speed.is_empty() && !case.speed_is_input {
+/// The likeliest laws, refitted, best first.
+#[derive(Debug)]
+pub(crate) struct Laws {
+    /// The refits.
+    pub refitted: Vec<Refitted>,
+}
+
+impl<'a> LawSearch<'a> {
+    /// Screens all laws on top of a model.
+    pub fn new(study: &'a Study, base: &'a Trial, progress: &mut dyn FnMut(&str, f64)) -> Self {
+        progress("screening laws that no library holds", 0.0);
+        let case = &study.fitted.case;
+        let sensitivities = Sensitivities::of(case, &study.prior, &base.fit);
+        let menu = menu(case, sensitivities.plant(), sensitivities.motion());
+        Self {
+            screened: screen(case, &base.fit, &sensitivities, &menu),
+            sensitivities,
+            study,
+            base,
+        }
+    }
+
+    /// The best law, refitted, if the screen promises more of it than another model explains.
+    pub fn better_than(
+        self,
+        rival: &Trial,
+        progress: &mut dyn FnMut(&str, f64),
+    ) -> Option<LawStep> {
+        let (study, base) = (self.study, self.base);
+        let promised = study.fold_error(&self.screened.first()?.held_out);
+        let promising = promised < study.fold_error(&rival.folds);
+        promising.then(|| self.refitted(progress).best(study, base))?
+    }
+
+    /// The likeliest laws; above three times the noise those, too, that a model led by the measured speed shows.
+    pub fn refitted(self, progress: &mut dyn FnMut(&str, f64)) -> Laws {
+        let mut starts: Vec<&Screened> = self.screened.iter().take(REFITTED).collect();
+        let led = self.led();
+        for law in &led {
+            if !starts.iter().any(|s| action(s) == action(law)) {
+                starts.push(law);
+            }
+        }
+        progress("refitting the likeliest laws", 0.4);
+        self.refits(&starts)
+    }
+
+    /// The first few laws of the screen.
+    pub fn best_refitted(self, count: usize) -> Laws {
+        let starts: Vec<&Screened> = self.screened.iter().take(count).collect();
+        self.refits(&starts)
+    }
+
+    /// The first one to its end; the others as long as they may tie with it.
+    fn refits(&self, starts: &[&Screened]) -> Laws {
+        let one = |law: &Screened, abandon_above: f64| {
+            let columns = self.sensitivities.columns(&law.config)?;
+            refit(self.study, self.base, law, columns, abandon_above)
+        };
+        let (first, others) = starts.split_at(starts.len().min(1));
+        let first = first.first().and_then(|law| one(law, f64::INFINITY));
+        let sse = |trial: &Trial| signal::dot(&trial.fit.residual, &trial.fit.residual);
+        let limit = first.as_ref().map_or(f64::INFINITY, |first| {
+            let (best, base) = (sse(&first.trial), sse(self.base));
+            base - HOPEFUL * (base - best).max(0.0)
+        });
+        let rest = others.par_iter().filter_map(|law| one(law, limit));
+        let mut refitted: Vec<Refitted> = rest.collect();
+        refitted.extend(first);
+        refitted.sort_by(|a, b| a.error.total_cmp(&b.error));
+        Laws { refitted }
+    }
+
+    /// A second screen, on top of a model that the measured speed leads.
+    fn led(&self) -> Vec<Screened> {
+        let (case, prior) = (&self.study.fitted.case, &self.study.prior);
+        let astray = self.study.fold_error(&self.base.folds) > ASTRAY;
+        if !astray || case.speed.is_empty() || case.speed_is_input {
+            return Vec::new();
+        }
         let led = Effort {
             iterations: 8,
             observer: SpeedObserver::On(OBSERVER),
             abandon_above: f64::INFINITY,
         };
-        let observed = fit(case, prior, &base.fit.hypothesis, led);
-        let again = screen(case, prior, &observed, &menu);
-        for law in again.into_iter().take(REFITTED_ASTRAY) {
-            let known = |s: &Screened| action(s) == action(&law);
-            if !starts.iter().any(known) {
-                starts.push(law);
-            }
-        }
+        let observed = fit(case, prior, &self.base.fit.hypothesis, led);
+        let sensitivities = Sensitivities::of(case, prior, &observed);
+        let menu: Vec<_> = self.screened.iter().map(|s| s.config.clone()).collect();
+        let mut all = screen(case, &observed, &sensitivities, &menu);
+        all.truncate(REFITTED_ASTRAY);
+        all
     }
-    progress("refitting the likeliest laws", 0.4);
-    let one = |law: &Screened| refit(study, base, law);
-    let mut laws: Vec<Refitted> = starts.par_iter().filter_map(one).collect();
-    laws.sort_by(|a, b| a.error.total_cmp(&b.error));
-    laws
+}
+
+impl Laws {
+    /// The law on top of `base`; `None` where no law explains anything.
+    pub fn best(&self, study: &Study, base: &Trial) -> Option<LawStep> {
+        let best = self.refitted.first()?;
+        let is_proven = !study.proofs.is_empty() && proven(study, base, &best.trial);
+        let leads = explained(study, base, &best.trial) > 0.0;
+        leads.then(|| LawStep {
+            action: best.action,
+            trial: best.trial.clone(),
+            before: base.clone(),
+            rivals: tied(study, base, best, &self.refitted),
+            proven: is_proven,
+            formulas: Vec::new(),
+            bursts: Vec::new(),
+        })
+    }
 }
 
 fn action(law: &Screened) -> Option<Action> {
     Modes::of(&law.config).map(|modes| modes.action)
 }
 
-/// A law with all parameters free; the stiffness is chosen once more where the fit has arrived.
-fn refit(study: &Study, base: &Trial, law: &Screened) -> Option<Refitted> {
+/// A law with all parameters free; the stiffness is chosen once more where the fit has arrived. `columns`: what its modes do
+/// to the outputs of the base.
+fn refit(
+    study: &Study,
+    base: &Trial,
+    law: &Screened,
+    columns: Vec<Vec<f64>>,
+    abandon_above: f64,
+) -> Option<Refitted> {
     let (case, prior) = (&study.fitted.case, &study.prior);
     let effort = |iterations| Effort {
         iterations,
+        abandon_above,
         ..Effort::FULL
     };
     let start = base
         .fit
         .hypothesis
         .with(law.config.clone(), &prior.plant.rated);
-    let first = fit(case, prior, &start, effort(ITERATIONS[0]));
+    let known = [base.fit.jacobian.clone(), columns].concat();
+    let first = fit_knowing(case, prior, &start, effort(ITERATIONS[0]), known);
     let modes = Modes::of(&law.config)?;
     let n = modes::count(modes.action.coordinate);
     let (stiffness, _) = best_stiffness(
@@ -143,7 +224,8 @@ fn refit(study: &Study, base: &Trial, law: &Screened) -> Option<Refitted> {
     );
     let mut again = first.hypothesis.clone();
     modes::stiffen(again.effects.last_mut()?, stiffness);
-    let trial = study.trial(&again, effort(ITERATIONS[1]));
+    let effort = effort(ITERATIONS[1]);
+    let trial = study.measured(fit_knowing(case, prior, &again, effort, first.jacobian));
     Some(Refitted {
         action: modes.action,
         error: combined(study, &trial),
@@ -152,7 +234,7 @@ fn refit(study: &Study, base: &Trial, law: &Screened) -> Option<Refitted> {
 }
 
 /// Laws that the best one does not beat and that gain at least half as much.
-fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<Action> {
+fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<Refitted> {
     let gain = |t: &Trial| {
         let fold = study.fold_error(&base.folds) - study.fold_error(&t.folds);
         let proof = study.proof_error(base) - study.proof_error(t);
@@ -164,7 +246,7 @@ fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<A
         law.action != best.action
             && fold > TIED * most.0
             && proof > TIED * most.1
-            && !beats(&best.trial, &law.trial)
+            && !surpasses(study, &best.trial, &law.trial)
     };
-    all.iter().filter(equal).map(|law| law.action).collect()
+    all.iter().filter(equal).cloned().collect()
 }

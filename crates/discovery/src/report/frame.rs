@@ -4,10 +4,10 @@
 //! 15(22), 8372; docs/theory.md). The first residual of (37) over windows of steady running tells: with parameters that
 //! explain currents and speed it stays near zero in the right frame and grows with the load in the wrong one.
 
-use crate::data::case::{Case, RELATIVE_CURRENT};
-use crate::model::prior::Prior;
 use crate::report::types::{FrameBand, FrameReport};
-use crate::search::proof::wilcoxon;
+use estimation::data::case::{Case, RELATIVE_CURRENT};
+use estimation::model::prior::Prior;
+use estimation::proof::pairs::wilcoxon;
 use motor::dynamic::clarke;
 use motor::motor_file::{FieldCurrent, Frame};
 use motor::steady_state::rotor_flux;

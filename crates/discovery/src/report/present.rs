@@ -1,24 +1,15 @@
 //! From fits to the numbers of a report.
 
-use crate::data::study::{Study, Trial};
-use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
 use crate::report::types::{FitReport, NominalReport, ParameterReport};
+use estimation::data::study::{Study, Trial};
+use estimation::fit::uncertainty::coordinate_error;
+use estimation::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
 use motor::effect::{Kind, Role};
 
 /// A move beyond so many prior standard deviations is implausible, ...
 const IMPLAUSIBLE: f64 = 3.0;
 /// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.
 const HOT_COPPER: f64 = 0.41;
-
-/// Standard error of coordinate `k`, zero if it was not fitted.
-pub(crate) fn coordinate_error(
-    trial: &Trial,
-    covariance: &nalgebra::DMatrix<f64>,
-    k: usize,
-) -> f64 {
-    let position = trial.fit.free.iter().position(|&free| free == k);
-    position.map_or(0.0, |p| covariance[(p, p)].max(0.0).sqrt())
-}
 
 /// Names of the nominals that are off so far that no such motor has them.
 pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {

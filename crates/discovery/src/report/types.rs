@@ -1,6 +1,8 @@
 //! What the user gets, with the stable keys of the JSON interface.
 
+use crate::design::report::DesignReport;
 use audit::Audit;
+use estimation::model::speed_scale::SpeedScaleReport;
 use motor::motor_file::EffectEntry;
 use serde::{Deserialize, Serialize};
 
@@ -98,6 +100,9 @@ pub struct LawReport {
     pub held_out_error_over_noise_without: f64,
     /// Whether a recording that was not fitted proves it; one recording alone gives a lead.
     pub proven: bool,
+    /// What comes and goes instead of following a curve.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bursts: Option<BurstsReport>,
     /// The law as a motor file holds it.
     #[serde(skip)]
     pub entry: Option<EffectEntry>,
@@ -106,8 +111,43 @@ pub struct LawReport {
 impl LawReport {
     /// Place and coordinate in words.
     pub fn name(&self) -> String {
-        format!("{} over {}", self.place, self.coordinate)
+        match self.bursts {
+            Some(_) => format!("{} that comes and goes", self.place),
+            None => format!("{} over {}", self.place, self.coordinate),
+        }
     }
+}
+
+/// What comes and goes: all bursts of all recordings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BurstsReport {
+    /// How many there are.
+    pub count: usize,
+    /// Share of the time of the recordings that they take, percent.
+    pub share_of_time_percent: f64,
+    /// Smallest size ...
+    pub smallest: f64,
+    /// ... median ...
+    pub median: f64,
+    /// ... and largest.
+    pub largest: f64,
+    /// Unit of the sizes: ohm, N m, or percent of a reading.
+    pub unit: String,
+    /// Each of them.
+    pub bursts: Vec<BurstReport>,
+}
+
+/// One burst.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BurstReport {
+    /// Number of the recording, from 1.
+    pub recording: usize,
+    /// Beginning, s from the beginning of the recording.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+    /// Size.
+    pub size: f64,
 }
 
 /// A nominal parameter, believed and fitted.
@@ -211,50 +251,6 @@ pub struct Unexplained {
     pub best_lead_explains_percent: f64,
 }
 
-/// Where the reading at rest comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum AtRest {
-    /// The user gave it.
-    Given,
-    /// The recording holds the motor at rest.
-    Measured,
-    /// Unknown: zero.
-    Assumed,
-}
-
-/// Where the standard error of a fitted scale comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ErrorSource {
-    /// The recording, which the model explains.
-    Recording,
-    /// The model does not explain the recording: all that is known is that the least slip lies between none and that
-    /// at rated load.
-    Physics,
-}
-
-/// The scale of a speed channel that was declared unknown, as fitted: speed = factor x (column - offset).
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SpeedScaleReport {
-    /// Factor.
-    pub factor: f64,
-    /// Its standard error.
-    pub std_error: f64,
-    /// Where the standard error comes from.
-    pub std_error_is: ErrorSource,
-    /// Unit of both.
-    pub unit: String,
-    /// Column at rest, in the column's own unit.
-    pub offset: f64,
-    /// Its standard error; 0 unless it was measured.
-    pub offset_std_error: f64,
-    /// Where the offset comes from.
-    pub offset_is: AtRest,
-    /// What is taken from the channel as it was read, rad/s, before the factor is applied.
-    pub at_rest_rad_s: f64,
-}
-
 /// Something that cannot be concluded while the scale of the speed is free.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inconclusive {
@@ -296,7 +292,6 @@ pub struct ExplainReport {
     /// Effects that a typical size would not show in this recording.
     pub not_testable: Vec<String>,
     /// Laws that no library holds, in the order in which they were found.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub laws: Vec<LawReport>,
     /// What is left, if the library does not explain it.
     pub unexplained: Option<Unexplained>,
@@ -306,6 +301,9 @@ pub struct ExplainReport {
     /// What cannot be concluded because of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cannot_be_concluded: Vec<Inconclusive>,
+    /// The next experiment, where it was asked for and something is open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_run: Option<DesignReport>,
 }
 
 /// One signal: model against measurement.

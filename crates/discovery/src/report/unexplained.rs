@@ -1,9 +1,9 @@
 //! Describes what is left: where, in which channel, with what it grows.
 
-use crate::data::case::Case;
-use crate::data::channels::N_CHANNELS;
-use crate::data::study::{Study, Trial};
 use crate::report::types::Unexplained;
+use estimation::data::case::Case;
+use estimation::data::channels::N_CHANNELS;
+use estimation::data::study::{Study, Trial};
 
 /// Correlation below which nothing is said.
 const WORTH_SAYING: f64 = 0.3;
@@ -106,7 +106,7 @@ fn worst_place(study: &Study, trial: &Trial) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::specimen;
+    use estimation::specimen;
 
     #[test]
     fn correlation_is_one_for_a_line_and_zero_for_what_goes_its_own_way() {

@@ -1,6 +1,6 @@
 //! Reports in a sentence.
 
-use crate::report::types::{ExplainReport, LawReport, Verdict};
+use crate::report::types::{BurstsReport, ExplainReport, LawReport, Verdict};
 
 /// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
 const FAR_BELOW: f64 = 0.3;
@@ -80,8 +80,9 @@ fn laws(report: &ExplainReport, effects: &[String]) -> String {
             law.held_out_error_over_noise,
         );
         format!(
-            "{}{or}; with it the error falls from {before:.2} to {after:.2} x noise on the recording that was not fitted",
-            law.name()
+            "{}{or}{}; with it the error falls from {before:.2} to {after:.2} x noise on the recording that was not fitted",
+            law.name(),
+            law.bursts.as_ref().map_or_else(String::new, often)
         )
     };
     let proven = report.laws.iter().filter(|law| law.proven).map(law);
@@ -89,6 +90,14 @@ fn laws(report: &ExplainReport, effects: &[String]) -> String {
     format!(
         "Missing, a law that the library does not hold: {}.",
         all.join("; ")
+    )
+}
+
+/// How often something comes, and how large it is.
+fn often(bursts: &BurstsReport) -> String {
+    format!(
+        ", {} times, {:.1} % of the time, {:.3} to {:.3} {}",
+        bursts.count, bursts.share_of_time_percent, bursts.smallest, bursts.largest, bursts.unit
     )
 }
 

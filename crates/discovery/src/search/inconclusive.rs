@@ -3,15 +3,16 @@
 //! Nothing here knows which parameters depend on the slip: the derivatives of the fit tell. A parameter has the standard
 //! error that it would have beside a known scale, and how far it moves with the scale times the scale's own.
 
-use crate::data::study::{Study, Trial};
-use crate::fit::normal_equations;
-use crate::fit::output_error::{Fit, INFLATION};
-use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS, Prior};
-use crate::model::speed_gain::name;
-use crate::report::types::{ErrorSource, Inconclusive};
-use crate::search::accept::adequate;
-use crate::search::off::{RELEVANT, RELEVANT_FRICTION, SIGNIFICANT};
+use crate::report::types::Inconclusive;
 use crate::search::screen::Screened;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::normal_equations;
+use estimation::fit::output_error::{Fit, INFLATION};
+use estimation::model::prior::{FRICTION, N_NOMINAL, NOMINALS, Prior};
+use estimation::model::speed_gain::name;
+use estimation::model::speed_scale::ErrorSource;
+use estimation::proof::accept::adequate;
+use estimation::proof::off::{RELEVANT, RELEVANT_FRICTION, SIGNIFICANT};
 use nalgebra::{DMatrix, DVector};
 
 /// Growth of a standard error by the free scale from which the scale is to blame.

@@ -1,12 +1,12 @@
 //! Refits the best candidates with free shapes.
 
-use crate::data::case::Case;
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::{Effort, Fit, fit};
-use crate::model::prediction::SpeedObserver;
-use crate::model::prior::Hypothesis;
-use crate::search::accept::{adequate, explained};
 use crate::search::screen::{Screened, ranked, screen};
+use estimation::data::case::Case;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::{Effort, Fit, fit};
+use estimation::model::prediction::SpeedObserver;
+use estimation::model::prior::Hypothesis;
+use estimation::proof::accept::{adequate, explained, proven};
 use motor::effect::expression;
 use motor::effects::names;
 use rayon::prelude::*;
@@ -82,40 +82,92 @@ fn short(observer: SpeedObserver) -> Effort {
     }
 }
 
-/// Screens all effects on top of `base` and refits the most promising.
-///
-/// `tell` hears which of the two is being done.
-/// `nominal` is the same hypothesis with the nominals at their priors, from which a fit that settled in a
-/// local minimum starts again.
-pub(crate) fn round(
-    study: &Study,
-    base: &Trial,
-    nominal: &Hypothesis,
-    excluded: &[&str],
+/// A round on its way: the likeliest candidates are refitted, the others wait.
+pub(crate) struct Begun<'a> {
+    study: &'a Study,
+    base: &'a Trial,
+    excluded: &'a [&'a str],
+    groups: Vec<Vec<Screened>>,
+    rest: Vec<Start>,
+    candidates: Vec<Candidate>,
+    led: bool,
+}
+
+/// Screens all effects on top of `base` and refits the most promising; `tell` hears which of the two is being done.
+pub(crate) fn begin<'a>(
+    study: &'a Study,
+    base: &'a Trial,
+    excluded: &'a [&'a str],
     tell: &mut dyn FnMut(&str),
-) -> Round {
-    let (case, prior) = (&study.fitted.case, &study.prior);
+) -> Begun<'a> {
     tell("screening all effects");
-    let groups = ranked(&screen(case, prior, &base.fit, excluded), STARTS);
+    let screened = screen(&study.fitted.case, &study.prior, &base.fit, excluded);
+    let groups = ranked(&screened, STARTS);
     tell("refitting the likeliest");
     let error = study.fold_error(&base.folds);
     let (likely, rest) = promising(study, &base.fit, &groups, error);
-    let mut candidates = confirm(study, base, &likely);
-    if !candidates.first().is_some_and(|c| settled(study, base, c)) {
-        if may_be_local_minimum(case, error) {
-            candidates.extend(refitted_with_observer(study, base, nominal, excluded));
+    Begun {
+        candidates: confirm(study, base, &likely),
+        study,
+        base,
+        excluded,
+        groups,
+        rest,
+        led: false,
+    }
+}
+
+impl Begun<'_> {
+    /// The best candidate so far that is proven.
+    pub fn proven(&self) -> Option<&Candidate> {
+        let mut all = self.candidates.iter();
+        all.find(|c| proven(self.study, self.base, &c.trial))
+    }
+
+    /// Where nothing explains the recording and the base may have settled in a local minimum: candidates from a start that
+    /// the measured speed leads, with the nominals at their priors (`nominal`).
+    pub fn lead(&mut self, nominal: &Hypothesis) {
+        let (study, base) = (self.study, self.base);
+        let error = study.fold_error(&base.folds);
+        let is_settled = |c: &Candidate| settled(study, base, c);
+        if self.led
+            || self.candidates.first().is_some_and(is_settled)
+            || !may_be_local_minimum(&study.fitted.case, error)
+        {
+            return;
         }
-        if candidates.iter().all(|c| c.error > SOLVED) {
-            candidates.extend(confirm(study, base, &rest));
+        self.led = true;
+        let led = refitted_with_observer(study, base, nominal, self.excluded);
+        self.candidates.extend(led);
+        self.candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
+    }
+
+    /// The round with what is refitted so far.
+    pub fn enough(self) -> Round {
+        Round {
+            candidates: best_of_each(self.candidates),
+            screened: self.groups.into_iter().map(|g| g[0].clone()).collect(),
         }
     }
-    let explains = |c: &Candidate| adequate(study, &c.trial);
-    if !adequate(study, base) && !candidates.iter().any(explains) {
-        candidates.extend(confirm(study, base, &second_chances(&base.fit, &groups)));
-    }
-    Round {
-        candidates: best_of_each(candidates),
-        screened: groups.into_iter().map(|g| g[0].clone()).collect(),
+
+    /// The whole round: where nothing explains the recording, less likely candidates, and other minima.
+    ///
+    /// `nominal` is the base with the nominals at their priors, from which a fit that settled in a local minimum starts
+    /// again.
+    pub fn finish(mut self, nominal: &Hypothesis) -> Round {
+        let (study, base) = (self.study, self.base);
+        self.lead(nominal);
+        let is_settled = |c: &Candidate| settled(study, base, c);
+        let open = !self.candidates.first().is_some_and(is_settled);
+        if open && self.candidates.iter().all(|c| c.error > SOLVED) {
+            self.candidates.extend(confirm(study, base, &self.rest));
+        }
+        let explains = |c: &Candidate| adequate(study, &c.trial);
+        if !adequate(study, base) && !self.candidates.iter().any(explains) {
+            let starts = second_chances(&base.fit, &self.groups);
+            self.candidates.extend(confirm(study, base, &starts));
+        }
+        self.enough()
     }
 }
 
@@ -153,6 +205,24 @@ pub(crate) fn likely(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
         candidates: confirm(study, base, &likely),
         screened: groups.into_iter().map(|g| g[0].clone()).collect(),
     }
+}
+
+/// The likeliest effects on top of a model that is taken for granted, refitted.
+pub(crate) fn seconds(
+    study: &Study,
+    base: &Trial,
+    excluded: &[&str],
+    count: usize,
+) -> Vec<Candidate> {
+    let screened = screen(&study.fitted.case, &study.prior, &base.fit, excluded);
+    let start = |group: Vec<Screened>| Start {
+        hypothesis: base.fit.hypothesis.clone(),
+        group,
+        observer: base.fit.observer,
+    };
+    let groups = ranked(&screened, STARTS).into_iter().take(count);
+    let starts: Vec<Start> = groups.map(start).collect();
+    confirm(study, base, &starts)
 }
 
 /// Starts again from the priors with the speed drawn to the measured one.

@@ -1,11 +1,11 @@
 //! Tries every effect at once: secant columns against the normal equations of the present fit.
 
-use crate::data::case::Case;
-use crate::fit::normal_equations::{self, Block, Penalty};
-use crate::fit::output_error::Fit;
-use crate::model::prediction::outputs;
-use crate::model::prior::{N_NOMINAL, Prior};
-use crate::model::speed_gain::is_scale;
+use estimation::data::case::Case;
+use estimation::fit::normal_equations::{self, Block, Penalty};
+use estimation::fit::output_error::Fit;
+use estimation::model::prediction::outputs;
+use estimation::model::prior::{N_NOMINAL, Prior};
+use estimation::model::speed_gain::is_scale;
 use motor::effect::{Applies, Effect, EffectConfig, Parameter, Role, expression};
 use motor::effects::ALL;
 use nalgebra::DVector;

@@ -38,6 +38,20 @@ pub enum Law {
     Saturating,
     /// Two jaws: twice and four times a turn.
     Jaws,
+    /// A contact of phase b that opens and closes.
+    Intermittent,
+    /// A brake that sticks now and then.
+    Sticking,
+}
+
+/// Something that comes at about every `every` seconds for 10 to 60 ms, 0.33 to 1 of its full size.
+fn comes_and_goes(t: f64, every: f64) -> f64 {
+    let k = (t / every).floor();
+    let random = |n: f64| (((k + 1.0) * n).sin() * 43_758.545_3).rem_euclid(1.0);
+    let from = every * (k + 0.1 + 0.5 * random(12.9898));
+    let length = 0.01 + 0.05 * random(78.233);
+    let there = (from..from + length).contains(&t);
+    f64::from(u8::from(there)) * (1.0 + 2.0 * random(37.719)) / 3.0
 }
 
 /// What a law depends on.
@@ -50,7 +64,7 @@ pub struct Where {
 }
 
 impl Law {
-    pub const ALL: [Law; 16] = [
+    pub const ALL: [Law; 18] = [
         Law::Stribeck,
         Law::Ripple,
         Law::Pump,
@@ -67,6 +81,8 @@ impl Law {
         Law::Brake,
         Law::Saturating,
         Law::Jaws,
+        Law::Intermittent,
+        Law::Sticking,
     ];
 
     /// Place and coordinate as reports name them.
@@ -74,7 +90,7 @@ impl Law {
         match self {
             Law::Stribeck | Law::Pump => ("torque", "speed"),
             Law::Ripple | Law::Piston | Law::Jaws => ("torque", "angle"),
-            Law::Bearing | Law::Brake => ("torque", "time"),
+            Law::Bearing | Law::Brake | Law::Sticking => ("torque", "time"),
             Law::Displacement => ("stator", "frequency"),
             Law::Magnetizing => ("magnetizing", "flux"),
             Law::Contact => ("stator-phase-b", "current"),
@@ -84,6 +100,7 @@ impl Law {
             Law::Gear => ("torque", "load-torque"),
             Law::Ageing => ("stator-phase-c", "time"),
             Law::Saturating => ("sensor-ia", "current"),
+            Law::Intermittent => ("stator-phase-b", "time"),
         }
     }
 
@@ -107,6 +124,7 @@ impl Law {
             Law::Piston => 0.18 * at.theta.sin().max(0.0),
             Law::Gear => 0.2 * (at.load / m.torque - 0.55).max(0.0),
             Law::Brake => 0.08 * (-0.5 * ((at.t - 3.2) / 0.35).powi(2)).exp(),
+            Law::Sticking => 0.3 * comes_and_goes(at.t, 0.5) * (w / 0.01).tanh(),
             Law::Jaws => 0.04 * (2.0 * at.theta).cos() + 0.03 * (4.0 * at.theta + 1.0).cos(),
             _ => 0.0,
         };
@@ -126,6 +144,7 @@ impl Law {
         let [_, b, c] = i;
         match self {
             Law::Contact => [0.0, 0.016 * U * b / (b.abs() + 0.1 * m.current), 0.0],
+            Law::Intermittent => [0.0, 9.0 * m.r_s * comes_and_goes(t, 0.2) * b, 0.0],
             Law::Ageing => {
                 let more = 0.4 / (1.0 + (-(t - 2.8) / 0.12).exp());
                 [0.0, 0.0, more * m.r_s * c]

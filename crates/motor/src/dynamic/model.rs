@@ -139,6 +139,25 @@ impl<H: Hooks> Dynamic<H> {
         self.flow(t, state, u, 0.0).terminal.i
     }
 
+    /// Takes the current out of the stator, whose terminals are open: its flux jumps by the leakage flux, the rotor's
+    /// stays.
+    ///
+    /// Newton's steps with the unsaturated inductance; saturation and losses at the terminals need the second one.
+    pub fn interrupt(&self, state: &mut DynamicState<H::Extra>, t: f64, u: Complex64) {
+        let p = &self.linear.params;
+        let transient = p.l_ls + p.l_lr * p.l_m / p.l_r();
+        for _ in 0..2 {
+            state.psi_s -= self.current(t, state, u) * transient;
+        }
+    }
+
+    /// Voltage at open terminals, V, stationary frame: what the decaying flux of the rotor induces (unsaturated).
+    pub fn open_voltage(&self, t: f64, state: &DynamicState<H::Extra>) -> Complex64 {
+        let p = &self.linear.params;
+        let rate = self.rate(t, state, Complex64::new(0.0, 0.0), 0.0);
+        rate.psi_r * (p.l_m / p.l_r())
+    }
+
     /// Electromagnetic torque, N m.
     pub fn torque(&self, t: f64, state: &DynamicState<H::Extra>) -> f64 {
         self.flow(t, state, Complex64::new(0.0, 0.0), 0.0).tau_em

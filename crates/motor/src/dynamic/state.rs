@@ -9,10 +9,24 @@ pub trait Extra: Copy {
 
     /// `self + h * rate`.
     fn advanced(self, h: f64, rate: &Self) -> Self;
+
+    /// The states.
+    fn numbers(&self) -> &[f64];
+
+    /// The states, to be set.
+    fn numbers_mut(&mut self) -> &mut [f64];
 }
 
 impl Extra for () {
     const ZERO: Self = ();
+
+    fn numbers(&self) -> &[f64] {
+        &[]
+    }
+
+    fn numbers_mut(&mut self) -> &mut [f64] {
+        &mut []
+    }
 
     #[inline(always)]
     fn advanced(self, _h: f64, _rate: &Self) -> Self {}
@@ -20,6 +34,14 @@ impl Extra for () {
 
 impl<const N: usize> Extra for [f64; N] {
     const ZERO: Self = [0.0; N];
+
+    fn numbers(&self) -> &[f64] {
+        self
+    }
+
+    fn numbers_mut(&mut self) -> &mut [f64] {
+        self
+    }
 
     #[inline(always)]
     fn advanced(mut self, h: f64, rate: &Self) -> Self {

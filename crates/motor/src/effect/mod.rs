@@ -27,6 +27,8 @@ mod simulate;
 #[cfg(feature = "std")]
 mod stack;
 pub(crate) mod steady;
+#[cfg(feature = "std")]
+pub mod tangent;
 
 #[cfg(feature = "std")]
 pub use config::{EffectConfig, EffectError};

@@ -7,6 +7,7 @@ use crate::effect::{
 };
 use crate::{Mechanics, TParams};
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -22,6 +23,9 @@ pub struct Plant {
     /// Effects in force.
     pub effects: Vec<EffectConfig>,
 }
+
+/// Extra states that every effect of the library does with, alone.
+const FEW_STATES: usize = 4;
 
 /// How the voltage behaves between its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,8 +70,8 @@ pub struct Run<'a> {
     pub timeline: &'a Arc<Timeline>,
     /// Speed at the first sample, rad/s; `None` starts de-energised from standstill.
     pub running_at: Option<f64>,
-    /// Speed at the first sample after each cut of the timeline, rad/s: the motor runs there.
-    pub running_at_cuts: &'a [f64],
+    /// The same at the first sample after each cut of the timeline.
+    pub running_at_cuts: &'a [Option<f64>],
     /// Input samples at which the terminals are open: no current flows, the rotor flux decays alone.
     pub open: &'a [Range<usize>],
 }
@@ -101,80 +105,201 @@ impl DynamicState {
 /// # Panics
 /// If the effects need more than eight extra states or the input signals differ in length.
 pub fn simulate(plant: &Plant, run: &Run<'_>) -> Outputs {
-    let uses = |hook: Hook| {
-        let all = plant.effects.iter();
-        all.filter(move |e| e.effect.hooks().contains(&hook))
-    };
-    let mut corrected = None;
-    for e in uses(Hook::Inputs) {
-        let inputs = corrected.get_or_insert_with(|| run.inputs.clone());
-        e.effect.inputs(&e.values, &plant.rated, inputs);
-    }
-    let inputs = corrected.as_ref().unwrap_or(run.inputs);
-    let mut motor = plant.motor;
-    for e in uses(Hook::Motor) {
-        e.effect.motor(&e.values, &plant.rated, &mut motor);
-    }
-    let mut outputs = run_with_hooks(plant, &motor, run, inputs);
+    let (motor, inputs) = (constant_motor(plant), corrected(plant, run.inputs));
+    let mut outputs = run_with_hooks(plant, &motor, run, &inputs);
     outputs.u_zero = vec![0.0; outputs.omega_mech.len()];
-    for e in uses(Hook::Outputs) {
-        let prepared = e.effect.prepared(&e.values, &plant.rated);
-        e.effect.outputs(&prepared, &plant.rated, &mut outputs);
-    }
+    instruments(plant, &mut outputs);
     outputs
 }
 
-/// Chooses the cheapest set of hooks that holds the plant's effects.
+fn uses(plant: &Plant, hook: Hook) -> impl Iterator<Item = &EffectConfig> {
+    let all = plant.effects.iter();
+    all.filter(move |e| e.effect.hooks().contains(&hook))
+}
+
+/// What was there, from what was measured.
+pub(super) fn corrected<'a>(plant: &Plant, measured: &'a Inputs) -> Cow<'a, Inputs> {
+    let mut inputs = Cow::Borrowed(measured);
+    for e in uses(plant, Hook::Inputs) {
+        e.effect.inputs(&e.values, &plant.rated, inputs.to_mut());
+    }
+    inputs
+}
+
+/// The motor's constant parameters with its effects.
+pub(super) fn constant_motor(plant: &Plant) -> TParams<f64> {
+    let mut motor = plant.motor;
+    for e in uses(plant, Hook::Motor) {
+        e.effect.motor(&e.values, &plant.rated, &mut motor);
+    }
+    motor
+}
+
+/// What the instruments make of true outputs.
+pub(super) fn instruments(plant: &Plant, outputs: &mut Outputs) {
+    for e in uses(plant, Hook::Outputs) {
+        let prepared = e.effect.prepared(&e.values, &plant.rated);
+        e.effect.outputs(&prepared, &plant.rated, outputs);
+    }
+}
+
 fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &Inputs) -> Outputs {
+    with_hooks(plant, motor, run, inputs, Integrate)
+}
+
+/// What is done with a prepared model, whatever hooks it has.
+pub(super) trait Task {
+    /// What comes out.
+    type Result;
+
+    /// Does it.
+    fn on<H: Hooks>(self, ready: &Ready<'_, H>) -> Self::Result;
+}
+
+/// A model with everything that a run needs.
+pub(super) struct Ready<'a, H: Hooks> {
+    model: Dynamic<H>,
+    /// State at the first sample.
+    pub start: DynamicState<H::Extra>,
+    restarts: Vec<Restart>,
+    run: &'a Run<'a>,
+    inputs: &'a Inputs,
+}
+
+/// Chooses the cheapest set of hooks that holds the plant's effects.
+pub(super) fn with_hooks<T: Task>(
+    plant: &Plant,
+    motor: &TParams<f64>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+    task: T,
+) -> T::Result {
     let inside = |e: &EffectConfig| {
         let outer = [Hook::Inputs, Hook::Motor, Hook::Outputs];
         e.effect.hooks().iter().any(|h| !outer.contains(h))
     };
     let start = start_state(plant, motor, run, inputs);
-    let restarts = restarts(plant, motor, run, inputs);
-    // Stator inductance while the rotor flux stands still.
-    let transient = motor.l_ls + motor.l_lr * motor.l_m / motor.l_r();
     if !plant.effects.iter().any(inside) {
         let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
-        return integrate(&model, start, &restarts, run, inputs, transient);
+        return task.on(&Ready::new(model, start, plant, motor, run, inputs));
     }
-    let at = Course {
-        start,
-        restarts,
-        transient,
-    };
-    // Each state is carried through every step: one effect's few cost less than room for all of the library.
-    match extra_states(&plant.effects) {
-        0 => run_with_states::<0>(plant, motor, run, inputs, &at),
-        1..=FEW_STATES => run_with_states::<FEW_STATES>(plant, motor, run, inputs, &at),
-        // Those of a motor file, and the library's once more: what `explain` may add to them.
-        _ => run_with_states::<{ 2 * MAX_FILE_STATES }>(plant, motor, run, inputs, &at),
+    let extra = extra_states(&plant.effects);
+    if extra == 0 {
+        return task.on(&stacked::<0>(start, plant, motor, run, inputs));
     }
+    if extra <= FEW_STATES {
+        return task.on(&stacked::<FEW_STATES>(start, plant, motor, run, inputs));
+    }
+    // Those of a motor file, and the library's once more: what `explain` may add to them.
+    task.on(&stacked::<{ 2 * MAX_FILE_STATES }>(
+        start, plant, motor, run, inputs,
+    ))
 }
 
-/// As many extra states as any one effect has.
-const FEW_STATES: usize = 4;
-
-/// Where a simulation begins, and begins again.
-struct Course {
+fn stacked<'a, const N: usize>(
     start: DynamicState,
-    restarts: Vec<(usize, DynamicState)>,
-    /// Stator inductance while the rotor flux stands still, H.
-    transient: f64,
-}
-
-/// Simulates with room for so many extra states.
-fn run_with_states<const N: usize>(
     plant: &Plant,
     motor: &TParams<f64>,
-    run: &Run<'_>,
-    inputs: &Inputs,
-    at: &Course,
-) -> Outputs {
-    let stack = EffectStack::<N>::new(&plant.effects, motor, &plant.rated, run.timeline.clone());
+    run: &'a Run<'a>,
+    inputs: &'a Inputs,
+) -> Ready<'a, EffectStack<N>> {
+    let timeline = run.timeline.clone();
+    let stack = EffectStack::<N>::new(&plant.effects, motor, &plant.rated, timeline);
     let model = Dynamic::with_effects(motor, &plant.mechanics, stack);
-    let start = DynamicState::with_extra(&at.start);
-    integrate(&model, start, &at.restarts, run, inputs, at.transient)
+    let start = DynamicState::with_extra(&start);
+    Ready::new(model, start, plant, motor, run, inputs)
+}
+
+/// One pass through a step: what the instruments show at its beginning.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    /// Phase currents, A.
+    pub i_s_abc: [f64; 3],
+    /// Speed, rad/s.
+    pub omega_mech: f64,
+    /// Shaft angle, rad.
+    pub theta_mech: f64,
+}
+
+impl<'a, H: Hooks> Ready<'a, H> {
+    fn new(
+        model: Dynamic<H>,
+        start: DynamicState<H::Extra>,
+        plant: &Plant,
+        motor: &TParams<f64>,
+        run: &'a Run<'a>,
+        inputs: &'a Inputs,
+    ) -> Self {
+        Self {
+            model,
+            start,
+            restarts: restarts(plant, motor, run, inputs),
+            run,
+            inputs,
+        }
+    }
+
+    /// Time of a step, s.
+    pub fn t_step(&self) -> f64 {
+        self.inputs.t_sample * self.run.between.stride() as f64
+    }
+
+    /// Integration steps.
+    pub fn steps(&self) -> usize {
+        self.inputs.u_s.len().saturating_sub(1) / self.run.between.stride()
+    }
+
+    /// What happens to the state at the beginning of a step, before anything is seen of it; `restart`: the cut that falls
+    /// there.
+    #[inline(always)]
+    fn begin(&self, state: &mut DynamicState<H::Extra>, step: usize, restart: Option<usize>) {
+        let k = step * self.run.between.stride();
+        if let Some(restart) = restart.map(|cut| &self.restarts[cut]) {
+            if restart.is_new {
+                *state = DynamicState::rest();
+            }
+            // Within a recording angle and extra states go on: nothing tells them better than the last stretch.
+            let there = &restart.state;
+            (state.psi_s, state.psi_r) = (there.psi_s, there.psi_r);
+            state.omega_mech = there.omega_mech;
+        }
+        steer(state, self.run.speed, k, self.t_step());
+        if self.run.open.iter().any(|open| open.contains(&k)) {
+            let t = self.inputs.t_sample * k as f64;
+            self.model.interrupt(state, t, self.inputs.u_s[k]);
+        }
+    }
+
+    /// One step: what is seen at its beginning, and the state at its end (the last step has none: it stays).
+    #[inline(always)]
+    pub fn pass(
+        &self,
+        state: &mut DynamicState<H::Extra>,
+        step: usize,
+        restart: Option<usize>,
+    ) -> Shown {
+        self.begin(state, step, restart);
+        let k = step * self.run.between.stride();
+        let t = self.inputs.t_sample * k as f64;
+        let i = self.model.current(t, state, self.inputs.u_s[k]);
+        let shown = Shown {
+            i_s_abc: phases(i),
+            omega_mech: state.omega_mech,
+            theta_mech: self.run.timeline.theta_at(t, state.theta_mech),
+        };
+        if step < self.steps() {
+            advance(&self.model, state, self.run.between, self.inputs, k);
+        }
+        shown
+    }
+
+    /// The cut that falls on a step, if it is the next one.
+    #[inline(always)]
+    pub fn restart(&self, step: usize, next: usize) -> Option<usize> {
+        let k = step * self.run.between.stride();
+        let restart = self.restarts.get(next)?;
+        (restart.sample <= k).then_some(next)
+    }
 }
 
 fn start_state(
@@ -183,8 +308,27 @@ fn start_state(
     run: &Run<'_>,
     inputs: &Inputs,
 ) -> DynamicState {
-    let at_speed = |omega_mech| running(plant, motor, run, inputs, 0, omega_mech);
-    run.running_at.map_or_else(DynamicState::rest, at_speed)
+    begins(plant, motor, run, inputs, 0, run.running_at)
+}
+
+/// The state with which a motor begins at sample `k`: running, or at rest without current.
+fn begins(
+    plant: &Plant,
+    motor: &TParams<f64>,
+    run: &Run<'_>,
+    inputs: &Inputs,
+    k: usize,
+    running_at: Option<f64>,
+) -> DynamicState {
+    let at_speed = |omega_mech| running(plant, motor, run, inputs, k, omega_mech);
+    running_at.map_or_else(DynamicState::rest, at_speed)
+}
+
+/// The motor at the first sample after a cut.
+struct Restart {
+    sample: usize,
+    state: DynamicState,
+    is_new: bool,
 }
 
 /// Steady state at sample `k` and this speed (rad/s).
@@ -202,77 +346,45 @@ fn running(
 }
 
 /// The samples after the cuts of a recording, and the state of the motor there.
-fn restarts(
-    plant: &Plant,
-    motor: &TParams<f64>,
-    run: &Run<'_>,
-    inputs: &Inputs,
-) -> Vec<(usize, DynamicState)> {
+fn restarts(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &Inputs) -> Vec<Restart> {
     let cuts = run.timeline.cuts.iter().zip(run.running_at_cuts);
-    let at = |(cut, &omega): (&Cut, &f64)| {
-        let state = running(plant, motor, run, inputs, cut.sample, omega);
-        (cut.sample, state)
+    let at = |(cut, running_at): (&Cut, &Option<f64>)| Restart {
+        sample: cut.sample,
+        state: begins(plant, motor, run, inputs, cut.sample, *running_at),
+        is_new: cut.is_new,
     };
     cuts.map(at).collect()
 }
 
 /// Integrates over all inputs and records every step.
-fn integrate<H: Hooks>(
-    model: &Dynamic<H>,
-    mut state: DynamicState<H::Extra>,
-    restarts: &[(usize, DynamicState)],
-    run: &Run<'_>,
-    inputs: &Inputs,
-    transient: f64,
-) -> Outputs {
-    let stride = run.between.stride();
-    let h = inputs.t_sample * stride as f64;
-    let steps = inputs.u_s.len().saturating_sub(1) / stride;
-    let mut out = Outputs {
-        t_sample: h,
-        ..Outputs::default()
-    };
-    out.i_s_abc.reserve(steps + 1);
-    out.omega_mech.reserve(steps + 1);
-    out.theta_mech.reserve(steps + 1);
-    let mut restarts = restarts.iter().peekable();
-    for step in 0..=steps {
-        let k = step * stride;
-        let t = inputs.t_sample * k as f64;
-        if let Some((_, there)) = restarts.next_if(|(sample, _)| *sample <= k) {
-            // Angle and extra states go on: nothing tells them better than the last stretch.
-            (state.psi_s, state.psi_r) = (there.psi_s, there.psi_r);
-            state.omega_mech = there.omega_mech;
-        }
-        steer(&mut state, run.speed, k, h);
-        if run.open.iter().any(|open| open.contains(&k)) {
-            interrupt(model, &mut state, t, inputs.u_s[k], transient);
-        }
-        let i = model.current(t, &state, inputs.u_s[k]);
-        out.i_s_abc.push(phases(i));
-        out.omega_mech.push(state.omega_mech);
-        let theta = run.timeline.theta_at(t, state.theta_mech);
-        out.theta_mech.push(theta);
-        if step < steps {
-            advance(model, &mut state, run.between, inputs, k);
-        }
-    }
-    out.u_measured = (0..=steps).map(|k| run.inputs.u_s[k * stride]).collect();
-    out
-}
+struct Integrate;
 
-/// Takes the current out of the stator: its flux jumps by the leakage flux, the rotor's stays.
-///
-/// Newton's steps with the unsaturated inductance; saturation and losses at the terminals need the second one.
-fn interrupt<H: Hooks>(
-    model: &Dynamic<H>,
-    state: &mut DynamicState<H::Extra>,
-    t: f64,
-    u: Complex64,
-    transient: f64,
-) {
-    for _ in 0..2 {
-        state.psi_s -= model.current(t, state, u) * transient;
+impl Task for Integrate {
+    type Result = Outputs;
+
+    fn on<H: Hooks>(self, ready: &Ready<'_, H>) -> Outputs {
+        let steps = ready.steps();
+        let mut out = Outputs {
+            t_sample: ready.t_step(),
+            ..Outputs::default()
+        };
+        out.i_s_abc.reserve(steps + 1);
+        out.omega_mech.reserve(steps + 1);
+        out.theta_mech.reserve(steps + 1);
+        let (mut state, mut cuts) = (ready.start, 0);
+        for step in 0..=steps {
+            let restart = ready.restart(step, cuts);
+            cuts += usize::from(restart.is_some());
+            let shown = ready.pass(&mut state, step, restart);
+            out.i_s_abc.push(shown.i_s_abc);
+            out.omega_mech.push(shown.omega_mech);
+            out.theta_mech.push(shown.theta_mech);
+        }
+        let stride = ready.run.between.stride();
+        out.u_measured = (0..=steps)
+            .map(|k| ready.run.inputs.u_s[k * stride])
+            .collect();
+        out
     }
 }
 

@@ -43,8 +43,10 @@ pub struct Timeline {
 pub struct Cut {
     /// Its number among the samples that are left.
     pub sample: usize,
-    /// Its time since the first sample, s, the part that was left out counted.
+    /// Its time since the first sample of its recording, s, the part that was left out counted.
     pub t: f64,
+    /// Whether another recording begins here: the angle and the states of effects begin anew.
+    pub is_new: bool,
 }
 
 impl Timeline {

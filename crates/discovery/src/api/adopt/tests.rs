@@ -1,7 +1,7 @@
 //! What is adopted, and what the new motor file says.
 
 use super::*;
-use crate::tests::specimen::{self, apparent_power, with};
+use estimation::specimen::{self, apparent_power, with};
 use recording::Recording;
 
 /// A typical core loss of the table's machine is adopted; the rest of the motor file stays as it is.

@@ -1,14 +1,15 @@
 //! The likeliest formulas, refitted in the simulator and held against the curve.
 
+use super::dictionary::Shapes;
 use super::effect::Formula;
 use super::kind::Reach;
 use super::propose::{Projector, Proposal, Weight, propose};
 use super::quadratic::Quadratic;
 use super::shape::Shape;
-use crate::data::study::{Study, Trial};
-use crate::fit::output_error::Effort;
 use crate::laws::modes::Modes;
-use crate::model::prior::{Hypothesis, N_NOMINAL};
+use estimation::data::study::{Study, Trial};
+use estimation::fit::output_error::Effort;
+use estimation::model::prior::{Hypothesis, N_NOMINAL};
 use motor::effect::EffectConfig;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -46,11 +47,11 @@ pub(crate) struct Proven {
 }
 
 /// Formulas that explain the recordings as well as the curve of a law, simplest first.
-pub(crate) fn formulas(study: &Study, step: Curve<'_>) -> Vec<Proven> {
+pub(crate) fn formulas(study: &Study, shapes: Shapes, step: Curve<'_>) -> Vec<Proven> {
     let Some((index, config)) = law_of(study, step.trial) else {
         return Vec::new();
     };
-    let Some(all) = proposals(study, step.trial, index, &config) else {
+    let Some(all) = proposals(study, shapes, step.trial, index, &config) else {
         return Vec::new();
     };
     let refit = |p: &Proposal| refitted(study, step, &config, p);
@@ -83,6 +84,7 @@ pub(crate) fn coordinates_of(trial: &Trial, index: usize) -> Vec<usize> {
 
 fn proposals(
     study: &Study,
+    shapes: Shapes,
     trial: &Trial,
     index: usize,
     config: &EffectConfig,
@@ -90,7 +92,7 @@ fn proposals(
     let law = Modes::of(config)?;
     let reach = [config.values[0], config.values[1]];
     let suits = |shape: &&Shape| shape.over.suits(law.action.coordinate, reach);
-    let asked: Vec<_> = study.shapes.all().filter(suits).collect();
+    let asked: Vec<_> = shapes.all().filter(suits).collect();
     let quadratic = Quadratic::of(&trial.fit, &coordinates_of(trial, index))?;
     let weight = weight(study, trial);
     Some(propose(&asked, &Projector::of(config)?, &quadratic, weight))

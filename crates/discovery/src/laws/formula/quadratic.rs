@@ -1,7 +1,7 @@
 //! What a refitted curve costs to bend: its normal equations with all other coordinates projected out.
 
-use crate::fit::normal_equations;
-use crate::fit::output_error::Fit;
+use estimation::fit::normal_equations;
+use estimation::fit::output_error::Fit;
 use nalgebra::{DMatrix, DVector};
 
 /// Squared error over the modes of a law, every other coordinate at its best.

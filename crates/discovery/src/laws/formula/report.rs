@@ -3,8 +3,8 @@
 use super::effect::Formula;
 use super::prove::{Proven, coordinates_of};
 use super::write::{Number, as_written, numbers, text};
-use crate::data::study::Study;
 use crate::report::types::{FormulaReport, ParameterReport};
+use estimation::data::study::Study;
 use motor::effect::to_entry;
 
 /// The report of a formula; `None` where a trial holds none.

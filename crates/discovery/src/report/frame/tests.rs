@@ -1,5 +1,5 @@
 use super::*;
-use crate::tests::specimen;
+use estimation::specimen;
 use motor::steady_state::OperatingPoint;
 
 const RIGHT: Form = Form {

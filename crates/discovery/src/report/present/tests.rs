@@ -1,6 +1,6 @@
 use super::*;
-use crate::model::prior::{LEAKAGE, MAGNETIZING};
-use crate::tests::specimen;
+use estimation::model::prior::{LEAKAGE, MAGNETIZING};
+use estimation::specimen;
 use std::sync::OnceLock;
 
 const R_S: usize = 0;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::tests::specimen;
+use estimation::specimen;
 use motor::effect::Timeline;
 use std::sync::Arc;
 

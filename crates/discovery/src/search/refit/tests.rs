@@ -1,5 +1,5 @@
 use super::*;
-use crate::tests::specimen;
+use estimation::specimen;
 use motor::effect::Plant;
 
 fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
@@ -189,6 +189,10 @@ fn impossible(round: &Round) -> BTreeSet<&'static str> {
     round.screened.iter().filter(wrong).map(name).collect()
 }
 
+fn round(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
+    begin(study, base, excluded, &mut |_| ()).finish(&study.at_prior())
+}
+
 /// A tachometer that shows half a per cent too much: the likely effects are refitted and settle it; losses, which would
 /// have to be negative, get no second chance.
 #[test]
@@ -196,9 +200,8 @@ fn a_round_that_settles_tries_no_further() {
     let study = specimen::table_study(with("speed-scale", 1.0));
     let base = study.trial(&study.at_prior(), Effort::FULL);
     let mut told = Vec::new();
-    let round = round(&study, &base, &study.at_prior(), &[], &mut |what| {
-        told.push(what.to_owned());
-    });
+    let tell = &mut |what: &str| told.push(what.to_owned());
+    let round = begin(&study, &base, &[], tell).finish(&study.at_prior());
     assert_eq!(told, ["screening all effects", "refitting the likeliest"]);
     assert_eq!(round.candidates[0].name, "speed-scale");
     assert!(round.candidates[0].error < 0.1);
@@ -216,7 +219,7 @@ fn a_round_without_the_truth_tries_all_that_can_matter() {
     let study = specimen::table_study(with("speed-scale", 1.0));
     let base = study.trial(&study.at_prior(), Effort::FULL);
     let excluded = ["speed-scale", "sample-delay", "deep-bar"];
-    let round = round(&study, &base, &study.at_prior(), &excluded, &mut |_| ());
+    let round = round(&study, &base, &excluded);
     assert!(round.screened.iter().all(|s| !excluded.contains(&name(s))));
     let first: BTreeSet<_> = round.screened.iter().take(CONFIRMED).map(name).collect();
     let second = impossible(&round);
@@ -229,7 +232,7 @@ fn a_round_without_the_truth_tries_all_that_can_matter() {
 fn a_round_on_an_adequate_model_tries_only_what_gains() {
     let study = specimen::table_study(|_| ());
     let base = study.trial(&study.at_prior(), Effort::FULL);
-    let round = round(&study, &base, &study.at_prior(), &[], &mut |_| ());
+    let round = round(&study, &base, &[]);
     assert!(round.screened.len() > CONFIRMED && round.candidates.len() <= CONFIRMED);
 }
 
@@ -276,10 +279,10 @@ fn ringing(frequency_hz: f64) -> Study {
     let mut plant = study.prior.plant.clone();
     plant.effects = shaft;
     let case = &mut study.fitted.case;
-    let out = crate::model::prediction::run(
+    let out = estimation::model::prediction::run(
         case,
         &plant,
-        &crate::model::prediction::Drive::of(case),
+        &estimation::model::prediction::Drive::of(case),
         SpeedObserver::Off,
     );
     for (row, measured) in case.measured.iter_mut().enumerate() {
@@ -345,8 +348,8 @@ fn a_hopeless_refit_of_a_poor_model_is_given_up() {
             found.hypothesis.z,
         )
     };
-    let squares = after(4).0;
-    let (given_up, finished) = (after(5).1, after(14).1);
+    let squares = after(2).0;
+    let (given_up, finished) = (after(3).1, after(14).1);
     assert_ne!(given_up, finished);
     let refitted = |error: f64, without: f64| {
         let trial = specimen::trial_with(&study, &[]);
@@ -356,7 +359,8 @@ fn a_hopeless_refit_of_a_poor_model_is_given_up() {
         found.trial.fit.hypothesis.z
     };
     assert_eq!(refitted(3.0, 1.01), given_up);
-    assert_eq!(refitted(3.0, 1.05), finished);
+    // On its way the squared error rises once by an eighth: the pull of the priors falls more.
+    assert_eq!(refitted(3.0, 1.2), finished);
     assert_eq!(
         refitted(1.05, 1.01),
         finished,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::tests::specimen;
+use estimation::specimen;
 use motor::effects::find;
 use nalgebra::DMatrix;
 
@@ -192,7 +192,7 @@ fn new_columns_carry_the_prior_of_an_effect() {
     assert_eq!(more.pull.as_slice(), [0.1, 0.2, 0.0, 0.0]);
 }
 
-fn names(study: &crate::data::study::Study, excluded: &[&str]) -> Vec<&'static str> {
+fn names(study: &estimation::data::study::Study, excluded: &[&str]) -> Vec<&'static str> {
     let trial = specimen::trial(study);
     let all = askable(&study.fitted.case, &study.prior, &trial.fit, excluded);
     all.iter().map(|e| e.descriptor().name).collect()

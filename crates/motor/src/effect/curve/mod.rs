@@ -41,7 +41,7 @@ pub use law::{FEWEST_KNOTS, MOST_KNOTS, MOST_KNOTS_OF_A_TURN, curve, knots_and_v
 pub use place::{Place, Quantity};
 pub use steady::{BOARD_KNOTS, SteadyCurve};
 #[cfg(feature = "file")]
-pub use table::{TABLE_POINTS, Table, tabulated};
+pub use table::{TABLE_POINTS, Table, tabulated, traced};
 
 /// Name of the effect in motor files.
 pub const NAME: &str = "curve";

@@ -107,6 +107,17 @@ impl Place {
         }
     }
 
+    /// The reading whose error acts here, 0 to 2 the currents, 3 the speed; `None` inside the motor.
+    pub fn reading(self) -> Option<usize> {
+        match self {
+            Place::SensorIa => Some(0),
+            Place::SensorIb => Some(1),
+            Place::SensorIc => Some(2),
+            Place::SensorSpeed => Some(3),
+            _ => None,
+        }
+    }
+
     /// The place of this name.
     pub fn by_name(name: &str) -> Option<Place> {
         Place::ALL.into_iter().find(|place| place.name() == name)

@@ -33,23 +33,34 @@ pub fn tabulated(
     table
 }
 
+/// Writes the table of values at equal distances `step` from zero on; at least two.
+pub fn traced(step: f64, values: &[f64]) -> Vec<f64> {
+    [&[0.0, 1.0 / step], values].concat()
+}
+
 impl<'a> Table<'a> {
-    /// Reads what [`tabulated`] wrote.
+    /// Reads what [`tabulated`] or [`traced`] wrote.
     pub fn of(written: &'a [f64]) -> Self {
         Self(written)
     }
 
+    /// Number of the last point.
+    #[inline]
+    fn last(&self) -> usize {
+        self.0.len() - 3
+    }
+
     /// Index and fraction of the interval at the place `u`, points.
     #[inline]
-    fn interval(u: f64) -> (usize, f64) {
-        let last = (TABLE_POINTS - 1) as f64;
+    fn interval(&self, u: f64) -> (usize, f64) {
+        let last = self.last() as f64;
         // A number that left the finite ones counts as the beginning: the simulation itself says what is wrong.
         let u = if u.is_finite() {
             u.clamp(0.0, last)
         } else {
             0.0
         };
-        let k = (u as usize).min(TABLE_POINTS - 2);
+        let k = (u as usize).min(self.last() - 1);
         (k, u - k as f64)
     }
 
@@ -62,7 +73,7 @@ impl<'a> Table<'a> {
     /// Value at `x`; beyond the ends it stays.
     #[inline]
     pub fn at(&self, x: f64) -> f64 {
-        self.between(Self::interval((x - self.0[0]) * self.0[1]))
+        self.between(self.interval((x - self.0[0]) * self.0[1]))
     }
 
     /// Value at the angle `x`, rad, of any turn.
@@ -76,15 +87,15 @@ impl<'a> Table<'a> {
     #[inline]
     pub fn with_slope(&self, x: f64) -> (f64, f64) {
         let u = (x - self.0[0]) * self.0[1];
-        let (k, share) = Self::interval(u);
-        let inside = u >= 0.0 && u <= (TABLE_POINTS - 1) as f64;
+        let (k, share) = self.interval(u);
+        let inside = u >= 0.0 && u <= self.last() as f64;
         let slope = (self.0[k + 3] - self.0[k + 2]) * self.0[1];
         (self.between((k, share)), if inside { slope } else { 0.0 })
     }
 
     /// Mean of all values: what a curve over an angle does in steady state.
     pub fn mean(&self) -> f64 {
-        let values = &self.0[2..TABLE_POINTS + 1];
+        let values = &self.0[2..self.last() + 2];
         values.iter().sum::<f64>() / values.len() as f64
     }
 }
@@ -106,6 +117,14 @@ mod tests {
         assert_eq!(table.at(900.0), 225.0);
         assert_eq!(table.with_slope(900.0), (225.0, 0.0));
         assert_eq!(table.at(f64::NAN), table.at(-10.0));
+    }
+
+    #[test]
+    fn a_trace_is_its_values_with_lines_between_them() {
+        let written = traced(0.5, &[1.0, 3.0, -1.0]);
+        let table = Table::of(&written);
+        let at = [-1.0, 0.0, 0.25, 0.5, 0.75, 1.0, 9.0].map(|x| table.at(x));
+        assert_eq!(at, [1.0, 1.0, 2.0, 3.0, 1.0, -1.0, -1.0]);
     }
 
     #[test]

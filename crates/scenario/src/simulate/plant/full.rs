@@ -2,10 +2,10 @@
 
 use super::presence::{Presence, common_series};
 use super::waveform::Waveform;
+use crate::Load;
 use crate::simulate::{SimulationError, Truth};
 use crate::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::{Dynamic, DynamicState, Extra, Hooks, phases};
-use motor::load::Load;
 use motor::steady_state::SteadyState;
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
@@ -14,7 +14,7 @@ use num_complex::Complex64;
 const LARGEST_STEP_S: f64 = 100e-6;
 /// RK4 is stable up to 2.78 over the fastest rate; this keeps it accurate as well.
 const STEP_TIMES_RATE: f64 = 0.5;
-/// Width of the band of speeds in which a passive load changes its sign, rad/s (see `motor::load`).
+/// Width of the band of speeds in which a passive load changes its sign, rad/s (see [`Load`]).
 const STANDSTILL_RAD_S: f64 = 0.1;
 
 /// Builds the motor from its parameters and the faults in force, which may bring effects along.
@@ -96,7 +96,7 @@ impl<H: Hooks> Full<H> {
     }
 
     pub(super) fn truth(&self, t: f64) -> Truth {
-        let supply = self.waveform.at(t);
+        let supply = self.voltage(t);
         let omega_mech = self.state.omega_mech;
         let tau_load = self.load.torque(t, omega_mech);
         let flow = self.model.flow(t, &self.state, supply, tau_load);
@@ -112,6 +112,14 @@ impl<H: Hooks> Full<H> {
         }
     }
 
+    /// Voltage at the terminals, V: the supply's, or what the rotor induces in an open stator.
+    fn voltage(&self, t: f64) -> Complex64 {
+        match self.waveform.is_closed(t) {
+            true => self.waveform.at(t),
+            false => self.model.open_voltage(t, &self.state),
+        }
+    }
+
     pub(super) fn advance(&mut self, t: f64, t_next: f64) {
         let steps = ((t_next - t) / self.largest_step - 1e-9).ceil().max(1.0);
         let h = (t_next - t) / steps;
@@ -121,8 +129,22 @@ impl<H: Hooks> Full<H> {
         let load = |time: f64, omega: f64| self.load.torque(time.min(last), omega);
         let mut k = 0.0;
         while k < steps {
-            self.model.step(&mut self.state, t + k * h, h, supply, load);
+            let begin = t + k * h;
+            if self.waveform.is_closed(begin) {
+                self.model.step(&mut self.state, begin, h, supply, load);
+            } else {
+                self.model
+                    .interrupt(&mut self.state, begin, Complex64::ZERO);
+                let u = self.model.open_voltage(begin, &self.state);
+                let omega_el = self.now.1.n_p * self.state.omega_mech;
+                let turned = |time: f64| u * Complex64::from_polar(1.0, omega_el * (time - begin));
+                self.model.step(&mut self.state, begin, h, turned, load);
+            }
             k += 1.0;
+        }
+        if !self.waveform.is_closed(t_next) {
+            self.model
+                .interrupt(&mut self.state, t_next, Complex64::ZERO);
         }
     }
 }

@@ -7,8 +7,8 @@ use super::waveform::Waveform;
 use crate::simulate::Truth;
 use crate::{Fault, Parameter, Scenario, Start, Target};
 use motor::dynamic::phases;
-use motor::linear_plant::{LinearParams, LinearState, LinearStep};
 use num_complex::Complex64;
+use parity::linear_plant::{LinearParams, LinearState, LinearStep};
 
 pub(in crate::simulate) struct Linear {
     healthy: LinearParams,

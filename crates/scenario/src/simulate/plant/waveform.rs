@@ -54,6 +54,11 @@ impl Waveform {
         }
     }
 
+    /// Whether the terminals are connected to the supply at time `t`, s.
+    pub(super) fn is_closed(&self, t: f64) -> bool {
+        self.spec.is_closed(t)
+    }
+
     /// Angular frequency of the positive sequence, rad/s.
     pub(super) fn omega_sync(&self, t: f64) -> f64 {
         TAU * self.spec.frequency_hz.at(t)

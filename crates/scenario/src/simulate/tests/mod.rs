@@ -2,6 +2,7 @@
 
 mod asymmetry;
 mod chain;
+mod coast_down;
 mod instruments;
 mod switching;
 
@@ -11,7 +12,7 @@ use crate::{Fault, PlantKind, Scenario, SensorSpec, Start};
 use formats::read_recording;
 use monitor::{Converter, RawSample};
 use motor::dynamic::clarke;
-use motor::linear_plant::LinearParams;
+use parity::linear_plant::LinearParams;
 use recording::Channel;
 use std::f64::consts::TAU;
 

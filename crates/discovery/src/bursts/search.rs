@@ -1,0 +1,111 @@
+//! Where something comes and goes: the place that the bursts of all recordings have in common.
+
+use super::fit::{Fitted, Scene};
+use super::pulse::Pulse;
+use super::smoother::Wander;
+use super::trace::{action, places};
+use crate::laws::search::{LawStep, Refitted};
+use crate::search::refit::combined;
+use estimation::data::study::{Study, Subject, Trial};
+use estimation::fit::normal_equations;
+use estimation::model::prior::Hypothesis;
+use estimation::proof::accept::{adequate, beats, explained};
+use motor::effect::curve::Place;
+use rayon::prelude::*;
+
+/// Places whose bursts are fitted.
+const FITTED: usize = 3;
+/// Share of the excess that bursts explain of every recording, at least.
+const EXPLAINED: f64 = 0.85;
+
+/// Bursts at one place in all recordings.
+struct Candidate {
+    place: Place,
+    trial: Trial,
+    pulses: Vec<Vec<Pulse>>,
+}
+
+impl Candidate {
+    fn as_law(&self, study: &Study) -> Refitted {
+        Refitted {
+            action: action(self.place),
+            trial: self.trial.clone(),
+            error: combined(study, &self.trial),
+        }
+    }
+}
+
+/// What comes and goes on top of a model; `None` where nothing does, or where it is not the same in all recordings.
+pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
+    if !study.fitted.case.timeline.cuts.is_empty() {
+        return None;
+    }
+    let scene = scene(study, &study.fitted, &base.fit.hypothesis, true);
+    let asked: Vec<Place> = places().filter(|place| is_judged(study, *place)).collect();
+    let one = |(place, wander): &(Place, Wander)| {
+        let fitted = scene.bursts(*place, *wander)?;
+        everywhere(study, *place, fitted)
+    };
+    let suspected = scene.suspected(&asked, FITTED);
+    let mut all: Vec<Candidate> = suspected.par_iter().filter_map(one).collect();
+    let error = |c: &Candidate| study.fold_error(&c.trial.folds) * study.proof_error(&c.trial);
+    all.sort_by(|a, b| error(a).total_cmp(&error(b)));
+    let best = all.first()?;
+    let enough = adequate(study, &best.trial) || explained(study, base, &best.trial) > EXPLAINED;
+    if !enough || !beats(&best.trial, base) {
+        return None;
+    }
+    let rivals = all.iter().skip(1);
+    let tied = rivals.filter(|c| !beats(&best.trial, &c.trial));
+    Some(LawStep {
+        action: action(best.place),
+        rivals: tied.map(|c| c.as_law(study)).collect(),
+        trial: best.trial.clone(),
+        before: base.clone(),
+        proven: !study.proofs.is_empty(),
+        formulas: Vec::new(),
+        bursts: best.pulses.clone(),
+    })
+}
+
+fn scene<'a>(study: &'a Study, of: &'a Subject, h: &Hypothesis, free: bool) -> Scene<'a> {
+    Scene {
+        case: &of.case,
+        prior: &study.prior,
+        without: h.clone(),
+        free,
+    }
+}
+
+fn is_judged(study: &Study, place: Place) -> bool {
+    let case = &study.fitted.case;
+    match place {
+        Place::Torque | Place::Friction | Place::SensorSpeed => {
+            !case.speed_is_input && !case.speed.is_empty()
+        }
+        _ => true,
+    }
+}
+
+/// The same place in the recordings that prove: the parameters are those of the fitted one, the bursts their own.
+fn everywhere(study: &Study, place: Place, fitted: Fitted) -> Option<Candidate> {
+    let mut parameters = fitted.fit.hypothesis.clone();
+    parameters.effects.pop();
+    let mut pulses = vec![fitted.pulses];
+    let mut proof = Vec::new();
+    for subject in &study.proofs {
+        let scene = scene(study, subject, &parameters, false);
+        let there = scene.bursts(place, scene.wandering(place))?;
+        let rows = subject.case.blocks();
+        let blocks = normal_equations::blocks(&rows, &there.fit.residual, &[]);
+        proof.extend(blocks.iter().map(|block| block.sse));
+        pulses.push(there.pulses);
+    }
+    let mut trial = study.measured(fitted.fit);
+    trial.proof = proof;
+    Some(Candidate {
+        place,
+        trial,
+        pulses,
+    })
+}

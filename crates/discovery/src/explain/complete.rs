@@ -1,0 +1,150 @@
+//! What the library leaves: a law instead of its effects, a law on top of them, a pair of which neither is proven alone,
+//! or a lead.
+
+use super::pairs::pair;
+use super::rebuilt::{effects_of, refitted};
+use super::{Explanation, STRAINED, Step, behind, mostly_explained};
+use crate::bursts::search::bursts;
+use crate::laws::formula::prove::law_of;
+use crate::laws::search::{LawSearch, LawStep};
+use estimation::data::study::{Study, Trial};
+use estimation::proof::accept::{adequate, beats, even, helps};
+use estimation::proof::off::strains;
+use motor::effect::EffectConfig;
+
+/// Completes an explanation of the library's with what it does not hold.
+///
+/// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
+/// them it must make the model adequate.
+pub(super) fn complete(
+    study: &Study,
+    found: &mut Explanation,
+    excluded: &[&str],
+    progress: &mut dyn FnMut(&str, f64),
+) {
+    let mut tell = |what: &str, share: f64| progress(what, 0.6 + 0.1 * share);
+    let alone = LawSearch::new(study, &found.baseline, &mut tell).refitted(&mut tell);
+    let best = alone.best(study, &found.baseline);
+    let last = found.steps.last().map(|step| step.trial.clone());
+    if let Some(law) = best
+        .as_ref()
+        .filter(|law| replaces(study, found, law, last.as_ref()))
+    {
+        found.steps.clear();
+        match behind(study, &found.baseline, law, &found.first, excluded) {
+            Some(effect) => found.steps.push(effect),
+            None => found.laws.push(law.clone()),
+        }
+        found.nameable = true;
+        return;
+    }
+    if found.nameable && last.as_ref().is_some_and(|last| adequate(study, last)) {
+        return;
+    }
+    if let Some(last) = &last {
+        let mut tell = |what: &str, share: f64| progress(what, 0.7 + 0.05 * share);
+        let search = LawSearch::new(study, last, &mut tell);
+        let more = search.refitted(&mut tell).best(study, last);
+        if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
+            put_on_top(study, found, law);
+            return;
+        }
+    }
+    progress("looking for pairs that hide each other", 0.75);
+    if let Some(pair) = pair(study, &found.baseline, &found.first, &alone, excluded)
+        && last.as_ref().is_none_or(|last| beats(pair.last(), last))
+    {
+        (found.steps, found.laws) = (pair.steps, pair.laws);
+        found.nameable = true;
+        return;
+    }
+    if found.nameable {
+        return;
+    }
+    progress("looking for what comes and goes", 0.8);
+    let base = last.as_ref().unwrap_or(&found.baseline);
+    if let Some(law) = bursts(study, base).filter(|law| law.proven) {
+        found.laws = vec![law];
+        found.nameable = true;
+    } else {
+        found.laws.extend(best.map(|law| LawStep {
+            proven: false,
+            ..law
+        }));
+    }
+}
+
+/// A law on top of the library's effects; those that are not needed beside it go.
+pub(super) fn put_on_top(study: &Study, found: &mut Explanation, law: LawStep) {
+    found.nameable = true;
+    let Some(curve) = law_of(study, &law.trial).map(|(_, config)| config) else {
+        found.laws = vec![law];
+        return;
+    };
+    let mut effects = effects_of(study, &found.steps);
+    let mut with = law.trial.clone();
+    let mut k = 0;
+    while k < effects.len() {
+        let mut fewer = effects.clone();
+        fewer.remove(k);
+        let without = refitted(study, &fewer, Some(&curve), &with);
+        match adequate(study, &without) && !beats(&with, &without) {
+            true => (effects, with) = (fewer, without),
+            false => k += 1,
+        }
+    }
+    if effects.len() == found.steps.len() {
+        found.laws = vec![law];
+        return;
+    }
+    found.steps = steps_of(study, &found.baseline, &found.steps, &effects, &with);
+    let before = found.steps.last().map_or(&found.baseline, |s| &s.trial);
+    found.laws = vec![LawStep {
+        before: before.clone(),
+        trial: with,
+        ..law
+    }];
+}
+
+/// The steps that are left, refitted one after the other.
+fn steps_of(
+    study: &Study,
+    baseline: &Trial,
+    old: &[Step],
+    effects: &[EffectConfig],
+    from: &Trial,
+) -> Vec<Step> {
+    let mut before = baseline.clone();
+    let mut steps = Vec::new();
+    for k in 0..effects.len() {
+        let trial = refitted(study, &effects[..=k], None, from);
+        let name = effects[k].effect.descriptor().name;
+        let same = old.iter().find(|step| named(study, step) == Some(name));
+        steps.push(Step {
+            trial: trial.clone(),
+            before: std::mem::replace(&mut before, trial),
+            rivals: same.map_or_else(Vec::new, |step| step.rivals.clone()),
+        });
+    }
+    steps
+}
+
+/// Name of the effect that a step added.
+fn named(study: &Study, step: &Step) -> Option<&'static str> {
+    let effects = effects_of(study, std::slice::from_ref(step));
+    effects.last().map(|config| config.effect.descriptor().name)
+}
+
+/// Whether a law on the bare motor takes the place of what the library found.
+fn replaces(study: &Study, found: &Explanation, law: &LawStep, last: Option<&Trial>) -> bool {
+    let fits = adequate(study, &law.trial);
+    let enough = fits || mostly_explained(study, &found.baseline, &law.trial);
+    let strain = |trial: &Trial| strains(trial, &study.prior.deviations);
+    let plainer = |last: &Trial| {
+        fits && !beats(last, &law.trial) && strain(last) > strain(&law.trial) + STRAINED
+    };
+    let evener =
+        |last: &Trial| !even(study, last) && even(study, &law.trial) && helps(&law.trial, last);
+    let better = |last: &Trial| beats(&law.trial, last) || plainer(last) || evener(last);
+    law.proven && enough && last.is_none_or(better)
+}

@@ -1,0 +1,183 @@
+//! Several recordings as one case that is fitted: each begins anew.
+
+use crate::data::case::Case;
+use motor::effect::{Cut, Inputs, Timeline};
+use std::ops::Range;
+
+/// Of several recordings those that are fitted together, and those that prove: every second one proves.
+pub fn shared(cases: Vec<Case>) -> Option<(Case, Vec<Case>)> {
+    let mut cases = cases.into_iter();
+    let mut fitted = cases.next()?;
+    let mut proofs = Vec::new();
+    for (k, case) in cases.enumerate() {
+        if k % 2 == 0 {
+            proofs.push(case);
+            continue;
+        }
+        fitted = match fitted.joined(case) {
+            Ok(both) => both,
+            Err(apart) => {
+                let (fitted, case) = *apart;
+                proofs.push(case);
+                fitted
+            }
+        };
+    }
+    Some((fitted, proofs))
+}
+
+impl Case {
+    /// Whether two recordings can be fitted together: sampled, sampled again and judged alike.
+    fn suits(&self, other: &Case) -> bool {
+        let key = |c: &Case| {
+            (
+                c.between,
+                c.decimation,
+                c.block,
+                c.finer,
+                c.speed_is_input,
+                c.inverter,
+            )
+        };
+        let alike = |a: bool, b: bool| a == b;
+        key(self) == key(other)
+            && (self.inputs.t_sample / other.inputs.t_sample - 1.0).abs() < 1e-6
+            && alike(self.speed.is_empty(), other.speed.is_empty())
+            && alike(self.coarse.is_some(), other.coarse.is_some())
+            && alike(self.supply.denoised, other.supply.denoised)
+            && self.table.is_none()
+            && other.table.is_none()
+    }
+
+    /// This recording and another one behind it, each in whole blocks; the recordings as they are where they do not suit.
+    ///
+    /// # Errors
+    /// The other recording, if it cannot be fitted together with this one.
+    pub fn joined(mut self, other: Case) -> Result<Case, Box<(Case, Case)>> {
+        if !self.suits(&other) {
+            return Err(Box::new((self, other)));
+        }
+        self.keep_whole_blocks();
+        let from = self.inputs.u_s.len();
+        let rows = from / self.samples_per_row();
+        debug_assert_eq!(rows, self.measured.len());
+        let behind = |r: &Range<usize>| r.start + from..r.end + from;
+        let mut cuts = self.timeline.cuts.clone();
+        cuts.push(Cut {
+            sample: from,
+            t: 0.0,
+            is_new: true,
+        });
+        let later = other.timeline.cuts.iter();
+        cuts.extend(later.map(|cut| Cut {
+            sample: cut.sample + from,
+            ..*cut
+        }));
+        let coarse = self.coarse.as_ref().zip(other.coarse.as_ref());
+        Ok(Case {
+            timeline: Timeline {
+                t_sample: self.timeline.t_sample,
+                omega_sync: [&self.timeline.omega_sync[..], &other.timeline.omega_sync].concat(),
+                theta_mech: [&self.timeline.theta_mech[..], &other.timeline.theta_mech].concat(),
+                cuts,
+            }
+            .into(),
+            inputs: Inputs {
+                t_sample: self.inputs.t_sample,
+                u_s: [self.inputs.u_s, other.inputs.u_s].concat(),
+                tau_load: [self.inputs.tau_load, other.inputs.tau_load].concat(),
+            },
+            speed: [self.speed, other.speed].concat(),
+            running_at_cuts: [
+                self.running_at_cuts,
+                vec![other.running_at],
+                other.running_at_cuts,
+            ]
+            .concat(),
+            open: self
+                .open
+                .iter()
+                .cloned()
+                .chain(other.open.iter().map(behind))
+                .collect(),
+            measured: [self.measured, other.measured].concat(),
+            weight: [self.weight, other.weight].concat(),
+            coarse: coarse.map(|(a, b)| a.joined(b)),
+            supply: self.supply.joined(&other.supply),
+            load_windows: self.load_windows.joined(&other.load_windows),
+            speed_windows: self.speed_windows.joined(&other.speed_windows),
+            ..self
+        })
+    }
+
+    /// Leaves out what does not fill a block at the end.
+    fn keep_whole_blocks(&mut self) {
+        let rows = self.measured.len() / self.block * self.block;
+        let samples = (rows * self.samples_per_row()).min(self.inputs.u_s.len());
+        let all = 0..samples;
+        self.measured.truncate(rows);
+        self.weight.truncate(rows);
+        self.inputs.u_s.truncate(samples);
+        self.inputs.tau_load.truncate(samples);
+        self.speed.truncate(samples);
+        let timeline = std::sync::Arc::make_mut(&mut self.timeline);
+        timeline.omega_sync.truncate(samples);
+        timeline.theta_mech.truncate(samples);
+        let of_recording = 0..samples / self.finer;
+        self.coarse = self
+            .coarse
+            .as_ref()
+            .map(|x| x.taken(std::slice::from_ref(&of_recording)));
+        self.supply = self.supply.taken(&[all]);
+        self.load_windows = self.load_windows.taken(std::slice::from_ref(&of_recording));
+        self.speed_windows = self.speed_windows.taken(&[of_recording]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::prediction::{SpeedObserver, outputs, residual};
+    use crate::specimen;
+
+    fn case(seconds: f64, torque: f64) -> Case {
+        let rated = specimen::prior("").plant.rated;
+        Case::new(&specimen::recording(seconds, |_| torque), &rated).expect("judged")
+    }
+
+    /// Simulated together or one by one: the same rows. What does not fill a block at the end of the first is left out.
+    #[test]
+    fn joined_recordings_are_simulated_as_each_alone() {
+        let study = specimen::study(0.5, |_| 1.0);
+        let h = study.at_prior();
+        let run = |case: &Case| outputs(case, &study.prior, &h, SpeedObserver::Off);
+        let (one, other) = (case(0.515, 0.5), case(0.4, 1.5));
+        let both = one.clone().joined(other.clone()).expect("alike");
+        let (joined, first, second) = (run(&both), run(&one), run(&other));
+        let kept = joined.len() - second.len();
+        assert!(kept < first.len() && first.len() - kept < both.block * 5);
+        // Times of the second are counted from the first: rounding.
+        let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+        assert!(same(&joined[..kept], &first));
+        assert!(same(&joined[kept..], &second));
+        assert_eq!(residual(&both, &joined).len(), joined.len());
+        assert_eq!(both.time_of(kept / 5), 0.0);
+    }
+
+    #[test]
+    fn every_second_recording_proves_and_what_does_not_suit_proves_too() {
+        let held = || {
+            let mut held = case(0.4, 1.0);
+            held.decimation += 1;
+            held
+        };
+        let all = || vec![case(0.4, 0.5), case(0.4, 1.0), case(0.4, 1.5)];
+        let (fitted, proofs) = shared(all()).expect("three");
+        assert_eq!((fitted.timeline.cuts.len(), proofs.len()), (1, 1));
+        let mut odd = all();
+        odd[2] = held();
+        let (fitted, proofs) = shared(odd).expect("three");
+        assert_eq!((fitted.timeline.cuts.len(), proofs.len()), (0, 2));
+        assert!(shared(Vec::new()).is_none());
+    }
+}

@@ -1,0 +1,206 @@
+//! From files to a study: audit, preparation, errors.
+
+use crate::data::case::Case;
+use crate::data::joined::shared;
+use crate::data::stretches::{cut, stretches, told};
+use crate::data::study::Study;
+use crate::data::unsupported::Unsupported;
+use crate::model::free_scale::FreeScale;
+use crate::model::prior::Prior;
+use crate::model::speed_gain::{is_scale, name};
+use audit::{Audit, Expectation, audit, with_sound_probes};
+use motor::MotorFile;
+use motor::effect::{Rated, from_motor_file};
+use recording::{LoadTorque, Recording, Source};
+use std::fmt;
+
+/// Why nothing can be answered.
+#[derive(Clone, Debug)]
+pub enum Error {
+    /// The effects of the motor file are wrong.
+    MotorFile(document::FileError),
+    /// No recording was given, or a mixture of recordings and load tables.
+    Recordings(String),
+    /// The recording cannot be judged: its audit, and the reason.
+    Unsupported(Box<Audit>, Unsupported),
+    /// There is no such effect.
+    UnknownEffect(String),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MotorFile(error) => error.fmt(f),
+            Self::Recordings(message) | Self::UnknownEffect(message) => f.write_str(message),
+            Self::Unsupported(_, why) => write!(f, "{}; {}", why.reason, why.remedy),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// A prepared question: the audit of the first source, and the study.
+pub struct Question {
+    /// Audit of the fitted recording.
+    pub audit: Audit,
+    /// The study.
+    pub study: Study,
+}
+
+impl Question {
+    /// Audits and prepares; `progress` hears what is being done.
+    ///
+    /// # Errors
+    /// Wrong effects in the motor file, no source, or sources that cannot be judged.
+    pub fn new(
+        sources: &[Source],
+        motor: &MotorFile,
+        progress: &mut dyn FnMut(&str, f64),
+    ) -> Result<Self, Error> {
+        let Some(first) = sources.first() else {
+            return Err(Error::Recordings("give at least one recording".to_owned()));
+        };
+        let effects = from_motor_file(motor, &motor.name).map_err(Error::MotorFile)?;
+        progress("auditing the recordings", 0.0);
+        let mut audited = audit_of(first, motor);
+        if let Source::Recording(recording) = first {
+            audited.assumptions.extend(told(recording));
+        }
+        let mut prior = Prior::new(motor, effects);
+        if sources.iter().any(measures_torque) {
+            // A measured brake torque holds the friction of the load.
+            prior.plant.mechanics.load_friction = 0.0;
+        }
+        let refuse = |why| Error::Unsupported(Box::new(audited.clone()), why);
+        let mut ready = Vec::new();
+        for source in sources {
+            let audit = audit_of(source, motor);
+            if let Some(reason) = refusal(&audit) {
+                return Err(Error::Unsupported(Box::new(audit), reason));
+            }
+            ready.push(sound(source, &audit));
+        }
+        let scale = speed_scale_of(&ready, &prior)?.map(|start| start.map_err(refuse));
+        let scale = scale.transpose()?;
+        let rated = &prior.plant.rated;
+        let prepared = |scale: Option<FreeScale>| {
+            let case = |source: &Source| case_of(source, scale, rated).map_err(refuse);
+            ready.iter().map(case).collect::<Result<Vec<Case>, Error>>()
+        };
+        let mut cases = prepared(scale)?;
+        let scale = scale.map(|start| start.fitted(&cases[0], &prior));
+        if scale.is_some() {
+            cases = prepared(scale)?;
+        }
+        if cases
+            .iter()
+            .any(|c| c.table.is_some() != cases[0].table.is_some())
+        {
+            let message = "recordings and load tables cannot prove each other; give one kind";
+            return Err(Error::Recordings(message.to_owned()));
+        }
+        progress("propagating the noise", 0.05);
+        let none = || Error::Recordings("give at least one recording".to_owned());
+        let (fitted, proofs) = shared(cases).ok_or_else(none)?;
+        Ok(Self {
+            audit: audited,
+            study: Study::new(prior, fitted, proofs, scale),
+        })
+    }
+}
+
+/// Whether a recording holds the torque at the shaft.
+fn measures_torque(source: &Source) -> bool {
+    let Source::Recording(rec) = source else {
+        return false;
+    };
+    rec.torque().is_some() && rec.metadata.load_torque != LoadTorque::Friction
+}
+
+/// A source with its sound probes.
+fn sound(source: &Source, audit: &Audit) -> Source {
+    match source {
+        Source::Recording(recording) => Source::Recording(with_sound_probes(recording, audit)),
+        Source::LoadTable(table) => Source::LoadTable(table.clone()),
+    }
+}
+
+fn case_of(
+    source: &Source,
+    scale: Option<FreeScale>,
+    rated: &Rated<f64>,
+) -> Result<Case, Unsupported> {
+    match (source, scale) {
+        (Source::LoadTable(table), _) => Case::of_table(table, rated),
+        (Source::Recording(recording), None) => case_of_recording(recording, rated),
+        (Source::Recording(recording), Some(scale)) => Ok(Case {
+            speed_scale_is_free: true,
+            ..case_of_recording(&scale.applied(recording), rated)?
+        }),
+    }
+}
+
+/// A recording whole, or stretches of a long one.
+fn case_of_recording(recording: &Recording, rated: &Rated<f64>) -> Result<Case, Unsupported> {
+    let whole = Case::new(recording, rated)?;
+    Ok(match stretches(recording) {
+        None => whole,
+        Some(stretches) => cut(&whole, rated, &stretches),
+    })
+}
+
+/// Where the fit of an unknown scale of the speed starts; `None` when every scale is known.
+///
+/// # Errors
+/// Recordings with known and unknown scales, or a motor file that holds the effect which is to be fitted.
+fn speed_scale_of(
+    sources: &[Source],
+    prior: &Prior,
+) -> Result<Option<Result<FreeScale, Unsupported>>, Error> {
+    let recordings: Vec<&Recording> = sources
+        .iter()
+        .filter_map(|source| match source {
+            Source::Recording(recording) => Some(recording),
+            Source::LoadTable(_) => None,
+        })
+        .collect();
+    let unknown = |rec: &&&Recording| rec.unknown_speed_scale.is_some() && rec.speed().is_some();
+    match recordings.iter().filter(unknown).count() {
+        0 => return Ok(None),
+        count if count < recordings.len() => {
+            let message = "the scale of the speed is unknown in some recordings and known in others; declare one of both for all";
+            return Err(Error::Recordings(message.to_owned()));
+        }
+        _ => {}
+    }
+    let held = &prior.plant.effects;
+    if held.iter().any(|e| is_scale(e.effect)) {
+        let message = format!(
+            "the motor file holds `{}`, and the scale of the speed is declared unknown; remove one of both",
+            name()
+        );
+        return Err(Error::Recordings(message));
+    }
+    Ok(Some(FreeScale::start(&recordings, &prior.plant.rated)))
+}
+
+/// Audit of a source; a load table has nothing to audit beyond its reading.
+pub fn audit_of(source: &Source, motor: &MotorFile) -> Audit {
+    match source {
+        Source::Recording(recording) => audit(recording, &Expectation::from(motor)),
+        Source::LoadTable(table) => Audit {
+            supported: true,
+            findings: Vec::new(),
+            assumptions: table.assumptions.clone(),
+            unusable: Vec::new(),
+        },
+    }
+}
+
+fn refusal(audit: &Audit) -> Option<Unsupported> {
+    let finding = audit.findings.iter().find(|f| f.refuses)?;
+    Some(Unsupported::new(finding.detail.clone(), "see the audit"))
+}
+
+#[cfg(test)]
+mod tests;

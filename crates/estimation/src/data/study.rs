@@ -1,0 +1,193 @@
+//! The recordings of one question: the first is fitted, the others prove.
+
+use crate::data::case::Case;
+use crate::data::noise_floor::{Floor, by_channel, floor, judged_of};
+use crate::fit::normal_equations;
+use crate::fit::output_error::{Effort, Fit, fit};
+use crate::model::free_scale::{self, FreeScale};
+use crate::model::prediction::{SpeedObserver, outputs, residual};
+use crate::model::prior::{Hypothesis, Prior};
+use nalgebra::DMatrix;
+use std::sync::OnceLock;
+
+/// Seed of the propagated noise: the same input gives the same bytes.
+const SEED: u64 = 20_220_913;
+
+/// Mean squared difference of two predictions, in units of the floor, that no proof can resolve: a hundredth moves the
+/// error by half a per cent.
+const SILENT: f64 = 0.01;
+
+/// A recording with its noise floor.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// The prepared recording.
+    pub case: Case,
+    /// Its floor.
+    pub floor: Floor,
+}
+
+/// Everything that stays the same while hypotheses come and go.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// What the user believes.
+    pub prior: Prior,
+    /// Recording that is fitted.
+    pub fitted: Subject,
+    /// Recordings that prove.
+    pub proofs: Vec<Subject>,
+    /// How the speed channel becomes a speed, where its scale is a free parameter.
+    pub speed_scale: Option<FreeScale>,
+}
+
+/// A hypothesis, fitted and measured on data that was not fitted.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The fit.
+    pub fit: Fit,
+    /// Held-out squared error of each block of the fitted recording (folds).
+    pub folds: Vec<f64>,
+    /// Squared error of each block of the proving recordings, one after the other.
+    pub proof: Vec<f64>,
+    /// Covariance of the fitted coordinates, once it was asked for.
+    pub covariance: OnceLock<DMatrix<f64>>,
+    /// Nominals that are off, once they were asked for.
+    pub off: OnceLock<Vec<usize>>,
+    /// The same beside the errors of the voltage channels, once it was asked for.
+    pub polished: OnceLock<Option<Box<Trial>>>,
+}
+
+impl Subject {
+    fn new(case: Case, prior: &Prior) -> Self {
+        let floor = floor(&case, &prior.plant, SEED);
+        Self { case, floor }
+    }
+
+    /// Squared error of each block of a hypothesis.
+    pub fn errors(&self, prior: &Prior, h: &Hypothesis) -> Vec<f64> {
+        let r = residual(
+            &self.case,
+            &outputs(&self.case, prior, h, SpeedObserver::Off),
+        );
+        let blocks = normal_equations::blocks(&self.case.blocks(), &r, &[]);
+        blocks.iter().map(|b| b.sse).collect()
+    }
+}
+
+impl Study {
+    /// Prepares the floors.
+    pub fn new(
+        prior: Prior,
+        fitted: Case,
+        proofs: Vec<Case>,
+        speed_scale: Option<FreeScale>,
+    ) -> Self {
+        let subject = |case| Subject::new(case, &prior);
+        Self {
+            fitted: subject(fitted),
+            proofs: proofs.into_iter().map(subject).collect(),
+            prior,
+            speed_scale,
+        }
+    }
+
+    /// Nothing added, priors as they are; an unknown scale of the speed is free from the start.
+    pub fn at_prior(&self) -> Hypothesis {
+        let priors = match self.fitted.case.table {
+            Some(_) => Hypothesis::at_prior_of_table(),
+            None => Hypothesis::at_prior(self.fitted.case.speed_is_input),
+        };
+        let priors = match self.speed_scale {
+            Some(_) => free_scale::free(&priors, &self.prior),
+            None => priors,
+        };
+        priors.with_uncertain(&self.prior)
+    }
+
+    /// Effects that every hypothesis holds: they are no finding.
+    pub fn given_effects(&self) -> usize {
+        usize::from(self.speed_scale.is_some()) + self.prior.uncertain.len()
+    }
+
+    /// Fits a hypothesis and measures it.
+    pub fn trial(&self, start: &Hypothesis, effort: Effort) -> Trial {
+        self.measured(fit(&self.fitted.case, &self.prior, start, effort))
+    }
+
+    /// Measures a fit on what it has not seen.
+    pub fn measured(&self, fit: Fit) -> Trial {
+        let errors = |s: &Subject| s.errors(&self.prior, &fit.hypothesis);
+        Trial {
+            folds: fit.held_out(),
+            proof: self.proofs.iter().flat_map(errors).collect(),
+            covariance: OnceLock::new(),
+            off: OnceLock::new(),
+            polished: OnceLock::new(),
+            fit,
+        }
+    }
+
+    /// Error over noise by the folds of the fitted recording.
+    pub fn fold_error(&self, sse: &[f64]) -> f64 {
+        let total: f64 = sse.iter().sum();
+        self.fitted
+            .floor
+            .error_over_noise(total, self.fitted.case.judged())
+    }
+
+    /// Error over noise on the proving recordings; by folds if there are none.
+    pub fn proof_error(&self, trial: &Trial) -> f64 {
+        if self.proofs.is_empty() {
+            return self.fold_error(&trial.folds);
+        }
+        let floor = |s: &Subject| s.floor.mean * s.case.judged();
+        let expected: f64 = self.proofs.iter().map(floor).sum();
+        (trial.proof.iter().sum::<f64>() / expected).sqrt()
+    }
+
+    /// Whether the proving recordings cannot tell two trials apart: their predictions there differ by too little.
+    pub fn proof_is_silent(&self, one: &Trial, other: &Trial) -> bool {
+        let difference = |s: &Subject| {
+            let run =
+                |t: &Trial| outputs(&s.case, &self.prior, &t.fit.hypothesis, SpeedObserver::Off);
+            let squares = run(one)
+                .into_iter()
+                .zip(run(other))
+                .map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>() / (s.floor.mean * s.case.judged())
+        };
+        !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
+    }
+
+    /// Error over noise of each current and of the speed in the fitted recording; zero where nothing is judged.
+    pub fn channel_errors(&self, trial: &Trial) -> [f64; 4] {
+        let (case, floor) = (&self.fitted.case, &self.fitted.floor);
+        let sums = by_channel(&trial.fit.residual);
+        let one = |k: usize| (sums[k] / judged_of(case, k).max(1.0) / floor.channel[k]).sqrt();
+        core::array::from_fn(one)
+    }
+
+    /// Whether the fitted recording cannot tell two trials apart.
+    pub fn fit_is_silent(&self, one: &Trial, other: &Trial) -> bool {
+        let outputs = one.fit.outputs.iter().zip(&other.fit.outputs);
+        let squares: f64 = outputs.map(|(a, b)| (a - b).powi(2)).sum();
+        squares < SILENT * self.fitted.floor.mean * self.fitted.case.judged()
+    }
+
+    /// Share of the floor below which a typical effect cannot be seen in a recording.
+    pub const VISIBLE: f64 = 0.02;
+
+    /// By how much of the floor the error would rise if a signature of this size were missing.
+    pub fn visibility(&self, visible: f64) -> f64 {
+        let expected = self.fitted.floor.mean * self.fitted.case.judged();
+        (1.0 + (visible / expected).max(0.0)).sqrt() - 1.0
+    }
+
+    /// Relative allowance of the gate for the uncertainty of the floor.
+    pub fn allowance(&self) -> f64 {
+        let all = std::iter::once(&self.fitted).chain(&self.proofs);
+        all.map(|s| s.floor.allowance()).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests;

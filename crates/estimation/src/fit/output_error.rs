@@ -1,0 +1,500 @@
+//! Output-error fit of a hypothesis: Levenberg-Marquardt with priors.
+
+use crate::data::case::Case;
+use crate::fit::normal_equations::{self, Block, Penalty};
+use crate::model::prediction::{SpeedObserver, jacobian, outputs, residual};
+use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
+use nalgebra::DVector;
+use std::ops::Range;
+
+/// Limits of the inflation of the nominals' prior weight.
+pub const INFLATION: [f64; 2] = [30.0, 400.0];
+/// The same for a load table, whose few points cannot be correlated over thousands of samples.
+const INFLATION_TABLE: [f64; 2] = [1.0, 30.0];
+
+/// Iterations after which a hopeless fit may be given up.
+const PATIENCE: usize = 2;
+/// Relative gain of an iteration below which a fit has arrived.
+const ARRIVED: f64 = 3e-5;
+/// Most steps that are taken with the same derivatives.
+const CHORDS: usize = 3;
+/// Relative gain of such a step below which new derivatives are worth their price.
+const REFRESH: f64 = 1e-3;
+
+/// A fitted hypothesis with everything that proofs need.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The hypothesis at its best coordinates.
+    pub hypothesis: Hypothesis,
+    /// Indices of the fitted coordinates.
+    pub free: Vec<usize>,
+    /// Residual.
+    pub residual: Vec<f64>,
+    /// Columns of the derivative.
+    pub jacobian: Vec<Vec<f64>>,
+    /// Normal equations per block.
+    pub blocks: Vec<Block>,
+    /// Penalty at the best coordinates.
+    pub penalty: Penalty,
+    /// Weighted model outputs.
+    pub outputs: Vec<f64>,
+    /// Inflation of the nominals' prior weight: so many rows count as one.
+    pub inflation: f64,
+    /// Treatment of the speed in this fit.
+    pub observer: SpeedObserver,
+}
+
+/// How hard to fit.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Most iterations.
+    pub iterations: usize,
+    /// Treatment of the speed.
+    pub observer: SpeedObserver,
+    /// Give up when after [`PATIENCE`] iterations the squared error still exceeds this.
+    pub abandon_above: f64,
+}
+
+impl Effort {
+    /// A complete fit of a freely running model.
+    pub const FULL: Effort = Effort {
+        iterations: 14,
+        observer: SpeedObserver::Off,
+        abandon_above: f64::INFINITY,
+    };
+
+    /// Nothing is moved: the start is measured as it is.
+    pub const NONE: Effort = Effort {
+        iterations: 0,
+        ..Effort::FULL
+    };
+}
+
+impl Fit {
+    /// Held-out squared error of each block.
+    pub fn held_out(&self) -> Vec<f64> {
+        normal_equations::held_out(&self.blocks, &self.penalty)
+    }
+
+    /// Squared residual and the pull of the priors: what a fit makes small.
+    pub fn cost(&self) -> f64 {
+        cost(&self.residual, &self.penalty)
+    }
+}
+
+/// Weights of the priors and their pull at the present coordinates.
+fn penalty(prior: &Prior, h: &Hypothesis, free: &[usize], inflation: f64) -> Penalty {
+    let one = |&k: &usize| {
+        let (sd, centre) = h.prior_of(k, prior);
+        let factor = if h.is_prior(k) { inflation } else { 1.0 };
+        (factor / (sd * sd), centre - h.z[k])
+    };
+    let (weight, pull): (Vec<_>, Vec<_>) = free.iter().map(one).unzip();
+    Penalty {
+        weight: DVector::from_vec(weight),
+        pull: DVector::from_vec(pull),
+    }
+}
+
+fn cost(r: &[f64], penalty: &Penalty) -> f64 {
+    let pulls = penalty
+        .weight
+        .iter()
+        .zip(&penalty.pull)
+        .map(|(w, p)| w * p * p);
+    let sum = signal::dot(r, r) + pulls.sum::<f64>();
+    if sum.is_finite() { sum } else { f64::INFINITY }
+}
+
+/// The hypothesis moved by `step` along its free coordinates, inside its bounds.
+fn moved(prior: &Prior, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> Hypothesis {
+    let mut next = h.clone();
+    for (&k, dz) in free.iter().zip(step.iter()) {
+        let [low, high] = h.bounds(k, prior);
+        let longest = h.longest_step(k);
+        next.z[k] = (h.z[k] + dz.clamp(-longest, longest)).clamp(low, high);
+    }
+    next
+}
+
+/// Fits the free coordinates of `start` to a case.
+///
+/// Derivatives cost as many simulations as there are coordinates. Between two sets of them up to [`CHORDS`] steps use
+/// the last set, corrected by what each step has shown (Broyden, 1965, doi:10.1090/S0025-5718-1965-0198670-6).
+pub fn fit(case: &Case, prior: &Prior, start: &Hypothesis, effort: Effort) -> Fit {
+    Search::new(case, prior, start, effort.observer).run(effort)
+}
+
+/// As [`fit`], from a start whose derivatives are known.
+pub fn fit_knowing(
+    case: &Case,
+    prior: &Prior,
+    start: &Hypothesis,
+    effort: Effort,
+    jacobian: Vec<Vec<f64>>,
+) -> Fit {
+    let mut search = Search::new(case, prior, start, effort.observer);
+    search.linearise(jacobian);
+    search.inflate();
+    search.run(effort)
+}
+
+/// A fit on its way.
+struct Search<'a> {
+    case: &'a Case,
+    prior: &'a Prior,
+    free: Vec<usize>,
+    rows: Vec<Range<usize>>,
+    observer: SpeedObserver,
+    limits: [f64; 2],
+    hypothesis: Hypothesis,
+    outputs: Vec<f64>,
+    residual: Vec<f64>,
+    damping: f64,
+    inflation: f64,
+    linear: Option<Linear>,
+}
+
+/// Derivatives, and how far the fit has moved since they were taken.
+struct Linear {
+    jacobian: Vec<Vec<f64>>,
+    blocks: Vec<Block>,
+    total: Block,
+    /// Whether the last step since then was worth new derivatives.
+    stale: bool,
+}
+
+/// A better place: coordinates, outputs, cost before and after.
+struct Better {
+    hypothesis: Hypothesis,
+    outputs: Vec<f64>,
+    gain: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(case: &'a Case, prior: &'a Prior, start: &Hypothesis, observer: SpeedObserver) -> Self {
+        let limits = match case.table {
+            Some(_) => INFLATION_TABLE,
+            None => INFLATION,
+        };
+        let outputs = outputs(case, prior, start, observer);
+        Self {
+            case,
+            prior,
+            free: (0..start.z.len()).filter(|&k| start.free[k]).collect(),
+            rows: case.blocks(),
+            observer,
+            limits,
+            hypothesis: start.clone(),
+            residual: residual(case, &outputs),
+            outputs,
+            damping: 1e-4,
+            inflation: limits[0],
+            linear: None,
+        }
+    }
+
+    fn run(mut self, effort: Effort) -> Fit {
+        for iteration in 0..effort.iterations {
+            if iteration > 0 || self.linear.is_none() {
+                self.differentiate();
+            }
+            let sse = self.sse();
+            let Some(gain) = self.step() else { break };
+            if gain < ARRIVED {
+                break;
+            }
+            for _ in 0..CHORDS {
+                if self.chord().is_none_or(|gain| gain < REFRESH) {
+                    break;
+                }
+            }
+            if iteration >= PATIENCE && sse > effort.abandon_above {
+                break;
+            }
+        }
+        self.finish()
+    }
+
+    fn sse(&self) -> f64 {
+        signal::dot(&self.residual, &self.residual)
+    }
+
+    /// Derivatives where the fit is.
+    fn differentiate(&mut self) {
+        let (case, prior) = (self.case, self.prior);
+        let jacobian = jacobian(case, prior, &self.hypothesis, &self.outputs, self.observer);
+        self.linearise(jacobian);
+        self.inflate();
+    }
+
+    /// Takes the inflation from the present derivatives.
+    fn inflate(&mut self) {
+        let nominals = self.free.iter().filter(|&&k| k < N_NOMINAL).count();
+        if let Some(linear) = &self.linear {
+            let inflation = normal_equations::score_inflation(&linear.blocks, nominals);
+            self.inflation = inflation.clamp(self.limits[0], self.limits[1]);
+        }
+    }
+
+    /// Normal equations of these derivatives and the present residual.
+    fn linearise(&mut self, jacobian: Vec<Vec<f64>>) {
+        let blocks = normal_equations::blocks(&self.rows, &self.residual, &jacobian);
+        self.linear = Some(Linear {
+            total: normal_equations::total(&blocks),
+            blocks,
+            jacobian,
+            stale: false,
+        });
+    }
+
+    fn penalty(&self, h: &Hypothesis) -> Penalty {
+        penalty(self.prior, h, &self.free, self.inflation)
+    }
+
+    /// A damped step from fresh derivatives: its relative gain, `None` if there is nothing better nearby.
+    fn step(&mut self) -> Option<f64> {
+        let better = self.better(7)?;
+        let gain = better.gain;
+        self.go(better);
+        if let Some(linear) = &mut self.linear {
+            linear.stale = gain >= ARRIVED;
+        }
+        Some(gain)
+    }
+
+    /// A step from corrected derivatives: its relative gain, `None` if it leads nowhere.
+    fn chord(&mut self) -> Option<f64> {
+        let jacobian = self.linear.take()?.jacobian;
+        self.linearise(jacobian);
+        let better = self.better(1);
+        if let Some(linear) = &mut self.linear {
+            linear.stale = true;
+        }
+        let better = better?;
+        let gain = better.gain;
+        self.go(better);
+        Some(gain)
+    }
+
+    /// Moves there and corrects the derivatives by what the move has shown.
+    fn go(&mut self, better: Better) {
+        let Better {
+            hypothesis,
+            outputs,
+            ..
+        } = better;
+        let moves: Vec<f64> = self
+            .free
+            .iter()
+            .map(|&k| hypothesis.z[k] - self.hypothesis.z[k])
+            .collect();
+        if let Some(linear) = &mut self.linear {
+            correct(linear, &moves, &self.outputs, &outputs);
+        }
+        self.residual = residual(self.case, &outputs);
+        (self.hypothesis, self.outputs) = (hypothesis, outputs);
+    }
+
+    fn finish(mut self) -> Fit {
+        if self.linear.as_ref().is_none_or(|linear| linear.stale) {
+            let keep = self.inflation;
+            self.differentiate();
+            self.inflation = keep;
+        } else if let Some(linear) = self.linear.take() {
+            self.linearise(linear.jacobian);
+        }
+        let penalty = self.penalty(&self.hypothesis);
+        let (jacobian, blocks) = self
+            .linear
+            .map_or_else(Default::default, |linear| (linear.jacobian, linear.blocks));
+        Fit {
+            penalty,
+            hypothesis: self.hypothesis,
+            free: self.free,
+            residual: self.residual,
+            jacobian,
+            blocks,
+            outputs: self.outputs,
+            inflation: self.inflation,
+            observer: self.observer,
+        }
+    }
+
+    /// The damped step; coordinates that it would push out of their bounds stay, the others make up for it.
+    fn inside(&self, here: &Penalty, normal: &Block) -> Option<DVector<f64>> {
+        let h = &self.hypothesis;
+        let mut held = here.clone();
+        let mut step = held.solve(normal, self.damping)?;
+        for _ in 0..3 {
+            let mut again = false;
+            for (i, &k) in self.free.iter().enumerate() {
+                let [low, high] = h.bounds(k, self.prior);
+                let outward = (h.z[k] <= low && step[i] < 0.0) || (h.z[k] >= high && step[i] > 0.0);
+                if outward {
+                    held.weight[i] = 1e9 * (normal.gram[(i, i)] + here.weight[i] + 1.0);
+                    held.pull[i] = 0.0;
+                    again = true;
+                }
+            }
+            if !again {
+                break;
+            }
+            step = held.solve(normal, self.damping)?;
+        }
+        Some(step)
+    }
+
+    /// A better hypothesis within so many tries, each more damped; `None` if there is none.
+    fn better(&mut self, tries: usize) -> Option<Better> {
+        let here = self.penalty(&self.hypothesis);
+        let normal = self.linear.as_ref()?.total.clone();
+        let before = cost(&self.residual, &here);
+        for _ in 0..tries {
+            if let Some(step) = self.inside(&here, &normal) {
+                let next = moved(self.prior, &self.hypothesis, &self.free, &step);
+                let out = outputs(self.case, self.prior, &next, self.observer);
+                let after = cost(&residual(self.case, &out), &self.penalty(&next));
+                if after < before {
+                    self.damping = (self.damping * 0.2).max(1e-7);
+                    return Some(Better {
+                        hypothesis: next,
+                        outputs: out,
+                        gain: 1.0 - after / before,
+                    });
+                }
+            }
+            self.damping = (self.damping * 8.0).max(1e-5);
+        }
+        None
+    }
+}
+
+/// The least change of the derivatives that makes them predict what a step did, each coordinate in its own scale.
+fn correct(linear: &mut Linear, moves: &[f64], before: &[f64], after: &[f64]) {
+    let scale: Vec<f64> = (0..moves.len())
+        .map(|k| linear.total.gram[(k, k)].max(f64::MIN_POSITIVE))
+        .collect();
+    let length: f64 = moves.iter().zip(&scale).map(|(m, s)| m * m * s).sum();
+    if length <= 0.0 {
+        return;
+    }
+    let mut missed: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+    for (column, m) in linear.jacobian.iter().zip(moves) {
+        missed.iter_mut().zip(column).for_each(|(x, c)| *x -= m * c);
+    }
+    for ((column, m), s) in linear.jacobian.iter_mut().zip(moves).zip(&scale) {
+        let share = m * s / length;
+        column
+            .iter_mut()
+            .zip(&missed)
+            .for_each(|(c, x)| *c += share * x);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::prior::{FRICTION, MAGNETIZING};
+    use crate::specimen;
+
+    #[test]
+    fn a_table_of_the_believed_machine_moves_nothing() {
+        let study = specimen::table_study(|_| ());
+        let fit = fit(
+            &study.fitted.case,
+            &study.prior,
+            &study.at_prior(),
+            Effort::FULL,
+        );
+        assert!(
+            fit.hypothesis.z.iter().all(|z| z.abs() < 1e-4),
+            "{:?}",
+            fit.hypothesis.z
+        );
+        assert!(signal::dot(&fit.residual, &fit.residual) < 1e-4);
+    }
+
+    /// Parameters that differ by some per cent are found: the table is exact, the priors are wide.
+    #[test]
+    fn a_fit_finds_the_parameters_behind_a_table() {
+        let truth = [0.06, -0.05, 0.04, 0.03];
+        let study = specimen::table_study(|plant| {
+            plant.motor.r_s *= f64::exp(truth[0]);
+            plant.motor.r_r *= f64::exp(truth[1]);
+            plant.motor.l_ls *= f64::exp(truth[2]);
+            plant.motor.l_lr *= f64::exp(truth[2]);
+            plant.motor.l_m *= f64::exp(truth[3]);
+        });
+        let fit = fit(
+            &study.fitted.case,
+            &study.prior,
+            &study.at_prior(),
+            Effort::FULL,
+        );
+        for k in [0, 1, MAGNETIZING] {
+            let z = fit.hypothesis.z[k];
+            assert!((z - truth[k]).abs() < 0.02, "{k}: {z}");
+        }
+        assert_eq!(fit.hypothesis.z[FRICTION], 0.0, "not fitted from a table");
+        assert_eq!(fit.free, [0, 1, 2, 3]);
+        // What is returned belongs together: residual, outputs and columns at the best coordinates.
+        let out = outputs(
+            &study.fitted.case,
+            &study.prior,
+            &fit.hypothesis,
+            SpeedObserver::Off,
+        );
+        assert_eq!(out, fit.outputs);
+        assert_eq!(residual(&study.fitted.case, &out), fit.residual);
+        let variance = crate::fit::uncertainty::covariance(&study, &fit);
+        assert!((0..4).all(|k| variance[(k, k)] > 0.0 && variance[(k, k)] < 0.11));
+        assert_eq!(fit.held_out().len(), 12);
+    }
+
+    /// The optimum of squared error and priors: no gradient is left, `J' r + W p = 0`.
+    #[test]
+    fn the_best_coordinates_have_no_gradient() {
+        let study = specimen::table_study(|plant| plant.motor.l_m *= 1.05);
+        let fit = fit(
+            &study.fitted.case,
+            &study.prior,
+            &study.at_prior(),
+            Effort::FULL,
+        );
+        let all = normal_equations::total(&fit.blocks);
+        let gradient = &all.score + fit.penalty.weight.component_mul(&fit.penalty.pull);
+        for (k, g) in gradient.iter().enumerate() {
+            let scale = (all.gram[(k, k)] + fit.penalty.weight[k]).sqrt();
+            assert!(g.abs() < 0.02 * scale, "{k}: {g} {scale}");
+        }
+    }
+
+    /// Priors: one over the squared deviation, `inflation` times for nominals; the pull leads back to the prior.
+    #[test]
+    fn a_penalty_is_the_prior_seen_from_where_one_is() {
+        let study = specimen::table_study(|_| ());
+        let mut h = study.at_prior();
+        h.z[1] = 0.25;
+        let p = penalty(&study.prior, &h, &[0, 1], 30.0);
+        assert!(
+            (p.weight[0] - 30.0 / 0.01).abs() < 1e-9 && (p.weight[1] - 30.0 / 0.01).abs() < 1e-9
+        );
+        assert_eq!((p.pull[0], p.pull[1]), (0.0, -0.25));
+        let expected = 9.0 + 4.0 + 3000.0 * 0.0625;
+        assert!((cost(&[3.0, -2.0], &p) - expected).abs() < 1e-9);
+        assert_eq!(cost(&[f64::NAN], &p), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_step_is_limited_and_stays_inside_the_bounds() {
+        let study = specimen::table_study(|_| ());
+        let mut h = study.at_prior();
+        h.z[0] = 1.0;
+        let step = DVector::from_column_slice(&[1.2, -9.0]);
+        let next = moved(&study.prior, &h, &[0, 1], &step);
+        // A factor of e^1.6 at most, and 1.5 at a time.
+        assert_eq!((next.z[0], next.z[1]), (1.6, -1.5));
+        assert_eq!(next.z[2..], h.z[2..]);
+    }
+}

@@ -1,0 +1,69 @@
+//! The parameters of a model beside the channels' own errors.
+//!
+//! Channels of class 0.5 show an unbalance that is not there. The negative-sequence current that a model answers with
+//! is the smaller the larger its leakage: with no other way out a fit turns the error of the channels into leakage. For
+//! the parameters that are reported the gains of the voltage and current channels are fitted too, believed to be right
+//! within their class. What effects are missing is asked without them: a channel that is further off is a finding.
+
+use crate::data::study::{Study, Trial};
+use crate::fit::output_error::Effort;
+use crate::model::prior::N_NOMINAL;
+use motor::effect::{EffectConfig, Instrument};
+use motor::effects::gain_of;
+
+/// The instruments whose gains are fitted.
+const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents];
+
+/// The trial refitted beside the gains of the channels; `None` where they cannot be fitted: a load table, or a motor file that
+/// holds an unbalance of voltages and currents already. Gains that were found are held to their class, too: the data tell
+/// how they differ, and nothing tells what all three have in common from the impedances of another motor.
+pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
+    let h = &trial.fit.hypothesis;
+    let held = h.effects.iter().chain(&study.prior.plant.effects);
+    if study.fitted.case.table.is_some() {
+        return None;
+    }
+    let rated = &study.prior.plant.rated;
+    let mut here = h.clone();
+    let mut any = false;
+    for instrument in INSTRUMENTS {
+        let is_gain = |c: &EffectConfig| c.effect.gain_of() == Some(instrument);
+        let hides = |c: &EffectConfig| c.effect.hides_gain_of() == Some(instrument);
+        let found = h.effects.iter().position(is_gain);
+        here = match found {
+            Some(found) => here.taken_for_instrument(found),
+            None if held.clone().any(hides) => continue,
+            None => {
+                let gains = EffectConfig::absent(gain_of(instrument)?, rated);
+                here.with_instrument(gains, rated)
+            }
+        };
+        any = true;
+    }
+    if !any {
+        return None;
+    }
+    let mut believed = here.clone();
+    believed.z[..N_NOMINAL].fill(0.0);
+    // A trial whose nominals had to make up for the gains starts far from the minimum; from the prior it takes a few steps.
+    let polished = study.trial(&believed, Effort::FULL);
+    if polished.fit.cost() <= trial.fit.cost() {
+        return Some(polished);
+    }
+    let other = study.trial(&here, Effort::FULL);
+    Some(if other.fit.cost() < polished.fit.cost() {
+        other
+    } else {
+        polished
+    })
+}
+
+/// The hypothesis of a trial with the nominals of another one.
+pub fn with_nominals(trial: &Trial, of: &Trial) -> crate::model::prior::Hypothesis {
+    let mut h = trial.fit.hypothesis.clone();
+    h.z[..N_NOMINAL].copy_from_slice(&of.fit.hypothesis.z[..N_NOMINAL]);
+    h
+}
+
+#[cfg(test)]
+mod tests;

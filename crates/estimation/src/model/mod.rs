@@ -1,0 +1,7 @@
+//! What is believed about the motor, and what it predicts.
+
+pub mod free_scale;
+pub mod prediction;
+pub mod prior;
+pub mod speed_gain;
+pub mod speed_scale;

@@ -1,0 +1,264 @@
+//! Weighted residuals of a hypothesis, and their derivatives.
+
+use crate::data::case::Case;
+use crate::data::channels::N_CHANNELS;
+use crate::data::load_table::{self, Point};
+use crate::model::prior::{Hypothesis, Prior};
+use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
+use motor::steady_state::SteadyState;
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Recordings simulated by this process so far.
+static SIMULATIONS: AtomicU64 = AtomicU64::new(0);
+
+/// How many times this process has simulated a recording: what a search costs, whatever the machine.
+pub fn simulations() -> u64 {
+    SIMULATIONS.load(Ordering::Relaxed)
+}
+
+/// How the speed is treated in a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpeedObserver {
+    /// The model runs freely.
+    Off,
+    /// The model's speed is drawn to the measured one at this rate, 1/s.
+    On(f64),
+}
+
+/// What drives a model: voltage, load torque, and the speed where it is given.
+#[derive(Clone, Debug)]
+pub struct Drive<'a> {
+    /// Voltage and load torque.
+    pub inputs: Cow<'a, Inputs>,
+    /// Smoothed speed, rad/s; empty without a speed channel.
+    pub speed: Cow<'a, [f64]>,
+}
+
+impl<'a> Drive<'a> {
+    /// As the recording has it.
+    pub fn of(case: &'a Case) -> Self {
+        Self {
+            inputs: Cow::Borrowed(&case.inputs),
+            speed: Cow::Borrowed(&case.speed),
+        }
+    }
+}
+
+/// Simulates a plant on what drives it.
+pub fn run(case: &Case, plant: &Plant, drive: &Drive<'_>, observer: SpeedObserver) -> Outputs {
+    driven(case, plant, drive, observer, 1, |run| simulate(plant, run))
+}
+
+/// Does something with the run of a plant that costs as much as so many simulations.
+pub fn driven<T>(
+    case: &Case,
+    plant: &Plant,
+    drive: &Drive<'_>,
+    observer: SpeedObserver,
+    simulations: u64,
+    of: impl FnOnce(&Run<'_>) -> T,
+) -> T {
+    SIMULATIONS.fetch_add(simulations, Ordering::Relaxed);
+    let speeds = case.speeds(plant, &drive.speed);
+    let speed = match observer {
+        _ if case.speed_is_input => SpeedSource::Imposed(&speeds.speed),
+        SpeedObserver::On(rate) if !drive.speed.is_empty() => {
+            SpeedSource::Observed(&speeds.speed, rate)
+        }
+        _ => SpeedSource::Free,
+    };
+    let starts = |measured: f64, k: usize| match case.settles {
+        true => settled(plant, drive, speeds.timeline.omega_sync[k], k).unwrap_or(measured),
+        false => measured,
+    };
+    let cuts = speeds.timeline.cuts.iter().zip(&speeds.running_at_cuts);
+    let running_at_cuts: Vec<Option<f64>> = cuts
+        .map(|(cut, omega)| omega.map(|omega| starts(omega, cut.sample)))
+        .collect();
+    of(&Run {
+        inputs: &drive.inputs,
+        between: case.between,
+        speed,
+        timeline: &speeds.timeline,
+        running_at: speeds.running_at.map(|measured| starts(measured, 0)),
+        running_at_cuts: &running_at_cuts,
+        open: &case.open,
+    })
+}
+
+/// Speed at which the motor carries what sample `k` asks of it, rad/s.
+fn settled(plant: &Plant, drive: &Drive<'_>, omega_sync: f64, k: usize) -> Option<f64> {
+    let (u_s, torque) = (drive.inputs.u_s.get(k)?, *drive.inputs.tau_load.get(k)?);
+    let amplitude = Complex64::new(u_s.norm(), 0.0);
+    let friction = plant.mechanics.total_friction();
+    let curve = SteadyState::new(&plant.motor, plant.mechanics.n_p, amplitude, omega_sync);
+    let point = curve.at_load(|omega| torque + friction * omega);
+    point.ok().map(|point| point.omega_mech)
+}
+
+/// Weighted model outputs, row after row. A model that left the finite numbers counts as infinitely wrong.
+pub fn weighted(case: &Case, outputs: &Outputs) -> Vec<f64> {
+    let mut out = Vec::with_capacity(case.measured.len() * N_CHANNELS);
+    for (row, w) in case.weight.iter().enumerate() {
+        let k = row * case.decimation;
+        let [a, b, c] = outputs.i_s_abc[k];
+        let values = [a, b, c, outputs.omega_mech[k], outputs.u_zero[k]];
+        out.extend(values.iter().zip(w).map(|(x, w)| x * w));
+    }
+    out
+}
+
+/// Weighted outputs of a load table.
+fn steady(case: &Case, plant: &Plant, points: &[Point]) -> Vec<f64> {
+    let row = |(point, w): (&Point, &[f64; N_CHANNELS])| {
+        let values = load_table::predict(plant, point);
+        let weight = *w;
+        (0..N_CHANNELS).map(move |k| values[k] * weight[k])
+    };
+    points.iter().zip(&case.weight).flat_map(row).collect()
+}
+
+/// Weighted outputs of a hypothesis.
+pub fn outputs(case: &Case, prior: &Prior, h: &Hypothesis, observer: SpeedObserver) -> Vec<f64> {
+    let plant = h.plant(prior);
+    match &case.table {
+        Some(points) => steady(case, &plant, points),
+        None => weighted(case, &run(case, &plant, &Drive::of(case), observer)),
+    }
+}
+
+/// Weighted outputs of a plant that something else drives (noise propagation).
+pub fn outputs_on(case: &Case, plant: &Plant, drive: &Drive<'_>) -> Vec<f64> {
+    weighted(case, &run(case, plant, drive, SpeedObserver::Off))
+}
+
+/// Residual: weighted measurement minus weighted model.
+pub fn residual(case: &Case, model: &[f64]) -> Vec<f64> {
+    let measured = case.measured.iter().zip(&case.weight);
+    let rows = measured.flat_map(|(y, w)| (0..N_CHANNELS).map(move |k| y[k] * w[k]));
+    rows.zip(model).map(|(y, m)| y - m).collect()
+}
+
+/// Derivatives of the weighted outputs with respect to the free coordinates, in their order.
+pub fn jacobian(
+    case: &Case,
+    prior: &Prior,
+    h: &Hypothesis,
+    base: &[f64],
+    observer: SpeedObserver,
+) -> Vec<Vec<f64>> {
+    let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
+    let column = |&k: &usize| {
+        let mut step = h.step(k);
+        if h.z[k] + step > h.bounds(k, prior)[1] {
+            step = -step;
+        }
+        let mut moved = h.clone();
+        moved.z[k] += step;
+        let mut there = outputs(case, prior, &moved, observer);
+        there
+            .iter_mut()
+            .zip(base)
+            .for_each(|(x, b)| *x = (*x - b) / step);
+        there
+    };
+    free.par_iter().map(column).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::specimen;
+
+    #[test]
+    fn the_believed_table_leaves_nothing() {
+        let study = specimen::table_study(|_| ());
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let model = outputs(case, prior, &study.at_prior(), SpeedObserver::Off);
+        assert_eq!(model.len(), 12 * N_CHANNELS);
+        assert!(residual(case, &model).iter().all(|r| r.abs() < 1e-4));
+        // In units of the accuracy: one revolution per minute is one.
+        let mut slower = study.fitted.case.clone();
+        slower
+            .measured
+            .iter_mut()
+            .for_each(|row| row[1] -= 2.0 * std::f64::consts::TAU / 60.0);
+        for row in residual(&slower, &model).chunks(N_CHANNELS) {
+            assert!((row[1] + 2.0).abs() < 1e-3 && row[0].abs() < 1e-3);
+        }
+    }
+
+    /// Central differences, which err by the square of the step.
+    #[test]
+    fn derivatives_are_those_of_the_outputs() {
+        let study = specimen::table_study(|_| ());
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let h = study.at_prior();
+        let base = outputs(case, prior, &h, SpeedObserver::Off);
+        let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
+        let columns = jacobian(case, prior, &h, &base, SpeedObserver::Off);
+        assert_eq!(columns.len(), free.len());
+        for (column, k) in columns.iter().zip(free) {
+            let at = |dz: f64| {
+                let mut moved = h.clone();
+                moved.z[k] += dz;
+                outputs(case, prior, &moved, SpeedObserver::Off)
+            };
+            let (up, down) = (at(1e-3), at(-1e-3));
+            let size = column.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            for (n, got) in column.iter().enumerate() {
+                let expected = (up[n] - down[n]) / 2e-3;
+                assert!(
+                    (got - expected).abs() < 5e-3 * size,
+                    "{k}: {got} {expected}"
+                );
+            }
+        }
+    }
+
+    /// At the upper bound the derivative is taken downwards.
+    #[test]
+    fn derivatives_stay_inside_the_bounds() {
+        let study = specimen::table_study(|_| ());
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let mut h = study.at_prior();
+        h.z[0] = h.bounds(0, prior)[1];
+        let base = outputs(case, prior, &h, SpeedObserver::Off);
+        let column = &jacobian(case, prior, &h, &base, SpeedObserver::Off)[0];
+        let mut moved = h.clone();
+        moved.z[0] -= h.step(0);
+        let there = outputs(case, prior, &moved, SpeedObserver::Off);
+        for ((got, b), t) in column.iter().zip(&base).zip(&there) {
+            assert!((got - (b - t) / h.step(0)).abs() < 1e-6 * (1.0 + got.abs()));
+        }
+    }
+
+    /// A free run settles at the operating point of the closed form; each row is weighed by its noise.
+    #[test]
+    fn a_recording_is_simulated_row_by_row() {
+        let study = specimen::study(1.0, |_| 1.0);
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let before = simulations();
+        let model = outputs(case, prior, &study.at_prior(), SpeedObserver::Off);
+        assert!(simulations() > before);
+        let row = case.measured.len() - 1;
+        for k in 0..N_CHANNELS {
+            let got = model[row * N_CHANNELS + k] / case.weight[row][k];
+            let scale = case.measured[row][k].abs().max(0.1);
+            assert!(
+                (got - case.measured[row][k]).abs() < 0.02 * scale,
+                "{k}: {got}"
+            );
+        }
+        // Drawn to the measured speed the start is over sooner.
+        let speed_error = |observer| {
+            let model = outputs(case, prior, &study.at_prior(), observer);
+            let rows = residual(case, &model);
+            rows.chunks(N_CHANNELS).map(|r| r[3] * r[3]).sum::<f64>()
+        };
+        assert!(speed_error(SpeedObserver::On(200.0)) < 0.5 * speed_error(SpeedObserver::Off));
+    }
+}

@@ -1,0 +1,5 @@
+//! What the data that were not fitted say of two trials, and which parameters are off.
+
+pub mod accept;
+pub mod off;
+pub mod pairs;

@@ -1,0 +1,79 @@
+//! Which parameters of the motor file are off.
+
+use crate::data::study::{Study, Trial};
+use crate::fit::output_error::Effort;
+use crate::fit::uncertainty::coordinate_error;
+use crate::model::prior::{FRICTION, MAGNETIZING, N_NOMINAL, NOMINALS};
+use crate::proof::accept::worse;
+use motor::effect::Nominal;
+
+/// A parameter is off when it moved by more than so many standard errors ...
+pub const SIGNIFICANT: f64 = 3.0;
+/// ... and by more than this share ...
+pub const RELEVANT: f64 = 0.05;
+/// ... or, for friction, by more than this per cent of rated torque, ...
+pub const RELEVANT_FRICTION: f64 = 2.0;
+/// ... where the recording leaves at most this share of the variance of the prior, ...
+const LEFT_OPEN: f64 = 0.1;
+
+/// 95 % of a normal distribution lie within so many standard deviations.
+const TWO_SIDED_95: f64 = 1.96;
+
+/// Indices of the nominals that are off: moved far, known well, and with the parameter held at its prior and all others
+/// refitted the data that were not fitted are explained significantly worse, or only by stranger parameters.
+pub fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
+    let free = |k: &usize| trial.fit.free.contains(k);
+    let candidates = (0..N_NOMINAL)
+        .filter(free)
+        .filter(|&k| moved(study, trial, k));
+    let deviations = &study.prior.deviations;
+    let needed = |&k: &usize| {
+        let held = held(study, trial, k);
+        worse(study, &held, trial)
+            || strains(&held, deviations) > strains(trial, deviations) + SIGNIFICANT.powi(2)
+    };
+    candidates.filter(needed).collect()
+}
+
+/// How far the nominals of a trial are from their priors: sum of squares, in prior standard deviations.
+///
+/// One operating point never shows all of them: held at its prior, a parameter can be replaced by others. They do not
+/// explain the recording if they have to leave their priors further than the parameter itself.
+pub fn strains(trial: &Trial, deviations: &[f64; N_NOMINAL]) -> f64 {
+    let nominals = trial.fit.hypothesis.z.iter().zip(deviations);
+    nominals.map(|(z, deviation)| (z / deviation).powi(2)).sum()
+}
+
+/// The trial with one nominal held at its prior and everything else refitted.
+pub fn held(study: &Study, trial: &Trial, k: usize) -> Trial {
+    let mut frozen = trial.fit.hypothesis.clone();
+    frozen.z[k] = 0.0;
+    frozen.free[k] = false;
+    study.trial(&frozen, Effort::FULL)
+}
+
+/// Whether nominal `k` moved relevantly and significantly, and is known from the recording.
+fn moved(study: &Study, trial: &Trial, k: usize) -> bool {
+    let mut effects = trial.fit.hypothesis.effects.iter();
+    let redefined = effects.any(|e| e.effect.redefines() == Some(Nominal::Magnetizing));
+    if k == MAGNETIZING && redefined {
+        return false;
+    }
+    let z = trial.fit.hypothesis.z[k];
+    let relevant = match k {
+        FRICTION => z.abs() > RELEVANT_FRICTION,
+        _ => z.exp_m1().abs() > RELEVANT,
+    };
+    let error = coordinate_error(trial, study.covariance(trial), k);
+    let known = error * error < LEFT_OPEN * study.prior.deviations[k].powi(2);
+    relevant && known && z.abs() > SIGNIFICANT * error && !expected(study, k, z)
+}
+
+/// Whether the motor file holds the parameter in an interval with this value inside: learnt, not off.
+fn expected(study: &Study, k: usize, z: f64) -> bool {
+    let deviation = study.prior.deviations[k];
+    deviation > NOMINALS[k].prior_deviation && z.abs() < TWO_SIDED_95 * deviation
+}
+
+#[cfg(test)]
+mod tests;
