@@ -1,6 +1,6 @@
 //! Asks `explain` about folders of recordings with known truth, both directions, and prints what it says.
 //!
-//! `cargo run --release -p discovery --example sets -- FOLDER...`: each folder holds `motor.toml`,
+//! `cargo run --release -p studies --example sets -- FOLDER...`: each folder holds `motor.toml`,
 //! `recording.csv.gz`, `recording_b.csv.gz` with their sidecars, and is named after what is hidden. `--one-way` as the
 //! first argument fits the first recording only; `--steps` prints what each step takes.
 

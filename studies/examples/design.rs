@@ -1,9 +1,9 @@
 //! What a designed run settles: foreign machines whose first recordings leave a tie or cannot show the truth, recorded
 //! once more as designed, and as the best of the usual runs.
 //!
-//! `cargo run --release -p discovery --example design -- --seeds 5 --first 101 [--effect NAME]`
+//! `cargo run --release -p studies --example design -- --seeds 5 --first 101 [--effect NAME]`
 
-#[path = "../tests/foreign/mod.rs"]
+#[path = "../../crates/discovery/tests/foreign/mod.rs"]
 #[expect(
     dead_code,
     unused_imports,
