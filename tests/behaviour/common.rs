@@ -10,10 +10,7 @@ use motor::MotorFile;
 use recording::{Mapping, Recording};
 use replay::{self, Samples, Timeline};
 
-/// A file of the project.
-pub fn in_project(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
+pub use behaviour::in_project;
 
 /// A file of the shared data that may not be copied into the project; `None`, with a message, where it is absent.
 pub fn in_shared_data(path: &str) -> Option<PathBuf> {

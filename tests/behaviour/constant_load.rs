@@ -1,12 +1,12 @@
 //! A healthy motor at constant load, where the noise of the inputs is the only thing that moves: nothing may be called off,
 //! and what is off must still be found.
 
+use crate::common::in_project;
 use discovery::{ExplainReport, Verdict, adopt, compare, explain};
 use motor::MotorFile;
 use recording::{Channel, Recording, Source};
 use scenario::Scenario;
 use scenario::simulate::record;
-use std::path::Path;
 
 /// Ten seconds of the 2.2 kW motor on a load profile, its torque measured, 0.2 % noise.
 fn recorded(profile: &str, seed: u32) -> Recording {
@@ -15,16 +15,14 @@ fn recorded(profile: &str, seed: u32) -> Recording {
          [load]\nfriction_percent = 0.0\nactive = true\nprofile = [{profile}]\n\
          [sensors]\nnoise_sigma_fraction_of_full_scale = 0.002\ntorque = true\n"
     );
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let scenario = Scenario::parse(&text, "constant load", folder).expect("a scenario");
+    let scenario = Scenario::parse(&text, "constant load", &in_project("")).expect("a scenario");
     record(&scenario, |_| {}).expect("a recording")
 }
 
 const CONSTANT: &str = "{ at_s = 0.0, torque_percent = 80.0 }";
 
 fn motor() -> MotorFile {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    MotorFile::read(folder.join("motors/peer-2k2.toml")).expect("a motor file")
+    MotorFile::read(in_project("motors/peer-2k2.toml")).expect("a motor file")
 }
 
 fn off(report: &ExplainReport) -> Vec<&str> {

@@ -1,15 +1,13 @@
 //! The tables of docs/wiring.md: the parts (`docs/front-end/parts.csv`) and the simulated channels.
 
 use crate::limits::Point;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Mutex;
 
-const UPDATE: &str = "UPDATE_DOCS=1 cargo test -p drive-monitor --test front_end";
+const UPDATE: &str = "UPDATE_DOCS=1 cargo test -p behaviour --test front_end";
 
 fn in_docs(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("docs")
-        .join(path)
+    behaviour::in_project("docs").join(path)
 }
 
 /// Text of the list of parts.

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 static RUNS: AtomicU32 = AtomicU32::new(0);
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/front-end/netlists")
+    behaviour::in_project("docs/front-end/netlists")
 }
 
 /// Text of a netlist.

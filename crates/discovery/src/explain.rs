@@ -47,7 +47,15 @@ pub(crate) struct Step {
     /// The model before it.
     pub before: Trial,
     /// What explains the recording as well.
-    pub tied: Vec<String>,
+    pub rivals: Vec<Candidate>,
+}
+
+impl Step {
+    /// Names of what explains the recording as well.
+    pub fn tied(&self) -> Vec<String> {
+        let names = self.rivals.iter().map(|rival| rival.name.to_owned());
+        names.collect()
+    }
 }
 
 /// Everything that was learnt.
@@ -123,7 +131,8 @@ fn library(
     for number in 0..MOST_EFFECTS {
         let share = 0.15 + 0.15 * number as f64;
         let mut tell = |what: &str| progress(what, share);
-        let begun = begin(study, &base, excluded, &mut tell);
+        let mut begun = begin(study, &base, excluded, &mut tell);
+        begun.lead(&at_prior(&base));
         let rival = begun.proven().map_or(&base, |c| &c.trial);
         if let Some(law) = decisive_bursts(study, &base, rival, &mut tell) {
             first.get_or_insert(begun.enough());
@@ -155,7 +164,7 @@ fn library(
         let step = best.map(|best| Step {
             trial: best.trial.clone(),
             before: base.clone(),
-            tied: tied(study, &base, best, &found.candidates),
+            rivals: tied(study, &base, best, &found.candidates),
         });
         first.get_or_insert(found);
         let Some(step) = step else { break };
@@ -198,7 +207,7 @@ fn behind(
     Some(Step {
         trial: best.trial.clone(),
         before: base.clone(),
-        tied: tied(study, base, best, &all),
+        rivals: tied(study, base, best, &all),
     })
 }
 
@@ -294,16 +303,13 @@ fn at_prior(trial: &Trial) -> estimation::model::prior::Hypothesis {
 }
 
 /// Candidates over which the best has no proven advantage.
-fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<String> {
+fn tied(study: &Study, base: &Trial, best: &Candidate, all: &[Candidate]) -> Vec<Candidate> {
     let equal = |c: &&Candidate| {
         c.name != best.name
             && proven(study, base, &c.trial)
             && !surpasses(study, &best.trial, &c.trial)
     };
-    all.iter()
-        .filter(equal)
-        .map(|c| c.name.to_owned())
-        .collect()
+    all.iter().filter(equal).cloned().collect()
 }
 
 /// Name of a nominal.

@@ -21,6 +21,7 @@
 mod api;
 mod bursts;
 mod compare;
+mod design;
 mod explain;
 mod identify;
 mod laws;
@@ -28,9 +29,11 @@ mod report;
 mod search;
 
 pub use api::{
-    LAW, PARAMETERS, Progress, adopt, adopt_with, explain, explain_with, explain_without,
+    Asked, LAW, PARAMETERS, Progress, adopt, adopt_with, explain, explain_with, explain_without,
 };
 pub use compare::compare;
+pub use design::limits::{Limits, NextRun};
+pub use design::report::{DecidesReport, DesignReport, LevelReport, RunReport};
 pub use estimation::data::instrument_class;
 pub use estimation::data::load_table::table_values;
 pub use estimation::data::question::Error;

@@ -1,6 +1,6 @@
 //! Plants that share no code with the library, priors wrong by 5 %, two recordings.
 //!
-//! A cut of the whole table, which `cargo run --release -p discovery --example evidence` prints.
+//! A cut of the whole table, which `cargo run --release -p studies --example evidence` prints.
 
 #[expect(dead_code, unused_imports, reason = "the examples use the rest")]
 mod foreign;

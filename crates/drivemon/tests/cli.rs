@@ -315,3 +315,97 @@ fn wrong_formulas_and_shapes_are_refused_with_what_to_write() {
         assert!(!out.exists());
     }
 }
+
+/// A motor with a windage that its file does not have, at one load: nothing to be seen. The designed run shows it.
+#[test]
+fn a_designed_run_shows_what_one_load_could_not() {
+    let folder = scratch("next-run");
+    std::fs::copy(
+        Path::new(PROJECT).join("motors/peer-2k2.toml"),
+        folder.join("m.toml"),
+    )
+    .expect("copied");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let truth = "\n[sensors]\ntorque = true\nnoise_sigma_fraction_of_full_scale = 0.002\n\n\
+                 [[effects]]\nname = \"windage\"\nwindage_nm_s2 = 4e-5\n";
+    let simulate = |scenario: &str, recording: &str, text: &str| {
+        std::fs::write(path(scenario), text).expect("written");
+        let output = drivemon(&["simulate", &path(scenario), "-o", &path(recording)]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    };
+    let one_load = "motor = \"m.toml\"\nduration_s = 1.0\nstart = \"running\"\nsample_rate_hz = 4000\nseed = 3\n\
+                    [load]\nconstant_percent = 60.0\n";
+    simulate("first-scene.toml", "one.csv", &format!("{one_load}{truth}"));
+    std::fs::write(
+        path("limits.toml"),
+        "duration_s = 3.0\nload_percent = [0, 80]\n",
+    )
+    .expect("written");
+    let explain = |arguments: &[&str], json: &str| -> serde_json::Value {
+        let (motor, json) = (path("m.toml"), path(json));
+        let all = [
+            &["explain"],
+            arguments,
+            &["--motor", &motor, "--json", &json],
+        ]
+        .concat();
+        let output = drivemon(&all);
+        let text = std::fs::read_to_string(&json).unwrap_or_else(|_| panic!("{}", stderr(&output)));
+        serde_json::from_str(&text).expect("it is JSON")
+    };
+    let (limits, next) = (path("limits.toml"), path("next.toml"));
+    let first = explain(
+        &[&path("one.csv"), "--design", &next, "--limits", &limits],
+        "first.json",
+    );
+    assert_eq!(
+        first["steps"].as_array().map(Vec::len),
+        Some(0),
+        "{}",
+        first["summary"]
+    );
+    let design = &first["next_run"];
+    let decides = design["decides"].as_array().expect("a list");
+    let windage = decides
+        .iter()
+        .find(|d| d["what"] == "windage")
+        .expect("it is asked");
+    assert_eq!(windage["how_surely"], "sure", "{windage}");
+    assert!(
+        design["instructions"]
+            .as_array()
+            .is_some_and(|lines| lines.len() > 2)
+    );
+    assert!(
+        design["run"]["levels"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .all(|level| level["load_percent"].as_f64() <= Some(80.0))
+    );
+
+    let scenario = std::fs::read_to_string(&next).expect("the scenario was written");
+    assert!(scenario.contains("duration_s = 3.000"), "{scenario}");
+    let recorded = scenario.replace(
+        "duration_s = 3.000",
+        "duration_s = 3.000\nsample_rate_hz = 4000\nseed = 4",
+    );
+    simulate(
+        "second-scene.toml",
+        "two.csv",
+        &format!("{recorded}{truth}"),
+    );
+    let second = explain(&[&path("two.csv"), &path("one.csv")], "second.json");
+    let steps = second["steps"].as_array().expect("a list");
+    assert!(
+        steps.iter().any(|step| step["effect"] == "windage"),
+        "{}",
+        second["summary"]
+    );
+    let value = &steps[0]["parameters"][0]["value"];
+    // Five standard errors of such a run.
+    assert!(
+        (value.as_f64().expect("a number") / 4e-5 - 1.0).abs() < 0.1,
+        "{value}"
+    );
+}

@@ -95,6 +95,11 @@ fn phases(x: Complex64, t: f64, omega: f64) -> [f64; 3] {
 
 /// A motor that runs at `torque(t)`, N m, each instant as if it had always been so.
 pub fn recording(seconds: f64, torque: impl Fn(f64) -> f64) -> Recording {
+    recorded(seconds, &torque)
+}
+
+/// Compiled once for all tests.
+fn recorded(seconds: f64, torque: &dyn Fn(f64) -> f64) -> Recording {
     let n = (seconds / T_SAMPLE).round() as usize;
     let t: Vec<f64> = (0..n).map(|k| k as f64 * T_SAMPLE).collect();
     let mut columns = vec![Vec::new(); 8];
@@ -145,7 +150,7 @@ fn loads() -> Vec<f64> {
 
 /// A load table of the motor at these shaft powers, W, its columns in closed form; `change` makes the machine another
 /// than believed.
-fn table_at(watts: Vec<f64>, change: impl Fn(&mut Plant)) -> LoadTable {
+fn table_at(watts: Vec<f64>, change: &dyn Fn(&mut Plant)) -> LoadTable {
     use recording::TableColumn::{Current, Efficiency, Power, PowerFactor, Speed};
     let mut plant = prior("").plant;
     change(&mut plant);
@@ -170,13 +175,13 @@ fn table_at(watts: Vec<f64>, change: impl Fn(&mut Plant)) -> LoadTable {
 
 /// A load table of a machine other than believed, as a source.
 pub fn table_source(change: impl Fn(&mut Plant)) -> Source {
-    Source::LoadTable(table_at(loads(), change))
+    Source::LoadTable(table_at(loads(), &change))
 }
 
 /// A load table of a machine other than believed, as a study.
 pub fn table_study(change: impl Fn(&mut Plant)) -> Study {
     let prior = prior("");
-    let case = Case::of_table(&table_at(loads(), change), &prior.plant.rated);
+    let case = Case::of_table(&table_at(loads(), &change), &prior.plant.rated);
     Study::new(prior, case.expect("twelve points"), Vec::new(), None)
 }
 

@@ -5,8 +5,8 @@
 //! can tell. On a constant load the noise of an input is the only thing that moves a model; what is left of it biases
 //! the parameters that damp it (leakage, inertia).
 
-use super::polynomial::{Smoothed, reach, smooth};
-use crate::dot::dot;
+use super::polynomial::{Smoothed, reach, smooth_where};
+use crate::dot::{dot, dots};
 use num_complex::Complex64;
 use std::ops::Range;
 
@@ -83,9 +83,13 @@ impl Windows {
         };
         let mut means = x.to_vec();
         for number in 1..=self.level.iter().copied().max().unwrap_or(0) {
-            let smoothed = smooth(&means, self.shortest);
-            let mine = self.level.iter().enumerate();
-            for (k, _) in mine.filter(|&(_, &level)| level == number) {
+            let mine = || (0..self.level.len()).filter(|&k| self.level[k] == number);
+            let mut needed = vec![false; means.len()];
+            for Blocks { first, next, .. } in mine().map(|k| blocks(means.len(), k, number - 1)) {
+                (needed[first], needed[next]) = (true, true);
+            }
+            let smoothed = smooth_where(&means, self.shortest, |k| needed[k]);
+            for k in mine() {
                 (out.value[k], out.slope[k]) = between_blocks(&smoothed, k, number - 1);
             }
             means = halved(&means);
@@ -147,16 +151,40 @@ where
     x.chunks_exact(2).map(mean).collect()
 }
 
-/// Value and slope (per sample) at sample `k` of a series whose points are means of `2^halvings` samples.
-fn between_blocks(smoothed: &Smoothed, k: usize, halvings: u8) -> (Complex64, Complex64) {
+/// The two means between which a sample stands.
+struct Blocks {
+    first: usize,
+    next: usize,
+    /// Its way from the first to the next, 0 to 1; beyond at the ends.
+    share: f64,
+    /// Samples of one mean.
+    length: f64,
+}
+
+/// Where sample `k` stands in a series of `count` means of `2^halvings` samples.
+fn blocks(count: usize, k: usize, halvings: u8) -> Blocks {
     let length = f64::from(1u32 << halvings);
-    let last = smoothed.value.len() - 1;
+    let last = count - 1;
     // A block stands at the mean position of its samples.
     let at = (k as f64 - 0.5 * (length - 1.0)) / length;
-    let block = (at.max(0.0) as usize).min(last.saturating_sub(1));
-    let share = at - block as f64;
-    let next = (block + 1).min(last);
-    let line = |x: &[Complex64]| x[block] + (x[next] - x[block]) * share;
+    let first = (at.max(0.0) as usize).min(last.saturating_sub(1));
+    Blocks {
+        first,
+        next: (first + 1).min(last),
+        share: at - first as f64,
+        length,
+    }
+}
+
+/// Value and slope (per sample) at sample `k` of a series whose points are means of `2^halvings` samples.
+fn between_blocks(smoothed: &Smoothed, k: usize, halvings: u8) -> (Complex64, Complex64) {
+    let Blocks {
+        first,
+        next,
+        share,
+        length,
+    } = blocks(smoothed.value.len(), k, halvings);
+    let line = |x: &[Complex64]| x[first] + (x[next] - x[first]) * share;
     (line(&smoothed.value), line(&smoothed.slope) / length)
 }
 
@@ -170,9 +198,11 @@ fn misfits(x: &[Complex64], variance: &[f64], window: usize) -> Vec<f64> {
     let of_window = |first: usize| {
         let part = first..first + reach.window;
         let noise = variance[part.clone()].iter().sum::<f64>() / reach.window as f64;
-        let squares = polynomials
-            .iter()
-            .map(|p| dot(p, &re[part.clone()]).powi(2) + dot(p, &im[part.clone()]).powi(2));
+        let (re, im) = (&re[part.clone()], &im[part]);
+        let squares = polynomials.iter().map(|p| {
+            let [re, im] = dots(p, [re, im]);
+            re.powi(2) + im.powi(2)
+        });
         squares.sum::<f64>() / noise.max(f64::MIN_POSITIVE)
     };
     let last = x.len() - reach.window;

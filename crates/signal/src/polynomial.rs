@@ -1,6 +1,6 @@
 //! Local quadratic smoothing (Savitzky-Golay) that respects the ends of a segment.
 
-use crate::dot::dot;
+use crate::dot::dots;
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 
@@ -25,7 +25,8 @@ fn weights(window: usize, at: f64) -> (Vec<f64>, Vec<f64>) {
 }
 
 fn apply(w: &[f64], re: &[f64], im: &[f64]) -> Complex64 {
-    Complex64::new(dot(w, re), dot(w, im))
+    let [re, im] = dots(w, [re, im]);
+    Complex64::new(re, im)
 }
 
 /// Value and slope (per sample) of a signal.
@@ -53,8 +54,9 @@ pub fn reach(n: usize, window: usize) -> Option<Reach> {
     (window >= 5).then_some(Reach { window, stride })
 }
 
-/// Smooths one segment with windows of about `window` points; nearer to an end the last full window counts.
-pub fn smooth(x: &[Complex64], window: usize) -> Smoothed {
+/// Smooths one segment with windows of about `window` points; nearer to an end the last full window counts. Points that
+/// are not `needed` may be left at zero.
+pub fn smooth_where(x: &[Complex64], window: usize, needed: impl Fn(usize) -> bool) -> Smoothed {
     let Some(Reach { window, stride }) = reach(x.len(), window) else {
         return Smoothed {
             value: x.to_vec(),
@@ -76,32 +78,49 @@ pub fn smooth(x: &[Complex64], window: usize) -> Smoothed {
             apply(&weights(window, (k - first) as f64))
         }
     };
-    joined(x.len(), stride, at)
+    joined(x.len(), stride, needed, at)
 }
 
 /// Evaluates `at` on every `stride`-th sample and joins by straight lines: what a window has smoothed hardly
-/// bends within a small part of it.
-fn joined(n: usize, stride: usize, at: impl Fn(usize) -> (Complex64, Complex64)) -> Smoothed {
-    let mut out = Smoothed::default();
-    let (mut k, mut here) = (0, at(0));
+/// bends within a small part of it. Where no point is needed nothing is evaluated.
+fn joined(
+    n: usize,
+    stride: usize,
+    needed: impl Fn(usize) -> bool,
+    at: impl Fn(usize) -> (Complex64, Complex64),
+) -> Smoothed {
+    let mut out = Smoothed {
+        value: vec![Complex64::ZERO; n],
+        slope: vec![Complex64::ZERO; n],
+    };
+    let (mut k, mut known) = (0, None);
     while k + 1 < n {
         let next = (k + stride).min(n - 1);
-        let there = at(next);
-        for j in k..next {
-            let share = (j - k) as f64 / (next - k) as f64;
-            out.value.push(here.0 + (there.0 - here.0) * share);
-            out.slope.push(here.1 + (there.1 - here.1) * share);
+        let mut end = None;
+        if (k..next).any(&needed) {
+            let (here, there) = (known.unwrap_or_else(|| at(k)), at(next));
+            for j in k..next {
+                let share = (j - k) as f64 / (next - k) as f64;
+                out.value[j] = here.0 + (there.0 - here.0) * share;
+                out.slope[j] = here.1 + (there.1 - here.1) * share;
+            }
+            end = Some(there);
         }
-        (k, here) = (next, there);
+        (k, known) = (next, end);
     }
-    out.value.push(here.0);
-    out.slope.push(here.1);
+    if needed(k) {
+        (out.value[k], out.slope[k]) = known.unwrap_or_else(|| at(k));
+    }
     out
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn smooth(x: &[Complex64], window: usize) -> Smoothed {
+        smooth_where(x, window, |_| true)
+    }
 
     #[test]
     fn a_quadratic_passes_unchanged_up_to_the_ends() {
@@ -132,6 +151,26 @@ mod tests {
                     (slope - Complex64::new(-0.25, 0.5)).norm() < 1e-8,
                     "{k} of {n}"
                 );
+            }
+        }
+    }
+
+    /// To the last bit, whichever points are asked for.
+    #[test]
+    fn needed_points_are_those_of_the_whole() {
+        let x: Vec<_> = (0..97)
+            .map(|k| Complex64::from_polar(1.0, 0.3 * f64::from(k * k)))
+            .collect();
+        for window in [7, 60] {
+            let whole = smooth(&x, window);
+            for every in [2, 5, 31, 96] {
+                let part = smooth_where(&x, window, |k| k % every == 0);
+                for k in (0..x.len()).step_by(every) {
+                    assert_eq!(
+                        (part.value[k], part.slope[k]),
+                        (whole.value[k], whole.slope[k])
+                    );
+                }
             }
         }
     }
@@ -167,7 +206,7 @@ mod tests {
                 Complex64::new(0.0, k as f64),
             )
         };
-        let joined = joined(8, 3, at);
+        let joined = joined(8, 3, |_| true, at);
         // Evaluated at 0, 3, 6 and 7.
         let value: Vec<f64> = joined.value.iter().map(|x| x.re).collect();
         let expected = [0.0, 3.0, 6.0, 9.0, 18.0, 27.0, 36.0, 49.0];

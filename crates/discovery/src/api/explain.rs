@@ -1,5 +1,8 @@
 //! Which effect is missing, as a report.
 
+use crate::design::limits::NextRun;
+use crate::design::report::{DesignReport, design_report};
+use crate::design::search::design;
 use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
@@ -20,7 +23,8 @@ use recording::Source;
 
 use super::Progress;
 
-/// Which effect is missing. The first source is fitted, the others prove; with one source block folds prove.
+/// Which effect is missing. The first source is fitted, the second proves; of more, the first, third, ... are fitted
+/// together. With one source block folds prove.
 ///
 /// # Errors
 /// Wrong effects in the motor file or no usable set of sources. A recording that cannot be judged is a report
@@ -30,20 +34,29 @@ pub fn explain(
     motor: &MotorFile,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    explain_with(sources, motor, Laws::default(), progress)
+    explain_with(sources, motor, Asked::default(), progress)
 }
 
-/// As [`explain`], with shapes of formulas of the user's own.
+/// What an explanation is asked for beside the missing effect.
+#[derive(Clone, Debug, Default)]
+pub struct Asked {
+    /// What laws are held against.
+    pub laws: Laws,
+    /// The next experiment, designed within these limits.
+    pub next_run: Option<NextRun>,
+}
+
+/// As [`explain`], with shapes of formulas of the user's own, and with the next experiment.
 ///
 /// # Errors
 /// As [`explain`].
 pub fn explain_with(
     sources: &[Source],
     motor: &MotorFile,
-    laws: Laws,
+    asked: Asked,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    explained_by(sources, motor, &[], laws, progress)
+    explained_by(sources, motor, &[], asked, progress)
 }
 
 /// As [`explain`], without asking about the effects in `excluded`: a way to see what a library that lacks the
@@ -57,22 +70,28 @@ pub fn explain_without(
     excluded: &[&str],
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    explained_by(sources, motor, excluded, Laws::default(), progress)
+    explained_by(sources, motor, excluded, Asked::default(), progress)
 }
 
 fn explained_by(
     sources: &[Source],
     motor: &MotorFile,
     excluded: &[&str],
-    laws: Laws,
+    asked: Asked,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
     match Question::new(sources, motor, progress) {
         Ok(question) => {
-            let found = explain::explain(&question.study, excluded, laws.shapes, progress);
+            let found = explain::explain(&question.study, excluded, asked.laws.shapes, progress);
             let frame = judged_frame(&question, motor, found.last());
+            let next_run = asked.next_run;
+            let next_run =
+                next_run.and_then(|asked| designed(&question, motor, &found, asked, progress));
             progress("done", 1.0);
-            Ok(report(&question, &found, frame))
+            Ok(ExplainReport {
+                next_run,
+                ..report(&question, &found, frame)
+            })
         }
         Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
             audit: *audit,
@@ -87,9 +106,22 @@ fn explained_by(
             unexplained: None,
             speed_scale: None,
             cannot_be_concluded: Vec::new(),
+            next_run: None,
         }),
         Err(error) => Err(error),
     }
+}
+
+/// The next experiment.
+fn designed(
+    question: &Question,
+    motor: &MotorFile,
+    found: &Explanation,
+    asked: NextRun,
+    progress: &mut Progress<'_>,
+) -> Option<DesignReport> {
+    let design = design(&question.study, found, asked.limits, progress)?;
+    Some(design_report(&design, motor, &asked.motor_file))
 }
 
 /// What the frame of the monitor's model costs on the recordings of a question.
@@ -155,6 +187,7 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
         unexplained,
         speed_scale: speed_scale_report(study, found.last()),
         cannot_be_concluded: inconclusive::list(study, found.last(), &found.first.screened),
+        next_run: None,
     };
     if let Some(frame) = frame.filter(|f| f.proven) {
         add_frame(&mut report, frame);
@@ -222,7 +255,7 @@ fn steps(study: &Study, found: &Explanation) -> Vec<StepReport> {
     let accepted = found.steps.iter().enumerate().map(|(k, step)| {
         let k = given + k;
         let mut report = step_report(study, &step.before, found.last(), &step.trial, k);
-        report.tied_with.clone_from(&step.tied);
+        report.tied_with = step.tied();
         // What was accepted beside it was no look-alike: both are there.
         report.tied_with.retain(|t| !names.contains(&t.as_str()));
         report

@@ -4,7 +4,7 @@ mod adopt;
 mod explain;
 
 pub use adopt::{adopt, adopt_with};
-pub use explain::{explain, explain_with, explain_without};
+pub use explain::{Asked, explain, explain_with, explain_without};
 
 pub(crate) use adopt::{as_believed, errors, updated};
 pub(crate) use explain::speed_scale_report;

@@ -55,15 +55,21 @@ fn in_units(study: &Study, place: Place, trial: &Trial) -> (f64, &'static str) {
     }
 }
 
-/// The bursts of the fitted recording as a curve over time: its corners.
-pub(crate) fn corners(place: Place, pulses: &[Pulse], end: f64) -> LawCurve {
-    let coordinate = action(place).coordinate;
-    let quantity = place.quantity(coordinate);
+/// The bursts of the fitted recording as a curve over time, with the unit of their sizes: its corners.
+pub(crate) fn corners(
+    study: &Study,
+    place: Place,
+    trial: &Trial,
+    pulses: &[Pulse],
+    end: f64,
+) -> LawCurve {
+    let (factor, unit) = in_units(study, place, trial);
     let mut x = vec![0.0];
     let mut y = vec![0.0];
     for pulse in pulses {
         x.extend([pulse.from, pulse.from, pulse.to, pulse.to]);
-        y.extend([0.0, pulse.size, pulse.size, 0.0]);
+        let size = factor * pulse.size;
+        y.extend([0.0, size, size, 0.0]);
     }
     x.push(end);
     y.push(0.0);
@@ -72,7 +78,7 @@ pub(crate) fn corners(place: Place, pulses: &[Pulse], end: f64) -> LawCurve {
         lower: y.clone(),
         upper: y.clone(),
         y,
-        x_unit: coordinate.unit().to_owned(),
-        y_unit: quantity.unit.to_owned(),
+        x_unit: action(place).coordinate.unit().to_owned(),
+        y_unit: unit.to_owned(),
     }
 }

@@ -4,7 +4,8 @@ use super::fit::{Fitted, Scene};
 use super::pulse::Pulse;
 use super::smoother::Wander;
 use super::trace::{action, places};
-use crate::laws::search::LawStep;
+use crate::laws::search::{LawStep, Refitted};
+use crate::search::refit::combined;
 use estimation::data::study::{Study, Subject, Trial};
 use estimation::fit::normal_equations;
 use estimation::model::prior::Hypothesis;
@@ -22,6 +23,16 @@ struct Candidate {
     place: Place,
     trial: Trial,
     pulses: Vec<Vec<Pulse>>,
+}
+
+impl Candidate {
+    fn as_law(&self, study: &Study) -> Refitted {
+        Refitted {
+            action: action(self.place),
+            trial: self.trial.clone(),
+            error: combined(study, &self.trial),
+        }
+    }
 }
 
 /// What comes and goes on top of a model; `None` where nothing does, or where it is not the same in all recordings.
@@ -48,7 +59,7 @@ pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
     let tied = rivals.filter(|c| !beats(&best.trial, &c.trial));
     Some(LawStep {
         action: action(best.place),
-        tied: tied.map(|c| action(c.place)).collect(),
+        rivals: tied.map(|c| c.as_law(study)).collect(),
         trial: best.trial.clone(),
         before: base.clone(),
         proven: !study.proofs.is_empty(),

@@ -123,7 +123,7 @@ fn steps_of(
         steps.push(Step {
             trial: trial.clone(),
             before: std::mem::replace(&mut before, trial),
-            tied: same.map_or_else(Vec::new, |step| step.tied.clone()),
+            rivals: same.map_or_else(Vec::new, |step| step.rivals.clone()),
         });
     }
     steps

@@ -105,13 +105,13 @@ fn told(study: &Study, baseline: &Trial, pair: &Trial) -> Option<Pair> {
             None => pair.steps.push(Step {
                 trial: trial.clone(),
                 before,
-                tied: Vec::new(),
+                rivals: Vec::new(),
             }),
             Some(law) => pair.laws.push(LawStep {
                 action: law.action,
                 trial: trial.clone(),
                 before,
-                tied: Vec::new(),
+                rivals: Vec::new(),
                 proven: true,
                 formulas: Vec::new(),
                 bursts: Vec::new(),

@@ -23,7 +23,7 @@ fn steps(study: &Study, errors: &[f64]) -> Vec<Step> {
     let one = |pair: &[f64]| Step {
         before: bare(study, pair[0]),
         trial: bare(study, pair[1]),
-        tied: Vec::new(),
+        rivals: Vec::new(),
     };
     errors.windows(2).map(one).collect()
 }
@@ -120,7 +120,9 @@ fn tied_is_what_is_proven_and_not_beaten() {
         // As good, but too small to be named.
         candidate(&study, "current-gain", 0.01, 2.0),
     ];
-    assert_eq!(tied(&study, &base, &best, &all), ["windage"]);
+    let rivals = tied(&study, &base, &best, &all);
+    let names: Vec<&str> = rivals.iter().map(|rival| rival.name).collect();
+    assert_eq!(names, ["windage"]);
     assert!(tied(&study, &base, &best, &all[..1]).is_empty());
 }
 

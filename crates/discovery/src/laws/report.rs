@@ -31,7 +31,13 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
         coordinate: at.coordinate,
         meaning: step.action.place.meaning(step.action.coordinate).to_owned(),
         curve: match step.bursts.first() {
-            Some(pulses) => corners(step.action.place, pulses, duration(study)),
+            Some(pulses) => corners(
+                study,
+                step.action.place,
+                &step.trial,
+                pulses,
+                duration(study),
+            ),
             None => curve(study, &step.trial),
         },
         bursts: bursts_report(study, step.action.place, &step.trial, &step.bursts),
@@ -58,7 +64,7 @@ fn duration(study: &Study) -> f64 {
 /// Other places and coordinates, each once: friction and torque over time have one name.
 fn ties(step: &LawStep, at: &LawPlace) -> Vec<LawPlace> {
     let mut ties: Vec<LawPlace> = Vec::new();
-    for tie in step.tied.iter().map(|action| named(*action)) {
+    for tie in step.rivals.iter().map(|rival| named(rival.action)) {
         if tie != *at && !ties.contains(&tie) {
             ties.push(tie);
         }

@@ -50,7 +50,7 @@ pub(crate) struct LawStep {
     /// The model before it.
     pub before: Trial,
     /// Laws that explain the recordings as well.
-    pub tied: Vec<Action>,
+    pub rivals: Vec<Refitted>,
     /// Whether it is proven on a recording that was not fitted.
     pub proven: bool,
     /// Formulas that explain the recordings as well as the curve, simplest first.
@@ -181,7 +181,7 @@ impl Laws {
             action: best.action,
             trial: best.trial.clone(),
             before: base.clone(),
-            tied: tied(study, base, best, &self.refitted),
+            rivals: tied(study, base, best, &self.refitted),
             proven: is_proven,
             formulas: Vec::new(),
             bursts: Vec::new(),
@@ -234,7 +234,7 @@ fn refit(
 }
 
 /// Laws that the best one does not beat and that gain at least half as much.
-fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<Action> {
+fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<Refitted> {
     let gain = |t: &Trial| {
         let fold = study.fold_error(&base.folds) - study.fold_error(&t.folds);
         let proof = study.proof_error(base) - study.proof_error(t);
@@ -248,5 +248,5 @@ fn tied(study: &Study, base: &Trial, best: &Refitted, all: &[Refitted]) -> Vec<A
             && proof > TIED * most.1
             && !surpasses(study, &best.trial, &law.trial)
     };
-    all.iter().filter(equal).map(|law| law.action).collect()
+    all.iter().filter(equal).cloned().collect()
 }

@@ -1,5 +1,6 @@
 //! What the user gets, with the stable keys of the JSON interface.
 
+use crate::design::report::DesignReport;
 use audit::Audit;
 use estimation::model::speed_scale::SpeedScaleReport;
 use motor::motor_file::EffectEntry;
@@ -300,6 +301,9 @@ pub struct ExplainReport {
     /// What cannot be concluded because of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cannot_be_concluded: Vec<Inconclusive>,
+    /// The next experiment, where it was asked for and something is open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_run: Option<DesignReport>,
 }
 
 /// One signal: model against measurement.

@@ -90,6 +90,7 @@ pub(crate) struct Begun<'a> {
     groups: Vec<Vec<Screened>>,
     rest: Vec<Start>,
     candidates: Vec<Candidate>,
+    led: bool,
 }
 
 /// Screens all effects on top of `base` and refits the most promising; `tell` hears which of the two is being done.
@@ -112,6 +113,7 @@ pub(crate) fn begin<'a>(
         excluded,
         groups,
         rest,
+        led: false,
     }
 }
 
@@ -120,6 +122,24 @@ impl Begun<'_> {
     pub fn proven(&self) -> Option<&Candidate> {
         let mut all = self.candidates.iter();
         all.find(|c| proven(self.study, self.base, &c.trial))
+    }
+
+    /// Where nothing explains the recording and the base may have settled in a local minimum: candidates from a start that
+    /// the measured speed leads, with the nominals at their priors (`nominal`).
+    pub fn lead(&mut self, nominal: &Hypothesis) {
+        let (study, base) = (self.study, self.base);
+        let error = study.fold_error(&base.folds);
+        let is_settled = |c: &Candidate| settled(study, base, c);
+        if self.led
+            || self.candidates.first().is_some_and(is_settled)
+            || !may_be_local_minimum(&study.fitted.case, error)
+        {
+            return;
+        }
+        self.led = true;
+        let led = refitted_with_observer(study, base, nominal, self.excluded);
+        self.candidates.extend(led);
+        self.candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
     }
 
     /// The round with what is refitted so far.
@@ -136,16 +156,11 @@ impl Begun<'_> {
     /// again.
     pub fn finish(mut self, nominal: &Hypothesis) -> Round {
         let (study, base) = (self.study, self.base);
-        let error = study.fold_error(&base.folds);
-        let settled = |c: &Candidate| settled(study, base, c);
-        if !self.candidates.first().is_some_and(settled) {
-            if may_be_local_minimum(&study.fitted.case, error) {
-                let led = refitted_with_observer(study, base, nominal, self.excluded);
-                self.candidates.extend(led);
-            }
-            if self.candidates.iter().all(|c| c.error > SOLVED) {
-                self.candidates.extend(confirm(study, base, &self.rest));
-            }
+        self.lead(nominal);
+        let is_settled = |c: &Candidate| settled(study, base, c);
+        let open = !self.candidates.first().is_some_and(is_settled);
+        if open && self.candidates.iter().all(|c| c.error > SOLVED) {
+            self.candidates.extend(confirm(study, base, &self.rest));
         }
         let explains = |c: &Candidate| adequate(study, &c.trial);
         if !adequate(study, base) && !self.candidates.iter().any(explains) {

@@ -117,6 +117,9 @@ impl Plant {
 
     /// Flux whose magnetizing current balances the windings: `psi (total + f(psi)/L_m) = drive`.
     fn air_gap(&self, drive: Complex64, total: f64) -> Complex64 {
+        if self.h.saturation == 0.0 && self.h.law.is_none() {
+            return drive / (total + 1.0 / self.m.l_m);
+        }
         let (size, mut low, mut high) = (drive.norm(), 0.0, 3.0 * U / OMEGA);
         for _ in 0..45 {
             let x: f64 = 0.5 * (low + high);
@@ -257,12 +260,13 @@ fn moved(s: &State, h: f64, d: &State) -> State {
 
 /// The three phase values of a vector without zero sequence.
 pub fn phases(x: Complex64) -> [f64; 3] {
-    [0.0, 1.0, 2.0].map(|k| (x * Complex64::from_polar(1.0, -k * TAU / 3.0)).re)
+    let beside = 0.5 * 3f64.sqrt() * x.im;
+    [x.re, beside - 0.5 * x.re, -beside - 0.5 * x.re]
 }
 
 fn clarke(x: [f64; 3]) -> Complex64 {
-    let turned = |k: usize| Complex64::from_polar(x[k], k as f64 * TAU / 3.0);
-    (turned(0) + turned(1) + turned(2)) * (2.0 / 3.0)
+    let [a, b, c] = x;
+    Complex64::new((2.0 * a - b - c) / 3.0, (b - c) / 3f64.sqrt())
 }
 
 /// What really happens over a course.

@@ -11,7 +11,7 @@ pub fn until(what: &str, mut holds: impl FnMut() -> bool) {
     let begin = Instant::now();
     while !holds() {
         assert!(
-            begin.elapsed() < Duration::from_secs(30),
+            begin.elapsed() < Duration::from_secs(120),
             "{what} did not happen"
         );
         sleep(Duration::from_millis(50));

@@ -15,6 +15,16 @@ struct Active {
     states: core::ops::Range<usize>,
 }
 
+impl Active {
+    #[inline]
+    fn sees<'a, const N: usize>(&self, at: &At<'a>, state: &'a DynamicState<[f64; N]>) -> At<'a> {
+        At {
+            extra: &state.extra[self.states.clone()],
+            ..*at
+        }
+    }
+}
+
 /// What effects need to know about time: supply frequency (slip) and measured shaft angle (once per turn).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
@@ -131,8 +141,9 @@ impl<const N: usize> EffectStack<N> {
         }
     }
 
+    /// What all effects see at this instant; each one's own states come with [`Active::sees`].
     #[inline]
-    fn at<'a>(&'a self, t: f64, state: &'a DynamicState<[f64; N]>, active: &Active) -> At<'a> {
+    fn at<'a>(&'a self, t: f64, state: &'a DynamicState<[f64; N]>) -> At<'a> {
         At {
             t: self.timeline.clock(t),
             psi_s: state.psi_s,
@@ -140,7 +151,7 @@ impl<const N: usize> EffectStack<N> {
             omega_mech: state.omega_mech,
             theta_mech: self.timeline.theta_at(t, state.theta_mech),
             omega_sync: self.timeline.sync_at(t),
-            extra: &state.extra[active.states.clone()],
+            extra: &[],
             rated: &self.rated,
             motor: &self.motor,
         }
@@ -157,8 +168,12 @@ impl<const N: usize> EffectStack<N> {
             motor: self.motor,
             cage: None,
         };
+        if self.parameters.is_empty() {
+            return now;
+        }
+        let all = self.at(t, state);
         for active in &self.parameters {
-            let at = self.at(t, state, active);
+            let at = active.sees(&all, state);
             active.effect.parameters(&active.p, &at, i_s, &mut now);
         }
         now
@@ -241,8 +256,9 @@ impl<const N: usize> Hooks for EffectStack<N> {
             return u;
         }
         let i_s = self.winding(linear, t, state).i_s;
+        let all = self.at(t, state);
         for active in &self.held_voltage {
-            let at = self.at(t, state, active);
+            let at = active.sees(&all, state);
             u += active.effect.held_voltage(&active.p, &at, i_s);
         }
         u
@@ -274,8 +290,12 @@ impl<const N: usize> Hooks for EffectStack<N> {
             u,
             i: winding.i_s,
         };
+        if self.terminal.is_empty() {
+            return terminal;
+        }
+        let all = self.at(t, state);
         for active in &self.terminal {
-            let at = self.at(t, state, active);
+            let at = active.sees(&all, state);
             active
                 .effect
                 .terminal(&active.p, &at, winding, &mut terminal);
@@ -290,8 +310,12 @@ impl<const N: usize> Hooks for EffectStack<N> {
         state: &DynamicState<[f64; N]>,
         rate: &mut DynamicState<[f64; N]>,
     ) {
+        if self.finish.is_empty() {
+            return;
+        }
+        let all = self.at(flow.t, state);
         for active in &self.finish {
-            let at = self.at(flow.t, state, active);
+            let at = active.sees(&all, state);
             let mut rates = Rates {
                 psi_s: rate.psi_s,
                 psi_r: rate.psi_r,

@@ -16,8 +16,8 @@ pub struct Published {
 
 /// All motors of `data/motors.csv`.
 pub fn motors() -> Vec<Published> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/motors.csv");
-    let (header, rows) = catalogue::read(std::fs::File::open(path).unwrap()).unwrap();
+    let table = include_str!("../../data/motors.csv");
+    let (header, rows) = catalogue::read(table.as_bytes()).unwrap();
     let column = |name: &str| header.iter().position(|h| h == name).unwrap();
     let (maker, poles, inertia) = (column("maker"), column("poles"), column("inertia_kg_m2"));
     rows.into_iter()

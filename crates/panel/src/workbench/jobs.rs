@@ -195,6 +195,7 @@ impl Work {
             sources: &self.sources,
             motor: &self.motor.motor,
             laws: discovery::Laws::default(),
+            next_run: None,
         };
         let plainly = |error: discovery::Error| error.to_string();
         match self.question.kind {

@@ -2,6 +2,8 @@
 //!
 //! Slots: order `R (1 - s)/p + v`, `v` odd, turning either way. Eccentricity: order `1 +- (1 - s)/p`.
 
+use std::sync::LazyLock;
+
 /// A multiple of the supply's frequency that the slots modulate.
 pub(super) struct Harmonic {
     /// Its order, odd.
@@ -36,24 +38,33 @@ pub(super) fn plausible_bars(pole_pairs: u32) -> std::ops::RangeInclusive<u32> {
     (9 * pole_pairs).max(14)..=36 + 16 * pole_pairs
 }
 
-/// Ratios of line to noise that are equally likely, logarithms of 10.
-const RATIOS: [f64; 21] = {
-    let mut ratios = [0.0; 21];
-    let mut k = 0;
-    while k < 21 {
-        ratios[k] = -1.0 + 0.25 * k as f64;
-        k += 1;
-    }
-    ratios
-};
+/// Ratios of line to noise that are equally likely: their logarithms of 10 are equally spaced.
+const RATIOS: usize = 21;
+
+/// What a sum of powers is asked for each ratio.
+struct Ratio {
+    ratio: f64,
+    /// `ln(1 + ratio)`.
+    log: f64,
+}
+
+/// The same for every sum.
+static TABLE: LazyLock<[Ratio; RATIOS]> = LazyLock::new(|| {
+    std::array::from_fn(|k| {
+        let ratio = 10f64.powf(-1.0 + 0.25 * k as f64);
+        Ratio {
+            ratio,
+            log: ratio.ln_1p(),
+        }
+    })
+});
 
 /// Logarithm of how much likelier a sum of `count` powers over noise is with a line of unknown size than without.
 pub(super) fn log_ratio(sum: f64, count: f64) -> f64 {
-    let each = RATIOS.iter().map(|ratio| {
-        let ratio = 10f64.powf(*ratio);
-        sum * ratio / (1.0 + ratio) - count * ratio.ln_1p()
-    });
-    log_mean_exp(each)
+    let each = TABLE
+        .each_ref()
+        .map(|r| sum * r.ratio / (1.0 + r.ratio) - count * r.log);
+    log_mean_exp(each.into_iter())
 }
 
 /// Logarithm of the mean of exponentials.

@@ -40,6 +40,7 @@ impl Adopted {
             sources,
             motor,
             laws,
+            ..
         } = inputs;
         let (report, adopted) = discovery::adopt_with(effect, sources, motor, laws, progress)?;
         let models = [

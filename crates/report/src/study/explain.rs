@@ -1,6 +1,6 @@
 //! Which physical effect a model misses.
 
-use discovery::{Error, ExplainReport, Progress, Verdict};
+use discovery::{Asked, Error, ExplainReport, Progress, Verdict};
 use serde::Serialize;
 
 use super::places::{Place, worst};
@@ -57,8 +57,13 @@ impl Explained {
             sources,
             motor,
             laws,
+            next_run,
         } = inputs;
-        let searched = discovery::explain_with(sources, motor, laws, &mut |what, share| {
+        let asked = Asked {
+            laws,
+            next_run: next_run.cloned(),
+        };
+        let searched = discovery::explain_with(sources, motor, asked, &mut |what, share| {
             progress(what, SEARCH * share)
         });
         let report = searched?;

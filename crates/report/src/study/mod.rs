@@ -17,7 +17,7 @@ pub use places::{Place, worst};
 use std::borrow::Cow;
 
 pub use discovery::PARAMETERS;
-use discovery::{Laws, SpeedScaleReport};
+use discovery::{Laws, NextRun, SpeedScaleReport};
 use monitor::MonitorConfig;
 use motor::MotorFile;
 use recording::Source;
@@ -27,12 +27,14 @@ use recording::Source;
 pub struct Inputs<'a> {
     /// The recordings' names as people know them, in the order of `sources`.
     pub names: &'a [String],
-    /// The first is fitted, the others prove.
+    /// The first is fitted, the second proves; of more, the first, third, ... are fitted together.
     pub sources: &'a [Source],
     /// What is believed of the motor.
     pub motor: &'a MotorFile,
     /// What laws are held against, and which formula is taken over.
     pub laws: Laws,
+    /// The next experiment, where an explanation is asked for one.
+    pub next_run: Option<&'a NextRun>,
 }
 
 /// A source as figures show it: a speed of unknown scale in the scale that was fitted.

@@ -45,11 +45,14 @@ fn nothing(study: &Study, error: f64) -> Explanation {
 }
 
 /// One effect after the other, from each error over noise to the next; each tied with `tied`.
-fn stepwise(study: &Study, effects: &[&str], errors: &[f64], tied: &[&str]) -> Explanation {
+fn stepwise(study: &Study, effects: &[&str], errors: &[f64], tied: &[&'static str]) -> Explanation {
     let one = |k: usize| Step {
         before: trial(study, &effects[..k], errors[k], errors[k]),
         trial: trial(study, &effects[..=k], errors[k + 1], errors[k + 1]),
-        tied: tied.iter().map(ToString::to_string).collect(),
+        rivals: tied
+            .iter()
+            .map(|name| candidate(study, name, errors[k + 1]))
+            .collect(),
     };
     Explanation {
         steps: (0..effects.len()).map(one).collect(),
@@ -166,7 +169,7 @@ fn a_verdict_is_the_gravest_that_applies() {
     assert_eq!(of(&nothing(study, 1.0)), Verdict::Adequate);
     let mut found = stepwise(study, &["core-loss"], &[3.0, 1.0], &[]);
     assert_eq!(of(&found), Verdict::Effect);
-    found.steps[0].tied.push("windage".to_owned());
+    found.steps[0].rivals.push(candidate(study, "windage", 1.0));
     assert_eq!(of(&found), Verdict::Ambiguous);
     found.steps[0].trial.off = std::sync::OnceLock::new();
     found.steps[0].trial.fit.hypothesis.z[MAGNETIZING] = 1.0;

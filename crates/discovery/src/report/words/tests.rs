@@ -59,6 +59,7 @@ fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) ->
         }),
         speed_scale: None,
         cannot_be_concluded: Vec::new(),
+        next_run: None,
     })
 }
 

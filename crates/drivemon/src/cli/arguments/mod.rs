@@ -2,4 +2,5 @@
 
 pub(crate) mod files;
 pub(crate) mod input;
+pub(crate) mod next_run;
 pub(crate) mod study;

@@ -138,6 +138,7 @@ impl StudyArgs {
             sources,
             motor,
             laws: Laws::default(),
+            next_run: None,
         }
     }
 

@@ -2,12 +2,10 @@
 
 pub(crate) mod answers;
 pub(crate) mod failure;
+pub(crate) mod findings;
 pub(crate) mod lamp_symbol;
-pub(crate) mod laws;
 pub(crate) mod output;
 pub(crate) mod paint;
-pub(crate) mod places;
 pub(crate) mod progress;
-pub(crate) mod scale;
 pub(crate) mod shell;
 pub(crate) mod terminal;

@@ -29,9 +29,20 @@ fn one(law: &Place<'_>, k: usize) -> Markup {
                 " to " (shown(law, "held_out_error_over_noise", decimals(2))) " × noise"
                 @if law.is_true("proven") { " on the recording that was not fitted." } @else { ". A second recording with other loads and speeds can prove it." }
             }
-            (curve(law))
-            (formulas(law))
+            @if law.get("bursts").is_some() { (bursts(law)) (curve(law)) } @else { (curve(law)) (formulas(law)) }
             @if !ties.is_empty() { p { strong { "As likely: " } @for (n, tie) in ties.iter().enumerate() { @if n > 0 { ", " } (name(tie)) } "." } }
+        }
+    }
+}
+
+/// How often something comes and goes, and how large it is.
+fn bursts(law: &Place<'_>) -> Markup {
+    let size = |key: &str| shown(law, &format!("bursts/{key}"), significant(3));
+    html! {
+        p {
+            "It comes and goes " (shown(law, "bursts/count", decimals(0))) " times, "
+            (shown(law, "bursts/share_of_time_percent", decimals(1))) " % of the time: smallest " (size("smallest"))
+            ", median " (size("median")) ", largest " (size("largest")) " " (law.text("bursts/unit")) "."
         }
     }
 }
@@ -64,15 +75,24 @@ fn curve(law: &Place<'_>) -> Markup {
     let unit = coordinate.map_or("", Coordinate::unit);
     let relative = law.text("curve/y_unit") == "-";
     let place = LawPlace::by_name(law.text("place"));
-    let y_unit = match (relative, place) {
-        (false, Some(LawPlace::Torque)) => "N m",
-        (false, _) => "V",
-        (true, _) => "",
+    let y_unit = match (law.text("curve/y_unit"), place) {
+        ("ohm", _) => "ohm",
+        ("%", _) => "%",
+        _ if relative => "",
+        (_, Some(LawPlace::Torque)) => "N m",
+        _ => "V",
     };
-    let sentence = "The line is the fitted curve, the dashed lines its 95 % band.";
-    Chart::over(law.text("coordinate"), unit, at("x"))
+    let chart = Chart::over(law.text("coordinate"), unit, at("x"))
         .y(law.text("meaning"), y_unit)
-        .with(Series::line("curve", at("y"), "blue").kind(Kind::Line))
+        .with(Series::line("curve", at("y"), "blue").kind(Kind::Line));
+    if law.get("bursts").is_some() {
+        return chart.figure(
+            &name(law),
+            "Each block is one time of the fitted recording.",
+        );
+    }
+    let sentence = "The line is the fitted curve, the dashed lines its 95 % band.";
+    chart
         .with(Series::line("lower end of the band", at("lower"), "sky").dashed(0))
         .with(Series::line("upper end of the band", at("upper"), "sky").dashed(0))
         .figure(&name(law), sentence)

@@ -11,9 +11,10 @@ use crate::cli::arguments::study::{
 };
 use crate::cli::commands::study::explain::print_frame;
 use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::findings::{laws, scale};
 use crate::cli::printing::output::write_text;
+use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
-use crate::cli::printing::{laws, paint, scale};
 use report::Subject;
 use report::motor_text;
 use report::study::{Adopted, Inputs, PARAMETERS};

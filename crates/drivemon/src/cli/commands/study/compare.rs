@@ -5,8 +5,9 @@ use discovery::{CompareReport, SignalReport};
 
 use crate::cli::arguments::study::{StudyArgs, bar, print_audit, print_next, with_progress};
 use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::findings::{places, scale};
+use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
-use crate::cli::printing::{paint, places, scale};
 use report::study::{Compared, worst};
 use report::{AGREES, Subject};
 

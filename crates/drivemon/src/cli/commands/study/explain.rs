@@ -5,21 +5,23 @@ use discovery::{
     ExplainReport, FitReport, FrameReport, LAW, Laws, RankReport, StepReport, Verdict,
 };
 
+use crate::cli::arguments::next_run::NextRunArgs;
 use crate::cli::arguments::study::{
     ShapesArgs, StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain,
     with_progress, wrapped,
 };
 use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::findings::{laws, next_run, places, scale};
+use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
-use crate::cli::printing::{laws, paint, places, scale};
 use report::Subject;
 use report::study::{Explained, Inputs, anything_off};
 
 /// Find out which physical effect the model misses, and prove it on data that was not fitted.
 ///
-/// The first recording is fitted, the others prove; a single one is proven by folds of 40 ms blocks. Every
-/// candidate is refitted together with all parameters. Nothing is claimed that the recordings cannot show: the
-/// answer may be "adequate", a tie with the test that breaks it, or "unknown".
+/// The first recording is fitted, the second proves; of more, the first, third, ... are fitted together. A single one
+/// is proven by folds of 40 ms blocks. Every candidate is refitted together with all parameters. Nothing is claimed that
+/// the recordings cannot show: the answer may be "adequate", a tie with the test that breaks it, or "unknown".
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Explain {
@@ -27,6 +29,8 @@ pub struct Explain {
     study: StudyArgs,
     #[command(flatten)]
     shapes: ShapesArgs,
+    #[command(flatten)]
+    next_run: NextRunArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -34,6 +38,15 @@ Examples:
   drivemon explain a.csv.gz b.csv.gz --motor motor.toml       fit a, prove on b
   drivemon explain a.csv.gz --motor motor.toml --report explain.html
   drivemon explain lab.csv --motor motor.toml --column speed=tacho --scale speed=unknown
+  drivemon explain a.csv b.csv --motor motor.toml --design next.toml    which run decides what is open
+Limits of supply and load (--limits FILE, every line may be left out):
+  supply = \"grid\"              # or \"drive\", which sets the frequency
+  load_percent = [0, 100]      # of rated torque
+  voltage_percent = [100, 100] # of rated; behind a drive of what belongs to the frequency
+  frequency_hz = [10, 50]      # behind a drive
+  duration_s = 6
+  start = true                 # the motor may be started while it is recorded
+  coast_down = true            # the supply may be switched off while the motor runs
 Exit codes: 0 the model is adequate, 1 something is missing or off, 2 bad input, 3 the data do not support an answer.";
 
 /// Ranks that are printed.
@@ -46,7 +59,8 @@ const WIDTH: usize = 36;
 impl Explain {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        self.shapes.read_by(self.study.files()).check()?;
+        let files = self.next_run.files(self.study.files());
+        self.shapes.read_by(files).check()?;
         let laws = Laws {
             shapes: self.shapes.shapes()?,
             formula: None,
@@ -54,15 +68,22 @@ impl Explain {
         let motor = self.study.motor()?;
         let sources = self.study.sources()?;
         let names = self.study.names();
+        let next_run = self.next_run.asked(&motor, self.study.motor_path())?;
         let inputs = Inputs {
             laws,
+            next_run: next_run.as_ref(),
             ..self.study.inputs(&names, &sources, &motor)
         };
         let adopt = |name: &str| Some(self.adopt(name));
         let result = with_progress(|progress| Explained::new(inputs, &adopt, progress))?;
-        self.study
-            .output
-            .give(Subject::Explain, &result, || print(&result))?;
+        let designed = result.report.next_run.as_ref();
+        let written = self.next_run.write(designed)?;
+        self.study.output.give(Subject::Explain, &result, || {
+            print(&result);
+            if next_run.is_some() {
+                next_run::print(designed, written);
+            }
+        })?;
         Ok(finding(&result.report))
     }
 

@@ -1,6 +1,6 @@
-//! Prints the constants of `src/prior/real_motors.rs`: the prior of the motors in `data/motors.csv`.
+//! Prints the constants of `crates/nameplate/src/prior/real_motors.rs`: the prior of the motors in `crates/nameplate/data/motors.csv`.
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../../crates/nameplate/tests/support/mod.rs"]
 mod support;
 
 use std::collections::BTreeSet;

@@ -1,12 +1,12 @@
 //! Laws that no library holds: what `explain` says about plants that share no code with it.
 //!
 //! ```text
-//! cargo run --release -p discovery --example laws -- SEEDS [LAW...]
+//! cargo run --release -p studies --example laws -- SEEDS [LAW...]
 //! ```
 //!
 //! One line each: truth, answer, errors, simulations and time.
 
-#[path = "../tests/foreign/mod.rs"]
+#[path = "../../crates/discovery/tests/foreign/mod.rs"]
 #[expect(dead_code, reason = "the tests use the rest")]
 mod foreign;
 

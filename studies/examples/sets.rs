@@ -1,10 +1,10 @@
 //! Asks `explain` about folders of recordings with known truth, both directions, and prints what it says.
 //!
-//! `cargo run --release -p discovery --example sets -- FOLDER...`: each folder holds `motor.toml`,
+//! `cargo run --release -p studies --example sets -- FOLDER...`: each folder holds `motor.toml`,
 //! `recording.csv.gz`, `recording_b.csv.gz` with their sidecars, and is named after what is hidden. `--one-way` as the
-//! first argument fits the first recording only.
+//! first argument fits the first recording only; `--steps` prints what each step takes.
 
-use discovery::explain;
+use discovery::{explain, simulations};
 use formats::read_recording;
 use motor::MotorFile;
 use rayon::prelude::*;
@@ -16,11 +16,24 @@ fn read(path: PathBuf) -> Source {
     Source::Recording(read_recording(&path, &Default::default(), &mut |_| {}).expect("a recording"))
 }
 
-fn asked(folder: &Path, first: &str, second: &str) -> String {
+/// Prints each step when the next one begins: seconds, simulations, what.
+fn told(steps: bool) -> impl FnMut(&str, f64) {
+    let mut now = (String::new(), Instant::now(), simulations());
+    move |what: &str, _| {
+        if !steps || now.0 == what {
+            return;
+        }
+        let (seconds, count) = (now.1.elapsed().as_secs_f64(), simulations() - now.2);
+        eprintln!("{seconds:8.2} s {count:6} simulations  {}", now.0);
+        now = (what.to_owned(), Instant::now(), simulations());
+    }
+}
+
+fn asked(folder: &Path, first: &str, second: &str, steps: bool) -> String {
     let motor = MotorFile::read(folder.join("motor.toml")).expect("a motor file");
     let sources = [first, second].map(|name| read(folder.join(name)));
     let start = Instant::now();
-    let report = explain(&sources, &motor, &mut |_, _| {}).expect("a report");
+    let report = explain(&sources, &motor, &mut told(steps)).expect("a report");
     let error = |f: &Option<discovery::FitReport>| {
         f.as_ref().map_or(f64::NAN, |f| f.held_out_error_over_noise)
     };
@@ -42,14 +55,18 @@ fn asked(folder: &Path, first: &str, second: &str) -> String {
 
 fn main() {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
-    let one_way = arguments.first().is_some_and(|first| first == "--one-way");
-    arguments.drain(..usize::from(one_way));
+    let mut flag = |flag: &str| {
+        let before = arguments.len();
+        arguments.retain(|argument| argument != flag);
+        arguments.len() < before
+    };
+    let (one_way, steps) = (flag("--one-way"), flag("--steps"));
     let folders: Vec<PathBuf> = arguments.into_iter().map(PathBuf::from).collect();
     let (a, b) = ("recording.csv.gz", "recording_b.csv.gz");
     folders.par_iter().for_each(|folder| {
-        println!("a {}", asked(folder, a, b));
+        println!("a {}", asked(folder, a, b, steps));
         if !one_way {
-            println!("b {}", asked(folder, b, a));
+            println!("b {}", asked(folder, b, a, steps));
         }
     });
 }

@@ -1,6 +1,6 @@
 //! How many healthy motors light FAULT because of their board's parts alone.
 //!
-//! `cargo run --release -p campaign --example front_end [BOARDS] [SEED]` prints the table of docs/wiring.md: boards drawn
+//! `cargo run --release -p studies --example front_end [BOARDS] [SEED]` prints the table of docs/wiring.md: boards drawn
 //! within the tolerances of the bill of materials, a healthy motor at rated load behind each, judged by the core with the
 //! motor file's thresholds, from the converter's codes as on the board. What is known of the chain stands in the motor file.
 
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|---|---|---|---|");
     for variant in Variant::ALL {
         for (name, file) in MOTORS {
-            let path = format!("{}/../../motors/{file}.toml", env!("CARGO_MANIFEST_DIR"));
+            let path = format!("{}/../motors/{file}.toml", env!("CARGO_MANIFEST_DIR"));
             let motor = MotorFile::read(path)?;
             row(variant, name, &motor, boards, seed)?;
         }

@@ -1,6 +1,6 @@
 //! How often the intervals that the tool prints hold the truth: random motors, random beliefs, random recorders.
 //!
-//! `cargo run --release -p drivemon --example coverage -- --machines 300 --first 1`
+//! `cargo run --release -p studies --example coverage -- --machines 300 --first 1`
 //! `--only adopt|calibrate|explain` asks one command; `--only healthy` asks `explain` about motors as believed at constant load,
 //! `--only changed` about one parameter that is off by as much as a user wants found (a tenth as many machines each);
 //! `--short` makes recordings of ten minutes into ones of a minute, `--long` all into ones of ten minutes; `--explain` asks every

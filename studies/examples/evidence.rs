@@ -1,10 +1,10 @@
 //! How often the hidden effect is found on foreign machines, as a table.
 //!
-//! `cargo run --release -p discovery --example evidence -- --seeds 10 --first 101`
+//! `cargo run --release -p studies --example evidence -- --seeds 10 --first 101`
 //! `--only coast-down|loads|steady|healthy|without|double` asks one row, `--effect NAME` one effect; every answer
 //! goes to standard error, with `--verbose` its ranking too. Exits with 1 when a promise is missed.
 
-#[path = "../tests/foreign/mod.rs"]
+#[path = "../../crates/discovery/tests/foreign/mod.rs"]
 #[expect(
     dead_code,
     unused_imports,

@@ -1,5 +1,5 @@
 //! How far `libm` and `micromath` are off in single precision, against double precision; a table for
-//! docs/develop/dependencies.md: `cargo run --release -p board --example arithmetic`.
+//! docs/develop/dependencies.md: `cargo run --release -p studies --example arithmetic`.
 
 use micromath::F32Ext;
 use std::io::{self, Write};

@@ -1,6 +1,6 @@
 //! One table over folders of recordings with a known hidden effect: fit a and prove b, fit b and prove a.
 //!
-//! `cargo run --release -p discovery --example peer -- FOLDER...`; each folder holds `motor.toml`,
+//! `cargo run --release -p studies --example peer -- FOLDER...`; each folder holds `motor.toml`,
 //! `recording.csv.gz` and `recording_b.csv.gz`.
 
 use discovery::{ExplainReport, explain};

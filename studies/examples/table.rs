@@ -1,4 +1,4 @@
-//! Explains a load-test table: `cargo run --release -p discovery --example table -- MOTOR TABLE`.
+//! Explains a load-test table: `cargo run --release -p studies --example table -- MOTOR TABLE`.
 
 use discovery::explain;
 use formats::read_any;

@@ -3,6 +3,7 @@
 use discovery::{LawCurve, LawReport};
 
 use crate::cli::arguments::study::{quantity, uncertain, wrapped};
+use crate::cli::printing::findings::bursts;
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
 
@@ -21,8 +22,13 @@ pub fn print(law: &LawReport) {
         }
     };
     say!("\n{} {how}.", paint::strong(law.name()));
-    print_curve(law);
-    print_formulas(law);
+    match &law.bursts {
+        Some(found) => bursts::print(found),
+        None => {
+            print_curve(law);
+            print_formulas(law);
+        }
+    }
     if !law.tied_with.is_empty() {
         let ties = law.tied_with.iter();
         let ties: Vec<String> = ties
