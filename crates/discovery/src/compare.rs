@@ -11,7 +11,7 @@ use estimation::data::question::{Error, Question};
 use estimation::data::study::Study;
 use estimation::fit::output_error::Effort;
 use estimation::model::prediction::{SpeedObserver, outputs, residual};
-use estimation::model::speed_scale::SpeedScaleReport;
+use estimation::model::scale_report::SpeedScaleReport;
 use motor::MotorFile;
 use motor::dynamic::clarke;
 use num_complex::Complex64;

@@ -40,7 +40,7 @@ pub use estimation::data::question::Error;
 pub use estimation::data::stretches::told as told_stretches;
 pub use estimation::data::unsupported::Unsupported;
 pub use estimation::model::prediction::simulations;
-pub use estimation::model::speed_scale::{AtRest, ErrorSource, SpeedScaleReport};
+pub use estimation::model::scale_report::{AtRest, ErrorSource, SpeedScaleReport};
 pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use laws::formula::dictionary::{Laws, Shapes};
 pub use report::types::{

@@ -15,7 +15,7 @@ use crate::search::inconclusive::{self, Uncertainty};
 use estimation::data::case::Case;
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
-use estimation::model::speed_scale::SpeedScaleReport;
+use estimation::model::scale_report::SpeedScaleReport;
 use estimation::proof::accept::explained;
 use motor::MotorFile;
 use motor::effect::Descriptor;

@@ -2,7 +2,7 @@
 
 use crate::design::report::DesignReport;
 use audit::Audit;
-use estimation::model::speed_scale::SpeedScaleReport;
+use estimation::model::scale_report::SpeedScaleReport;
 use motor::motor_file::EffectEntry;
 use serde::{Deserialize, Serialize};
 

@@ -60,6 +60,8 @@ fn every_test_that_the_theory_names_exists() {
     let mut sources = String::new();
     for folder in [
         "crates/motor",
+        "crates/parity",
+        "crates/scenario",
         "crates/monitor",
         "crates/drivemon/tests",
         "tests",

@@ -11,10 +11,12 @@ use crate::workplace::copy;
 const EFFECTS: &str = "crates/motor/src/effects";
 const LIST: &str = "crates/motor/src/effects/mod.rs";
 /// Where code lives that must name no effect's type.
-const CODE: [&str; 11] = [
+const CODE: [&str; 13] = [
     "crates/motor/src",
+    "crates/parity/src",
     "crates/monitor/src",
     "crates/board/src",
+    "crates/estimation/src",
     "crates/discovery/src",
     "crates/scenario/src",
     "crates/replay/src",

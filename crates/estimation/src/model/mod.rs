@@ -3,5 +3,5 @@
 pub mod free_scale;
 pub mod prediction;
 pub mod prior;
+pub mod scale_report;
 pub mod speed_gain;
-pub mod speed_scale;
