@@ -6,7 +6,7 @@ use super::rebuilt::{effects_of, refitted};
 use super::{Explanation, STRAINED, Step, behind, mostly_explained};
 use crate::bursts::search::bursts;
 use crate::laws::formula::prove::law_of;
-use crate::laws::search::{LawSearch, LawStep};
+use crate::laws::search::{LawSearch, LawStep, Laws};
 use estimation::data::study::{Study, Trial};
 use estimation::proof::accept::{adequate, beats, even, helps};
 use estimation::proof::off::strains;
@@ -30,6 +30,13 @@ pub(super) fn complete(
         .as_ref()
         .filter(|law| replaces(study, found, law, last.as_ref()))
     {
+        if !adequate(study, &law.trial) {
+            // A law that leaves something may be one of two.
+            progress("looking for pairs that hide each other", 0.75);
+            if take_pair(study, found, &alone, excluded, Some(&law.trial)) {
+                return;
+            }
+        }
         found.steps.clear();
         match behind(study, &found.baseline, law, &found.first, excluded) {
             Some(effect) => found.steps.push(effect),
@@ -51,11 +58,7 @@ pub(super) fn complete(
         }
     }
     progress("looking for pairs that hide each other", 0.75);
-    if let Some(pair) = pair(study, &found.baseline, &found.first, &alone, excluded)
-        && last.as_ref().is_none_or(|last| beats(pair.last(), last))
-    {
-        (found.steps, found.laws) = (pair.steps, pair.laws);
-        found.nameable = true;
+    if take_pair(study, found, &alone, excluded, last.as_ref()) {
         return;
     }
     if found.nameable {
@@ -72,6 +75,23 @@ pub(super) fn complete(
             ..law
         }));
     }
+}
+
+/// Takes a pair that beats `over`, if there is one.
+fn take_pair(
+    study: &Study,
+    found: &mut Explanation,
+    alone: &Laws,
+    excluded: &[&str],
+    over: Option<&Trial>,
+) -> bool {
+    let pair = pair(study, &found.baseline, &found.first, alone, excluded);
+    let Some(pair) = pair.filter(|pair| over.is_none_or(|over| beats(pair.last(), over))) else {
+        return false;
+    };
+    (found.steps, found.laws) = (pair.steps, pair.laws);
+    found.nameable = true;
+    true
 }
 
 /// A law on top of the library's effects; those that are not needed beside it go.

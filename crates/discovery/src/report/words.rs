@@ -86,11 +86,14 @@ fn laws(report: &ExplainReport, effects: &[String]) -> String {
         )
     };
     let proven = report.laws.iter().filter(|law| law.proven).map(law);
-    let all: Vec<String> = effects.iter().cloned().chain(proven).collect();
-    format!(
-        "Missing, a law that the library does not hold: {}.",
-        all.join("; ")
-    )
+    let laws = proven.collect::<Vec<String>>().join("; ");
+    match effects {
+        [] => format!("Missing, a law that the library does not hold: {laws}."),
+        some => format!(
+            "Missing: {}, and a law that the library does not hold: {laws}.",
+            some.join("; ")
+        ),
+    }
 }
 
 /// How often something comes, and how large it is.
