@@ -45,14 +45,14 @@ impl Image {
         self.0.get(first..first + usize::from(count))
     }
 
-    /// Sets a value of kind [`Kind::Word`].
+    /// Sets a value of kind [`Kind::Word`](super::entry::Kind::Word).
     pub fn set_word(&mut self, field: Field, value: u16) {
         if let Some(word) = self.0.get_mut(usize::from(address(field))) {
             *word = value;
         }
     }
 
-    /// Sets a value of kind [`Kind::Long`].
+    /// Sets a value of kind [`Kind::Long`](super::entry::Kind::Long).
     pub fn set_long(&mut self, field: Field, value: u32) {
         let first = usize::from(address(field));
         if let Some([high, low]) = self.0.get_mut(first..first + 2) {
@@ -61,7 +61,7 @@ impl Image {
         }
     }
 
-    /// Sets a value of kind [`Kind::Float`].
+    /// Sets a value of kind [`Kind::Float`](super::entry::Kind::Float).
     pub fn set_float(&mut self, field: Field, value: f32) {
         self.set_long(field, value.to_bits());
     }

@@ -51,7 +51,7 @@ pub struct Effort {
     pub iterations: usize,
     /// Treatment of the speed.
     pub observer: SpeedObserver,
-    /// Give up when after [`PATIENCE`] iterations the squared error still exceeds this.
+    /// Give up when after a few iterations the squared error still exceeds this.
     pub abandon_above: f64,
 }
 
@@ -119,7 +119,7 @@ fn moved(prior: &Prior, h: &Hypothesis, free: &[usize], step: &DVector<f64>) -> 
 
 /// Fits the free coordinates of `start` to a case.
 ///
-/// Derivatives cost as many simulations as there are coordinates. Between two sets of them up to [`CHORDS`] steps use
+/// Derivatives cost as many simulations as there are coordinates. Between two sets of them a few steps use
 /// the last set, corrected by what each step has shown (Broyden, 1965, doi:10.1090/S0025-5718-1965-0198670-6).
 pub fn fit(case: &Case, prior: &Prior, start: &Hypothesis, effort: Effort) -> Fit {
     Search::new(case, prior, start, effort.observer).run(effort)
