@@ -102,7 +102,7 @@ fn promises(design: &DesignReport, question: &Question) -> bool {
         .decides
         .iter()
         .filter(about)
-        .all(|d| d.how_surely != "unlikely")
+        .all(|d| d.how_surely != discovery::Certainty::Unlikely)
 }
 
 fn outcome(question: &Question) -> Option<Outcome> {

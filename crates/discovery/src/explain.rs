@@ -211,6 +211,13 @@ fn behind(
     })
 }
 
+/// Whether something that is no effect may make the model adequate: `rival` does not, and samples over time and a recording
+/// that was not fitted can prove it.
+fn may_decide(study: &Study, rival: &Trial) -> bool {
+    let over_time = study.fitted.case.table.is_none();
+    over_time && !study.proofs.is_empty() && !adequate(study, rival)
+}
+
 /// What comes and goes on top of `base`, and makes the model adequate where `rival` does not.
 fn decisive_bursts(
     study: &Study,
@@ -218,8 +225,7 @@ fn decisive_bursts(
     rival: &Trial,
     tell: &mut dyn FnMut(&str),
 ) -> Option<LawStep> {
-    let over_time = study.fitted.case.table.is_none();
-    if !over_time || study.proofs.is_empty() || adequate(study, rival) {
+    if !may_decide(study, rival) {
         return None;
     }
     tell("looking for what comes and goes");
@@ -234,8 +240,7 @@ fn decisive_law(
     rival: &Trial,
     tell: &mut dyn FnMut(&str),
 ) -> Option<LawStep> {
-    let over_time = study.fitted.case.table.is_none();
-    if !over_time || study.proofs.is_empty() || adequate(study, rival) {
+    if !may_decide(study, rival) {
         return None;
     }
     let mut tell = |what: &str, _| tell(what);

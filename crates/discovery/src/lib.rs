@@ -33,7 +33,9 @@ pub use api::{
 };
 pub use compare::compare;
 pub use design::limits::{Limits, NextRun};
-pub use design::report::{DecidesReport, DesignReport, LevelReport, RunReport};
+pub use design::report::{
+    Certainty, DecidesReport, DesignGoal, DesignReport, LevelReport, RunReport,
+};
 pub use estimation::data::instrument_class;
 pub use estimation::data::load_table::table_values;
 pub use estimation::data::question::Error;

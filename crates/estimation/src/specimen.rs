@@ -6,7 +6,7 @@ use crate::data::study::{Study, Subject, Trial};
 use crate::fit::normal_equations::{Block, Penalty};
 use crate::fit::output_error::Effort;
 use crate::model::free_scale::FreeScale;
-use crate::model::prior::{Hypothesis, Prior};
+use crate::model::prior::{FRICTION, Hypothesis, Prior};
 use motor::MotorFile;
 use motor::effect::{EffectConfig, Plant, from_motor_file};
 use motor::effects::find;
@@ -287,4 +287,18 @@ pub fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
 /// 220 V and 1.3 A: the power to which a core loss is related, W.
 pub fn apparent_power() -> f64 {
     3f64.sqrt() * 220.0 * 1.3
+}
+
+/// The priors with nominals moved, each of the fitted ones known to `error`.
+pub fn moved(study: &Study, effects: &[(&str, f64)], z: &[(usize, f64)], error: f64) -> Trial {
+    let mut trial = trial_with(study, effects);
+    for &(k, z) in z {
+        trial.fit.hypothesis.z[k] = z;
+    }
+    if !trial.fit.free.contains(&FRICTION) {
+        // A table does not fit the friction; here it is to be judged like the others.
+        trial.fit.free.insert(4, FRICTION);
+    }
+    let errors = vec![error; trial.fit.free.len()];
+    known_to(&trial, &errors)
 }

@@ -6,8 +6,8 @@ use board::modbus::Field;
 use common::master::{Master, UNIT};
 use common::{LAMP_TEST_S, Sensors, board, firmware, host_lamps, scenario, watch};
 use monitor::RawSample;
-use scenario::Load;
 use motor::motor_file::Frame as MotorFrame;
+use scenario::Load;
 use scenario::{Fault, Start};
 use virtual_board::{Cause, Inputs, VirtualBoard};
 

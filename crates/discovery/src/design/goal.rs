@@ -12,6 +12,10 @@ use nalgebra::DMatrix;
 
 /// Gain of error from which explanations are told apart, as proofs ask for.
 pub(super) const DECISIVE: f64 = 0.02;
+/// Worth of a gain beyond a sure decision: enough to choose between runs that decide all the same.
+const BEYOND: f64 = 1e-2;
+/// Worth of the mean over all pairs beside that of the hardest one.
+const OF_ALL: f64 = 0.1;
 /// Standard error of a nominal (its logarithm) from which it counts as wide.
 const WIDE: f64 = 0.05;
 
@@ -91,7 +95,7 @@ fn gain_of(study: &Study, case: &Case, missed: f64) -> f64 {
 
 /// What is gained beyond a sure decision counts for little.
 fn worth(gain: f64) -> f64 {
-    gain.min(2.0 * DECISIVE) + 1e-2 * gain
+    gain.min(2.0 * DECISIVE) + BEYOND * gain
 }
 
 /// How well a run tells each pair apart, whichever of the two is true.
@@ -112,7 +116,7 @@ fn tells(study: &Study, case: &Case, all: &[Candidate], runs: &[Predicted]) -> V
         .fold(f64::INFINITY, f64::min);
     let mean = gains.iter().map(|g| worth(g.1)).sum::<f64>() / gains.len().max(1) as f64;
     Verdict {
-        score: least + 0.1 * mean,
+        score: least + OF_ALL * mean,
         gains,
     }
 }

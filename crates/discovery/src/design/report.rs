@@ -9,12 +9,14 @@ use std::fmt::Write as _;
 
 /// Gain, in those that proofs ask for, from which a run decides surely.
 const SURE: f64 = 2.0;
+/// Share of a standard error that goes where a run narrows it surely, and where it does likely.
+const NARROWS: [f64; 2] = [0.5, 0.2];
 
 /// The next experiment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DesignReport {
-    /// What it is to do: `tell-apart`, `show` or `narrow`.
-    pub goal: String,
+    /// What it is to do.
+    pub goal: DesignGoal,
     /// What it decides, in a sentence.
     pub summary: String,
     /// What it decides, question by question.
@@ -31,6 +33,53 @@ pub struct DesignReport {
     pub scenario: String,
     /// The run.
     pub run: RunReport,
+}
+
+/// What a run is to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DesignGoal {
+    /// Tell explanations apart.
+    TellApart,
+    /// Show effects that the recordings could not show.
+    Show,
+    /// Narrow parameters.
+    Narrow,
+}
+
+/// How surely a run decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Certainty {
+    /// It gains twice what a proof asks for; of a standard error more than half goes.
+    Sure,
+    /// It gains what a proof asks for; of a standard error more than a fifth goes.
+    Likely,
+    /// It gains less.
+    Unlikely,
+}
+
+impl Certainty {
+    /// As a person reads it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Certainty::Sure => "sure",
+            Certainty::Likely => "likely",
+            Certainty::Unlikely => "unlikely",
+        }
+    }
+
+    fn of(goal: &Goal, gain: f64) -> Self {
+        let [sure, likely] = match goal {
+            Goal::Narrow(..) => NARROWS,
+            Goal::Tell(_) | Goal::Show(..) => [SURE * DECISIVE, DECISIVE],
+        };
+        match gain {
+            gain if gain > sure => Certainty::Sure,
+            gain if gain > likely => Certainty::Likely,
+            _ => Certainty::Unlikely,
+        }
+    }
 }
 
 /// A run.
@@ -89,8 +138,8 @@ pub struct DecidesReport {
     pub what: String,
     /// By so much the error of the wrong explanation is larger, percent; of a parameter: so much of its standard error goes.
     pub gain_percent: f64,
-    /// `sure`, `likely` or `unlikely`.
-    pub how_surely: String,
+    /// How surely.
+    pub how_surely: Certainty,
 }
 
 /// The report of a design for this motor; `file` is the motor file as the scenario names it.
@@ -98,11 +147,10 @@ pub(crate) fn design_report(design: &Design, motor: &MotorFile, file: &str) -> D
     let decides = told(&design.goal, &design.verdict);
     DesignReport {
         goal: match design.goal {
-            Goal::Tell(_) => "tell-apart",
-            Goal::Show(..) => "show",
-            Goal::Narrow(..) => "narrow",
-        }
-        .to_owned(),
+            Goal::Tell(_) => DesignGoal::TellApart,
+            Goal::Show(..) => DesignGoal::Show,
+            Goal::Narrow(..) => DesignGoal::Narrow,
+        },
         summary: summary(&design.goal, &decides),
         best_standard_run: design.standard.0.to_owned(),
         standard_decides: told(&design.goal, &design.standard.2),
@@ -115,18 +163,10 @@ pub(crate) fn design_report(design: &Design, motor: &MotorFile, file: &str) -> D
 }
 
 fn told(goal: &Goal, verdict: &Verdict) -> Vec<DecidesReport> {
-    let surely = |gain: f64| match (goal, gain) {
-        (Goal::Narrow(..), gain) if gain > 0.5 => "sure",
-        (Goal::Narrow(..), gain) if gain > 0.2 => "likely",
-        (Goal::Narrow(..), _) => "unlikely",
-        (_, gain) if gain > SURE * DECISIVE => "sure",
-        (_, gain) if gain > DECISIVE => "likely",
-        _ => "unlikely",
-    };
     let one = |(what, gain): &(String, f64)| DecidesReport {
         what: what.clone(),
         gain_percent: 100.0 * gain,
-        how_surely: surely(*gain).to_owned(),
+        how_surely: Certainty::of(goal, *gain),
     };
     verdict.gains.iter().map(one).collect()
 }
@@ -137,7 +177,7 @@ fn summary(goal: &Goal, decides: &[DecidesReport]) -> String {
         Goal::Show(_, all) => ("shows, present or not:", first_names(all)),
         Goal::Narrow(_, all) => ("narrows", first_names(all)),
     };
-    let is_decided = |d: &&DecidesReport| d.how_surely != "unlikely";
+    let is_decided = |d: &&DecidesReport| d.how_surely != Certainty::Unlikely;
     let (decided, open): (Vec<_>, Vec<_>) = decides.iter().partition(is_decided);
     let names =
         |of: &[&DecidesReport]| listed(&of.iter().map(|d| d.what.as_str()).collect::<Vec<_>>());
@@ -147,7 +187,7 @@ fn summary(goal: &Goal, decides: &[DecidesReport]) -> String {
             "No run within these limits {verb} {all}. Allow more loads, voltages or speeds."
         );
     }
-    let surely = match decided.iter().all(|d| d.how_surely == "sure") {
+    let surely = match decided.iter().all(|d| d.how_surely == Certainty::Sure) {
         true => "surely",
         false => "probably",
     };
@@ -236,7 +276,7 @@ fn scenario(plan: &Plan, motor: &MotorFile, file: &str) -> String {
     let mut text = String::new();
     let first = &plan.levels[0];
     let rated = motor.nameplate.voltage_line_rms_volt;
-    let _ = writeln!(text, "name = \"The next experiment\"\nmotor = \"{file}\"");
+    let _ = writeln!(text, "name = \"The next experiment\"\nmotor = {file:?}");
     let _ = writeln!(text, "duration_s = {:.3}", plan.duration_s);
     if !plan.starts {
         let _ = writeln!(text, "start = \"running\"");

@@ -9,16 +9,7 @@ const INERTIA: usize = 4;
 
 /// The priors with nominals moved, each of the fitted ones known to `error`.
 fn moved(study: &Study, effects: &[(&str, f64)], z: &[(usize, f64)], error: f64) -> Trial {
-    let mut trial = specimen::trial_with(study, effects);
-    for &(k, z) in z {
-        trial.fit.hypothesis.z[k] = z;
-    }
-    if !trial.fit.free.contains(&FRICTION) {
-        // A table does not fit the friction; here it is to be judged like the others.
-        trial.fit.free.insert(4, FRICTION);
-    }
-    let errors = vec![error; trial.fit.free.len()];
-    let mut known = specimen::known_to(&trial, &errors);
+    let mut known = specimen::moved(study, effects, z, error);
     // Which of them are off is a question of its own.
     let far = z.iter().filter(|(_, z)| z.abs() > 0.1).map(|(k, _)| *k);
     known.off = OnceLock::from(far.collect::<Vec<_>>());

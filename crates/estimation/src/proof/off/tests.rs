@@ -5,20 +5,6 @@ use crate::specimen;
 const R_S: usize = 0;
 const R_R: usize = 1;
 
-/// The priors with nominals moved, each of the fitted ones known to `error`.
-fn moved(study: &Study, effects: &[(&str, f64)], z: &[(usize, f64)], error: f64) -> Trial {
-    let mut trial = specimen::trial_with(study, effects);
-    for &(k, z) in z {
-        trial.fit.hypothesis.z[k] = z;
-    }
-    if !trial.fit.free.contains(&FRICTION) {
-        // A table does not fit the friction; here it is to be judged like the others.
-        trial.fit.free.insert(4, FRICTION);
-    }
-    let errors = vec![error; trial.fit.free.len()];
-    specimen::known_to(&trial, &errors)
-}
-
 /// Nominals that moved relevantly and significantly and are known.
 fn off(study: &Study, trial: &Trial) -> Vec<usize> {
     (0..N_NOMINAL)
@@ -30,7 +16,7 @@ fn off(study: &Study, trial: &Trial) -> Vec<usize> {
 #[test]
 fn a_nominal_is_off_beyond_five_per_cent() {
     let study = specimen::table_study(|_| ());
-    let of = |z: f64| off(&study, &moved(&study, &[], &[(R_R, z)], 1e-6));
+    let of = |z: f64| off(&study, &specimen::moved(&study, &[], &[(R_R, z)], 1e-6));
     assert_eq!(of(0.05), [R_R]);
     assert_eq!(of(-0.052), [R_R]);
     for z in [0.0, 0.048, -0.048, -0.05] {
@@ -42,7 +28,7 @@ fn a_nominal_is_off_beyond_five_per_cent() {
 #[test]
 fn a_nominal_is_off_beyond_three_standard_errors() {
     let study = specimen::table_study(|_| ());
-    let of = |z: f64, error: f64| off(&study, &moved(&study, &[], &[(R_S, z)], error));
+    let of = |z: f64, error: f64| off(&study, &specimen::moved(&study, &[], &[(R_S, z)], error));
     assert_eq!(of(0.09, 0.029), [R_S]);
     assert_eq!(of(-0.09, 0.029), [R_S]);
     assert!(of(0.09, 0.0301).is_empty() && of(-0.09, 0.0301).is_empty());
@@ -53,7 +39,12 @@ fn a_nominal_is_off_beyond_three_standard_errors() {
 #[test]
 fn friction_is_off_beyond_two_per_cent_of_rated_torque() {
     let study = specimen::table_study(|_| ());
-    let of = |z: f64, error: f64| off(&study, &moved(&study, &[], &[(FRICTION, z)], error));
+    let of = |z: f64, error: f64| {
+        off(
+            &study,
+            &specimen::moved(&study, &[], &[(FRICTION, z)], error),
+        )
+    };
     assert_eq!(of(2.1, 0.1), [FRICTION]);
     assert_eq!(of(-2.1, 0.1), [FRICTION]);
     assert!(of(2.0, 0.1).is_empty() && of(0.5, 0.1).is_empty());
@@ -65,7 +56,7 @@ fn friction_is_off_beyond_two_per_cent_of_rated_torque() {
 fn beside_saturation_the_inductance_may_be_another() {
     let study = specimen::table_study(|_| ());
     let z = [(MAGNETIZING, 0.4), (LEAKAGE, 0.4)];
-    let of = |effect: &str| off(&study, &moved(&study, &[(effect, 1.0)], &z, 0.01));
+    let of = |effect: &str| off(&study, &specimen::moved(&study, &[(effect, 1.0)], &z, 0.01));
     assert_eq!(of("core-loss"), [LEAKAGE, MAGNETIZING]);
     assert_eq!(of("magnetizing-saturation"), [LEAKAGE]);
 }
@@ -74,7 +65,7 @@ fn beside_saturation_the_inductance_may_be_another() {
 #[test]
 fn what_the_recording_leaves_open_is_not_off() {
     let study = specimen::table_study(|_| ());
-    let of = |error: f64| off(&study, &moved(&study, &[], &[(R_R, 0.4)], error));
+    let of = |error: f64| off(&study, &specimen::moved(&study, &[], &[(R_R, 0.4)], error));
     assert_eq!(of(0.0315), [R_R]);
     assert!(of(0.0318).is_empty());
 }
@@ -105,7 +96,7 @@ fn a_held_parameter_stays_at_its_prior() {
 #[test]
 fn strain_is_counted_in_prior_deviations() {
     let study = specimen::table_study(|_| ());
-    let trial = moved(
+    let trial = specimen::moved(
         &study,
         &[],
         &[(R_S, 0.3), (4, 0.4), (FRICTION, -10.0)],

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use crate::page::elements::number::{decimals, shown};
 use crate::page::elements::place::Place;
+use discovery::DesignGoal;
 
 /// Nothing where no experiment was asked for.
 pub fn section(result: &Place<'_>) -> Markup {
@@ -11,9 +12,9 @@ pub fn section(result: &Place<'_>) -> Markup {
         return html! {};
     }
     let decides = result.items("next_run/decides");
-    let gain = match result.text("next_run/goal") {
-        "narrow" => "less of the standard error, %",
-        "show" => "larger error of a model without it, %",
+    let gain = match result.read("next_run/goal") {
+        Some(DesignGoal::Narrow) => "less of the standard error, %",
+        Some(DesignGoal::Show) => "larger error of a model without it, %",
         _ => "larger error of the wrong explanation, %",
     };
     html! {

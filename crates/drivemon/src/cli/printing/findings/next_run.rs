@@ -1,6 +1,6 @@
 //! The next experiment in a terminal.
 
-use discovery::{DecidesReport, DesignReport};
+use discovery::{DecidesReport, DesignGoal, DesignReport};
 use std::path::Path;
 
 use crate::cli::arguments::study::wrapped;
@@ -20,10 +20,11 @@ pub fn print(design: Option<&DesignReport>, written: Option<&Path>) {
     }
     say!(
         "{}",
-        match design.goal.as_str() {
-            "narrow" => "Of each standard error goes:",
-            "show" => "By so much the error of a model without it would be larger:",
-            _ => "By so much the error of the wrong explanation would be larger:",
+        match design.goal {
+            DesignGoal::Narrow => "Of each standard error goes:",
+            DesignGoal::Show => "By so much the error of a model without it would be larger:",
+            DesignGoal::TellApart =>
+                "By so much the error of the wrong explanation would be larger:",
         }
     );
     for decides in &design.decides {
@@ -49,6 +50,8 @@ fn line(decides: &DecidesReport, standard: Option<&DecidesReport>) -> String {
     });
     format!(
         "{:<52} {:>6.1} % ({}){usual}",
-        decides.what, decides.gain_percent, decides.how_surely
+        decides.what,
+        decides.gain_percent,
+        decides.how_surely.word()
     )
 }
