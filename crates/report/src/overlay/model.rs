@@ -53,13 +53,16 @@ impl Model {
     }
 }
 
-/// The motor with everything that was found; `None` when nothing was, or when an effect ties with a parameter: the final
-/// parameters then belong to the model without the effect.
+/// The motor with everything that was found; `None` when nothing was, when a part of it comes and goes, which no motor file
+/// holds, or when an effect ties with a parameter: the final parameters then belong to the model without the effect.
 fn complete(motor: &MotorFile, report: &ExplainReport) -> Option<MotorFile> {
     let last = report
         .final_
         .as_ref()
         .filter(|_| !report.steps.is_empty() || proven(report).next().is_some())?;
+    if proven(report).any(|law| law.entry.is_none()) {
+        return None;
+    }
     let mut ties = report.steps.iter().flat_map(|step| &step.tied_with);
     if ties.any(|tie| last.parameters.iter().any(|p| p.name == *tie)) {
         return None;

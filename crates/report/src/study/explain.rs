@@ -104,6 +104,11 @@ impl Next {
                 "Measure first what separates them, or take the first of the tie:".to_owned(),
                 Some(step.effect.clone()),
             ),
+            (Verdict::Law, _) if comes_and_goes(report) => (
+                "Find what is loose, worn or sticks there and mend it: it is a fault, no law that a model could hold."
+                    .to_owned(),
+                None,
+            ),
             (Verdict::Law, _) => ("Add the law to the model:".to_owned(), Some(LAW.to_owned())),
             (Verdict::Adequate, _) if anything_off(report) => (
                 "Take over the refitted parameters:".to_owned(),
@@ -117,6 +122,12 @@ impl Next {
             adopt,
         }
     }
+}
+
+/// Whether what was found last comes and goes.
+fn comes_and_goes(report: &ExplainReport) -> bool {
+    let last = report.laws.iter().rfind(|law| law.proven);
+    last.is_some_and(|law| law.bursts.is_some())
 }
 
 fn nothing_to_adopt(verdict: Verdict) -> &'static str {
@@ -138,3 +149,6 @@ pub fn anything_off(report: &ExplainReport) -> bool {
     let last = report.final_.iter().flat_map(|fit| &fit.parameters);
     last.into_iter().any(|parameter| parameter.off)
 }
+
+#[cfg(test)]
+mod tests;

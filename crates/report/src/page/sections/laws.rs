@@ -9,7 +9,10 @@ use motor::effect::curve::{Coordinate, Place as LawPlace};
 
 /// Place and coordinate of a law.
 pub fn name(law: &Place<'_>) -> String {
-    format!("{} over {}", law.text("place"), law.text("coordinate"))
+    match law.get("bursts") {
+        Some(_) => format!("{} that comes and goes", law.text("place")),
+        None => format!("{} over {}", law.text("place"), law.text("coordinate")),
+    }
 }
 
 /// One figure each.
@@ -25,7 +28,7 @@ fn one(law: &Place<'_>, k: usize) -> Markup {
         section aria-labelledby=(id) {
             h2 id=(id) { (name(law)) @if !law.is_true("proven") { " (a lead, not proven)" } }
             p {
-                "With this curve the error falls from " (shown(law, "held_out_error_over_noise_without", decimals(2)))
+                @if law.get("bursts").is_some() { "With these bursts" } @else { "With this curve" } " the error falls from " (shown(law, "held_out_error_over_noise_without", decimals(2)))
                 " to " (shown(law, "held_out_error_over_noise", decimals(2))) " × noise"
                 @if law.is_true("proven") { " on the recording that was not fitted." } @else { ". A second recording with other loads and speeds can prove it." }
             }

@@ -1,0 +1,82 @@
+//! What is advised after an explanation, and which model is drawn.
+
+use super::*;
+use audit::Audit;
+use discovery::{BurstsReport, FitReport, LawCurve, LawReport};
+use motor::MotorFile;
+
+/// A proven law at one phase; `bursts`: it comes and goes.
+fn law(bursts: bool) -> LawReport {
+    LawReport {
+        place: "stator-phase-b".to_owned(),
+        coordinate: "time".to_owned(),
+        meaning: "change of resistance".to_owned(),
+        tied_with: Vec::new(),
+        curve: LawCurve::default(),
+        formula: None,
+        formula_parameters: Vec::new(),
+        formulas: Vec::new(),
+        explained_percent: 99.0,
+        held_out_error_over_noise: 1.0,
+        fold_error_over_noise: 1.0,
+        held_out_error_over_noise_without: 6.0,
+        proven: true,
+        bursts: bursts.then(|| BurstsReport {
+            count: 0,
+            share_of_time_percent: 11.0,
+            smallest: 1.0,
+            median: 20.0,
+            largest: 30.0,
+            unit: "ohm".to_owned(),
+            bursts: Vec::new(),
+        }),
+        entry: None,
+    }
+}
+
+fn report(law: LawReport) -> ExplainReport {
+    let fit = FitReport {
+        held_out_error_over_noise: 1.0,
+        fold_error_over_noise: 1.0,
+        parameters: Vec::new(),
+    };
+    ExplainReport {
+        audit: Audit {
+            supported: true,
+            findings: Vec::new(),
+            assumptions: Vec::new(),
+            unusable: Vec::new(),
+        },
+        verdict: Verdict::Law,
+        summary: String::new(),
+        baseline: Some(fit.clone()),
+        steps: Vec::new(),
+        final_: Some(fit),
+        ranking: Vec::new(),
+        not_testable: Vec::new(),
+        laws: vec![law],
+        unexplained: None,
+        speed_scale: None,
+        cannot_be_concluded: Vec::new(),
+        next_run: None,
+    }
+}
+
+#[test]
+fn a_law_is_adopted_and_what_comes_and_goes_is_mended() {
+    let command = |name: &str| Some(format!("drivemon adopt {name}"));
+    let smooth = Next::new(&report(law(false)), &command);
+    assert_eq!(smooth.command.as_deref(), Some("drivemon adopt law"));
+    let bursts = Next::new(&report(law(true)), &command);
+    assert_eq!((bursts.adopt, bursts.command), (None, None));
+    assert!(bursts.why.contains("mend it"), "{}", bursts.why);
+}
+
+/// No motor file holds it, and a curve without it would be no model of what was found.
+#[test]
+fn what_comes_and_goes_is_drawn_by_no_model() {
+    let text = include_str!("../../../../../motors/peer-2k2.toml");
+    let motor = MotorFile::parse(text, "motor").expect("shipped");
+    let models = Model::of_explanation(&motor, &report(law(true)));
+    assert_eq!(models.len(), 2, "as believed, and with parameters refitted");
+}
