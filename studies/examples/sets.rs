@@ -2,9 +2,10 @@
 //!
 //! `cargo run --release -p studies --example sets -- FOLDER...`: each folder holds `motor.toml`,
 //! `recording.csv.gz`, `recording_b.csv.gz` with their sidecars, and is named after what is hidden. `--one-way` as the
-//! first argument fits the first recording only; `--steps` prints what each step takes.
+//! first argument fits the first recording only; `--steps` prints what each step takes; `--without=EFFECT` does not ask
+//! about an effect.
 
-use discovery::{explain, simulations};
+use discovery::{explain_without, simulations};
 use formats::read_recording;
 use motor::MotorFile;
 use rayon::prelude::*;
@@ -29,11 +30,11 @@ fn told(steps: bool) -> impl FnMut(&str, f64) {
     }
 }
 
-fn asked(folder: &Path, first: &str, second: &str, steps: bool) -> String {
+fn asked(folder: &Path, [first, second]: [&str; 2], excluded: &[&str], steps: bool) -> String {
     let motor = MotorFile::read(folder.join("motor.toml")).expect("a motor file");
     let sources = [first, second].map(|name| read(folder.join(name)));
     let start = Instant::now();
-    let report = explain(&sources, &motor, &mut told(steps)).expect("a report");
+    let report = explain_without(&sources, &motor, excluded, &mut told(steps)).expect("a report");
     let error = |f: &Option<discovery::FitReport>| {
         f.as_ref().map_or(f64::NAN, |f| f.held_out_error_over_noise)
     };
@@ -61,12 +62,20 @@ fn main() {
         arguments.len() < before
     };
     let (one_way, steps) = (flag("--one-way"), flag("--steps"));
-    let folders: Vec<PathBuf> = arguments.into_iter().map(PathBuf::from).collect();
+    let (excluded, folders): (Vec<&str>, Vec<&str>) = arguments
+        .iter()
+        .map(String::as_str)
+        .partition(|argument| argument.starts_with("--without="));
+    let excluded: Vec<&str> = excluded
+        .iter()
+        .filter_map(|e| e.split('=').nth(1))
+        .collect();
+    let folders: Vec<PathBuf> = folders.into_iter().map(PathBuf::from).collect();
     let (a, b) = ("recording.csv.gz", "recording_b.csv.gz");
     folders.par_iter().for_each(|folder| {
-        println!("a {}", asked(folder, a, b, steps));
+        println!("a {}", asked(folder, [a, b], &excluded, steps));
         if !one_way {
-            println!("b {}", asked(folder, b, a, steps));
+            println!("b {}", asked(folder, [b, a], &excluded, steps));
         }
     });
 }

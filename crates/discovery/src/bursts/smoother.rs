@@ -47,6 +47,8 @@ pub(crate) fn smooth(
     // Widths of the arrays: the motor with its amount, and with the states of any effects.
     match tangent.states() {
         0..8 => Filter::<8>::new(tangent, push, measured, wander).smoothed(),
+        8..12 => Filter::<12>::new(tangent, push, measured, wander).smoothed(),
+        12..16 => Filter::<16>::new(tangent, push, measured, wander).smoothed(),
         _ => Filter::<32>::new(tangent, push, measured, wander).smoothed(),
     }
 }

@@ -101,6 +101,7 @@ impl Motion {
         }
         let begin = (SETTLES / self.t_step) as usize;
         let mut values = self.values(place, coordinate).to_vec();
+        let at_first = values.first().copied().unwrap_or(0.0);
         values.drain(..begin.min(values.len() / 2));
         values.retain(|x| x.is_finite());
         if values.is_empty() {
@@ -117,7 +118,7 @@ impl Motion {
                 [-largest, largest]
             }
             // A start from rest is short, and what happens there is asked about.
-            Coordinate::Speed => [values[0].min(low), high],
+            Coordinate::Speed | Coordinate::Slip => [at_first.min(low), at_first.max(high)],
             _ => [low, high],
         }
     }
