@@ -150,9 +150,7 @@ impl Lines {
             .enumerate()
             .map(|(k, z)| (z - mean) * window(k))
             .collect();
-        rustfft::FftPlanner::new()
-            .plan_fft_forward(count)
-            .process(&mut lines);
+        fourier::Transform::of(count).forward(&mut lines);
         Lines { lines }
     }
 

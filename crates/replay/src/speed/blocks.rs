@@ -1,10 +1,8 @@
 //! Blocks of whole cycles and their spectra.
 
-use std::sync::Arc;
-
+use fourier::Transform;
 use motor::MotorFile;
 use num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
 
 use super::angle::Turned;
 use super::spectrum::{PADDING, Spectrum, hann, is_harmonic};
@@ -58,12 +56,12 @@ struct Maker<'t> {
     window: Vec<f64>,
     cycles: usize,
     energy: f64,
-    fft: Arc<dyn Fft<f64>>,
+    transform: Transform,
 }
 
 impl Maker<'_> {
     fn spectrum(&self, windowed: &[Complex64]) -> Spectrum {
-        Spectrum::of(windowed, self.cycles, self.energy, self.fft.as_ref())
+        Spectrum::of(windowed, self.cycles, self.energy, &self.transform)
     }
 
     fn windowed(&self, signal: &[Complex64], start: usize) -> Vec<Complex64> {
@@ -111,7 +109,7 @@ impl Blocks {
             cycles: wanted,
             energy: window.iter().map(|w| w * w).sum(),
             window,
-            fft: FftPlanner::new().plan_fft_forward(PADDING * length),
+            transform: Transform::of(PADDING * length),
         };
         let starts = starts(turned.i.len(), length);
         let bars_per_pair = motor

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use fourier::Transform;
 use num_complex::Complex64;
-use rustfft::Fft;
 
 /// Points of the spectrum in one bin: lines are found between bins.
 pub(super) const PADDING: usize = 4;
@@ -37,10 +37,15 @@ pub(super) fn is_harmonic(order: f64, cycles: usize) -> bool {
 
 impl Spectrum {
     /// Of samples that are windowed already; `cycles` of the supply long, with `PADDING` times as many points.
-    pub fn of(windowed: &[Complex64], cycles: usize, energy: f64, fft: &dyn Fft<f64>) -> Spectrum {
+    pub fn of(
+        windowed: &[Complex64],
+        cycles: usize,
+        energy: f64,
+        transform: &Transform,
+    ) -> Spectrum {
         let mut points = windowed.to_vec();
-        points.resize(fft.len(), Complex64::ZERO);
-        fft.process(&mut points);
+        points.resize(transform.count(), Complex64::ZERO);
+        transform.forward(&mut points);
         let power: Vec<f32> = points
             .iter()
             .map(|x| (x.norm_sqr() / energy) as f32)
