@@ -31,8 +31,8 @@ const DEEPER: f64 = 0.98;
 /// Error over noise above which nothing is named, however large the explained share.
 const NAMED_ERROR: f64 = 1.25;
 /// Sum of squares of the nominals' distances from their priors, in standard deviations, by which an explanation is stranger
-/// than one that leaves them where they are believed: odds of twenty to one, `2 ln 20`.
-const STRAINED: f64 = 6.0;
+/// than one that leaves them where they are believed: three standard deviations of one of them.
+const STRAINED: f64 = 9.0;
 /// Share of the first excess that a later effect explains at least, unless it makes the model adequate.
 const PATCH_SHARE: f64 = 0.03;
 /// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: priors are commonly
