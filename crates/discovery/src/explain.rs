@@ -19,7 +19,7 @@ use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
 use estimation::model::prior::{N_NOMINAL, NOMINALS};
 use estimation::proof::accept::{adequate, beats, even, explained, proven, surpasses};
-use estimation::proof::off::strains;
+use estimation::proof::off::{SIGNIFICANT, strains};
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
@@ -32,7 +32,7 @@ const DEEPER: f64 = 0.98;
 const NAMED_ERROR: f64 = 1.25;
 /// Sum of squares of the nominals' distances from their priors, in standard deviations, by which an explanation is stranger
 /// than one that leaves them where they are believed: three standard deviations of one of them.
-const STRAINED: f64 = 9.0;
+const STRAINED: f64 = SIGNIFICANT * SIGNIFICANT;
 /// Share of the first excess that a later effect explains at least, unless it makes the model adequate.
 const PATCH_SHARE: f64 = 0.03;
 /// Move of the leakage (logarithm) from which a series inductance is worth naming beside it: priors are commonly

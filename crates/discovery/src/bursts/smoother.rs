@@ -301,4 +301,37 @@ mod tests {
         let elsewhere = asked(Place::Rotor, 1.0);
         assert!(found.evidence > elsewhere.evidence + 1000.0);
     }
+
+    /// Wider arrays hold zeros that nothing adds to: the same numbers, bit for bit.
+    #[test]
+    fn the_width_of_the_arrays_changes_nothing() {
+        let study = specimen::study(0.2, |_| 1.0);
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
+        let of = Sensitivities::of(case, prior, &fit);
+        let push = of.push(action(Place::Torque));
+        let rows = case.weight.len();
+        let residual: Vec<[f64; 4]> = (0..rows).map(|k| [(k as f64).sin(); 4]).collect();
+        let measured = Measured {
+            residual: &residual,
+            weight: &vec![[1.0; 4]; rows],
+            decimation: case.decimation,
+            t_step: case.inputs.t_sample * case.between.stride() as f64,
+        };
+        let wander = Wander {
+            deviation: 1.0,
+            memory: 0.01,
+        };
+        let narrow = Filter::<8>::new(of.tangent(), &push, &measured, wander).smoothed();
+        assert!(narrow.amount.iter().any(|amount| amount.abs() > 1e-3));
+        let others = [
+            Filter::<12>::new(of.tangent(), &push, &measured, wander).smoothed(),
+            Filter::<16>::new(of.tangent(), &push, &measured, wander).smoothed(),
+            Filter::<32>::new(of.tangent(), &push, &measured, wander).smoothed(),
+        ];
+        for wide in others {
+            assert_eq!(wide.evidence, narrow.evidence);
+            assert_eq!(wide.amount, narrow.amount);
+        }
+    }
 }

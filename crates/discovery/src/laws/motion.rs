@@ -123,3 +123,25 @@ impl Motion {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A small motor starts within two cycles of the supply, before the instants that ranges leave out are over.
+    #[test]
+    fn slip_and_speed_reach_to_the_standstill_of_a_start() {
+        let t_step = 1e-3;
+        let slip: Vec<f64> = (0..4000).map(|k| (50.0 - k as f64).max(2.0)).collect();
+        let motion = Motion {
+            speed: slip.iter().map(|slip| TAU * (50.0 - slip)).collect(),
+            slip,
+            duration: 4.0,
+            t_step,
+            ..Motion::default()
+        };
+        let range = |coordinate| motion.range(Place::Rotor, coordinate);
+        assert_eq!(range(Coordinate::Slip), [2.0, 50.0]);
+        assert_eq!(range(Coordinate::Speed), [0.0, TAU * 48.0]);
+    }
+}
