@@ -1,7 +1,7 @@
 //! The documentation says what is so: its commands print what it shows, its files work, its links and test names exist.
 //!
-//! A fenced block ```` ```console ```` whose commands all begin with `$ drivemon` is run, in a copy of the files that
-//! it may read. A line `...` stands for any number of lines; a number may differ by one unit of its last
+//! A fenced block ```` ```console ```` whose commands all begin with `$ drivemon` or `$ cargo drivemon` is run, in a copy
+//! of the files that it may read. A line `...` stands for any number of lines; a number may differ by one unit of its last
 //! digit, because libraries of other platforms round differently. A block marked ```` ```console not-run ```` is left alone.
 //! A block ```` ```toml file=mine.toml ```` is that file for the commands that follow on the page; with
 //! `after=motors/peer-2k2.toml` it follows the text of that file.
@@ -22,7 +22,13 @@ use agree::agree;
 use pieces::{Piece, Shown, pieces};
 use workplace::Workplace;
 
-const PROMPT: &str = "$ drivemon";
+/// How a command begins: the program alone, or by cargo's alias.
+const PROMPTS: [&str; 2] = ["$ drivemon", "$ cargo drivemon"];
+
+/// The arguments of a line that is a command of this program.
+fn arguments(line: &str) -> Option<&str> {
+    PROMPTS.iter().find_map(|prompt| line.strip_prefix(prompt))
+}
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

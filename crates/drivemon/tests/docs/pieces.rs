@@ -1,6 +1,6 @@
 //! A page in pieces: text, commands with their output, files.
 
-use crate::PROMPT;
+use crate::arguments;
 
 /// What a page consists of.
 pub enum Piece {
@@ -74,15 +74,15 @@ fn word_after(line: &str, key: &str) -> Option<String> {
 
 /// Blocks with other commands are not this test's.
 fn commands(block: &[&str]) -> Option<Piece> {
-    let foreign = |line: &&str| line.starts_with("$ ") && !line.starts_with(PROMPT);
-    if block.iter().any(foreign) || !block.first().is_some_and(|line| line.starts_with(PROMPT)) {
+    let foreign = |line: &&str| line.starts_with("$ ") && arguments(line).is_none();
+    if block.iter().any(foreign) || block.first().is_none_or(|line| arguments(line).is_none()) {
         let text = block.join("\n");
         return (!block.is_empty()).then_some(Piece::Text(text));
     }
     let mut shown: Vec<Shown> = Vec::new();
     for line in block {
         match shown.last_mut() {
-            Some(last) if !line.starts_with(PROMPT) => last.output.push((*line).to_owned()),
+            Some(last) if arguments(line).is_none() => last.output.push((*line).to_owned()),
             _ => shown.push(Shown {
                 command: (*line).to_owned(),
                 output: Vec::new(),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::pieces::File;
-use crate::{PROMPT, root};
+use crate::{arguments, root};
 
 /// What the commands of the documentation may read.
 const INPUTS: [&str; 4] = ["motors", "sim-host/scenarios", "tests/data", "campaigns"];
@@ -26,7 +26,7 @@ impl Workplace {
 
     /// What a command prints; comments after two blanks and `#` are for the reader.
     pub fn run(&self, command: &str) -> Vec<String> {
-        let arguments = command.trim_start_matches(PROMPT).split("  #").next();
+        let arguments = arguments(command).and_then(|all| all.split("  #").next());
         let output = Command::new(env!("CARGO_BIN_EXE_drivemon"))
             .args(arguments.unwrap_or_default().split_whitespace())
             .current_dir(&self.0)
