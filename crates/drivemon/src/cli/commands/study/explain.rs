@@ -55,6 +55,8 @@ const RANKS: usize = 8;
 const LEAST_GAIN_PERCENT: f64 = 0.5;
 /// Longest bar, characters.
 const WIDTH: usize = 36;
+/// Column of names before an error, characters; a longer name widens it.
+const NAME_WIDTH: usize = 34;
 
 impl Explain {
     /// Runs the command.
@@ -151,30 +153,39 @@ fn print_errors(report: &ExplainReport) {
     let Some(baseline) = &report.baseline else {
         return;
     };
-    let full = baseline.held_out_error_over_noise;
-    let line = |name: &str, error: f64| {
-        say!(
-            "  {name:<34} {error:8.3} x noise  {}",
-            bar(error, full, WIDTH)
-        );
-    };
+    let mut errors = vec![(
+        "all parameters refitted".to_owned(),
+        baseline.held_out_error_over_noise,
+    )];
+    let steps = report.steps.iter().filter(|step| step.frame.is_none());
+    errors.extend(steps.map(|step| {
+        let name = format!("with {}", step.effect);
+        (name, step.held_out_error_over_noise)
+    }));
+    let laws = report.laws.iter().filter(|law| law.proven);
+    errors.extend(laws.map(|law| {
+        let name = format!("with {}", law.name());
+        (name, law.held_out_error_over_noise)
+    }));
     say!("\nError on data that was not fitted:");
-    line("all parameters refitted", full);
-    for step in report.steps.iter().filter(|step| step.frame.is_none()) {
-        line(
-            &format!("with {}", step.effect),
-            step.held_out_error_over_noise,
-        );
-    }
-    for law in report.laws.iter().filter(|law| law.proven) {
-        line(
-            &format!("with {}", law.name()),
-            law.held_out_error_over_noise,
-        );
+    for line in error_lines(&errors) {
+        say!("{line}");
     }
     for frame in report.steps.iter().filter_map(|step| step.frame.as_ref()) {
         print_frame_errors(frame);
     }
+}
+
+/// Names, errors and bars below each other, however long a name is; the first error has the longest bar.
+fn error_lines(errors: &[(String, f64)]) -> Vec<String> {
+    let full = errors.first().map_or(0.0, |(_, error)| *error);
+    let names = errors.iter().map(|(name, _)| name.chars().count());
+    let widest = names.fold(NAME_WIDTH, usize::max);
+    let line = |(name, error): &(String, f64)| {
+        let bar = bar(*error, full, WIDTH);
+        format!("  {name:<widest$} {error:8.3} x noise  {bar}")
+    };
+    errors.iter().map(line).collect()
 }
 
 /// The error of the monitor's own model, on its own scale.
@@ -187,7 +198,7 @@ fn print_frame_errors(frame: &FrameReport) {
     ];
     for (name, error) in both {
         say!(
-            "  {name:<34} {error:8.3} x noise  {}",
+            "  {name:<NAME_WIDTH$} {error:8.3} x noise  {}",
             bar(error, full, WIDTH)
         );
     }
@@ -311,5 +322,20 @@ fn print_unexplained(report: &ExplainReport) {
             "What is left grows with: {}.",
             rest.correlates_with.join(", ")
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_name_moves_the_errors_and_bars_of_all_lines() {
+        let long = "with stator-phase-b that comes and goes";
+        let errors = [("all parameters refitted", 4.0), (long, 1.0)];
+        let lines = error_lines(&errors.map(|(name, error)| (name.to_owned(), error)));
+        let column = |line: &String| line.find(" x noise  ");
+        assert!(column(&lines[0]).is_some());
+        assert_eq!(column(&lines[0]), column(&lines[1]));
     }
 }
