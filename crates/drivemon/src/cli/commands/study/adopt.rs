@@ -6,12 +6,11 @@ use clap::Args;
 use discovery::{AdoptReport, LAW, Laws};
 
 use crate::cli::arguments::study::{
-    ShapesArgs, StudyArgs, bar, percent, print_audit, print_next, quantity, uncertain,
-    with_progress,
+    ShapesArgs, StudyArgs, percent, print_audit, print_next, quantity, uncertain, with_progress,
 };
 use crate::cli::commands::study::explain::print_frame;
 use crate::cli::printing::failure::{Failure, Finding};
-use crate::cli::printing::findings::{laws, scale};
+use crate::cli::printing::findings::{errors, laws, scale};
 use crate::cli::printing::output::write_text;
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
@@ -51,9 +50,6 @@ Example:
   drivemon adopt magnetizing-saturation a.csv.gz b.csv.gz --motor m.toml -o m2.toml
 Exit codes: 0 the gain is proven on data that was not fitted, 1 it is not, and the file is written all the same (--anyway),
 2 bad input, 3 nothing is gained, or the data do not support an answer: nothing is written.";
-
-/// Longest bar, characters.
-const WIDTH: usize = 36;
 
 impl Adopt {
     /// Runs the command.
@@ -124,26 +120,17 @@ fn print(result: &Adopted) {
         result.recordings.join(" and ")
     );
     print_audit(&report.audit);
-    let full = report
-        .before
-        .held_out_error_over_noise
-        .max(report.before.error_over_noise);
-    let line = |name: &str, error: f64| {
-        say!(
-            "  {name:<34} {error:8.3} x noise  {}",
-            bar(error, full, WIDTH)
-        );
-    };
-    say!("\nError on data that was not fitted:");
     let before = match report.effect.as_str() {
         PARAMETERS => "before, as the motor file has it",
         _ => "before, all parameters refitted",
     };
-    line(before, report.before.held_out_error_over_noise);
-    line("after", report.after.held_out_error_over_noise);
+    let held_out = [&report.before, &report.after].map(|errors| errors.held_out_error_over_noise);
+    let fitted = [&report.before, &report.after].map(|errors| errors.error_over_noise);
+    let full = held_out[0].max(fitted[0]);
+    say!("\nError on data that was not fitted:");
+    errors::print(&[(before, held_out[0]), ("after", held_out[1])], full);
     say!("Error on the fitted data:");
-    line(before, report.before.error_over_noise);
-    line("after", report.after.error_over_noise);
+    errors::print(&[(before, fitted[0]), ("after", fitted[1])], full);
     print_verdict(report);
     report.laws.iter().for_each(laws::print);
     if let Some(frame) = &report.frame {

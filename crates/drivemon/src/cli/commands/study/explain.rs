@@ -7,11 +7,11 @@ use discovery::{
 
 use crate::cli::arguments::next_run::NextRunArgs;
 use crate::cli::arguments::study::{
-    ShapesArgs, StudyArgs, bar, fall, percent, print_audit, print_next, quantity, uncertain,
+    ShapesArgs, StudyArgs, fall, percent, print_audit, print_next, quantity, uncertain,
     with_progress, wrapped,
 };
 use crate::cli::printing::failure::{Failure, Finding};
-use crate::cli::printing::findings::{laws, next_run, places, scale};
+use crate::cli::printing::findings::{errors, laws, next_run, places, scale};
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
 use report::Subject;
@@ -53,10 +53,6 @@ Exit codes: 0 the model is adequate, 1 something is missing or off, 2 bad input,
 const RANKS: usize = 8;
 /// Gain from which on an effect is worth a line, percent.
 const LEAST_GAIN_PERCENT: f64 = 0.5;
-/// Longest bar, characters.
-const WIDTH: usize = 36;
-/// Column of names before an error, characters; a longer name widens it.
-const NAME_WIDTH: usize = 34;
 
 impl Explain {
     /// Runs the command.
@@ -168,24 +164,10 @@ fn print_errors(report: &ExplainReport) {
         (name, law.held_out_error_over_noise)
     }));
     say!("\nError on data that was not fitted:");
-    for line in error_lines(&errors) {
-        say!("{line}");
-    }
+    errors::print(&errors, baseline.held_out_error_over_noise);
     for frame in report.steps.iter().filter_map(|step| step.frame.as_ref()) {
         print_frame_errors(frame);
     }
-}
-
-/// Names, errors and bars below each other, however long a name is; the first error has the longest bar.
-fn error_lines(errors: &[(String, f64)]) -> Vec<String> {
-    let full = errors.first().map_or(0.0, |(_, error)| *error);
-    let names = errors.iter().map(|(name, _)| name.chars().count());
-    let widest = names.fold(NAME_WIDTH, usize::max);
-    let line = |(name, error): &(String, f64)| {
-        let bar = bar(*error, full, WIDTH);
-        format!("  {name:<widest$} {error:8.3} x noise  {bar}")
-    };
-    errors.iter().map(line).collect()
 }
 
 /// The error of the monitor's own model, on its own scale.
@@ -196,12 +178,7 @@ fn print_frame_errors(frame: &FrameReport) {
         ("in the motor file's frame", frame.held_out_before),
         ("in the rotor-flux frame", frame.held_out_after),
     ];
-    for (name, error) in both {
-        say!(
-            "  {name:<NAME_WIDTH$} {error:8.3} x noise  {}",
-            bar(error, full, WIDTH)
-        );
-    }
+    errors::print(&both, full);
 }
 
 fn print_ranking(report: &ExplainReport) {
@@ -219,7 +196,7 @@ fn print_ranking(report: &ExplainReport) {
             "  {:<24} {before:7.3} -> {mark}{after:7.3} {:>7} %  {}",
             row.effect,
             percent(-row.gain_percent),
-            fall(before, after, WIDTH)
+            fall(before, after, errors::WIDTH)
         );
     }
     let count = report.ranking.len() - report.ranking.iter().filter(gains).count();
@@ -322,20 +299,5 @@ fn print_unexplained(report: &ExplainReport) {
             "What is left grows with: {}.",
             rest.correlates_with.join(", ")
         );
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_long_name_moves_the_errors_and_bars_of_all_lines() {
-        let long = "with stator-phase-b that comes and goes";
-        let errors = [("all parameters refitted", 4.0), (long, 1.0)];
-        let lines = error_lines(&errors.map(|(name, error)| (name.to_owned(), error)));
-        let column = |line: &String| line.find(" x noise  ");
-        assert!(column(&lines[0]).is_some());
-        assert_eq!(column(&lines[0]), column(&lines[1]));
     }
 }
