@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use board::MotorImage;
 use monitor::{MAX_EFFECTS, Monitor, MonitorConfig};
@@ -34,7 +35,12 @@ fn prepare() -> Result<(), Box<dyn Error>> {
     link(&here);
     let motor = motor_path(&here);
     println!("cargo::rerun-if-changed={}", motor.display());
-    std::fs::write(out.join("motor.rs"), constants(&motor)?)?;
+    let revision = format!(
+        "/// Revision of the source; empty where it was not built from a repository.\n\
+         pub const REVISION: &str = \"{}\";\n",
+        revision(&here).unwrap_or_default()
+    );
+    std::fs::write(out.join("motor.rs"), constants(&motor)? + &revision)?;
     Ok(())
 }
 
@@ -45,6 +51,20 @@ fn link(here: &Path) {
         println!("cargo::rustc-link-arg-bins=-T{script}");
     }
     println!("cargo::rustc-link-arg-bins=--nmagic");
+}
+
+/// The commit that is checked out. What was changed since is told by the program's checksum.
+fn revision(here: &Path) -> Option<String> {
+    let log = here.join(".git/logs/HEAD");
+    if log.exists() {
+        println!("cargo::rerun-if-changed={}", log.display());
+    }
+    let git = ["rev-parse", "--short=12", "HEAD"];
+    let output = Command::new("git").args(git).current_dir(here).output();
+    let output = output.ok().filter(|output| output.status.success())?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    let is_hash = |text: &&str| text.bytes().all(|byte| byte.is_ascii_hexdigit());
+    Some(text.trim()).filter(is_hash).map(str::to_owned)
 }
 
 /// A relative path means the same whatever folder cargo was called in.

@@ -16,6 +16,8 @@ pub struct Commissioning {
     store: Option<FlashStore>,
     learner: Option<Learner>,
     source: CalibrationSource,
+    /// Of the calibration that is used; 0 where there is none.
+    identification: u32,
     learning: LearnState,
     /// A person has seen that something is wrong with the calibration or with learning.
     acknowledged: bool,
@@ -30,6 +32,7 @@ impl Commissioning {
             store,
             learner: None,
             source: CalibrationSource::CompiledIn,
+            identification: 0,
             learning: LearnState::Idle,
             acknowledged: false,
         }
@@ -39,8 +42,24 @@ impl Commissioning {
     pub fn describe(&self, status: &mut BoardStatus) {
         status.motor = self.motor;
         status.calibration = self.source;
+        status.calibration_identification = self.identification;
         status.learning = self.learning;
         status.learned_windows = self.learner.as_ref().map_or(0, Learner::windows) as u16;
+    }
+
+    /// Which values are computed with.
+    pub fn source(&self) -> CalibrationSource {
+        self.source
+    }
+
+    /// How learning stands.
+    pub fn learning(&self) -> LearnState {
+        self.learning
+    }
+
+    /// What tells the calibration that is used from others; 0 where there is none.
+    pub fn calibration_identification(&self) -> u32 {
+        self.identification
     }
 
     /// What tells the motor's constants from others.
@@ -62,6 +81,7 @@ impl Commissioning {
     #[inline(never)]
     fn calibrate(&mut self, config: &mut MonitorConfig) -> CalibrationSource {
         let loaded = self.store.as_mut().and_then(|store| store.load().ok());
+        self.identification = 0;
         match loaded {
             Some(Loaded {
                 newest: None,
@@ -74,7 +94,10 @@ impl Commissioning {
             Some(Loaded {
                 newest: Some(calibration),
                 ..
-            }) if calibration.apply_checked(config) => CalibrationSource::Flash,
+            }) if calibration.apply_checked(config) => {
+                self.identification = calibration.identification();
+                CalibrationSource::Flash
+            }
             _ => CalibrationSource::Lost,
         }
     }

@@ -2,6 +2,7 @@
 
 use core::hint::black_box;
 
+use board::modbus::Identity;
 use board::{Button, Calibration, Capture, Display, Doubt, Doubts, LAMPS, Relay, StuckChannels};
 use embassy_executor::Spawner;
 use embassy_time::{Duration, Timer};
@@ -9,9 +10,10 @@ use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};
 use static_cell::ConstStaticCell;
 
 use crate::commissioning::Commissioning;
+use crate::events::Events;
 use crate::hardware::board::Board;
 use crate::hardware::flash_store;
-use crate::hardware::housekeeping::Housekeeping;
+use crate::hardware::housekeeping::{self, Housekeeping};
 use crate::hardware::lamps::Lamps as LampWires;
 use crate::hardware::sampling::{Acquisition, Block, Gap, Sources};
 use crate::hardware::serial;
@@ -44,9 +46,19 @@ async fn main(spawner: Spawner) -> ! {
     protection::start();
     tell(&start, source);
     let mut watchdog = Watchdog::start(board.watchdog);
-    serial::start(spawner, board.lines);
+    let identity = Identity {
+        version: env!("CARGO_PKG_VERSION"),
+        revision: REVISION,
+        motor: NAME,
+        serial: housekeeping::serial_number(),
+    };
+    serial::start(spawner, board.lines, identity);
     let mut lamps = board.lamps;
     test_lamps(&mut lamps, &mut watchdog).await;
+    let (calibration, log) = match flash_store::open(board.flash) {
+        Some(stored) => (Some(stored.calibration), Some(stored.events)),
+        None => (None, None),
+    };
     let mut panel = Panel {
         wires: lamps,
         relay_wires: board.relay,
@@ -55,13 +67,15 @@ async fn main(spawner: Spawner) -> ! {
         button: board.button,
         press: Button::default(),
         housekeeping: Housekeeping::new(board.housekeeping),
-        record: Record::new(Telemetry::default(), &start, CAPTURE.take()),
-        // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
-        commissioning: Commissioning::new(
-            black_box(&IMAGE),
-            &EFFECTS,
-            flash_store::open(board.flash),
+        record: Record::new(
+            Telemetry::default(),
+            &start,
+            identity.serial,
+            CAPTURE.take(),
         ),
+        // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
+        commissioning: Commissioning::new(black_box(&IMAGE), &EFFECTS, calibration),
+        events: Events::new(log, &start),
         display: Display::default(),
         selftest: SelfTest::at_start(),
         channels: StuckChannels::default(),
@@ -77,6 +91,7 @@ async fn main(spawner: Spawner) -> ! {
     };
     panel.look_after_supply();
     let mut monitor = panel.commissioning.monitor();
+    panel.note_calibration();
     match &mut monitor {
         _ if start.gives_up => panel.refuse(Doubt::Restarts).await,
         _ if panel.all_doubts().has(Doubt::Processor) => panel.refuse(Doubt::Processor).await,
@@ -130,6 +145,7 @@ async fn run(monitor: &mut Monitor, panel: &mut Panel, mut sources: Sources) -> 
             Pause::Gap(gap) => {
                 defmt::warn!("samples are missing: {}", gap);
                 panel.record.interrupt();
+                panel.events.note_gap(gap);
                 panel.watchdog.starve();
             }
             Pause::Learnt(calibration) => {

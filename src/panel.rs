@@ -2,13 +2,15 @@
 
 use board::modbus::Command;
 use board::{
-    Button, Calibration, Display, Doubt, Doubts, Press, Relay, Shown, StuckChannels, levels,
+    Button, Calibration, Display, Doubt, Doubts, EventCause, Press, Relay, Shown, Situation,
+    StuckChannels, levels,
 };
 use embassy_stm32::gpio::Input;
 use embassy_time::{Duration, Instant, Timer};
-use monitor::{Lamps, Monitor, Report};
+use monitor::{Lamp, Lamps, Monitor, Report};
 
 use crate::commissioning::Commissioning;
+use crate::events::Events;
 use crate::hardware::housekeeping::{Housekeeping, is_vdda_credible};
 use crate::hardware::lamps::{Lamps as LampWires, RelayWires};
 use crate::hardware::serial;
@@ -49,6 +51,8 @@ pub struct Panel {
     pub record: Record,
     /// Calibration and learning.
     pub commissioning: Commissioning,
+    /// What is kept in flash of everything that happens.
+    pub events: Events,
     /// Lamps that stay.
     pub display: Display,
     /// Tests of the board by itself.
@@ -109,14 +113,38 @@ impl Panel {
         let shown = self.show(lamps);
         let closed = self.relay_wires.is_closed();
         let (level, contradicts) = self.relay.step(&shown, self.judged, closed);
+        let has_time = !self.reported;
         (self.judged, self.reported) = (false, false);
         self.doubts.set(Doubt::Relay, contradicts);
         self.relay_wires.set(level);
         let (doubts, energised) = (self.all_doubts(), self.relay.is_energised());
         self.tell(doubts);
         self.record.note_health(doubts, energised);
+        self.events.step(&self.situation(&shown, doubts), has_time);
+        self.record.note_event(self.events.newest());
         self.record.refresh(&shown, &self.commissioning);
         self.wires.set(levels(&shown.lamps, bright));
+    }
+
+    fn situation(&self, shown: &Shown, doubts: Doubts) -> Situation {
+        Situation {
+            fault: shown.lamps.fault == Lamp::On,
+            likely: self.record.likely(),
+            sensor: shown.lamps.sensor == Lamp::On,
+            not_judged: self.record.not_judged(),
+            doubts: doubts.bits(),
+            learning: self.commissioning.learning(),
+            calibration: self.commissioning.calibration_identification(),
+        }
+    }
+
+    /// A calibration that is ignored is worth an event.
+    pub fn note_calibration(&mut self) {
+        let source = self.commissioning.source();
+        if source.is_ignored() {
+            self.events
+                .note(EventCause::CalibrationIgnored, source as u32);
+        }
     }
 
     /// Logs every doubt that is new. One that has gone and comes back is new to people, too.
@@ -161,7 +189,8 @@ impl Panel {
             Some(Command::Acknowledge) => self.acknowledge(),
             Some(Command::Learn) => self.commissioning.begin(self.all_doubts()),
             Some(Command::Prepare) => {
-                self.prepares_at = Some(self.blocks.wrapping_add(ANSWER_BLOCKS))
+                self.events.note(EventCause::Prepared, 0);
+                self.prepares_at = Some(self.blocks.wrapping_add(ANSWER_BLOCKS));
             }
             None => {}
         }
@@ -171,6 +200,7 @@ impl Panel {
     }
 
     fn acknowledge(&mut self) {
+        self.events.note(EventCause::Acknowledged, 0);
         self.display.acknowledge();
         self.commissioning.acknowledge();
         self.record.acknowledge();

@@ -24,12 +24,18 @@ pub struct Record {
 
 impl Record {
     /// Nothing recorded yet.
-    pub fn new(telemetry: Telemetry, start: &Start, capture: &'static mut Capture) -> Self {
+    pub fn new(
+        telemetry: Telemetry,
+        start: &Start,
+        serial: [u32; 3],
+        capture: &'static mut Capture,
+    ) -> Self {
         let board = BoardStatus {
             reset_cause: start.cause as u16,
             crash: start.crash,
             crashes: start.crashes as u16,
             program: safety::program(),
+            serial,
             ..BoardStatus::default()
         };
         let (shown, status) = (Shown::default(), Status::default());
@@ -56,6 +62,22 @@ impl Record {
         self.stale |= self.board.doubts != doubts || self.board.relay != relay;
         self.board.doubts = doubts;
         self.board.relay = relay;
+    }
+
+    /// Notes the number of the newest event.
+    pub fn note_event(&mut self, number: u32) {
+        self.stale |= self.board.last_event != number;
+        self.board.last_event = number;
+    }
+
+    /// Number and probability, per mille, of the likeliest fault of the last window.
+    pub fn likely(&self) -> (u16, u16) {
+        self.status.likely()
+    }
+
+    /// Number of the reason why the last window was not judged.
+    pub fn not_judged(&self) -> u16 {
+        self.status.not_judged()
     }
 
     /// Notes the time since the start, s, and the deepest stack, bytes.

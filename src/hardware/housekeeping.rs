@@ -101,6 +101,16 @@ fn factory_code(address: *const u16) -> f32 {
     f32::from(unsafe { address.read_volatile() })
 }
 
+/// The chip's serial number of 96 bits, its highest 32 first.
+pub fn serial_number() -> [u32; 3] {
+    let id = embassy_stm32::uid::uid();
+    let word = |k: usize| {
+        let bytes = id.as_chunks::<4>().0.get(k);
+        bytes.map_or(0, |bytes| u32::from_le_bytes(*bytes))
+    };
+    [word(2), word(1), word(0)]
+}
+
 /// Whether codes can be taken for volts and amperes at this converter supply, mV.
 pub fn is_vdda_credible(millivolt: u32) -> bool {
     millivolt.abs_diff(NOMINAL_VDDA) * 1_000 <= VDDA_TOLERANCE * NOMINAL_VDDA

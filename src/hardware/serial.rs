@@ -6,7 +6,7 @@
 use core::cell::Cell;
 
 use board::MAX_FRAME_BYTES;
-use board::modbus::{Collector, Command, Image, MAX_RESPONSE_BYTES, Slave};
+use board::modbus::{Collector, Command, Identity, Image, MAX_RESPONSE_BYTES, Readable, Slave};
 use embassy_executor::Spawner;
 use embassy_stm32::peripherals::{DMA1_CH3, LPUART1, PA2, PA9, PA10, PA12, USART1};
 use embassy_stm32::usart::{self, BufferedUart, Config, Parity, UartTx};
@@ -16,6 +16,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_time::{Duration, Instant, with_timeout};
 
+use super::flash_store;
 use crate::safety::marks::{self, Mark};
 use embedded_io_async::{Read, Write};
 use heapless::Vec;
@@ -76,8 +77,8 @@ static COMMAND: CriticalSectionMutex<Cell<Option<Command>>> =
     CriticalSectionMutex::new(Cell::new(None));
 
 /// Starts both lines. One that cannot be set up stays silent; its settings are constants, so a test would see it.
-pub fn start(spawner: Spawner, lines: Lines) {
-    if let Ok(token) = serve_modbus(lines.modbus) {
+pub fn start(spawner: Spawner, lines: Lines, identity: Identity) {
+    if let Ok(token) = serve_modbus(lines.modbus, identity) {
         spawner.spawn(token);
     }
     if let Ok(token) = send_frames(lines.frames) {
@@ -121,7 +122,7 @@ async fn send_frames(parts: FrameLine) {
 }
 
 #[embassy_executor::task]
-async fn serve_modbus(parts: ModbusLine) {
+async fn serve_modbus(parts: ModbusLine, identity: Identity) {
     let (line, receive, transmit, enable) = parts;
     let mut config = Config::default();
     config.baudrate = MODBUS_BAUD;
@@ -147,7 +148,12 @@ async fn serve_modbus(parts: ModbusLine) {
         collect(&mut line, &mut collector).await;
         let image = IMAGE.lock(Cell::get).unwrap_or_default();
         let now_ms = Instant::now().as_millis() as u32;
-        let (length, command) = slave.respond(now_ms, collector.frame(), &image, &mut response);
+        let readable = Readable {
+            image: &image,
+            identity: &identity,
+            events: flash_store::read_events,
+        };
+        let (length, command) = slave.respond(now_ms, collector.frame(), &readable, &mut response);
         collector.clear();
         if command.is_some() {
             COMMAND.lock(|shared| shared.set(command));

@@ -16,8 +16,11 @@ mod button;
 mod calibration;
 mod capture;
 mod checksum;
+#[cfg(test)]
+mod chip;
 mod display;
 mod doubt;
+mod events;
 mod fault_record;
 mod frame;
 mod framing;
@@ -37,6 +40,10 @@ pub use capture::{CAPTURE_EVERY, CAPTURE_INSTANTS, Capture, CaptureChunk, Captur
 pub use checksum::{Checksum, crc32, crc32_words};
 pub use display::{Display, LAMP_NAMES, LAMPS, Overrides, Shown, levels};
 pub use doubt::{Doubt, Doubts};
+pub use events::{
+    Appended, EVENT_BYTES, Event, EventCause, EventLog, Journal, LOG_EVENTS, LOG_PAGES, LogFlash,
+    Situation, place_of,
+};
 pub use fault_record::{FAULT_RECORD_WORDS, FaultCause, FaultRecord};
 pub use frame::Frame;
 pub use framing::{FrameError, MAX_FRAME_BYTES};

@@ -10,6 +10,7 @@ mod capture;
 mod decoder;
 mod log;
 mod modbus;
+mod objects;
 #[cfg(feature = "probe")]
 mod probe;
 mod source;

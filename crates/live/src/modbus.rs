@@ -245,7 +245,7 @@ impl ModbusLine {
         }
     }
 
-    fn damaged(&self) -> ModbusError {
+    pub(crate) fn damaged(&self) -> ModbusError {
         ModbusError::Damaged {
             unit: self.settings.unit,
         }

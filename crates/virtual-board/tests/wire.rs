@@ -2,7 +2,11 @@
 
 mod common;
 
-use common::wire::Wire;
+use std::process::Command;
+
+use board::modbus::{Field, MAP_VERSION, Object, WORDS, address};
+use board::{Event, EventCause};
+use common::wire::{Wire, run};
 
 #[test]
 fn drivemon_tells_what_ended_the_program_and_where() {
@@ -78,4 +82,109 @@ fn drivemon_reads_the_map_and_prepares_a_board_as_shipped() {
     let (output, text) = wire.drivemon(&["read", "--unit", "2"]);
     assert_eq!(output.status.code(), Some(2), "{text}");
     assert!(text.contains("no answer from unit 2"), "{text}");
+}
+
+#[test]
+fn drivemon_tells_which_board_it_is_and_what_happened() {
+    let wire = Wire::new(|_| {});
+    let (output, text) = wire.drivemon(&["identify"]);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    let line = |name: &str| {
+        let found = text.lines().find(|line| line.starts_with(name));
+        found.unwrap_or_else(|| panic!("{name}: {text}")).to_owned()
+    };
+    // What crates/virtual-board/src/machine/bus.rs has for the chip's.
+    assert!(
+        line("serial number").ends_with("203639363033510100420007"),
+        "{text}"
+    );
+    assert!(line("motor ").contains(&common::motor().name), "{text}");
+    assert!(
+        line("calibration").contains("none: values of the motor file"),
+        "{text}"
+    );
+    assert!(
+        line("version").ends_with(env!("CARGO_PKG_VERSION")),
+        "{text}"
+    );
+    let (output, text) = wire.drivemon(&["events"]);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(
+        text.contains("    1       0:00:01  start: reset by power or brown-out, program "),
+        "{text}"
+    );
+    let (_, _) = wire.drivemon(&["acknowledge"]);
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let (_, text) = wire.drivemon(&["events", "--last", "1"]);
+    let last = text.lines().last().expect("an event");
+    assert!(last.ends_with("acknowledged"), "{text}");
+    assert_eq!(text.lines().count(), 2, "{text}");
+}
+
+/// `pymodbus` speaks the protocol by its own reading of the specification.
+#[test]
+fn a_master_from_elsewhere_reads_registers_identification_and_events() {
+    let wire = Wire::new(|_| {});
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/pymodbus_master.py");
+    let words = WORDS.to_string();
+    let (output, text) = run(Command::new("python3").args([script, &wire.port, &words]));
+    assert!(output.status.success(), "{text}");
+    let told: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let register = |field: Field| &told["input"][usize::from(address(field))];
+    assert_eq!(told["input"].as_array().map(Vec::len), Some(WORDS));
+    assert_eq!(*register(Field::MapVersion), MAP_VERSION);
+    assert_eq!(*register(Field::Verdict), 1);
+    assert_eq!(told["holding"], serde_json::json!([0, 0]));
+    assert_eq!(told["beyond"], 2);
+    assert_eq!(told["locked"], 1);
+    let identity = told["identity"].as_object().expect("objects");
+    assert_eq!(identity.len(), Object::ALL.len());
+    let number = (Object::Motor as u8).to_string();
+    assert_eq!(identity[&number], common::motor().name);
+    let hexadecimal = told["event"].as_str().expect("text");
+    let digits = hexadecimal.as_bytes().chunks(2);
+    let bytes: Vec<u8> = digits
+        .map(|two| {
+            let two = std::str::from_utf8(two).expect("text");
+            u8::from_str_radix(two, 16).expect("hexadecimal digits")
+        })
+        .collect();
+    let bytes = bytes.try_into().expect("an event's bytes");
+    let event = Event::from_bytes(&bytes).expect("a whole event");
+    assert_eq!((event.number, event.cause), (1, EventCause::Start));
+}
+
+/// `mbpoll` counts registers from 1.
+#[test]
+fn another_master_reads_the_whole_map_alike() {
+    let wire = Wire::new(|_| {});
+    let count = WORDS.to_string();
+    let line = ["-m", "rtu", "-a", "1", "-b", "19200", "-P", "even", "-1"];
+    let (output, text) = run(Command::new("mbpoll")
+        .args(line)
+        .args(["-t", "3", "-r", "1", "-c", &count, &wire.port]));
+    assert!(output.status.success(), "{text}");
+    let values: Vec<u16> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix('[')?.split_once("]:"))
+        .map(|(_, value)| {
+            let value = value.split_whitespace().next().expect("a value");
+            // Values beyond 32767 are followed by the same as a signed number.
+            value.parse().expect("a number")
+        })
+        .collect();
+    assert_eq!(values.len(), WORDS, "{text}");
+    let (output, read) = wire.drivemon(&["read"]);
+    assert_eq!(output.status.code(), Some(0), "{read}");
+    for (field, name) in [
+        (Field::SerialHigh, "SerialHigh"),
+        (Field::ProgramChecksum, "ProgramChecksum"),
+        (Field::MotorIdentification, "MotorIdentification"),
+    ] {
+        let at = usize::from(address(field));
+        let value = u32::from(values[at]) << 16 | u32::from(values[at + 1]);
+        let told = read.lines().find(|line| line.starts_with(name));
+        let told = told.unwrap_or_else(|| panic!("{name}: {read}"));
+        assert!(told.ends_with(&format!("{value:#010x}")), "{told}");
+    }
 }

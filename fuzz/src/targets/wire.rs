@@ -1,7 +1,10 @@
 //! What comes over wires: frames of the board, requests to it.
 
-use board::modbus::{BoardStatus, Collector, Image, MAX_RESPONSE_BYTES, Slave, Status, UNLOCK_KEY};
-use board::{MAX_FRAME_BYTES, Message, Shown, crc32};
+use board::modbus::{
+    BoardStatus, Collector, Identity, Image, MAX_RESPONSE_BYTES, Readable, Slave, Status,
+    UNLOCK_KEY,
+};
+use board::{EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, Shown, crc32};
 use live::Decoder;
 use monitor::Report;
 
@@ -71,12 +74,28 @@ pub(crate) fn modbus(bytes: &[u8]) {
     }
 }
 
+const LOG_BYTES: usize = LOG_EVENTS as usize * EVENT_BYTES;
+const IDENTITY: Identity = Identity {
+    version: "0.1.0",
+    revision: "",
+    motor: "a motor",
+    serial: [1, 2, 3],
+};
+
 /// Whether a request became a command; the answer must be sound.
 fn ask(slave: &mut Slave, now_ms: u32, request: &[u8], image: &Image) -> bool {
     let mut collector = Collector::default();
     collector.push(request);
     let mut response = [0; MAX_RESPONSE_BYTES];
-    let (length, command) = slave.respond(now_ms, collector.frame(), image, &mut response);
+    let readable = Readable {
+        image,
+        identity: &IDENTITY,
+        events: |at, bytes| {
+            assert!(at + bytes.len() <= LOG_BYTES, "beyond the log: {at}");
+            true
+        },
+    };
+    let (length, command) = slave.respond(now_ms, collector.frame(), &readable, &mut response);
     let answer = &response[..length];
     if let Some((body, checksum)) = answer.split_last_chunk::<2>() {
         assert_eq!(checksum, &crc(body).to_le_bytes(), "{answer:x?}");

@@ -12,6 +12,8 @@ pub use store::{Loaded, PAGE_BYTES, PAGES, Store, StoreError};
 use monitor::{Abc, ChannelScale, MonitorConfig, RESIDUALS};
 use serde::{Deserialize, Serialize};
 
+use crate::checksum::crc32;
+
 /// Entries of a symmetric matrix over the residuals: its upper triangle, row by row.
 pub const COVARIANCES: usize = RESIDUALS * (RESIDUALS + 1) / 2;
 
@@ -84,6 +86,14 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// What tells it from others: the checksum of its bytes, never 0.
+    #[inline(never)]
+    pub fn identification(&self) -> u32 {
+        record::Record::new(0, *self)
+            .to_bytes()
+            .map_or(1, |bytes| crc32(&bytes).max(1))
+    }
+
     /// Puts it in the place of the compiled-in values. Ranges are checked by [`monitor::Monitor::new`].
     pub fn apply(&self, config: &mut MonitorConfig) {
         self.voltage.apply(&mut config.converter.voltage);

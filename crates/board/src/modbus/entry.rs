@@ -65,10 +65,15 @@ pub enum Field {
     ProgramLength,
     ProgramChecksum,
     StoredDataErrors,
+    SerialHigh,
+    SerialMiddle,
+    SerialLow,
+    CalibrationIdentification,
+    LastEvent,
 }
 
 /// Number of values.
-pub(super) const FIELDS: usize = Field::StoredDataErrors as usize + 1;
+pub(super) const FIELDS: usize = Field::LastEvent as usize + 1;
 
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -61,6 +61,15 @@ impl Image {
         }
     }
 
+    /// A value of kind [`Kind::Long`](super::entry::Kind::Long).
+    pub fn long(&self, field: Field) -> u32 {
+        let first = usize::from(address(field));
+        match self.0.get(first..first + 2) {
+            Some([high, low]) => u32::from(*high) << 16 | u32::from(*low),
+            _ => 0,
+        }
+    }
+
     /// Sets a value of kind [`Kind::Float`](super::entry::Kind::Float).
     pub fn set_float(&mut self, field: Field, value: f32) {
         self.set_long(field, value.to_bits());
@@ -97,5 +106,6 @@ mod tests {
         image.set_long(Field::Windows, 0x1234_5678);
         let first = address(Field::Windows);
         assert_eq!(image.range(first, 2), Some(&[0x1234, 0x5678][..]));
+        assert_eq!(image.long(Field::Windows), 0x1234_5678);
     }
 }

@@ -3,14 +3,20 @@
 //! Own code although crates exist: `rmodbus` indexes its frames with numbers out of them, which leaves panics within reach
 //! of the wire, and needs a store of its own beside [`Image`]. The tests use it as the master on the other end.
 
+mod answer;
 mod entry;
+mod file;
+mod identity;
 mod map;
 mod slave;
 mod status;
 mod table;
 
+pub use answer::MAX_RESPONSE_BYTES;
 pub use entry::{Entry, Field, Kind, Meaning};
+pub use file::{EVENT_FILE, MOST_FILE_WORDS, ReadEvents};
+pub use identity::{Identity, Object};
 pub use map::{Image, MAP_VERSION, WORDS, address};
-pub use slave::{Collector, Command, MAX_REQUEST_BYTES, MAX_RESPONSE_BYTES, Slave, UNLOCK_KEY};
+pub use slave::{Collector, Command, MAX_REQUEST_BYTES, Readable, Slave, UNLOCK_KEY};
 pub use status::{BoardStatus, Status};
 pub use table::MAP;

@@ -3,13 +3,14 @@
 use crc::{CRC_16_MODBUS, Crc, NoTable};
 use heapless::Vec;
 
-use super::map::{Image, WORDS};
+use super::answer::{Answer, MAX_RESPONSE_BYTES};
+use super::file::{self, ReadEvents};
+use super::identity::{self, Identity};
+use super::map::Image;
 
 const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_MODBUS);
 /// Longest frame of the protocol.
 pub const MAX_REQUEST_BYTES: usize = 256;
-/// Address, function, count, the whole map, checksum.
-pub const MAX_RESPONSE_BYTES: usize = 5 + 2 * WORDS;
 /// What must be written to holding register 0 before a command.
 pub const UNLOCK_KEY: u16 = 0x4D4D;
 /// How long a command may follow the key, ms.
@@ -22,15 +23,19 @@ const READ_HOLDING: u8 = 3;
 const READ_INPUT: u8 = 4;
 const WRITE_ONE: u8 = 6;
 const WRITE_MANY: u8 = 16;
+const READ_FILE: u8 = 20;
+const IDENTIFY: u8 = 43;
 
 /// Why a request is refused, as the protocol numbers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-enum Exception {
+pub(super) enum Exception {
     /// A function that does not exist here, or a command while the slave is locked.
     Function = 1,
     Address = 2,
     Value = 3,
+    /// Flash is being erased.
+    Busy = 6,
 }
 
 /// What a master may ask for beside reading.
@@ -52,30 +57,15 @@ pub struct Slave {
     unlocked_at_ms: Option<u32>,
 }
 
-/// The answer being written.
-struct Answer<'a> {
-    bytes: &'a mut [u8; MAX_RESPONSE_BYTES],
-    length: usize,
-}
-
-impl Answer<'_> {
-    /// A byte too many is dropped; the longest answer is tested to fit.
-    fn push(&mut self, byte: u8) {
-        if let Some(place) = self.bytes.get_mut(self.length) {
-            *place = byte;
-            self.length += 1;
-        }
-    }
-
-    fn push_word(&mut self, word: u16) {
-        let [high, low] = word.to_be_bytes();
-        self.push(high);
-        self.push(low);
-    }
-
-    fn written(&self) -> &[u8] {
-        self.bytes.get(..self.length).unwrap_or_default()
-    }
+/// What a master may read.
+#[derive(Clone, Copy)]
+pub struct Readable<'a> {
+    /// Input registers.
+    pub image: &'a Image,
+    /// Who the board is.
+    pub identity: &'a Identity,
+    /// The event log.
+    pub events: ReadEvents,
 }
 
 impl Slave {
@@ -94,30 +84,37 @@ impl Slave {
         &mut self,
         now_ms: u32,
         request: &[u8],
-        image: &Image,
+        readable: &Readable<'_>,
         response: &mut [u8; MAX_RESPONSE_BYTES],
     ) -> (usize, Option<Command>) {
         let Some((function, data)) = self.unwrap(request) else {
             return (0, None);
         };
-        let mut answer = Answer {
-            bytes: response,
-            length: 0,
-        };
+        let mut answer = Answer::new(response);
         answer.push(self.unit);
         answer.push(function);
         let mut command = None;
-        if let Err(exception) =
-            self.execute(now_ms, function, data, image, &mut answer, &mut command)
-        {
-            answer.length = 0;
+        let outcome = match function {
+            READ_FILE => file::read(data, readable.events, &mut answer),
+            IDENTIFY => identity::read(data, readable, &mut answer),
+            _ => self.execute(
+                now_ms,
+                function,
+                data,
+                readable.image,
+                &mut answer,
+                &mut command,
+            ),
+        };
+        if let Err(exception) = outcome {
+            answer.clear();
             answer.push(self.unit);
             answer.push(function | 0x80);
             answer.push(exception as u8);
         }
         let checksum = CRC.checksum(answer.written());
         answer.push_word(checksum.swap_bytes());
-        (answer.length, command)
+        (answer.length(), command)
     }
 
     /// Function and data of a sound frame for this slave.

@@ -74,6 +74,12 @@ pub struct BoardStatus {
     pub stored_data_errors: u16,
     /// Length and checksum of the program, where it was sealed.
     pub program: Option<(u32, u32)>,
+    /// The chip's serial number, its highest 32 bits first.
+    pub serial: [u32; 3],
+    /// [`crate::Calibration::identification`] of the one that is used; 0 where there is none.
+    pub calibration_identification: u32,
+    /// Number of the newest event.
+    pub last_event: u32,
 }
 
 /// What the monitor says of its last window; nothing of it is told while the board doubts what it measures.
@@ -166,6 +172,16 @@ impl Status {
         image.set_word(Field::Verdict, self.verdict(shown));
     }
 
+    /// Number and probability, per mille, of the likeliest fault of the last window.
+    pub fn likely(&self) -> (u16, u16) {
+        (self.last.fault, self.last.per_mille)
+    }
+
+    /// Number of the reason why the last window was not judged, 0 where it was.
+    pub fn not_judged(&self) -> u16 {
+        u16::from(self.last.not_judged)
+    }
+
     /// The lamps in one word: nobody reads "healthy" where FAULT or SENSOR is lit.
     fn verdict(&self, shown: &Shown) -> u16 {
         match (shown.lamps.fault, shown.lamps.sensor) {
@@ -195,6 +211,19 @@ fn put_board(image: &mut Image, board: &BoardStatus) {
     let (length, checksum) = board.program.unwrap_or_default();
     image.set_long(Field::ProgramLength, length);
     image.set_long(Field::ProgramChecksum, checksum);
+    put_identity(image, board);
+}
+
+fn put_identity(image: &mut Image, board: &BoardStatus) {
+    let [high, middle, low] = board.serial;
+    image.set_long(Field::SerialHigh, high);
+    image.set_long(Field::SerialMiddle, middle);
+    image.set_long(Field::SerialLow, low);
+    image.set_long(
+        Field::CalibrationIdentification,
+        board.calibration_identification,
+    );
+    image.set_long(Field::LastEvent, board.last_event);
 }
 
 fn put_health(image: &mut Image, board: &BoardStatus) {

@@ -184,5 +184,25 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "double words of stored data that failed their error correction since the start; checksums decided",
         ),
+        entry(
+            SerialHigh,
+            Long,
+            "",
+            "the chip's serial number of 96 bits: the highest 32",
+        ),
+        entry(SerialMiddle, Long, "", "the middle 32"),
+        entry(SerialLow, Long, "", "the lowest 32"),
+        entry(
+            CalibrationIdentification,
+            Long,
+            "",
+            "checksum of the learnt values that hold, 0 where there are none",
+        ),
+        entry(
+            LastEvent,
+            Long,
+            "",
+            "number of the newest event of the log; they count from 1, 0 is none",
+        ),
     ]
 };

@@ -65,7 +65,14 @@ const MAP: &[(Block, u32, u32, Option<Enable>)] = &[
 ];
 
 /// Factory constants live in a page of read-only memory.
-pub(crate) const FACTORY_VALUES: [(u32, u16); 3] = [
+pub(crate) const FACTORY_VALUES: [(u32, u16); 9] = [
+    // The serial number, lowest word first.
+    (0x1FFF_7590, 0x0007),
+    (0x1FFF_7592, 0x0042),
+    (0x1FFF_7594, 0x5101),
+    (0x1FFF_7596, 0x3033),
+    (0x1FFF_7598, 0x3936),
+    (0x1FFF_759A, 0x2036),
     (0x1FFF_75AA, VREFINT_CAL),
     (0x1FFF_75A8, TS_CAL_30),
     (0x1FFF_75CA, TS_CAL_130),
@@ -112,7 +119,7 @@ impl Machine {
             Block::Dma1 => self.dma.read(offset),
             Block::Dmamux => self.dma.read_multiplexer(offset),
             Block::Rcc => self.rcc.read(offset, now),
-            Block::Flash => self.flash.read(offset),
+            Block::Flash => self.flash.read(offset, now),
             Block::Gpio(port) => {
                 self.apply_contact();
                 self.ports[port].read(offset)
@@ -167,7 +174,7 @@ impl Machine {
                 self.follow_clocks()?;
             }
             Block::Flash => {
-                let erased = self.flash.write(offset, value)?;
+                let erased = self.flash.write(offset, value, now)?;
                 self.follow_clocks()?;
                 return Ok(erased);
             }

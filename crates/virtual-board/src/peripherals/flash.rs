@@ -1,6 +1,7 @@
 //! The flash interface: access control, unlocking, erasing pages and programming double words; and power that fails
 //! while it does.
 
+use crate::TICK_HZ;
 use crate::peripherals::registers::{Registers, Unmodelled};
 
 const KEYR: u32 = 0x08;
@@ -29,6 +30,10 @@ const PROGRAM: u32 = 1;
 const PAGE_ERASE: u32 = 1 << 1;
 const START: u32 = 1 << 16;
 const END_OF_OPERATION: u32 = 1;
+/// SR: a page is being erased.
+const BUSY: u32 = 1 << 16;
+/// ms that a page takes (data sheet of the STM32G474, typical).
+const ERASE_MS: u64 = 22;
 const RESET: &[(u32, u32)] = &[
     (0x00, 0x0004_0600), // ACR
     (CR, 0xC000_0000),
@@ -43,6 +48,8 @@ const PAGES_PER_BANK: u32 = 128;
 pub struct Flash {
     registers: Registers,
     status: u32,
+    /// The page that is being erased is blank then.
+    busy_until: u64,
     key: u32,
     /// Steps (words programmed, pages erased) until power fails within one.
     steps_left: Option<u32>,
@@ -77,6 +84,7 @@ impl Flash {
         Flash {
             registers: Registers::new("FLASH", RESET),
             status: 0,
+            busy_until: 0,
             key: 0,
             steps_left: None,
             has_failed: false,
@@ -200,23 +208,32 @@ impl Flash {
         cr & LOCK == 0 && cr & PROGRAM != 0
     }
 
+    /// Whether a page is being erased: nothing may be programmed, and a read of its bank would stall.
+    pub fn is_busy(&self, now: u64) -> bool {
+        now < self.busy_until
+    }
+
     /// Records a finished double word.
     pub fn programmed(&mut self) {
         self.status |= END_OF_OPERATION;
     }
 
     /// A bus read.
-    pub fn read(&self, offset: u32) -> Result<u32, Unmodelled> {
+    pub fn read(&self, offset: u32, now: u64) -> Result<u32, Unmodelled> {
         match offset {
-            SR => Ok(self.status),
+            SR => Ok(self.status | if self.is_busy(now) { BUSY } else { 0 }),
             ECCR => Ok(self.ecc),
             _ => self.registers.read(offset),
         }
     }
 
     /// A bus write. Returns the offset of a page to be erased.
-    pub fn write(&mut self, offset: u32, value: u32) -> Result<Option<u32>, Unmodelled> {
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Result<Option<u32>, Unmodelled> {
         match offset {
+            CR if self.is_busy(now) => {
+                let access = format!("write of {value:#x} while a page is being erased");
+                return Err(self.registers.unmodelled(access, offset));
+            }
             KEYR => {
                 if self.key == 0x4567_0123 && value == 0xCDEF_89AB {
                     self.registers.set(CR, self.registers.get(CR) & !LOCK);
@@ -255,18 +272,19 @@ impl Flash {
                 let locks = value | self.registers.get(CR) & (LOCK | OPTION_LOCK);
                 let kept = !(START | OPTION_START | OPTION_LAUNCH);
                 self.registers.set(CR, locks & kept);
-                return Ok(self.erased(value));
+                return Ok(self.erased(value, now));
             }
             _ => self.registers.write(offset, value)?,
         }
         Ok(None)
     }
 
-    fn erased(&mut self, command: u32) -> Option<u32> {
+    fn erased(&mut self, command: u32, now: u64) -> Option<u32> {
         if command & PAGE_ERASE == 0 || command & START == 0 {
             return None;
         }
         self.status |= END_OF_OPERATION;
+        self.busy_until = now + ERASE_MS * (TICK_HZ / 1_000);
         let (page, bank) = (command >> 3 & 0x7F, command >> 11 & 1);
         Some((bank * PAGES_PER_BANK + page) * PAGE)
     }

@@ -6,9 +6,9 @@ use super::{Cpu, FLASH, FLASH_SIZE, R, RAM, RAM_SIZE};
 use crate::error::BoardError;
 use crate::machine::Machine;
 
-/// The last two pages, which the program erases and programs.
-const CALIBRATION: u32 = FLASH + FLASH_SIZE - 2 * crate::peripherals::flash::PAGE;
-const CALIBRATION_SIZE: u64 = 2 * crate::peripherals::flash::PAGE as u64;
+/// The last ten pages, which the program erases and programs: event log and calibration.
+const STORED_SIZE: u32 = 10 * crate::peripherals::flash::PAGE;
+const STORED: u32 = FLASH + FLASH_SIZE - STORED_SIZE;
 const CORE_REGISTERS: [R; 13] = [
     R::R0,
     R::R1,
@@ -110,7 +110,7 @@ impl Cpu {
         self.asleep = None;
     }
 
-    /// Makes reads of the calibration's pages visible while a double word in flash is broken: a hook on every read would
+    /// Makes reads of the pages of event log and calibration visible while a double word in flash is broken: a hook on every read would
     /// slow all of them down.
     pub fn guard_flash(&mut self) -> Result<(), BoardError> {
         let readable = if self.machine().flash.has_broken() {
@@ -119,7 +119,7 @@ impl Cpu {
             Prot::READ
         };
         self.core
-            .mem_protect(u64::from(CALIBRATION), CALIBRATION_SIZE, readable)?;
+            .mem_protect(u64::from(STORED), u64::from(STORED_SIZE), readable)?;
         Ok(())
     }
 }

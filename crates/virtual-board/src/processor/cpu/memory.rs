@@ -153,6 +153,11 @@ pub(super) fn hook_flash(core: &mut Core) -> Result<(), uc_error> {
                 core.get_data_mut().failure = Some(format!("write to {address:#x}"));
                 return false;
             }
+            let machine = core.get_data_mut();
+            if machine.flash.is_busy(machine.now) {
+                machine.failure = Some(format!("{address:#x} programmed while a page is erased"));
+                return false;
+            }
             program(core, address, &value.to_le_bytes()[..size.min(8)]).is_ok()
         };
     core.add_mem_hook(HookType::MEM_WRITE_PROT, 1, 0, write)?;

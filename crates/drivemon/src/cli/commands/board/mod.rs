@@ -1,5 +1,7 @@
 //! `drivemon board`: a board in the field, over its Modbus line.
 
+mod events;
+mod identify;
 mod line;
 mod order;
 mod places;
@@ -23,6 +25,8 @@ const EXAMPLES: &str = "\
 Examples:
   drivemon board read --serial /dev/ttyUSB0              every value of the register map, with its unit
   drivemon board record --serial /dev/ttyUSB0            what ended the program, and what the board doubts about itself
+  drivemon board events --serial /dev/ttyUSB0            what happened: starts, crashes, lamps, doubts, learning
+  drivemon board identify --serial /dev/ttyUSB0          which board it is: program, serial number, motor, calibration
   drivemon board record --serial /dev/ttyUSB0 --elf drive-monitor     the same with function, file and line
   drivemon board prepare --serial COM4                   a new board: write its option bytes, once
 Needs: an RS-485 adapter on the board's A and B (docs/wiring.md). Factory settings: 19200 bit/s, even parity, unit 1.
@@ -31,6 +35,8 @@ Exit codes: 0 done and nothing found, 1 a doubt or a crash, 2 bad usage, no answ
 #[derive(Debug, Subcommand)]
 enum Command {
     Read(read::ReadBoard),
+    Identify(identify::Identify),
+    Events(events::Events),
     Record(record::Record),
     Prepare(order::Prepare),
     Acknowledge(order::Acknowledge),
@@ -42,6 +48,8 @@ impl Board {
     pub fn run(&self) -> Result<Finding, Failure> {
         match &self.command {
             Command::Read(read) => read.run(),
+            Command::Identify(identify) => identify.run(),
+            Command::Events(events) => events.run(),
             Command::Record(record) => record.run(),
             Command::Prepare(prepare) => prepare.run(),
             Command::Acknowledge(acknowledge) => acknowledge.run(),

@@ -108,6 +108,10 @@ fn is_code(field: Field) -> bool {
             | CrashAddress
             | CrashStack
             | ProgramChecksum
+            | SerialHigh
+            | SerialMiddle
+            | SerialLow
+            | CalibrationIdentification
     )
 }
 

@@ -1,0 +1,66 @@
+//! Function 20: the event log as a file of records, which the protocol counts in words of 16 bits.
+
+use super::answer::Answer;
+use super::slave::Exception;
+use crate::events::{EVENT_BYTES, LOG_EVENTS};
+
+/// Number of the file that is the event log. Its words are the bytes of flash, in their order.
+pub const EVENT_FILE: u16 = 1;
+/// Words of one answer at most: seven events.
+pub const MOST_FILE_WORDS: u16 = 7 * EVENT_BYTES as u16 / 2;
+const FILE_WORDS: u32 = LOG_EVENTS * EVENT_BYTES as u32 / 2;
+/// The only type of reference that the protocol knows.
+const REFERENCE: u8 = 6;
+/// Bytes of one reference in a request.
+const GROUP_BYTES: usize = 7;
+
+/// Copies bytes of the event log from a place on; `false` while flash cannot be read.
+pub type ReadEvents = fn(usize, &mut [u8]) -> bool;
+
+/// Answers a request for parts of files.
+pub(super) fn read(
+    data: &[u8],
+    events: ReadEvents,
+    answer: &mut Answer<'_>,
+) -> Result<(), Exception> {
+    let [bytes, groups @ ..] = data else {
+        return Err(Exception::Value);
+    };
+    let (parts, rest) = groups.as_chunks::<GROUP_BYTES>();
+    if usize::from(*bytes) != groups.len() || parts.is_empty() || !rest.is_empty() {
+        return Err(Exception::Value);
+    }
+    let at = answer.length();
+    answer.push(0);
+    for part in parts {
+        read_part(part, events, answer)?;
+    }
+    answer.set(at, (answer.length() - at - 1) as u8);
+    Ok(())
+}
+
+fn read_part(
+    part: &[u8; GROUP_BYTES],
+    events: ReadEvents,
+    answer: &mut Answer<'_>,
+) -> Result<(), Exception> {
+    let [reference, file @ .., a, b, c, d] = part;
+    let (first, words) = (u16::from_be_bytes([*a, *b]), u16::from_be_bytes([*c, *d]));
+    let inside = u32::from(first) + u32::from(words) <= FILE_WORDS;
+    if *reference != REFERENCE || *file != EVENT_FILE.to_be_bytes() || !inside {
+        return Err(Exception::Address);
+    }
+    if words == 0 || words > MOST_FILE_WORDS || answer.room() < 2 + 2 * usize::from(words) {
+        return Err(Exception::Value);
+    }
+    answer.push(1 + 2 * words as u8);
+    answer.push(REFERENCE);
+    for word in first..first + words {
+        let mut two = [0; 2];
+        if !events(2 * usize::from(word), &mut two) {
+            return Err(Exception::Busy);
+        }
+        answer.push_all(&two);
+    }
+    Ok(())
+}

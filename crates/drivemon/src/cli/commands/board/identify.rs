@@ -1,0 +1,59 @@
+//! `drivemon board identify`: who answers on the line.
+
+use std::collections::BTreeMap;
+
+use board::modbus::Object;
+use clap::Args;
+
+use super::line::LineArgs;
+use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::output::JsonArgs;
+use crate::cli::printing::paint;
+use crate::cli::printing::terminal::say;
+
+/// Tell which board answers: program, source, serial number, motor and calibration.
+///
+/// Two boards with the same program checksum, motor constants and calibration judge alike.
+#[derive(Debug, Args)]
+pub struct Identify {
+    #[command(flatten)]
+    line: LineArgs,
+    #[command(flatten)]
+    json: JsonArgs,
+}
+
+impl Identify {
+    /// Runs the command.
+    pub fn run(&self) -> Result<Finding, Failure> {
+        let told = self.line.open()?.identify()?;
+        let named: Vec<(String, String)> = told.into_iter().map(named).collect();
+        let values: BTreeMap<&str, &str> = named
+            .iter()
+            .map(|(name, value)| (name.as_str(), value.as_str()))
+            .collect();
+        self.json.give(&values, || print(&named))?;
+        Ok(Finding::Nothing)
+    }
+}
+
+/// An object of other firmware keeps its number.
+fn named((number, text): (u8, String)) -> (String, String) {
+    let Some(object) = Object::by_number(number) else {
+        return (format!("object {number:#04x}"), text);
+    };
+    let none = match object {
+        Object::Revision => text.is_empty().then_some("not built from a repository"),
+        Object::Program => (text == "00000000").then_some("not sealed"),
+        Object::Calibration => (text == "00000000").then_some("none: values of the motor file"),
+        _ => None,
+    };
+    let value = none.map_or(text, str::to_owned);
+    (object.label().to_owned(), value)
+}
+
+fn print(named: &[(String, String)]) {
+    let widest = named.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    for (name, value) in named {
+        say!("{}  {value}", paint::strong(format!("{name:widest$}")));
+    }
+}
