@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use board::MotorImage;
-use monitor::{MAX_EFFECTS, Monitor, MonitorConfig};
+use monitor::{Monitor, MonitorConfig};
 use motor::effect::SteadyEffect;
 use motor::motor_file::MotorFile;
 use motor::{effect, effects};
@@ -79,32 +79,32 @@ fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
     let file = MotorFile::read(path)?;
     let config = MonitorConfig::from_motor_file(&file, T_SAMPLE)?;
     Monitor::new(config).map_err(|error| format!("{}: {error}", path.display()))?;
-    let terms = effect_terms(&file).map_err(|error| format!("{}: {error}", path.display()))?;
+    check_effects(&file).map_err(|error| format!("{}: {error}", path.display()))?;
     let words = MotorImage::new(&config).0;
     let name: String = file.name.chars().flat_map(char::escape_default).collect();
     Ok(format!(
         "/// Name of the motor in the motor file.\npub const NAME: &str = \"{name}\";\n\
-         /// Its constants, checked at power-up.\npub static IMAGE: board::MotorImage = board::MotorImage({words:?});\n\
-         /// The steady-state terms of its effects, in its order.\npub static EFFECTS: board::EffectTerms = [{terms}];\n"
+         /// Its constants, checked at power-up.\npub static IMAGE: board::MotorImage = board::MotorImage({words:?});\n"
     ))
 }
 
-/// Only the motor file's own effects become part of the program.
-fn effect_terms(file: &MotorFile) -> Result<String, Box<dyn Error>> {
-    let mut configs = effect::from_motor_file(file, &file.name)?;
+/// A formula is compiled by nobody.
+fn check_effects(file: &MotorFile) -> Result<(), Box<dyn Error>> {
+    let configs = effect::from_motor_file(file, &file.name)?;
     // Laws are numbers of the image, not terms of the program.
-    configs.retain(|config| config.effect.law().is_none());
-    let mut terms = vec!["None".to_owned(); MAX_EFFECTS];
-    for (term, config) in terms.iter_mut().zip(configs) {
-        let known = |(steady, _): &(&&dyn SteadyEffect, &&str)| {
-            core::ptr::eq(steady.descriptor(), config.effect.descriptor())
-        };
-        let found = effects::STEADY.iter().zip(effects::TYPES).find(known);
-        let (_, name) = found.ok_or_else(|| {
-            let name = config.effect.descriptor().name;
-            format!("effects.{name}: a formula runs on a host only; remove it to flash the board")
-        })?;
-        *term = format!("Some(&motor::effects::types::{name})");
+    let terms = configs
+        .iter()
+        .filter(|config| config.effect.law().is_none());
+    for config in terms {
+        let wanted = config.effect.descriptor();
+        let known = |steady: &&&dyn SteadyEffect| core::ptr::eq(steady.descriptor(), wanted);
+        if !effects::STEADY.iter().any(|steady| known(&steady)) {
+            let name = wanted.name;
+            return Err(format!(
+                "effects.{name}: a formula runs on a host only; remove it to flash the board"
+            )
+            .into());
+        }
     }
-    Ok(terms.join(", "))
+    Ok(())
 }

@@ -2,8 +2,8 @@
 
 use board::modbus::BoardStatus;
 use board::{
-    Calibration, CalibrationSource, Doubts, EffectTerms, LearnState, Learner, Loaded, MotorImage,
-    Overrides, Progress, Refusal,
+    Calibration, CalibrationSource, Doubts, LearnState, Learner, Loaded, MotorImage, Overrides,
+    Progress, Refusal,
 };
 use monitor::{Monitor, MonitorConfig, Report};
 
@@ -24,10 +24,10 @@ pub struct Commissioning {
 }
 
 impl Commissioning {
-    /// Takes the compiled-in constants and the steady-state terms of their effects.
-    pub fn new(image: &MotorImage, terms: &EffectTerms, store: Option<FlashStore>) -> Self {
+    /// Takes the compiled-in constants.
+    pub fn new(image: &MotorImage, store: Option<FlashStore>) -> Self {
         Commissioning {
-            factory: image.config(terms).ok(),
+            factory: image.config().ok(),
             motor: image.identification(),
             store,
             learner: None,

@@ -74,7 +74,7 @@ async fn main(spawner: Spawner) -> ! {
             CAPTURE.take(),
         ),
         // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
-        commissioning: Commissioning::new(black_box(&IMAGE), &EFFECTS, calibration),
+        commissioning: Commissioning::new(black_box(&IMAGE), calibration),
         events: Events::new(log, &start),
         display: Display::default(),
         selftest: SelfTest::at_start(),

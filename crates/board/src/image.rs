@@ -13,7 +13,7 @@ use motor::effect::curve::{Action, BOARD_KNOTS, SteadyCurve};
 use motor::effects::STEADY;
 use motor::{Mechanics, TParams};
 
-use crate::checksum::crc32_words;
+use crate::checksum::{Checksum, crc32_words};
 
 /// Words of an image, version and checksum included.
 pub const IMAGE_WORDS: usize = 42
@@ -38,14 +38,11 @@ const CHAIN_WORDS: usize = CHANNELS + 1;
 const CAGE_WORDS: usize = 6;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0007;
+const SCHEMA: u32 = 0x444D_0008;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MotorImage(pub [u32; IMAGE_WORDS]);
-
-/// The steady-state terms that a program holds, in the order in which its motor file names them.
-pub type EffectTerms = [Option<&'static dyn SteadyEffect>; MAX_EFFECTS];
 
 /// Why an image cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +53,7 @@ pub enum ImageError {
     Schema,
     /// A choice that this version does not know.
     Choice,
-    /// An effect is switched on that the program does not hold.
+    /// An effect is switched on that this program does not know.
     Effects,
 }
 
@@ -102,11 +99,11 @@ impl MotorImage {
         self.0[IMAGE_WORDS - 1]
     }
 
-    /// Checks and unpacks an image, whose effects are `terms`. Ranges are checked by [`monitor::Monitor::new`].
+    /// Checks and unpacks an image. Ranges are checked by [`monitor::Monitor::new`].
     ///
     /// # Errors
     /// A wrong checksum, another layout, an unknown choice or effect.
-    pub fn config(&self, terms: &EffectTerms) -> Result<MonitorConfig, ImageError> {
+    pub fn config(&self) -> Result<MonitorConfig, ImageError> {
         let (content, checksum) = self.0.split_at(IMAGE_WORDS - 1);
         if [crc32_words(content)] != *checksum {
             return Err(ImageError::Checksum);
@@ -118,7 +115,7 @@ impl MotorImage {
         let config = read(&mut reader)?;
         Ok(MonitorConfig {
             channel_gain: reader.numbers(),
-            effects: effects(&mut reader, terms)?,
+            effects: effects(&mut reader)?,
             laws: laws(&mut reader)?,
             ..config
         })
@@ -256,7 +253,7 @@ fn read_cage(r: &mut Reader<'_>) -> Cage {
 fn write_effects(w: &mut Writer, config: &MonitorConfig) {
     w.numbers(&config.channel_gain);
     for effect in &config.effects {
-        w.word(effect.as_ref().map_or(0, number));
+        w.word(effect.map_or(0, |active| number(active.effect)));
         w.numbers(&effect.map_or([0.0; MAX_EFFECT_PARAMETERS], |effect| effect.parameters));
     }
 }
@@ -287,21 +284,23 @@ fn laws(r: &mut Reader<'_>) -> Result<ActiveLaws, ImageError> {
     Ok(active)
 }
 
-/// Place in [`STEADY`], from 1: it only tells this image from that of another effect, a program knows its terms.
-fn number(active: &ActiveEffect) -> u32 {
-    let wanted = active.effect.descriptor();
-    let place = STEADY
-        .iter()
-        .position(|effect| core::ptr::eq(effect.descriptor(), wanted));
-    place.map_or(u32::MAX, |place| place as u32 + 1)
+/// Checksum of name and form, never 0: the same in every version, whatever else joins the library.
+fn number(effect: &dyn SteadyEffect) -> u32 {
+    let known = effect.descriptor();
+    let mut checksum = Checksum::new();
+    checksum.update(known.name.as_bytes());
+    checksum.update(b"/");
+    checksum.update(known.form.as_bytes());
+    checksum.finish().max(1)
 }
 
-fn effects(r: &mut Reader<'_>, terms: &EffectTerms) -> Result<ActiveEffects, ImageError> {
+fn effects(r: &mut Reader<'_>) -> Result<ActiveEffects, ImageError> {
     let mut active = ActiveEffects::default();
-    for (slot, term) in active.iter_mut().zip(terms) {
-        let (is_on, parameters) = (r.word() != 0, r.numbers());
-        if is_on {
-            let effect = term.ok_or(ImageError::Effects)?;
+    for slot in &mut active {
+        let (wanted, parameters) = (r.word(), r.numbers());
+        if wanted != 0 {
+            let found = STEADY.iter().find(|effect| number(**effect) == wanted);
+            let effect = *found.ok_or(ImageError::Effects)?;
             *slot = Some(ActiveEffect { effect, parameters });
         }
     }

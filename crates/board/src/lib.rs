@@ -47,7 +47,7 @@ pub use events::{
 pub use fault_record::{FAULT_RECORD_WORDS, FaultCause, FaultRecord};
 pub use frame::Frame;
 pub use framing::{FrameError, MAX_FRAME_BYTES};
-pub use image::{EffectTerms, IMAGE_WORDS, ImageError, MotorImage};
+pub use image::{IMAGE_WORDS, ImageError, MotorImage};
 pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal};
 pub use message::Message;
 pub use relay::{Relay, RelayMode};

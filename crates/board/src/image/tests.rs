@@ -13,12 +13,6 @@ fn image(config: &MonitorConfig) -> MotorImage {
     MotorImage::new(config)
 }
 
-fn terms(config: &MonitorConfig) -> EffectTerms {
-    config
-        .effects
-        .map(|effect| effect.map(|active| active.effect))
-}
-
 fn with_effects() -> MonitorConfig {
     let mut config = shipped("assumed-300w.toml");
     config.channel_gain[4] = 0.98;
@@ -36,7 +30,15 @@ fn with_effects() -> MonitorConfig {
 #[test]
 fn effects_and_channel_gains_survive_the_round_trip() {
     let config = with_effects();
-    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+    assert_eq!(image(&config).config(), Ok(config));
+}
+
+#[test]
+fn every_effect_has_a_number_of_its_own() {
+    let numbers: std::collections::BTreeSet<u32> =
+        STEADY.iter().map(|effect| number(*effect)).collect();
+    assert_eq!(numbers.len(), STEADY.len());
+    assert!(!numbers.contains(&0));
 }
 
 #[test]
@@ -61,21 +63,24 @@ fn laws_survive_the_round_trip() {
         law(Place::StatorPhaseB, Coordinate::PhaseCurrent, BOARD_KNOTS),
     ];
     assert!(config.laws.iter().all(Option::is_some));
-    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+    assert_eq!(image(&config).config(), Ok(config));
 }
 
 #[test]
 fn an_effect_that_the_program_lacks_is_refused_rather_than_dropped() {
-    let image = image(&with_effects());
-    let refused = image.config(&EffectTerms::default());
-    assert_eq!(refused, Err(ImageError::Effects));
+    let mut image = image(&with_effects());
+    let known = number(STEADY[9]);
+    let place = image.0.iter().position(|word| *word == known);
+    image.0[place.expect("the second effect")] ^= 1;
+    image.0[IMAGE_WORDS - 1] = crc32_words(&image.0[..IMAGE_WORDS - 1]);
+    assert_eq!(image.config(), Err(ImageError::Effects));
 }
 
 #[test]
 fn every_shipped_motor_survives_the_round_trip_bit_for_bit() {
     for name in ["assumed-300w.toml", "peer-2k2.toml", "imc-18k5.toml"] {
         let config = shipped(name);
-        assert_eq!(image(&config).config(&terms(&config)), Ok(config), "{name}");
+        assert_eq!(image(&config).config(), Ok(config), "{name}");
     }
 }
 
@@ -124,7 +129,7 @@ fn calibrated() -> MonitorConfig {
 #[test]
 fn a_calibrated_motor_survives_the_round_trip_number_by_number() {
     let config = calibrated();
-    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+    assert_eq!(image(&config).config(), Ok(config));
 }
 
 #[test]
@@ -132,7 +137,7 @@ fn every_calibrated_motor_that_ships_survives_the_round_trip() {
     for motor in ["assumed-300w", "peer-2k2", "chalmers-4kw"] {
         let config = shipped(&format!("{motor}-calibrated.toml"));
         assert!(config.healthy.is_some(), "{motor} is not calibrated");
-        let read = image(&config).config(&terms(&config));
+        let read = image(&config).config();
         assert_eq!(read, Ok(config), "{motor}");
     }
 }
@@ -143,7 +148,7 @@ fn a_calibration_changes_the_identification() {
         healthy: None,
         ..calibrated()
     };
-    let read = image(&without).config(&terms(&without));
+    let read = image(&without).config();
     assert_eq!(read, Ok(without));
     let ids = [without, calibrated()].map(|config| image(&config).identification());
     assert_ne!(ids[0], ids[1]);
@@ -157,7 +162,7 @@ fn choices_that_no_shipped_motor_makes_survive_too() {
         field: FieldCurrent::Nominal(1.25),
         ..shipped("assumed-300w.toml")
     };
-    assert_eq!(image(&config).config(&terms(&config)), Ok(config));
+    assert_eq!(image(&config).config(), Ok(config));
 }
 
 #[test]
@@ -179,6 +184,6 @@ proptest! {
     fn any_flipped_bit_is_found(word in 0..IMAGE_WORDS, bit in 0..32_u32) {
         let mut image = image(&shipped("assumed-300w.toml"));
         image.0[word] ^= 1 << bit;
-        prop_assert_eq!(image.config(&EffectTerms::default()), Err(ImageError::Checksum));
+        prop_assert_eq!(image.config(), Err(ImageError::Checksum));
     }
 }

@@ -14,15 +14,6 @@ macro_rules! effects {
         /// All effects, as the monitor core and the firmware see them.
         pub static STEADY: &[&dyn SteadyEffect] = &[$(&$file::$effect),*];
 
-        /// Types of [`STEADY`], in its order, by name: a program that names one holds its code and no other's.
-        pub mod types {
-            $(pub use super::$file::$effect;)*
-        }
-
-        /// Names in [`types`] of [`STEADY`], in its order.
-        #[cfg(feature = "std")]
-        pub static TYPES: &[&str] = &[$(stringify!($effect)),*];
-
         /// All effects, as simulator and discovery see them.
         #[cfg(feature = "std")]
         pub static ALL: &[&dyn Effect] = &[$(&$file::$effect),*];
