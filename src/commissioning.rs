@@ -2,7 +2,7 @@
 
 use board::modbus::BoardStatus;
 use board::{
-    Calibration, CalibrationSource, Doubts, LearnState, Learner, Loaded, MotorImage, Overrides,
+    Calibration, CalibrationSource, Configuration, Doubts, LearnState, Learner, Loaded, Overrides,
     Progress, Refusal,
 };
 use monitor::{Monitor, MonitorConfig, Report};
@@ -24,11 +24,11 @@ pub struct Commissioning {
 }
 
 impl Commissioning {
-    /// Takes the compiled-in constants.
-    pub fn new(image: &MotorImage, store: Option<FlashStore>) -> Self {
+    /// Knows no motor yet.
+    pub fn new(store: Option<FlashStore>) -> Self {
         Commissioning {
-            factory: image.config().ok(),
-            motor: image.identification(),
+            factory: None,
+            motor: 0,
             store,
             learner: None,
             source: CalibrationSource::CompiledIn,
@@ -36,6 +36,15 @@ impl Commissioning {
             learning: LearnState::Idle,
             acknowledged: false,
         }
+    }
+
+    /// Takes a motor's constants. What was being learnt was learnt with others.
+    pub fn set_motor(&mut self, holds: &Configuration) {
+        self.factory = holds.config();
+        self.motor = holds.identification();
+        self.learner = None;
+        self.learning = LearnState::Idle;
+        self.acknowledged = false;
     }
 
     /// Writes what Modbus tells about it.
@@ -67,8 +76,8 @@ impl Commissioning {
         self.motor
     }
 
-    /// A monitor with the calibration in flash, or without it where it does not hold; `None` when the compiled-in
-    /// constants do not hold themselves.
+    /// A monitor with the calibration in flash, or without it where it does not hold; `None` when the motor's constants do not
+    /// hold themselves.
     #[inline(never)]
     pub fn monitor(&mut self) -> Option<Monitor> {
         let mut config = self.factory?;

@@ -30,6 +30,11 @@ impl Events {
         self.journal.note(cause, [value, 0]);
     }
 
+    /// Something happened, with both of its values.
+    pub fn note_values(&mut self, cause: EventCause, values: [u32; 2]) {
+        self.journal.note(cause, values);
+    }
+
     /// Samples were missing.
     pub fn note_gap(&mut self, gap: Gap) {
         let number = match gap {

@@ -3,13 +3,16 @@
 use core::hint::black_box;
 
 use board::modbus::Identity;
-use board::{Button, Calibration, Capture, Display, Doubt, Doubts, LAMPS, Relay, StuckChannels};
+use board::{
+    Button, Calibration, Capture, Compiled, Display, Doubt, Doubts, LAMPS, Relay, StuckChannels,
+};
 use embassy_executor::Spawner;
 use embassy_time::{Duration, Timer};
 use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};
 use static_cell::ConstStaticCell;
 
 use crate::commissioning::Commissioning;
+use crate::configuration::{Change, Settings};
 use crate::events::Events;
 use crate::hardware::board::Board;
 use crate::hardware::flash_store;
@@ -28,6 +31,8 @@ use crate::safety::{Start, marks, marks::Mark, options};
 
 include!(concat!(env!("OUT_DIR"), "/motor.rs"));
 
+/// s; the sampling clock runs at 10 kHz.
+const T_SAMPLE: f32 = 1e-4;
 /// How long each lamp is lit at power-up.
 const LAMP_TEST: Duration = Duration::from_millis(150);
 /// Blocks that are thrown away at first: the filters and sensors settle (0.1 s).
@@ -49,20 +54,36 @@ async fn main(spawner: Spawner) -> ! {
     let identity = Identity {
         version: env!("CARGO_PKG_VERSION"),
         revision: REVISION,
-        motor: NAME,
         serial: housekeeping::serial_number(),
     };
-    serial::start(spawner, board.lines, identity);
+    let (calibration, log, stored) = match flash_store::open(board.flash) {
+        Some(stored) => (
+            Some(stored.calibration),
+            Some(stored.events),
+            Some(stored.configuration),
+        ),
+        None => (None, None, None),
+    };
+    let compiled = Compiled {
+        name: NAME,
+        // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
+        image: black_box(&IMAGE),
+        t_sample: T_SAMPLE,
+    };
+    let settings = Settings::new(compiled, stored, board.button.is_high());
+    let holds = settings.holds();
+    serial::show(holds);
+    let line = holds.line().unwrap_or_default();
+    serial::start(spawner, board.lines, line, identity);
+    let relay = Relay::new(holds.relay().unwrap_or_default());
     let mut lamps = board.lamps;
     test_lamps(&mut lamps, &mut watchdog).await;
-    let (calibration, log) = match flash_store::open(board.flash) {
-        Some(stored) => (Some(stored.calibration), Some(stored.events)),
-        None => (None, None),
-    };
     let mut panel = Panel {
         wires: lamps,
         relay_wires: board.relay,
-        relay: Relay::default(),
+        relay,
+        settings,
+        change: None,
         watchdog,
         button: board.button,
         press: Button::default(),
@@ -73,8 +94,7 @@ async fn main(spawner: Spawner) -> ! {
             identity.serial,
             CAPTURE.take(),
         ),
-        // Through memory that the compiler cannot see through: the constants are read from flash, not folded.
-        commissioning: Commissioning::new(black_box(&IMAGE), calibration),
+        commissioning: Commissioning::new(calibration),
         events: Events::new(log, &start),
         display: Display::default(),
         selftest: SelfTest::at_start(),
@@ -90,6 +110,7 @@ async fn main(spawner: Spawner) -> ! {
         second_at: 0,
     };
     panel.look_after_supply();
+    panel.take_motor();
     let mut monitor = panel.commissioning.monitor();
     panel.note_calibration();
     match &mut monitor {
@@ -150,8 +171,11 @@ async fn run(monitor: &mut Monitor, panel: &mut Panel, mut sources: Sources) -> 
             }
             Pause::Learnt(calibration) => {
                 panel.commissioning.store(&calibration);
-                if let Some(calibrated) = panel.commissioning.monitor() {
-                    *monitor = calibrated;
+                renew(monitor, panel);
+            }
+            Pause::Configured(change) => {
+                if panel.configure(change) {
+                    renew(monitor, panel);
                 }
             }
         }
@@ -159,10 +183,19 @@ async fn run(monitor: &mut Monitor, panel: &mut Panel, mut sources: Sources) -> 
     }
 }
 
+/// Judges with what was learnt or configured just now.
+fn renew(monitor: &mut Monitor, panel: &mut Panel) {
+    if let Some(renewed) = panel.commissioning.monitor() {
+        *monitor = renewed;
+    }
+    panel.note_calibration();
+}
+
 /// Why judging stops for a moment.
 enum Pause {
     Gap(Gap),
     Learnt(Calibration),
+    Configured(Change),
 }
 
 /// Judges block after block until samples are missing or something was learnt.
@@ -190,6 +223,9 @@ async fn watch(
         panel.record.keep(block.samples());
         panel.channels.look(block.first());
         panel.after_block(lamps);
+        if let Some(change) = panel.change.take() {
+            return Pause::Configured(change);
+        }
     }
 }
 

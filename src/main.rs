@@ -4,6 +4,8 @@
 #[cfg(target_os = "none")]
 mod commissioning;
 #[cfg(target_os = "none")]
+mod configuration;
+#[cfg(target_os = "none")]
 mod events;
 #[cfg(target_os = "none")]
 mod firmware;

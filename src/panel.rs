@@ -10,6 +10,7 @@ use embassy_time::{Duration, Instant, Timer};
 use monitor::{Lamp, Lamps, Monitor, Report};
 
 use crate::commissioning::Commissioning;
+use crate::configuration::{Change, Settings};
 use crate::events::Events;
 use crate::hardware::housekeeping::{Housekeeping, is_vdda_credible};
 use crate::hardware::lamps::{Lamps as LampWires, RelayWires};
@@ -51,6 +52,10 @@ pub struct Panel {
     pub record: Record,
     /// Calibration and learning.
     pub commissioning: Commissioning,
+    /// What was configured over the line.
+    pub settings: Settings,
+    /// A change of it for which judging stops for a moment.
+    pub change: Option<Change>,
     /// What is kept in flash of everything that happens.
     pub events: Events,
     /// Lamps that stay.
@@ -122,6 +127,7 @@ impl Panel {
         self.record.note_health(doubts, energised);
         self.events.step(&self.situation(&shown, doubts), has_time);
         self.record.note_event(self.events.newest());
+        self.record.note_settings(&self.settings);
         self.record.refresh(&shown, &self.commissioning);
         self.wires.set(levels(&shown.lamps, bright));
     }
@@ -157,7 +163,41 @@ impl Panel {
         self.told = doubts;
     }
 
+    /// Follows a change of the configuration; whether a monitor has to be made anew.
+    #[inline(never)]
+    pub fn configure(&mut self, change: Change) -> bool {
+        if change == Change::Confirm {
+            if self.settings.confirm() {
+                self.note_configuration(EventCause::Configured);
+            }
+            return false;
+        }
+        let holds = self.settings.holds();
+        self.relay.mode = holds.relay().unwrap_or_default();
+        serial::show(holds);
+        self.take_motor();
+        if change == Change::HoldsAgain {
+            self.note_configuration(EventCause::TrialEnded);
+        }
+        true
+    }
+
+    /// Learning and judging belong to the motor of the configuration that holds.
+    pub fn take_motor(&mut self) {
+        self.commissioning.set_motor(self.settings.holds());
+    }
+
+    fn note_configuration(&mut self, cause: EventCause) {
+        let line = self.settings.holds().line();
+        let unit = line.map_or(0, |line| u32::from(line.unit));
+        let values = [self.commissioning.motor(), unit];
+        self.events.note_values(cause, values);
+    }
+
     fn every_second(&mut self) {
+        if let Some(change) = self.settings.look() {
+            self.change = Some(change);
+        }
         self.look_after_supply();
         self.stack.look();
         self.doubts.set(Doubt::Stack, self.stack.is_nearly_full());
@@ -185,14 +225,18 @@ impl Panel {
     }
 
     fn obey_master(&mut self) {
-        match serial::take_command() {
+        let command = serial::take_command();
+        if let Some(change) = command.and_then(|command| self.settings.obey(command)) {
+            self.change = Some(change);
+        }
+        match command {
             Some(Command::Acknowledge) => self.acknowledge(),
             Some(Command::Learn) => self.commissioning.begin(self.all_doubts()),
             Some(Command::Prepare) => {
                 self.events.note(EventCause::Prepared, 0);
                 self.prepares_at = Some(self.blocks.wrapping_add(ANSWER_BLOCKS));
             }
-            None => {}
+            _ => {}
         }
         if self.prepares_at == Some(self.blocks) {
             options::prepare();

@@ -5,6 +5,7 @@ use board::{CAPTURE_EVERY, Capture, Doubts, Shown};
 use monitor::{Lamp, Monitor, RawSample, Report};
 
 use crate::commissioning::Commissioning;
+use crate::configuration::Settings;
 use crate::hardware::serial;
 use crate::hardware::telemetry::Telemetry;
 use crate::safety::{self, Start};
@@ -68,6 +69,13 @@ impl Record {
     pub fn note_event(&mut self, number: u32) {
         self.stale |= self.board.last_event != number;
         self.board.last_event = number;
+    }
+
+    /// Notes where the configuration comes from and how its trial stands.
+    pub fn note_settings(&mut self, settings: &Settings) {
+        let before = (self.board.configuration, self.board.refused);
+        settings.describe(&mut self.board);
+        self.stale |= before != (self.board.configuration, self.board.refused);
     }
 
     /// Number and probability, per mille, of the likeliest fault of the last window.

@@ -1,7 +1,10 @@
-//! What the board stores: the calibration in the last two pages of bank 2, the event log in the eight before, away from the
-//! program, which runs on from bank 1.
+//! What the board stores: the calibration in the last two pages of bank 2, the event log in the eight before, the
+//! configuration in the four before those, away from the program, which runs on from bank 1.
 
-use board::{EVENT_BYTES, EventLog, LOG_EVENTS, LOG_PAGES, LogFlash, PAGE_BYTES, PAGES, Store};
+use board::{
+    CONFIGURATION_PAGES, ConfigurationStore, EVENT_BYTES, EventLog, LOG_EVENTS, LOG_PAGES,
+    LogFlash, PAGE_BYTES, PAGES, Store,
+};
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Error, Flash};
 use embassy_stm32::pac;
@@ -20,6 +23,7 @@ const BANK_BYTES: u32 = FLASH_BYTES / 2;
 /// From the beginning of flash.
 const CALIBRATION: u32 = FLASH_BYTES - PAGES * PAGE_BYTES;
 const EVENTS: u32 = CALIBRATION - LOG_PAGES * PAGE_BYTES;
+const CONFIGURATION: u32 = EVENTS - CONFIGURATION_PAGES * PAGE_BYTES;
 /// Where flash is read.
 const FLASH_BASE: usize = 0x0800_0000;
 const LOG_BYTES: usize = LOG_EVENTS as usize * EVENT_BYTES;
@@ -36,9 +40,11 @@ pub struct Stored {
     pub calibration: FlashStore,
     /// What happened.
     pub events: FlashLog,
+    /// What was configured.
+    pub configuration: ConfigurationStore<GuardedFlash>,
 }
 
-/// Opens both. `None` on a chip whose option bytes join the banks: its pages are others, and the driver would panic.
+/// Opens all three. `None` on a chip whose option bytes join the banks: its pages are others, and the driver would panic.
 #[allow(unsafe_code)]
 pub fn open(flash: Peri<'static, FLASH>) -> Option<Stored> {
     pac::PWR.cr2().modify(|w| {
@@ -47,12 +53,13 @@ pub fn open(flash: Peri<'static, FLASH>) -> Option<Stored> {
     });
     let two_banks = pac::FLASH.optr().read().dbank();
     two_banks.then(|| {
-        // Safety: both handles stay in the task of the samples, none is kept across a wait, and each waits for the other's
+        // Safety: all handles stay in the task of the samples, none is kept across a wait, and each waits for the others'
         // erasure.
-        let again = unsafe { flash.clone_unchecked() };
-        let [calibration, events] =
-            [flash, again].map(|flash| GuardedFlash(Flash::new_blocking(flash)));
+        let handles = unsafe { [flash.clone_unchecked(), flash.clone_unchecked(), flash] };
+        let [calibration, events, configuration] =
+            handles.map(|flash| GuardedFlash(Flash::new_blocking(flash)));
         Stored {
+            configuration: ConfigurationStore::new(configuration, CONFIGURATION),
             calibration: Store::new(calibration, CALIBRATION),
             events: EventLog::open(events, EVENTS),
         }

@@ -3,18 +3,18 @@
 //! Both live in tasks of their own beside the sample loop and share a few words with it, so that nothing that comes over
 //! a wire can hold up a sample.
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
-use board::MAX_FRAME_BYTES;
-use board::modbus::{Collector, Command, Identity, Image, MAX_RESPONSE_BYTES, Readable, Slave};
+use board::modbus::{Collector, Command, Identity, Image, MAX_RESPONSE_BYTES, Memory, Slave};
+use board::{Configuration, Desk, Line, LineParity, MAX_FRAME_BYTES};
 use embassy_executor::Spawner;
 use embassy_stm32::peripherals::{DMA1_CH3, LPUART1, PA2, PA9, PA10, PA12, USART1};
-use embassy_stm32::usart::{self, BufferedUart, Config, Parity, UartTx};
+use embassy_stm32::usart::{self, BufferedUart, Config, Parity, StopBits, UartTx};
 use embassy_stm32::{Peri, bind_interrupts, dma};
 use embassy_sync::blocking_mutex::CriticalSectionMutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
-use embassy_time::{Duration, Instant, with_timeout};
+use embassy_time::{Duration, Instant, Timer, with_timeout};
 
 use super::flash_store;
 use crate::safety::marks::{self, Mark};
@@ -22,12 +22,6 @@ use embedded_io_async::{Read, Write};
 use heapless::Vec;
 use static_cell::ConstStaticCell;
 
-/// The slave's address.
-const UNIT: u8 = 1;
-/// Bit/s of Modbus, with even parity: the protocol's default.
-const MODBUS_BAUD: u32 = 19_200;
-/// The silence that ends a frame: 3.5 characters of 11 bits.
-const SILENCE: Duration = Duration::from_micros(2_100);
 /// Bit/s of the frames; some 8 kB/s are sent while a capture is handed over.
 const FRAMES_BAUD: u32 = 115_200;
 
@@ -76,9 +70,15 @@ static IMAGE: CriticalSectionMutex<Cell<Option<Image>>> =
 static COMMAND: CriticalSectionMutex<Cell<Option<Command>>> =
     CriticalSectionMutex::new(Cell::new(None));
 
+/// What holds, and what a master is writing. Neither side ever keeps it across a wait.
+static DESK: CriticalSectionMutex<RefCell<Desk>> =
+    CriticalSectionMutex::new(RefCell::new(Desk::blank()));
+/// How the line has to be set from now on, where that has changed.
+static LINE: CriticalSectionMutex<Cell<Option<Line>>> = CriticalSectionMutex::new(Cell::new(None));
+
 /// Starts both lines. One that cannot be set up stays silent; its settings are constants, so a test would see it.
-pub fn start(spawner: Spawner, lines: Lines, identity: Identity) {
-    if let Ok(token) = serve_modbus(lines.modbus, identity) {
+pub fn start(spawner: Spawner, lines: Lines, line: Line, identity: Identity) {
+    if let Ok(token) = serve_modbus(lines.modbus, line, identity) {
         spawner.spawn(token);
     }
     if let Ok(token) = send_frames(lines.frames) {
@@ -96,6 +96,34 @@ pub fn send(frame: &[u8]) {
 /// Shows these registers from now on.
 pub fn publish(image: Image) {
     IMAGE.lock(|shared| shared.set(Some(image)));
+}
+
+/// This configuration holds from now on: read by masters, and the line follows it behind the answer that is being sent.
+pub fn show(configuration: &Configuration) {
+    DESK.lock(|desk| {
+        if let Ok(mut desk) = desk.try_borrow_mut() {
+            desk.show(configuration);
+        }
+    });
+    LINE.lock(|line| line.set(configuration.line().ok()));
+}
+
+/// What a master has written.
+pub fn copy_staged(into: &mut Configuration) {
+    copy(Desk::staged, into);
+}
+
+/// What holds.
+pub fn copy_active(into: &mut Configuration) {
+    copy(Desk::active, into);
+}
+
+fn copy(which: fn(&Desk) -> &Configuration, into: &mut Configuration) {
+    DESK.lock(|desk| {
+        if let Ok(desk) = desk.try_borrow() {
+            into.clone_from(which(&desk));
+        }
+    });
 }
 
 /// What a master has asked for since the last look.
@@ -122,11 +150,8 @@ async fn send_frames(parts: FrameLine) {
 }
 
 #[embassy_executor::task]
-async fn serve_modbus(parts: ModbusLine, identity: Identity) {
+async fn serve_modbus(parts: ModbusLine, settings: Line, identity: Identity) {
     let (line, receive, transmit, enable) = parts;
-    let mut config = Config::default();
-    config.baudrate = MODBUS_BAUD;
-    config.parity = Parity::ParityEven;
     let (mut sent, mut received) = ([0; MAX_RESPONSE_BYTES + 1], [0; 64]);
     let line = BufferedUart::new_with_de(
         line,
@@ -136,24 +161,41 @@ async fn serve_modbus(parts: ModbusLine, identity: Identity) {
         Irqs,
         &mut sent,
         &mut received,
-        config,
+        config_of(&settings),
     );
     let Ok(mut line) = line else {
         return;
     };
-    let mut slave = Slave::new(UNIT);
+    let mut slave = Slave::new(settings.unit);
+    let mut silence = Duration::from_micros(u64::from(settings.silence_us()));
     let mut collector = Collector::default();
     let mut response = [0; MAX_RESPONSE_BYTES];
     loop {
-        collect(&mut line, &mut collector).await;
+        if let Some(settings) = LINE.lock(Cell::take) {
+            // The last byte of the answer is still on its way where the driver calls the line flushed.
+            Timer::after(silence).await;
+            // Settings that the driver refuses were refused before they came here.
+            let _ = line.set_config(&config_of(&settings));
+            slave.set_unit(settings.unit);
+            silence = Duration::from_micros(u64::from(settings.silence_us()));
+        }
+        if !collect(&mut line, &mut collector, silence).await {
+            continue;
+        }
         let image = IMAGE.lock(Cell::get).unwrap_or_default();
         let now_ms = Instant::now().as_millis() as u32;
-        let readable = Readable {
-            image: &image,
-            identity: &identity,
-            events: flash_store::read_events,
-        };
-        let (length, command) = slave.respond(now_ms, collector.frame(), &readable, &mut response);
+        let (length, command) = DESK.lock(|desk| {
+            let Ok(mut desk) = desk.try_borrow_mut() else {
+                return (0, None);
+            };
+            let mut memory = Memory {
+                image: &image,
+                identity: &identity,
+                events: flash_store::read_events,
+                desk: &mut desk,
+            };
+            slave.respond(now_ms, collector.frame(), &mut memory, &mut response)
+        });
         collector.clear();
         if command.is_some() {
             COMMAND.lock(|shared| shared.set(command));
@@ -171,21 +213,35 @@ async fn serve_modbus(parts: ModbusLine, identity: Identity) {
 /// Between two marks at most: a line may be silent for ever, the task may not.
 const SIGN_OF_LIFE: Duration = Duration::from_millis(30);
 
-/// Waits for bytes, then for the silence behind them.
-async fn collect(line: &mut BufferedUart<'_>, collector: &mut Collector) {
-    let mut bytes = [0; 32];
-    let mut some = loop {
-        marks::leave(Mark::Serial);
-        if let Ok(read) = with_timeout(SIGN_OF_LIFE, line.read(&mut bytes)).await {
-            break read.unwrap_or(0);
-        }
+fn config_of(settings: &Line) -> Config {
+    let mut config = Config::default();
+    config.baudrate = settings.baud;
+    (config.parity, config.stop_bits) = match settings.parity {
+        LineParity::None => (Parity::ParityNone, StopBits::STOP2),
+        LineParity::Odd => (Parity::ParityOdd, StopBits::STOP1),
+        LineParity::Even => (Parity::ParityEven, StopBits::STOP1),
     };
+    config
+}
+
+/// Waits a while for bytes, then for the silence behind them; whether any came.
+async fn collect(
+    line: &mut BufferedUart<'_>,
+    collector: &mut Collector,
+    silence: Duration,
+) -> bool {
+    let mut bytes = [0; 32];
+    marks::leave(Mark::Serial);
+    let Ok(read) = with_timeout(SIGN_OF_LIFE, line.read(&mut bytes)).await else {
+        return false;
+    };
+    let mut some = read.unwrap_or(0);
     loop {
         marks::leave(Mark::Serial);
         collector.push(bytes.get(..some).unwrap_or_default());
-        match with_timeout(SILENCE, line.read(&mut bytes)).await {
+        match with_timeout(silence, line.read(&mut bytes)).await {
             Ok(length) => some = length.unwrap_or(0),
-            Err(_) => return,
+            Err(_) => return true,
         }
     }
 }

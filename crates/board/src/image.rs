@@ -104,22 +104,27 @@ impl MotorImage {
     /// # Errors
     /// A wrong checksum, another layout, an unknown choice or effect.
     pub fn config(&self) -> Result<MonitorConfig, ImageError> {
-        let (content, checksum) = self.0.split_at(IMAGE_WORDS - 1);
-        if [crc32_words(content)] != *checksum {
-            return Err(ImageError::Checksum);
-        }
-        let mut reader = Reader { words: content };
-        if reader.word() != SCHEMA {
-            return Err(ImageError::Schema);
-        }
-        let config = read(&mut reader)?;
-        Ok(MonitorConfig {
-            channel_gain: reader.numbers(),
-            effects: effects(&mut reader)?,
-            laws: laws(&mut reader)?,
-            ..config
-        })
+        config_of(&self.0)
     }
+}
+
+/// The same of an image's words, wherever they lie.
+pub(crate) fn config_of(words: &[u32; IMAGE_WORDS]) -> Result<MonitorConfig, ImageError> {
+    let [content @ .., checksum] = words;
+    if crc32_words(content) != *checksum {
+        return Err(ImageError::Checksum);
+    }
+    let mut reader = Reader { words: content };
+    if reader.word() != SCHEMA {
+        return Err(ImageError::Schema);
+    }
+    let config = read(&mut reader)?;
+    Ok(MonitorConfig {
+        channel_gain: reader.numbers(),
+        effects: effects(&mut reader)?,
+        laws: laws(&mut reader)?,
+        ..config
+    })
 }
 
 fn write_measurement(w: &mut Writer, config: &MonitorConfig) {

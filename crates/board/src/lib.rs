@@ -18,6 +18,7 @@ mod capture;
 mod checksum;
 #[cfg(test)]
 mod chip;
+mod configuration;
 mod display;
 mod doubt;
 mod events;
@@ -38,6 +39,11 @@ pub use calibration::{
 };
 pub use capture::{CAPTURE_EVERY, CAPTURE_INSTANTS, Capture, CaptureChunk, CaptureState};
 pub use checksum::{Checksum, crc32, crc32_words};
+pub use configuration::{
+    ACTIVE, CONFIGURATION_PAGES, CONFIGURATION_REGISTERS, CONFIGURATION_WORDS, Compiled,
+    Configuration, ConfigurationSource, ConfigurationStore, Configurator, Desk, Line, LineParity,
+    NAME_BYTES, Name, Refused, STAGED, TRIAL_S,
+};
 pub use display::{Display, LAMP_NAMES, LAMPS, Overrides, Shown, levels};
 pub use doubt::{Doubt, Doubts};
 pub use events::{

@@ -42,6 +42,14 @@ pub struct Relay {
 }
 
 impl Relay {
+    /// Not energised yet.
+    pub fn new(mode: RelayMode) -> Self {
+        Relay {
+            mode,
+            ..Relay::default()
+        }
+    }
+
     /// Takes one block: what the door shows, whether a window was judged in it, whether the contact is closed. Says which
     /// level the pin gets, and whether the contact contradicts.
     pub fn step(&mut self, shown: &Shown, judged: bool, closed: bool) -> (bool, bool) {

@@ -18,5 +18,5 @@ mod source;
 pub use capture::{CaptureError, Collector, Fetched, recording};
 pub use decoder::Decoder;
 pub use log::{LogSplitter, SplitLog};
-pub use modbus::{LineParity, LineSettings, ModbusError, ModbusLine};
+pub use modbus::{ModbusError, ModbusLine};
 pub use source::{Source, SourceError, open_probe, open_serial};

@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
+use board::{Line, LineParity};
 use crc::{CRC_16_MODBUS, Crc};
 use serialport::{ClearBuffer, DataBits, Parity, SerialPort, StopBits};
 
@@ -20,28 +21,6 @@ const FRAME_BYTES: usize = 256;
 const MOST_READ: u16 = 125;
 const MOST_WRITTEN: usize = 123;
 
-/// How a line is set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LineSettings {
-    /// Bit/s.
-    pub baud: u32,
-    /// Parity bit.
-    pub parity: LineParity,
-    /// Address of the board, 1 to 247.
-    pub unit: u8,
-}
-
-/// Parity of a line; without parity there are two stop bits, as the protocol wants it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LineParity {
-    /// The protocol's default.
-    Even,
-    /// Odd.
-    Odd,
-    /// None, two stop bits.
-    None,
-}
-
 /// Why a board could not be asked.
 #[derive(Debug, thiserror::Error)]
 pub enum ModbusError {
@@ -50,8 +29,8 @@ pub enum ModbusError {
     Port(#[from] SourceError),
     /// Nothing came back.
     #[error(
-        "no answer from unit {unit} at {baud} bit/s; is this the RS-485 line (not the debugger's port)? The board speaks \
-         19200 bit/s, even parity, unit 1"
+        "no answer from unit {unit} at {baud} bit/s; is this the RS-485 line (not the debugger's port)? A new board \
+         speaks 19200 bit/s, even parity, unit 1, and so does one whose button is held while the power returns"
     )]
     Silent {
         /// Who was asked.
@@ -91,7 +70,7 @@ fn exception(code: u8) -> String {
 /// A line with one board on it.
 pub struct ModbusLine {
     port: Box<dyn SerialPort>,
-    settings: LineSettings,
+    settings: Line,
 }
 
 impl ModbusLine {
@@ -99,7 +78,7 @@ impl ModbusLine {
     ///
     /// # Errors
     /// No such port, no permission, or settings that it cannot do.
-    pub fn open(name: &str, settings: LineSettings) -> Result<Self, ModbusError> {
+    pub fn open(name: &str, settings: Line) -> Result<Self, ModbusError> {
         let (parity, stop_bits) = match settings.parity {
             LineParity::Even => (Parity::Even, StopBits::One),
             LineParity::Odd => (Parity::Odd, StopBits::One),

@@ -188,3 +188,99 @@ fn another_master_reads_the_whole_map_alike() {
         assert!(told.ends_with(&format!("{value:#010x}")), "{told}");
     }
 }
+
+/// The value behind a name in what `drivemon board configure` prints.
+fn told(text: &str, name: &str) -> String {
+    let line = text.lines().find(|line| line.starts_with(name));
+    let line = line.unwrap_or_else(|| panic!("{name}: {text}"));
+    line[15..].trim().to_owned()
+}
+
+fn motor_file(name: &str) -> String {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../motors");
+    format!("{path}/{name}.toml")
+}
+
+#[test]
+fn drivemon_configures_motor_line_and_relay_and_they_hold_after_power_returns() {
+    let (reset, resets) = std::sync::mpsc::channel();
+    let wire = Wire::with_resets(resets);
+    let (output, text) = wire.drivemon(&["configure"]);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert_eq!(told(&text, "motor "), common::motor().name);
+    assert_eq!(told(&text, "line"), "unit 1, 19200 bit/s, parity even");
+    assert_eq!(told(&text, "configuration"), "as flashed");
+    let file = motor_file("peer-2k2");
+    let change = [
+        "configure",
+        "--motor",
+        &file,
+        "--set-unit",
+        "247",
+        "--set-baud",
+        "38400",
+        "--relay",
+        "blind",
+    ];
+    let (output, text) = wire.drivemon(&change);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    let name = motor::MotorFile::read(&file).expect("a motor file").name;
+    assert_eq!(told(&text, "motor "), name);
+    assert_eq!(told(&text, "configuration"), "configured and confirmed");
+    // Where it answered before, nobody answers.
+    let (output, text) = wire.drivemon(&["identify"]);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    let new = ["--unit", "247", "--baud", "38400"];
+    let ask = |command: &str| wire.drivemon(&[&[command], &new[..]].concat());
+    reset.send(()).expect("a board");
+    std::thread::sleep(std::time::Duration::from_secs_f64(
+        common::LAMP_TEST_S + 1.0,
+    ));
+    let (output, text) = ask("configure");
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert_eq!(told(&text, "motor "), name);
+    assert_eq!(told(&text, "line"), "unit 247, 38400 bit/s, parity even");
+    assert!(
+        told(&text, "relay").contains("without a judgement"),
+        "{text}"
+    );
+    let (_, text) = ask("identify");
+    assert!(text.contains(&name), "{text}");
+    let (_, text) = ask("events");
+    assert!(text.contains("configured: motor constants"), "{text}");
+    // Back to the motor that is in the program; the line stays.
+    let back = [&["configure", "--flashed-motor"], &new[..]].concat();
+    let (output, text) = wire.drivemon(&back);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert_eq!(told(&text, "motor "), common::motor().name);
+    assert_eq!(told(&text, "line"), "unit 247, 38400 bit/s, parity even");
+}
+
+#[test]
+fn what_is_not_confirmed_does_not_stay() {
+    let (reset, resets) = std::sync::mpsc::channel();
+    let wire = Wire::with_resets(resets);
+    let trial = ["configure", "--relay", "blind", "--trial"];
+    let (output, text) = wire.drivemon(&trial);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(
+        told(&text, "configuration").starts_with("on trial, 5"),
+        "{text}"
+    );
+    let (output, text) = wire.drivemon(&["configure", "--discard"]);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    let (_, text) = wire.drivemon(&["configure"]);
+    assert_eq!(told(&text, "relay"), "opens on FAULT");
+    assert_eq!(told(&text, "configuration"), "as flashed");
+    let (output, text) = wire.drivemon(&["configure", "--confirm"]);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("nothing on trial"), "{text}");
+    // Power fails during a trial.
+    wire.drivemon(&trial);
+    reset.send(()).expect("a board");
+    std::thread::sleep(std::time::Duration::from_secs_f64(
+        common::LAMP_TEST_S + 1.0,
+    ));
+    let (_, text) = wire.drivemon(&["configure"]);
+    assert_eq!(told(&text, "configuration"), "as flashed");
+}

@@ -1,10 +1,9 @@
 //! What comes over wires: frames of the board, requests to it.
 
 use board::modbus::{
-    BoardStatus, Collector, Identity, Image, MAX_RESPONSE_BYTES, Readable, Slave, Status,
-    UNLOCK_KEY,
+    BoardStatus, Collector, Identity, Image, MAX_RESPONSE_BYTES, Memory, Slave, Status, UNLOCK_KEY,
 };
-use board::{EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, Shown, crc32};
+use board::{Desk, EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, Shown, crc32};
 use live::Decoder;
 use monitor::Report;
 
@@ -52,7 +51,8 @@ pub(crate) fn modbus(bytes: &[u8]) {
         &Shown::default(),
         &BoardStatus::default(),
     );
-    let mut slave = Slave::new(1);
+    let (mut slave, mut desk) = (Slave::new(1), Desk::blank());
+    let active = desk.active().clone();
     let (mut rest, mut now_ms, mut key_seen) = (bytes, 0u32, false);
     while let Some((length, tail)) = rest.split_first() {
         let body = &tail[..tail.len().min(usize::from(*length & 0x7F))];
@@ -65,37 +65,38 @@ pub(crate) fn modbus(bytes: &[u8]) {
         key_seen |= request
             .windows(2)
             .any(|word| word == UNLOCK_KEY.to_be_bytes());
-        let command = ask(&mut slave, now_ms, &request, &image);
+        let command = ask(&mut slave, now_ms, &request, &image, &mut desk);
         assert!(
             !command || key_seen,
             "a command without the key: {request:x?}"
         );
         now_ms = now_ms.wrapping_add(u32::from(*length) * 97);
     }
+    assert_eq!(desk.active(), &active, "what holds was changed by writing");
 }
 
 const LOG_BYTES: usize = LOG_EVENTS as usize * EVENT_BYTES;
 const IDENTITY: Identity = Identity {
     version: "0.1.0",
     revision: "",
-    motor: "a motor",
     serial: [1, 2, 3],
 };
 
 /// Whether a request became a command; the answer must be sound.
-fn ask(slave: &mut Slave, now_ms: u32, request: &[u8], image: &Image) -> bool {
+fn ask(slave: &mut Slave, now_ms: u32, request: &[u8], image: &Image, desk: &mut Desk) -> bool {
     let mut collector = Collector::default();
     collector.push(request);
     let mut response = [0; MAX_RESPONSE_BYTES];
-    let readable = Readable {
+    let mut memory = Memory {
         image,
         identity: &IDENTITY,
         events: |at, bytes| {
             assert!(at + bytes.len() <= LOG_BYTES, "beyond the log: {at}");
             true
         },
+        desk: &mut *desk,
     };
-    let (length, command) = slave.respond(now_ms, collector.frame(), &readable, &mut response);
+    let (length, command) = slave.respond(now_ms, collector.frame(), &mut memory, &mut response);
     let answer = &response[..length];
     if let Some((body, checksum)) = answer.split_last_chunk::<2>() {
         assert_eq!(checksum, &crc(body).to_le_bytes(), "{answer:x?}");

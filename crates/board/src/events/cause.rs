@@ -32,6 +32,10 @@ pub enum EventCause {
     SamplesMissing = 13,
     /// A master had the option bytes written.
     Prepared = 14,
+    /// A configuration was confirmed and stored.
+    Configured = 15,
+    /// A configuration on trial was given up.
+    TrialEnded = 16,
 }
 
 /// Number of causes.
@@ -39,7 +43,7 @@ pub(super) const CAUSES: usize = EventCause::ALL.len();
 
 impl EventCause {
     /// All of them, in the order of their numbers.
-    pub const ALL: [EventCause; 14] = [
+    pub const ALL: [EventCause; 16] = [
         EventCause::Crash,
         EventCause::Start,
         EventCause::FaultOn,
@@ -54,6 +58,8 @@ impl EventCause {
         EventCause::Acknowledged,
         EventCause::SamplesMissing,
         EventCause::Prepared,
+        EventCause::Configured,
+        EventCause::TrialEnded,
     ];
 
     /// By its number.
@@ -83,6 +89,8 @@ impl EventCause {
             EventCause::Acknowledged => "acknowledged",
             EventCause::SamplesMissing => "samples missing",
             EventCause::Prepared => "option bytes",
+            EventCause::Configured => "configured",
+            EventCause::TrialEnded => "trial of a configuration given up",
         }
     }
 
@@ -97,6 +105,9 @@ impl EventCause {
             EventCause::Learnt => ["CalibrationIdentification", ""],
             EventCause::LearnRefused => ["Learning", "Doubts"],
             EventCause::CalibrationIgnored => ["Calibration", ""],
+            EventCause::Configured | EventCause::TrialEnded => {
+                ["MotorIdentification", "address of the line"]
+            }
             EventCause::SamplesMissing => {
                 ["1 none came, 2 overrun, 3 channels and encoder apart", ""]
             }

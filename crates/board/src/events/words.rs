@@ -20,6 +20,13 @@ impl fmt::Display for Event {
             EventCause::FaultOn => fault(f, first, second),
             EventCause::SensorOn => sensor(f, first, second),
             EventCause::Doubt => doubts(f, first),
+            EventCause::Configured => {
+                write!(f, ": motor constants {first:08x}, address {second}")
+            }
+            EventCause::TrialEnded => write!(
+                f,
+                ": motor constants {first:08x} and address {second} hold again"
+            ),
             EventCause::Learnt => write!(f, ": calibration {first:08x}"),
             EventCause::LearnRefused => refusal(f, first, second),
             EventCause::CalibrationIgnored => calibration(f, first),

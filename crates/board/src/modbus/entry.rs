@@ -4,6 +4,7 @@ use core::fmt;
 
 use monitor::{FaultId, Reason};
 
+use crate::configuration::Refused;
 use crate::doubt::Doubt;
 use crate::fault_record::FaultCause;
 
@@ -70,10 +71,13 @@ pub enum Field {
     SerialLow,
     CalibrationIdentification,
     LastEvent,
+    Configuration,
+    ConfigurationRefused,
+    TrialSeconds,
 }
 
 /// Number of values.
-pub(super) const FIELDS: usize = Field::LastEvent as usize + 1;
+pub(super) const FIELDS: usize = Field::TrialSeconds as usize + 1;
 
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,6 +126,8 @@ pub enum Meaning {
     Doubts,
     /// Number of a [`FaultCause`].
     Crashes,
+    /// Number of a [`Refused`].
+    Refusals,
 }
 
 impl fmt::Display for Meaning {
@@ -147,6 +153,13 @@ impl fmt::Display for Meaning {
             Meaning::Doubts => {
                 f.write_str("what the board doubts about itself, a bit each from the lowest: ")?;
                 list(f, Doubt::ALL.map(|doubt| (doubt as usize, doubt.label())))
+            }
+            Meaning::Refusals => {
+                f.write_str("what of the last configuration was refused: 0 nothing, ")?;
+                list(
+                    f,
+                    Refused::ALL.map(|refused| (refused as usize, refused.label())),
+                )
             }
             Meaning::Crashes => {
                 f.write_str("what ended the program before its last start: 0 nothing, ")?;

@@ -4,8 +4,9 @@ use heapless::Vec;
 
 use super::answer::Answer;
 use super::entry::Field;
-use super::map::{Image, MAP_VERSION};
-use super::slave::{Exception, Readable};
+use super::map::MAP_VERSION;
+use super::slave::{Exception, Memory};
+use crate::configuration::{Configuration, NAME_BYTES};
 
 /// Type 14 of function 43: device identification.
 const TYPE: u8 = 14;
@@ -13,8 +14,8 @@ const TYPE: u8 = 14;
 const CONFORMITY: u8 = 0x83;
 /// Kinds of requests: the first three are groups, the fourth a single object.
 const SINGLE: u8 = 4;
-/// Longest value, bytes; a longer name is cut off.
-const MOST_BYTES: usize = 64;
+/// Longest value, bytes: the motor's name.
+const MOST_BYTES: usize = NAME_BYTES;
 
 const VENDOR: &str = "drive-monitor (open source)";
 const PRODUCT_CODE: &str = "DM-G474";
@@ -28,8 +29,6 @@ pub struct Identity {
     pub version: &'static str,
     /// Revision of its source; empty where it was not built from a repository.
     pub revision: &'static str,
-    /// Name of the motor.
-    pub motor: &'static str,
     /// The chip's serial number, its highest 32 bits first.
     pub serial: [u32; 3],
 }
@@ -95,14 +94,15 @@ impl Object {
         }
     }
 
-    fn value(self, identity: &Identity, image: &Image) -> Value {
+    fn value(self, memory: &Memory<'_>) -> Value {
+        let (identity, image) = (memory.identity, memory.image);
         match self {
             Object::Vendor => text(VENDOR),
             Object::ProductCode => text(PRODUCT_CODE),
             Object::Version => text(identity.version),
             Object::ProductName => text(PRODUCT),
             Object::Model => text(MODEL),
-            Object::Motor => text(identity.motor),
+            Object::Motor => name(memory.desk.active()),
             Object::Revision => text(identity.revision),
             Object::Program => hexadecimal(&[image.long(Field::ProgramChecksum)]),
             Object::MapVersion => digit(MAP_VERSION),
@@ -124,6 +124,11 @@ fn text(text: &str) -> Value {
         }
     }
     value
+}
+
+/// Of the motor.
+fn name(active: &Configuration) -> Value {
+    text(active.name().text().unwrap_or_default())
 }
 
 fn digit(number: u16) -> Value {
@@ -156,7 +161,7 @@ fn last_of(kind: u8) -> Option<u8> {
 /// Answers a request for one object or for a group of them, which may take several answers.
 pub(super) fn read(
     data: &[u8],
-    readable: &Readable<'_>,
+    memory: &Memory<'_>,
     answer: &mut Answer<'_>,
 ) -> Result<(), Exception> {
     let [TYPE, kind, first] = *data else {
@@ -166,11 +171,10 @@ pub(super) fn read(
         });
     };
     answer.push_all(&[TYPE, kind, CONFORMITY]);
-    let (identity, image) = (readable.identity, readable.image);
     if kind == SINGLE {
         let object = Object::by_number(first).ok_or(Exception::Address)?;
         answer.push_all(&[0, 0, 1]);
-        push(object, &object.value(identity, image), answer);
+        push(object, &object.value(memory), answer);
         return Ok(());
     }
     let last = last_of(kind).ok_or(Exception::Value)?;
@@ -181,7 +185,7 @@ pub(super) fn read(
     let mut count = 0;
     let wanted = |object: &Object| (first..=last).contains(&(*object as u8));
     for object in Object::ALL.into_iter().filter(wanted) {
-        let value = object.value(identity, image);
+        let value = object.value(memory);
         if answer.room() < 2 + value.len() {
             answer.set(follows, 0xFF);
             answer.set(at, object as u8);

@@ -17,6 +17,6 @@ pub use entry::{Entry, Field, Kind, Meaning};
 pub use file::{EVENT_FILE, MOST_FILE_WORDS, ReadEvents};
 pub use identity::{Identity, Object};
 pub use map::{Image, MAP_VERSION, WORDS, address};
-pub use slave::{Collector, Command, MAX_REQUEST_BYTES, Readable, Slave, UNLOCK_KEY};
+pub use slave::{Collector, Command, MAX_REQUEST_BYTES, Memory, Slave, UNLOCK_KEY};
 pub use status::{BoardStatus, Status};
 pub use table::MAP;

@@ -1,4 +1,4 @@
-//! The protocol: requests in, answers out, and two commands behind an unlock.
+//! The protocol: requests in, answers out, and commands behind an unlock.
 
 use crc::{CRC_16_MODBUS, Crc, NoTable};
 use heapless::Vec;
@@ -7,6 +7,7 @@ use super::answer::{Answer, MAX_RESPONSE_BYTES};
 use super::file::{self, ReadEvents};
 use super::identity::{self, Identity};
 use super::map::Image;
+use crate::configuration::Desk;
 
 const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_MODBUS);
 /// Longest frame of the protocol.
@@ -48,6 +49,32 @@ pub enum Command {
     Learn = 2,
     /// Write the option bytes and start again.
     Prepare = 3,
+    /// Check the configuration that was written and put it on trial.
+    Commit = 4,
+    /// Store the configuration on trial.
+    Confirm = 5,
+    /// End the trial: what held before it holds again.
+    Discard = 6,
+    /// Put the motor constants that were compiled in on trial; the line stays.
+    CommitCompiled = 7,
+}
+
+impl Command {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Command; 7] = [
+        Command::Acknowledge,
+        Command::Learn,
+        Command::Prepare,
+        Command::Commit,
+        Command::Confirm,
+        Command::Discard,
+        Command::CommitCompiled,
+    ];
+
+    fn by_number(number: u16) -> Option<Self> {
+        let numbered = |command: &Command| *command as u16 == number;
+        Self::ALL.into_iter().find(numbered)
+    }
 }
 
 /// The slave's memory.
@@ -57,18 +84,24 @@ pub struct Slave {
     unlocked_at_ms: Option<u32>,
 }
 
-/// What a master may read.
-#[derive(Clone, Copy)]
-pub struct Readable<'a> {
+/// What a master may read, and the configuration that it may write.
+pub struct Memory<'a> {
     /// Input registers.
     pub image: &'a Image,
     /// Who the board is.
     pub identity: &'a Identity,
     /// The event log.
     pub events: ReadEvents,
+    /// Configurations.
+    pub desk: &'a mut Desk,
 }
 
 impl Slave {
+    /// Answers to another address from now on, 1..=247.
+    pub fn set_unit(&mut self, unit: u8) {
+        self.unit = unit;
+    }
+
     /// A locked slave with the address `unit`, 1..=247.
     pub fn new(unit: u8) -> Self {
         Slave {
@@ -84,7 +117,7 @@ impl Slave {
         &mut self,
         now_ms: u32,
         request: &[u8],
-        readable: &Readable<'_>,
+        memory: &mut Memory<'_>,
         response: &mut [u8; MAX_RESPONSE_BYTES],
     ) -> (usize, Option<Command>) {
         let Some((function, data)) = self.unwrap(request) else {
@@ -95,16 +128,9 @@ impl Slave {
         answer.push(function);
         let mut command = None;
         let outcome = match function {
-            READ_FILE => file::read(data, readable.events, &mut answer),
-            IDENTIFY => identity::read(data, readable, &mut answer),
-            _ => self.execute(
-                now_ms,
-                function,
-                data,
-                readable.image,
-                &mut answer,
-                &mut command,
-            ),
+            READ_FILE => file::read(data, memory.events, &mut answer),
+            IDENTIFY => identity::read(data, memory, &mut answer),
+            _ => self.execute(now_ms, function, data, memory, &mut answer, &mut command),
         };
         if let Err(exception) = outcome {
             answer.clear();
@@ -132,7 +158,7 @@ impl Slave {
         now_ms: u32,
         function: u8,
         data: &[u8],
-        image: &Image,
+        memory: &mut Memory<'_>,
         answer: &mut Answer<'_>,
         command: &mut Option<Command>,
     ) -> Result<(), Exception> {
@@ -143,23 +169,21 @@ impl Slave {
         match function {
             READ_INPUT | READ_HOLDING if !rest.is_empty() => Err(Exception::Value),
             READ_INPUT => {
-                let range = image.range(first, counted(second)?);
+                let range = memory.image.range(first, counted(second)?);
                 read(answer, range.ok_or(Exception::Address)?)
             }
             READ_HOLDING => {
-                let holding = [u16::from(self.is_unlocked(now_ms)), 0];
-                let (from, count) = (usize::from(first), usize::from(counted(second)?));
-                let range = holding.get(from..from + count);
-                read(answer, range.ok_or(Exception::Address)?)
+                let count = counted(second)?;
+                self.read_holding(now_ms, first, count, memory.desk, answer)
             }
             WRITE_ONE if rest.is_empty() => {
-                *command = self.write(now_ms, first, second)?;
+                *command = self.write(now_ms, first, second, memory.desk)?;
                 answer.push_word(first);
                 answer.push_word(second);
                 Ok(())
             }
             WRITE_MANY => {
-                *command = self.write_many(now_ms, first, second, rest)?;
+                *command = self.write_many(now_ms, (first, second), rest, memory.desk)?;
                 answer.push_word(first);
                 answer.push_word(second);
                 Ok(())
@@ -167,6 +191,27 @@ impl Slave {
             WRITE_ONE => Err(Exception::Value),
             _ => Err(Exception::Function),
         }
+    }
+
+    fn read_holding(
+        &self,
+        now_ms: u32,
+        first: u16,
+        count: u16,
+        desk: &Desk,
+        answer: &mut Answer<'_>,
+    ) -> Result<(), Exception> {
+        answer.push(2 * count as u8);
+        for at in 0..count {
+            let address = first.checked_add(at).ok_or(Exception::Address)?;
+            let word = match address {
+                KEY_REGISTER => Some(u16::from(self.is_unlocked(now_ms))),
+                COMMAND_REGISTER => Some(0),
+                _ => desk.register(address),
+            };
+            answer.push_word(word.ok_or(Exception::Address)?);
+        }
+        Ok(())
     }
 
     fn is_unlocked(&self, now_ms: u32) -> bool {
@@ -179,8 +224,10 @@ impl Slave {
         now_ms: u32,
         register: u16,
         value: u16,
+        desk: &mut Desk,
     ) -> Result<Option<Command>, Exception> {
         match register {
+            _ if desk.write(register, value) => Ok(None),
             KEY_REGISTER => {
                 let right = value == UNLOCK_KEY;
                 self.unlocked_at_ms = right.then_some(now_ms);
@@ -188,12 +235,7 @@ impl Slave {
             }
             COMMAND_REGISTER if !self.is_unlocked(now_ms) => Err(Exception::Function),
             COMMAND_REGISTER => {
-                let command = match value {
-                    1 => Command::Acknowledge,
-                    2 => Command::Learn,
-                    3 => Command::Prepare,
-                    _ => return Err(Exception::Value),
-                };
+                let command = Command::by_number(value).ok_or(Exception::Value)?;
                 self.unlocked_at_ms = None;
                 Ok(Some(command))
             }
@@ -201,13 +243,13 @@ impl Slave {
         }
     }
 
-    /// Key and command in one request, or either alone.
+    /// Key and command in one request, either alone, or words of a configuration.
     fn write_many(
         &mut self,
         now_ms: u32,
-        first: u16,
-        count: u16,
+        (first, count): (u16, u16),
         rest: &[u8],
+        desk: &mut Desk,
     ) -> Result<Option<Command>, Exception> {
         let [bytes, values @ ..] = rest else {
             return Err(Exception::Value);
@@ -216,13 +258,14 @@ impl Slave {
         if !whole || count == 0 {
             return Err(Exception::Value);
         }
-        if u32::from(first) + u32::from(count) > u32::from(HOLDING_REGISTERS) {
+        let commands = u32::from(first) + u32::from(count) <= u32::from(HOLDING_REGISTERS);
+        if !commands && !Desk::is_writable(first, count) {
             return Err(Exception::Address);
         }
         let (values, _) = values.as_chunks::<2>();
         let mut command = None;
         for (register, value) in (first..).zip(values) {
-            command = self.write(now_ms, register, u16::from_be_bytes(*value))?;
+            command = self.write(now_ms, register, u16::from_be_bytes(*value), desk)?;
         }
         Ok(command)
     }

@@ -8,6 +8,7 @@ use monitor::{CHANNELS, Lamp, Reason, Report, Suspicion, Window, likely, magnitu
 use super::entry::Field;
 use super::map::{Image, MAP_VERSION};
 use crate::calibration::CalibrationSource;
+use crate::configuration::{ConfigurationSource, Refused};
 use crate::display::Shown;
 use crate::doubt::Doubts;
 use crate::fault_record::FaultRecord;
@@ -80,6 +81,12 @@ pub struct BoardStatus {
     pub calibration_identification: u32,
     /// Number of the newest event.
     pub last_event: u32,
+    /// Where the configuration comes from.
+    pub configuration: ConfigurationSource,
+    /// What of the last one was refused.
+    pub refused: Option<Refused>,
+    /// Until the end of a trial, s; 0 where there is none.
+    pub trial_s: u16,
 }
 
 /// What the monitor says of its last window; nothing of it is told while the board doubts what it measures.
@@ -224,6 +231,10 @@ fn put_identity(image: &mut Image, board: &BoardStatus) {
         board.calibration_identification,
     );
     image.set_long(Field::LastEvent, board.last_event);
+    image.set_word(Field::Configuration, board.configuration as u16);
+    let refused = board.refused.map_or(0, |refused| refused as u16);
+    image.set_word(Field::ConfigurationRefused, refused);
+    image.set_word(Field::TrialSeconds, board.trial_s);
 }
 
 fn put_health(image: &mut Image, board: &BoardStatus) {

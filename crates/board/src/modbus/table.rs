@@ -204,5 +204,18 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "number of the newest event of the log; they count from 1, 0 is none",
         ),
+        entry(
+            Configuration,
+            Word,
+            "",
+            "0 compiled in, 1 confirmed, 2 on trial, 3 line as confirmed and motor as compiled in, because the program was flashed with another motor since or cannot compute with the confirmed one, 4 compiled in, because the confirmed one is lost",
+        ),
+        numbered(ConfigurationRefused, Meaning::Refusals),
+        entry(
+            TrialSeconds,
+            Word,
+            "s",
+            "until the configuration on trial is given up, 0 without a trial",
+        ),
     ]
 };

@@ -55,6 +55,8 @@ pub struct Sent {
     pub at: u64,
     /// The driver-enable pin was the port's and active.
     pub driven: bool,
+    /// The other end of the wire had the same speed.
+    pub understood: bool,
 }
 
 /// How a byte arrives.
@@ -83,6 +85,8 @@ pub struct Usart {
     /// What is on its way here, and the cycle at which each byte has arrived.
     incoming: VecDeque<(u64, u8, Quality)>,
     idle_at: Option<u64>,
+    /// Units of time of a bit of whoever sends to the port; `None` follows the port's own.
+    pub peer_bit: Option<u64>,
     /// Everything that was sent.
     pub sent: Vec<Sent>,
 }
@@ -100,6 +104,7 @@ impl Usart {
             received: VecDeque::new(),
             incoming: VecDeque::new(),
             idle_at: None,
+            peer_bit: None,
             sent: Vec::new(),
         }
     }
@@ -110,6 +115,7 @@ impl Usart {
             incoming: std::mem::take(&mut self.incoming),
             sent: std::mem::take(&mut self.sent),
             clock: self.clock,
+            peer_bit: self.peer_bit,
             ..Usart::new(self.divider != 1)
         };
     }
@@ -118,20 +124,45 @@ impl Usart {
         self.registers.get(register) & bits == bits
     }
 
-    /// Cycles of one character with start and stop bit.
-    fn character(&self) -> u64 {
+    /// Units of time of a bit.
+    fn bit(&self) -> u64 {
         let prescaler = PRESCALERS[(self.registers.get(PRESC) & 0xF).min(11) as usize];
         let bit = u64::from(self.registers.get(BRR)) * prescaler;
-        let data = if self.has(CR1, NINE_BITS) { 9 } else { 8 };
-        ((data + 2) * bit * self.clock / self.divider).max(1)
+        bit * self.clock / self.divider
     }
 
-    /// Puts bytes on the wire towards the chip, one behind the other from `now` on, at the speed that the port is set to.
+    fn bits_of_a_character(&self) -> u64 {
+        let data = if self.has(CR1, NINE_BITS) { 9 } else { 8 };
+        data + 2
+    }
+
+    /// Units of time of one character with start and stop bit.
+    fn character(&self) -> u64 {
+        (self.bits_of_a_character() * self.bit()).max(1)
+    }
+
+    /// Whether the other end of the wire understands the port's speed: within 4 % the last bit of a character is still read within
+    /// itself.
+    fn agrees(&self) -> bool {
+        let own = self.bit();
+        self.peer_bit
+            .is_none_or(|peer| 25 * own.abs_diff(peer) <= own)
+    }
+
+    /// Puts bytes on the wire towards the chip, one behind the other from `now` on. At another speed than the port's they arrive
+    /// as rubbish.
     pub fn deliver(&mut self, now: u64, bytes: &[(u8, Quality)]) {
         let last = self.incoming.back().map_or(now, |(at, ..)| (*at).max(now));
+        let bit = self.peer_bit.unwrap_or(self.bit());
+        let character = (self.bits_of_a_character() * bit).max(1);
+        let agrees = self.agrees();
         for (k, (byte, quality)) in (1..).zip(bytes) {
-            let at = last + k * self.character();
-            self.incoming.push_back((at, *byte, *quality));
+            let at = last + k * character;
+            let (byte, quality) = match agrees {
+                true => (*byte, *quality),
+                false => (byte.rotate_left(3) ^ 0x5A, Quality::Bad),
+            };
+            self.incoming.push_back((at, byte, quality));
         }
     }
 
@@ -146,7 +177,13 @@ impl Usart {
     pub fn advance(&mut self, now: u64) {
         while let Some((byte, at)) = self.shifting.filter(|(_, at)| *at <= now) {
             let driven = self.has(CR3, DRIVER_ENABLE);
-            self.sent.push(Sent { byte, at, driven });
+            let understood = self.agrees();
+            self.sent.push(Sent {
+                byte,
+                at,
+                driven,
+                understood,
+            });
             self.shifting = None;
             self.shift(at);
             if self.shifting.is_none() {

@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use serialport::{SerialPort, TTYPort};
-use virtual_board::{Port, VirtualBoard};
+use virtual_board::{Cause, Port, VirtualBoard};
 
 use super::master::good;
 use super::{LAMP_TEST_S, board as board_of, scenario};
@@ -30,6 +31,19 @@ pub struct Wire {
 impl Wire {
     /// Starts a board that has judged a healthy motor for a while, changed by `prepare`.
     pub fn new(prepare: impl FnOnce(&mut VirtualBoard) + Send + 'static) -> Self {
+        let (_, never) = std::sync::mpsc::channel();
+        Wire::start(prepare, never)
+    }
+
+    /// A board whose power fails and returns whenever something comes.
+    pub fn with_resets(resets: Receiver<()>) -> Self {
+        Wire::start(|_| {}, resets)
+    }
+
+    fn start(
+        prepare: impl FnOnce(&mut VirtualBoard) + Send + 'static,
+        resets: Receiver<()>,
+    ) -> Self {
         let (mut outside, slave) = TTYPort::pair().expect("a pseudo terminal");
         outside
             .set_timeout(Duration::from_millis(1))
@@ -44,7 +58,7 @@ impl Wire {
             board.run(LAMP_TEST_S + 0.8).expect("a run");
             prepare(&mut board);
             ready.send(()).expect("somebody waits");
-            serve(&mut board, &mut outside, &ends);
+            serve(&mut board, &mut outside, &ends, &resets);
         });
         wait.recv().expect("a board that runs");
         Wire {
@@ -88,11 +102,21 @@ fn drivemon() -> PathBuf {
 }
 
 /// Carries bytes both ways while the board runs as fast as time does.
-fn serve(board: &mut VirtualBoard, outside: &mut TTYPort, ended: &AtomicBool) {
+fn serve(
+    board: &mut VirtualBoard,
+    outside: &mut TTYPort,
+    ended: &AtomicBool,
+    resets: &Receiver<()>,
+) {
     let begun = Instant::now();
     let mut emulated = 0.0;
     let mut bytes = [0; 256];
     while !ended.load(Ordering::Relaxed) {
+        if resets.try_recv().is_ok() {
+            board.reset(Cause::Power).expect("a reset");
+        }
+        // Both ends of a pseudo terminal share one setting, which the program at the other end makes.
+        board.set_peer_speed(Port::Modbus, outside.baud_rate().expect("a speed"));
         if let Ok(length) = outside.read(&mut bytes) {
             board.deliver(Port::Modbus, &good(&bytes[..length]));
         }
@@ -101,6 +125,7 @@ fn serve(board: &mut VirtualBoard, outside: &mut TTYPort, ended: &AtomicBool) {
         let sent: Vec<u8> = board
             .take_sent(Port::Modbus)
             .iter()
+            .filter(|sent| sent.understood)
             .map(|sent| sent.byte)
             .collect();
         outside.write_all(&sent).expect("a port");

@@ -11,7 +11,9 @@ use super::super::entry::Field;
 use super::super::identity::Object;
 use super::super::map::{WORDS, address};
 use super::*;
+use crate::configuration::{ACTIVE, CONFIGURATION_REGISTERS, Configuration, STAGED};
 use crate::events::{EVENT_BYTES, LOG_EVENTS};
+use crate::image::{IMAGE_WORDS, MotorImage};
 use crate::modbus::{EVENT_FILE, MOST_FILE_WORDS};
 
 const UNIT: u8 = 17;
@@ -30,9 +32,18 @@ fn master() -> ModbusRequest {
 const IDENTITY: Identity = Identity {
     version: "1.2.3",
     revision: "0123456789abcdef0123456789abcdef01234567",
-    motor: "a motor with a name of a length that no plate has, but some motor files do",
     serial: [0x0012_3456, 0x789A_BCDE, 0xF000_000F],
 };
+
+const MOTOR: &str = "a motor with a name of a length that no plate has, but some motor files do";
+
+/// The desk of a board with this motor.
+fn desk() -> Desk {
+    let constants = MotorImage([0; IMAGE_WORDS]);
+    let mut desk = Desk::blank();
+    desk.show(&Configuration::of(MOTOR, &constants));
+    desk
+}
 
 /// A log whose bytes count up.
 fn counting(from: usize, bytes: &mut [u8]) -> bool {
@@ -43,22 +54,24 @@ fn counting(from: usize, bytes: &mut [u8]) -> bool {
 }
 
 fn ask(slave: &mut Slave, now_ms: u32, request: &[u8]) -> (Vec<u8>, Option<Command>) {
-    ask_while(slave, now_ms, request, counting)
+    ask_of(slave, now_ms, request, counting, &mut Desk::blank())
 }
 
-fn ask_while(
+fn ask_of(
     slave: &mut Slave,
     now_ms: u32,
     request: &[u8],
     events: ReadEvents,
+    desk: &mut Desk,
 ) -> (Vec<u8>, Option<Command>) {
     let mut response = [0; MAX_RESPONSE_BYTES];
-    let readable = Readable {
+    let mut memory = Memory {
         image: &image(),
         identity: &IDENTITY,
         events,
+        desk,
     };
-    let (length, command) = slave.respond(now_ms, request, &readable, &mut response);
+    let (length, command) = slave.respond(now_ms, request, &mut memory, &mut response);
     (response[..length].to_vec(), command)
 }
 
@@ -250,10 +263,9 @@ impl Law {
                     self.unlocked = false;
                     return None;
                 }
-                (1, [0, code @ (1..=3)]) if self.unlocked => {
+                (1, [0, code @ (1..=7)]) if self.unlocked => {
                     self.unlocked = false;
-                    let commands = [Command::Acknowledge, Command::Learn, Command::Prepare];
-                    command = Some(commands[usize::from(code) - 1]);
+                    command = Some(Command::ALL[usize::from(code) - 1]);
                 }
                 _ => return None,
             }
@@ -296,13 +308,14 @@ fn near_request(mut pick: impl FnMut() -> u8) -> Vec<u8> {
 fn a_million_random_frames_change_nothing_that_they_may_not_and_a_good_one_is_answered() {
     let mut random = Pcg64Mcg::seed_from_u64(5);
     let mut slave = Slave::new(UNIT);
-    let mut law = Law::default();
+    let (mut law, mut desk) = (Law::default(), desk());
+    let active = desk.active().clone();
     let mut commands = 0;
     for round in 0..1_000_000 {
         let frame = random_frame(&mut random);
         let mut collector = Collector::default();
         frame.chunks(7).for_each(|bytes| collector.push(bytes));
-        let (_, command) = ask(&mut slave, 0, collector.frame());
+        let (_, command) = ask_of(&mut slave, 0, collector.frame(), counting, &mut desk);
         let received = if frame.len() > MAX_REQUEST_BYTES {
             &[]
         } else {
@@ -315,6 +328,7 @@ fn a_million_random_frames_change_nothing_that_they_may_not_and_a_good_one_is_an
         commands > 100,
         "only {commands} commands: the frames are too far from real ones"
     );
+    assert_eq!(desk.active(), &active);
     assert_alive(&mut slave);
 }
 
@@ -330,7 +344,12 @@ fn noise_longer_than_any_frame_is_no_frame_and_the_next_is_one() {
 
 /// Function and data of an answer whose checksum holds.
 fn answered(request: &[u8]) -> (u8, Vec<u8>) {
-    let (answer, _) = ask(&mut Slave::new(UNIT), 0, &sealed(request));
+    answered_at(request, &mut desk())
+}
+
+fn answered_at(request: &[u8], desk: &mut Desk) -> (u8, Vec<u8>) {
+    let mut slave = Slave::new(UNIT);
+    let (answer, _) = ask_of(&mut slave, 0, &sealed(request), counting, desk);
     assert!(answer.len() <= 256, "{} bytes", answer.len());
     let (body, _) = answer.split_last_chunk::<2>().expect("a checksum");
     assert_eq!(sealed(body), answer);
@@ -383,7 +402,7 @@ fn the_board_says_who_it_is_in_as_many_answers_as_that_takes() {
     assert_eq!(of(Object::Version), "1.2.3");
     assert_eq!(of(Object::Serial), "00123456789abcdef000000f");
     assert_eq!(of(Object::MapVersion), "2");
-    assert_eq!(of(Object::Motor), &IDENTITY.motor[..64]);
+    assert_eq!(of(Object::Motor), &MOTOR[..64]);
     assert_eq!(identified(1, 0).0, all[..3]);
     assert_eq!(identified(2, 0).0, all[..6]);
     assert_eq!(identified(3, 0x82).0, all[8..]);
@@ -451,6 +470,69 @@ fn parts_of_files_that_do_not_exist_get_an_exception() {
 fn a_log_that_is_being_erased_is_busy() {
     let busy: ReadEvents = |_, _| false;
     let request = sealed(&file_request(&[(EVENT_FILE, 0, 16)]));
-    let (answer, _) = ask_while(&mut Slave::new(UNIT), 0, &request, busy);
+    let (answer, _) = ask_of(&mut Slave::new(UNIT), 0, &request, busy, &mut desk());
     assert_eq!(answer[..3], [UNIT, 20 | 0x80, 6]);
+}
+
+/// A master from elsewhere writes a block of registers.
+fn write_block(desk: &mut Desk, first: u16, values: &[u16]) -> bool {
+    let mut master = master();
+    let mut request = Vec::new();
+    master
+        .generate_set_holdings_bulk(first, values, &mut request)
+        .expect("a request");
+    let mut slave = Slave::new(UNIT);
+    let (answer, command) = ask_of(&mut slave, 0, &request, counting, desk);
+    assert_eq!(command, None);
+    master.parse_ok(&answer).is_ok()
+}
+
+fn read_block(desk: &mut Desk, first: u16, count: u16) -> Vec<u16> {
+    let mut master = master();
+    let mut request = Vec::new();
+    master
+        .generate_get_holdings(first, count, &mut request)
+        .expect("a request");
+    let (answer, _) = ask_of(&mut Slave::new(UNIT), 0, &request, counting, desk);
+    let mut words: Vec<u16> = Vec::new();
+    master.parse_u16(&answer, &mut words).expect("an answer");
+    words
+}
+
+#[test]
+fn a_configuration_is_written_and_read_in_blocks_without_touching_what_holds() {
+    let mut desk = desk();
+    let active = desk.active().clone();
+    let values: Vec<u16> = (0..CONFIGURATION_REGISTERS).map(|at| at ^ 0x1234).collect();
+    for (k, part) in values.chunks(123).enumerate() {
+        assert!(write_block(&mut desk, STAGED + 123 * k as u16, part));
+    }
+    let read: Vec<u16> = (0..CONFIGURATION_REGISTERS)
+        .step_by(125)
+        .flat_map(|at| {
+            let count = 125.min(CONFIGURATION_REGISTERS - at);
+            read_block(&mut desk, STAGED + at, count)
+        })
+        .collect();
+    assert_eq!(read, values);
+    assert_eq!(desk.active(), &active);
+    let held = read_block(&mut desk, ACTIVE, 2);
+    assert_eq!(
+        held,
+        [(active.words()[0] >> 16) as u16, active.words()[0] as u16]
+    );
+}
+
+#[test]
+fn blocks_beyond_the_staged_configuration_are_refused_whole() {
+    let mut desk = desk();
+    let before = desk.staged().clone();
+    let end = STAGED + CONFIGURATION_REGISTERS;
+    for first in [STAGED - 1, end - 1, ACTIVE, 2] {
+        assert!(!write_block(&mut desk, first, &[1, 2]), "{first}");
+    }
+    assert_eq!(desk.staged(), &before);
+    let [high, low] = (end - 1).to_be_bytes();
+    let (function, data) = answered_at(&[UNIT, 3, high, low, 0, 2], &mut desk);
+    assert_eq!((function, &data[..]), (0x83, &[2][..]));
 }

@@ -4,10 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus};
 
 use clap::Args;
-use monitor::{Monitor, MonitorConfig};
-use motor::{effect, effects};
 
-use crate::cli::arguments::input::read_motor;
+use super::board::motor;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
@@ -43,13 +41,12 @@ const CHIP: &str = "STM32G474RETx";
 const TARGET: &str = "thumbv7em-none-eabihf";
 /// What tells the source tree from any other folder.
 const BUILD_SCRIPT: &str = "tools/thumb";
-/// s; the board's sampling time.
-const T_SAMPLE: f64 = 1e-4;
 
 impl Flash {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        let name = self.check()?;
+        // Everything that the firmware's build would refuse, before it takes minutes.
+        let (name, _) = motor::read(&self.motor)?;
         let tree = self.source_tree()?;
         let motor = absolute(&self.motor)?;
         let elf = target_folder(&tree)
@@ -69,31 +66,6 @@ impl Flash {
         steps.into_iter().try_for_each(Step::run)?;
         say!("{}", paint::good("written and started"));
         Ok(Finding::Nothing)
-    }
-
-    /// Everything that the firmware's build would refuse, before it takes minutes.
-    fn check(&self) -> Result<String, Failure> {
-        let file = self.motor.display().to_string();
-        let motor = read_motor(&self.motor)?;
-        let config = MonitorConfig::from_motor_file(&motor, T_SAMPLE)?;
-        Monitor::new(config).map_err(|error| Failure::Config {
-            file: file.clone(),
-            error,
-        })?;
-        for effect in effect::from_motor_file(&motor, &file)? {
-            let descriptor = effect.effect.descriptor();
-            if !effects::STEADY
-                .iter()
-                .any(|known| std::ptr::eq(known.descriptor(), descriptor))
-            {
-                let name = descriptor.name;
-                let message = format!(
-                    "{file}: effects.{name}: a formula runs on a host only; remove it to flash the board"
-                );
-                return Err(Failure::Usage(message));
-            }
-        }
-        Ok(motor.name)
     }
 
     fn source_tree(&self) -> Result<PathBuf, Failure> {

@@ -6,8 +6,8 @@ use super::{Cpu, FLASH, FLASH_SIZE, R, RAM, RAM_SIZE};
 use crate::error::BoardError;
 use crate::machine::Machine;
 
-/// The last ten pages, which the program erases and programs: event log and calibration.
-const STORED_SIZE: u32 = 10 * crate::peripherals::flash::PAGE;
+/// The last pages, which the program erases and programs: configuration, event log and calibration.
+const STORED_SIZE: u32 = 14 * crate::peripherals::flash::PAGE;
 const STORED: u32 = FLASH + FLASH_SIZE - STORED_SIZE;
 const CORE_REGISTERS: [R; 13] = [
     R::R0,
@@ -110,7 +110,7 @@ impl Cpu {
         self.asleep = None;
     }
 
-    /// Makes reads of the pages of event log and calibration visible while a double word in flash is broken: a hook on every read would
+    /// Makes reads of the pages of configuration, event log and calibration visible while a double word in flash is broken: a hook on every read would
     /// slow all of them down.
     pub fn guard_flash(&mut self) -> Result<(), BoardError> {
         let readable = if self.machine().flash.has_broken() {

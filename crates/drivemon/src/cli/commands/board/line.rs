@@ -1,7 +1,8 @@
 //! The line that a board hangs on.
 
+use board::{Line, LineParity};
 use clap::{Args, ValueEnum};
-use live::{LineParity, LineSettings, ModbusError, ModbusLine};
+use live::{ModbusError, ModbusLine};
 
 /// How to reach the board.
 #[derive(Debug, Args)]
@@ -23,25 +24,42 @@ pub struct LineArgs {
 
 /// Parity by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Parity {
+pub enum Parity {
+    /// The protocol's default.
     Even,
+    /// Odd.
     Odd,
+    /// None, two stop bits.
     None,
 }
 
-impl LineArgs {
-    /// Opens the port.
-    pub fn open(&self) -> Result<ModbusLine, ModbusError> {
-        let parity = match self.parity {
+impl From<Parity> for LineParity {
+    fn from(parity: Parity) -> Self {
+        match parity {
             Parity::Even => LineParity::Even,
             Parity::Odd => LineParity::Odd,
             Parity::None => LineParity::None,
-        };
-        let settings = LineSettings {
+        }
+    }
+}
+
+impl LineArgs {
+    /// How the line is set.
+    pub fn settings(&self) -> Line {
+        Line {
             baud: self.baud,
-            parity,
+            parity: self.parity.into(),
             unit: self.unit,
-        };
+        }
+    }
+
+    /// Opens the port.
+    pub fn open(&self) -> Result<ModbusLine, ModbusError> {
+        self.open_at(self.settings())
+    }
+
+    /// Opens the port with other settings.
+    pub fn open_at(&self, settings: Line) -> Result<ModbusLine, ModbusError> {
         ModbusLine::open(&self.serial, settings)
     }
 }

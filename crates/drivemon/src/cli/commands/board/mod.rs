@@ -1,8 +1,10 @@
 //! `drivemon board`: a board in the field, over its Modbus line.
 
+mod configure;
 mod events;
 mod identify;
 mod line;
+pub(super) mod motor;
 mod order;
 mod places;
 mod read;
@@ -26,6 +28,7 @@ Examples:
   drivemon board read --serial /dev/ttyUSB0              every value of the register map, with its unit
   drivemon board record --serial /dev/ttyUSB0            what ended the program, and what the board doubts about itself
   drivemon board events --serial /dev/ttyUSB0            what happened: starts, crashes, lamps, doubts, learning
+  drivemon board configure --serial /dev/ttyUSB0 --motor motors/mine.toml   another motor, without a programmer
   drivemon board identify --serial /dev/ttyUSB0          which board it is: program, serial number, motor, calibration
   drivemon board record --serial /dev/ttyUSB0 --elf drive-monitor     the same with function, file and line
   drivemon board prepare --serial COM4                   a new board: write its option bytes, once
@@ -37,6 +40,7 @@ enum Command {
     Read(read::ReadBoard),
     Identify(identify::Identify),
     Events(events::Events),
+    Configure(configure::Configure),
     Record(record::Record),
     Prepare(order::Prepare),
     Acknowledge(order::Acknowledge),
@@ -50,6 +54,7 @@ impl Board {
             Command::Read(read) => read.run(),
             Command::Identify(identify) => identify.run(),
             Command::Events(events) => events.run(),
+            Command::Configure(configure) => configure.run(),
             Command::Record(record) => record.run(),
             Command::Prepare(prepare) => prepare.run(),
             Command::Acknowledge(acknowledge) => acknowledge.run(),

@@ -61,6 +61,6 @@ impl Learn {
 }
 
 /// Key and command in one request.
-fn order(line: &mut ModbusLine, command: Command) -> Result<(), Failure> {
+pub fn order(line: &mut ModbusLine, command: Command) -> Result<(), Failure> {
     Ok(line.write_holding(0, &[UNLOCK_KEY, command as u16])?)
 }
