@@ -4,11 +4,11 @@ mod common;
 
 use board::{Calibration, Frame, LEARN_WINDOWS, Loaded, Shown, Store};
 use common::flash_image::FlashImage;
-use common::{INHIBITED, LAMP_TEST_S, Sensors, board as board_of, firmware, motor, scenario};
+use common::{INHIBITED, LAMP_TEST_S, board as board_of, motor, scenario};
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::motor_file::Frame as MotorFrame;
 use scenario::{Change, Fault, Scenario};
-use virtual_board::{Cause, Inputs, VirtualBoard};
+use virtual_board::{Cause, VirtualBoard};
 
 const HEALTHY: [bool; 9] = [true, false, false, false, false, false, false, false, false];
 const SENSOR: usize = 5;
@@ -136,22 +136,6 @@ fn a_faulty_motor_is_not_learnt() {
     }
 }
 
-/// Sensors that answer alike when they are asked for an earlier instant again.
-struct Remembered {
-    sensors: Sensors,
-    seen: Vec<RawSample>,
-}
-
-impl Inputs for Remembered {
-    fn at(&mut self, index: u64) -> RawSample {
-        while self.seen.len() as u64 <= index {
-            let next = self.seen.len() as u64;
-            self.seen.push(self.sensors.at(next));
-        }
-        self.seen[index as usize]
-    }
-}
-
 /// The first lesson ends at 19.2 s of the scenario, the second begins at 27.3 s.
 const BETWEEN_LESSONS_S: f64 = 22.0;
 
@@ -162,11 +146,7 @@ fn about_to_store() -> (VirtualBoard, Calibration) {
     for fault in &mut scenario.faults {
         fault.to_s = BETWEEN_LESSONS_S;
     }
-    let inputs = Remembered {
-        sensors: Sensors::new(&scenario),
-        seen: Vec::new(),
-    };
-    let mut board = VirtualBoard::new(&firmware(), Box::new(inputs)).expect("a firmware");
+    let mut board = common::board_to_restore(&scenario);
     board.run(LAMP_TEST_S + 0.8).expect("a run");
     hold_button(&mut board);
     board.run(LEARNING_S).expect("a run");

@@ -64,6 +64,41 @@ impl Master {
         master.parse_ok(&bytes(&answer)).is_ok()
     }
 
+    /// Writes holding registers; whether they were taken.
+    pub fn write_block(&self, board: &mut VirtualBoard, first: u16, values: &[u16]) -> bool {
+        let mut master = self.request();
+        let mut request = Vec::new();
+        master
+            .generate_set_holdings_bulk(first, values, &mut request)
+            .expect("a request");
+        let answer = ask(board, &request);
+        master.parse_ok(&bytes(&answer)).is_ok()
+    }
+
+    /// Holding registers.
+    pub fn holding(&self, board: &mut VirtualBoard, first: u16, count: u16) -> Vec<u16> {
+        let mut master = self.request();
+        let mut request = Vec::new();
+        master
+            .generate_get_holdings(first, count, &mut request)
+            .expect("a request");
+        let answer = ask(board, &request);
+        let mut words: Vec<u16> = Vec::new();
+        master
+            .parse_u16(&bytes(&answer), &mut words)
+            .expect("an answer");
+        words
+    }
+
+    /// Whether somebody answers at this address.
+    pub fn is_answered(&self, board: &mut VirtualBoard) -> bool {
+        let mut request = Vec::new();
+        self.request()
+            .generate_get_inputs(0, 1, &mut request)
+            .expect("a request");
+        !ask(board, &request).is_empty()
+    }
+
     /// Key and command.
     pub fn command(&self, board: &mut VirtualBoard, command: u16) {
         assert!(self.write(board, 0, UNLOCK_KEY), "the key");

@@ -136,6 +136,31 @@ pub fn board(scenario: &Scenario) -> VirtualBoard {
     VirtualBoard::new(&firmware(), Box::new(Sensors::new(scenario))).expect("a firmware that loads")
 }
 
+/// Sensors that answer alike when they are asked for an earlier instant again.
+struct Remembered {
+    sensors: Sensors,
+    seen: Vec<RawSample>,
+}
+
+impl Inputs for Remembered {
+    fn at(&mut self, index: u64) -> RawSample {
+        while self.seen.len() as u64 <= index {
+            let next = self.seen.len() as u64;
+            self.seen.push(self.sensors.at(next));
+        }
+        self.seen[index as usize]
+    }
+}
+
+/// A board that can go back to a snapshot: its sensors are asked for earlier instants again then.
+pub fn board_to_restore(scenario: &Scenario) -> VirtualBoard {
+    let inputs = Remembered {
+        sensors: Sensors::new(scenario),
+        seen: Vec::new(),
+    };
+    VirtualBoard::new(&firmware(), Box::new(inputs)).expect("a firmware that loads")
+}
+
 /// The host's lamps after every sample of `taken`, as the firmware's core sees them without a gap.
 pub fn host_lamps(taken: &[RawSample]) -> Vec<Lamps> {
     host_lamps_of(&motor(), taken)
