@@ -246,4 +246,10 @@ fn another_motor_of_the_library_of_files_fits_in() {
     }
     assert!(taken >= 5, "{taken} motors");
     assert_eq!(board.tally().resets, 0);
+    master.command(&mut board, Command::Confirm as u16);
+    board.run(0.3).expect("a run");
+    let stack = board.stack_used().expect("a stack");
+    println!("{stack} bytes of stack");
+    // Beyond three quarters of its room the board doubts itself.
+    assert!(stack < 15 * 1_024, "{stack}");
 }

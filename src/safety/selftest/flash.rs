@@ -6,7 +6,7 @@ use board::Checksum;
 
 use super::seal::{LEFT_OUT, PROGRAM};
 
-/// Bytes of a slice: ten kilobytes a second.
+/// Bytes of a slice: some thirteen kilobytes a second.
 const SLICE: u32 = 512;
 
 /// How far the running test has come.

@@ -90,7 +90,7 @@ impl SelfTest {
                 self.doubts
                     .set(Doubt::Ram, self.doubts.has(Doubt::Ram) || !sound);
             }
-            slice if slice.is_multiple_of(12) => {
+            slice if slice.is_multiple_of(9) => {
                 if let Some(sound) = self.flash.slice() {
                     self.doubts.set(Doubt::Program, !sound);
                 }

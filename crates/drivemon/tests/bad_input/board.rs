@@ -15,7 +15,7 @@ pub struct Fault {
 }
 
 /// What is seen of a fault, by the name of the patch that takes its handling out.
-const SEEN: [(&str, &str); 47] = [
+const SEEN: [(&str, &str); 52] = [
     (
         "block-overwritten",
         "the gap is logged; the lamps stay as they are; no reset",
@@ -26,6 +26,20 @@ const SEEN: [(&str, &str); 47] = [
         "the board starts again, tells the cause, and shows what it showed",
     ),
     ("channel-dead", "SENSOR on, FAULT on"),
+    (
+        "configuration-torn",
+        "the configuration that was confirmed before",
+    ),
+    (
+        "configuration-unchecked",
+        "refused with what is wrong; what held before holds on",
+    ),
+    (
+        "configuration-unconfirmed",
+        "what held before holds again after a minute",
+    ),
+    ("event-busy", "an exception for 22 ms; no sample is lost"),
+    ("event-stalls", "no sample is lost"),
     ("channel-stuck", "SENSOR on, FAULT on"),
     (
         "clock-ratio",
@@ -141,7 +155,7 @@ const SEEN: [(&str, &str); 47] = [
 ];
 
 /// What reaches the core or the wire besides.
-const OTHERS: [(&str, &str, &str); 22] = [
+const OTHERS: [(&str, &str, &str); 25] = [
     (
         "any sequence of samples: NaN, infinity, jumps, clipping, missing channels",
         "RUN and SENSOR blink, not judged; never FAULT from r1..r4, never a number that is none",
@@ -161,6 +175,21 @@ const OTHERS: [(&str, &str, &str); 22] = [
         "a reader that comes in the middle of a frame",
         "waits for the next frame",
         "crates/live/src/decoder.rs::a_reader_may_come_in_the_middle",
+    ),
+    (
+        "a configuration for a board of another version",
+        "refused with what is wrong, exit code 2",
+        "crates/board/src/configuration/tests.rs::what_is_refused_is_named",
+    ),
+    (
+        "a line that is configured so that nobody reaches the board",
+        "after a minute the board answers as before; with its button held at power-up as a new one",
+        "crates/virtual-board/tests/configuration.rs::a_button_held_while_power_returns_gives_back_the_line_of_a_new_board",
+    ),
+    (
+        "power that fails while an event is written",
+        "that event alone is lost",
+        "crates/virtual-board/tests/events.rs::power_that_fails_at_any_step_of_an_event_loses_no_other",
     ),
     (
         "the motor file of another motor with a live board",
