@@ -158,6 +158,35 @@ fn a_button_held_while_power_returns_gives_back_the_line_of_a_new_board() {
     }
 }
 
+#[test]
+fn each_of_the_247_addresses_can_be_configured_and_no_other_answers_then() {
+    let mut board = board_of(&scenario(400.0));
+    board.forget_taken();
+    board.run(LAMP_TEST_S + 0.8).expect("a run");
+    let mut at = UNIT;
+    for unit in (1..=247).rev() {
+        let master = Master::new(at);
+        let mut wanted = configuration();
+        wanted.set_line(Line {
+            unit,
+            ..Line::default()
+        });
+        let word = wanted.words()[1];
+        let choices = [(word >> 16) as u16, word as u16];
+        assert!(master.write_block(&mut board, STAGED + 2, &choices));
+        master.command(&mut board, Command::Commit as u16);
+        if at != unit {
+            assert!(!master.is_answered(&mut board), "still at {at}");
+        }
+        assert_eq!(source(&Master::new(unit), &mut board), TRIAL, "at {unit}");
+        at = unit;
+    }
+    Master::new(at).command(&mut board, Command::Confirm as u16);
+    board.run(0.2).expect("a run");
+    assert_eq!(source(&Master::new(at), &mut board), CONFIRMED);
+    assert_eq!((board.lamps(), board.tally().resets), (HEALTHY, 0));
+}
+
 /// Words of a record, and the page that is erased before.
 const STEPS: u32 = 8 * (board::CONFIGURATION_WORDS as u32 + 3).div_ceil(8) + 1;
 

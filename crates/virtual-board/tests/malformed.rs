@@ -43,7 +43,7 @@ fn frame(random: &mut Pcg64Mcg) -> (Vec<u8>, bool) {
         (0..length).map(|_| random.random()).collect()
     };
     let bytes = rubbish(12);
-    match random.random_range(0..6) {
+    match random.random_range(0..8) {
         0 => (bytes, false),
         1 => {
             let mut damaged = unlock_and_learn(UNIT);
@@ -63,8 +63,23 @@ fn frame(random: &mut Pcg64Mcg) -> (Vec<u8>, bool) {
         ),
         // Any function but the two that write.
         4 => {
-            let function = [1, 2, 5, 7, 8, 15, 17, 22, 23, 43, 99, 255][usize::from(bytes[0]) % 12];
+            let function = [1, 2, 5, 7, 8, 15, 17, 20, 22, 23, 43, 255][usize::from(bytes[0]) % 12];
             (sealed(&[&[UNIT, function], &bytes[1..]].concat()), true)
+        }
+        // A part of a file that there may be.
+        5 => {
+            let mut parts = vec![UNIT, 20, 7, 6, 0, random.random_range(0..=2)];
+            parts.extend([random.random_range(0..0x24), random.random(), 0]);
+            parts.push(random.random_range(0..=130));
+            (sealed(&parts), true)
+        }
+        // A word of a configuration or beside it; what is written there is checked before it holds.
+        6 => {
+            let [high, low] = random.random_range(900..3_000_u16).to_be_bytes();
+            (
+                sealed(&[UNIT, 6, high, low, random.random(), random.random()]),
+                true,
+            )
         }
         // A write of the wrong length.
         _ => {
@@ -112,6 +127,8 @@ fn assert_nothing_happened(board: &mut VirtualBoard, after: u32) {
     let word = |field| words[usize::from(address(field))];
     assert_eq!(word(Field::Learning), 0, "after {after} frames");
     assert_eq!(word(Field::Verdict), 1, "after {after} frames");
+    assert_eq!(word(Field::Configuration), 0, "after {after} frames");
+    assert_eq!(word(Field::ConfigurationRefused), 0, "after {after} frames");
     assert_eq!(read(board, 3, 0, 1), [0], "unlocked after {after} frames");
     let tally = board.tally();
     assert_eq!((tally.resets, tally.missed_triggers), (0, 0), "{tally:?}");

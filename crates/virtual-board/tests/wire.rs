@@ -5,8 +5,9 @@ mod common;
 use std::process::Command;
 
 use board::modbus::{Field, MAP_VERSION, Object, WORDS, address};
-use board::{Event, EventCause};
+use board::{Configuration, Event, EventCause, Line, MotorImage};
 use common::wire::{Wire, run};
+use monitor::MonitorConfig;
 
 #[test]
 fn drivemon_tells_what_ended_the_program_and_where() {
@@ -283,4 +284,44 @@ fn what_is_not_confirmed_does_not_stay() {
     ));
     let (_, text) = wire.drivemon(&["configure"]);
     assert_eq!(told(&text, "configuration"), "as flashed");
+}
+
+/// The registers of a configuration, as any master writes them.
+fn registers(configuration: &Configuration) -> Vec<u16> {
+    let words = configuration.words().iter();
+    words
+        .flat_map(|word| [(word >> 16) as u16, *word as u16])
+        .collect()
+}
+
+#[test]
+fn a_master_from_elsewhere_configures_a_board_and_follows_it_to_its_new_line() {
+    let wire = Wire::new(|_| {});
+    let file = motor::MotorFile::read(motor_file("chalmers-4kw")).expect("a motor file");
+    let config = MonitorConfig::from_motor_file(&file, 1e-4).expect("effects of the library");
+    let mut wanted = Configuration::of(&file.name, &MotorImage::new(&config));
+    wanted.set_line(Line {
+        unit: 99,
+        baud: 57_600,
+        ..Line::default()
+    });
+    let wanted = registers(&wanted);
+    let words = std::env::temp_dir().join(format!("words-{}.json", std::process::id()));
+    let json = serde_json::to_string(&wanted).expect("JSON");
+    std::fs::write(&words, json).expect("a temporary file");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/pymodbus_configure.py");
+    let mut command = Command::new("python3");
+    command.args([script, &wire.port]).arg(&words);
+    let (output, text) = run(command.args(["99", "57600"]));
+    assert!(output.status.success(), "{text}");
+    let holds: Vec<u16> = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(holds, wanted);
+    std::fs::remove_file(words).expect("the temporary file");
+    // And another one finds it there.
+    let line = ["-m", "rtu", "-a", "99", "-b", "57600", "-P", "even", "-1"];
+    let (output, text) = run(Command::new("mbpoll")
+        .args(line)
+        .args(["-t", "3", "-r", "101", "-c", "1", &wire.port]));
+    assert!(output.status.success(), "{text}");
+    assert!(text.contains("[101]: \t1"), "{text}");
 }
