@@ -66,9 +66,11 @@ impl VirtualBoard {
     /// The program touched something that is not modelled, or crashed.
     pub fn run(&mut self, seconds: f64) -> Result<(), BoardError> {
         let end = self.cpu.machine().now + (seconds * TICK_HZ as f64) as u64;
+        self.cpu.machine().until = end;
         while self.cpu.machine().now < end {
             self.step()?;
         }
+        self.cpu.machine().until = u64::MAX;
         Ok(())
     }
 

@@ -79,6 +79,8 @@ pub(crate) const VREFINT_CAL: u16 = 1655;
 #[derive(Clone)]
 pub(crate) struct Machine {
     pub now: u64,
+    /// When whoever runs the board wants to look at it.
+    pub until: u64,
     pub rcc: Rcc,
     pub ports: [Gpio; 7],
     pub tim3: Timer,
@@ -169,6 +171,7 @@ impl Machine {
     pub fn new(inputs: Box<dyn Inputs>) -> Self {
         let mut machine = Machine {
             now: 0,
+            until: u64::MAX,
             rcc: Rcc::new(),
             ports: std::array::from_fn(|_| Gpio::new()),
             tim3: Timer::new(),
@@ -226,6 +229,8 @@ impl Machine {
             self.backup.clear();
         }
         self.ports.iter_mut().for_each(Gpio::reset);
+        // The last edge of the relay's pump is the one that the reset makes.
+        self.follow_relay();
         for timer in [&mut self.tim3, &mut self.tim4, &mut self.tim15] {
             timer.reset();
         }
@@ -249,8 +254,13 @@ impl Machine {
         self.set_clocks();
     }
 
-    /// Cycle of the next thing that happens without the program.
+    /// Until when the program runs on its own: something happens, or somebody looks.
     pub fn horizon(&self) -> u64 {
+        self.next_happening().min(self.until)
+    }
+
+    /// When the next thing happens without the program.
+    pub fn next_happening(&self) -> u64 {
         let events = [
             self.tim4.next_event(),
             self.tim15.next_event(),

@@ -169,10 +169,10 @@ impl Cpu {
         if wakes {
             machine.event_register = false;
         } else {
-            machine.now = machine.horizon();
-            if machine.now == u64::MAX {
+            if machine.next_happening() == u64::MAX {
                 return Err(self.stopped("sleeps for ever".into()));
             }
+            machine.now = machine.horizon();
         }
         if self.asleep.is_none() || wakes {
             let next = if wakes { pc + 2 } else { pc };

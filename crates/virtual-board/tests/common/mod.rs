@@ -16,7 +16,7 @@ use virtual_board::{Inputs, VirtualBoard};
 /// Blocks of 32 instants that the firmware throws away after power-up.
 pub const INHIBITED: usize = 31 * 32;
 /// The lamp test lasts nine times 0.15 s; the test of the RAM comes before it, that of the flash behind. Sampling begins then.
-pub const LAMP_TEST_S: f64 = 1.42;
+pub const LAMP_TEST_S: f64 = 1.435;
 /// Two windows of a 60 Hz supply and a block, in instants: the lag that the lamps may have.
 const LAG: usize = 2 * 167 + 32;
 
