@@ -110,6 +110,10 @@ fn what_was_learnt_is_used_after_a_reset() {
     hold_button(&mut board);
     board.run(LEARNING_S).expect("a run");
     let learnt = stored(&mut board).newest.expect("a calibration");
+    let stack = board.stack_used().expect("a stack");
+    println!("{stack} bytes of stack");
+    // Beyond three quarters of its room the board doubts itself.
+    assert!(stack < 15 * 1_024, "{stack}");
     // The converters' steps are 0.2 V and 7 mA; a mean over ten seconds is far finer, but for the truth's own offset.
     assert!((learnt.voltage.offset[0] + 4.0).abs() < 0.2, "{learnt:?}");
     assert!((learnt.current.offset[2] - 0.3).abs() < 0.007, "{learnt:?}");
