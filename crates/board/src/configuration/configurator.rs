@@ -4,8 +4,8 @@ use embedded_storage::nor_flash::NorFlash;
 
 use super::store::ConfigurationStore;
 use super::{Configuration, Line, Refused};
+use crate::door::relay::RelayMode;
 use crate::image::MotorImage;
-use crate::relay::RelayMode;
 
 /// How long a configuration that nobody confirms stays on trial, s.
 pub const TRIAL_S: u32 = 60;

@@ -16,8 +16,8 @@ pub use store::{ConfigurationStore, PAGES as CONFIGURATION_PAGES};
 
 use monitor::MonitorConfig;
 
+use crate::door::relay::RelayMode;
 use crate::image::{IMAGE_WORDS, ImageError, MotorImage, config_of};
-use crate::relay::RelayMode;
 
 /// Layout of the words; a different one gets a different number.
 const LAYOUT: u32 = 0x444D_5301;

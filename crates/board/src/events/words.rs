@@ -6,8 +6,8 @@ use monitor::{FaultId, Reason};
 
 use super::cause::EventCause;
 use super::event::Event;
-use crate::doubt::Doubts;
-use crate::fault_record::FaultCause;
+use crate::health::doubt::Doubts;
+use crate::health::fault_record::FaultCause;
 
 /// What happened, without number and time: `FAULT on: stator resistance, 93 %`.
 impl fmt::Display for Event {

@@ -5,8 +5,8 @@ use core::fmt;
 use monitor::{FaultId, Reason};
 
 use crate::configuration::Refused;
-use crate::doubt::Doubt;
-use crate::fault_record::FaultCause;
+use crate::health::doubt::Doubt;
+use crate::health::fault_record::FaultCause;
 
 /// Names of the values, in the order of their addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

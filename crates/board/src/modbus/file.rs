@@ -1,7 +1,8 @@
 //! Function 20: the event log as a file of records, which the protocol counts in words of 16 bits.
 
 use super::answer::Answer;
-use super::slave::Exception;
+use super::exception::Exception;
+use super::memory::ReadEvents;
 use crate::events::{EVENT_BYTES, LOG_EVENTS};
 
 /// Number of the file that is the event log. Its words are the bytes of flash, in their order.
@@ -13,9 +14,6 @@ const FILE_WORDS: u32 = LOG_EVENTS * EVENT_BYTES as u32 / 2;
 const REFERENCE: u8 = 6;
 /// Bytes of one reference in a request.
 const GROUP_BYTES: usize = 7;
-
-/// Copies bytes of the event log from a place on; `false` while flash cannot be read.
-pub type ReadEvents = fn(usize, &mut [u8]) -> bool;
 
 /// Answers a request for parts of files.
 pub(super) fn read(

@@ -4,8 +4,9 @@ use heapless::Vec;
 
 use super::answer::Answer;
 use super::entry::Field;
+use super::exception::Exception;
 use super::map::MAP_VERSION;
-use super::slave::{Exception, Memory};
+use super::memory::Memory;
 use crate::configuration::{Configuration, NAME_BYTES};
 
 /// Type 14 of function 43: device identification.
@@ -21,17 +22,6 @@ const VENDOR: &str = "drive-monitor (open source)";
 const PRODUCT_CODE: &str = "DM-G474";
 const PRODUCT: &str = "three-phase induction motor monitor";
 const MODEL: &str = "STM32G474RE";
-
-/// What was compiled into the program, and the chip's serial number. What else identifies a board is in its registers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Identity {
-    /// Version of the program.
-    pub version: &'static str,
-    /// Revision of its source; empty where it was not built from a repository.
-    pub revision: &'static str,
-    /// The chip's serial number, its highest 32 bits first.
-    pub serial: [u32; 3],
-}
 
 /// What can be asked for. The numbers are the protocol's, from 0x80 on the board's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,18 +5,21 @@
 
 mod answer;
 mod entry;
+mod exception;
 mod file;
 mod identity;
 mod map;
+mod memory;
 mod slave;
 mod status;
 mod table;
 
 pub use answer::MAX_RESPONSE_BYTES;
 pub use entry::{Entry, Field, Kind, Meaning};
-pub use file::{EVENT_FILE, MOST_FILE_WORDS, ReadEvents};
-pub use identity::{Identity, Object};
+pub use file::{EVENT_FILE, MOST_FILE_WORDS};
+pub use identity::Object;
 pub use map::{Image, MAP_VERSION, WORDS, address};
-pub use slave::{Collector, Command, MAX_REQUEST_BYTES, Memory, Slave, UNLOCK_KEY};
+pub use memory::{Identity, Memory, ReadEvents};
+pub use slave::{Collector, Command, MAX_REQUEST_BYTES, Slave, UNLOCK_KEY};
 pub use status::{BoardStatus, Status};
 pub use table::MAP;

@@ -4,9 +4,9 @@ use crc::{CRC_16_MODBUS, Crc, NoTable};
 use heapless::Vec;
 
 use super::answer::{Answer, MAX_RESPONSE_BYTES};
-use super::file::{self, ReadEvents};
-use super::identity::{self, Identity};
-use super::map::Image;
+use super::exception::Exception;
+use super::memory::Memory;
+use super::{file, identity};
 use crate::configuration::Desk;
 
 const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_MODBUS);
@@ -26,18 +26,6 @@ const WRITE_ONE: u8 = 6;
 const WRITE_MANY: u8 = 16;
 const READ_FILE: u8 = 20;
 const IDENTIFY: u8 = 43;
-
-/// Why a request is refused, as the protocol numbers it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub(super) enum Exception {
-    /// A function that does not exist here, or a command while the slave is locked.
-    Function = 1,
-    Address = 2,
-    Value = 3,
-    /// Flash is being erased.
-    Busy = 6,
-}
 
 /// What a master may ask for beside reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,18 +70,6 @@ impl Command {
 pub struct Slave {
     unit: u8,
     unlocked_at_ms: Option<u32>,
-}
-
-/// What a master may read, and the configuration that it may write.
-pub struct Memory<'a> {
-    /// Input registers.
-    pub image: &'a Image,
-    /// Who the board is.
-    pub identity: &'a Identity,
-    /// The event log.
-    pub events: ReadEvents,
-    /// Configurations.
-    pub desk: &'a mut Desk,
 }
 
 impl Slave {

@@ -9,10 +9,10 @@ use super::entry::Field;
 use super::map::{Image, MAP_VERSION};
 use crate::calibration::CalibrationSource;
 use crate::configuration::{ConfigurationSource, Refused};
-use crate::display::Shown;
-use crate::doubt::Doubts;
-use crate::fault_record::FaultRecord;
-use crate::frame::packed;
+use crate::door::display::Shown;
+use crate::frames::frame::packed;
+use crate::health::doubt::Doubts;
+use crate::health::fault_record::FaultRecord;
 use crate::learn::LearnState;
 
 /// Rad/s of one turn per minute.

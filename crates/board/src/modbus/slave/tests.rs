@@ -9,7 +9,8 @@ use rmodbus::client::ModbusRequest;
 
 use super::super::entry::Field;
 use super::super::identity::Object;
-use super::super::map::{WORDS, address};
+use super::super::map::{Image, WORDS, address};
+use super::super::memory::{Identity, ReadEvents};
 use super::*;
 use crate::configuration::{ACTIVE, CONFIGURATION_REGISTERS, Configuration, STAGED};
 use crate::events::{EVENT_BYTES, LOG_EVENTS};

@@ -7,7 +7,7 @@ use heapless::Deque;
 use monitor::RawSample;
 use serde::{Deserialize, Serialize};
 
-use crate::framing::{self, MAX_FRAME_BYTES};
+use crate::frames::framing::{self, MAX_FRAME_BYTES};
 
 /// Instants that are kept.
 pub const CAPTURE_INSTANTS: usize = 640;

@@ -3,8 +3,8 @@
 use monitor::{Lamp, Lamps, RESIDUALS, Reason, Report};
 use serde::{Deserialize, Serialize};
 
-use crate::display::{LAMPS, Shown};
-use crate::framing::{self, MAX_FRAME_BYTES, SCHEMA};
+use crate::door::display::{LAMPS, Shown};
+use crate::frames::framing::{self, MAX_FRAME_BYTES, SCHEMA};
 
 /// What the board says about one window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -88,7 +88,7 @@ fn why_not_judged(report: &Report, shown: &Shown) -> u8 {
 }
 
 pub(crate) fn packed(lamps: &Lamps) -> u32 {
-    let lamps = crate::display::in_order(lamps);
+    let lamps = crate::door::display::in_order(lamps);
     let codes = lamps.map(|lamp| match lamp {
         Lamp::Off => 0,
         Lamp::On => 1,
@@ -100,7 +100,7 @@ pub(crate) fn packed(lamps: &Lamps) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::framing::FrameError;
+    use crate::frames::framing::FrameError;
     use proptest::prelude::*;
 
     /// Every number at its longest.

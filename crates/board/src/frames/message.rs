@@ -1,8 +1,8 @@
 //! Everything that the board sends without being asked, told apart by the first byte.
 
-use crate::capture::{self, CaptureChunk};
-use crate::frame::Frame;
-use crate::framing::{self, FrameError, MAX_FRAME_BYTES};
+use crate::frames::capture::{self, CaptureChunk};
+use crate::frames::frame::Frame;
+use crate::frames::framing::{self, FrameError, MAX_FRAME_BYTES};
 
 /// One frame's content.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use monitor::Lamp;
 
-use crate::display::Shown;
+use crate::door::display::Shown;
 
 /// Blocks of 3.2 ms without a judgement after which a board counts as blind (60 s).
 const BLIND_BLOCKS: u32 = 18_750;
