@@ -4,26 +4,14 @@ mod common;
 
 use board::{EVENT_BYTES, Event, EventCause, LOG_EVENTS};
 use common::master::{CHARACTER_S, Master, UNIT, bytes, good};
-use common::{LAMP_TEST_S, board as board_of, scenario};
+use common::{EVENT_LOG, LAMP_TEST_S, board as board_of, logged, scenario};
 use motor::motor_file::Frame as MotorFrame;
 use scenario::Fault;
 use virtual_board::{Cause, Port, VirtualBoard};
 
-/// Where src/hardware/flash_store.rs has the log.
-const LOG: u32 = 0x0807_B000;
 const HEALTHY: [bool; 9] = [true, false, false, false, false, false, false, false, false];
 /// Events of a page: what is forgotten at once.
 const PAGE_EVENTS: u32 = LOG_EVENTS / 8;
-
-/// Whole events in flash, oldest first.
-fn log(board: &mut VirtualBoard) -> Vec<Event> {
-    let size = LOG_EVENTS as usize * EVENT_BYTES;
-    let flash = board.read_flash(LOG, size).expect("flash");
-    let (places, _) = flash.as_chunks::<EVENT_BYTES>();
-    let mut events: Vec<Event> = places.iter().filter_map(Event::from_bytes).collect();
-    events.sort_by_key(|event| event.number);
-    events
-}
 
 fn causes(events: &[Event]) -> Vec<EventCause> {
     events.iter().map(|event| event.cause).collect()
@@ -40,7 +28,7 @@ fn with_full_log() -> VirtualBoard {
             times: 1,
             values: [1, 0],
         };
-        let at = LOG + (number - 1) * EVENT_BYTES as u32;
+        let at = EVENT_LOG + (number - 1) * EVENT_BYTES as u32;
         board.flash(at, &event.to_bytes()).expect("flash");
     }
     board
@@ -56,7 +44,7 @@ fn what_happened_is_there_after_a_reset_with_its_cause_and_in_its_order() {
     let mut board = board_of(&scenario);
     board.run(LAMP_TEST_S + 2.4).expect("a run");
     assert_eq!(board.lamps(), HEALTHY);
-    let events = log(&mut board);
+    let events = logged(&mut board);
     assert_eq!(causes(&events), [Start, FaultOn, FaultOff]);
     let [start, on, _] = events[..] else {
         panic!("{events:?}")
@@ -69,7 +57,7 @@ fn what_happened_is_there_after_a_reset_with_its_cause_and_in_its_order() {
     Master::new(UNIT).command(&mut board, 1);
     board.reset(Cause::Watchdog).expect("a reset");
     board.run(LAMP_TEST_S + 0.4).expect("a run");
-    let events = log(&mut board);
+    let events = logged(&mut board);
     assert_eq!(
         causes(&events)[3..],
         [Acknowledged, Crash, Start],
@@ -86,7 +74,7 @@ fn a_page_is_erased_and_written_while_every_sample_is_taken() {
     board.log();
     let before = board.taken().len();
     board.run(1.0).expect("a run");
-    let events = log(&mut board);
+    let events = logged(&mut board);
     let (first, last) = (events.first(), events.last());
     assert_eq!(first.map(|event| event.number), Some(PAGE_EVENTS + 1));
     assert_eq!(last.map(|event| event.cause), Some(EventCause::Start));
@@ -115,7 +103,7 @@ fn power_that_fails_at_any_step_of_an_event_loses_no_other() {
         assert_eq!(cut, u64::from(step < STEPS), "step {step}");
         board.run(LAMP_TEST_S + 0.4).expect("a run");
         assert_eq!((board.lamps(), board.tally().resets), (HEALTHY, cut));
-        let events = log(&mut board);
+        let events = logged(&mut board);
         let old = events.iter().filter(|event| event.number <= LOG_EVENTS);
         assert_eq!(old.count() as u32, LOG_EVENTS - PAGE_EVENTS, "step {step}");
         let new: Vec<&Event> = events

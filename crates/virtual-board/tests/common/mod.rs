@@ -7,6 +7,7 @@ pub mod wire;
 
 use std::path::{Path, PathBuf};
 
+use board::{EVENT_BYTES, Event, LOG_EVENTS};
 use monitor::{Lamp, Lamps, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
 use scenario::Scenario;
@@ -159,6 +160,19 @@ pub fn board_to_restore(scenario: &Scenario) -> VirtualBoard {
         seen: Vec::new(),
     };
     VirtualBoard::new(&firmware(), Box::new(inputs)).expect("a firmware that loads")
+}
+
+/// Where src/hardware/flash_store.rs has the event log.
+pub const EVENT_LOG: u32 = 0x0807_B000;
+
+/// Whole events in flash, oldest first.
+pub fn logged(board: &mut VirtualBoard) -> Vec<Event> {
+    let size = LOG_EVENTS as usize * EVENT_BYTES;
+    let flash = board.read_flash(EVENT_LOG, size).expect("flash");
+    let (places, _) = flash.as_chunks::<EVENT_BYTES>();
+    let mut events: Vec<Event> = places.iter().filter_map(Event::from_bytes).collect();
+    events.sort_by_key(|event| event.number);
+    events
 }
 
 /// The host's lamps after every sample of `taken`, as the firmware's core sees them without a gap.
