@@ -61,7 +61,8 @@ pub struct Events {
     list: VecDeque<Event>,
     recordings: VecDeque<(u64, Recording)>,
     open: Option<u64>,
-    collecting: Option<Collecting>,
+    /// Alarms whose samples are still coming, the oldest first: the next may begin before the last one's are complete.
+    collecting: VecDeque<Collecting>,
     next: u64,
 }
 
@@ -97,14 +98,16 @@ impl Events {
             self.ring.pop_front();
         }
         self.ring.push_back(*instant);
-        let complete = self
-            .collecting
-            .as_ref()
-            .is_some_and(|open| instant.t_s >= open.until_s);
-        if complete {
-            self.keep(belief);
+        let mut any = false;
+        while let Some(open) = self.collecting.front()
+            && instant.t_s >= open.until_s
+        {
+            let id = open.id;
+            self.collecting.pop_front();
+            self.keep(id, belief);
+            any = true;
         }
-        complete
+        any
     }
 
     /// Looks at a window; `true` when the list has changed.
@@ -121,10 +124,12 @@ impl Events {
         let id = self.next;
         self.next += 1;
         self.open = Some(id);
-        self.collecting = (!self.ring.is_empty()).then_some(Collecting {
-            id,
-            until_s: window.t_s + AFTER_S,
-        });
+        if !self.ring.is_empty() {
+            self.collecting.push_back(Collecting {
+                id,
+                until_s: window.t_s + AFTER_S,
+            });
+        }
         if self.list.len() >= MOST_EVENTS {
             self.list.pop_front();
         }
@@ -144,7 +149,7 @@ impl Events {
 
     /// More lamps, later causes, or the end of an alarm.
     fn go_on(&mut self, id: u64, window: &WindowMessage, lit: &[&'static str]) -> bool {
-        let collecting = self.collecting.is_some();
+        let collecting = self.collecting.iter().any(|open| open.id == id);
         let Some(event) = self.list.iter_mut().find(|event| event.id == id) else {
             self.open = None;
             return false;
@@ -168,10 +173,7 @@ impl Events {
         event.lit.len() != known
     }
 
-    fn keep(&mut self, belief: &Belief) {
-        let Some(Collecting { id, .. }) = self.collecting.take() else {
-            return;
-        };
+    fn keep(&mut self, id: u64, belief: &Belief) {
         if let Ok(recording) = to_recording(&self.ring, belief) {
             self.keep_recording(id, recording);
         }
@@ -222,7 +224,7 @@ impl Events {
     /// The source's clock has jumped: what was open ends without an end.
     pub fn interrupt(&mut self) {
         self.open = None;
-        self.collecting = None;
+        self.collecting.clear();
         self.ring.clear();
     }
 }
@@ -260,4 +262,49 @@ fn to_recording(ring: &VecDeque<Instant>, belief: &Belief) -> Result<Recording, 
         recording = recording.with_channel(channel, values)?;
     }
     Ok(recording)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::running::message::LampsMessage;
+    use monitor::Lamp;
+
+    /// A window in which FAULT is lit or dark.
+    fn window(t_s: f64, fault: bool) -> WindowMessage {
+        WindowMessage {
+            t_s,
+            lamps: LampsMessage {
+                fault: if fault { Lamp::On } else { Lamp::Off },
+                ..LampsMessage::default()
+            },
+            ..WindowMessage::default()
+        }
+    }
+
+    #[test]
+    fn an_alarm_that_begins_while_the_samples_of_another_still_come_takes_none_of_them() {
+        let (mut events, belief) = (Events::default(), Belief::default());
+        let lit = [1.5..1.6, 1.8..1.9, 2.05..2.5];
+        for k in 0..4_000 {
+            let t_s = f64::from(k) * 1e-3;
+            let instant = Instant {
+                t_s,
+                ..Instant::default()
+            };
+            events.sample(&instant, &belief);
+            if k % 20 == 0 {
+                let fault = lit.iter().any(|lit| lit.contains(&t_s));
+                events.window(&window(t_s, fault), 0.0);
+            }
+        }
+        let list = events.list();
+        assert_eq!(list.len(), 3);
+        for event in &list {
+            let samples = events.recording(event.id).expect("samples");
+            // A second before and half a second after.
+            assert!((1_499..=1_501).contains(&samples.len()), "{event:?}");
+            assert_eq!(event.samples, samples.len());
+        }
+    }
 }
