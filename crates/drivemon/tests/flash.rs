@@ -109,6 +109,33 @@ fn a_dry_run_runs_nothing() {
     assert!(place.log().is_empty());
 }
 
+/// Knots and values are constants of the image; a formula would have to be compiled.
+#[test]
+fn a_law_goes_onto_the_board_and_a_formula_does_not() {
+    let place = Place::new("law");
+    place.program("tree/tools/thumb", 0);
+    let text = fs::read_to_string(motor()).expect("a shipped motor file");
+    let with = |name: &str, effect: &str| {
+        let path = place.root.join(name);
+        let effect = format!("{text}\n[[effects]]\n{effect}\n");
+        fs::write(&path, effect).expect("a file");
+        path
+    };
+    let law = with(
+        "law.toml",
+        "name = \"curve\"\nplace = \"torque\"\ncoordinate = \"speed\"\n\
+         knots_rad_s = [0.0, 60.0, 157.0]\nvalues_nm = [0.0, 0.01, 0.05]",
+    );
+    let output = place.run(&law, &["--dry-run"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let formula = with(
+        "formula.toml",
+        "name = \"expression\"\nadds_to = \"torque\"\nformula = \"k*omega\"\nk = 0.01",
+    );
+    let message = error(&place.run(&formula, &["--dry-run"]));
+    assert!(message.contains("runs on a host only"), "{message}");
+}
+
 #[test]
 fn a_motor_file_that_the_board_cannot_take_is_refused_before_the_build() {
     let place = Place::new("bad-motor");
