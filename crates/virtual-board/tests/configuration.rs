@@ -35,19 +35,6 @@ fn configuration() -> Configuration {
     Configuration::of("the same motor, less touchy", &MotorImage::new(&config()))
 }
 
-/// Writes a configuration's words, as a master does.
-fn stage(master: &Master, board: &mut VirtualBoard, configuration: &Configuration) {
-    let registers: Vec<u16> = configuration
-        .words()
-        .iter()
-        .flat_map(|word| [(word >> 16) as u16, *word as u16])
-        .collect();
-    let firsts = (STAGED..).step_by(100);
-    for (first, part) in firsts.zip(registers.chunks(100)) {
-        assert!(master.write_block(board, first, part), "{first}");
-    }
-}
-
 fn source(master: &Master, board: &mut VirtualBoard) -> u16 {
     master.word(board, Field::Configuration)
 }
@@ -55,7 +42,7 @@ fn source(master: &Master, board: &mut VirtualBoard) -> u16 {
 #[test]
 fn a_configured_board_judges_bit_for_bit_as_the_host_does_with_that_motor() {
     let (mut board, master) = (running(), Master::new(UNIT));
-    stage(&master, &mut board, &configuration());
+    master.stage(&mut board, &configuration());
     assert_eq!(source(&master, &mut board), COMPILED_IN, "not yet");
     master.command(&mut board, Command::Commit as u16);
     assert_eq!(source(&master, &mut board), TRIAL);
@@ -96,7 +83,7 @@ fn a_refused_configuration_changes_nothing_and_names_what_is_wrong() {
     let (mut board, master) = (running(), Master::new(UNIT));
     let mut damaged = configuration();
     damaged.words_mut()[100] ^= 1 << 9;
-    stage(&master, &mut board, &damaged);
+    master.stage(&mut board, &damaged);
     master.command(&mut board, Command::Commit as u16);
     let refused = master.word(&mut board, Field::ConfigurationRefused);
     assert_eq!(refused, Refused::Checksum as u16);
@@ -106,7 +93,7 @@ fn a_refused_configuration_changes_nothing_and_names_what_is_wrong() {
     assert!(board.taken().len() - before > 4_900, "no sample is lost");
     assert_eq!(board.lamps(), HEALTHY);
     // What is not refused any more is taken.
-    stage(&master, &mut board, &configuration());
+    master.stage(&mut board, &configuration());
     master.command(&mut board, Command::Commit as u16);
     assert_eq!(source(&master, &mut board), TRIAL);
     assert_eq!(master.word(&mut board, Field::ConfigurationRefused), 0);
@@ -121,7 +108,7 @@ fn a_line_that_nobody_can_reach_is_given_up_after_a_minute() {
         baud: 115_200,
         parity: LineParity::None,
     });
-    stage(&master, &mut board, &elsewhere);
+    master.stage(&mut board, &elsewhere);
     master.command(&mut board, Command::Commit as u16);
     board.run(0.1).expect("a run");
     assert!(!master.is_answered(&mut board), "at the old address");
@@ -142,7 +129,7 @@ fn a_button_held_while_power_returns_gives_back_the_line_of_a_new_board() {
         unit: 9,
         ..Line::default()
     });
-    stage(&master, &mut board, &elsewhere);
+    master.stage(&mut board, &elsewhere);
     master.command(&mut board, Command::Commit as u16);
     board.run(0.1).expect("a run");
     Master::new(9).command(&mut board, Command::Confirm as u16);
@@ -171,8 +158,7 @@ fn each_of_the_247_addresses_can_be_configured_and_no_other_answers_then() {
             unit,
             ..Line::default()
         });
-        let word = wanted.words()[1];
-        let choices = [(word >> 16) as u16, word as u16];
+        let choices: Vec<u16> = wanted.registers().skip(2).take(2).collect();
         assert!(master.write_block(&mut board, STAGED + 2, &choices));
         master.command(&mut board, Command::Commit as u16);
         if at != unit {
@@ -198,7 +184,7 @@ fn power_that_fails_at_any_step_of_storing_leaves_the_old_or_the_new() {
     old.set_motor("the old one", &MotorImage::new(&config()));
     // Nothing else is to be written to flash while the power is cut: events of the same cause wait for a minute.
     for configuration in [&configuration(), &old] {
-        stage(&master, &mut board, configuration);
+        master.stage(&mut board, configuration);
         master.command(&mut board, Command::Commit as u16);
         master.command(&mut board, Command::Confirm as u16);
         board.run(0.3).expect("a run");
@@ -206,14 +192,13 @@ fn power_that_fails_at_any_step_of_storing_leaves_the_old_or_the_new() {
     }
     let mut new = old.clone();
     new.set_motor("the new one", &MotorImage::new(&config()));
-    stage(&master, &mut board, &new);
+    master.stage(&mut board, &new);
     master.command(&mut board, Command::Commit as u16);
     let name = |board: &mut VirtualBoard| {
         let words = master.holding(board, board::ACTIVE, 2 * 19);
         let mut read = Configuration::BLANK;
-        let (pairs, _) = words.as_chunks::<2>();
-        for (word, [high, low]) in read.words_mut().iter_mut().zip(pairs) {
-            *word = u32::from(*high) << 16 | u32::from(*low);
+        for (at, word) in (0..).zip(words) {
+            read.set_register(at, word);
         }
         read.name().text().expect("text").to_owned()
     };
@@ -260,7 +245,7 @@ fn another_motor_of_the_library_of_files_fits_in() {
             continue;
         };
         let wanted = Configuration::of(&file.name, &MotorImage::new(&config));
-        stage(&master, &mut board, &wanted);
+        master.stage(&mut board, &wanted);
         master.command(&mut board, Command::Commit as u16);
         let refused = master.word(&mut board, Field::ConfigurationRefused);
         assert_eq!(refused, 0, "{}", path.display());

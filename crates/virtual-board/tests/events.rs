@@ -3,7 +3,7 @@
 mod common;
 
 use board::{EVENT_BYTES, Event, EventCause, LOG_EVENTS};
-use common::master::{CHARACTER_S, Master, UNIT, bytes, good};
+use common::master::{CHARACTER_S, Master, UNIT, bytes, good, sealed};
 use common::{EVENT_LOG, LAMP_TEST_S, board as board_of, logged, scenario};
 use motor::motor_file::Frame as MotorFrame;
 use scenario::Fault;
@@ -113,18 +113,6 @@ fn power_that_fails_at_any_step_of_an_event_loses_no_other() {
         let last = new.last().expect("an event after the cut");
         assert_eq!(last.cause, EventCause::Start, "step {step}: {new:?}");
     }
-}
-
-/// The protocol's checksum, bit by bit as the specification draws it.
-fn sealed(frame: &[u8]) -> Vec<u8> {
-    let mut crc = 0xFFFF_u16;
-    for byte in frame {
-        crc ^= u16::from(*byte);
-        for _ in 0..8 {
-            crc = crc >> 1 ^ if crc & 1 == 1 { 0xA001 } else { 0 };
-        }
-    }
-    [frame, &crc.to_le_bytes()].concat()
 }
 
 #[test]

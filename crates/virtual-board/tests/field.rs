@@ -5,7 +5,7 @@ mod common;
 
 use board::EventCause::{self, *};
 use board::modbus::{Command, Field};
-use board::{Configuration, MotorImage, STAGED};
+use board::{Configuration, MotorImage};
 use common::master::{Master, UNIT};
 use common::{LAMP_TEST_S, board as board_of, logged, motor, scenario};
 use monitor::MonitorConfig;
@@ -48,13 +48,7 @@ fn less_touchy() -> Configuration {
 
 fn configure(board: &mut VirtualBoard, configuration: &Configuration) {
     let master = Master::new(UNIT);
-    let words = configuration.words().iter();
-    let registers: Vec<u16> = words
-        .flat_map(|word| [(word >> 16) as u16, *word as u16])
-        .collect();
-    for (k, part) in registers.chunks(100).enumerate() {
-        assert!(master.write_block(board, STAGED + 100 * k as u16, part));
-    }
+    master.stage(board, configuration);
     master.command(board, Command::Commit as u16);
     master.command(board, Command::Confirm as u16);
 }

@@ -6,6 +6,7 @@
 mod common;
 
 use board::modbus::{Field, UNLOCK_KEY, WORDS, address};
+use common::master::sealed;
 use common::{LAMP_TEST_S, board as board_of, scenario};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -19,16 +20,6 @@ const CHARACTER_S: f64 = 11.0 / 19_200.0;
 const PATIENCE_S: f64 = 0.004;
 /// Frames between two looks at the registers.
 const LOOK_EVERY: u32 = 500;
-
-/// The checksum bit by bit, after the protocol's own description (Modbus over serial line V1.02, 6.2.2).
-fn sealed(body: &[u8]) -> Vec<u8> {
-    let crc = body.iter().fold(0xFFFF_u16, |crc, byte| {
-        (0..8).fold(crc ^ u16::from(*byte), |crc, _| {
-            (crc >> 1) ^ if crc & 1 == 1 { 0xA001 } else { 0 }
-        })
-    });
-    [body, &crc.to_le_bytes()].concat()
-}
 
 /// Key and the command to learn in one request, for `unit`.
 fn unlock_and_learn(unit: u8) -> Vec<u8> {

@@ -286,14 +286,6 @@ fn what_is_not_confirmed_does_not_stay() {
     assert_eq!(told(&text, "configuration"), "as flashed");
 }
 
-/// The registers of a configuration, as any master writes them.
-fn registers(configuration: &Configuration) -> Vec<u16> {
-    let words = configuration.words().iter();
-    words
-        .flat_map(|word| [(word >> 16) as u16, *word as u16])
-        .collect()
-}
-
 #[test]
 fn a_master_from_elsewhere_configures_a_board_and_follows_it_to_its_new_line() {
     let wire = Wire::new(|_| {});
@@ -305,7 +297,7 @@ fn a_master_from_elsewhere_configures_a_board_and_follows_it_to_its_new_line() {
         baud: 57_600,
         ..Line::default()
     });
-    let wanted = registers(&wanted);
+    let wanted: Vec<u16> = wanted.registers().collect();
     let words = std::env::temp_dir().join(format!("words-{}.json", std::process::id()));
     let json = serde_json::to_string(&wanted).expect("JSON");
     std::fs::write(&words, json).expect("a temporary file");

@@ -1,13 +1,11 @@
 //! Two configurations as registers: the one that holds, and the one that a master is writing.
 
-use super::{CONFIGURATION_WORDS, Configuration};
+use super::{CONFIGURATION_REGISTERS, Configuration};
 
 /// Holding register of the first word that a master writes.
 pub const STAGED: u16 = 1_000;
 /// Holding register of the first word that holds; these are only read.
 pub const ACTIVE: u16 = 2_000;
-/// Registers of a configuration: two for each word, the high one first.
-pub const CONFIGURATION_REGISTERS: u16 = 2 * CONFIGURATION_WORDS as u16;
 
 /// What holds, and what is being written.
 #[derive(Clone, Debug)]
@@ -43,12 +41,10 @@ impl Desk {
 
     /// The holding register at `address`; `None` where there is none.
     pub fn register(&self, address: u16) -> Option<u16> {
-        let (words, at) = match place(address, STAGED) {
-            Some(at) => (&self.staged, at),
-            None => (&self.active, place(address, ACTIVE)?),
-        };
-        let word = words.words().get(at / 2)?;
-        Some((word >> shift(at)) as u16)
+        match address.checked_sub(ACTIVE) {
+            Some(at) => self.active.register(at),
+            None => self.staged.register(address.checked_sub(STAGED)?),
+        }
     }
 
     /// Whether all of these registers can be written.
@@ -59,25 +55,9 @@ impl Desk {
 
     /// Writes a register; `false` where it cannot be written.
     pub fn write(&mut self, address: u16, value: u16) -> bool {
-        let Some(at) = place(address, STAGED) else {
-            return false;
-        };
-        let Some(word) = self.staged.words_mut().get_mut(at / 2) else {
-            return false;
-        };
-        *word = *word & !(0xFFFF << shift(at)) | u32::from(value) << shift(at);
-        true
+        let at = address.checked_sub(STAGED);
+        at.is_some_and(|at| self.staged.set_register(at, value))
     }
-}
-
-/// Place in a block of registers.
-fn place(address: u16, first: u16) -> Option<usize> {
-    let at = address.checked_sub(first)?;
-    (at < CONFIGURATION_REGISTERS).then_some(usize::from(at))
-}
-
-fn shift(at: usize) -> u32 {
-    if at.is_multiple_of(2) { 16 } else { 0 }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Configuration in the field: motor constants, relay and line, changed over the line without a programmer.
 //!
 //! A master writes the words of a new configuration beside those that hold ([`Desk`]), has them checked as a motor file is,
-//! and puts them on trial. Only what is confirmed over the new line settings within a minute goes to flash ([`Store`]); anything
+//! and puts them on trial. Only what is confirmed over the new line settings within a minute goes to flash ([`ConfigurationStore`]); anything
 //! else, a power failure too, leaves what held before ([`Configurator`]).
 
 mod configurator;
@@ -10,7 +10,7 @@ mod line;
 mod store;
 
 pub use configurator::{Compiled, ConfigurationSource, Configurator, TRIAL_S};
-pub use desk::{ACTIVE, CONFIGURATION_REGISTERS, Desk, STAGED};
+pub use desk::{ACTIVE, Desk, STAGED};
 pub use line::{Line, LineParity};
 pub use store::{ConfigurationStore, PAGES as CONFIGURATION_PAGES};
 
@@ -27,6 +27,8 @@ const NAME_WORDS: usize = NAME_BYTES / 4;
 const HEAD_WORDS: usize = 3;
 /// Words of a configuration: layout; address, parity and relay; bit/s; name; motor constants.
 pub const CONFIGURATION_WORDS: usize = HEAD_WORDS + NAME_WORDS + IMAGE_WORDS;
+/// Registers of a configuration: two for each word, the high one first.
+pub const CONFIGURATION_REGISTERS: u16 = 2 * CONFIGURATION_WORDS as u16;
 
 /// Everything that can be changed in the field, as the words that lie in flash and registers. It is large: the board hands it round
 /// by reference.
@@ -41,15 +43,15 @@ pub struct Configuration {
 pub enum Refused {
     /// Written for another layout than this program's.
     Layout = 1,
-    /// The address is none of 1 to 247.
+    /// The address is outside 1 to 247.
     Unit = 2,
-    /// Beyond 1200 to 115 200 bit/s.
+    /// The speed is outside 1200 to 115 200 bit/s.
     Baud = 3,
-    /// No parity that there is.
+    /// Unknown parity.
     Parity = 4,
-    /// No mode of the relay that there is.
+    /// Unknown mode of the relay.
     Relay = 5,
-    /// The name is no text.
+    /// The name is not UTF-8.
     Name = 6,
     /// The checksum of the motor constants does not hold: a part of them was not written.
     Checksum = 7,
@@ -126,6 +128,26 @@ impl Configuration {
         &mut self.words
     }
 
+    /// The register `at`, counted from the first one; `None` beyond [`CONFIGURATION_REGISTERS`].
+    pub fn register(&self, at: u16) -> Option<u16> {
+        let word = self.words.get(usize::from(at / 2))?;
+        Some((word >> shift(at)) as u16)
+    }
+
+    /// Changes the register `at`, counted from the first one; `false` beyond [`CONFIGURATION_REGISTERS`].
+    pub fn set_register(&mut self, at: u16, value: u16) -> bool {
+        let Some(word) = self.words.get_mut(usize::from(at / 2)) else {
+            return false;
+        };
+        *word = *word & !(0xFFFF << shift(at)) | u32::from(value) << shift(at);
+        true
+    }
+
+    /// All of them, in their order.
+    pub fn registers(&self) -> impl Iterator<Item = u16> {
+        (0..CONFIGURATION_REGISTERS).map_while(|at| self.register(at))
+    }
+
     /// The Modbus line.
     ///
     /// # Errors
@@ -149,7 +171,7 @@ impl Configuration {
     /// What opens the relay.
     ///
     /// # Errors
-    /// No mode that there is.
+    /// Unknown mode.
     pub fn relay(&self) -> Result<RelayMode, Refused> {
         let [_, choices, ..] = self.words;
         RelayMode::by_number((choices >> 16) as u16).ok_or(Refused::Relay)
@@ -184,7 +206,7 @@ impl Configuration {
         checksum
     }
 
-    /// Name of the motor; empty where it is no text.
+    /// Name of the motor.
     pub fn name(&self) -> Name {
         let mut bytes = [0; NAME_BYTES];
         let (places, _) = bytes.as_chunks_mut::<4>();
@@ -222,12 +244,17 @@ impl Configuration {
     }
 }
 
+/// The high register comes first.
+fn shift(at: u16) -> u32 {
+    if at.is_multiple_of(2) { 16 } else { 0 }
+}
+
 /// A motor's name, filled up with 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name([u8; NAME_BYTES]);
 
 impl Name {
-    /// `None` where the bytes are no text.
+    /// `None` where the bytes are not UTF-8.
     pub fn text(&self) -> Option<&str> {
         let end = self.0.iter().position(|byte| *byte == 0);
         core::str::from_utf8(self.0.get(..end.unwrap_or(NAME_BYTES))?).ok()

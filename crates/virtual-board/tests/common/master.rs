@@ -1,6 +1,7 @@
 //! A Modbus master from elsewhere (`rmodbus`), on the emulated wire.
 
 use board::modbus::{Field, UNLOCK_KEY, WORDS, address};
+use board::{Configuration, STAGED};
 use rmodbus::ModbusProto;
 use rmodbus::client::ModbusRequest;
 use virtual_board::{Port, Quality, Sent, VirtualBoard};
@@ -75,6 +76,14 @@ impl Master {
         master.parse_ok(&bytes(&answer)).is_ok()
     }
 
+    /// Writes a configuration's words.
+    pub fn stage(&self, board: &mut VirtualBoard, configuration: &Configuration) {
+        let registers: Vec<u16> = configuration.registers().collect();
+        for (first, part) in (STAGED..).step_by(100).zip(registers.chunks(100)) {
+            assert!(self.write_block(board, first, part), "{first}");
+        }
+    }
+
     /// Holding registers.
     pub fn holding(&self, board: &mut VirtualBoard, first: u16, count: u16) -> Vec<u16> {
         let mut master = self.request();
@@ -104,6 +113,16 @@ impl Master {
         assert!(self.write(board, 0, UNLOCK_KEY), "the key");
         assert!(self.write(board, 1, command), "the command");
     }
+}
+
+/// The checksum bit by bit, after the protocol's own description (Modbus over serial line V1.02, 6.2.2).
+pub fn sealed(body: &[u8]) -> Vec<u8> {
+    let crc = body.iter().fold(0xFFFF_u16, |crc, byte| {
+        (0..8).fold(crc ^ u16::from(*byte), |crc, _| {
+            (crc >> 1) ^ if crc & 1 == 1 { 0xA001 } else { 0 }
+        })
+    });
+    [body, &crc.to_le_bytes()].concat()
 }
 
 /// Undisturbed bytes.

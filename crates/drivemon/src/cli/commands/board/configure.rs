@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use board::modbus::{Command, Field};
 use board::{
-    ACTIVE, CONFIGURATION_REGISTERS, CONFIGURATION_WORDS, Configuration, ConfigurationSource, Line,
-    LineParity, Refused, RelayMode, STAGED,
+    ACTIVE, CONFIGURATION_REGISTERS, Configuration, ConfigurationSource, Line, LineParity, Refused,
+    RelayMode, STAGED,
 };
 use clap::{Args, ValueEnum};
 use live::ModbusLine;
@@ -196,9 +196,8 @@ impl Changes {
 fn read(line: &mut ModbusLine) -> Result<Configuration, Failure> {
     let registers = line.read_holding(ACTIVE, CONFIGURATION_REGISTERS)?;
     let mut holds = Configuration::BLANK;
-    let (pairs, _) = registers.as_chunks::<2>();
-    for (word, [high, low]) in holds.words_mut().iter_mut().zip(pairs) {
-        *word = u32::from(*high) << 16 | u32::from(*low);
+    for (at, register) in (0..).zip(registers) {
+        holds.set_register(at, register);
     }
     holds.line().map_err(|refused| match refused {
         Refused::Layout => Failure::Usage(
@@ -212,17 +211,13 @@ fn read(line: &mut ModbusLine) -> Result<Configuration, Failure> {
 
 fn write(line: &mut ModbusLine, wanted: &Configuration) -> Result<(), Failure> {
     wanted.check(T_SAMPLE as f32).map_err(refusal)?;
-    let registers: Vec<u16> = wanted
-        .words()
-        .iter()
-        .flat_map(|word| [(word >> 16) as u16, *word as u16])
-        .collect();
-    let bar = progress::bar("writing", CONFIGURATION_WORDS as u64);
+    let registers: Vec<u16> = wanted.registers().collect();
+    let bar = progress::bar("writing", u64::from(CONFIGURATION_REGISTERS));
     let mut first = STAGED;
     for part in registers.chunks(120) {
         line.write_holding(first, part)?;
         first += part.len() as u16;
-        bar.inc(part.len() as u64 / 2);
+        bar.inc(part.len() as u64);
     }
     bar.finish_and_clear();
     Ok(())
