@@ -1,16 +1,17 @@
 //! Which physical effect is missing: step by step, each proven on data that was not fitted.
 
+mod answered;
 mod complete;
 mod contests;
 mod disguise;
 mod pairs;
 mod rebuilt;
 
-use crate::bursts::search::bursts;
 use crate::laws::formula::dictionary::Shapes;
 use crate::laws::formula::prove::formulas;
-use crate::laws::search::{LawSearch, LawStep};
+use crate::laws::search::LawStep;
 use crate::search::refit::{Candidate, Round, begin, combined};
+use answered::Answered;
 use complete::{complete, put_on_top};
 use contests::contests;
 pub(crate) use contests::stands_for;
@@ -95,14 +96,15 @@ pub(crate) fn explain(
 ) -> Explanation {
     progress("refitting the parameters", 0.1);
     let baseline = study.trial(&study.at_prior(), Effort::FULL);
-    let mut explanation = library(study, baseline, excluded, progress);
+    let mut answered = Answered::of(study);
+    let mut explanation = library(&mut answered, baseline, excluded, progress);
     if !explanation.steps.is_empty()
         && let Some(law) = explanation.laws.pop()
     {
         put_on_top(study, &mut explanation, law);
     }
     if laws_are_asked(study, &explanation) {
-        complete(study, &mut explanation, excluded, progress);
+        complete(&mut answered, &mut explanation, excluded, progress);
     }
     let proven = |law: &&mut LawStep| law.proven && law.bursts.is_empty();
     for law in explanation.laws.iter_mut().filter(proven) {
@@ -119,11 +121,12 @@ pub(crate) fn explain(
 /// One effect of the library after the other, each proven, until the model is adequate; a law that makes it adequate
 /// where the library's best effect does not comes first.
 fn library(
-    study: &Study,
+    answered: &mut Answered<'_>,
     mut baseline: Trial,
     excluded: &[&str],
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
+    let study = answered.study;
     let mut steps: Vec<Step> = Vec::new();
     let mut laws = Vec::new();
     let mut first = None;
@@ -134,12 +137,12 @@ fn library(
         let mut begun = begin(study, &base, excluded, &mut tell);
         begun.lead(&at_prior(&base));
         let rival = begun.proven().map_or(&base, |c| &c.trial);
-        if let Some(law) = decisive_bursts(study, &base, rival, &mut tell) {
+        if let Some(law) = decisive_bursts(answered, &base, rival, &mut tell) {
             first.get_or_insert(begun.enough());
             laws.push(law);
             break;
         }
-        if let Some(law) = decisive_law(study, &base, rival, &mut tell) {
+        if let Some(law) = decisive_law(answered, &base, rival, &mut tell) {
             let begun = begun.enough();
             match behind(study, &base, &law, &begun, excluded) {
                 Some(effect) => steps.push(effect),
@@ -220,31 +223,33 @@ fn may_decide(study: &Study, rival: &Trial) -> bool {
 
 /// What comes and goes on top of `base`, and makes the model adequate where `rival` does not.
 fn decisive_bursts(
-    study: &Study,
+    answered: &mut Answered<'_>,
     base: &Trial,
     rival: &Trial,
     tell: &mut dyn FnMut(&str),
 ) -> Option<LawStep> {
+    let study = answered.study;
     if !may_decide(study, rival) {
         return None;
     }
-    tell("looking for what comes and goes");
-    let law = bursts(study, base)?;
+    let law = answered.bursts(base, tell)?;
     (adequate(study, &law.trial) && beats(&law.trial, rival)).then_some(law)
 }
 
 /// A law on top of `base` that makes the model adequate where `rival` does not, and beats it.
 fn decisive_law(
-    study: &Study,
+    answered: &mut Answered<'_>,
     base: &Trial,
     rival: &Trial,
     tell: &mut dyn FnMut(&str),
 ) -> Option<LawStep> {
+    let study = answered.study;
     if !may_decide(study, rival) {
         return None;
     }
-    let mut tell = |what: &str, _| tell(what);
-    let law = LawSearch::new(study, base, &mut tell).better_than(rival, &mut tell)?;
+    let law = answered
+        .laws_better_than(base, rival, tell)?
+        .best(study, base)?;
     let wins = law.proven && adequate(study, &law.trial) && beats(&law.trial, rival);
     wins.then_some(law)
 }

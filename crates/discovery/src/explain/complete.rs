@@ -1,12 +1,12 @@
 //! What the library leaves: a law instead of its effects, a law on top of them, a pair of which neither is proven alone,
 //! or a lead.
 
+use super::answered::Answered;
 use super::pairs::pair;
 use super::rebuilt::{effects_of, refitted};
 use super::{Explanation, STRAINED, Step, behind, mostly_explained};
-use crate::bursts::search::bursts;
 use crate::laws::formula::prove::law_of;
-use crate::laws::search::{LawSearch, LawStep, Laws};
+use crate::laws::search::{LawStep, Laws};
 use estimation::data::study::{Study, Trial};
 use estimation::proof::accept::{adequate, beats, even, helps};
 use estimation::proof::off::strains;
@@ -17,13 +17,13 @@ use motor::effect::EffectConfig;
 /// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
 /// them it must make the model adequate.
 pub(super) fn complete(
-    study: &Study,
+    answered: &mut Answered<'_>,
     found: &mut Explanation,
     excluded: &[&str],
     progress: &mut dyn FnMut(&str, f64),
 ) {
-    let mut tell = |what: &str, share: f64| progress(what, 0.6 + 0.1 * share);
-    let alone = LawSearch::new(study, &found.baseline, &mut tell).refitted(&mut tell);
+    let study = answered.study;
+    let alone = answered.laws(&found.baseline, &mut |what| progress(what, 0.6));
     let best = alone.best(study, &found.baseline);
     let last = found.steps.last().map(|step| step.trial.clone());
     if let Some(law) = best
@@ -49,9 +49,8 @@ pub(super) fn complete(
         return;
     }
     if let Some(last) = &last {
-        let mut tell = |what: &str, share: f64| progress(what, 0.7 + 0.05 * share);
-        let search = LawSearch::new(study, last, &mut tell);
-        let more = search.refitted(&mut tell).best(study, last);
+        let more = answered.laws(last, &mut |what| progress(what, 0.7));
+        let more = more.best(study, last);
         if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
             put_on_top(study, found, law);
             return;
@@ -64,9 +63,9 @@ pub(super) fn complete(
     if found.nameable {
         return;
     }
-    progress("looking for what comes and goes", 0.8);
     let base = last.as_ref().unwrap_or(&found.baseline);
-    if let Some(law) = bursts(study, base).filter(|law| law.proven) {
+    let bursts = answered.bursts(base, &mut |what| progress(what, 0.8));
+    if let Some(law) = bursts.filter(|law| law.proven) {
         found.laws = vec![law];
         found.nameable = true;
     } else {

@@ -65,7 +65,7 @@ fn on_top(study: &Study, beam: &Trial, excluded: &[&str]) -> Vec<Trial> {
         .into_iter()
         .map(|candidate| candidate.trial)
         .collect();
-    let quiet = &mut |_: &str, _: f64| {};
+    let quiet = &mut |_: &str| {};
     let laws = LawSearch::new(study, beam, quiet).best_refitted(SECONDS);
     let held = |trial: &Trial| actions(trial).len() == actions(beam).len() + 1;
     trials.extend(laws.refitted.into_iter().map(|law| law.trial).filter(held));

@@ -82,12 +82,14 @@ pub(crate) struct LawSearch<'a> {
 pub(crate) struct Laws {
     /// The refits.
     pub refitted: Vec<Refitted>,
+    /// Error over noise (folds) that the screen promised of the best one.
+    pub promised: f64,
 }
 
 impl<'a> LawSearch<'a> {
     /// Screens all laws on top of a model.
-    pub fn new(study: &'a Study, base: &'a Trial, progress: &mut dyn FnMut(&str, f64)) -> Self {
-        progress("screening laws that no library holds", 0.0);
+    pub fn new(study: &'a Study, base: &'a Trial, tell: &mut dyn FnMut(&str)) -> Self {
+        tell("screening laws that no library holds");
         let case = &study.fitted.case;
         let sensitivities = Sensitivities::of(case, &study.prior, &base.fit);
         let menu = menu(case, sensitivities.plant(), sensitivities.motion());
@@ -99,20 +101,14 @@ impl<'a> LawSearch<'a> {
         }
     }
 
-    /// The best law, refitted, if the screen promises more of it than another model explains.
-    pub fn better_than(
-        self,
-        rival: &Trial,
-        progress: &mut dyn FnMut(&str, f64),
-    ) -> Option<LawStep> {
-        let (study, base) = (self.study, self.base);
-        let promised = study.fold_error(&self.screened.first()?.held_out);
-        let promising = promised < study.fold_error(&rival.folds);
-        promising.then(|| self.refitted(progress).best(study, base))?
+    /// Error over noise (folds) that the screen promises of the best law.
+    pub fn promised(&self) -> f64 {
+        let best = self.screened.first();
+        best.map_or(f64::INFINITY, |law| self.study.fold_error(&law.held_out))
     }
 
     /// The likeliest laws; above three times the noise those, too, that a model led by the measured speed shows.
-    pub fn refitted(self, progress: &mut dyn FnMut(&str, f64)) -> Laws {
+    pub fn refitted(self, tell: &mut dyn FnMut(&str)) -> Laws {
         let mut starts: Vec<&Screened> = self.screened.iter().take(REFITTED).collect();
         let led = self.led();
         for law in &led {
@@ -120,7 +116,7 @@ impl<'a> LawSearch<'a> {
                 starts.push(law);
             }
         }
-        progress("refitting the likeliest laws", 0.4);
+        tell("refitting the likeliest laws");
         self.refits(&starts)
     }
 
@@ -147,7 +143,10 @@ impl<'a> LawSearch<'a> {
         let mut refitted: Vec<Refitted> = rest.collect();
         refitted.extend(first);
         refitted.sort_by(|a, b| a.error.total_cmp(&b.error));
-        Laws { refitted }
+        Laws {
+            refitted,
+            promised: self.promised(),
+        }
     }
 
     /// A second screen, on top of a model that the measured speed leads.

@@ -106,4 +106,5 @@ fn commands_print_what_the_documentation_shows() {
         "these pages show something else than the program prints; look at it, then run with UPDATE_DOCS=1\n{}",
         stale.join("\n")
     );
+    formula::is_found(&workplace);
 }

@@ -24,11 +24,17 @@ impl Workplace {
         Workplace(folder)
     }
 
-    /// What a command prints; comments after two blanks and `#` are for the reader.
+    /// What a command prints; comments after two blanks and `#` are for the reader. [`Workplace::json`] reads what the commands
+    /// of the discovery say beside that.
     pub fn run(&self, command: &str) -> Vec<String> {
         let arguments = arguments(command).and_then(|all| all.split("  #").next());
-        let output = Command::new(env!("CARGO_BIN_EXE_drivemon"))
-            .args(arguments.unwrap_or_default().split_whitespace())
+        let arguments = arguments.unwrap_or_default().trim();
+        let mut program = Command::new(env!("CARGO_BIN_EXE_drivemon"));
+        program.args(arguments.split_whitespace());
+        if arguments.starts_with("explain ") || arguments.starts_with("adopt ") {
+            program.arg("--json").arg(report_of(arguments));
+        }
+        let output = program
             .current_dir(&self.0)
             .env("NO_COLOR", "1")
             .output()
@@ -43,6 +49,13 @@ impl Workplace {
             .collect()
     }
 
+    /// What a command of the discovery said when it was run last.
+    pub fn json(&self, arguments: &str) -> serde_json::Value {
+        let path = self.0.join(report_of(arguments));
+        let text = fs::read_to_string(path).expect("the page runs this command");
+        serde_json::from_str(&text).expect("JSON")
+    }
+
     /// Writes a file that a page shows.
     pub fn write(&self, file: &File) {
         let before = file.after.as_ref().map(|base| self.0.join(base));
@@ -52,6 +65,11 @@ impl Workplace {
         fs::create_dir_all(path.parent().expect("in a folder")).expect("room for a folder");
         fs::write(path, text).expect("writable");
     }
+}
+
+/// Name of the file for the JSON of a command.
+fn report_of(arguments: &str) -> String {
+    arguments.replace([' ', '/'], "-") + ".json"
 }
 
 impl Drop for Workplace {

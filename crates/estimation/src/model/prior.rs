@@ -233,6 +233,17 @@ impl Hypothesis {
         h
     }
 
+    /// Whether this is the same model, to the last bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let same = |(a, b): (&EffectConfig, &EffectConfig)| {
+            let (one, two) = (a.effect.descriptor(), b.effect.descriptor());
+            (one.name, one.form, &a.values) == (two.name, two.form, &b.values)
+        };
+        (&self.z, &self.free) == (&other.z, &other.free)
+            && self.effects.len() == other.effects.len()
+            && self.effects.iter().zip(&other.effects).all(same)
+    }
+
     /// The same with one more effect, its coordinates at its start values.
     pub fn with(&self, effect: EffectConfig, rated: &Rated<f64>) -> Self {
         let mut more = self.clone();

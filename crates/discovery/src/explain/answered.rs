@@ -1,0 +1,75 @@
+//! What was asked about a model once answers again without a fit.
+//!
+//! Laws and bursts are asked before the library's effects, where they may decide, and once more where the library leaves
+//! something: often on top of the same model.
+
+use crate::bursts::search::bursts;
+use crate::laws::search::{LawSearch, LawStep, Laws};
+use estimation::data::study::{Study, Trial};
+use estimation::model::prior::Hypothesis;
+use std::rc::Rc;
+
+/// Answers about the models of one study.
+pub(super) struct Answered<'a> {
+    /// The study.
+    pub study: &'a Study,
+    laws: Vec<(Hypothesis, Rc<Laws>)>,
+    bursts: Vec<(Hypothesis, Option<LawStep>)>,
+}
+
+/// The answer about the same model.
+fn known<'a, T>(answers: &'a [(Hypothesis, T)], base: &Trial) -> Option<&'a T> {
+    let same = |(h, _): &&(Hypothesis, T)| h.is_same(&base.fit.hypothesis);
+    answers.iter().find(same).map(|(_, answer)| answer)
+}
+
+impl<'a> Answered<'a> {
+    /// Nothing was asked yet.
+    pub fn of(study: &'a Study) -> Self {
+        Self {
+            study,
+            laws: Vec::new(),
+            bursts: Vec::new(),
+        }
+    }
+
+    /// The likeliest laws on top of a model, refitted.
+    pub fn laws(&mut self, base: &Trial, tell: &mut dyn FnMut(&str)) -> Rc<Laws> {
+        match known(&self.laws, base) {
+            Some(laws) => laws.clone(),
+            None => self.keep(base, LawSearch::new(self.study, base, tell).refitted(tell)),
+        }
+    }
+
+    /// The same if the screen promises more of the best law than another model explains.
+    pub fn laws_better_than(
+        &mut self,
+        base: &Trial,
+        rival: &Trial,
+        tell: &mut dyn FnMut(&str),
+    ) -> Option<Rc<Laws>> {
+        let limit = self.study.fold_error(&rival.folds);
+        if let Some(laws) = known(&self.laws, base) {
+            return (laws.promised < limit).then(|| laws.clone());
+        }
+        let search = LawSearch::new(self.study, base, tell);
+        (search.promised() < limit).then(|| self.keep(base, search.refitted(tell)))
+    }
+
+    fn keep(&mut self, base: &Trial, laws: Laws) -> Rc<Laws> {
+        let laws = Rc::new(laws);
+        self.laws.push((base.fit.hypothesis.clone(), laws.clone()));
+        laws
+    }
+
+    /// What comes and goes on top of a model.
+    pub fn bursts(&mut self, base: &Trial, tell: &mut dyn FnMut(&str)) -> Option<LawStep> {
+        if let Some(law) = known(&self.bursts, base) {
+            return law.clone();
+        }
+        tell("looking for what comes and goes");
+        let law = bursts(self.study, base);
+        self.bursts.push((base.fit.hypothesis.clone(), law.clone()));
+        law
+    }
+}
