@@ -32,6 +32,12 @@ pub trait Hooks {
     /// States that the effects add.
     type Extra: Extra;
 
+    /// What the effects know of an instant beside the state: asked once, used by all methods.
+    type Moment: Copy;
+
+    /// Looks at an instant.
+    fn moment(&self, t: f64, state: &DynamicState<Self::Extra>) -> Self::Moment;
+
     /// Whether [`Hooks::held_voltage`] is in use. Adding a zero is not free: it may not be optimised away,
     /// because `-0.0 + 0.0` is `0.0`.
     const HOLDS: bool = false;
@@ -42,7 +48,7 @@ pub trait Hooks {
     fn held_voltage(
         &self,
         _linear: &Linear,
-        _t: f64,
+        _moment: &Self::Moment,
         _state: &DynamicState<Self::Extra>,
     ) -> Complex64 {
         Complex64::new(0.0, 0.0)
@@ -50,7 +56,12 @@ pub trait Hooks {
 
     /// Currents and resistances of the windings (saturation, heating, skin effect).
     #[inline(always)]
-    fn winding(&self, linear: &Linear, _t: f64, state: &DynamicState<Self::Extra>) -> Winding {
+    fn winding(
+        &self,
+        linear: &Linear,
+        _moment: &Self::Moment,
+        state: &DynamicState<Self::Extra>,
+    ) -> Winding {
         linear.winding(state.psi_s, state.psi_r)
     }
 
@@ -58,7 +69,7 @@ pub trait Hooks {
     #[inline(always)]
     fn terminal(
         &self,
-        _t: f64,
+        _moment: &Self::Moment,
         _state: &DynamicState<Self::Extra>,
         winding: &Winding,
         u: Complex64,
@@ -74,6 +85,7 @@ pub trait Hooks {
     #[inline(always)]
     fn finish(
         &self,
+        _moment: &Self::Moment,
         _flow: &Flow,
         _state: &DynamicState<Self::Extra>,
         _rate: &mut DynamicState<Self::Extra>,
@@ -87,4 +99,8 @@ pub struct NoEffects;
 
 impl Hooks for NoEffects {
     type Extra = ();
+    type Moment = ();
+
+    #[inline(always)]
+    fn moment(&self, _t: f64, _state: &DynamicState) {}
 }

@@ -18,12 +18,12 @@ impl Linear {
     /// Computes the coefficients; the parameters must be those of a physical motor (sigma in (0, 1)).
     pub fn new(params: &TParams<f64>) -> Self {
         let (l_s, l_r) = (params.l_s(), params.l_r());
-        let det = params.l_ls * l_r + params.l_m * params.l_lr;
+        let per_det = 1.0 / (params.l_ls * l_r + params.l_m * params.l_lr);
         Self {
             params: *params,
-            inv_s: l_r / det,
-            inv_r: l_s / det,
-            inv_m: params.l_m / det,
+            inv_s: l_r * per_det,
+            inv_r: l_s * per_det,
+            inv_m: params.l_m * per_det,
         }
     }
 

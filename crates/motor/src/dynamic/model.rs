@@ -68,8 +68,21 @@ impl<H: Hooks> Dynamic<H> {
         u: Complex64,
         tau_load: f64,
     ) -> Flow {
-        let winding = self.hooks.winding(&self.linear, t, state);
-        let terminal = self.hooks.terminal(t, state, &winding, u);
+        let moment = self.hooks.moment(t, state);
+        self.flow_at(&moment, t, state, u, tau_load)
+    }
+
+    #[inline(always)]
+    fn flow_at(
+        &self,
+        moment: &H::Moment,
+        t: f64,
+        state: &DynamicState<H::Extra>,
+        u: Complex64,
+        tau_load: f64,
+    ) -> Flow {
+        let winding = self.hooks.winding(&self.linear, moment, state);
+        let terminal = self.hooks.terminal(moment, state, &winding, u);
         let tau_em = 1.5 * self.mechanics.n_p * (state.psi_s.conj() * winding.i_s).im;
         Flow {
             t,
@@ -92,10 +105,22 @@ impl<H: Hooks> Dynamic<H> {
         u: Complex64,
         tau_load: f64,
     ) -> DynamicState<H::Extra> {
-        let flow = self.flow(t, state, u, tau_load);
+        let moment = self.hooks.moment(t, state);
+        let flow = self.flow_at(&moment, t, state, u, tau_load);
+        self.rate_of(&moment, &flow, state)
+    }
+
+    /// Rate of change of the state where this flows, per second.
+    #[inline(always)]
+    fn rate_of(
+        &self,
+        moment: &H::Moment,
+        flow: &Flow,
+        state: &DynamicState<H::Extra>,
+    ) -> DynamicState<H::Extra> {
         let omega_el = self.mechanics.n_p * state.omega_mech;
         let spin = Complex64::new(-omega_el * state.psi_r.im, omega_el * state.psi_r.re);
-        let tau = flow.tau_em - self.friction * state.omega_mech - tau_load;
+        let tau = flow.tau_em - self.friction * state.omega_mech - flow.tau_load;
         let mut rate = DynamicState {
             psi_s: flow.terminal.u - flow.terminal.i * flow.winding.r_s,
             psi_r: spin - flow.winding.i_r * flow.winding.r_r,
@@ -103,7 +128,7 @@ impl<H: Hooks> Dynamic<H> {
             theta_mech: state.omega_mech,
             extra: super::Extra::ZERO,
         };
-        self.hooks.finish(&flow, state, &mut rate);
+        self.hooks.finish(moment, flow, state, &mut rate);
         rate
     }
 
@@ -120,17 +145,52 @@ impl<H: Hooks> Dynamic<H> {
         supply: impl Fn(f64) -> Complex64,
         load: impl Fn(f64, f64) -> f64,
     ) {
-        let held = self.hooks.held_voltage(&self.linear, t, state);
+        self.step_and_show(state, t, h, supply, load);
+    }
+
+    /// The step from an instant where `begin` flows, without a voltage that is held.
+    #[inline(always)]
+    fn step_from(
+        &self,
+        moment: &H::Moment,
+        begin: &Flow,
+        state: &mut DynamicState<H::Extra>,
+        h: f64,
+        supply: impl Fn(f64) -> Complex64,
+        load: impl Fn(f64, f64) -> f64,
+    ) {
+        let t = begin.t;
+        let held = self.hooks.held_voltage(&self.linear, moment, state);
         let driven = |u: Complex64| if H::HOLDS { u + held } else { u };
         let (t_mid, t_end) = (t + 0.5 * h, t + h);
         let u_mid = driven(supply(t_mid));
         let at = |t: f64, x: &DynamicState<H::Extra>, u| self.rate(t, x, u, load(t, x.omega_mech));
-        let k1 = at(t, state, driven(supply(t)));
+        let k1 = match H::HOLDS && held != Complex64::ZERO {
+            true => at(t, state, driven(supply(t))),
+            false => self.rate_of(moment, begin, state),
+        };
         let k2 = at(t_mid, &state.advanced(0.5 * h, &k1), u_mid);
         let k3 = at(t_mid, &state.advanced(0.5 * h, &k2), u_mid);
         let k4 = at(t_end, &state.advanced(h, &k3), driven(supply(t_end)));
         let inner = k1.advanced(2.0, &k2).advanced(2.0, &k3).advanced(1.0, &k4);
         *state = state.advanced(h / 6.0, &inner);
+    }
+
+    /// As [`Dynamic::step`]; returns the current that an ammeter in the supply line reads at its beginning, A, stationary frame.
+    #[inline(always)]
+    pub fn step_and_show(
+        &self,
+        state: &mut DynamicState<H::Extra>,
+        t: f64,
+        h: f64,
+        supply: impl Fn(f64) -> Complex64,
+        load: impl Fn(f64, f64) -> f64,
+    ) -> Complex64 {
+        let moment = self.hooks.moment(t, state);
+        let (u, tau) = (supply(t), load(t, state.omega_mech));
+        let begin = self.flow_at(&moment, t, state, u, tau);
+        self.step_from(&moment, &begin, state, h, supply, load);
+        begin.terminal.i
     }
 
     /// Current that an ammeter in the supply line reads, A, stationary frame.

@@ -281,16 +281,16 @@ impl<'a, H: Hooks> Ready<'a, H> {
         self.begin(state, step, restart);
         let k = step * self.run.between.stride();
         let t = self.inputs.t_sample * k as f64;
-        let i = self.model.current(t, state, self.inputs.u_s[k]);
-        let shown = Shown {
-            i_s_abc: phases(i),
-            omega_mech: state.omega_mech,
-            theta_mech: self.run.timeline.theta_at(t, state.theta_mech),
+        let (omega_mech, theta_mech) = (state.omega_mech, state.theta_mech);
+        let i = match step < self.steps() {
+            true => advance(&self.model, state, self.run.between, self.inputs, k),
+            false => self.model.current(t, state, self.inputs.u_s[k]),
         };
-        if step < self.steps() {
-            advance(&self.model, state, self.run.between, self.inputs, k);
+        Shown {
+            i_s_abc: phases(i),
+            omega_mech,
+            theta_mech: self.run.timeline.theta_at(t, theta_mech),
         }
-        shown
     }
 
     /// The cut that falls on a step, if it is the next one.
@@ -400,7 +400,7 @@ fn steer<X>(state: &mut DynamicState<X>, speed: SpeedSource<'_>, k: usize, h: f6
     }
 }
 
-/// One integration step from input sample `k`.
+/// One integration step from input sample `k`; the current at its beginning, A.
 #[inline(always)]
 fn advance<H: Hooks>(
     model: &Dynamic<H>,
@@ -408,13 +408,11 @@ fn advance<H: Hooks>(
     between: Between,
     inputs: &Inputs,
     k: usize,
-) {
+) -> Complex64 {
     let (u, tau) = (&inputs.u_s, &inputs.tau_load);
     let t = inputs.t_sample * k as f64;
     match between {
-        Between::Held => {
-            model.step(state, t, inputs.t_sample, |_| u[k], |_, _| tau[k]);
-        }
+        Between::Held => model.step_and_show(state, t, inputs.t_sample, |_| u[k], |_, _| tau[k]),
         Between::Smooth => {
             let h = 2.0 * inputs.t_sample;
             let (first, middle, last) = (u[k], u[k + 1], u[k + 2]);
@@ -428,7 +426,7 @@ fn advance<H: Hooks>(
                 }
             };
             let mean = 0.5 * (tau[k] + tau[k + 1]);
-            model.step(state, t, h, supply, |_, _| mean);
+            model.step_and_show(state, t, h, supply, |_, _| mean)
         }
     }
 }

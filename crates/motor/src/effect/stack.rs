@@ -3,6 +3,7 @@
 use crate::TParams;
 use crate::dynamic::{DynamicState, Extra, Flow, Hooks, Linear, Terminal, Winding};
 use crate::effect::effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
+use crate::effect::steady::length;
 use crate::effect::{EffectConfig, Rated};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -16,12 +17,10 @@ struct Active {
 }
 
 impl Active {
+    /// Its own states.
     #[inline]
-    fn sees<'a, const N: usize>(&self, at: &At<'a>, state: &'a DynamicState<[f64; N]>) -> At<'a> {
-        At {
-            extra: &state.extra[self.states.clone()],
-            ..*at
-        }
+    fn extra<'a, const N: usize>(&self, state: &'a DynamicState<[f64; N]>) -> &'a [f64] {
+        &state.extra[self.states.clone()]
     }
 }
 
@@ -76,6 +75,15 @@ impl Timeline {
         self.omega_sync[k.min(self.omega_sync.len() - 1)]
     }
 
+    #[inline]
+    fn moment(&self, t: f64, theta_mech: f64) -> Moment {
+        Moment {
+            t: self.clock(t),
+            theta_mech: self.theta_at(t, theta_mech),
+            omega_sync: self.sync_at(t),
+        }
+    }
+
     /// Measured angle at `t`, or `simulated` without one.
     #[inline]
     pub(crate) fn theta_at(&self, t: f64, simulated: f64) -> f64 {
@@ -87,6 +95,14 @@ impl Timeline {
         let next = self.theta_mech[(k + 1).min(last)];
         self.theta_mech[k] + (next - self.theta_mech[k]) * (x - k as f64)
     }
+}
+
+/// What the timeline says of an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    t: f64,
+    theta_mech: f64,
+    omega_sync: f64,
 }
 
 /// Effects sorted by the hooks they use, so that a simulation pays only for what is there.
@@ -141,16 +157,16 @@ impl<const N: usize> EffectStack<N> {
         }
     }
 
-    /// What all effects see at this instant; each one's own states come with [`Active::sees`].
+    /// What all effects see at this instant; each one's own states are [`Active::extra`].
     #[inline]
-    fn at<'a>(&'a self, t: f64, state: &'a DynamicState<[f64; N]>) -> At<'a> {
+    fn at<'a>(&'a self, moment: &Moment, state: &'a DynamicState<[f64; N]>) -> At<'a> {
         At {
-            t: self.timeline.clock(t),
+            t: moment.t,
             psi_s: state.psi_s,
             psi_r: state.psi_r,
             omega_mech: state.omega_mech,
-            theta_mech: self.timeline.theta_at(t, state.theta_mech),
-            omega_sync: self.timeline.sync_at(t),
+            theta_mech: moment.theta_mech,
+            omega_sync: moment.omega_sync,
             extra: &[],
             rated: &self.rated,
             motor: &self.motor,
@@ -160,7 +176,7 @@ impl<const N: usize> EffectStack<N> {
     /// Parameters at this instant.
     fn instantaneous(
         &self,
-        t: f64,
+        moment: &Moment,
         state: &DynamicState<[f64; N]>,
         i_s: Complex64,
     ) -> Instantaneous {
@@ -171,9 +187,9 @@ impl<const N: usize> EffectStack<N> {
         if self.parameters.is_empty() {
             return now;
         }
-        let all = self.at(t, state);
+        let mut at = self.at(moment, state);
         for active in &self.parameters {
-            let at = active.sees(&all, state);
+            at.extra = active.extra(state);
             active.effect.parameters(&active.p, &at, i_s, &mut now);
         }
         now
@@ -190,7 +206,7 @@ impl<const N: usize> EffectStack<N> {
 
     /// Air-gap flux of a star of branches: `psi (a + f(|psi|)/L_m) = sum`, solved for its magnitude.
     fn air_gap_flux(&self, sum: Complex64, admittance: f64, l_m: f64) -> Complex64 {
-        let (drive, flux_rated) = (sum.norm(), self.rated.flux());
+        let (drive, flux_rated) = (length(sum), self.rated.flux());
         let linear = drive / (admittance + 1.0 / l_m);
         if self.magnetizing.is_empty() || drive == 0.0 {
             return sum * (linear / drive.max(f64::MIN_POSITIVE));
@@ -246,31 +262,42 @@ fn place(effects: &[EffectConfig], rated: &Rated<f64>) -> Vec<Active> {
 
 impl<const N: usize> Hooks for EffectStack<N> {
     type Extra = [f64; N];
+    type Moment = Moment;
 
     const HOLDS: bool = true;
 
     #[inline]
-    fn held_voltage(&self, linear: &Linear, t: f64, state: &DynamicState<[f64; N]>) -> Complex64 {
+    fn moment(&self, t: f64, state: &DynamicState<[f64; N]>) -> Moment {
+        self.timeline.moment(t, state.theta_mech)
+    }
+
+    #[inline]
+    fn held_voltage(
+        &self,
+        linear: &Linear,
+        moment: &Moment,
+        state: &DynamicState<[f64; N]>,
+    ) -> Complex64 {
         let mut u = Complex64::ZERO;
         if self.held_voltage.is_empty() {
             return u;
         }
-        let i_s = self.winding(linear, t, state).i_s;
-        let all = self.at(t, state);
+        let i_s = self.winding(linear, moment, state).i_s;
+        let mut at = self.at(moment, state);
         for active in &self.held_voltage {
-            let at = active.sees(&all, state);
+            at.extra = active.extra(state);
             u += active.effect.held_voltage(&active.p, &at, i_s);
         }
         u
     }
 
     #[inline]
-    fn winding(&self, linear: &Linear, t: f64, state: &DynamicState<[f64; N]>) -> Winding {
+    fn winding(&self, linear: &Linear, moment: &Moment, state: &DynamicState<[f64; N]>) -> Winding {
         let winding = linear.winding(state.psi_s, state.psi_r);
         if self.parameters.is_empty() && self.magnetizing.is_empty() {
             return winding;
         }
-        let now = self.instantaneous(t, state, winding.i_s);
+        let now = self.instantaneous(moment, state, winding.i_s);
         if self.magnetizing.is_empty() && now.cage.is_none() {
             return Linear::new(&now.motor).winding(state.psi_s, state.psi_r);
         }
@@ -280,7 +307,7 @@ impl<const N: usize> Hooks for EffectStack<N> {
     #[inline]
     fn terminal(
         &self,
-        t: f64,
+        moment: &Moment,
         state: &DynamicState<[f64; N]>,
         winding: &Winding,
         u: Complex64,
@@ -293,9 +320,9 @@ impl<const N: usize> Hooks for EffectStack<N> {
         if self.terminal.is_empty() {
             return terminal;
         }
-        let all = self.at(t, state);
+        let mut at = self.at(moment, state);
         for active in &self.terminal {
-            let at = active.sees(&all, state);
+            at.extra = active.extra(state);
             active
                 .effect
                 .terminal(&active.p, &at, winding, &mut terminal);
@@ -306,6 +333,7 @@ impl<const N: usize> Hooks for EffectStack<N> {
     #[inline]
     fn finish(
         &self,
+        moment: &Moment,
         flow: &Flow,
         state: &DynamicState<[f64; N]>,
         rate: &mut DynamicState<[f64; N]>,
@@ -313,9 +341,9 @@ impl<const N: usize> Hooks for EffectStack<N> {
         if self.finish.is_empty() {
             return;
         }
-        let all = self.at(flow.t, state);
+        let mut at = self.at(moment, state);
         for active in &self.finish {
-            let at = active.sees(&all, state);
+            at.extra = active.extra(state);
             let mut rates = Rates {
                 psi_s: rate.psi_s,
                 psi_r: rate.psi_r,

@@ -2,6 +2,7 @@
 
 use super::{Action, Coordinate, Place, Table};
 use crate::dynamic::{Flow, Linear, clarke, phases};
+use crate::effect::steady::length;
 use crate::effect::{At, Effect, Hook, Instantaneous, Outputs, Rated, Rates, SteadyEffect};
 use core::f64::consts::TAU;
 use num_complex::Complex64;
@@ -67,7 +68,7 @@ impl Action {
         let mut i_s = i_s;
         // The current depends on the leakage that depends on it: three rounds reach 1e-3 of the change.
         for _ in 0..3 {
-            i_s = scale(i_s.norm());
+            i_s = scale(length(i_s));
         }
     }
 
@@ -87,10 +88,10 @@ impl Action {
         let x = match self.coordinate {
             Coordinate::Angle => return table.at_angle(at.theta_mech),
             Coordinate::AngleElectrical => return table.at_angle(flow.terminal.supply.arg()),
-            Coordinate::Current if self.place == Place::Rotor => flow.winding.i_r.norm(),
-            Coordinate::Current => flow.winding.i_s.norm(),
-            Coordinate::Flux => (at.psi_s - flow.winding.i_s * at.motor.l_ls).norm(),
-            Coordinate::Voltage => flow.terminal.supply.norm(),
+            Coordinate::Current if self.place == Place::Rotor => length(flow.winding.i_r),
+            Coordinate::Current => length(flow.winding.i_s),
+            Coordinate::Flux => length(at.psi_s - flow.winding.i_s * at.motor.l_ls),
+            Coordinate::Voltage => length(flow.terminal.supply),
             Coordinate::LoadTorque => flow.tau_load,
             _ => self.of_supply(at),
         };
