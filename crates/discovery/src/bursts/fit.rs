@@ -79,7 +79,9 @@ impl Scene<'_> {
     }
 
     /// The likeliest places of something that wanders, best first; empty where nothing comes and goes at the best one.
-    pub fn suspected(&self, places: &[Place], count: usize) -> Vec<(Place, Wander)> {
+    ///
+    /// Where an amount free to wander takes less than `least` of the squared error, bursts take even less.
+    pub fn suspected(&self, places: &[Place], count: usize, least: f64) -> Vec<(Place, Wander)> {
         let fit = self.fitted(&self.without, Effort::NONE);
         let of = Sensitivities::of(self.case, self.prior, &fit);
         let ask = |&place: &Place| (place, self.smoothed(&of, place, self.wander(place, 1)));
@@ -90,7 +92,9 @@ impl Scene<'_> {
         if !all.first().is_some_and(comes_and_goes) {
             return Vec::new();
         }
-        let likeliest = all.iter().take(count).map(|(place, _)| *place);
+        let enough = |(_, found): &&(Place, Smoothed)| found.evidence > least;
+        let likeliest = all.iter().filter(enough).take(count);
+        let likeliest = likeliest.map(|(place, _)| *place);
         likeliest
             .map(|place| (place, self.suited(&of, place)))
             .collect()

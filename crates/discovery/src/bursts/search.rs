@@ -9,7 +9,7 @@ use crate::search::refit::combined;
 use estimation::data::study::{Study, Subject, Trial};
 use estimation::fit::normal_equations;
 use estimation::model::prior::Hypothesis;
-use estimation::proof::accept::{adequate, beats, explained};
+use estimation::proof::accept::{adequate, beats, explained, may_explain};
 use motor::effect::curve::Place;
 use rayon::prelude::*;
 
@@ -17,6 +17,9 @@ use rayon::prelude::*;
 const FITTED: usize = 3;
 /// Share of the excess that bursts explain of every recording, at least.
 const EXPLAINED: f64 = 0.85;
+
+/// Share of the excess that an amount free to wander explains at a place of bursts, at least.
+const WANDERS: f64 = 0.6;
 
 /// Bursts at one place in all recordings.
 struct Candidate {
@@ -44,9 +47,11 @@ pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
     let asked: Vec<Place> = places().filter(|place| is_judged(study, *place)).collect();
     let one = |(place, wander): &(Place, Wander)| {
         let fitted = scene.bursts(*place, *wander)?;
-        everywhere(study, *place, fitted)
+        let folds = fitted.fit.held_out();
+        may_explain(study, base, &folds, EXPLAINED).then(|| everywhere(study, *place, fitted))?
     };
-    let suspected = scene.suspected(&asked, FITTED);
+    let least = WANDERS * study.excess(&base.fit);
+    let suspected = scene.suspected(&asked, FITTED, least);
     let mut all: Vec<Candidate> = suspected.par_iter().filter_map(one).collect();
     let error = |c: &Candidate| study.fold_error(&c.trial.folds) * study.proof_error(&c.trial);
     all.sort_by(|a, b| error(a).total_cmp(&error(b)));

@@ -27,7 +27,7 @@ pub(super) fn disguised(
     h.z[..N_NOMINAL].copy_from_slice(nominals);
     let there = study.trial(&h, Effort::NONE);
     let strain = |trial: &Trial| strains(trial, &study.prior.deviations);
-    let mut effects = seconds(study, &there, excluded, ASKED);
+    let mut effects = seconds(study, &there, excluded, ASKED, f64::INFINITY);
     effects.retain(|effect| {
         let trial = &effect.trial;
         let plain = strain(trial) <= strain(&law.trial) + STRAINED;

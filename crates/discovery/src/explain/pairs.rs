@@ -7,7 +7,7 @@ use super::Step;
 use super::rebuilt::refitted;
 use crate::laws::modes::Modes;
 use crate::laws::search::{LawSearch, LawStep, Laws};
-use crate::search::refit::{Round, combined, seconds};
+use crate::search::refit::{Round, combined, likely_below, seconds};
 use estimation::data::study::{Study, Trial};
 use estimation::proof::accept::{adequate, beats};
 use motor::effect::EffectConfig;
@@ -59,14 +59,15 @@ pub(super) fn pair(
     proven.then(|| told(study, baseline, &best))?
 }
 
-/// Everything once more on top of a single one.
+/// Everything that may make a single one adequate on top of it.
 fn on_top(study: &Study, beam: &Trial, excluded: &[&str]) -> Vec<Trial> {
-    let mut trials: Vec<Trial> = seconds(study, beam, excluded, SECONDS)
+    let limit = likely_below(study.fold_error(&beam.folds));
+    let mut trials: Vec<Trial> = seconds(study, beam, excluded, SECONDS, limit)
         .into_iter()
         .map(|candidate| candidate.trial)
         .collect();
     let quiet = &mut |_: &str| {};
-    let laws = LawSearch::new(study, beam, quiet).best_refitted(SECONDS);
+    let laws = LawSearch::new(study, beam, quiet).best_refitted(SECONDS, limit);
     let held = |trial: &Trial| actions(trial).len() == actions(beam).len() + 1;
     trials.extend(laws.refitted.into_iter().map(|law| law.trial).filter(held));
     trials

@@ -120,9 +120,10 @@ impl<'a> LawSearch<'a> {
         self.refits(&starts)
     }
 
-    /// The first few laws of the screen.
-    pub fn best_refitted(self, count: usize) -> Laws {
-        let starts: Vec<&Screened> = self.screened.iter().take(count).collect();
+    /// The first few laws of the screen, of those that promise less than an error over noise (folds) of `limit`.
+    pub fn best_refitted(self, count: usize, limit: f64) -> Laws {
+        let promises = |law: &&Screened| self.study.fold_error(&law.held_out) < limit;
+        let starts: Vec<&Screened> = self.screened.iter().filter(promises).take(count).collect();
         self.refits(&starts)
     }
 

@@ -207,12 +207,19 @@ pub(crate) fn likely(study: &Study, base: &Trial, excluded: &[&str]) -> Round {
     }
 }
 
-/// The likeliest effects on top of a model that is taken for granted, refitted.
+/// Error over noise that a linearised candidate promises at most to be likely on top of a model with the error `own`.
+pub(crate) fn likely_below(own: f64) -> f64 {
+    (1.0 + LIKELY * (own * own - 1.0).max(0.0)).sqrt()
+}
+
+/// The likeliest effects on top of a model that is taken for granted, refitted, of those that promise less than an error over
+/// noise of `limit`.
 pub(crate) fn seconds(
     study: &Study,
     base: &Trial,
     excluded: &[&str],
     count: usize,
+    limit: f64,
 ) -> Vec<Candidate> {
     let screened = screen(&study.fitted.case, &study.prior, &base.fit, excluded);
     let start = |group: Vec<Screened>| Start {
@@ -220,7 +227,9 @@ pub(crate) fn seconds(
         group,
         observer: base.fit.observer,
     };
-    let groups = ranked(&screened, STARTS).into_iter().take(count);
+    let promises = |group: &Vec<Screened>| study.fold_error(&group[0].held_out) < limit;
+    let groups = ranked(&screened, STARTS).into_iter().filter(promises);
+    let groups = groups.take(count);
     let starts: Vec<Start> = groups.map(start).collect();
     confirm(study, base, &starts)
 }
@@ -260,10 +269,10 @@ fn promising(
     let matters = |s: &Start| error > POOR || screened(s) < (1.0 - LEAST_GAIN) * error;
     let starts = groups.iter().map(start).filter(matters).take(CONFIRMED);
     let own = study.fold_error(&[signal::dot(&fit.residual, &fit.residual)]);
-    let limit = 1.0 + LIKELY * (own * own - 1.0).max(0.0);
+    let limit = likely_below(own);
     let (mut likely, mut rest) = (Vec::new(), Vec::new());
     for s in starts {
-        if likely.is_empty() || screened(&s).powi(2) < limit {
+        if likely.is_empty() || screened(&s) < limit {
             likely.push(s);
         } else {
             rest.push(s);

@@ -158,6 +158,12 @@ impl Study {
         !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
     }
 
+    /// Squared error of a fit over the floor of the fitted recording.
+    pub fn excess(&self, fit: &Fit) -> f64 {
+        let floor = self.fitted.floor.mean * self.fitted.case.judged();
+        signal::dot(&fit.residual, &fit.residual) - floor
+    }
+
     /// Error over noise of each current and of the speed in the fitted recording; zero where nothing is judged.
     pub fn channel_errors(&self, trial: &Trial) -> [f64; 4] {
         let (case, floor) = (&self.fitted.case, &self.fitted.floor);

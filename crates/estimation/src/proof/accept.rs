@@ -73,6 +73,13 @@ pub fn explained(study: &Study, before: &Trial, after: &Trial) -> f64 {
     fold_share(study, before, after).min(proof)
 }
 
+/// Whether a model with these held-out squared errors of the fitted recording may be adequate, or explain this share of the excess
+/// over the floor, whatever the proving recordings say.
+pub fn may_explain(study: &Study, before: &Trial, folds: &[f64], least: f64) -> bool {
+    let (before, after) = (study.fold_error(&before.folds), study.fold_error(folds));
+    after < adequacy(study) || share(before, after) > least
+}
+
 /// Whether the last effect of `after` is proven over `before`.
 pub fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
     if !large_enough(after) {
@@ -158,9 +165,14 @@ pub fn helps(better: &Trial, worse: &Trial) -> bool {
     folds.min(gain(&worse.proof, &better.proof)) > LESSER_GAIN
 }
 
+/// Error over noise below which nothing provable is left.
+fn adequacy(study: &Study) -> f64 {
+    ADEQUATE * (1.0 + 2.0 * study.allowance())
+}
+
 /// Whether nothing provable is left.
 pub fn adequate(study: &Study, trial: &Trial) -> bool {
-    let gate = ADEQUATE * (1.0 + 2.0 * study.allowance());
+    let gate = adequacy(study);
     study.proof_error(trial) < gate && study.fold_error(&trial.folds) < gate
 }
 
