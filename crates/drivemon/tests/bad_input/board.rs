@@ -194,17 +194,17 @@ const OTHERS: [(&str, &str, &str); 25] = [
     (
         "the motor file of another motor with a live board",
         "refused, exit code 2",
-        "crates/drivemon/tests/live.rs::another_motors_file_is_refused",
+        "crates/drivemon/tests/commands/live.rs::another_motors_file_is_refused",
     ),
     (
         "a motor file that the board cannot take",
         "refused before the build, exit code 2",
-        "crates/drivemon/tests/flash.rs::a_motor_file_that_the_board_cannot_take_is_refused_before_the_build",
+        "crates/drivemon/tests/commands/flash.rs::a_motor_file_that_the_board_cannot_take_is_refused_before_the_build",
     ),
     (
         "an output that would overwrite the scenario",
         "refused, exit code 2",
-        "crates/drivemon/tests/cli.rs::a_recording_whose_sidecar_would_overwrite_the_scenario_is_refused",
+        "crates/drivemon/tests/commands/cli.rs::a_recording_whose_sidecar_would_overwrite_the_scenario_is_refused",
     ),
     (
         "learning from a motor that is faulty, moving or hardly judged",
@@ -214,57 +214,57 @@ const OTHERS: [(&str, &str, &str); 25] = [
     (
         "calibrating on a recording of a faulty motor",
         "refused, exit code 3",
-        "crates/drivemon/tests/calibrate.rs::a_faulty_motor_is_refused_by_its_recording",
+        "crates/drivemon/tests/commands/calibrate.rs::a_faulty_motor_is_refused_by_its_recording",
     ),
     (
         "calibrating with a dead sensor",
         "refused with its phase",
-        "crates/drivemon/tests/calibrate.rs::a_dead_sensor_is_refused_by_its_phase",
+        "crates/drivemon/tests/commands/calibrate.rs::a_dead_sensor_is_refused_by_its_phase",
     ),
     (
         "a disk that is full while a recording is written",
         "refused with the file's name, exit code 2; the old file stays, nothing is left behind",
-        "crates/drivemon/tests/full_disk.rs::a_recording_is_written_whole_or_not_at_all",
+        "crates/drivemon/tests/commands/full_disk.rs::a_recording_is_written_whole_or_not_at_all",
     ),
     (
         "a disk that is full while a motor file, JSON or a page is written",
         "refused with the file's name, exit code 2; the old file stays, nothing is left behind",
-        "crates/drivemon/tests/full_disk.rs::results_and_motor_files_are_written_whole_or_not_at_all",
+        "crates/drivemon/tests/commands/full_disk.rs::results_and_motor_files_are_written_whole_or_not_at_all",
     ),
     (
         "a disk that is full amid a campaign",
         "refused with the file's name, exit code 2; with room again the same command goes on to the same bytes",
-        "crates/drivemon/tests/full_disk.rs::a_campaign_goes_on_when_there_is_room_again",
+        "crates/drivemon/tests/commands/full_disk.rs::a_campaign_goes_on_when_there_is_room_again",
     ),
     (
         "a folder that takes no file",
         "refused with the file's name, exit code 2",
-        "crates/drivemon/tests/full_disk.rs::a_folder_that_takes_nothing_is_named",
+        "crates/drivemon/tests/commands/full_disk.rs::a_folder_that_takes_nothing_is_named",
     ),
     (
         "an output that is an input, its sidecar, its COMTRADE partner or another output",
         "refused before the work with both parts, exit code 2; all files stay as they were",
-        "crates/drivemon/tests/outputs.rs::nothing_that_is_read_is_written_and_nothing_is_written_twice",
+        "crates/drivemon/tests/commands/outputs.rs::nothing_that_is_read_is_written_and_nothing_is_written_twice",
     ),
     (
         "a sidecar in the place of a motor file",
         "refused, exit code 2",
-        "crates/drivemon/tests/outputs.rs::a_sidecar_is_written_over_a_sidecar_only",
+        "crates/drivemon/tests/commands/outputs.rs::a_sidecar_is_written_over_a_sidecar_only",
     ),
     (
         "a terminal without room, `> /dev/full`",
         "`error: standard output: cannot be written`, exit code 2; the files are there",
-        "crates/drivemon/tests/outputs.rs::a_terminal_without_room_is_a_plain_error_and_the_files_are_there",
+        "crates/drivemon/tests/commands/outputs.rs::a_terminal_without_room_is_a_plain_error_and_the_files_are_there",
     ),
     (
         "a reader that ends early, `| head`",
         "silence; the exit code of the answer",
-        "crates/drivemon/tests/outputs.rs::a_reader_that_has_seen_enough_changes_nothing",
+        "crates/drivemon/tests/commands/outputs.rs::a_reader_that_has_seen_enough_changes_nothing",
     ),
     (
         "one bad recording among several",
         "told by its name, exit code 2; the others have their answer",
-        "crates/drivemon/tests/outputs.rs::several_recordings_are_judged_each_by_itself",
+        "crates/drivemon/tests/commands/outputs.rs::several_recordings_are_judged_each_by_itself",
     ),
     (
         "a wrong bit in a file with checksums",

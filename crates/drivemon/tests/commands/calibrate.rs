@@ -1,10 +1,8 @@
 //! `drivemon calibrate` as a person uses it: what it writes, what it refuses, exit codes.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{PROJECT, drivemon, scratch, stderr, stdout, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, stdout, text};
 
 const MOTOR: &str = "motors/peer-2k2.toml";
 const HEALTHY: &str = "tests/data/peer/none/recording.csv.gz";

@@ -1,11 +1,9 @@
 //! A measured recording with an uncalibrated tachometer, through the binary. Skipped with a message where the
 //! recording is absent (docs/data.md).
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{PROJECT, drivemon, scratch, stderr, stdout, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, stdout, text};
 use serde_json::Value;
 
 /// Raw reading at no load, in the last tenth of a second of the start, and at rest before it; the motor then runs at

@@ -1,6 +1,6 @@
 //! Motors of which nothing is known but the plate: the healthy ones stay dark, and what they can show is shown.
 //!
-//! `CASES=608 cargo test -p drivemon --release --test plate_only -- --nocapture` is the full run of docs/first-steps.md.
+//! `CASES=608 cargo test -p drivemon --release --test recorders plate_only -- --nocapture` is the full run of docs/first-steps.md.
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Healthy motors through random instruments: whatever is wrong with an instrument is named, nothing that is sound is refused,
 //! and no healthy motor gets a FAULT by a sound instrument.
 //!
-//! `CASES=1000 cargo test -p drivemon --release --test random_instruments -- --nocapture` is the full run of docs/recordings.md.
+//! `CASES=1000 cargo test -p drivemon --release --test recorders random_instruments -- --nocapture` is the full run of docs/recordings.md.
 
 use std::collections::BTreeMap;
 use std::path::Path;

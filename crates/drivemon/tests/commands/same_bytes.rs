@@ -1,11 +1,9 @@
 //! The same input gives the same bytes, however many threads there are.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::{PROJECT, drivemon, scratch, stderr, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, text};
 
 /// A start and a load step: short, and enough to find something in.
 fn recording(folder: &Path) -> PathBuf {

@@ -1,10 +1,8 @@
 //! The `drivemon` binary as a person uses it: exit codes, messages, JSON.
 
-mod common;
-
 use std::path::Path;
 
-use common::{PROJECT, drivemon, scratch, stderr, stdout, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, stdout, text};
 
 #[test]
 fn help_teaches_the_first_steps_and_the_exit_codes() {
@@ -252,7 +250,7 @@ fn shells_complete_every_command_and_man_has_a_page_for_each() {
             assert!(script.contains(command), "{shell} does not know {command}");
         }
     }
-    let folder = common::scratch("man-pages");
+    let folder = crate::common::scratch("man-pages");
     let written = drivemon(&["man", &folder.display().to_string()]);
     assert!(written.status.success(), "{written:?}");
     for command in commands {

@@ -1,13 +1,11 @@
 //! What a command writes: never over what it reads, files before the terminal, and plain errors where there is no room.
 #![cfg(unix)]
 
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use common::{PROJECT, scratch, stderr, stdout};
+use crate::common::{PROJECT, scratch, stderr, stdout};
 
 const TABLE: &str = "tests/data/imc_18k5_load_test/load_test.csv";
 const MOTOR: &str = "motors/imc-18k5.toml";

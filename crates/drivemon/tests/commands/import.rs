@@ -1,11 +1,9 @@
 //! A file of another recorder: what was assumed is printed, stands in the JSON, and is written into a sidecar on request.
 
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 
-use common::{drivemon, scratch, stderr, text};
+use crate::common::{drivemon, scratch, stderr, text};
 use serde_json::Value;
 
 /// Currents of clamps in mV, semicolons, decimal comma.

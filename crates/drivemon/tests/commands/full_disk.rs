@@ -1,12 +1,10 @@
 //! Disks that are full and folders that take nothing: a clear error, and what was there before is still there.
 #![cfg(unix)]
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use common::{PROJECT, drivemon, scratch, stderr, stdout, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, stdout, text};
 
 /// Runs `drivemon` where no file can grow beyond this size: the system refuses the write as it would on a full disk.
 fn with_room_for(kibibyte: u32, arguments: &[&str]) -> Output {

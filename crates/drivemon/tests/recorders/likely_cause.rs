@@ -1,8 +1,6 @@
 //! The likely cause of an alarm as `drivemon monitor` names it.
 
-mod common;
-
-use common::{PROJECT, drivemon, scratch, stderr, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, text};
 use serde_json::Value;
 
 /// A simulated recording of the assumed motor whose sensors fail, and what `drivemon monitor` says about it.

@@ -1,0 +1,14 @@
+//! What the commands do with files, devices and terminals, run as a user runs them.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod calibrate;
+mod campaign;
+mod cli;
+mod flash;
+mod full_disk;
+mod import;
+mod live;
+mod outputs;
+mod same_bytes;
