@@ -64,7 +64,10 @@ impl Settings {
                 self.configurator.commit_compiled(self.holds, now_s());
                 Some(Change::Holds)
             }
-            Command::Confirm => Some(Change::Confirm),
+            Command::Confirm => {
+                let awaited = self.configurator.awaits_confirmation();
+                awaited.then_some(Change::Confirm)
+            }
             Command::Discard => {
                 let ended = self.configurator.discard(self.holds);
                 ended.then_some(Change::HoldsAgain)

@@ -99,6 +99,28 @@ fn a_refused_configuration_changes_nothing_and_names_what_is_wrong() {
     assert_eq!(master.word(&mut board, Field::ConfigurationRefused), 0);
 }
 
+/// Samples that a board takes while a master's command is obeyed, and in the second after it; why it was refused.
+fn taken_beside(command: Command) -> (usize, u16) {
+    let (mut board, master) = (running(), Master::new(UNIT));
+    let before = board.taken().len();
+    master.command(&mut board, command as u16);
+    let refused = master.word(&mut board, Field::ConfigurationRefused);
+    board.run(1.0).expect("a run");
+    assert_eq!(source(&master, &mut board), COMPILED_IN);
+    assert_eq!(board.lamps(), HEALTHY);
+    (board.taken().len() - before, refused)
+}
+
+#[test]
+fn a_confirmation_without_a_trial_is_refused_and_no_sample_is_lost() {
+    let (taken, refused) = taken_beside(Command::Confirm);
+    assert_eq!(refused, Refused::NoTrial as u16);
+    // There is nothing to discard either: a command that changes nothing.
+    let (undisturbed, not_refused) = taken_beside(Command::Discard);
+    assert_eq!(not_refused, 0);
+    assert!(taken.abs_diff(undisturbed) <= 1, "{taken} of {undisturbed}");
+}
+
 #[test]
 fn a_line_that_nobody_can_reach_is_given_up_after_a_minute() {
     let (mut board, master) = (running(), Master::new(UNIT));

@@ -125,11 +125,18 @@ impl<F: NorFlash> Configurator<F> {
         self.factory_line = false;
     }
 
+    /// Whether something is on trial that can be confirmed; where nothing is, that is why a confirmation was refused.
+    pub fn awaits_confirmation(&mut self) -> bool {
+        if self.trial_until_s.is_none() {
+            self.refused = Some(Refused::NoTrial);
+        }
+        self.trial_until_s.is_some()
+    }
+
     /// Stores what is on trial; whether it is stored. Takes up to 40 ms.
     #[inline(never)]
     pub fn confirm(&mut self, holds: &Configuration) -> bool {
-        if self.trial_until_s.is_none() {
-            self.refused = Some(Refused::NoTrial);
+        if !self.awaits_confirmation() {
             return false;
         }
         let compiled = self.compiled.image.identification();
