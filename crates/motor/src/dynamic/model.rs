@@ -163,15 +163,21 @@ impl<H: Hooks> Dynamic<H> {
         let held = self.hooks.held_voltage(&self.linear, moment, state);
         let driven = |u: Complex64| if H::HOLDS { u + held } else { u };
         let (t_mid, t_end) = (t + 0.5 * h, t + h);
-        let u_mid = driven(supply(t_mid));
-        let at = |t: f64, x: &DynamicState<H::Extra>, u| self.rate(t, x, u, load(t, x.omega_mech));
+        let (u_mid, u_end) = (driven(supply(t_mid)), driven(supply(t_end)));
         let k1 = match H::HOLDS && held != Complex64::ZERO {
-            true => at(t, state, driven(supply(t))),
+            true => {
+                let u = driven(supply(t));
+                let begin = self.flow_at(moment, t, state, u, begin.tau_load);
+                self.rate_of(moment, &begin, state)
+            }
             false => self.rate_of(moment, begin, state),
         };
-        let k2 = at(t_mid, &state.advanced(0.5 * h, &k1), u_mid);
-        let k3 = at(t_mid, &state.advanced(0.5 * h, &k2), u_mid);
-        let k4 = at(t_end, &state.advanced(h, &k3), driven(supply(t_end)));
+        let x = state.advanced(0.5 * h, &k1);
+        let k2 = self.rate(t_mid, &x, u_mid, load(t_mid, x.omega_mech));
+        let x = state.advanced(0.5 * h, &k2);
+        let k3 = self.rate(t_mid, &x, u_mid, load(t_mid, x.omega_mech));
+        let x = state.advanced(h, &k3);
+        let k4 = self.rate(t_end, &x, u_end, load(t_end, x.omega_mech));
         let inner = k1.advanced(2.0, &k2).advanced(2.0, &k3).advanced(1.0, &k4);
         *state = state.advanced(h / 6.0, &inner);
     }

@@ -34,8 +34,7 @@ steady_effect!(LeakageSaturation, DESCRIPTOR, correct);
 /// Factor on both leakages at the squared current `i2`, A2.
 #[inline(always)]
 fn factor<F: Float>(p: &[F], i2: F) -> F {
-    let x2 = i2 / (p[1] * p[1]);
-    (F::one() - p[0] * x2 / (F::one() + x2)).max(lit(0.05))
+    (F::one() - p[0] * i2 / (p[1] * p[1] + i2)).max(lit(0.05))
 }
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
