@@ -132,7 +132,8 @@ impl<H: Hooks> Dynamic<H> {
         rate
     }
 
-    /// One classical Runge-Kutta step of length `h` (s) from time `t` (s).
+    /// One classical Runge-Kutta step of length `h` (s) from time `t` (s); returns the current that an ammeter in the supply line
+    /// reads at its beginning, A, stationary frame.
     ///
     /// `supply(t)` is the stator voltage vector in V; `load(t, omega_mech)` the load torque in N m. Both are
     /// asked at `t`, `t + h/2` and `t + h`: a held voltage is a closure that ignores its argument.
@@ -144,34 +145,19 @@ impl<H: Hooks> Dynamic<H> {
         h: f64,
         supply: impl Fn(f64) -> Complex64,
         load: impl Fn(f64, f64) -> f64,
-    ) {
-        self.step_and_show(state, t, h, supply, load);
-    }
-
-    /// The step from an instant where `begin` flows, without a voltage that is held.
-    #[inline(always)]
-    fn step_from(
-        &self,
-        moment: &H::Moment,
-        begin: &Flow,
-        state: &mut DynamicState<H::Extra>,
-        h: f64,
-        supply: impl Fn(f64) -> Complex64,
-        load: impl Fn(f64, f64) -> f64,
-    ) {
-        let t = begin.t;
-        let held = self.hooks.held_voltage(&self.linear, moment, state);
+    ) -> Complex64 {
+        let moment = self.hooks.moment(t, state);
+        let (u, tau) = (supply(t), load(t, state.omega_mech));
+        let shown = self.flow_at(&moment, t, state, u, tau);
+        let held = self.hooks.held_voltage(&self.linear, &moment, state);
         let driven = |u: Complex64| if H::HOLDS { u + held } else { u };
+        let begin = match H::HOLDS && held != Complex64::ZERO {
+            true => self.flow_at(&moment, t, state, driven(u), tau),
+            false => shown,
+        };
         let (t_mid, t_end) = (t + 0.5 * h, t + h);
         let (u_mid, u_end) = (driven(supply(t_mid)), driven(supply(t_end)));
-        let k1 = match H::HOLDS && held != Complex64::ZERO {
-            true => {
-                let u = driven(supply(t));
-                let begin = self.flow_at(moment, t, state, u, begin.tau_load);
-                self.rate_of(moment, &begin, state)
-            }
-            false => self.rate_of(moment, begin, state),
-        };
+        let k1 = self.rate_of(&moment, &begin, state);
         let x = state.advanced(0.5 * h, &k1);
         let k2 = self.rate(t_mid, &x, u_mid, load(t_mid, x.omega_mech));
         let x = state.advanced(0.5 * h, &k2);
@@ -180,23 +166,7 @@ impl<H: Hooks> Dynamic<H> {
         let k4 = self.rate(t_end, &x, u_end, load(t_end, x.omega_mech));
         let inner = k1.advanced(2.0, &k2).advanced(2.0, &k3).advanced(1.0, &k4);
         *state = state.advanced(h / 6.0, &inner);
-    }
-
-    /// As [`Dynamic::step`]; returns the current that an ammeter in the supply line reads at its beginning, A, stationary frame.
-    #[inline(always)]
-    pub fn step_and_show(
-        &self,
-        state: &mut DynamicState<H::Extra>,
-        t: f64,
-        h: f64,
-        supply: impl Fn(f64) -> Complex64,
-        load: impl Fn(f64, f64) -> f64,
-    ) -> Complex64 {
-        let moment = self.hooks.moment(t, state);
-        let (u, tau) = (supply(t), load(t, state.omega_mech));
-        let begin = self.flow_at(&moment, t, state, u, tau);
-        self.step_from(&moment, &begin, state, h, supply, load);
-        begin.terminal.i
+        shown.terminal.i
     }
 
     /// Current that an ammeter in the supply line reads, A, stationary frame.

@@ -412,7 +412,7 @@ fn advance<H: Hooks>(
     let (u, tau) = (&inputs.u_s, &inputs.tau_load);
     let t = inputs.t_sample * k as f64;
     match between {
-        Between::Held => model.step_and_show(state, t, inputs.t_sample, |_| u[k], |_, _| tau[k]),
+        Between::Held => model.step(state, t, inputs.t_sample, |_| u[k], |_, _| tau[k]),
         Between::Smooth => {
             let h = 2.0 * inputs.t_sample;
             let (first, middle, last) = (u[k], u[k + 1], u[k + 2]);
@@ -426,7 +426,7 @@ fn advance<H: Hooks>(
                 }
             };
             let mean = 0.5 * (tau[k] + tau[k + 1]);
-            model.step_and_show(state, t, h, supply, |_, _| mean)
+            model.step(state, t, h, supply, |_, _| mean)
         }
     }
 }
