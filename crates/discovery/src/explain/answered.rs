@@ -73,3 +73,35 @@ impl<'a> Answered<'a> {
         law
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use estimation::specimen;
+
+    #[test]
+    fn what_was_asked_of_a_model_is_not_asked_again() {
+        let study = specimen::study(1.0, |_| 1.0);
+        let base = specimen::trial(&study);
+        let mut answered = Answered::of(&study);
+        let mut told = 0;
+        let mut tell = |_: &str| told += 1;
+        let laws = answered.laws(&base, &mut tell);
+        let again = answered.laws(&base.clone(), &mut tell);
+        assert!(Rc::ptr_eq(&laws, &again));
+        // What the screen promised is known with the laws.
+        let than = |error: f64| specimen::with_errors(&study, &base, error, error);
+        let kept = answered.laws_better_than(&base, &than(1.01 * laws.promised), &mut tell);
+        assert!(kept.is_some_and(|kept| Rc::ptr_eq(&laws, &kept)));
+        let none = answered.laws_better_than(&base, &than(0.99 * laws.promised), &mut tell);
+        assert!(none.is_none());
+        let bursts = answered.bursts(&base, &mut tell).is_some();
+        assert_eq!(answered.bursts(&base, &mut tell).is_some(), bursts);
+        assert_eq!(told, 3, "screened, refitted, bursts: once each");
+        // Another model is another question.
+        let mut other = base.clone();
+        other.fit.hypothesis.z[0] += 1e-9;
+        answered.laws_better_than(&other, &than(0.0), &mut |_| told += 1);
+        assert_eq!(told, 4);
+    }
+}

@@ -124,3 +124,23 @@ fn what_cannot_be_seen_is_not_fitted() {
     let free = specimen::study(0.5, |_| 1.0).at_prior();
     assert_eq!(free.free, [true; N_NOMINAL]);
 }
+
+#[test]
+fn a_model_is_the_same_to_the_last_bit_or_another() {
+    let study = study();
+    let rated = &study.prior.plant.rated;
+    let h = study.at_prior();
+    assert!(h.is_same(&h.clone()));
+    let mut moved = h.clone();
+    moved.z[0] = f64::MIN_POSITIVE;
+    let mut held = h.clone();
+    held.free[0] = !held.free[0];
+    let with = h.with(saturation(&study), rated);
+    for other in [&moved, &held, &with] {
+        assert!(!h.is_same(other));
+    }
+    // A form is no coordinate: where the flux saturates.
+    let mut form = saturation(&study);
+    form.values[2] = 0.5;
+    assert!(!with.is_same(&h.with(form, rated)));
+}

@@ -100,6 +100,19 @@ fn a_model_is_adequate_within_two_per_cent_of_the_noise() {
 }
 
 /// Of the excess from 3 to 1 times the noise five eighths go at 2.
+/// From twice the noise on: an excess of 3, of which 1.2 times the noise leaves 0.44.
+#[test]
+fn a_model_may_explain_by_its_folds_whatever_the_proof_says() {
+    let study = specimen::table_study(|_| ());
+    let before = without_effect(&study, 2.0, 2.0);
+    let folds = |error: f64| without_effect(&study, error, 9.0).folds;
+    let explains = 1.0 - 0.44 / 3.0;
+    assert!(may_explain(&study, &before, &folds(1.2), explains - 0.01));
+    assert!(!may_explain(&study, &before, &folds(1.2), explains + 0.01));
+    let adequate = folds(adequacy(&study) - 1e-6);
+    assert!(may_explain(&study, &before, &adequate, 1.0));
+}
+
 #[test]
 fn explained_is_the_share_by_folds_where_nothing_else_proves() {
     let study = specimen::table_study(|_| ());
