@@ -23,7 +23,7 @@ pub(super) fn complete(
     progress: &mut dyn FnMut(&str, f64),
 ) {
     let study = answered.study;
-    let alone = answered.laws(&found.baseline, &mut |what| progress(what, 0.6));
+    let alone = answered.laws(&found.baseline, &mut from(0.6, progress));
     let best = alone.best(study, &found.baseline);
     let last = found.steps.last().map(|step| step.trial.clone());
     if let Some(law) = best
@@ -49,7 +49,7 @@ pub(super) fn complete(
         return;
     }
     if let Some(last) = &last {
-        let more = answered.laws(last, &mut |what| progress(what, 0.7));
+        let more = answered.laws(last, &mut from(0.7, progress));
         let more = more.best(study, last);
         if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
             put_on_top(study, found, law);
@@ -73,6 +73,14 @@ pub(super) fn complete(
             proven: false,
             ..law
         }));
+    }
+}
+
+/// Progress that moves on by a little with each thing that is told.
+fn from<'p>(mut share: f64, progress: &'p mut dyn FnMut(&str, f64)) -> impl FnMut(&str) + use<'p> {
+    move |what| {
+        progress(what, share);
+        share += 0.04;
     }
 }
 

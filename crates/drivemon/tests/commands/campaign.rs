@@ -4,14 +4,14 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{drivemon, scratch, stderr, stdout, text};
+use crate::common::{PROJECT, drivemon, scratch, stderr, stdout, text};
 use campaign::{Plan, Results, Row, Run};
 use serde_json::Value;
 
 const SMOKE: &str = "campaigns/smoke.toml";
 
 fn smoke() -> Plan {
-    let path = Path::new(crate::common::PROJECT).join(SMOKE);
+    let path = Path::new(PROJECT).join(SMOKE);
     Plan::read(path).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -55,10 +55,8 @@ fn two_shares_merged_are_the_bytes_of_the_whole() {
 
 /// A larger plan than the smoke test's, so that there is something left when it is killed; cold, so that few alarms are looked into.
 fn longer(folder: &Path) -> String {
-    let motors =
-        std::fs::canonicalize(Path::new(crate::common::PROJECT).join("motors")).expect("shipped");
-    let plan =
-        std::fs::read_to_string(Path::new(crate::common::PROJECT).join(SMOKE)).expect("shipped");
+    let motors = std::fs::canonicalize(Path::new(PROJECT).join("motors")).expect("shipped");
+    let plan = std::fs::read_to_string(Path::new(PROJECT).join(SMOKE)).expect("shipped");
     let plan = plan
         .replace("draws = 24", "draws = 200")
         .replace(
@@ -125,10 +123,8 @@ fn results_of_another_plan_are_not_mixed_in() {
     let folder = scratch("campaign-mixed");
     let (output, other) = (folder.join("x.parquet"), folder.join("other.toml"));
     share(SMOKE, &output, &["--to", "2"]);
-    let motors =
-        std::fs::canonicalize(Path::new(crate::common::PROJECT).join("motors")).expect("shipped");
-    let plan =
-        std::fs::read_to_string(Path::new(crate::common::PROJECT).join(SMOKE)).expect("shipped");
+    let motors = std::fs::canonicalize(Path::new(PROJECT).join("motors")).expect("shipped");
+    let plan = std::fs::read_to_string(Path::new(PROJECT).join(SMOKE)).expect("shipped");
     let plan = plan
         .replace("seed = 7", "seed = 8")
         .replace("../motors", text(&motors));
@@ -250,7 +246,7 @@ winding_degc = [20.0, 25.0]
 
 #[test]
 fn an_alarm_is_blamed_on_the_condition_without_which_it_stays_dark() {
-    let motors = Path::new(crate::common::PROJECT).join("motors");
+    let motors = Path::new(PROJECT).join("motors");
     let plan =
         Plan::parse(BAD_GAINS, "plan.toml", &motors).unwrap_or_else(|error| panic!("{error}"));
     for index in 0..plan.runs() {
@@ -263,7 +259,7 @@ fn an_alarm_is_blamed_on_the_condition_without_which_it_stays_dark() {
 /// The monitor is told one motor while another one runs.
 #[test]
 fn a_motor_file_that_is_wrong_is_a_fault_and_no_condition_is_to_blame() {
-    let motors = Path::new(crate::common::PROJECT).join("motors");
+    let motors = Path::new(PROJECT).join("motors");
     let plan = BAD_GAINS
         .replace(
             "sensor_gain_error_percent = 50.0",
@@ -319,9 +315,8 @@ fn every_problem_of_a_plan_is_told_with_line_and_remedy() {
         ("fault = \"Rs\"", "fault = \"bars\"", ""),
         ("fault = \"Rs\"", "fault = \"Ls\"", "write one of"),
     ];
-    let plan =
-        std::fs::read_to_string(Path::new(crate::common::PROJECT).join(SMOKE)).expect("shipped");
-    let folder = Path::new(crate::common::PROJECT).join("campaigns");
+    let plan = std::fs::read_to_string(Path::new(PROJECT).join(SMOKE)).expect("shipped");
+    let folder = Path::new(PROJECT).join("campaigns");
     for (from, to, expected) in cases {
         assert!(plan.contains(from), "{from}");
         let result = Plan::parse(&plan.replacen(from, to, 1), "plan.toml", &folder);
@@ -340,9 +335,9 @@ fn every_problem_of_a_plan_is_told_with_line_and_remedy() {
 
 #[test]
 fn every_plan_that_ships_is_valid_and_on_the_page() {
-    let folder = Path::new(crate::common::PROJECT).join("campaigns");
-    let page = std::fs::read_to_string(Path::new(crate::common::PROJECT).join("docs/campaign.md"))
-        .expect("shipped");
+    let folder = Path::new(PROJECT).join("campaigns");
+    let page =
+        std::fs::read_to_string(Path::new(PROJECT).join("docs/campaign.md")).expect("shipped");
     let mut plans = 0;
     let entries = std::fs::read_dir(folder).expect("shipped");
     let paths = entries.map(|entry| entry.expect("readable").path());

@@ -250,7 +250,7 @@ fn shells_complete_every_command_and_man_has_a_page_for_each() {
             assert!(script.contains(command), "{shell} does not know {command}");
         }
     }
-    let folder = crate::common::scratch("man-pages");
+    let folder = scratch("man-pages");
     let written = drivemon(&["man", &folder.display().to_string()]);
     assert!(written.status.success(), "{written:?}");
     for command in commands {

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::time::Duration;
 
+use crate::common::{drivemon, stderr};
 use board::{CAPTURE_EVERY, Capture, Frame, MAX_FRAME_BYTES, MotorImage, Shown};
 use monitor::{Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
@@ -136,12 +137,9 @@ fn silence_and_rubbish_are_told_apart() {
 
 #[test]
 fn a_port_that_does_not_exist_is_an_error_with_a_remedy() {
-    let output = Command::new(env!("CARGO_BIN_EXE_drivemon"))
-        .args(["monitor", "--serial", "/dev/no-such-port"])
-        .output()
-        .expect("drivemon runs");
+    let output = drivemon(&["monitor", "--serial", "/dev/no-such-port"]);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&output);
     assert!(
         said.contains("/dev/no-such-port") && said.contains("; "),
         "{said}"
@@ -150,18 +148,15 @@ fn a_port_that_does_not_exist_is_an_error_with_a_remedy() {
 
 #[test]
 fn a_page_is_refused_with_the_way_to_get_one() {
-    let output = Command::new(env!("CARGO_BIN_EXE_drivemon"))
-        .args([
-            "monitor",
-            "--serial",
-            "/dev/no-such-port",
-            "--report",
-            "x.html",
-        ])
-        .output()
-        .expect("drivemon runs");
+    let output = drivemon(&[
+        "monitor",
+        "--serial",
+        "/dev/no-such-port",
+        "--report",
+        "x.html",
+    ]);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&output);
     assert!(
         said.contains("--report") && said.contains("--capture"),
         "{said}"

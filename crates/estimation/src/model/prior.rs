@@ -235,10 +235,9 @@ impl Hypothesis {
 
     /// Whether this is the same model, to the last bit.
     pub fn is_same(&self, other: &Self) -> bool {
-        let same = |(a, b): (&EffectConfig, &EffectConfig)| {
-            let (one, two) = (a.effect.descriptor(), b.effect.descriptor());
-            (one.name, one.form, &a.values) == (two.name, two.form, &b.values)
-        };
+        let told = |e: &EffectConfig| (e.effect.descriptor().name, e.effect.texts());
+        let same =
+            |(a, b): (&EffectConfig, &EffectConfig)| told(a) == told(b) && a.values == b.values;
         (&self.z, &self.free) == (&other.z, &other.free)
             && self.effects.len() == other.effects.len()
             && self.effects.iter().zip(&other.effects).all(same)

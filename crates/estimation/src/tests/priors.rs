@@ -143,4 +143,16 @@ fn a_model_is_the_same_to_the_last_bit_or_another() {
     let mut form = saturation(&study);
     form.values[2] = 0.5;
     assert!(!with.is_same(&h.with(form, rated)));
+    // Formulas have one name, and one formula has several places.
+    let formula = |adds_to: &str, text: &str| {
+        let prior = specimen::prior(&format!(
+            "[[effects]]\nname = \"expression\"\nadds_to = \"{adds_to}\"\nformula = \"{text}\"\nk = 0.0\nk_typical = 0.1\n"
+        ));
+        let effect = *prior.formulas.first().expect("a candidate");
+        h.with(EffectConfig::absent(effect, rated), rated)
+    };
+    let braked = formula("torque", "k * omega");
+    assert!(braked.is_same(&formula("torque", "k * omega")));
+    assert!(!braked.is_same(&formula("torque", "k * psi")));
+    assert!(!braked.is_same(&formula("voltage_d", "k * omega")));
 }

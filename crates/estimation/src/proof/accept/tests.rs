@@ -99,7 +99,6 @@ fn a_model_is_adequate_within_two_per_cent_of_the_noise() {
     assert!(at(1.0) && at(1.019) && !at(1.021));
 }
 
-/// Of the excess from 3 to 1 times the noise five eighths go at 2.
 /// From twice the noise on: an excess of 3, of which 1.2 times the noise leaves 0.44.
 #[test]
 fn a_model_may_explain_by_its_folds_whatever_the_proof_says() {
@@ -113,6 +112,7 @@ fn a_model_may_explain_by_its_folds_whatever_the_proof_says() {
     assert!(may_explain(&study, &before, &adequate, 1.0));
 }
 
+/// Of the excess from 3 to 1 times the noise five eighths go at 2.
 #[test]
 fn explained_is_the_share_by_folds_where_nothing_else_proves() {
     let study = specimen::table_study(|_| ());
