@@ -38,7 +38,7 @@ pub struct Panel {
     pub wires: LampWires,
     /// Relay and its contact.
     pub relay_wires: RelayWires,
-    /// What the relay shall do.
+    /// What the relay does.
     pub relay: Relay,
     /// Fed when all is well.
     pub watchdog: Watchdog,

@@ -295,7 +295,7 @@ impl<'d> Section<'d> {
         Section::new(self.document, table, path, line)
     }
 
-    /// Reports unknown and missing keys. A missing key that stands there misspelt is reported once.
+    /// Reports unknown and missing keys. A missing key that is misspelt there is reported once.
     pub fn finish(self) {
         let known = self.known.borrow();
         let mut missing = self.missing.borrow().clone();

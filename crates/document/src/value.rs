@@ -130,7 +130,7 @@ impl Lines {
         let (key, remedy) = if error.message().starts_with("duplicate key") {
             (
                 found,
-                "it stands twice in its section; remove one of the two".to_owned(),
+                "it appears twice in its section; remove one of the two".to_owned(),
             )
         } else {
             let key = source.split(['=', ' ', '\t']).next().unwrap_or("");

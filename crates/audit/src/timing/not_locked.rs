@@ -23,7 +23,7 @@ pub(crate) fn check(context: &Context<'_>) -> Vec<Finding> {
         .collect();
     let any = other_time_unit(context);
     let hint = match any {
-        Some(hz) => format!("A period is found if the clock counts otherwise ({hz:.4} Hz as it stands): check --unit t=ms."),
+        Some(hz) => format!("A period is found if the clock counts otherwise ({hz:.4} Hz as recorded): check --unit t=ms."),
         None => "Check that the motor was supplied, that the columns are the right ones, and the sampling rate.".to_owned(),
     };
     let code = if any.is_some() {

@@ -1,4 +1,4 @@
-//! The register map itself: what stands where, in order of address.
+//! The register map itself: addresses and their contents, in order of address.
 
 use super::entry::{Entry, FIELDS, Field, Kind, Meaning};
 
@@ -202,7 +202,7 @@ pub const MAP: [Entry; FIELDS] = {
             LastEvent,
             Long,
             "",
-            "number of the newest event of the log; they count from 1, 0 is none",
+            "number of the newest event of the log; they count from 1; 0: no event yet",
         ),
         entry(
             Configuration,

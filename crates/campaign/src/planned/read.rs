@@ -62,7 +62,7 @@ fn plan(root: &Section<'_>, motors: Option<Vec<MotorPair>>, text: &str) -> Optio
     let seed = root.integer_or("seed", &SEED, 0);
     let sections = root.sections("blocks")?;
     if sections.is_empty() {
-        root.report("blocks", "there is none: add at least one [[blocks]]");
+        root.report("blocks", "no [[blocks]]: add at least one");
     }
     let known = motors.as_deref().unwrap_or_default();
     let blocks: Vec<_> = sections
@@ -100,7 +100,7 @@ fn motors(
     if sections.is_empty() {
         root.report(
             "motors",
-            format!("there is none: add [[motors]] with file = {MOTOR}"),
+            format!("no [[motors]]: add [[motors]] with file = {MOTOR}"),
         );
     }
     let mut pairs = Some(Vec::new());
@@ -167,7 +167,10 @@ fn block_values(section: &Section<'_>, motors: &[MotorPair]) -> Option<Block> {
     let grids = DESCRIBED.each_ref().map(|axis| grid(section, axis, drawn));
     let faults = faults(section, name.as_deref().unwrap_or_default());
     if drawn && section.has("repetitions") {
-        section.report("repetitions", "stands beside draws: keep one of the two");
+        section.report(
+            "repetitions",
+            "is given together with draws: keep one of the two",
+        );
     }
     let (cases, targets) = faults?;
     let grids: Vec<Grid> = grids.into_iter().collect::<Option<_>>()?;

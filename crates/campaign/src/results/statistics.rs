@@ -16,7 +16,7 @@ pub struct Share {
     pub of: u64,
 }
 
-/// A share as it stands in JSON.
+/// A share as JSON holds it.
 #[derive(Serialize)]
 struct Written {
     count: u64,

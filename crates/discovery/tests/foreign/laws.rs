@@ -111,6 +111,40 @@ impl Law {
         is(&law.place, &law.coordinate) || tied.into_iter().any(|t| is(&t.place, &t.coordinate))
     }
 
+    /// Effects of the library that are the same physics.
+    pub fn library_names(self) -> &'static [&'static str] {
+        match self {
+            Law::Leakage => &["leakage-saturation"],
+            // Above a fifth of the speed there is nothing else.
+            Law::Stribeck => &["coulomb-friction"],
+            Law::Bars => &["deep-bar"],
+            Law::Ripple | Law::Jaws => &["load-pulsation"],
+            Law::Disc => &["speed-ripple"],
+            _ => &[],
+        }
+    }
+
+    /// Shapes of the dictionary that are the law's own; empty: the dictionary does not hold it.
+    pub fn shapes(self) -> &'static [&'static str] {
+        match self {
+            Law::Stribeck => &["Stribeck", "Stribeck and linear"],
+            Law::Ripple => &["harmonic", "two harmonics"],
+            Law::Jaws | Law::Disc => &["two harmonics"],
+            Law::Pump => &["power beyond a place"],
+            Law::Bearing => &["exponential", "constant and exponential"],
+            Law::Displacement => &["power", "constant and power"],
+            Law::Contact => &["x/(|x|+w)"],
+            Law::Piston => &["half sine"],
+            Law::Bars => &["saturating exponential", "constant and exponential"],
+            Law::Leakage => &["x2/(x2+w2)"],
+            Law::Gear => &["hinge"],
+            Law::Ageing => &["step", "tanh"],
+            Law::Brake => &["bump"],
+            Law::Saturating => &["quadratic"],
+            Law::Magnetizing | Law::Intermittent | Law::Sticking => &[],
+        }
+    }
+
     /// Torque that brakes the shaft, N m.
     pub fn torque(self, m: &Machine, at: Where) -> f64 {
         let w = at.speed / m.speed();

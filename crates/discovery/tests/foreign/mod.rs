@@ -144,6 +144,34 @@ pub const MACHINES: [Machine; 4] = [
     },
 ];
 
+/// The ends of the range.
+pub const SMALLEST_AND_LARGEST: [Machine; 2] = [
+    Machine {
+        power: 370.0,
+        torque: 2.6,
+        current: 1.15,
+        n_p: 2.0,
+        r_s: 24.0,
+        r_r: 18.0,
+        l_l: 0.062,
+        l_m: 0.78,
+        j: 0.0009,
+        b: 0.0002,
+    },
+    Machine {
+        power: 45_000.0,
+        torque: 291.0,
+        current: 81.0,
+        n_p: 2.0,
+        r_s: 0.068,
+        r_r: 0.05,
+        l_l: 0.00085,
+        l_m: 0.0245,
+        j: 0.42,
+        b: 0.03,
+    },
+];
+
 impl Machine {
     /// The machine of a seed.
     pub fn of(seed: u64) -> Self {

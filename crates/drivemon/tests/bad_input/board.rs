@@ -158,7 +158,7 @@ const SEEN: [(&str, &str); 52] = [
 const OTHERS: [(&str, &str, &str); 25] = [
     (
         "any sequence of samples: NaN, infinity, jumps, clipping, missing channels",
-        "RUN and SENSOR blink, not judged; never FAULT from r1..r4, never a number that is none",
+        "RUN and SENSOR blink, not judged; never FAULT from r1..r4, never NaN in place of a number",
         "fuzz/tests/short.rs::nothing_breaks_on_seeds_findings_and_mutations",
     ),
     (
@@ -232,7 +232,7 @@ const OTHERS: [(&str, &str, &str); 25] = [
         "crates/drivemon/tests/commands/full_disk.rs::results_and_motor_files_are_written_whole_or_not_at_all",
     ),
     (
-        "a disk that is full amid a campaign",
+        "a disk that fills up during a campaign",
         "refused with the file's name, exit code 2; with room again the same command goes on to the same bytes",
         "crates/drivemon/tests/commands/full_disk.rs::a_campaign_goes_on_when_there_is_room_again",
     ),

@@ -161,7 +161,7 @@ pub fn bad_recordings() -> Vec<Malformed> {
         csv("one row", rows(1), &["r.csv"]),
         malformed("truncated gz", "r.csv.gz", truncated_gz(), &["r.csv.gz"]),
         malformed(
-            "gz that is none",
+            "gz that is not gzip",
             "r.csv.gz",
             "hello\n".repeat(9),
             &["r.csv.gz"],

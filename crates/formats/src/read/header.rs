@@ -10,7 +10,7 @@ pub(super) struct Header {
     pub file: String,
     /// Line of the header, counted from 1; 0 in a binary file.
     pub line: u64,
-    /// The column names, trimmed and without quotes; none is empty or stands there twice.
+    /// The column names, trimmed and without quotes; none is empty or appears twice.
     pub names: Vec<String>,
     /// The names without the units that stand in them: `Ua` of `Ua [V]`.
     pub stems: Vec<String>,
@@ -115,13 +115,13 @@ fn name_all(file: &str, line: u64, names: &mut [String]) -> Result<Vec<String>, 
         }
         let twice = shown(name);
         if aliases::is_known(name_and_unit(name).0) {
-            let message = format!("column `{twice}` stands there twice");
+            let message = format!("column `{twice}` appears twice");
             let remedy = "rename or remove one of the two, or name the columns in their order with --columns";
             return Err(Error::at(file, line, "", message, remedy));
         }
         *name = format!("{name} #{}", k + 1);
         notes.push(format!(
-            "column `{twice}` stands there twice: the second is called {}",
+            "column `{twice}` appears twice: the second is called {}",
             shown(name)
         ));
     }

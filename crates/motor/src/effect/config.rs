@@ -1,4 +1,4 @@
-//! An effect as it stands in a motor file: validated once, used without checks afterwards.
+//! An effect of a motor file: validated once, used without checks afterwards.
 
 use crate::effect::{Effect, Parameter, Rated, Role};
 use crate::effects::{find, names};

@@ -31,7 +31,7 @@ const WINDAGE: usize = 9;
 const STRAY: usize = 10;
 const INERTIA: usize = 11;
 const LEAKAGE_DROP: usize = 7;
-/// A drop below is none.
+/// A drop below does not count.
 const LEAST_DROP: f64 = 1e-4;
 
 /// Which effects the tests show: the parameters mean the motor with them.

@@ -177,7 +177,7 @@ fn body_of(body: Result<Json<Typed>, JsonRejection>) -> Result<Typed, Refusal> {
         .map_err(|error| Refusal::of(error.body_text()))
 }
 
-/// The plate; each answer that is none is named with its key. A code letter needs the numbers before it.
+/// The plate; each answer that is not a number is named with its key. A code letter needs the numbers before it.
 fn read(typed: &Typed) -> Result<PlateFile, Refusal> {
     let mut file = PlateFile::default();
     let mut problems = Vec::new();

@@ -143,7 +143,7 @@ impl Mapping {
     /// `--columns t,va,vb,-,ia`: the columns in their order.
     ///
     /// # Errors
-    /// A name that is no channel, or one that stands there twice.
+    /// A name that is no channel, or one that appears twice.
     pub fn set_columns(&mut self, flag: &str) -> Result<(), Error> {
         let names: Vec<String> = flag.split(',').map(|name| name.trim().to_owned()).collect();
         check_names(&names).map_err(|(message, remedy)| {
@@ -277,7 +277,7 @@ pub(in crate::mapping) fn check_names(names: &[String]) -> Result<(), (String, S
             |other: &String| Slot::parse(other).is_some_and(|other| other.target == slot.target);
         if names[..k].iter().any(same) {
             let remedy = "name each channel once; a second probe has a 2 behind its name";
-            return Err((format!("`{name}` stands there twice"), remedy.to_owned()));
+            return Err((format!("`{name}` appears twice"), remedy.to_owned()));
         }
     }
     match used.count() {

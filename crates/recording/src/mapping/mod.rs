@@ -240,7 +240,7 @@ pub struct Mapping {
     pub delimiter: Option<u8>,
     /// Whether numbers are written `3,7`.
     pub decimal_comma: Option<bool>,
-    /// What stands between groups of three digits; `Some(None)` says that nothing does.
+    /// Separator of groups of three digits; `Some(None)` says that nothing does.
     pub thousands: Option<Option<char>>,
     /// Whether day or month comes first in dates that leave it open.
     pub date_order: Option<DateOrder>,

@@ -98,7 +98,7 @@ impl Blocks {
         let per_cycle = turned.per_cycle;
         let available = turned.i.len() / per_cycle;
         let wanted = cycles.min(available);
-        // Long blocks shall be long, or they say the same again.
+        // Long blocks must be long, or they say the same again.
         if wanted < SHORTEST || 2 * wanted < cycles && cycles > 100 {
             return None;
         }

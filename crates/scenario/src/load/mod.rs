@@ -93,7 +93,7 @@ fn read_torque(
         (Some(_), Some(_)) => {
             section.report(
                 in_percent,
-                format!("stands beside {in_nm}: keep one of the two"),
+                format!("is given together with {in_nm}: keep one of the two"),
             );
             None
         }

@@ -255,7 +255,7 @@ impl Usart {
         self.has(CR1, ENABLE) && (plain != 0 || overrun || parity || line)
     }
 
-    /// Whether DMA shall bring a byte to send.
+    /// Whether DMA is to bring a byte to send.
     pub fn wants_byte(&self) -> bool {
         self.has(CR1, ENABLE | TRANSMIT)
             && self.has(CR3, DMA_TRANSMIT)

@@ -157,7 +157,7 @@ fn a_page_that_does_not_erase_is_not_worn_down() {
     assert_eq!(log.failures, MOST_FAILURES);
 }
 
-/// An event that lies elsewhere than where its number belongs is none of this ring.
+/// An event in another place than its number's does not belong to this ring.
 #[test]
 fn an_event_in_a_strange_place_is_not_taken_for_the_newest() {
     let mut chip = Chip::new(LOG_PAGES);

@@ -59,7 +59,7 @@ pub struct InputArgs {
     /// Numbers are written 3,7, where the file does not show it
     #[arg(long)]
     decimal_comma: bool,
-    /// What stands between thousands, where `1,234` or `1.234` could be two numbers: `.` `,` `'` `space` `none`
+    /// Separator of thousands, where `1,234` or `1.234` could be two numbers: `.` `,` `'` `space` `none`
     #[arg(long, value_name = "CHARACTER")]
     thousands: Option<String>,
     /// Order of day and month in dates such as 3/4/2024: `dmy` or `mdy`

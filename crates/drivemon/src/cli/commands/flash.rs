@@ -123,7 +123,7 @@ fn build(tree: &Path, motor: &Path) -> Step {
             arguments.join(" ")
         ),
         absent: "it needs bash; on Windows use WSL",
-        failed: "the firmware was not built; what the compiler says stands above",
+        failed: "the firmware was not built; the compiler's messages above say why",
     }
 }
 

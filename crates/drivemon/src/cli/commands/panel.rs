@@ -64,7 +64,7 @@ pub struct Panel {
     host: IpAddr,
     /// Let others who reach --host and have the printed link watch and switch
     ///
-    /// A random token stands in the link; the browser keeps it as a cookie, and without it nothing is shown. It protects
+    /// The link holds a random token; the browser keeps it as a cookie, and without it nothing is shown. It protects
     /// against others on the network who do not have the link. It does not protect what is sent: there is no encryption
     /// (TLS), so anyone who can listen on the network can read the token too. On a network that is not yours put the panel
     /// behind a proxy with TLS and a login, and leave --host out.

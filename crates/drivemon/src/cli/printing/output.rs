@@ -28,7 +28,7 @@ pub struct JsonArgs {
     pub json: Option<PathBuf>,
 }
 
-/// The name that stands for standard output, and for standard input.
+/// The name of standard output, and for standard input.
 pub(crate) const DASH: &str = "-";
 
 impl OutputArgs {

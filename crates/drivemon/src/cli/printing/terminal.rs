@@ -51,7 +51,7 @@ pub(crate) fn is_closed() -> bool {
     failed().is_some()
 }
 
-/// The end of standard output: everything is written now, or the reason why not. A reader that has seen enough is none.
+/// The end of standard output: everything is written now, or the reason why not. A reader that closes the pipe early is no error.
 ///
 /// # Errors
 /// A disk that is full, or whatever else the system said.

@@ -17,7 +17,7 @@ pub(super) struct Samples {
     pub oddities: Vec<String>,
 }
 
-/// The time stamp that stands for none.
+/// The time stamp of a sample without one.
 const NO_STAMP: u32 = u32::MAX;
 /// The end-of-file mark of old systems, with which recorders fill up a file.
 const END: u8 = 0x1A;

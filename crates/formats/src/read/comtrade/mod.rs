@@ -70,7 +70,7 @@ fn table(name: &str, pair: &pair::Pair) -> Result<Box<dyn TableFile>, Error> {
     Ok(Box::new(Columns::new(header, values, pair.bytes)?))
 }
 
-/// The channels' names; one that stands there twice, or is the clock's, gets its number.
+/// The channels' names; one that appears twice, or is the clock's, gets its number.
 fn names(configuration: &Configuration) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (k, analog) in configuration.analogs.iter().enumerate() {

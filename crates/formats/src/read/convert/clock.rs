@@ -44,7 +44,7 @@ fn rises(file: &str, t: &[f64], lines: &[u64]) -> Result<(), Error> {
     };
     let (message, remedy) = if t[k] == t[k - 1] {
         (
-            format!("the time {} s stands there twice", t[k]),
+            format!("the time {} s appears twice", t[k]),
             "write t with more decimals, declare --sample-rate HZ, or remove the duplicate",
         )
     } else {

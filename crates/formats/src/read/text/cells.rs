@@ -3,7 +3,7 @@
 use super::number::is_number;
 use super::stamp;
 
-/// What stands between two cells.
+/// Separator of two cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
     /// One character.

@@ -5,7 +5,7 @@
 pub(super) struct Numbers {
     /// Whether the decimal mark is a comma.
     pub decimal_comma: bool,
-    /// What stands between groups of three digits; a blank means any kind of blank.
+    /// Separator of groups of three digits; a blank means any kind of blank.
     pub thousands: Option<char>,
 }
 

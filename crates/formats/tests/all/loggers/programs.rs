@@ -272,7 +272,7 @@ pub(super) fn devices() -> Vec<Device> {
         },
         Device {
             name: "two files joined",
-            source: "`cat a.csv b.csv`: the header stands there twice",
+            source: "`cat a.csv b.csv`: the header appears twice",
             file: "joined.csv",
             step_s: 1e-4,
             flag: None,

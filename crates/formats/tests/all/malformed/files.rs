@@ -151,7 +151,7 @@ pub fn headers() -> Vec<Case> {
         ),
         case(
             "t,ia,ia\n0,1,2\n",
-            &["x.csv:1", "`ia` stands there twice", "rename or remove"],
+            &["x.csv:1", "`ia` appears twice", "rename or remove"],
         ),
         case(
             "t,ia,\n0,1,2\n",
@@ -241,7 +241,7 @@ pub fn rows() -> Vec<Case> {
         case("# one\nt,ia\r\r# two\r0,1\r1,x", &["x.csv:6: ia"]),
         case(
             "t,ia\n0,1\n\n0,2\n",
-            &["x.csv:4: t", "0 s stands there twice", "--sample-rate"],
+            &["x.csv:4: t", "0 s appears twice", "--sample-rate"],
         ),
         case(
             "t,ia\n0,1\n2,2\n1,3\n",

@@ -106,7 +106,7 @@ impl Header {
                 .any(|c| c.trim().to_lowercase() == name);
             if twice && !name.is_empty() {
                 return Err(format!(
-                    "{label}:{}: column {name} stands twice; keep one",
+                    "{label}:{}: column {name} appears twice; keep one",
                     line.number
                 ));
             }

@@ -91,10 +91,9 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
 
 /// Effects and laws that are missing.
 fn missing(result: &Place<'_>, effects: &[&str]) -> String {
-    let found = result.items("laws");
-    let proven = found.iter().filter(|law| law.is_true("proven"));
     let effects = effects.iter().map(|name| (*name).to_owned());
-    let all: Vec<String> = effects.chain(proven.map(laws::name)).collect();
+    let laws = laws::proven(result);
+    let all: Vec<String> = effects.chain(laws.iter().map(laws::name)).collect();
     all.join(" and ")
 }
 
@@ -126,15 +125,18 @@ fn summary(result: &Place<'_>, steps: &[Place<'_>]) -> Vec<(Markup, Markup)> {
     )
     .into_iter()
     .collect();
-    if !steps.is_empty() {
+    let laws = laws::proven(result);
+    if !steps.is_empty() || !laws.is_empty() {
         found.extend(error("final", "the same with what was found"));
     }
-    found.extend(steps.iter().map(|step| {
+    let share = |place: &Place<'_>, name: &str| {
         (
-            html! { (shown(step, "explained_percent", decimals(0))) " %" },
-            html! { "of the excess error explained by " (step.text("effect")) },
+            html! { (shown(place, "explained_percent", decimals(0))) " %" },
+            html! { "of the excess error explained by " (name) },
         )
-    }));
+    };
+    found.extend(steps.iter().map(|step| share(step, step.text("effect"))));
+    found.extend(laws.iter().map(|law| share(law, &laws::name(law))));
     found
 }
 
@@ -153,9 +155,11 @@ fn errors(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
             .filter(|step| step.get("frame").is_none())
             .map(|step| row(format!("with {}", step.text("effect")), step, "chosen")),
     );
-    let found = result.items("laws");
-    let proven = found.iter().filter(|law| law.is_true("proven"));
-    rows.extend(proven.map(|law| row(format!("with {}", laws::name(law)), law, "chosen")));
+    let laws = laws::proven(result);
+    rows.extend(
+        laws.iter()
+            .map(|law| row(format!("with {}", laws::name(law)), law, "chosen")),
+    );
     html! {
         section aria-labelledby="fall" {
             h2 id="fall" { "How the error falls on data that was not fitted" }

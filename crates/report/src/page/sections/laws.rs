@@ -15,6 +15,13 @@ pub fn name(law: &Place<'_>) -> String {
     }
 }
 
+/// Laws that a recording which was not fitted has proven.
+pub fn proven<'a>(result: &Place<'a>) -> Vec<Place<'a>> {
+    let mut laws = result.items("laws");
+    laws.retain(|law| law.is_true("proven"));
+    laws
+}
+
 /// One figure each.
 pub fn section(result: &Place<'_>) -> Markup {
     let laws = result.items("laws");

@@ -51,9 +51,9 @@ pub struct Configure {
     json: JsonArgs,
 }
 
-/// What shall be different.
+/// What is to change.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "What shall change")]
+#[command(next_help_heading = "What is to change")]
 struct Changes {
     /// Motor file whose constants, sensors and thresholds the board shall judge by
     #[arg(long, value_name = "M")]
@@ -157,7 +157,7 @@ impl Configure {
         Ok(new)
     }
 
-    /// On trial, and stored unless it shall stay so.
+    /// on trial, and stored unless it is to stay on trial.
     fn settle(&self, line: &mut ModbusLine) -> Result<(), Failure> {
         wait_for(line, ConfigurationSource::Trial)?;
         if self.trial {

@@ -86,7 +86,7 @@ impl PlateArgs {
     /// The plate; questions go to the terminal where nothing at all was given, or `--ask` was.
     ///
     /// # Errors
-    /// A file that cannot be read, or a number that is none, with the flag or the line.
+    /// A file that cannot be read, or text that is not a number, with the flag or the line.
     pub fn read(&self) -> Result<PlateFile, Failure> {
         let mut file = match &self.plate {
             Some(path) => {
@@ -124,7 +124,7 @@ impl PlateArgs {
     /// A plate from elsewhere with the flags over it.
     ///
     /// # Errors
-    /// A number that is none, with the flag.
+    /// Text that is not a number, with the flag.
     pub fn over(&self, mut file: PlateFile) -> Result<PlateFile, Failure> {
         self.set(&mut file)?;
         Ok(file)

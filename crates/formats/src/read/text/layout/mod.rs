@@ -223,7 +223,7 @@ fn notes(layout: &Layout, rows: &[Row<'_>], said: &Mapping) -> Vec<String> {
         .collect();
     if let Some(last) = before.last() {
         notes.push(format!(
-            "lines up to {last} stand above the table and are not read"
+            "lines up to {last} are above the table and are not read"
         ));
     }
     if titles.line > 1 || titles.in_comment {
@@ -243,7 +243,7 @@ fn notes(layout: &Layout, rows: &[Row<'_>], said: &Mapping) -> Vec<String> {
         .filter(|row| titles.line > 0 && row.line > last_title && row.line < titles.first_sample);
     notes.extend(between.map(|row| {
         format!(
-            "line {} is not read: it stands between names and samples",
+            "line {} is not read: it is between names and samples",
             row.line
         )
     }));

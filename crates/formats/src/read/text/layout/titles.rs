@@ -6,7 +6,7 @@ use crate::read::header::{column_name, name_and_unit};
 use crate::read::text::cells::{Kind, Separator, cells};
 use recording::is_unit;
 
-/// What stands above the samples.
+/// Lines above the samples.
 #[derive(Clone, Debug, Default)]
 pub(in crate::read::text) struct Titles {
     /// Line of the names, counted from 1; 0 where there are none.
