@@ -28,6 +28,7 @@ function step(title, k) {
 
 const steps = TITLES.map(step);
 const share = make("progress", { max: 1, value: 0, id: "first-share", "aria-label": "Progress", hidden: true });
+const stop = make("button", { type: "button", id: "first-stop", hidden: true }, "Stop");
 const what = make("p", { class: "what", role: "status", "aria-live": "polite" });
 const shownAnswer = make("div", { id: "first-answer", class: "answer" });
 
@@ -189,8 +190,10 @@ function renderHealthy(next) {
 function renderJob({ job }) {
   const mine = job.kind === "check";
   show(share, mine && job.running);
+  show(stop, mine && job.running);
+  stop.disabled = job.stopping;
   share.value = job.share;
-  say(what, mine && job.running ? `${job.what} …` : "");
+  say(what, mine && job.running ? (job.stopping ? "stopping after this step …" : `${job.what} …`) : "");
   shownAnswer.classList.toggle("waiting", mine && job.running);
 }
 
@@ -260,7 +263,8 @@ export function start(holder, workbench) {
   openWorkbench = workbench;
   const lead = make("p", { class: "lead" }, "Is this motor in good order? Its plate and ten seconds of a recording are enough for a first answer.");
   holder.replaceChildren(make("div", { class: "desk path" }, lead, ...steps.map(({ element }) => element)));
-  steps[3].body.replaceChildren(share, what, shownAnswer);
+  steps[3].body.replaceChildren(share, stop, what, shownAnswer);
+  stop.addEventListener("click", () => server.stop().then(renderJob).catch((error) => complain(2, wordsOf(error))));
   server.form().then((questions) => {
     plate = new PlateForm(questions, async (work) => {
       editing = false;

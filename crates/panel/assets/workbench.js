@@ -23,6 +23,7 @@ const parts = {
   compare: make("button", { type: "button", class: "main", id: "ask-compare" }, "Compare"),
   explain: make("button", { type: "button", class: "main", id: "ask-explain" }, "Explain"),
   progress: make("progress", { max: 1, value: 0, id: "job-share", "aria-label": "Progress" }),
+  stop: make("button", { type: "button", id: "job-stop", hidden: true }, "Stop"),
   what: make("p", { class: "what", role: "status", "aria-live": "polite" }),
   problem: make("p", { class: "problem", role: "alert", id: "workbench-problem", hidden: true }),
   tabs: make("div", { class: "answers", role: "group", "aria-label": "Answers", hidden: true }),
@@ -103,8 +104,10 @@ function progress({ recordings: loaded, motor: chosen, job }) {
   const can = !job.running && chosen !== null && loaded.some((recording) => recording?.summary);
   for (const button of [parts.compare, parts.explain]) button.disabled = !can;
   show(parts.progress, job.running);
+  show(parts.stop, job.running);
+  parts.stop.disabled = job.stopping;
   parts.progress.value = job.share;
-  if (job.running) say(parts.what, `${job.what} …`);
+  if (job.running) say(parts.what, job.stopping ? "stopping after this step …" : `${job.what} …`);
   parts.answer.classList.toggle("waiting", job.running);
 }
 
@@ -153,9 +156,9 @@ async function untilAnswered() {
     const next = await server.state();
     if (!next.job.running) {
       take(next);
-      say(parts.what, "");
+      say(parts.what, next.job.stopping ? "Stopped; nothing has changed." : "");
       complain(next.job.problem ?? "");
-      if (next.job.problem === null && KINDS.some(([kind]) => kind === next.job.kind) && next.job.kind && next.job.id !== shownId) {
+      if (next.job.problem === null && !next.job.stopping && KINDS.some(([kind]) => kind === next.job.kind) && next.job.kind && next.job.id !== shownId) {
         shownId = next.job.id;
         await open(next.job.kind);
         document.getElementById("answer-title")?.focus({ preventScroll: true });
@@ -187,10 +190,11 @@ export function refresh() {
  * @param {HTMLElement} holder
  */
 export function start(holder) {
-  const steps = make("section", { class: "card ask", "aria-labelledby": "ask-title" }, make("h3", { id: "ask-title" }, "Questions"), make("p", { class: "subtle" }, "Compare: where does the model of the motor file fail, nothing refitted? Explain: which physical effect is missing, proven on data that was not fitted?"), make("p", { class: "actions" }, parts.compare, " ", parts.explain), parts.progress, parts.what, parts.problem);
+  const steps = make("section", { class: "card ask", "aria-labelledby": "ask-title" }, make("h3", { id: "ask-title" }, "Questions"), make("p", { class: "subtle" }, "Compare: where does the model of the motor file fail, nothing refitted? Explain: which physical effect is missing, proven on data that was not fitted?"), make("p", { class: "actions" }, parts.compare, " ", parts.explain, " ", parts.stop), parts.progress, parts.what, parts.problem);
   holder.replaceChildren(make("div", { class: "desk" }, parts.recordings, make("div", { class: "places" }, parts.motor, steps)), parts.tabs, parts.answer);
   parts.compare.addEventListener("click", () => ask("compare"));
   parts.explain.addEventListener("click", () => ask("explain"));
+  parts.stop.addEventListener("click", () => server.stop().then(progress).catch((error) => complain(wordsOf(error))));
   server.state().then(async (first) => {
     take(first);
     if (first.job.running) await follow();

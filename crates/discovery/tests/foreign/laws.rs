@@ -118,7 +118,7 @@ impl Law {
             // Above a fifth of the speed there is nothing else.
             Law::Stribeck => &["coulomb-friction"],
             Law::Bars => &["deep-bar"],
-            Law::Ripple | Law::Jaws => &["load-pulsation"],
+            Law::Ripple | Law::Jaws | Law::Piston => &["load-pulsation"],
             Law::Disc => &["speed-ripple"],
             _ => &[],
         }

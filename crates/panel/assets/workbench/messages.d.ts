@@ -36,7 +36,7 @@ export interface RecordingView {
 
 export interface MotorView { name: string; file: string; effects: string[]; adopted: string[]; frequency_hz: number }
 
-export interface Job { id: number; kind: Kind | null; running: boolean; what: string; share: number; problem: string | null }
+export interface Job { id: number; kind: Kind | null; running: boolean; what: string; share: number; stopping: boolean; problem: string | null }
 
 /** The motor of the first check. */
 export interface CheckView { name: string; by_plate: boolean; calibrated: boolean; contradictions: string[]; typed: Record<string, string> }

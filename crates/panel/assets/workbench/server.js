@@ -59,6 +59,9 @@ export const send = (path, body = {}) => ask(path, { method: "POST", headers: { 
  */
 export const upload = (path, file) => ask(path, { method: "POST", headers: { "content-type": "application/octet-stream" }, body: file });
 
+/** Stops the question that is being worked on, as soon as its present step ends. */
+export const stop = () => send("/jobs/stop");
+
 /** @returns {Promise<import("./messages").Question[]>} */
 export const form = () => ask("/check/form");
 

@@ -49,6 +49,8 @@ pub(super) struct Job {
     pub what: String,
     /// How far it is, 0 to 1.
     pub share: f64,
+    /// Whether somebody asked to stop it; still set once it has stopped.
+    pub stopping: bool,
     /// Why there is no answer.
     pub problem: Option<String>,
 }
@@ -131,7 +133,7 @@ impl Bench {
             false => Ok(desk),
             true => Err(Refusal {
                 status: 409,
-                ..Refusal::of("a question is being worked on: wait for its answer")
+                ..Refusal::of("a question is being worked on: wait for its answer, or stop it")
             }),
         }
     }

@@ -1,6 +1,6 @@
 //! Questions: one at a time, on a thread of its own, so that lamps and pages go on.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Weak};
 
 use axum::Json;
@@ -71,6 +71,10 @@ enum Change {
 
 type Outcome = Result<Done, String>;
 
+/// What ends a question that somebody stopped. It unwinds from the report of progress: no step in between has to hand
+/// a request on, and no panic is reported.
+struct Stopped;
+
 /// Begins to work on a question.
 pub(super) async fn begin(
     State(bench): State<Arc<Bench>>,
@@ -121,15 +125,36 @@ fn start(bench: &Arc<Bench>, question: Question) -> Result<(), Refusal> {
     })
 }
 
+/// Stops the question that is being worked on, at its next report of progress.
+pub(super) async fn stop(State(bench): State<Arc<Bench>>) -> Response {
+    let stopped = {
+        let mut desk = bench.desk();
+        desk.job.stopping = desk.job.running;
+        desk.job.running.then_some(())
+    };
+    let nothing = || Refusal {
+        status: 409,
+        ..Refusal::of("no question is being worked on")
+    };
+    answer(&bench, stopped.ok_or_else(nothing))
+}
+
 /// Works and puts the answer on the desk; a panel that has ended meanwhile needs none.
 fn run(bench: &Weak<Bench>, work: Work) {
     let kind = work.question.kind;
     let believed = work.motor.clone();
     let outcome = catch_unwind(AssertUnwindSafe(|| work.outcome(bench)));
-    let outcome =
-        outcome.unwrap_or_else(|_| Err("the question broke off; please report it".into()));
-    if let Some(bench) = bench.upgrade() {
-        bench.desk().finish(kind, believed, outcome);
+    let Some(bench) = bench.upgrade() else {
+        return;
+    };
+    let mut desk = bench.desk();
+    match outcome {
+        Ok(outcome) => desk.finish(kind, believed, outcome),
+        Err(payload) if payload.is::<Stopped>() => desk.job.running = false,
+        Err(_) => {
+            let words = "the question broke off; please report it".to_owned();
+            desk.finish(kind, believed, Err(words));
+        }
     }
 }
 
@@ -184,10 +209,15 @@ impl Desk {
 impl Work {
     fn outcome(&self, bench: &Weak<Bench>) -> Outcome {
         let mut progress = |what: &str, share: f64| {
-            if let Some(bench) = bench.upgrade() {
+            // A panel that has ended needs no answer either.
+            let stopped = bench.upgrade().is_none_or(|bench| {
                 let mut desk = bench.desk();
                 what.clone_into(&mut desk.job.what);
                 desk.job.share = share;
+                desk.job.stopping
+            });
+            if stopped {
+                resume_unwind(Box::new(Stopped));
             }
         };
         let inputs = Inputs {

@@ -72,6 +72,7 @@ pub fn router(bench: Arc<Bench>) -> Router {
         .route("/api/workbench/check/next", post(check::next))
         .route("/api/workbench/check/report.html", get(check::report))
         .route("/api/workbench/jobs", post(jobs::begin))
+        .route("/api/workbench/jobs/stop", post(jobs::stop))
         .route("/api/workbench/results/{kind}", get(result))
         .route("/api/workbench/region", get(regions::region))
         .layer(DefaultBodyLimit::max(MOST_REQUEST_BYTES))

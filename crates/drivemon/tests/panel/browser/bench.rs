@@ -78,6 +78,14 @@ pub async fn a_hidden_effect_is_found_and_adopted(page: &Page, pictures: bool) {
     if pictures {
         shots::answer(page, "panel-workbench-compare").await;
     }
+    page.click("#ask-explain").await;
+    page.click("#job-stop").await;
+    page.until(
+        "the stopped question",
+        "document.querySelector('.ask .what').textContent.startsWith('Stopped')",
+    )
+    .await;
+    answered(page, "compare").await;
     page.click("#answer [data-ask=explain]").await;
     answered(page, "explain").await;
     assert!(

@@ -46,6 +46,7 @@ fn a_hidden_effect_is_found_adopted_saved_and_undone() {
                 .all(|t| (from - 0.001..=to + 0.001).contains(t))
     );
 
+    a_stopped_question_changes_nothing(address);
     let explained = asked(address, "explain", "");
     assert_eq!(
         explained["result"]["next"]["adopt"],
@@ -62,6 +63,20 @@ fn a_hidden_effect_is_found_adopted_saved_and_undone() {
     // 2.1 times the noise before, the noise itself after.
     assert!(held_out("before") > 1.8 && held_out("after") < 1.1);
     saved_and_undone(address, &motor);
+}
+
+fn a_stopped_question_changes_nothing(address: &str) {
+    let stop = || post(address, "/api/workbench/jobs/stop", "{}");
+    assert_eq!(stop().status, 409, "no question is being worked on");
+    let question = json!({"kind": "explain"}).to_string();
+    assert_eq!(post(address, "/api/workbench/jobs", &question).status, 200);
+    let stopping = stop();
+    assert_eq!(stopping.status, 200, "{}", stopping.text());
+    assert_eq!(stopping.json()["job"]["stopping"], true);
+    until("stopped", || state(address)["job"]["running"] == false);
+    let state = state(address);
+    assert_eq!(state["job"]["problem"], json!(null));
+    assert_eq!(state["results"], json!(["compare"]));
 }
 
 fn saved_and_undone(address: &str, before: &[u8]) {
