@@ -41,7 +41,7 @@ struct Question {
 enum Outcome {
     /// Place and coordinate are named, alone or in a declared tie.
     Right,
-    /// The library's effect of the same physics is named.
+    /// The library's effect at the same place over the same coordinate is named, and does as well as the law.
     Library,
     /// Nothing is named, and there is nothing to be seen.
     Invisible,
@@ -94,10 +94,11 @@ fn outcome(question: Question, report: &ExplainReport, nothing_hidden: f64) -> O
     let in_library = |name: &str| law.library_names().contains(&name);
     let steps = &report.steps;
     let visible = baseline(report) > VISIBLE * nothing_hidden;
+    let as_good = last(report) < AS_GOOD * nothing_hidden;
     let proven = report.laws.iter().any(|l| l.proven);
     match report.verdict {
         _ if named(true) => Outcome::Right,
-        _ if steps.iter().any(|s| in_library(&s.effect)) => Outcome::Library,
+        _ if steps.iter().any(|s| in_library(&s.effect)) && as_good => Outcome::Library,
         _ if proven || !steps.is_empty() => Outcome::Wrong,
         _ if named(false) => Outcome::Lead,
         discovery::Verdict::Adequate if visible => Outcome::Missed,
@@ -151,8 +152,8 @@ struct Answer {
     law: Option<Law>,
     outcome: Outcome,
     as_good: bool,
-    /// Whether the first formula has the law's own shape; `None` where no formula is to be judged.
-    formula: Option<bool>,
+    /// Rank of the first formula with the law's own shape; `None` where no formula is to be judged.
+    formula: Option<Option<usize>>,
 }
 
 fn answered(question: Question, nothing_hidden: Option<f64>) -> (Answer, f64) {
@@ -176,8 +177,8 @@ fn answered(question: Question, nothing_hidden: Option<f64>) -> (Answer, f64) {
     let formula = question.law.and_then(|law| {
         let judged = outcome == Outcome::Right && !law.shapes().is_empty();
         let found = report.laws.iter().find(|l| l.proven && law.is_named(l));
-        let first = found.and_then(|l| l.formulas.first());
-        judged.then(|| first.is_some_and(|f| law.shapes().contains(&f.shape.as_str())))
+        let mut formulas = found.map_or(&[][..], |l| &l.formulas).iter();
+        judged.then(|| formulas.position(|f| law.shapes().contains(&f.shape.as_str())))
     });
     let answer = Answer {
         law: question.law,
@@ -196,12 +197,12 @@ fn print_shares(answers: &[Answer]) {
     let good = laws
         .iter()
         .filter(|a| a.outcome != Outcome::Invisible && a.as_good);
-    let shaped: Vec<bool> = laws.iter().filter_map(|a| a.formula).collect();
+    let shaped: Vec<Option<usize>> = laws.iter().filter_map(|a| a.formula).collect();
     let without = answers.iter().filter(|a| a.law.is_none());
     let invented = without.clone().filter(|a| a.outcome == Outcome::Wrong);
     println!(
         "{} laws, {visible} visible: {named} named ({} as the library's effect), {} as a lead, {} open, {} missed, {} wrong; \
-         error within 5 % in {}; formula right in {} of {}; nothing hidden: invented in {} of {}",
+         error within 5 % in {}; of {} laws with a shape in the dictionary the first formula has it in {}, one of the list in {}; nothing hidden: invented in {} of {}",
         laws.len(),
         count(Outcome::Library),
         count(Outcome::Lead),
@@ -209,8 +210,9 @@ fn print_shares(answers: &[Answer]) {
         count(Outcome::Missed),
         count(Outcome::Wrong),
         good.count(),
-        shaped.iter().filter(|right| **right).count(),
         shaped.len(),
+        shaped.iter().filter(|rank| **rank == Some(0)).count(),
+        shaped.iter().flatten().count(),
         invented.count(),
         without.count(),
     );

@@ -111,15 +111,16 @@ impl Law {
         is(&law.place, &law.coordinate) || tied.into_iter().any(|t| is(&t.place, &t.coordinate))
     }
 
-    /// Effects of the library that are the same physics.
+    /// Effects of the library at the same place over the same coordinate.
     pub fn library_names(self) -> &'static [&'static str] {
         match self {
-            Law::Leakage => &["leakage-saturation"],
-            // Above a fifth of the speed there is nothing else.
-            Law::Stribeck => &["coulomb-friction"],
-            Law::Bars => &["deep-bar"],
+            Law::Stribeck | Law::Pump => &["coulomb-friction", "windage"],
             Law::Ripple | Law::Jaws | Law::Piston => &["load-pulsation"],
+            Law::Magnetizing => &["magnetizing-saturation"],
+            Law::Leakage => &["leakage-saturation"],
+            Law::Bars => &["deep-bar"],
             Law::Disc => &["speed-ripple"],
+            Law::Gear => &["load-gain"],
             _ => &[],
         }
     }

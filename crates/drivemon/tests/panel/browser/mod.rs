@@ -5,6 +5,7 @@
 mod bench;
 mod driver;
 mod first;
+mod law;
 mod measure;
 mod page;
 mod shots;
@@ -62,6 +63,14 @@ fn a_drive_engineer_uses_the_workbench() {
     visit(|page| async move {
         let pictures = std::env::var_os("UPDATE_SCREENSHOTS").is_some();
         bench::a_hidden_effect_is_found_and_adopted(&page, pictures).await;
+        page.assert_silent().await;
+    });
+}
+
+#[test]
+fn a_drive_engineer_finds_a_law_that_no_library_holds() {
+    visit(|page| async move {
+        law::a_pumps_threshold_is_found_and_adopted(&page).await;
         page.assert_silent().await;
     });
 }

@@ -5,6 +5,7 @@ use serde_json::json;
 
 use super::{PEER, asked, load, number, project, state, upload};
 use crate::http::{get, post};
+use crate::life::until;
 use crate::server::Server;
 
 #[test]
