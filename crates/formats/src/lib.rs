@@ -19,8 +19,8 @@ mod seal;
 mod write;
 
 pub use read::{
-    Preview, Progress, preview, read_any, read_load_table, read_recording, read_stream,
-    with_most_numbers, workbook_text,
+    MemoryTable, Preview, Progress, preview, read_any, read_load_table, read_recording,
+    read_stream, read_table, with_most_numbers, workbook_text,
 };
 pub use write::{
     reading_text, sidecar_text, write_csv, write_parquet, write_recording, write_whole,

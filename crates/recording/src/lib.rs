@@ -23,6 +23,7 @@ pub mod names;
 mod suggest;
 
 pub use data::channel::{Channel, Quantity, Signal};
+pub use data::column::{Column, Lent};
 pub use data::load_table::{LoadPoint, LoadTable, TableColumn};
 pub use data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use data::recording::{Bridged, Recording, UnknownScale};
@@ -30,6 +31,8 @@ pub use data::source::Source;
 pub use data::units::{Period, UNITS, Unit, is_unit};
 pub use error::{Class, Error, Problem};
 pub use mapping::sidecar::Sidecar;
-pub use mapping::{ColumnMap, DateOrder, Factor, Mapping, Origin, Said, Sensor, Slot, Target};
+pub use mapping::{
+    ColumnMap, DateOrder, Factor, Flags, Mapping, Origin, Said, Sensor, Slot, Target, quoted,
+};
 pub use names::{companions, sidecar_path};
 pub use suggest::closest;

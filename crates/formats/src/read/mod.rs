@@ -8,9 +8,11 @@ mod convert;
 mod format;
 mod header;
 mod mat;
+mod memory;
 mod parquet;
 mod plan;
 mod preview;
+mod raw;
 mod table;
 mod table_file;
 mod text;
@@ -20,10 +22,13 @@ mod xlsx;
 pub use budget::with_most_numbers;
 use convert::finish;
 use header::Header;
+pub use memory::{MemoryTable, read_table};
 use plan::Plan;
 pub use preview::{Preview, preview};
-use recording::{Error, LoadTable, Mapping, Metadata, Recording, Sidecar, Source, Target, names};
-use std::collections::BTreeMap;
+use raw::{Raw, Rows};
+use recording::{
+    Column, Error, LoadTable, Mapping, Metadata, Recording, Sidecar, Source, Target, names,
+};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -107,13 +112,17 @@ pub fn read_stream(
     flags: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Source, Error> {
-    let sidecar = match &flags.sidecar {
-        Some(path) => Sidecar::read(path)?,
-        None => Sidecar::default(),
-    };
-    read_as(sidecar, flags, progress, |mapping| {
+    read_as(sidecar_named(flags)?, flags, progress, |mapping| {
         format::open_stream(name, stream, mapping)
     })
+}
+
+/// The sidecar that is named for what lies beside nothing.
+fn sidecar_named(flags: &Mapping) -> Result<Sidecar, Error> {
+    match &flags.sidecar {
+        Some(path) => Sidecar::read(path),
+        None => Ok(Sidecar::default()),
+    }
 }
 
 /// What is no recording by its place or name, said before a sidecar is looked for beside it.
@@ -185,16 +194,6 @@ fn plan_is_sufficient(header: &Header, plan: &Plan) -> Result<(), Error> {
     Ok(())
 }
 
-/// The samples of a file as they stand there, with their lines.
-#[derive(Default)]
-pub(crate) struct Raw {
-    pub columns: BTreeMap<Target, Vec<f64>>,
-    pub lines: Vec<u64>,
-    /// Running number of each kept row; skips where rows were dropped.
-    pub numbers: Vec<u64>,
-    pub skipped: u64,
-}
-
 fn read_columns(
     file: &mut dyn TableFile,
     plan: &Plan,
@@ -203,12 +202,18 @@ fn read_columns(
     let mut collector = Collector::new(file.header(), plan);
     file.for_each_row(progress, &mut |row| collector.take(row))?;
     let Collector {
-        used, values, raw, ..
+        used,
+        values,
+        lines,
+        numbers,
+        skipped,
+        ..
     } = collector;
     let targets = used.into_iter().map(|column| column.target);
     Ok(Raw {
-        columns: targets.zip(values).collect(),
-        ..raw
+        columns: targets.zip(values.into_iter().map(Column::from)).collect(),
+        rows: Rows::Kept { lines, numbers },
+        skipped,
     })
 }
 
@@ -223,7 +228,9 @@ struct Collector {
     used: Vec<UsedColumn>,
     values: Vec<Vec<f64>>,
     row: Vec<f64>,
-    raw: Raw,
+    lines: Vec<u64>,
+    numbers: Vec<u64>,
+    skipped: u64,
     skip_missing: bool,
 }
 
@@ -239,7 +246,9 @@ impl Collector {
             values: vec![Vec::new(); used.len()],
             row: vec![0.0; used.len()],
             used,
-            raw: Raw::default(),
+            lines: Vec::new(),
+            numbers: Vec::new(),
+            skipped: 0,
             skip_missing: plan.mapping.skip_missing.unwrap_or(false),
         }
     }
@@ -249,7 +258,7 @@ impl Collector {
             match cells.number(column.index, &column.name)? {
                 Some(x) if x.is_finite() => *slot = x,
                 _ if self.skip_missing => {
-                    self.raw.skipped += 1;
+                    self.skipped += 1;
                     return Ok(());
                 }
                 Some(x) => return Err(cells.not_finite(column.index, &column.name, x)),
@@ -259,9 +268,8 @@ impl Collector {
         for (column, x) in self.values.iter_mut().zip(&self.row) {
             column.push(*x);
         }
-        let number = self.raw.skipped + self.raw.lines.len() as u64;
-        self.raw.numbers.push(number);
-        self.raw.lines.push(cells.line());
+        self.numbers.push(self.skipped + self.lines.len() as u64);
+        self.lines.push(cells.line());
         Ok(())
     }
 }

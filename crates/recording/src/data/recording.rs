@@ -1,6 +1,7 @@
 //! A recording in SI units.
 
 use crate::data::channel::Channel;
+use crate::data::column::Column;
 use crate::data::metadata::Metadata;
 use crate::data::units::Unit;
 use crate::error::Error;
@@ -34,9 +35,9 @@ pub struct Bridged {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     name: String,
-    t: Vec<f64>,
+    t: Column,
     t_sample: f64,
-    channels: BTreeMap<Channel, Vec<f64>>,
+    channels: BTreeMap<Channel, Column>,
     made: Box<Made>,
     /// What is known beside the samples.
     pub metadata: Metadata,
@@ -62,6 +63,14 @@ impl Recording {
     /// # Errors
     /// Fewer than two samples, or a clock that is not finite and strictly rising.
     pub fn new(name: &str, t: Vec<f64>, metadata: Metadata) -> Result<Recording, Error> {
+        Recording::over(name, t.into(), metadata)
+    }
+
+    /// The same over a clock that may be lent.
+    ///
+    /// # Errors
+    /// As [`Recording::new`].
+    pub fn over(name: &str, t: Column, metadata: Metadata) -> Result<Recording, Error> {
         check_clock(name, &t)?;
         Ok(Recording {
             name: name.to_owned(),
@@ -90,6 +99,14 @@ impl Recording {
     /// # Errors
     /// A length other than the clock's, or a number that is not finite.
     pub fn set(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), Error> {
+        self.set_column(channel, values.into())
+    }
+
+    /// The same with a column that may be lent.
+    ///
+    /// # Errors
+    /// As [`Recording::set`].
+    pub fn set_column(&mut self, channel: Channel, values: Column) -> Result<(), Error> {
         let field = channel.to_string();
         if values.len() != self.t.len() {
             let message = format!("{} values for {} samples", values.len(), self.t.len());
@@ -128,6 +145,16 @@ impl Recording {
             .map(|(channel, bridged)| (*channel, *bridged))
     }
 
+    /// The same with every column lent to itself: clones then share their numbers.
+    pub fn lent(mut self) -> Recording {
+        self.t = self.t.lent();
+        let channels = self.channels.into_iter();
+        self.channels = channels
+            .map(|(channel, values)| (channel, values.lent()))
+            .collect();
+        self
+    }
+
     /// The file, as the user named it.
     pub fn name(&self) -> &str {
         &self.name
@@ -156,14 +183,24 @@ impl Recording {
 
     /// A channel in its SI unit, if it was recorded.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
-        self.channels.get(&channel).map(Vec::as_slice)
+        self.channels.get(&channel).map(|values| &**values)
+    }
+
+    /// The clock as a column: cheap to clone where it is lent.
+    pub fn t_column(&self) -> &Column {
+        &self.t
+    }
+
+    /// A channel as a column, if it was recorded.
+    pub fn column(&self, channel: Channel) -> Option<&Column> {
+        self.channels.get(&channel)
     }
 
     /// The channels that exist, in the order of [`Channel::all`] with second probes beside the first.
     pub fn channels(&self) -> impl Iterator<Item = (Channel, &[f64])> {
         self.channels
             .iter()
-            .map(|(channel, values)| (*channel, values.as_slice()))
+            .map(|(channel, values)| (*channel, &**values))
     }
 
     /// Whether a channel was computed from others instead of measured.
@@ -193,9 +230,8 @@ impl Recording {
     /// The same with the speed `factor (speed - at_rest)`, its scale now known.
     pub fn with_speed_scale(mut self, factor: f64, at_rest_rad_s: f64) -> Recording {
         if let Some(speed) = self.channels.get_mut(&Channel::SPEED) {
-            speed
-                .iter_mut()
-                .for_each(|x| *x = factor * (*x - at_rest_rad_s));
+            let speed = speed.to_mut().iter_mut();
+            speed.for_each(|x| *x = factor * (*x - at_rest_rad_s));
         }
         self.unknown_speed_scale = None;
         self

@@ -3,6 +3,7 @@
 mod flags;
 mod sensor;
 pub(crate) mod sidecar;
+mod typed;
 
 use crate::data::channel::{Channel, Quantity, Signal};
 use crate::data::units::Unit;
@@ -11,6 +12,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 pub use sensor::Sensor;
+pub use typed::{Flags, quoted};
 
 /// What a column may become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -174,6 +176,13 @@ impl ColumnMap {
     /// What the column holds: the quantity, or what its sensor gives out.
     pub fn raw(&self, quantity: Quantity) -> Quantity {
         self.sensor.as_ref().map_or(quantity, Sensor::raw)
+    }
+
+    /// Whether a reading is its own SI value: nothing is to be computed.
+    pub fn is_plain(&self, quantity: Quantity) -> bool {
+        let unit = self.unit.is_none_or(|unit| unit == Unit::si(quantity));
+        let scale = !matches!(self.scale, Some(Factor::Known(factor)) if factor != 1.0);
+        unit && scale && self.offset.unwrap_or(0.0) == 0.0 && self.sensor.is_none()
     }
 
     /// The conversion in words: `speed = 1.0144 x (speed_raw + 2.11) rad/s`.

@@ -1,18 +1,27 @@
-//! Check, compare, explain and adopt with everything that is shown of them: terminal, reports and panel hold the same.
+//! Monitor, check, calibrate, compare, explain and adopt with everything that is shown of them: terminal, reports, panel and Python hold the same.
 
 mod adopt;
+mod calibration;
 mod check;
 mod compare;
 mod explain;
 mod known;
+mod monitored;
 mod places;
+mod typed;
 
 pub use adopt::Adopted;
+pub use calibration::{
+    CalibratedParameter, Calibration, ChannelGains, FALSE_ALARM_RATES, HealthyCage,
+    HealthyStatistics, MisfitPercent, WINDING_KELVINS,
+};
 pub use check::{CheckedRecording, Checkup};
 pub use compare::Compared;
 pub use explain::{Explained, Next, anything_off};
 pub use known::{Known, ParameterRow, PlateRow};
+pub use monitored::{MonitorError, Monitored};
 pub use places::{Place, worst};
+pub use typed::Typed;
 
 use std::borrow::Cow;
 

@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use motor::MotorFile;
-use recording::{Mapping, Source};
+use recording::{Flags, Mapping, Source};
 
 use crate::cli::printing::failure::Failure;
 use crate::cli::printing::output::DASH;
 use crate::cli::printing::progress;
-use crate::cli::printing::shell::quoted;
 use crate::cli::printing::terminal::complain;
 use report::study::effects_fit;
 
@@ -82,97 +81,32 @@ const STDIN: &str = "standard input";
 impl InputArgs {
     /// The flags as they were typed, each with a blank before it: a command that reads the same file needs them too.
     pub fn typed(&self) -> String {
-        let mut typed = String::new();
-        let mut add = |flag: &str, value: &str| {
-            typed += &format!(" {flag}");
-            if !value.is_empty() {
-                typed += &format!(" {}", quoted(value));
-            }
-        };
-        let lists = [
-            ("--column", &self.column),
-            ("--sensor", &self.sensor),
-            ("--unit", &self.unit),
-            ("--scale", &self.scale),
-            ("--offset", &self.offset),
-            ("--delay", &self.delay),
-        ];
-        for (flag, values) in lists {
-            values.iter().for_each(|value| add(flag, value));
-        }
-        let text = |x: &PathBuf| x.display().to_string();
-        let values = [
-            ("--sample-rate", self.sample_rate.map(|x| x.to_string())),
-            ("--columns", self.columns.clone()),
-            ("--delimiter", self.delimiter.clone()),
-            ("--thousands", self.thousands.clone()),
-            ("--date-order", self.date_order.clone()),
-            (
-                "--pulses-per-revolution",
-                self.pulses_per_revolution.map(|x| x.to_string()),
-            ),
-            ("--sidecar", self.sidecar.as_ref().map(text)),
-        ];
-        for (flag, value) in values {
-            value.iter().for_each(|value| add(flag, value));
-        }
-        let switches = [
-            ("--line-voltages", self.line_voltages),
-            ("--skip-missing", self.skip_missing),
-            ("--decimal-comma", self.decimal_comma),
-        ];
-        for (flag, _) in switches.into_iter().filter(|(_, on)| *on) {
-            add(flag, "");
-        }
-        typed
+        self.flags().typed()
     }
 
     fn mapping(&self) -> Result<Mapping, Failure> {
-        let mut mapping = Mapping {
-            line_voltages: self.line_voltages.then_some(true),
-            skip_missing: self.skip_missing.then_some(true),
-            decimal_comma: self.decimal_comma.then_some(true),
+        Ok(self.flags().mapping()?)
+    }
+
+    fn flags(&self) -> Flags {
+        Flags {
+            column: self.column.clone(),
+            columns: self.columns.clone(),
+            sensor: self.sensor.clone(),
+            unit: self.unit.clone(),
+            scale: self.scale.clone(),
+            offset: self.offset.clone(),
+            delay: self.delay.clone(),
+            sample_rate: self.sample_rate,
+            line_voltages: self.line_voltages,
+            skip_missing: self.skip_missing,
+            delimiter: self.delimiter.clone(),
+            decimal_comma: self.decimal_comma,
+            thousands: self.thousands.clone(),
+            date_order: self.date_order.clone(),
+            pulses_per_revolution: self.pulses_per_revolution,
             sidecar: self.sidecar.clone(),
-            ..Mapping::default()
-        };
-        self.column
-            .iter()
-            .try_for_each(|flag| mapping.set_column(flag))?;
-        // A unit is one of what the sensor gives out.
-        self.sensor
-            .iter()
-            .try_for_each(|flag| mapping.set_sensor(flag))?;
-        self.unit
-            .iter()
-            .try_for_each(|flag| mapping.set_unit(flag))?;
-        self.scale
-            .iter()
-            .try_for_each(|flag| mapping.set_scale(flag))?;
-        self.offset
-            .iter()
-            .try_for_each(|flag| mapping.set_offset(flag))?;
-        self.delay
-            .iter()
-            .try_for_each(|flag| mapping.set_delay(flag))?;
-        if let Some(rate) = self.sample_rate {
-            mapping.set_sample_rate(rate)?;
         }
-        if let Some(pulses) = self.pulses_per_revolution {
-            mapping.set_pulses(pulses)?;
-        }
-        if let Some(delimiter) = &self.delimiter {
-            mapping.set_delimiter(delimiter)?;
-        }
-        if let Some(columns) = &self.columns {
-            mapping.set_columns(columns)?;
-        }
-        if let Some(thousands) = &self.thousands {
-            mapping.set_thousands(thousands)?;
-        }
-        if let Some(order) = &self.date_order {
-            mapping.set_date_order(order)?;
-        }
-        Ok(mapping)
     }
 
     /// The sidecar that is named instead of the one beside the recording.

@@ -16,7 +16,7 @@ use crate::cli::printing::output::OutputArgs;
 use crate::cli::printing::shell::quoted;
 use crate::cli::printing::terminal::{complain, say};
 use crate::cli::printing::{paint, progress};
-use report::study::Inputs;
+use report::study::{Inputs, Typed};
 use report::{Style, decimals, significant};
 
 /// Recordings, the motor file, and where results go.
@@ -149,16 +149,22 @@ impl StudyArgs {
 
     /// The same with another motor file.
     pub fn typed_with(&self, motor: &Path) -> String {
-        let names: Vec<String> = self.names().iter().map(|name| quoted(name)).collect();
-        let motor = quoted(&motor.display().to_string());
-        format!("{} --motor {motor}{}", names.join(" "), self.input.typed())
+        self.as_typed(&self.names(), &self.input.typed())
+            .with(motor)
     }
 
-    /// A name for the motor file that holds `addition` too, beside the old one.
-    pub fn new_motor_file(&self, addition: &str) -> String {
-        let stem = self.motor.file_stem().unwrap_or_default();
-        let name = format!("{}-{addition}.toml", stem.to_string_lossy());
-        quoted(&self.motor.with_file_name(name).display().to_string())
+    /// What adds `addition` to the motor file; `more` are further flags.
+    pub fn adopt(&self, addition: &str, more: &str) -> String {
+        let (names, flags) = (self.names(), self.input.typed());
+        self.as_typed(&names, &flags).adopt(addition, more)
+    }
+
+    fn as_typed<'a>(&'a self, names: &'a [String], flags: &'a str) -> Typed<'a> {
+        Typed {
+            names,
+            motor: &self.motor,
+            flags,
+        }
     }
 }
 

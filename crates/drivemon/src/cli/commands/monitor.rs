@@ -2,12 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use audit::{Audit, Expectation, audit};
 use clap::Args;
-use monitor::{Monitor, MonitorConfig};
 use motor::MotorFile;
 use recording::{LoadTable, Recording, Source};
-use serde::Serialize;
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};
@@ -20,11 +17,9 @@ use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use replay::operating_points::OperatingPoints;
 use replay::words;
-use replay::{
-    self, Direction, LampState, NotJudgedShare, RotorSummary, Samples, SequenceSummary, Timeline,
-    Verdict, VerdictState, WindowOperation, WindowResiduals,
-};
+use replay::{SequenceSummary, Timeline, Verdict, VerdictState};
 use report::Subject;
+use report::study::{MonitorError, Monitored};
 
 /// Replay a recording through the very core that the board runs: lamps, verdict, probabilities.
 ///
@@ -55,35 +50,6 @@ Examples:
   drivemon monitor --serial /dev/ttyACM0                         the lamps of a running board, until Ctrl-C
   drivemon monitor --serial /dev/ttyACM0 --motor m.toml --capture alarm.csv     wait for an alarm and keep the samples around it
 Lamps:  ● on   ◐ blinking: waiting or not judged   ○ off";
-
-/// Everything that `drivemon monitor` says, as JSON.
-#[derive(Debug, Serialize)]
-struct MonitorJson<'a> {
-    recording: &'a str,
-    assumptions: &'a [String],
-    audit: &'a Audit,
-    windows: u64,
-    judged: u64,
-    not_judged: &'a [NotJudgedShare],
-    residual_percent: Option<ResidualPercent>,
-    lamps: &'a [LampState],
-    verdict: Verdict,
-    direction: Option<Direction>,
-    first_alarm_s: Option<f64>,
-    sequence: SequenceSummary,
-    rotor: RotorSummary,
-    threshold_percent: Option<[f64; 4]>,
-    smallest_visible_percent: Option<[f64; 4]>,
-    residuals: &'a [WindowResiduals],
-    operation: &'a [WindowOperation],
-}
-
-/// Residuals over the judged windows, percent of their scales.
-#[derive(Debug, Serialize)]
-struct ResidualPercent {
-    mean: [f64; 4],
-    standard_deviation: [f64; 4],
-}
 
 impl MonitorArgs {
     /// Runs the command.
@@ -130,83 +96,31 @@ impl MonitorArgs {
         motor: Option<&MotorFile>,
         answers: &mut Answers<'_>,
     ) -> Result<Finding, Failure> {
-        let expectation = motor.map_or_else(Expectation::default, Expectation::from);
-        let audit = audit(recording, &expectation);
-        let config = match motor {
-            Some(motor) => replay::config_for(motor, recording)?,
-            None => replay::stand_in_config(recording),
-        };
-        let timeline = if audit.supported {
-            self.replay(config, recording, &audit, motor.is_some())?
-        } else {
-            Timeline::default()
-        };
-        Self::tell(recording, motor, &audit, &timeline, answers)
-    }
-
-    fn replay(
-        &self,
-        config: MonitorConfig,
-        recording: &Recording,
-        audit: &Audit,
-        motor_known: bool,
-    ) -> Result<Timeline, Failure> {
-        let file = self.motor.as_deref().unwrap_or(Path::new("the recording"));
-        let monitor = Monitor::new(config).map_err(|error| Failure::Config {
-            file: file.display().to_string(),
-            error,
-        })?;
-        let mut samples = Samples::new(recording, audit);
-        if !motor_known {
-            samples.leave_out_speed();
-        }
-        let bar = progress::bar("monitoring", samples.len() as u64);
-        let mut timeline = replay::replay(&monitor, &samples, &mut |done| {
-            bar.set_position(done as u64)
+        let bar = progress::bar("monitoring", recording.len() as u64);
+        let monitored = Monitored::new(recording, motor, &mut |done| {
+            bar.set_position(done as u64);
         });
         bar.finish_and_clear();
-        if !motor_known {
-            timeline.blame_missing_motor_file();
-        }
-        Ok(timeline)
-    }
-
-    fn tell(
-        recording: &Recording,
-        motor: Option<&MotorFile>,
-        audit: &Audit,
-        timeline: &Timeline,
-        answers: &mut Answers<'_>,
-    ) -> Result<Finding, Failure> {
-        let verdict = timeline.verdict(&audit.findings);
-        let finding = match (audit.supported, verdict.state) {
+        let result = monitored.map_err(|error| self.failure(error))?;
+        let finding = match (result.audit.supported, result.verdict.state) {
             (false, _) => Finding::Unsupported,
             (true, VerdictState::Fault) => Finding::Something,
             (true, VerdictState::Healthy) => Finding::Nothing,
             (true, VerdictState::NotJudged) => Finding::Unsupported,
         };
-        let result = MonitorJson {
-            recording: recording.name(),
-            assumptions: &recording.assumptions,
-            audit,
-            windows: timeline.windows,
-            judged: timeline.judged,
-            not_judged: &timeline.not_judged,
-            residual_percent: residual_percent(timeline),
-            lamps: &timeline.lamps,
-            verdict,
-            direction: timeline.direction(),
-            first_alarm_s: timeline.first_alarm_s,
-            sequence: timeline.sequence(),
-            rotor: timeline.rotor(),
-            threshold_percent: motor.map(|motor| motor.monitor.threshold_percent),
-            smallest_visible_percent: timeline.visible_percent(),
-            residuals: &timeline.trace.residuals,
-            operation: &timeline.trace.operation,
-        };
-        let show = || print(recording, audit, timeline, &result.verdict);
-        answers.give(Subject::Monitor, &result, show)?;
+        answers.give(Subject::Monitor, &result, || print(recording, &result))?;
         Ok(finding)
+    }
+
+    fn failure(&self, error: MonitorError) -> Failure {
+        let file = self.motor.as_deref().unwrap_or(Path::new("the recording"));
+        match error {
+            MonitorError::File(error) => Failure::File(error),
+            MonitorError::Config(error) => Failure::Config {
+                file: file.display().to_string(),
+                error,
+            },
+        }
     }
 }
 
@@ -220,14 +134,6 @@ fn show_table(
     Ok(Finding::Nothing)
 }
 
-fn residual_percent(timeline: &Timeline) -> Option<ResidualPercent> {
-    let (mean, standard_deviation) = timeline.residual_percent()?;
-    Some(ResidualPercent {
-        mean,
-        standard_deviation,
-    })
-}
-
 /// Frames hold lamps and residuals, not the samples that a page draws.
 const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board sends none: fetch its samples with \
     --motor M --capture FILE.csv, then run drivemon monitor FILE.csv --motor M --report FILE.html";
@@ -235,7 +141,8 @@ const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board se
 /// More lamp changes than this are left to the JSON.
 const LONGEST_TIMELINE: usize = 40;
 
-fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Verdict) {
+fn print(recording: &Recording, result: &Monitored) {
+    let (audit, timeline) = (&result.audit, &result.timeline);
     say!(
         "{}  {:.3} s at {:.0} Hz",
         paint::strong(recording.name()),
@@ -249,7 +156,7 @@ fn print(recording: &Recording, audit: &Audit, timeline: &Timeline, verdict: &Ve
     print_windows(timeline);
     print_sequence(&timeline.sequence());
     say!("{}", words::rotor(&timeline.rotor()));
-    print_verdict(timeline, verdict);
+    print_verdict(timeline, &result.verdict);
 }
 
 pub(crate) fn print_lamps(timeline: &Timeline) {

@@ -1,16 +1,16 @@
 //! The clock of a recording: the `t` column, or a declared sampling rate.
 
-use crate::read::Raw;
-use recording::{Error, Mapping, Target};
+use crate::read::raw::{Raw, Rows};
+use recording::{Column, Error, Mapping, Target};
 
 /// Takes the clock out of the raw columns, in seconds, strictly rising.
 pub(in crate::read) fn clock(
     file: &str,
     raw: &mut Raw,
     mapping: &Mapping,
-) -> Result<Vec<f64>, Error> {
+) -> Result<Column, Error> {
     let column = raw.columns.remove(&Target::Time);
-    let rows = raw.lines.len();
+    let rows = raw.rows.len();
     if rows < 2 {
         let message = match rows {
             0 => "holds a header, but no samples".to_owned(),
@@ -20,8 +20,8 @@ pub(in crate::read) fn clock(
     }
     if let Some(rate_hz) = mapping.sample_rate_hz {
         #[allow(clippy::cast_precision_loss)]
-        let seconds = |number: &u64| *number as f64 / rate_hz;
-        return Ok(raw.numbers.iter().map(seconds).collect());
+        let seconds = |k: usize| raw.rows.number(k) as f64 / rate_hz;
+        return Ok((0..rows).map(seconds).collect::<Vec<f64>>().into());
     }
     let map = mapping
         .columns
@@ -29,16 +29,16 @@ pub(in crate::read) fn clock(
         .cloned()
         .unwrap_or_default();
     let quantity = Target::Time.quantity();
-    let t: Vec<f64> = column
-        .unwrap_or_default()
-        .into_iter()
-        .map(|x| map.to_si(quantity, x))
-        .collect();
-    rises(file, &t, &raw.lines)?;
+    let mut t = column.unwrap_or_else(|| Vec::new().into());
+    if !map.is_plain(quantity) {
+        let readings = t.to_mut().iter_mut();
+        readings.for_each(|x| *x = map.to_si(quantity, *x));
+    }
+    rises(file, &t, &raw.rows)?;
     Ok(t)
 }
 
-fn rises(file: &str, t: &[f64], lines: &[u64]) -> Result<(), Error> {
+fn rises(file: &str, t: &[f64], rows: &Rows) -> Result<(), Error> {
     let Some(k) = (1..t.len()).find(|&k| t[k] <= t[k - 1]) else {
         return Ok(());
     };
@@ -53,5 +53,5 @@ fn rises(file: &str, t: &[f64], lines: &[u64]) -> Result<(), Error> {
             "sort the samples by time, or cut the file where the clock restarts",
         )
     };
-    Err(Error::at(file, lines[k], "t", message, remedy))
+    Err(Error::at(file, rows.line(k), "t", message, remedy))
 }

@@ -1,10 +1,10 @@
 //! From raw columns to a recording in SI: units, line voltages, the third current, encoder counts.
 
 use super::{clock, encoder, spikes};
-use crate::read::Raw;
 use crate::read::plan::Plan;
+use crate::read::raw::Raw;
 use recording::{
-    Channel, Error, Factor, Mapping, Metadata, Recording, Target, Unit, UnknownScale, delay,
+    Channel, Column, Error, Factor, Mapping, Metadata, Recording, Target, Unit, UnknownScale, delay,
 };
 
 pub(in crate::read) fn recording(
@@ -15,7 +15,7 @@ pub(in crate::read) fn recording(
 ) -> Result<Recording, Error> {
     let mapping = &plan.mapping;
     let t = clock::clock(file, &mut raw, mapping)?;
-    let mut recording = Recording::new(file, t, metadata)?;
+    let mut recording = Recording::over(file, t, metadata)?;
     recording.assumptions = plan.notes;
     recording.reading = Box::new(plan.reading);
     recording.unknown_speed_scale = unknown_speed_scale(file, mapping)?;
@@ -24,7 +24,7 @@ pub(in crate::read) fn recording(
         if let Target::Channel(channel) = target {
             let values = converted(&recording, channel, values, mapping)?;
             let values = sound(&mut recording, channel, values, mapping);
-            recording.set(channel, values)?;
+            recording.set_column(channel, values)?;
         }
     }
     if plan.line_voltages {
@@ -74,40 +74,48 @@ fn note_clock(recording: &mut Recording, raw: &Raw, mapping: &Mapping, rate_is_d
 fn converted(
     recording: &Recording,
     channel: Channel,
-    values: Vec<f64>,
+    mut values: Column,
     mapping: &Mapping,
-) -> Result<Vec<f64>, Error> {
+) -> Result<Column, Error> {
     let Some(map) = mapping.columns.get(&Target::Channel(channel)) else {
         return Ok(values);
     };
     let quantity = channel.quantity();
     let period = map.unit.and_then(|unit| unit.period);
+    // Lent numbers stay where they are.
+    if map.is_plain(quantity) {
+        return Ok(values);
+    }
+    let readings = values.to_mut().iter_mut();
+    readings.for_each(|x| *x = map.to_si(quantity, *x));
     if period.is_none() && !map.unit.is_some_and(|unit| unit.counts) {
-        return Ok(values.into_iter().map(|x| map.to_si(quantity, x)).collect());
+        return Ok(values);
     }
     let mut sensors = recording.metadata.sensors.clone();
     let pulses = mapping.encoder_pulses_per_revolution;
     sensors.encoder_pulses_per_revolution = pulses.or(sensors.encoder_pulses_per_revolution);
-    let scaled: Vec<f64> = values.into_iter().map(|x| map.to_si(quantity, x)).collect();
-    match period {
-        Some(of) => encoder::speed_of_periods(recording.name(), &scaled, of, &sensors),
-        None => encoder::speed(recording.name(), recording.t(), &scaled, &sensors),
-    }
+    let speed = match period {
+        Some(of) => encoder::speed_of_periods(recording.name(), &values, of, &sensors),
+        None => encoder::speed(recording.name(), recording.t(), &values, &sensors),
+    };
+    speed.map(Column::from)
 }
 
 /// The values at the rows' times, free of spikes.
 fn sound(
     recording: &mut Recording,
     channel: Channel,
-    mut values: Vec<f64>,
+    mut values: Column,
     mapping: &Mapping,
-) -> Vec<f64> {
+) -> Column {
     if let Some(bridged) = spikes::bridge(recording.t(), &mut values, channel.quantity()) {
         recording.note_bridged(channel, bridged);
     }
     let map = mapping.columns.get(&Target::Channel(channel));
     match map.and_then(|map| map.delay) {
-        Some(delay) => delay::at_row_times(recording.t(), &values, delay, recording.t_sample()),
+        Some(delay) => {
+            delay::at_row_times(recording.t(), &values, delay, recording.t_sample()).into()
+        }
         None => values,
     }
 }

@@ -4,7 +4,7 @@
 //! current may jump, but one that for up to three samples reaches three times what its neighbours and the recording show was
 //! not the motor's either.
 
-use recording::{Bridged, Quantity};
+use recording::{Bridged, Column, Quantity};
 use std::ops::Range;
 
 /// Samples on either side that a speed is compared with: their median stands through half of them being wrong.
@@ -32,7 +32,7 @@ const MOST_ELECTRICAL: f64 = 0.01;
 const FEWEST: usize = 4 * AROUND;
 
 /// Replaces spikes by straight lines between their neighbours; says how many samples, where there were any.
-pub(in crate::read) fn bridge(t: &[f64], x: &mut [f64], quantity: Quantity) -> Option<Bridged> {
+pub(in crate::read) fn bridge(t: &[f64], x: &mut Column, quantity: Quantity) -> Option<Bridged> {
     if x.len() < FEWEST {
         return None;
     }
@@ -57,6 +57,7 @@ pub(in crate::read) fn bridge(t: &[f64], x: &mut [f64], quantity: Quantity) -> O
         if x[at].abs() > so_far.farthest.abs() {
             (so_far.farthest, so_far.at_s) = (x[at], t[at]);
         }
+        let x = x.to_mut();
         runs(&spikes).into_iter().for_each(|run| line(t, x, run));
     }
     bridged
@@ -170,9 +171,9 @@ mod tests {
             .iter()
             .map(|t| (200.0 * t).min(150.0) + 0.3 * uniform(&mut state))
             .collect();
-        let mut spoilt = truth.clone();
+        let mut spoilt = Column::from(truth.clone());
         let mut count = 0;
-        for x in &mut spoilt {
+        for x in spoilt.to_mut() {
             if uniform(&mut state) < 0.025 {
                 *x = 4e5 * (uniform(&mut state) - 0.5);
                 count += 1;
@@ -209,9 +210,9 @@ mod tests {
             .into_iter()
             .enumerate()
         {
-            let mut same = x.clone();
+            let mut same = Column::from(x.clone());
             assert!(bridge(&t, &mut same, Quantity::Speed).is_none(), "{k}");
-            assert_eq!(same, x);
+            assert_eq!(same[..], x);
         }
     }
 
@@ -220,11 +221,11 @@ mod tests {
         let t = clock(20_000);
         let wave = |t: f64| 5.0 * (1.0 + 12.0 * (-t / 0.05).exp()) * (TAU * 50.0 * t).sin();
         let truth: Vec<f64> = t.iter().map(|t| wave(*t)).collect();
-        let mut same = truth.clone();
+        let mut same = Column::from(truth.clone());
         assert!(bridge(&t, &mut same, Quantity::Current).is_none());
         for at in [0, 1, 9_000, 15_050, 19_999] {
-            let mut spoilt = truth.clone();
-            spoilt[at] = -3e5;
+            let mut spoilt = Column::from(truth.clone());
+            spoilt.to_mut()[at] = -3e5;
             let bridged = bridge(&t, &mut spoilt, Quantity::Current).expect("a spike");
             assert_eq!(
                 (bridged.samples, bridged.farthest, bridged.at_s),

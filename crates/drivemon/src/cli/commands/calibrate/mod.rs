@@ -4,13 +4,10 @@ mod channels;
 
 use std::path::{Path, PathBuf};
 
-use audit::Audit;
 use clap::Args;
-use monitor::{Cage, Cause};
+use monitor::Cage;
 use motor::MotorFile;
-use motor::motor_file::HealthySettings;
 use recording::{Recording, Source};
-use serde::Serialize;
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};
@@ -19,8 +16,9 @@ use crate::cli::printing::output::{JsonArgs, write_text};
 use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use channels::ChannelArgs;
-use replay::calibrate::{Calibrated, Kind, Refusal, Surroundings, calibrate};
+use replay::calibrate::{Refusal, Surroundings};
 use report::motor_text;
+use report::study::{Calibration, FALSE_ALARM_RATES, HealthyCage, WINDING_KELVINS};
 
 /// Learn a healthy motor: parameters, gains of the channels, statistics, thresholds.
 ///
@@ -63,67 +61,6 @@ Example:
   drivemon calibrate --channels bench-25hz.csv bench-60hz.csv --true-volt 230.4 --true-amp 7.02 --motor m.toml -o m-board17.toml
 Exit codes: 0 calibrated, 2 bad input, 3 refused: the reason names the recording and what to do.";
 
-/// Everything that `drivemon calibrate` says.
-#[derive(Debug, Serialize)]
-struct CalibrateJson {
-    recordings: Vec<String>,
-    motor: String,
-    audits: Vec<Audit>,
-    windows: usize,
-    parameters: Vec<ParameterJson>,
-    gains: Vec<GainJson>,
-    misfit_percent: MisfitJson,
-    threshold_percent: [f64; 4],
-    false_alarm_rate: f64,
-    healthy: HealthyJson,
-    motor_file: String,
-}
-
-/// One parameter before and after.
-#[derive(Debug, Serialize)]
-struct ParameterJson {
-    name: &'static str,
-    unit: &'static str,
-    believed: f64,
-    value: f64,
-    std_error: f64,
-    change_percent: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct GainJson {
-    effect: &'static str,
-    gain: [f64; 3],
-}
-
-/// What remains after the fit, percent of each scale.
-#[derive(Debug, Serialize)]
-struct MisfitJson {
-    torque: f64,
-    e_d: f64,
-    e_q: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct HealthyJson {
-    significance: f64,
-    scatter_percent: [f64; 9],
-    mean_percent: [f64; 9],
-    i2_over_i1_percent: [f64; 2],
-    i2_over_i1_scatter_percent: f64,
-    /// Sidebands of the cage at a light and at a heavy load; absent where the recordings show too few blocks.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    rotor: Option<RotorJson>,
-}
-
-/// The healthy cage, percent of the active current; loads in percent of the rated current.
-#[derive(Debug, Serialize)]
-struct RotorJson {
-    active_percent: [f64; 2],
-    sideband_percent: [f64; 2],
-    scatter_percent: f64,
-}
-
 impl Calibrate {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
@@ -149,11 +86,12 @@ impl Calibrate {
             false_alarm_rate: self.false_alarm_rate,
         };
         let spinner = progress::bar("calibrating", 0);
-        let calibrated = calibrate(&motor, recordings, &surroundings);
+        let names = self.recordings.iter().map(|p| p.display().to_string());
+        let learnt = Calibration::new(names.collect(), recordings, &motor, &surroundings);
         spinner.finish_and_clear();
-        let calibrated = calibrated.map_err(refused)?;
-        self.write_motor(path, &calibrated.motor)?;
-        let result = self.result(&motor, &calibrated);
+        let (mut result, calibrated) = learnt.map_err(refused)?;
+        self.write_motor(path, &calibrated)?;
+        result.motor_file = self.out.display().to_string();
         self.json.give(&result, || print(&result))?;
         Ok(Finding::Nothing)
     }
@@ -168,12 +106,12 @@ impl Calibrate {
 
     fn check(&self) -> Result<(), Failure> {
         let rate = self.false_alarm_rate;
-        if !(1e-12..=0.01).contains(&rate) {
+        if !FALSE_ALARM_RATES.contains(&rate) {
             let message = format!("--false-alarm-rate {rate} is outside 1e-12..=0.01 per window");
             return Err(Failure::Usage(message));
         }
         let kelvin = self.winding_kelvin;
-        if !(0.0..=200.0).contains(&kelvin) {
+        if !WINDING_KELVINS.contains(&kelvin) {
             return Err(Failure::Usage(format!(
                 "--winding-kelvin {kelvin} is outside 0..=200 K"
             )));
@@ -197,76 +135,13 @@ impl Calibrate {
         let text = motor_text::updated(&old, motor);
         write_text(&self.out, &text)
     }
-
-    fn result(&self, believed: &MotorFile, calibrated: &Calibrated) -> CalibrateJson {
-        let [torque, e_d, e_q] = calibrated.misfit_percent;
-        let gain = |(kind, gain): &(Kind, [f64; 3])| GainJson {
-            effect: kind.effect().map_or("", |effect| effect.name),
-            gain: *gain,
-        };
-        CalibrateJson {
-            recordings: self
-                .recordings
-                .iter()
-                .map(|p| p.display().to_string())
-                .collect(),
-            motor: believed.name.clone(),
-            audits: calibrated.audits.clone(),
-            windows: calibrated.windows,
-            parameters: parameters(believed, calibrated),
-            gains: calibrated.gains.iter().map(gain).collect(),
-            misfit_percent: MisfitJson { torque, e_d, e_q },
-            threshold_percent: calibrated.motor.monitor.threshold_percent,
-            false_alarm_rate: self.false_alarm_rate,
-            healthy: healthy(&calibrated.healthy),
-            motor_file: self.out.display().to_string(),
-        }
-    }
 }
 
 fn refused(refusal: Refusal) -> Failure {
     Failure::Unsupported(format!("not calibrated: {refusal}"))
 }
 
-fn healthy(settings: &HealthySettings) -> HealthyJson {
-    HealthyJson {
-        significance: settings.significance,
-        scatter_percent: settings.scatter_percent,
-        mean_percent: settings.mean_percent,
-        i2_over_i1_percent: settings.current_unbalance_percent,
-        i2_over_i1_scatter_percent: settings.current_unbalance_scatter_percent,
-        rotor: settings.rotor.map(|rotor| RotorJson {
-            active_percent: rotor.active_percent,
-            sideband_percent: rotor.sideband_percent,
-            scatter_percent: rotor.scatter_percent,
-        }),
-    }
-}
-
-fn parameters(believed: &MotorFile, calibrated: &Calibrated) -> Vec<ParameterJson> {
-    let row = |(cause, change, error): &(Cause, f64, f64)| {
-        let (p, m) = (&believed.parameters, &believed.mechanics);
-        let (name, unit, value) = match cause {
-            Cause::StatorResistance => ("stator_resistance_ohm", "ohm", p.r_s),
-            Cause::RotorResistance => ("rotor_resistance_ohm", "ohm", p.r_r),
-            Cause::MagnetizingInductance => ("magnetizing_inductance_henry", "H", p.l_m),
-            Cause::Leakage => ("stator_leakage_henry", "H", p.l_ls),
-            _ => ("friction_nm_s", "N m s", m.total_friction()),
-        };
-        ParameterJson {
-            name,
-            unit,
-            believed: value,
-            value: value * (1.0 + change),
-            std_error: value * (1.0 + change) * error,
-            change_percent: 100.0 * change,
-        }
-    };
-    let changes = calibrated.changes.iter();
-    changes.map(row).filter(|row| row.believed > 0.0).collect()
-}
-
-fn print(result: &CalibrateJson) {
+fn print(result: &Calibration) {
     say!(
         "{}: {} steady windows of {}",
         paint::strong(&result.motor),
@@ -285,7 +160,7 @@ fn print(result: &CalibrateJson) {
 }
 
 /// What the audits found: once for all recordings where it is the same, else with the recording's name.
-fn print_findings(result: &CalibrateJson) {
+fn print_findings(result: &Calibration) {
     let of_all = |detail: &str| {
         result
             .audits
@@ -304,7 +179,7 @@ fn print_findings(result: &CalibrateJson) {
     }
 }
 
-fn print_parameters(result: &CalibrateJson) {
+fn print_parameters(result: &Calibration) {
     if result.parameters.is_empty() {
         say!("  currents alone: parameters stay as believed");
         return;
@@ -335,7 +210,7 @@ fn print_parameters(result: &CalibrateJson) {
     );
 }
 
-fn print_statistics(result: &CalibrateJson) {
+fn print_statistics(result: &Calibration) {
     let healthy = &result.healthy;
     let [re, im] = healthy.i2_over_i1_percent;
     say!(
@@ -354,7 +229,7 @@ fn print_statistics(result: &CalibrateJson) {
     say!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
 }
 
-fn print_rotor(rotor: Option<&RotorJson>) {
+fn print_rotor(rotor: Option<&HealthyCage>) {
     let Some(rotor) = rotor else {
         say!("  rotor bars not calibrated: too few blocks with speed and load");
         return;

@@ -86,15 +86,11 @@ impl Explain {
     }
 
     fn adopt(&self, name: &str) -> String {
-        let file = self.study.new_motor_file(name);
         let shapes = match name {
             LAW => self.shapes.typed(),
             _ => String::new(),
         };
-        format!(
-            "drivemon adopt {name} {}{shapes} -o {file}",
-            self.study.typed()
-        )
+        self.study.adopt(name, &shapes)
     }
 }
 

@@ -1,0 +1,148 @@
+//! What the lamps would have shown.
+
+use audit::{Audit, Expectation, audit};
+use monitor::{ConfigError, Monitor};
+use motor::{FileError, MotorFile};
+use recording::Recording;
+use replay::{
+    Direction, LampState, NotJudgedShare, RotorSummary, Samples, SequenceSummary, Timeline,
+    Verdict, WindowOperation, WindowResiduals,
+};
+use serde::{Serialize, Serializer};
+
+/// Everything that a replay through the board's core says.
+#[derive(Clone, Debug)]
+pub struct Monitored {
+    /// The recording.
+    pub recording: String,
+    /// What had to be assumed to read it.
+    pub assumptions: Vec<String>,
+    /// What the audit found.
+    pub audit: Audit,
+    /// Every window; empty where the audit refused.
+    pub timeline: Timeline,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Thresholds of the motor file, percent of each residual's scale.
+    pub threshold_percent: Option<[f64; 4]>,
+}
+
+/// Why a recording was not replayed.
+#[derive(Debug)]
+pub enum MonitorError {
+    /// The motor file holds what the core does not take.
+    File(FileError),
+    /// Its values do not fit the core.
+    Config(ConfigError),
+}
+
+/// The keys of the JSON.
+#[derive(Serialize)]
+struct MonitorJson<'a> {
+    recording: &'a str,
+    assumptions: &'a [String],
+    audit: &'a Audit,
+    windows: u64,
+    judged: u64,
+    not_judged: &'a [NotJudgedShare],
+    residual_percent: Option<ResidualPercent>,
+    lamps: &'a [LampState],
+    verdict: &'a Verdict,
+    direction: Option<Direction>,
+    first_alarm_s: Option<f64>,
+    sequence: SequenceSummary,
+    rotor: RotorSummary,
+    threshold_percent: Option<[f64; 4]>,
+    smallest_visible_percent: Option<[f64; 4]>,
+    residuals: &'a [WindowResiduals],
+    operation: &'a [WindowOperation],
+}
+
+/// Residuals over the judged windows, percent of their scales.
+#[derive(Serialize)]
+struct ResidualPercent {
+    mean: [f64; 4],
+    standard_deviation: [f64; 4],
+}
+
+impl Monitored {
+    /// Replays a recording; without a motor file only audit and sequence components are told. `progress` gets the number of
+    /// samples done.
+    ///
+    /// # Errors
+    /// A motor file that the core cannot take.
+    pub fn new(
+        recording: &Recording,
+        motor: Option<&MotorFile>,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<Monitored, MonitorError> {
+        let expectation = motor.map_or_else(Expectation::default, Expectation::from);
+        let audit = audit(recording, &expectation);
+        let config = match motor {
+            Some(motor) => replay::config_for(motor, recording).map_err(MonitorError::File)?,
+            None => replay::stand_in_config(recording),
+        };
+        let timeline = if audit.supported {
+            let monitor = Monitor::new(config).map_err(MonitorError::Config)?;
+            replayed(&monitor, recording, &audit, motor.is_some(), progress)
+        } else {
+            Timeline::default()
+        };
+        Ok(Monitored {
+            recording: recording.name().to_owned(),
+            assumptions: recording.assumptions.clone(),
+            verdict: timeline.verdict(&audit.findings),
+            audit,
+            timeline,
+            threshold_percent: motor.map(|motor| motor.monitor.threshold_percent),
+        })
+    }
+}
+
+fn replayed(
+    monitor: &Monitor,
+    recording: &Recording,
+    audit: &Audit,
+    motor_known: bool,
+    progress: &mut dyn FnMut(usize),
+) -> Timeline {
+    let mut samples = Samples::new(recording, audit);
+    if !motor_known {
+        samples.leave_out_speed();
+    }
+    let mut timeline = replay::replay(monitor, &samples, progress);
+    if !motor_known {
+        timeline.blame_missing_motor_file();
+    }
+    timeline
+}
+
+impl Serialize for Monitored {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let timeline = &self.timeline;
+        let residual_percent = timeline.residual_percent();
+        let json = MonitorJson {
+            recording: &self.recording,
+            assumptions: &self.assumptions,
+            audit: &self.audit,
+            windows: timeline.windows,
+            judged: timeline.judged,
+            not_judged: &timeline.not_judged,
+            residual_percent: residual_percent.map(|(mean, standard_deviation)| ResidualPercent {
+                mean,
+                standard_deviation,
+            }),
+            lamps: &timeline.lamps,
+            verdict: &self.verdict,
+            direction: timeline.direction(),
+            first_alarm_s: timeline.first_alarm_s,
+            sequence: timeline.sequence(),
+            rotor: timeline.rotor(),
+            threshold_percent: self.threshold_percent,
+            smallest_visible_percent: timeline.visible_percent(),
+            residuals: &timeline.trace.residuals,
+            operation: &timeline.trace.operation,
+        };
+        json.serialize(serializer)
+    }
+}
