@@ -79,6 +79,13 @@ impl Known {
     }
 }
 
+impl Known {
+    /// Every parameter with its interval, where the motor file has intervals.
+    pub fn parameters(&self) -> Vec<ParameterRow> {
+        parameters(&self.motor, None)
+    }
+}
+
 fn plate_rows(estimate: &Estimate) -> Vec<PlateRow> {
     let printed = estimate.completed.plate.numbers();
     let row = |k: usize| PlateRow {

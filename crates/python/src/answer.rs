@@ -1,0 +1,114 @@
+//! The answer to a question, as the commands give it.
+
+use crate::errors::usage;
+use crate::motor::Motor;
+use crate::table::Table;
+use pyo3::prelude::*;
+use replay::operating_points::OperatingPoints;
+use report::study::{Adopted, Calibration, Checkup, Compared, Explained, Monitored};
+use report::{Subject, page};
+use serde::Serialize;
+use serde_json::Value;
+
+/// What was asked, and what came out.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    Monitor(Box<Monitored>),
+    LoadTable(OperatingPoints),
+    Check(Box<Checkup>),
+    Compare(Box<Compared>),
+    Explain(Box<Explained>),
+    Adopt(Box<Adopted>),
+    Calibrate(Box<Calibration>),
+}
+
+impl Outcome {
+    /// Its page; a calibration has none.
+    fn subject(&self) -> Option<Subject> {
+        Some(match self {
+            Outcome::Monitor(_) => Subject::Monitor,
+            Outcome::LoadTable(_) => Subject::LoadTable,
+            Outcome::Check(_) => Subject::Check,
+            Outcome::Compare(_) => Subject::Compare,
+            Outcome::Explain(_) => Subject::Explain,
+            Outcome::Adopt(_) => Subject::Adopt,
+            Outcome::Calibrate(_) => return None,
+        })
+    }
+}
+
+impl Serialize for Outcome {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Outcome::Monitor(x) => x.serialize(serializer),
+            Outcome::LoadTable(x) => x.serialize(serializer),
+            Outcome::Check(x) => x.serialize(serializer),
+            Outcome::Compare(x) => x.serialize(serializer),
+            Outcome::Explain(x) => x.serialize(serializer),
+            Outcome::Adopt(x) => x.serialize(serializer),
+            Outcome::Calibrate(x) => x.serialize(serializer),
+        }
+    }
+}
+
+/// An answer: its JSON, its page, its tables, and the motor that came out of it.
+#[pyclass(frozen, module = "drivemon._drivemon")]
+#[derive(Debug)]
+pub struct Answer {
+    outcome: Outcome,
+    motor: Option<Motor>,
+}
+
+impl Answer {
+    pub fn new(outcome: Outcome, motor: Option<Motor>) -> Answer {
+        Answer { outcome, motor }
+    }
+}
+
+#[pymethods]
+impl Answer {
+    /// The bytes that `--json FILE` of the command writes.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        let text = py.detach(|| serde_json::to_string_pretty(&self.outcome));
+        text.map(|text| text + "\n").map_err(no_json)
+    }
+
+    /// The page that `--report FILE.html` of the command writes.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let subject = self
+            .outcome
+            .subject()
+            .ok_or_else(|| usage("this answer has no page"))?;
+        py.detach(|| page(subject, &self.outcome)).map_err(no_json)
+    }
+
+    /// The list that stands under a path of keys in the JSON, as a table.
+    fn table(&self, py: Python<'_>, path: Vec<String>) -> PyResult<Table> {
+        let value = py
+            .detach(|| serde_json::to_value(&self.outcome))
+            .map_err(no_json)?;
+        let rows = rows(&value, &path).ok_or_else(|| {
+            let message = format!("{}: there is no such list", path.join("."));
+            pyo3::exceptions::PyKeyError::new_err(message)
+        })?;
+        Table::of_rows(rows)
+    }
+
+    #[getter]
+    fn motor(&self) -> Option<Motor> {
+        self.motor.clone()
+    }
+}
+
+fn rows<'v>(value: &'v Value, path: &[String]) -> Option<&'v [Value]> {
+    let step = |value: &'v Value, key: &String| match value {
+        Value::Array(list) => list.get(key.parse::<usize>().ok()?),
+        other => other.get(key),
+    };
+    let found = path.iter().try_fold(value, step)?;
+    found.as_array().map(Vec::as_slice)
+}
+
+fn no_json(error: serde_json::Error) -> PyErr {
+    usage(format!("the result cannot be written as JSON: {error}"))
+}
