@@ -2,13 +2,11 @@
 
 use crate::errors::usage;
 use crate::motor::Motor;
-use crate::table::Table;
 use pyo3::prelude::*;
 use replay::operating_points::OperatingPoints;
 use report::study::{Adopted, Calibration, Checkup, Compared, Explained, Monitored};
 use report::{Subject, page};
 use serde::Serialize;
-use serde_json::Value;
 
 /// What was asked, and what came out.
 #[derive(Clone, Debug)]
@@ -82,31 +80,10 @@ impl Answer {
         py.detach(|| page(subject, &self.outcome)).map_err(no_json)
     }
 
-    /// The list that stands under a path of keys in the JSON, as a table.
-    fn table(&self, py: Python<'_>, path: Vec<String>) -> PyResult<Table> {
-        let value = py
-            .detach(|| serde_json::to_value(&self.outcome))
-            .map_err(no_json)?;
-        let rows = rows(&value, &path).ok_or_else(|| {
-            let message = format!("{}: there is no such list", path.join("."));
-            pyo3::exceptions::PyKeyError::new_err(message)
-        })?;
-        Table::of_rows(rows)
-    }
-
     #[getter]
     fn motor(&self) -> Option<Motor> {
         self.motor.clone()
     }
-}
-
-fn rows<'v>(value: &'v Value, path: &[String]) -> Option<&'v [Value]> {
-    let step = |value: &'v Value, key: &String| match value {
-        Value::Array(list) => list.get(key.parse::<usize>().ok()?),
-        other => other.get(key),
-    };
-    let found = path.iter().try_fold(value, step)?;
-    found.as_array().map(Vec::as_slice)
 }
 
 fn no_json(error: serde_json::Error) -> PyErr {

@@ -67,7 +67,7 @@ def _numbers(values: Any, name: str, copy: bool) -> Optional[Any]:
     if array.dtype.kind not in "fiu":
         return None
     if isinstance(array, np.ma.MaskedArray):
-        return array.astype(np.float64).filled(np.nan)
+        return np.ma.filled(array.astype(np.float64), np.nan)
     if copy:
         return np.array(array, dtype=np.float64)
     return np.ascontiguousarray(array, dtype=np.float64)

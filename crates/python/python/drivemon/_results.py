@@ -37,8 +37,19 @@ class Result:
         return found
 
     def table(self, path: str) -> Table:
-        """A list of the JSON as a table: `"signals"`, `"final.parameters"`, `"steps.0.parameters"`."""
-        return Table(self._native.table(path.split(".")))
+        """A list of the JSON as a table: `"signals"`, `"final.parameters"`, `"steps.0.parameters"`.
+
+        Raises KeyError where there is no such list.
+        """
+        found: Any = self.data
+        for key in path.split("."):
+            try:
+                found = found[int(key) if isinstance(found, list) else key]
+            except (IndexError, KeyError, TypeError, ValueError):
+                raise KeyError(f"{path}: this answer has no such list") from None
+        if not isinstance(found, list):
+            raise KeyError(f"{path}: this answer has no such list")
+        return Table(found)
 
     @property
     def motor(self) -> Optional[Motor]:

@@ -6,7 +6,6 @@ mod rows;
 use arrow_array::RecordBatch;
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
-use serde_json::Value;
 
 /// A table of an answer. `pyarrow.table(x)`, `polars.DataFrame(x)` and whatever else takes Arrow streams read it.
 #[pyclass(frozen, module = "drivemon._drivemon")]
@@ -15,17 +14,15 @@ pub struct Table {
     batch: RecordBatch,
 }
 
+#[pymethods]
 impl Table {
-    /// The rows of a list of objects.
-    pub fn of_rows(rows: &[Value]) -> PyResult<Table> {
-        let batch = rows::batch(rows);
+    #[staticmethod]
+    fn of_columns(rows: usize, columns: Vec<(String, rows::Cells)>) -> PyResult<Table> {
+        let batch = rows::batch(rows, columns);
         let batch = batch.map_err(|error| crate::errors::usage(error.to_string()))?;
         Ok(Table { batch })
     }
-}
 
-#[pymethods]
-impl Table {
     #[getter]
     fn columns(&self) -> Vec<String> {
         let schema = self.batch.schema();

@@ -1,92 +1,52 @@
-//! A list of JSON objects as a table: one column per key.
+//! Columns of an answer's list as a table.
 
 use arrow_array::builder::{Float64Builder, ListBuilder};
 use arrow_array::{
     ArrayRef, BooleanArray, Float64Array, RecordBatch, RecordBatchOptions, StringArray,
 };
 use arrow_schema::{ArrowError, Field, Schema};
-use serde_json::Value;
+use pyo3::FromPyObject;
 use std::sync::Arc;
 
-/// The table; what a row does not have is null. Keys of nested objects follow their parent's after a point.
-pub fn batch(rows: &[Value]) -> Result<RecordBatch, ArrowError> {
-    let flat: Vec<Vec<(String, &Value)>> = rows.iter().map(|row| flat("", row)).collect();
-    let mut keys: Vec<&str> = Vec::new();
-    for (key, _) in flat.iter().flatten() {
-        if !keys.contains(&key.as_str()) {
-            keys.push(key);
-        }
-    }
-    let cell = |row: &Vec<(String, _)>, key: &str| {
-        let found = row.iter().find(|(known, _)| known == key);
-        found.map_or(&Value::Null, |(_, value)| *value)
+/// The cells of one column; the first kind that fits all of them.
+#[derive(Debug, FromPyObject)]
+pub enum Cells {
+    Truths(Vec<Option<bool>>),
+    Numbers(Vec<Option<f64>>),
+    Lists(Vec<Option<Vec<f64>>>),
+    Texts(Vec<Option<String>>),
+}
+
+/// The table.
+pub fn batch(rows: usize, columns: Vec<(String, Cells)>) -> Result<RecordBatch, ArrowError> {
+    let of = |(name, cells): (String, Cells)| {
+        let array = array(cells);
+        (Field::new(name, array.data_type().clone(), true), array)
     };
-    let columns = keys.iter().map(|key| {
-        let cells: Vec<&Value> = flat.iter().map(|row| cell(row, key)).collect();
-        column(&cells)
-    });
-    let columns: Vec<ArrayRef> = columns.collect();
-    let fields = keys.iter().zip(&columns);
-    let fields: Vec<Field> = fields
-        .map(|(key, column)| Field::new(*key, column.data_type().clone(), true))
-        .collect();
-    let options = RecordBatchOptions::new().with_row_count(Some(rows.len()));
-    RecordBatch::try_new_with_options(Arc::new(Schema::new(fields)), columns, &options)
+    let (fields, arrays): (Vec<Field>, Vec<ArrayRef>) = columns.into_iter().map(of).unzip();
+    let options = RecordBatchOptions::new().with_row_count(Some(rows));
+    RecordBatch::try_new_with_options(Arc::new(Schema::new(fields)), arrays, &options)
 }
 
-/// Keys and values of an object and of the objects inside it.
-fn flat<'v>(parent: &str, value: &'v Value) -> Vec<(String, &'v Value)> {
-    let Value::Object(object) = value else {
-        let name = if parent.is_empty() { "value" } else { parent };
-        return vec![(name.to_owned(), value)];
-    };
-    let inside = object.iter().flat_map(|(key, value)| {
-        let key = match parent {
-            "" => key.clone(),
-            parent => format!("{parent}.{key}"),
-        };
-        match value {
-            Value::Object(_) => flat(&key, value),
-            _ => vec![(key, value)],
+fn array(cells: Cells) -> ArrayRef {
+    match cells {
+        // What no row has is a number that is missing.
+        Cells::Truths(truths) if truths.iter().all(Option::is_none) => {
+            Arc::new(Float64Array::new_null(truths.len()))
         }
-    });
-    inside.collect()
+        Cells::Truths(truths) => Arc::new(BooleanArray::from(truths)),
+        Cells::Numbers(numbers) => Arc::new(Float64Array::from(numbers)),
+        Cells::Lists(lists) => Arc::new(of_lists(lists)),
+        Cells::Texts(texts) => Arc::new(StringArray::from(texts)),
+    }
 }
 
-fn column(cells: &[&Value]) -> ArrayRef {
-    let all = |is: fn(&Value) -> bool| cells.iter().all(|cell| cell.is_null() || is(cell));
-    if all(Value::is_number) {
-        let numbers = cells.iter().map(|cell| cell.as_f64());
-        return Arc::new(numbers.collect::<Float64Array>());
-    }
-    if all(Value::is_boolean) {
-        let truths = cells.iter().map(|cell| cell.as_bool());
-        return Arc::new(truths.collect::<BooleanArray>());
-    }
-    if all(is_numbers) {
-        return lists(cells);
-    }
-    let texts = cells.iter().map(|cell| match cell {
-        Value::Null => None,
-        Value::String(text) => Some(text.clone()),
-        other => Some(other.to_string()),
-    });
-    Arc::new(texts.collect::<StringArray>())
-}
-
-fn is_numbers(cell: &Value) -> bool {
-    let list = cell.as_array();
-    list.is_some_and(|list| list.iter().all(Value::is_number))
-}
-
-fn lists(cells: &[&Value]) -> ArrayRef {
+fn of_lists(lists: Vec<Option<Vec<f64>>>) -> arrow_array::ListArray {
     let mut builder = ListBuilder::new(Float64Builder::new());
-    for cell in cells {
-        let numbers = cell.as_array();
-        for number in numbers.into_iter().flatten() {
-            builder.values().append_option(number.as_f64());
-        }
-        builder.append(numbers.is_some());
+    for list in lists {
+        let there = list.is_some();
+        builder.values().append_slice(&list.unwrap_or_default());
+        builder.append(there);
     }
-    Arc::new(builder.finish())
+    builder.finish()
 }
