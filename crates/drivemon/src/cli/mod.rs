@@ -36,6 +36,7 @@ First steps:
   drivemon explain rec.csv.gz --motor motor.toml       which physical effect it misses
   drivemon adopt EFFECT rec.csv.gz --motor motor.toml -o better.toml
   drivemon calibrate healthy.csv.gz --motor motor.toml -o calibrated.toml
+  drivemon batch DIR --motor-map map.toml -o out.parquet   many recordings, one row each
   drivemon panel                                       the lamps in a browser, on a simulated motor
   drivemon flash --motor motor.toml                    build the firmware for this motor and write it to the board
   drivemon board read --serial PORT                    ask a board in the field
@@ -57,6 +58,7 @@ enum Command {
     Campaign(commands::simulated::campaign::Campaign),
     Calibrate(commands::calibrate::Calibrate),
     Check(commands::check::Check),
+    Batch(commands::batch::Batch),
     Motor(commands::motor::Motor),
     #[cfg(feature = "panel")]
     Panel(commands::panel::Panel),
@@ -88,6 +90,7 @@ impl Cli {
             Command::Campaign(campaign) => campaign.run(),
             Command::Calibrate(calibrate) => calibrate.run(),
             Command::Check(check) => check.run(),
+            Command::Batch(batch) => batch.run(),
             Command::Motor(motor) => motor.run(),
             #[cfg(feature = "panel")]
             Command::Panel(panel) => panel.run(),

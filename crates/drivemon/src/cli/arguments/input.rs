@@ -88,6 +88,19 @@ impl InputArgs {
         Ok(self.flags().mapping()?)
     }
 
+    /// The same for a command that reads many files.
+    ///
+    /// # Errors
+    /// A flag that cannot be understood, and `--write-sidecar`.
+    pub fn unwritten_mapping(&self) -> Result<Mapping, Failure> {
+        match self.write_sidecar {
+            false => self.mapping(),
+            true => Err(Failure::Usage(
+                "--write-sidecar: this command writes no sidecars; leave it out".to_owned(),
+            )),
+        }
+    }
+
     fn flags(&self) -> Flags {
         Flags {
             column: self.column.clone(),

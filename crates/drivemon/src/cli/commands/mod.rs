@@ -1,5 +1,6 @@
 //! One file per subcommand.
 
+pub(crate) mod batch;
 pub(crate) mod board;
 pub(crate) mod calibrate;
 pub(crate) mod check;
