@@ -133,8 +133,10 @@ fn print(rows: &[Row], out: &Path) {
     let mut motors: Vec<&str> = rows.iter().map(|row| row.motor.as_str()).collect();
     motors.sort_unstable();
     motors.dedup();
+    let lengths = motors.iter().map(|motor| motor.chars().count());
+    let widest = lengths.fold("motor".len(), usize::max);
     say!(
-        "{:<40} {:>10} {:>8} {:>6} {:>11} {:>9}",
+        "{:<widest$} {:>10} {:>8} {:>6} {:>11} {:>9}",
         "motor",
         "recordings",
         "healthy",
@@ -150,7 +152,7 @@ fn print(rows: &[Row], out: &Path) {
         };
         let faults = format!("{:>6}", count(row::FAULT));
         say!(
-            "{motor:<40} {:>10} {:>8} {} {:>11} {:>9}",
+            "{motor:<widest$} {:>10} {:>8} {} {:>11} {:>9}",
             count(""),
             count(row::HEALTHY),
             if count(row::FAULT) > 0 {
