@@ -49,6 +49,7 @@ mod isolation;
 mod lamps;
 mod model;
 mod monitor;
+mod motion;
 mod noise;
 mod reason;
 mod rehearsal;
@@ -83,6 +84,10 @@ pub use model::effects::{
 pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
+pub use motion::{
+    MOTION_ROWS, Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NoMotion,
+    NotInMotion, Supply,
+};
 pub use motor::FaultId;
 pub use reason::Reason;
 pub use rehearsal::Rehearsal;

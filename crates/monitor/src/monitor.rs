@@ -20,6 +20,7 @@ use crate::model::effects::{ActiveEffects, Corrected, correct};
 use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::ResidualModel;
 use crate::model::settled::settled;
+use crate::motion::Supply;
 use crate::noise::allowance::CycleScatter;
 use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
@@ -72,6 +73,14 @@ impl MonitorState {
     /// Rehearses sensor faults from the next window on; [`Rehearsal::default`] ends it.
     pub fn rehearse(&mut self, gains: Rehearsal) {
         self.rehearsal = gains;
+    }
+
+    /// The supply's oscillator after the latest sample, for [`crate::Motion`]; `None` while none is followed.
+    pub fn supply(&self) -> Option<Supply> {
+        (!self.sync.is_searching()).then(|| Supply {
+            axis: self.sync.axis(),
+            omega: self.sync.omega(),
+        })
     }
 
     /// Counts samples that ended no cycle.

@@ -109,6 +109,11 @@ impl SyncState {
         self.mode == Mode::Searching
     }
 
+    /// Axis of the oscillator at the next sample.
+    pub fn axis(&self) -> Complex32 {
+        self.axis
+    }
+
     /// Tracked supply frequency, rad/s; 0 while nothing is tracked.
     pub fn omega(&self) -> f32 {
         match self.mode {

@@ -1,0 +1,175 @@
+//! Which motors can be judged in motion, and with which constants.
+
+use crate::config::{LoadKind, MonitorConfig};
+use crate::model::doubt::ParameterDoubt;
+use crate::model::effects::ActiveEffect;
+use crate::model::residuals::FieldCurrent;
+
+use super::circuit::{Circuit, Iron, Scales};
+use super::decision::Limits;
+use super::departures::{Priors, place};
+use super::{KnownLoad, Motion, rated_step};
+
+/// Why a motor cannot be judged in motion at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoMotion {
+    /// The motor file holds an effect or a law that the flux equations in motion do not have; its name.
+    Effect(&'static str),
+    /// The parameters come from a plate: they are known too roughly.
+    RoughParameters,
+    /// The motor file asks for the published instrument with its constant field current.
+    NominalField,
+    /// Fewer samples a cycle than the flux equations need.
+    SampledTooSlowly,
+}
+
+impl core::fmt::Display for NoMotion {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            NoMotion::Effect(name) => {
+                write!(f, "the motor file's {name} is not in the equations of motion")
+            }
+            NoMotion::RoughParameters => f.write_str(
+                "the motor's parameters are known from its plate only: calibrate it, or identify it with recordings",
+            ),
+            NoMotion::NominalField => f.write_str("the motor file takes a constant field current"),
+            NoMotion::SampledTooSlowly => {
+                f.write_str("it takes 80 samples a cycle: record at 5 kHz or more")
+            }
+        }
+    }
+}
+
+/// Limits of the decision. `T` is a sum of many cycles with unit variance on a healthy motor; 17 causes and 50 cycles a second
+/// are tried, and the rest of the margin is for what the T model lacks.
+const LIMITS: Limits = Limits {
+    statistic: 5.5,
+    square: 75.0,
+};
+/// Fewest samples of a rated cycle: the trapezoidal rule is then off by 5e-4.
+const LEAST_SAMPLES: f32 = 80.0;
+/// Length of a part of a cycle, s.
+const PART_S: f32 = 1e-3;
+/// Winding temperatures between which the motor file's resistances may lie, standard deviation of their rise, where no calibration
+/// says it: 75 K.
+const ANY_HEATING: f32 = 0.295;
+/// A parameter whose interval is wider than this many of its priors is known too roughly.
+const ROUGH: f32 = 2.0;
+
+impl Motion {
+    /// Prepares a motor whose configuration is valid.
+    ///
+    /// # Errors
+    /// Why it cannot be judged in motion.
+    #[inline(never)]
+    pub fn new(config: &MonitorConfig) -> Result<Motion, NoMotion> {
+        if config.field != FieldCurrent::Live {
+            return Err(NoMotion::NominalField);
+        }
+        let circuit = circuit(config)?;
+        let samples = circuit.cycle_samples();
+        if samples < LEAST_SAMPLES {
+            return Err(NoMotion::SampledTooSlowly);
+        }
+        let priors = priors(config);
+        if is_rough(&config.doubt, &priors) {
+            return Err(NoMotion::RoughParameters);
+        }
+        Ok(Motion {
+            priors,
+            limits: LIMITS,
+            channel_gain: config.channel_gain,
+            per_count: core::f32::consts::TAU * config.mechanics.n_p
+                / config.encoder_counts_per_revolution,
+            samples,
+            part: libm::roundf(PART_S / config.t_sample).max(1.0),
+            step: rated_step(config.rated_omega, config.t_sample),
+            load: match config.load {
+                LoadKind::Friction => KnownLoad::Friction,
+                LoadKind::Measured => KnownLoad::Measured,
+                LoadKind::Free => KnownLoad::Nothing,
+            },
+            circuit,
+        })
+    }
+}
+
+fn circuit(config: &MonitorConfig) -> Result<Circuit, NoMotion> {
+    if config.laws.iter().flatten().next().is_some() {
+        return Err(NoMotion::Effect("curve"));
+    }
+    let mut circuit = Circuit {
+        params: config.params,
+        iron: Iron::LINEAR,
+        mechanics: config.mechanics,
+        friction: match config.load {
+            LoadKind::Friction => config.mechanics.total_friction(),
+            LoadKind::Measured | LoadKind::Free => config.mechanics.friction,
+        },
+        rated: Scales {
+            voltage: config.rated_voltage,
+            current: config.rated_current,
+            omega: config.rated_omega,
+            torque: config.rated_torque,
+        },
+        t_sample: config.t_sample,
+    };
+    for active in config.effects.iter().flatten() {
+        adopt(&mut circuit, active)?;
+    }
+    Ok(circuit)
+}
+
+fn adopt(circuit: &mut Circuit, active: &ActiveEffect) -> Result<(), NoMotion> {
+    match active.effect.descriptor().name {
+        // Their corrections are among the gains of the channels.
+        "phase-voltage-gain" | "phase-current-gain" => Ok(()),
+        "magnetizing-saturation" => {
+            let [saturation, exponent, location, ..] = active.parameters;
+            circuit.iron = Iron {
+                saturation,
+                exponent,
+            };
+            move_leakage(circuit, location);
+            Ok(())
+        }
+        name => Err(NoMotion::Effect(name)),
+    }
+}
+
+/// Part of the stator's leakage lies behind the iron that saturates; at its terminals the linear motor stays the same.
+fn move_leakage(circuit: &mut Circuit, location: f32) {
+    let p = circuit.params;
+    let l_ls = (1.0 - location) * p.l_ls;
+    let l_m = p.l_s() - l_ls;
+    let k = l_m / p.l_m;
+    circuit.params.l_ls = l_ls;
+    circuit.params.l_m = l_m;
+    circuit.params.r_r = k * k * p.r_r;
+    circuit.params.l_lr = k * k * p.l_r() - l_m;
+}
+
+fn priors(config: &MonitorConfig) -> Priors {
+    let Some(healthy) = &config.healthy else {
+        let mut priors = Priors::of(&Default::default());
+        priors.widen(place::HEATING, ANY_HEATING);
+        return priors;
+    };
+    Priors::of(&healthy.uncertainty)
+}
+
+/// Whether the motor file's intervals are wider than motion can do with.
+fn is_rough(doubt: &ParameterDoubt, priors: &Priors) -> bool {
+    let places = [
+        place::R_S,
+        place::R_R,
+        place::LEAKAGE,
+        place::LEAKAGE,
+        place::L_M,
+    ];
+    let wide = |(place, deviation): (usize, &f32)| {
+        let prior = priors.0.get(place).copied().unwrap_or_default();
+        *deviation > ROUGH * prior
+    };
+    places.into_iter().zip(&doubt.circuit).any(wide)
+}

@@ -1,0 +1,165 @@
+//! Noise of the samples as they show it themselves, and what it and the model's known weaknesses do to the rows.
+
+use num_complex::Complex32;
+
+use super::circuit::Circuit;
+use super::departures::{Priors, UNKNOWNS, place};
+use super::information::{ROWS, White};
+use super::rows::{I_0, Q, Rows, V_0};
+
+/// Third differences of a signal: those of a sinusoid sampled 200 times a cycle are 3e-5 of its amplitude, those of white noise
+/// have 20 times its variance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Roughness {
+    last: [Complex32; 3],
+    sum: f32,
+}
+
+/// Variance of third differences of white noise: 1 + 9 + 9 + 1.
+const THIRD_DIFFERENCES: f32 = 20.0;
+
+impl Roughness {
+    #[inline]
+    fn add(&mut self, x: Complex32) {
+        let [value, first, second] = self.last;
+        let (d1, d2) = (x - value, x - value - first);
+        let d3 = d2 - second;
+        self.last = [x, d1, d2];
+        self.sum += d3.norm_sqr();
+    }
+
+    /// Variance of one component of the space vector; forgets the sum.
+    fn take(&mut self, samples: f32) -> f32 {
+        let sum = core::mem::take(&mut self.sum);
+        sum / (2.0 * THIRD_DIFFERENCES * samples.max(1.0))
+    }
+}
+
+/// Noise of voltage and current over a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scatter {
+    voltage: Roughness,
+    current: Roughness,
+    /// Current of the cycle before, share of rated.
+    before: f32,
+}
+
+/// What the scatter of one cycle's rows depends on besides noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circumstances {
+    /// Samples in the cycle.
+    pub samples: f32,
+    /// Slip, share of rated supply frequency.
+    pub slip: f32,
+    /// Length of the current vector, A.
+    pub current: f32,
+    /// Rotor flux at the end of the cycle, V s.
+    pub flux: f32,
+    /// How well the winding's temperature is known: standard deviation of the resistances' common rise.
+    pub heating: f32,
+}
+
+/// Scatter that stays of E+ and E- without any noise: the encoder's steps.
+const VOLTAGE_FLOOR: f32 = 5e-4;
+/// The same of `I_0` and `V_0`, shares of rated.
+const ZERO_FLOOR: f32 = 2e-4;
+/// Share of a step from one cycle to the next that lies in no row as the model has it.
+const STEP_SHARE: f32 = 3e-3;
+/// Share of the leakage's drop at high current that no shape explains.
+const HIGH_CURRENT_SHARE: f32 = 0.03;
+/// Squared current, share of rated, that counts as high.
+const HIGH_CURRENT: f32 = 9.0;
+/// Share of the inertia's torque that a step within a cycle leaves open.
+const ACCELERATION_SHARE: f32 = 0.02;
+/// Standard deviation of a row that says nothing.
+const SILENT: f32 = 1e6;
+
+impl Scatter {
+    /// Adds one instant.
+    #[inline]
+    pub fn add(&mut self, u: Complex32, i: Complex32) {
+        self.voltage.add(u);
+        self.current.add(i);
+    }
+
+    /// The rows in units of their noise, departures in units of their priors.
+    #[inline(never)]
+    pub fn whiten(
+        &mut self,
+        circuit: &Circuit,
+        priors: &Priors,
+        rows: &Rows,
+        now: &Circumstances,
+    ) -> White {
+        let deviations = self.deviations(circuit, rows, now);
+        let mut white = White::default();
+        let places = white.sensitivities.iter_mut().zip(&mut white.rows);
+        let given = rows.sensitivities.iter().zip(rows.rows).zip(deviations);
+        for ((place, row), ((sensitivities, x), s)) in places.zip(given) {
+            *row = x / s;
+            for ((a, x), prior) in place.iter_mut().zip(sensitivities).zip(priors.0) {
+                *a = x * prior / s;
+            }
+        }
+        white
+    }
+
+    /// Standard deviations of the rows.
+    fn deviations(&mut self, circuit: &Circuit, rows: &Rows, now: &Circumstances) -> [f32; ROWS] {
+        let rated = &circuit.rated;
+        let n = now.samples.max(1.0);
+        let (of_u, of_i) = (self.voltage.take(n), self.current.take(n));
+        let z = circuit.impedance(now.slip);
+        let current = now.current / rated.current;
+        let step = current - core::mem::replace(&mut self.before, current);
+        let turn = rows.acceleration * n * circuit.t_sample * circuit.mechanics.n_p / rated.omega;
+        let square = current * current;
+        let high = square / (square + HIGH_CURRENT);
+        let column = |k: usize, row: usize| sensitivity(rows, row, k);
+        let length = |k: usize| {
+            let squares = (0..Q).map(|row| column(k, row) * column(k, row));
+            libm::sqrtf(0.5 * squares.sum::<f32>())
+        };
+        // What is of second order in a temperature that is not known yet.
+        let second = now.heating * now.heating;
+        let e = norm(&[
+            libm::sqrtf((of_u + z * z * of_i) / n) / rated.voltage,
+            VOLTAGE_FLOOR,
+            STEP_SHARE * step,
+            STEP_SHARE * turn,
+            STEP_SHARE * current * high,
+            HIGH_CURRENT_SHARE * high * length(place::LEAKAGE),
+            second * length(place::HEATING),
+        ]);
+        let lever = 1.5 * circuit.mechanics.n_p * now.flux / rated.torque;
+        let inertia = circuit.mechanics.inertia * rows.acceleration / rated.torque;
+        let leakage = column(place::LEAKAGE, Q).abs() + column(place::R_R, Q).abs() + 0.1;
+        let q = norm(&[
+            STEP_SHARE,
+            lever * libm::sqrtf(of_i / n),
+            ACCELERATION_SHARE * inertia,
+            HIGH_CURRENT_SHARE * high * current,
+            HIGH_CURRENT_SHARE * high * leakage,
+            second * column(place::HEATING, Q),
+        ]);
+        // The three cycles of the torque's row are shared with two others.
+        let q = if rows.has_torque { SQRT_3 * q } else { SILENT };
+        // A component of the space vector has two thirds of a channel's variance, a zero sequence a third.
+        let zero = |variance: f32, scale: f32| libm::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
+        let (i_0, v_0) = (zero(of_i, rated.current), zero(of_u, rated.voltage));
+        debug_assert!(Q < I_0 && I_0 < V_0);
+        [e, e, e, e, q, i_0, i_0, v_0, v_0]
+    }
+}
+
+const SQRT_3: f32 = 1.732_050_8;
+
+fn sensitivity(rows: &Rows, row: usize, k: usize) -> f32 {
+    debug_assert!(k < UNKNOWNS);
+    let row = rows.sensitivities.get(row);
+    row.and_then(|row| row.get(k)).copied().unwrap_or_default()
+}
+
+fn norm(parts: &[f32]) -> f32 {
+    libm::sqrtf(parts.iter().map(|x| x * x).sum())
+}
