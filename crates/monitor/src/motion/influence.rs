@@ -13,7 +13,7 @@ use super::rows::PHASES;
 
 const J: Complex32 = Complex32::new(0.0, 1.0);
 /// Squared slip at which half of the skin effect has come.
-const SKIN_SLIP: f32 = 0.1;
+pub const SKIN_SLIP: f32 = 0.1;
 /// Squared current, share of rated, at which half of the leakage's bend has come.
 const BEND_CURRENT: f32 = 9.0;
 

@@ -85,8 +85,10 @@ pub struct MotionState {
     omega_supply: f32,
     /// Relative rise of both resistances at which the rows are taken.
     rise: f32,
-    /// Standard deviation of that rise; 0 before the first judged cycle.
-    rise_deviation: f32,
+    /// How far the true one may be from it: mean and standard deviation; 0 before the first judged cycle.
+    rise_open: [f32; 2],
+    /// How far it was revised lately: the flux forgets it.
+    revised: f32,
     /// Samples since the start, and when the statistic left the noise.
     count: u64,
     restless_since: Option<u64>,
@@ -286,10 +288,10 @@ impl Motion {
         rows.has_torque &= self.load != KnownLoad::Nothing;
         let now = Circumstances {
             samples: sums.samples,
-            slip,
+            slip: [slip, slip * self.circuit.rated.omega / state.omega_supply.max(1.0)],
             current: sums.current(),
             flux: crate::frames::magnitude(state.observer.flux),
-            heating: self.heating_deviation(state),
+            heating_square: self.heating_square(state),
         };
         let white = state.scatter.whiten(&self.circuit, &self.priors, &rows, &now);
         if let Some(reason) = state.gate.close(&self.circuit, &sums, &seen, slip) {
@@ -351,13 +353,16 @@ impl Motion {
         state.gate.seed(&self.circuit, at_rest);
     }
 
-    fn heating_deviation(&self, state: &MotionState) -> f32 {
+    fn heating_square(&self, state: &mut MotionState) -> f32 {
         let [.., prior] = self.priors.0;
-        if state.rise_deviation > 0.0 {
-            state.rise_deviation.min(prior)
-        } else {
-            prior
-        }
+        let period = self.samples * self.circuit.t_sample;
+        state.revised *= libm::expf(-period / self.circuit.rotor_time());
+        let [mean, deviation] = state.rise_open;
+        let open = match deviation > 0.0 {
+            true => mean * mean + deviation * deviation,
+            false => prior * prior,
+        };
+        open.min(prior * prior) + state.revised * state.revised
     }
 
     /// Takes the rows at the temperature that they show, as soon as they show it: far from the one of the motor file they are
@@ -365,14 +370,17 @@ impl Motion {
     fn follow_heating(&self, state: &mut MotionState, outcome: &Outcome) {
         let [.., prior] = self.priors.0;
         let [mean, deviation] = outcome.heating;
-        state.rise_deviation = deviation * prior;
+        state.rise_open = [mean * prior, deviation * prior];
         let [least, most] = RISES;
         let wanted = (state.rise + (1.0 + state.rise) * mean * prior).max(least).min(most);
         let relative = (wanted - state.rise) / (1.0 + state.rise);
-        if deviation > KNOWN_HEATING || relative.abs() < LEAST_REVISION {
+        let unsure = deviation > KNOWN_HEATING || state.scatter.remembers_slip();
+        if unsure || relative.abs() < LEAST_REVISION {
             return;
         }
         state.rise = wanted;
+        state.rise_open = [0.0, deviation * prior];
+        state.revised += relative.abs();
         state.decision.revise_heating(relative / prior);
         let moved = state.influences.of_rotor_resistance() * relative;
         state.observer.flux += moved;
@@ -434,7 +442,7 @@ impl MotionState {
         *self = MotionState {
             decision: self.decision,
             rise: self.rise,
-            rise_deviation: self.rise_deviation,
+            rise_open: self.rise_open,
             count: self.count,
             raised: self.raised,
             ..MotionState::default()

@@ -4,6 +4,7 @@ use num_complex::Complex32;
 
 use super::circuit::Circuit;
 use super::departures::{Priors, UNKNOWNS, place};
+use super::influence::SKIN_SLIP;
 use super::information::{ROWS, White};
 use super::rows::{I_0, Q, Rows, V_0};
 
@@ -42,6 +43,9 @@ pub struct Scatter {
     current: Roughness,
     /// Current of the cycle before, share of rated.
     before: f32,
+    /// Skin effect and bent leakage that the rotor flux still remembers, shares of what they can be.
+    skin: f32,
+    high: f32,
 }
 
 /// What the scatter of one cycle's rows depends on besides noise.
@@ -49,14 +53,14 @@ pub struct Scatter {
 pub struct Circumstances {
     /// Samples in the cycle.
     pub samples: f32,
-    /// Slip, share of rated supply frequency.
-    pub slip: f32,
+    /// Slip, share of rated supply frequency, and share of the present one.
+    pub slip: [f32; 2],
     /// Length of the current vector, A.
     pub current: f32,
     /// Rotor flux at the end of the cycle, V s.
     pub flux: f32,
-    /// How well the winding's temperature is known: standard deviation of the resistances' common rise.
-    pub heating: f32,
+    /// How far the resistances' common rise may be from the one that the rows are taken at, or was lately, squared.
+    pub heating_square: f32,
 }
 
 /// Scatter that stays of E+ and E- without any noise: the encoder's steps.
@@ -69,6 +73,8 @@ const STEP_SHARE: f32 = 3e-3;
 const HIGH_CURRENT_SHARE: f32 = 0.03;
 /// Squared current, share of rated, that counts as high.
 const HIGH_CURRENT: f32 = 9.0;
+/// Share of the rotor's resistance at high slip that no shape explains, where all of the skin effect has come.
+const SKIN_SHARE: f32 = 0.05;
 /// Share of the inertia's torque that a step within a cycle leaves open.
 const ACCELERATION_SHARE: f32 = 0.02;
 /// Standard deviation of a row that says nothing.
@@ -109,21 +115,31 @@ impl Scatter {
         let rated = &circuit.rated;
         let n = now.samples.max(1.0);
         let (of_u, of_i) = (self.voltage.take(n), self.current.take(n));
-        let z = circuit.impedance(now.slip);
+        let [slip, present] = now.slip;
+        let z = circuit.impedance(slip.max(0.0).min(2.0));
         let current = now.current / rated.current;
         let step = current - core::mem::replace(&mut self.before, current);
         let turn = rows.acceleration * n * circuit.t_sample * circuit.mechanics.n_p / rated.omega;
         let square = current * current;
+        let remembered = libm::expf(-n * circuit.t_sample / circuit.rotor_time());
         let high = square / (square + HIGH_CURRENT);
+        self.high = high.max(remembered * self.high);
+        let skin = skin_of(slip).max(skin_of(present));
+        self.skin = skin.max(remembered * self.skin);
+        let (high, skin) = (self.high, self.skin);
+        let end = libm::sqrtf(2.0 * of_i) * circuit.params.l_a() / (n * circuit.t_sample);
         let column = |k: usize, row: usize| sensitivity(rows, row, k);
         let length = |k: usize| {
             let squares = (0..Q).map(|row| column(k, row) * column(k, row));
             libm::sqrtf(0.5 * squares.sum::<f32>())
         };
         // What is of second order in a temperature that is not known yet.
-        let second = now.heating * now.heating;
+        let second = now.heating_square;
         let e = norm(&[
             libm::sqrtf((of_u + z * z * of_i) / n) / rated.voltage,
+            // What the ends of the cycle leave of the current's noise.
+            end / rated.voltage,
+            SKIN_SHARE * skin * length(place::R_R),
             VOLTAGE_FLOOR,
             STEP_SHARE * step,
             STEP_SHARE * turn,
@@ -141,6 +157,7 @@ impl Scatter {
             HIGH_CURRENT_SHARE * high * current,
             HIGH_CURRENT_SHARE * high * leakage,
             second * column(place::HEATING, Q),
+            SKIN_SHARE * skin * column(place::R_R, Q),
         ]);
         // The three cycles of the torque's row are shared with two others.
         let q = if rows.has_torque { SQRT_3 * q } else { SILENT };
@@ -158,6 +175,21 @@ fn sensitivity(rows: &Rows, row: usize, k: usize) -> f32 {
     debug_assert!(k < UNKNOWNS);
     let row = rows.sensitivities.get(row);
     row.and_then(|row| row.get(k)).copied().unwrap_or_default()
+}
+
+/// Skin effect beyond which resistances tell the cage's depth and not its temperature, share of what it can be.
+const DEEP: f32 = 0.3;
+
+impl Scatter {
+    /// Whether the rotor flux still remembers a high slip.
+    pub fn remembers_slip(&self) -> bool {
+        self.skin > DEEP
+    }
+}
+
+/// Share of the skin effect at a slip, as the shape has it.
+fn skin_of(slip: f32) -> f32 {
+    slip * slip / (slip * slip + SKIN_SLIP)
 }
 
 fn norm(parts: &[f32]) -> f32 {
