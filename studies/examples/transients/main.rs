@@ -123,7 +123,7 @@ fn faults(draws: u64, drive: Drive, during: bool, doubts: &Doubts, motors: &[&st
                 delays.len(),
                 outcomes.len(),
                 delays.get(delays.len() / 2).copied().unwrap_or(f64::NAN),
-                outcomes.iter().map(|(o, _)| o.named.map(|n| format!("{n:?}").replace("Departure { cause: ", ""))).collect::<Vec<_>>(),
+                outcomes.iter().map(|(o, _)| o.named.map(|n| format!("{n:?}").replace("Departure", ""))).collect::<Vec<_>>(),
             );
         }
     }
@@ -144,6 +144,15 @@ fn main() {
             let r = run(&believed, drive, &d, None, 1000 * drive as u64 + arguments[3].parse::<u64>().unwrap());
             println!("{:?}", r.scenario.effects);
             let _ = judge(&believed, &r, &d, false);
+        }
+        Some("doubts") => {
+            let n = number(1);
+            let u = Doubts::USUAL;
+            healthy(n, &Doubts { undeclared_iron: 0.15, ..u }, "iron of 0.15 that is not declared", &["peer-2k2-calibrated", "assumed-300w"]);
+            healthy(n, &Doubts { offset: 0.005, ..u }, "offset of 0.5 % of full scale in current a", &["peer-2k2-calibrated", "assumed-300w", "imc-18k5"]);
+            healthy(n, &Doubts { late_s: 5e-6, ..u }, "currents 5 us late", &["peer-2k2-calibrated", "assumed-300w", "imc-18k5"]);
+            healthy(n, &Doubts { backwards: true, ..u }, "backwards", &["peer-2k2-saturating-calibrated", "assumed-300w", "imc-18k5"]);
+            healthy(n, &Doubts { noise: 0.005, ..u }, "noise 0.5 %", &["peer-2k2-calibrated", "assumed-300w", "imc-18k5"]);
         }
         Some("press") => faults(number(1), Drive::Press, true, &Doubts::USUAL, &MOTORS),
         Some("start") => faults(number(1), Drive::DirectStart, false, &Doubts::USUAL, &MOTORS),

@@ -43,7 +43,7 @@ impl core::fmt::Display for NoMotion {
 /// Limits of the decision. `T` is a sum of many cycles with unit variance on a healthy motor; 17 causes and 50 cycles a second
 /// are tried, and the rest of the margin is for what the T model lacks.
 const LIMITS: Limits = Limits {
-    statistic: 5.5,
+    statistic: 6.5,
     square: 75.0,
 };
 /// Fewest samples of a rated cycle: the trapezoidal rule is then off by 5e-4.
@@ -53,6 +53,9 @@ const PART_S: f32 = 1e-3;
 /// Winding temperatures between which the motor file's resistances may lie, standard deviation of their rise, where no calibration
 /// says it: 75 K.
 const ANY_HEATING: f32 = 0.295;
+/// Saturation that a motor may have whose file declares none, and how far that moves its mean magnetizing inductance.
+const ANY_IRON: f32 = 0.15;
+const ANY_MAGNETIZING: f32 = 0.02;
 /// A parameter whose interval is wider than this many of its priors is known too roughly.
 const ROUGH: f32 = 2.0;
 
@@ -71,7 +74,11 @@ impl Motion {
         if samples < LEAST_SAMPLES {
             return Err(NoMotion::SampledTooSlowly);
         }
-        let priors = priors(config);
+        let mut priors = priors(config);
+        if circuit.iron == Iron::LINEAR {
+            priors.widen(place::IRON, ANY_IRON);
+            priors.widen(place::L_M, ANY_MAGNETIZING);
+        }
         if is_rough(&config.doubt, &priors) {
             return Err(NoMotion::RoughParameters);
         }

@@ -59,8 +59,6 @@ pub struct Best {
     pub hypothesis: usize,
     /// `T`.
     pub statistic: f32,
-    /// Size in units of the prior.
-    pub size: f32,
 }
 
 /// The alarm's course.
@@ -100,8 +98,8 @@ pub struct Outcome {
     pub square: f32,
     /// The alarm was raised with this cycle.
     pub raised: bool,
-    /// The cause was named with this cycle.
-    pub named: Option<Best>,
+    /// Scores of the causes twenty judged cycles after the alarm.
+    pub named: Option<Scores>,
     /// Heating against what the rows were taken at, and its standard deviation, in units of the prior.
     pub heating: [f32; 2],
 }
@@ -113,7 +111,7 @@ impl Decision {
         self.remember(cycle);
         let (absolute, heating) = self.absolute(&self.absolute);
         let scores = absolute.strongest(&self.onset());
-        let best = scores.best();
+        let best = scores.best_of(|_, _| true);
         let square = squared_length(cycle);
         let beyond = best.statistic.abs() > limits.statistic || square > limits.square;
         let raised = self.follow(beyond);
@@ -221,7 +219,7 @@ impl Decision {
         false
     }
 
-    fn name(&mut self, scores: &Scores) -> Option<Best> {
+    fn name(&mut self, scores: &Scores) -> Option<Scores> {
         let Course::Raised(cycles) = self.course else {
             return None;
         };
@@ -231,11 +229,11 @@ impl Decision {
         }
         self.course = Course::Named(0);
         let (since, _) = self.absolute(&self.since);
-        let best = scores.strongest(&since).best();
+        let named = scores.strongest(&since);
         // What follows is judged against a past of its own.
         (self.waiting, self.latest) = (Information::default(), Information::default());
         (self.baseline, self.baseline_cycles, self.in_block) = (Information::default(), 0, 0);
-        Some(best)
+        Some(named)
     }
 
     /// From now on the rows are taken at a rise that lies `delta` further on, in units of the prior.
@@ -309,19 +307,17 @@ impl Scores {
         both
     }
 
-    fn best(&self) -> Best {
+    /// The cause with the largest `|T|` among those of which `admits` accepts the size, in units of the prior.
+    pub fn best_of(&self, admits: impl Fn(&Hypothesis, f32) -> bool) -> Best {
         let mut best = Best {
             hypothesis: 0,
             statistic: 0.0,
-            size: 0.0,
         };
-        for (k, (t, w)) in self.statistics.iter().zip(self.weights).enumerate() {
-            if t.abs() > best.statistic.abs() {
-                best = Best {
-                    hypothesis: k,
-                    statistic: *t,
-                    size: t / w.max(f32::MIN_POSITIVE),
-                };
+        let all = ALL.iter().zip(self.statistics.iter().zip(&self.weights));
+        for (k, (hypothesis, (t, w))) in all.enumerate() {
+            let size = t / w.max(f32::MIN_POSITIVE);
+            if t.abs() > best.statistic.abs() && admits(hypothesis, size) {
+                (best.hypothesis, best.statistic) = (k, *t);
             }
         }
         best

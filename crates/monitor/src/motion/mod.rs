@@ -31,7 +31,7 @@ use crate::input::sample::{CHANNELS, ClippedChannels, SpeedSample};
 use crate::isolation::Cause;
 use crate::sync::rotation::small_rotation;
 use circuit::{Circuit, Coefficients};
-use decision::{Best, Decision, Outcome};
+use decision::{Decision, Outcome, Scores};
 use departures::ALL;
 use gate::{Gate, Seen};
 use influence::Influences;
@@ -150,15 +150,12 @@ pub struct MotionAlarm {
 /// What an alarm in motion is put down to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MotionCause {
-    /// A departure of motor, load or instrument, with its size as a share of the healthy value.
-    Departure {
-        /// The cause.
-        cause: Cause,
-        /// Its size, where small: larger ones are only larger.
-        size: f32,
-    },
+    /// A departure of motor, load or instrument.
+    Departure(Cause),
     /// A channel that shows nothing.
     Dead(SensorFinding),
+    /// None of the causes explains it with a size that occurs.
+    Untold,
 }
 
 /// Share of the limit at which the statistic has left the noise.
@@ -169,6 +166,10 @@ const LEAST_REVISION: f32 = 0.005;
 const RISES: [f32; 2] = [-0.4, 1.0];
 /// Standard deviation below which heating may be revised, share of its prior.
 const KNOWN_HEATING: f32 = 0.25;
+/// A cause larger than so many times its typical size does not occur.
+const MOST_TYPICAL: f32 = 2.5;
+/// The cause that is named explains at least this share of what the strongest would.
+const LEAST_SHARE: f32 = 0.7;
 /// A rotor that turns further from one sample to the next is no rotor, electrical rad.
 const FASTEST: f32 = 0.7;
 
@@ -411,24 +412,29 @@ impl Motion {
             state.raised = Some((state.restless_since.unwrap_or(began), state.count));
         }
         let (onset_sample, raised_sample) = state.raised?;
-        let seen = outcome.named.unwrap_or(outcome.best);
-        (outcome.raised || outcome.named.is_some()).then(|| MotionAlarm {
+        let named = outcome.named.as_ref();
+        let best = named.map_or(outcome.best, |scores| scores.best_of(|_, _| true));
+        (outcome.raised || named.is_some()).then(|| MotionAlarm {
             onset_sample,
             raised_sample,
-            statistic: seen.statistic,
-            named: outcome.named.map(|best| self.cause(&best, dead)),
+            statistic: best.statistic.abs(),
+            named: named.map(|scores| self.cause(scores, dead)),
         })
     }
 
-    fn cause(&self, best: &Best, dead: Option<SensorFinding>) -> MotionCause {
+    fn cause(&self, scores: &Scores, dead: Option<SensorFinding>) -> MotionCause {
         if let Some(finding) = dead {
             return MotionCause::Dead(finding);
         }
-        let hypothesis = ALL.get(best.hypothesis).unwrap_or(&ALL[0]);
-        let prior = self.priors.0.get(hypothesis.first).unwrap_or(&0.0);
-        MotionCause::Departure {
-            cause: hypothesis.cause,
-            size: best.size * prior,
+        let best = scores.best_of(|_, _| true);
+        let told = scores.best_of(|hypothesis, size| {
+            let prior = self.priors.0.get(hypothesis.first).unwrap_or(&1.0);
+            (size * prior).abs() < MOST_TYPICAL * hypothesis.cause.typical_size()
+        });
+        let hypothesis = ALL.get(told.hypothesis);
+        match hypothesis.filter(|_| told.statistic.abs() > LEAST_SHARE * best.statistic.abs()) {
+            Some(hypothesis) => MotionCause::Departure(hypothesis.cause),
+            None => MotionCause::Untold,
         }
     }
 }

@@ -74,7 +74,7 @@ const HIGH_CURRENT_SHARE: f32 = 0.03;
 /// Squared current, share of rated, that counts as high.
 const HIGH_CURRENT: f32 = 9.0;
 /// Share of the rotor's resistance at high slip that no shape explains, where all of the skin effect has come.
-const SKIN_SHARE: f32 = 0.05;
+const SKIN_SHARE: f32 = 0.07;
 /// Share of the inertia's torque that a step within a cycle leaves open.
 const ACCELERATION_SHARE: f32 = 0.02;
 /// Standard deviation of a row that says nothing.
