@@ -85,8 +85,8 @@ pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
 pub use motion::{
-    MOTION_ROWS, Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NoMotion,
-    NotInMotion, Supply,
+    MOTION_ROWS, Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState,
+    NoMotion, NotInMotion, Supply,
 };
 pub use motor::FaultId;
 pub use reason::Reason;

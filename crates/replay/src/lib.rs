@@ -24,6 +24,7 @@ pub mod causes;
 pub mod channels;
 pub mod check;
 mod judgement;
+mod motion;
 pub mod operating_points;
 mod rotor;
 mod samples;
@@ -33,6 +34,7 @@ mod trace;
 pub mod words;
 
 pub use judgement::{Direction, NotJudgedShare, Unjudged};
+pub use motion::{Follower, MotionFault, MotionShare, MotionSummary};
 pub use rotor::{RotorCage, RotorSummary};
 pub use samples::{Samples, Timed};
 pub use timeline::{LampState, SequenceSummary, Timeline, Verdict, VerdictState};
@@ -123,16 +125,22 @@ pub fn replay(
 ) -> Timeline {
     let mut state = MonitorState::default();
     let mut timeline = Timeline::new(monitor.config());
+    let mut follower = Follower::new(monitor);
     for (k, timed) in samples.iter().enumerate() {
         if timed.after_gap {
             state.resume_after_gap();
+            follower.resume_after_gap();
         }
-        if let Some(report) = monitor.update(&mut state, &timed.sample) {
+        let report = monitor.update(&mut state, &timed.sample);
+        follower.update(timed.t, &timed.sample, &state);
+        if let Some(report) = report {
+            follower.window(&report);
             timeline.add(timed.t, &report);
             progress(k + 1);
         }
     }
     timeline.finish();
+    timeline.motion = follower.finish();
     timeline
 }
 

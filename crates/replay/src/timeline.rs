@@ -13,6 +13,7 @@ use super::rotor::{RotorHistory, RotorSummary};
 use super::trace::Trace;
 use crate::causes::{self, Candidate};
 use crate::judgement::{Direction, NotJudgedShare, Reasons, Unjudged};
+use crate::motion::MotionSummary;
 
 /// The lamps from one moment on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -132,6 +133,8 @@ pub struct Timeline {
     pub not_judged: Vec<NotJudgedShare>,
     /// Every window in the order of time.
     pub trace: Trace,
+    /// What was judged while something changed.
+    pub motion: MotionSummary,
     reasons: Reasons,
     shown: Option<(Lamps, Option<NotJudged>)>,
     moments: Moments,
@@ -204,6 +207,7 @@ impl Timeline {
 
     /// Says that the residuals lack the motor's parameters rather than its speed.
     pub fn blame_missing_motor_file(&mut self) {
+        self.motion.not_possible = Some(Unjudged::NoMotorFile.to_string());
         let no_speed = Unjudged::ByCore(NotJudged::NoSpeed);
         let in_shares = self.not_judged.iter_mut().map(|share| &mut share.reason);
         let in_lamps = self.lamps.iter_mut();

@@ -1,7 +1,7 @@
 //! What the core's findings are called in front of people.
 
 use crate::{RotorCage, RotorSummary};
-use monitor::{NotJudged, Reason, SensorFinding, Sidebands, SupplyFinding};
+use monitor::{NotInMotion, NotJudged, Reason, SensorFinding, Sidebands, SupplyFinding};
 
 /// Why a window was not judged, with what to do about it.
 pub fn not_judged(reason: NotJudged) -> String {
@@ -21,6 +21,20 @@ pub fn not_judged(reason: NotJudged) -> String {
         NotJudged::Reversing => {
             "the shaft turns against the field: braking or reversing".to_owned()
         }
+    }
+}
+
+/// Why a cycle was not judged in motion.
+pub fn not_in_motion(reason: NotInMotion) -> &'static str {
+    match reason {
+        NotInMotion::Missing => "a voltage, a current, the speed or the torque is missing",
+        NotInMotion::Clipped => "a channel clipped, and the rotor flux remembers it",
+        NotInMotion::NoSupply => "no periodic supply between 5 and 100 Hz",
+        NotInMotion::NoCurrent => "the motor draws no current",
+        NotInMotion::FluxUnknown => {
+            "the rotor flux is not known yet: first cycles, or a start on a turning shaft"
+        }
+        NotInMotion::AgainstField => "the shaft turns against the field, or did so shortly ago",
     }
 }
 

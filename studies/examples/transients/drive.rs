@@ -26,7 +26,7 @@ pub enum Drive {
     SupplyRamp,
     FrequencyRamp,
     Hoist,
-    Restart,
+    Interruption,
 }
 
 pub const DRIVES: [Drive; 10] = [
@@ -39,7 +39,7 @@ pub const DRIVES: [Drive; 10] = [
     Drive::SupplyRamp,
     Drive::FrequencyRamp,
     Drive::Hoist,
-    Drive::Restart,
+    Drive::Interruption,
 ];
 
 impl Drive {
@@ -54,7 +54,7 @@ impl Drive {
             Drive::SupplyRamp => "supply -10 % in 3 s",
             Drive::FrequencyRamp => "V/Hz ramp, 8 Hz to rated in 2 s",
             Drive::Hoist => "hoist, lifting and lowering",
-            Drive::Restart => "off for 0.3 s and on again",
+            Drive::Interruption => "interruption of 0.3 s",
         }
     }
 
@@ -64,7 +64,7 @@ impl Drive {
             Drive::DirectStart => 1.2,
             Drive::StarDelta => 1.5,
             Drive::LoadStep | Drive::Dip => 1.2,
-            Drive::LoadRamp | Drive::Restart => 1.8,
+            Drive::LoadRamp | Drive::Interruption => 1.8,
             Drive::Press => 3.0,
             Drive::SupplyRamp => 3.6,
             Drive::FrequencyRamp => 2.6,
@@ -117,7 +117,6 @@ impl Doubts {
 /// A fault, where it begins: at once, or while the machine moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Break {
-    pub name: &'static str,
     pub targets: &'static [Target],
     pub percent: f64,
     pub from_s: Option<f64>,
@@ -138,7 +137,13 @@ pub struct Run {
 }
 
 /// Makes the scenario of a seed.
-pub fn run(believed: &MotorFile, drive: Drive, doubts: &Doubts, fault: Option<&Break>, seed: u64) -> Run {
+pub fn run(
+    believed: &MotorFile,
+    drive: Drive,
+    doubts: &Doubts,
+    fault: Option<&Break>,
+    seed: u64,
+) -> Run {
     let mut rng = Pcg64::seed_from_u64(seed);
     let plant = plant(believed, doubts, &mut rng);
     let plate = &believed.nameplate;
@@ -150,8 +155,18 @@ pub fn run(believed: &MotorFile, drive: Drive, doubts: &Doubts, fault: Option<&B
     };
     let mut s = Scenario::of(plant, before + drive.duration());
     s.seed = seed;
-    s.start = if drive.starts() { Start::Standstill } else { Start::Running };
-    s.supply = supply(drive, plate.phase_voltage_amplitude(), hertz, before, &mut rng);
+    s.start = if drive.starts() {
+        Start::Standstill
+    } else {
+        Start::Running
+    };
+    s.supply = supply(
+        drive,
+        plate.phase_voltage_amplitude(),
+        hertz,
+        before,
+        &mut rng,
+    );
     s.load = load(drive, plate.torque_nm, hertz, before, &mut rng);
     s.sensors = sensors(believed, doubts, &mut rng);
     s.effects = bends(believed, doubts, &mut rng);
@@ -215,7 +230,10 @@ fn bends(believed: &MotorFile, doubts: &Doubts, rng: &mut Pcg64) -> Vec<EffectEn
     let mut effects = Vec::new();
     if doubts.bends {
         let amp = 12.0_f64.sqrt() * believed.nameplate.current_amplitude();
-        let leakage = [("leakage_drop", rng.random_range(0.05..0.3)), ("reference_current_amp", amp)];
+        let leakage = [
+            ("leakage_drop", rng.random_range(0.05..0.3)),
+            ("reference_current_amp", amp),
+        ];
         effects.push(EffectEntry::with_numbers("leakage-saturation", leakage));
         let cage = [
             ("resistance_rise", rng.random_range(0.05..0.4)),
@@ -262,7 +280,7 @@ fn supply(drive: Drive, rated: f64, hertz: f64, before: f64, rng: &mut Pcg64) ->
             frequency.change(before + 0.2, hertz, 2.0);
             components = Vec::new();
         }
-        Drive::Restart => {
+        Drive::Interruption => {
             volts.change(before + 0.2, 0.0, 0.0);
             volts.change(before + 0.5, amplitude, 0.0);
         }
@@ -312,7 +330,12 @@ fn press(before: f64, hertz: f64) -> Vec<(f64, f64)> {
     let mut t = before;
     while t < before + 4.0 {
         let at = |share: f64| t + share * stroke;
-        points.extend([(at(0.0), 0.1), (at(0.02), 0.85), (at(0.5), 0.85), (at(0.52), 0.1)]);
+        points.extend([
+            (at(0.0), 0.1),
+            (at(0.02), 0.85),
+            (at(0.5), 0.85),
+            (at(0.52), 0.1),
+        ]);
         t += stroke;
     }
     points
@@ -320,7 +343,15 @@ fn press(before: f64, hertz: f64) -> Vec<(f64, f64)> {
 
 fn hoist(before: f64) -> Vec<(f64, f64)> {
     let at = |t: f64| before + t;
-    vec![(0.0, 0.3), (at(0.2), 0.3), (at(0.3), 0.8), (at(1.2), 0.8), (at(1.3), -0.4), (at(2.2), -0.4), (at(2.3), 0.5)]
+    vec![
+        (0.0, 0.3),
+        (at(0.2), 0.3),
+        (at(0.3), 0.8),
+        (at(1.2), 0.8),
+        (at(1.3), -0.4),
+        (at(2.2), -0.4),
+        (at(2.3), 0.5),
+    ]
 }
 
 fn sensors(believed: &MotorFile, doubts: &Doubts, rng: &mut Pcg64) -> SensorSpec {

@@ -1,8 +1,8 @@
 //! One run through the core as the board samples it: windows at rest and cycles in motion side by side.
 
 use monitor::{
-    Abc, Lamp, Monitor, MonitorConfig, MonitorState, Motion, MotionCause, MotionCycle, MotionSample,
-    MotionState, NotInMotion, RawSample, Sample,
+    Abc, Monitor, MonitorConfig, MonitorState, Motion, MotionCause, MotionCycle, MotionSample,
+    MotionState, RawSample, Sample,
 };
 use motor::MotorFile;
 use scenario::simulate::{SimSample, Simulation};
@@ -17,74 +17,60 @@ pub struct Outcome {
     /// Alarm before the fault.
     pub early: bool,
     pub named: Option<MotionCause>,
-    pub size: f32,
-    /// Largest statistic and square in two cycles running, while no fault was there.
+    /// Largest statistic in two cycles running, while no fault was there.
     pub largest: f32,
-    pub largest_square: f32,
     /// Cycles after the supply came on, and those that were judged.
     pub cycles: u32,
     pub judged: u32,
-    pub reasons: Vec<(NotInMotion, u32)>,
-    /// FAULT of the windows at rest, s.
-    pub steady_s: Option<f64>,
     /// Every cycle's rows.
     pub rows: Vec<([f32; 9], bool)>,
-    /// Seconds of the experiment.
-    pub seconds: f64,
 }
 
-pub fn judge(believed: &MotorFile, run: &Run, doubts: &Doubts, faulty: bool) -> Result<Outcome, String> {
+pub fn judge(
+    believed: &MotorFile,
+    run: &Run,
+    doubts: &Doubts,
+    faulty: bool,
+) -> Result<Outcome, String> {
     let simulation = Simulation::new(&run.scenario).map_err(|error| error.to_string())?;
     let t_sample = run.scenario.t_sample();
-    let config = MonitorConfig::from_motor_file(believed, t_sample).map_err(|error| error.to_string())?;
+    let config =
+        MonitorConfig::from_motor_file(believed, t_sample).map_err(|error| error.to_string())?;
     let motion = Motion::new(&config).map_err(|error| error.to_string())?;
     let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
     let (mut state, mut moving) = (MonitorState::default(), MotionState::default());
     let mut outcome = Outcome::default();
     let late = (doubts.late_s / t_sample) as f32;
     let mut before = None;
-    let mut last = (0.0_f32, 0.0_f32);
+    let mut last = 0.0_f32;
     for sample in simulation {
         let shown = shown(&monitor, &sample, run.torque_gain, doubts.backwards);
         let shown = delayed(shown, &mut before, late);
-        if let Some(report) = monitor.update(&mut state, &shown) {
-            let lit = report.lamps.fault == Lamp::On;
-            if lit && outcome.steady_s.is_none() && sample.t > run.fault_s {
-                outcome.steady_s = Some(sample.t);
-            }
-        }
+        monitor.update(&mut state, &shown);
         let supply = state.supply();
-        let both = MotionSample { sample: shown, supply };
+        let both = MotionSample {
+            sample: shown,
+            supply,
+        };
         if let Some(cycle) = motion.update(&mut moving, &both) {
-            if std::env::var("TRACE").is_ok() {
-                println!("{:.3} {:?} T {:.1} {:?} chi2 {:.0} rise {:.3} rows {:?}", sample.t, cycle.not_judged, cycle.statistic, cycle.leading, cycle.square, moving.rise_of(), cycle.rows.map(|x| (x*1e5).round() / 1e3));
-            }
             outcome.take(&cycle, sample.t, run, faulty, &mut last);
         }
-        outcome.seconds = sample.t;
     }
     Ok(outcome)
 }
 
 impl Outcome {
-    fn take(&mut self, cycle: &MotionCycle, t: f64, run: &Run, faulty: bool, last: &mut (f32, f32)) {
+    fn take(&mut self, cycle: &MotionCycle, t: f64, run: &Run, faulty: bool, last: &mut f32) {
         if t > run.on_s {
             self.cycles += 1;
             self.judged += u32::from(cycle.not_judged.is_none());
-            if let Some(reason) = cycle.not_judged {
-                match self.reasons.iter_mut().find(|(known, _)| *known == reason) {
-                    Some((_, n)) => *n += 1,
-                    None => self.reasons.push((reason, 1)),
-                }
-            }
         }
         let present = faulty && t > run.fault_s;
         if !present {
-            self.largest = self.largest.max(cycle.statistic.min(last.0));
-            self.largest_square = self.largest_square.max(cycle.square.min(last.1));
+            self.largest = self.largest.max(cycle.statistic.min(*last));
             self.rows.push((cycle.rows, cycle.not_judged.is_none()));
         }
-        *last = (cycle.statistic, cycle.square);
+        *last = cycle.statistic;
         let Some(alarm) = &cycle.alarm else {
             return;
         };
@@ -97,7 +83,6 @@ impl Outcome {
             && self.named.is_none()
         {
             self.named = Some(named);
-            self.size = alarm.statistic;
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Which motors can be judged in motion, and with which constants.
 
 use crate::config::{LoadKind, MonitorConfig};
-use crate::model::doubt::ParameterDoubt;
 use crate::model::effects::ActiveEffect;
 use crate::model::residuals::FieldCurrent;
 
@@ -13,10 +12,10 @@ use super::{KnownLoad, Motion, rated_step};
 /// Why a motor cannot be judged in motion at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoMotion {
+    /// Without a calibration nothing says how far the parameters may be off.
+    NotCalibrated,
     /// The motor file holds an effect or a law that the flux equations in motion do not have; its name.
     Effect(&'static str),
-    /// The parameters come from a plate: they are known too roughly.
-    RoughParameters,
     /// The motor file asks for the published instrument with its constant field current.
     NominalField,
     /// Fewer samples a cycle than the flux equations need.
@@ -26,12 +25,12 @@ pub enum NoMotion {
 impl core::fmt::Display for NoMotion {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
+            NoMotion::NotCalibrated => f.write_str(
+                "the motor is not calibrated, so nothing says how far its parameters may be off (drivemon calibrate)",
+            ),
             NoMotion::Effect(name) => {
                 write!(f, "the motor file's {name} is not in the equations of motion")
             }
-            NoMotion::RoughParameters => f.write_str(
-                "the motor's parameters are known from its plate only: calibrate it, or identify it with recordings",
-            ),
             NoMotion::NominalField => f.write_str("the motor file takes a constant field current"),
             NoMotion::SampledTooSlowly => {
                 f.write_str("it takes 80 samples a cycle: record at 5 kHz or more")
@@ -50,14 +49,9 @@ const LIMITS: Limits = Limits {
 const LEAST_SAMPLES: f32 = 80.0;
 /// Length of a part of a cycle, s.
 const PART_S: f32 = 1e-3;
-/// Winding temperatures between which the motor file's resistances may lie, standard deviation of their rise, where no calibration
-/// says it: 75 K.
-const ANY_HEATING: f32 = 0.295;
 /// Saturation that a motor may have whose file declares none, and how far that moves its mean magnetizing inductance.
 const ANY_IRON: f32 = 0.15;
 const ANY_MAGNETIZING: f32 = 0.02;
-/// A parameter whose interval is wider than this many of its priors is known too roughly.
-const ROUGH: f32 = 2.0;
 
 impl Motion {
     /// Prepares a motor whose configuration is valid.
@@ -74,13 +68,11 @@ impl Motion {
         if samples < LEAST_SAMPLES {
             return Err(NoMotion::SampledTooSlowly);
         }
-        let mut priors = priors(config);
+        let healthy = config.healthy.as_ref().ok_or(NoMotion::NotCalibrated)?;
+        let mut priors = Priors::of(&healthy.uncertainty);
         if circuit.iron == Iron::LINEAR {
             priors.widen(place::IRON, ANY_IRON);
             priors.widen(place::L_M, ANY_MAGNETIZING);
-        }
-        if is_rough(&config.doubt, &priors) {
-            return Err(NoMotion::RoughParameters);
         }
         Ok(Motion {
             priors,
@@ -154,29 +146,4 @@ fn move_leakage(circuit: &mut Circuit, location: f32) {
     circuit.params.l_m = l_m;
     circuit.params.r_r = k * k * p.r_r;
     circuit.params.l_lr = k * k * p.l_r() - l_m;
-}
-
-fn priors(config: &MonitorConfig) -> Priors {
-    let Some(healthy) = &config.healthy else {
-        let mut priors = Priors::of(&Default::default());
-        priors.widen(place::HEATING, ANY_HEATING);
-        return priors;
-    };
-    Priors::of(&healthy.uncertainty)
-}
-
-/// Whether the motor file's intervals are wider than motion can do with.
-fn is_rough(doubt: &ParameterDoubt, priors: &Priors) -> bool {
-    let places = [
-        place::R_S,
-        place::R_R,
-        place::LEAKAGE,
-        place::LEAKAGE,
-        place::L_M,
-    ];
-    let wide = |(place, deviation): (usize, &f32)| {
-        let prior = priors.0.get(place).copied().unwrap_or_default();
-        *deviation > ROUGH * prior
-    };
-    places.into_iter().zip(&doubt.circuit).any(wide)
 }

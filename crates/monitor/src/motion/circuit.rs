@@ -127,9 +127,7 @@ impl Circuit {
     pub fn impedance(&self, slip: f32) -> f32 {
         let p = &self.params;
         let omega = self.rated.omega;
-        let rotor = p.l_m * p.l_m
-            / p.l_r()
-            / Complex32::new(1.0, slip * omega * self.rotor_time());
+        let rotor = p.l_m * p.l_m / p.l_r() / Complex32::new(1.0, slip * omega * self.rotor_time());
         magnitude(Complex32::new(p.r_s, 0.0) + Complex32::new(0.0, omega) * (rotor + p.l_a()))
     }
 }

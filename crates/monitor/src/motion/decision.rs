@@ -204,7 +204,11 @@ impl Decision {
 
     /// Two cycles running raise the alarm.
     fn follow(&mut self, beyond: bool) -> bool {
-        self.running = if beyond { self.running.saturating_add(1) } else { 0 };
+        self.running = if beyond {
+            self.running.saturating_add(1)
+        } else {
+            0
+        };
         match self.course {
             Course::Quiet if self.running >= RUNNING => {
                 self.course = Course::Raised(0);
@@ -299,7 +303,8 @@ impl Scores {
     fn strongest(&self, other: &Scores) -> Scores {
         let mut both = *self;
         let places = both.statistics.iter_mut().zip(&mut both.weights);
-        for ((t, w), (t_other, w_other)) in places.zip(other.statistics.iter().zip(&other.weights)) {
+        for ((t, w), (t_other, w_other)) in places.zip(other.statistics.iter().zip(&other.weights))
+        {
             if t_other.abs() > t.abs() {
                 (*t, *w) = (*t_other, *w_other);
             }

@@ -64,8 +64,8 @@ pub struct Priors(pub [f32; UNKNOWNS]);
 
 /// What even a calibration leaves open in motion, where each parameter counts that rest does not show.
 const LEAST: [f32; UNKNOWNS] = [
-    0.02, 0.03, 0.01, 0.05, 0.2, 0.02, 0.003, 0.003, 0.003, 0.003, 0.003, 0.003, 1e-4, 0.003, 0.003,
-    0.003, 0.005, 0.3, 0.25, 0.04, 0.03,
+    0.02, 0.03, 0.01, 0.05, 0.2, 0.02, 0.003, 0.003, 0.003, 0.003, 0.003, 0.003, 1e-4, 0.003,
+    0.003, 0.003, 0.005, 0.3, 0.25, 0.04, 0.03,
 ];
 
 impl Priors {
@@ -115,12 +115,20 @@ pub struct Hypothesis {
 
 const fn one(cause: Cause, first: usize) -> Hypothesis {
     let count = 1;
-    Hypothesis { cause, first, count }
+    Hypothesis {
+        cause,
+        first,
+        count,
+    }
 }
 
 const fn three(cause: Cause, first: usize) -> Hypothesis {
     let count = 3;
-    Hypothesis { cause, first, count }
+    Hypothesis {
+        cause,
+        first,
+        count,
+    }
 }
 
 /// Every cause that motion can tell.

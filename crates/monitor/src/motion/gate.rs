@@ -75,7 +75,11 @@ impl Gate {
     pub fn seed(&mut self, circuit: &Circuit, at_rest: bool) {
         self.is_seeded = true;
         let [_, guessed] = FORGOTTEN;
-        let left = if at_rest { FIRST_CYCLES } else { cycles(circuit, guessed) };
+        let left = if at_rest {
+            FIRST_CYCLES
+        } else {
+            cycles(circuit, guessed)
+        };
         (self.left, self.reason) = (left.saturating_add(1), NotInMotion::FluxUnknown);
     }
 

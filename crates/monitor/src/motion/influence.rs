@@ -151,12 +151,7 @@ impl Influences {
 
 impl Response {
     /// The flux equation over a part; gives the flux in coordinates at rest.
-    fn follow(
-        &mut self,
-        direct: &Direct,
-        [keep, time]: [f32; 2],
-        rotor: Complex32,
-    ) -> Complex32 {
+    fn follow(&mut self, direct: &Direct, [keep, time]: [f32; 2], rotor: Complex32) -> Complex32 {
         self.flux = self.flux * keep + direct.driven * time;
         self.flux * rotor
     }

@@ -289,12 +289,17 @@ impl Motion {
         rows.has_torque &= self.load != KnownLoad::Nothing;
         let now = Circumstances {
             samples: sums.samples,
-            slip: [slip, slip * self.circuit.rated.omega / state.omega_supply.max(1.0)],
+            slip: [
+                slip,
+                slip * self.circuit.rated.omega / state.omega_supply.max(1.0),
+            ],
             current: sums.current(),
             flux: crate::frames::magnitude(state.observer.flux),
             heating_square: self.heating_square(state),
         };
-        let white = state.scatter.whiten(&self.circuit, &self.priors, &rows, &now);
+        let white = state
+            .scatter
+            .whiten(&self.circuit, &self.priors, &rows, &now);
         if let Some(reason) = state.gate.close(&self.circuit, &sums, &seen, slip) {
             state.decision.pass();
             return self.not_judged(state, rows.rows, reason);
@@ -373,7 +378,9 @@ impl Motion {
         let [mean, deviation] = outcome.heating;
         state.rise_open = [mean * prior, deviation * prior];
         let [least, most] = RISES;
-        let wanted = (state.rise + (1.0 + state.rise) * mean * prior).max(least).min(most);
+        let wanted = (state.rise + (1.0 + state.rise) * mean * prior)
+            .max(least)
+            .min(most);
         let relative = (wanted - state.rise) / (1.0 + state.rise);
         let unsure = deviation > KNOWN_HEATING || state.scatter.remembers_slip();
         if unsure || relative.abs() < LEAST_REVISION {
@@ -385,7 +392,9 @@ impl Motion {
         state.decision.revise_heating(relative / prior);
         let moved = state.influences.of_rotor_resistance() * relative;
         state.observer.flux += moved;
-        let air_gap = state.coefficients.map_or(0.0, |c| state.observer.air_gap(&c));
+        let air_gap = state
+            .coefficients
+            .map_or(0.0, |c| state.observer.air_gap(&c));
         let c = self.circuit.at(air_gap, state.rise);
         state.coefficients = Some(c);
         state.observer.adopt(&c);
@@ -440,9 +449,6 @@ impl Motion {
 }
 
 impl MotionState {
-    /// Relative rise of the resistances that the rows are taken at.
-    pub fn rise_of(&self) -> f32 { self.rise }
-
     /// After missing samples: flux and sums begin anew; alarm and temperature stay.
     pub fn resume_after_gap(&mut self) {
         *self = MotionState {

@@ -131,7 +131,13 @@ impl Observer {
         Some(interval)
     }
 
-    fn start(&mut self, c: &Coefficients, now: &Instant, [u, i]: [Complex32; 2], y: [Complex32; 2]) {
+    fn start(
+        &mut self,
+        c: &Coefficients,
+        now: &Instant,
+        [u, i]: [Complex32; 2],
+        y: [Complex32; 2],
+    ) {
         let linkage = c.linkage(self.flux * self.rotor, i);
         self.note([u, i, y[0], y[1], linkage], now.axis);
     }

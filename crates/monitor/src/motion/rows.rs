@@ -213,8 +213,20 @@ impl Sums {
         let [a, b, c, d, e, f] = self.channels;
         let [of_currents, of_voltages] = self.zero;
         let quantities = [
-            (I_0, [d, e, f], of_currents, circuit.rated.current, place::CURRENT),
-            (V_0, [a, b, c], of_voltages, circuit.rated.voltage, place::VOLTAGE),
+            (
+                I_0,
+                [d, e, f],
+                of_currents,
+                circuit.rated.current,
+                place::CURRENT,
+            ),
+            (
+                V_0,
+                [a, b, c],
+                of_voltages,
+                circuit.rated.voltage,
+                place::VOLTAGE,
+            ),
         ];
         for (row, phases, sum, scale, first) in quantities {
             put(&mut rows.rows, row, self.zero(phases, sum) / scale);

@@ -162,7 +162,8 @@ impl Scatter {
         // The three cycles of the torque's row are shared with two others.
         let q = if rows.has_torque { SQRT_3 * q } else { SILENT };
         // A component of the space vector has two thirds of a channel's variance, a zero sequence a third.
-        let zero = |variance: f32, scale: f32| libm::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
+        let zero =
+            |variance: f32, scale: f32| libm::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
         let (i_0, v_0) = (zero(of_i, rated.current), zero(of_u, rated.voltage));
         debug_assert!(Q < I_0 && I_0 < V_0);
         [e, e, e, e, q, i_0, i_0, v_0, v_0]

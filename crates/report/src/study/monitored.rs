@@ -5,8 +5,8 @@ use monitor::{ConfigError, Monitor};
 use motor::{FileError, MotorFile};
 use recording::Recording;
 use replay::{
-    Direction, LampState, NotJudgedShare, RotorSummary, Samples, SequenceSummary, Timeline,
-    Verdict, WindowOperation, WindowResiduals,
+    Direction, LampState, MotionSummary, NotJudgedShare, RotorSummary, Samples, SequenceSummary,
+    Timeline, Verdict, WindowOperation, WindowResiduals,
 };
 use serde::{Serialize, Serializer};
 
@@ -56,6 +56,7 @@ struct MonitorJson<'a> {
     smallest_visible_percent: Option<[f64; 4]>,
     residuals: &'a [WindowResiduals],
     operation: &'a [WindowOperation],
+    motion: &'a MotionSummary,
 }
 
 /// Residuals over the judged windows, percent of their scales.
@@ -142,6 +143,7 @@ impl Serialize for Monitored {
             smallest_visible_percent: timeline.visible_percent(),
             residuals: &timeline.trace.residuals,
             operation: &timeline.trace.operation,
+            motion: &timeline.motion,
         };
         json.serialize(serializer)
     }

@@ -17,7 +17,7 @@ use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use replay::operating_points::OperatingPoints;
 use replay::words;
-use replay::{SequenceSummary, Timeline, Verdict, VerdictState};
+use replay::{MotionSummary, SequenceSummary, Timeline, Verdict, VerdictState};
 use report::Subject;
 use report::study::{MonitorError, Monitored};
 
@@ -102,11 +102,13 @@ impl MonitorArgs {
         });
         bar.finish_and_clear();
         let result = monitored.map_err(|error| self.failure(error))?;
+        let motion = &result.timeline.motion;
         let finding = match (result.audit.supported, result.verdict.state) {
             (false, _) => Finding::Unsupported,
+            (true, _) if motion.is_fault() => Finding::Something,
             (true, VerdictState::Fault) => Finding::Something,
-            (true, VerdictState::Healthy) => Finding::Nothing,
-            (true, VerdictState::NotJudged) => Finding::Unsupported,
+            (true, VerdictState::NotJudged) if motion.judged == 0 => Finding::Unsupported,
+            (true, VerdictState::Healthy | VerdictState::NotJudged) => Finding::Nothing,
         };
         answers.give(Subject::Monitor, &result, || print(recording, &result))?;
         Ok(finding)
@@ -156,7 +158,39 @@ fn print(recording: &Recording, result: &Monitored) {
     print_windows(timeline);
     print_sequence(&timeline.sequence());
     say!("{}", words::rotor(&timeline.rotor()));
+    print_motion(&timeline.motion);
     print_verdict(timeline, &result.verdict);
+}
+
+/// What was judged while something changed.
+fn print_motion(motion: &MotionSummary) {
+    if motion.windows == 0 {
+        return;
+    }
+    if let Some(why) = &motion.not_possible {
+        say!("in motion not judged: {why}");
+        return;
+    }
+    say!(
+        "judged in motion: {} of {} windows that were not at rest",
+        motion.judged,
+        motion.windows
+    );
+    for share in &motion.not_judged {
+        say!("  {} not judged: {}", share.windows, share.reason);
+    }
+    for fault in &motion.alarms {
+        let cause = fault.cause.as_deref();
+        let cause = cause.unwrap_or("it was over before its cause could be told");
+        let alarm = format!(
+            "FAULT in motion at {:.3} s, first seen at about {:.3} s, T = {:.1}:",
+            fault.raised_s, fault.onset_s, fault.statistic
+        );
+        say!("{} {cause}", paint::error(alarm));
+    }
+    if motion.alarms.is_empty() && motion.judged > 0 {
+        say!("{}", paint::good("in motion no fault was seen"));
+    }
 }
 
 pub(crate) fn print_lamps(timeline: &Timeline) {
@@ -234,6 +268,9 @@ pub(crate) fn print_sequence(sequence: &SequenceSummary) {
 pub(crate) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
     match verdict.state {
         VerdictState::Healthy => say!("{}", paint::good("healthy: no fault was lit")),
+        VerdictState::NotJudged if timeline.motion.judged > 0 => {
+            say!("{}", paint::caution("at rest not judged"));
+        }
         VerdictState::NotJudged => say!("{}", paint::caution("not judged")),
         VerdictState::Fault => {
             let t = timeline.first_alarm_s.unwrap_or_default();

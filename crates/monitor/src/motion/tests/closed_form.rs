@@ -98,7 +98,10 @@ fn a_wrong_inductance_shows_as_the_closed_form_says() {
     let [re, im, ..] = last.expect("cycles").rows;
     let got = Complex64::new(f64::from(re), f64::from(im));
     assert!(expected.norm() > 2e-3, "{expected}");
-    assert!((got - expected).norm() < 0.05 * expected.norm() + 2e-4, "{got} {expected}");
+    assert!(
+        (got - expected).norm() < 0.05 * expected.norm() + 2e-4,
+        "{got} {expected}"
+    );
 }
 
 /// A shaft that speeds up evenly without a current: Q is `-(J a + B_t w)/T_n` with the speed in the middle of three cycles.

@@ -65,7 +65,10 @@ pub fn cycles(motion: &Motion, samples: &[(MotionSample, State)]) -> Vec<MotionC
 
 /// Root mean square of E+ and E- of all cycles but the first `skip`, share of rated voltage.
 pub fn scatter_of_e(cycles: &[MotionCycle], skip: usize) -> f32 {
-    let rows = cycles.iter().skip(skip).flat_map(|cycle| cycle.rows.iter().take(4));
+    let rows = cycles
+        .iter()
+        .skip(skip)
+        .flat_map(|cycle| cycle.rows.iter().take(4));
     root_mean_square(rows.copied())
 }
 

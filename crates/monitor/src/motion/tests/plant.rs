@@ -126,7 +126,10 @@ impl Plant {
         let k2 = self.slope(&s.plus(&k1, h / 2.0), t + h / 2.0);
         let k3 = self.slope(&s.plus(&k2, h / 2.0), t + h / 2.0);
         let k4 = self.slope(&s.plus(&k3, h), t + h);
-        s.plus(&k1, h / 6.0).plus(&k2, h / 3.0).plus(&k3, h / 3.0).plus(&k4, h / 6.0)
+        s.plus(&k1, h / 6.0)
+            .plus(&k2, h / 3.0)
+            .plus(&k3, h / 3.0)
+            .plus(&k4, h / 6.0)
     }
 
     /// Samples of `seconds` from rest; four steps from one to the next.

@@ -37,7 +37,13 @@ fn motions() -> [(&'static str, Plant); 5] {
         (
             "press",
             Plant {
-                load: |t| if t > 0.4 && (t * 6.25).fract() < 0.5 { 12.0 } else { 0.0 },
+                load: |t| {
+                    if t > 0.4 && (t * 6.25).fract() < 0.5 {
+                        12.0
+                    } else {
+                        0.0
+                    }
+                },
                 ..plant
             },
         ),
@@ -118,5 +124,8 @@ fn a_start_in_the_other_direction_is_no_different() {
     let cycles = cycles(&believed(&INSTRUMENT), &samples);
     assert!(scatter_of_e(&cycles, 0) < 0.26 * THRESHOLDS[0]);
     assert!(cycles.iter().any(|cycle| cycle.not_judged.is_none()));
-    assert!(cycles.iter().all(|cycle| cycle.alarm.is_none()), "{cycles:?}");
+    assert!(
+        cycles.iter().all(|cycle| cycle.alarm.is_none()),
+        "{cycles:?}"
+    );
 }

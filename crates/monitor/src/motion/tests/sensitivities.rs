@@ -31,7 +31,14 @@ fn rows(motion: &Motion, samples: &[(MotionSample, State)]) -> Vec<Cycle> {
     all
 }
 
-fn check(name: &str, plant: Plant, k: usize, size: f64, among: std::ops::Range<usize>, tolerance: f32) {
+fn check(
+    name: &str,
+    plant: Plant,
+    k: usize,
+    size: f64,
+    among: std::ops::Range<usize>,
+    tolerance: f32,
+) {
     let motion = believed(&MOTOR);
     let healthy = rows(&motion, &MOTOR.run(1.0, 1));
     let departed = rows(&motion, &plant.run(1.0, 1));
@@ -47,7 +54,11 @@ fn check(name: &str, plant: Plant, k: usize, size: f64, among: std::ops::Range<u
     }
     let (error, length) = (error.sqrt(), length.sqrt());
     assert!(length > 1e-4, "{name} moves nothing");
-    assert!(error < tolerance * length, "{name}: off by {} of {length}", error / length);
+    assert!(
+        error < tolerance * length,
+        "{name}: off by {} of {length}",
+        error / length
+    );
 }
 
 /// A start and the run after it with a departure of the size that a linear answer allows; tolerances are what second order and
@@ -55,12 +66,56 @@ fn check(name: &str, plant: Plant, k: usize, size: f64, among: std::ops::Range<u
 #[test]
 fn what_departs_moves_the_rows_as_the_sensitivities_say() {
     let p = MOTOR;
-    check("Rs", Plant { r_s: 1.02 * p.r_s, ..p }, place::R_S, 0.02, 0..4, 0.05);
-    check("Rr", Plant { r_r: 1.02 * p.r_r, ..p }, place::R_R, 0.02, 0..4, 0.08);
-    check("Lm", Plant { l_m: 1.01 * p.l_m, ..p }, place::L_M, 0.01, 0..4, 0.08);
-    let leakage = Plant { l_ls: 1.02 * p.l_ls, l_lr: 1.02 * p.l_lr, ..p };
+    check(
+        "Rs",
+        Plant {
+            r_s: 1.02 * p.r_s,
+            ..p
+        },
+        place::R_S,
+        0.02,
+        0..4,
+        0.05,
+    );
+    check(
+        "Rr",
+        Plant {
+            r_r: 1.02 * p.r_r,
+            ..p
+        },
+        place::R_R,
+        0.02,
+        0..4,
+        0.08,
+    );
+    check(
+        "Lm",
+        Plant {
+            l_m: 1.01 * p.l_m,
+            ..p
+        },
+        place::L_M,
+        0.01,
+        0..4,
+        0.08,
+    );
+    let leakage = Plant {
+        l_ls: 1.02 * p.l_ls,
+        l_lr: 1.02 * p.l_lr,
+        ..p
+    };
     check("leakage", leakage, place::LEAKAGE, 0.02, 0..4, 0.08);
-    check("speed", Plant { speed_gain: 1.001, ..p }, place::SPEED, 0.001, 0..4, 0.1);
+    check(
+        "speed",
+        Plant {
+            speed_gain: 1.001,
+            ..p
+        },
+        place::SPEED,
+        0.001,
+        0..4,
+        0.1,
+    );
     for channel in 0..6 {
         let mut gains = [1.0; 6];
         gains[channel] = 1.02;
@@ -72,8 +127,48 @@ fn what_departs_moves_the_rows_as_the_sensitivities_say() {
 #[test]
 fn what_departs_moves_the_torque_row_as_the_sensitivities_say() {
     let p = MOTOR;
-    check("J", Plant { inertia: 1.02 * p.inertia, ..p }, place::INERTIA, 0.02, 4..5, 0.1);
-    check("B", Plant { friction: 1.05 * p.friction, ..p }, place::FRICTION, 0.05, 4..5, 0.1);
-    check("Rr", Plant { r_r: 1.02 * p.r_r, ..p }, place::R_R, 0.02, 4..5, 0.25);
-    check("Lm", Plant { l_m: 1.01 * p.l_m, ..p }, place::L_M, 0.01, 4..5, 0.25);
+    check(
+        "J",
+        Plant {
+            inertia: 1.02 * p.inertia,
+            ..p
+        },
+        place::INERTIA,
+        0.02,
+        4..5,
+        0.1,
+    );
+    check(
+        "B",
+        Plant {
+            friction: 1.05 * p.friction,
+            ..p
+        },
+        place::FRICTION,
+        0.05,
+        4..5,
+        0.1,
+    );
+    check(
+        "Rr",
+        Plant {
+            r_r: 1.02 * p.r_r,
+            ..p
+        },
+        place::R_R,
+        0.02,
+        4..5,
+        0.25,
+    );
+    check(
+        "Lm",
+        Plant {
+            l_m: 1.01 * p.l_m,
+            ..p
+        },
+        place::L_M,
+        0.01,
+        4..5,
+        0.25,
+    );
 }

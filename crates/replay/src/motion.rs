@@ -1,0 +1,185 @@
+//! What of a recording was judged while current, speed or supply changed, beside the windows at rest.
+
+use monitor::{
+    Monitor, MonitorState, Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample,
+    MotionState, NoMotion, NotInMotion, NotJudged, Report, Sample,
+};
+use serde::Serialize;
+
+use crate::words;
+
+/// Windows that are not at rest, and what motion says of them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct MotionSummary {
+    /// Why the motor is not judged in motion at all.
+    pub not_possible: Option<String>,
+    /// Windows that were not judged at rest because something was changing.
+    pub windows: u64,
+    /// How many of them were judged in motion.
+    pub judged: u64,
+    /// Why the others were not, most frequent first.
+    pub not_judged: Vec<MotionShare>,
+    /// Alarms that came while something was changing, in the order of time.
+    pub alarms: Vec<MotionFault>,
+}
+
+/// How many windows one reason kept from being judged in motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MotionShare {
+    /// The reason in words.
+    pub reason: &'static str,
+    /// Windows.
+    pub windows: u64,
+}
+
+/// An alarm in motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MotionFault {
+    /// When the statistic left the noise, s: about when the fault showed first.
+    pub onset_s: f64,
+    /// When FAULT was raised, s.
+    pub raised_s: f64,
+    /// Statistic of the likeliest cause; a healthy motor's stays below the limit.
+    pub statistic: f64,
+    /// The cause in words; absent where the motion ended before it could be told.
+    pub cause: Option<String>,
+}
+
+/// Judges in motion beside the windows at rest.
+pub struct Follower {
+    motion: Result<Motion, NoMotion>,
+    state: MotionState,
+    latest: Option<MotionCycle>,
+    /// Whether the latest window was at rest, and could be judged.
+    at_rest: bool,
+    /// Whether the alarm that is on came in motion.
+    in_motion: bool,
+    times: Vec<f64>,
+    summary: MotionSummary,
+}
+
+impl MotionSummary {
+    /// Whether an alarm came in motion.
+    pub fn is_fault(&self) -> bool {
+        !self.alarms.is_empty()
+    }
+}
+
+impl Follower {
+    /// For a monitor of this configuration.
+    pub fn new(monitor: &Monitor) -> Self {
+        let motion = Motion::new(monitor.config());
+        Follower {
+            state: MotionState::default(),
+            latest: None,
+            at_rest: false,
+            in_motion: false,
+            times: Vec::new(),
+            summary: MotionSummary {
+                not_possible: motion.err().map(|why| why.to_string()),
+                ..MotionSummary::default()
+            },
+            motion,
+        }
+    }
+
+    /// Samples are missing before the next one.
+    pub fn resume_after_gap(&mut self) {
+        self.state.resume_after_gap();
+    }
+
+    /// Takes a sample that `monitor` has just taken.
+    pub fn update(&mut self, t: f64, sample: &Sample, monitor: &MonitorState) {
+        let Ok(motion) = &self.motion else {
+            return;
+        };
+        self.times.push(t);
+        let supply = monitor.supply();
+        let sample = *sample;
+        let Some(cycle) = motion.update(&mut self.state, &MotionSample { sample, supply }) else {
+            return;
+        };
+        if let Some(alarm) = &cycle.alarm {
+            self.note(alarm);
+        }
+        self.latest = Some(cycle);
+    }
+
+    /// Takes the window that the sample ended.
+    pub fn window(&mut self, report: &Report) {
+        self.at_rest = !is_motion(report.not_judged);
+        if self.at_rest {
+            return;
+        }
+        self.summary.windows += 1;
+        match self.latest.as_ref().map(|cycle| cycle.not_judged) {
+            Some(None) => self.summary.judged += 1,
+            Some(Some(reason)) => self.count(reason),
+            None => self.count(NotInMotion::FluxUnknown),
+        }
+    }
+
+    fn count(&mut self, reason: NotInMotion) {
+        let reason = words::not_in_motion(reason);
+        let shares = &mut self.summary.not_judged;
+        match shares.iter_mut().find(|share| share.reason == reason) {
+            Some(share) => share.windows += 1,
+            None => shares.push(MotionShare { reason, windows: 1 }),
+        }
+    }
+
+    fn note(&mut self, alarm: &MotionAlarm) {
+        let time = |sample: u64| {
+            let k = usize::try_from(sample.saturating_sub(1)).unwrap_or(usize::MAX);
+            self.times.get(k).copied().unwrap_or_default()
+        };
+        let Some(cause) = alarm.named else {
+            // What comes in a window that is judged at rest is its affair.
+            self.in_motion = !self.at_rest;
+            if self.in_motion {
+                self.summary.alarms.push(MotionFault {
+                    onset_s: time(alarm.onset_sample),
+                    raised_s: time(alarm.raised_sample),
+                    statistic: f64::from(alarm.statistic),
+                    cause: None,
+                });
+            }
+            return;
+        };
+        if let Some(fault) = self.summary.alarms.last_mut().filter(|_| self.in_motion) {
+            fault.statistic = f64::from(alarm.statistic);
+            fault.cause = Some(motion_cause(cause));
+        }
+    }
+
+    /// What the whole recording came to.
+    pub fn finish(mut self) -> MotionSummary {
+        let shares = &mut self.summary.not_judged;
+        shares.sort_by_key(|share| (std::cmp::Reverse(share.windows), share.reason));
+        if self.summary.not_possible.is_some() {
+            shares.clear();
+        }
+        self.summary
+    }
+}
+
+/// Whether a window is left to motion.
+fn is_motion(not_judged: Option<NotJudged>) -> bool {
+    matches!(
+        not_judged,
+        Some(NotJudged::Transient | NotJudged::Settling | NotJudged::NotLocked)
+    )
+}
+
+fn motion_cause(cause: MotionCause) -> String {
+    match cause {
+        MotionCause::Dead(finding) => words::sensor(finding),
+        MotionCause::Untold => "no cause of a size that occurs".to_owned(),
+        MotionCause::Departure(cause) => {
+            let phase = cause
+                .phase()
+                .map_or(String::new(), |phase| format!(", phase {}", phase.letter()));
+            format!("{}{phase}", cause.fault().words())
+        }
+    }
+}
