@@ -234,14 +234,16 @@ impl Motion {
     #[inline]
     fn turned(&self, before: Option<SpeedSample>, now: SpeedSample) -> Option<f32> {
         let turned = match (before, now) {
-            (_, SpeedSample::None) => return None,
+            (None, SpeedSample::Count(_)) => 0.0,
+            (None, SpeedSample::RadPerSecond(omega)) if omega.is_finite() => 0.0,
             (Some(SpeedSample::Count(old)), SpeedSample::Count(new)) => {
                 f32::from(new.wrapping_sub(old).cast_signed()) * self.per_count
             }
             (Some(SpeedSample::RadPerSecond(old)), SpeedSample::RadPerSecond(new)) => {
                 0.5 * (old + new) * self.circuit.t_sample * self.circuit.mechanics.n_p
             }
-            _ => 0.0,
+            // No speed, no number, or another kind of sensor.
+            _ => return None,
         };
         // NaN is no number below the limit.
         (turned.abs() < FASTEST).then_some(turned)

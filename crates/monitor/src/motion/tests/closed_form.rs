@@ -35,6 +35,7 @@ fn steady(slip: f64, [angle, share]: [f64; 2]) -> Vec<[f32; 9]> {
                 u_s_abc: Some(shown(volt, turn)),
                 i_s_abc: Some(shown(i, turn)),
                 speed: SpeedSample::RadPerSecond((omega * (1.0 - slip) / MOTOR.n_p) as f32),
+                tau_load: Some(0.0),
                 ..Sample::default()
             },
             supply: Some(Supply {
@@ -84,6 +85,7 @@ fn a_wrong_inductance_shows_as_the_closed_form_says() {
             u_s_abc: Some(shown(volt)),
             i_s_abc: Some(shown(i)),
             speed: SpeedSample::RadPerSecond((omega * (1.0 - slip) / MOTOR.n_p) as f32),
+            tau_load: Some(0.0),
             ..Sample::default()
         };
         let axis = Complex32::new(turn.re as f32, turn.im as f32);
@@ -117,6 +119,7 @@ fn the_torque_row_sees_inertia_and_friction_of_an_even_acceleration() {
             u_s_abc: Some(Abc::default()),
             i_s_abc: Some(Abc::default()),
             speed: SpeedSample::RadPerSecond((acceleration * t) as f32),
+            tau_load: Some(0.0),
             ..Sample::default()
         };
         let supply = None;

@@ -23,7 +23,7 @@ const LIMITS: Limits = Limits {
 fn random_cycle(random: &mut Pcg64, departure: &[f64; UNKNOWNS]) -> White {
     let mut white = White::default();
     for (row, z) in white.sensitivities.iter_mut().zip(&mut white.rows) {
-        let mut shown = StandardNormal.sample(random);
+        let mut shown: f64 = StandardNormal.sample(random);
         for (a, q) in row.iter_mut().zip(departure) {
             let x: f64 = StandardNormal.sample(random);
             *a = (2.0 * x) as f32;
@@ -167,11 +167,10 @@ fn press() -> Plant {
     }
 }
 
-/// Samples of the press with `after` in force from 1.2 s on; the torque is declared nowhere, so its row is left out.
+/// Cycles of the press with a change of the samples from 1.2 s on.
 fn with_fault(mut change: impl FnMut(&mut MotionSample)) -> Vec<MotionCycle> {
     let plant = press();
-    let mut motion = believed(&plant);
-    motion.load = super::KnownLoad::Nothing;
+    let motion = believed(&plant);
     let mut samples = plant.run(2.2, 8);
     samples
         .iter_mut()

@@ -52,7 +52,7 @@ pub fn believed(plant: &Plant) -> Motion {
         samples: (1.0 / (plant.hertz * T_SAMPLE)).round() as f32,
         part: 10.0,
         step: rated_step(rated.omega, T_SAMPLE as f32),
-        load: KnownLoad::Friction,
+        load: KnownLoad::Measured,
     }
 }
 

@@ -179,7 +179,7 @@ impl Plant {
                 u_s_abc: Some(u),
                 i_s_abc: Some(i),
                 speed: SpeedSample::Count((count as i64 & 0xffff) as u16),
-                tau_load: None,
+                tau_load: Some((self.load)(t) as f32),
                 clipped,
             },
             supply: Some(Supply {

@@ -57,7 +57,8 @@ fn motions() -> [(&'static str, Plant); 5] {
     ]
 }
 
-/// The spike's figures: 0.14 to 0.26 of the voltage threshold, 0.02 to 0.3 of the torque threshold, in every transient.
+/// What a separate program found for this motor under a distorted supply: at most 0.26 of the voltage threshold and 0.3 of the
+/// torque threshold, in every transient. Below a twentieth the rows would see no noise at all.
 #[test]
 fn healthy_rows_stay_far_below_the_thresholds_in_every_motion() {
     for (name, plant) in motions() {
@@ -65,7 +66,7 @@ fn healthy_rows_stay_far_below_the_thresholds_in_every_motion() {
         let cycles = cycles(&believed(&plant), &samples);
         let e = scatter_of_e(&cycles, 0) / THRESHOLDS[0];
         let q = root_mean_square(cycles.iter().skip(2).map(|cycle| cycle.rows[4])) / THRESHOLDS[1];
-        assert!((0.1..0.26).contains(&e), "{name}: E {e} of the threshold");
+        assert!((0.05..0.26).contains(&e), "{name}: E {e} of the threshold");
         assert!((0.005..0.3).contains(&q), "{name}: Q {q} of the threshold");
     }
 }

@@ -40,12 +40,9 @@ fn check(
     tolerance: f32,
 ) {
     let motion = believed(&MOTOR);
-    let healthy = rows(&motion, &MOTOR.run(1.0, 1));
     let departed = rows(&motion, &plant.run(1.0, 1));
     let (mut error, mut length) = (0.0, 0.0);
-    for (cycle, ((plain, _), (moved, a))) in healthy.iter().zip(&departed).enumerate().skip(3) {
-        // A departure of the motor also changes where it is: only rows of its own run compare.
-        let _ = (cycle, plain);
+    for (moved, a) in departed.iter().skip(3) {
         for row in among.clone() {
             let expected = -a[row][k] * size as f32;
             error += (moved[row] - expected).powi(2);
@@ -69,11 +66,11 @@ fn what_departs_moves_the_rows_as_the_sensitivities_say() {
     check(
         "Rs",
         Plant {
-            r_s: 1.02 * p.r_s,
+            r_s: 1.1 * p.r_s,
             ..p
         },
         place::R_S,
-        0.02,
+        0.1,
         0..4,
         0.05,
     );
@@ -100,11 +97,11 @@ fn what_departs_moves_the_rows_as_the_sensitivities_say() {
         0.08,
     );
     let leakage = Plant {
-        l_ls: 1.02 * p.l_ls,
-        l_lr: 1.02 * p.l_lr,
+        l_ls: 1.04 * p.l_ls,
+        l_lr: 1.04 * p.l_lr,
         ..p
     };
-    check("leakage", leakage, place::LEAKAGE, 0.02, 0..4, 0.08);
+    check("leakage", leakage, place::LEAKAGE, 0.04, 0..4, 0.08);
     check(
         "speed",
         Plant {
