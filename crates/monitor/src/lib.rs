@@ -49,7 +49,6 @@ mod isolation;
 mod lamps;
 mod model;
 mod monitor;
-mod motion;
 mod noise;
 mod reason;
 mod rehearsal;
@@ -61,7 +60,7 @@ mod window;
 
 pub use checks::cage::{Cage, CageLimits, HealthySidebands, RotorReading};
 pub use checks::rotor_bars::{RotorState, Sidebands};
-pub use checks::sensors::{HealthConfig, Phase, SensorFinding};
+pub use checks::sensors::{HealthConfig, Phase, SensorFinding, dead_channel};
 pub use checks::supply::{SupplyConfig, SupplyFinding};
 pub use config::{ConfigError, LoadKind, MonitorConfig};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
@@ -84,15 +83,12 @@ pub use model::effects::{
 pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
-pub use motion::{
-    MOTION_ROWS, Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState,
-    NoMotion, NotInMotion, Supply,
-};
 pub use motor::FaultId;
 pub use reason::Reason;
 pub use rehearsal::Rehearsal;
 pub use report::{NotJudged, Report};
 pub use sync::encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use sync::phasor::{ChannelCycle, CyclePhasors};
-pub use sync::pll::{SyncConfig, SyncState, SyncTick};
+pub use sync::pll::{Supply, SyncConfig, SyncState, SyncTick};
+pub use sync::rotation::{renormalise, small_rotation};
 pub use window::{CycleNoise, MAX_WINDOW_CYCLES, RateNoise, Rates, Window};

@@ -20,13 +20,12 @@ use crate::model::effects::{ActiveEffects, Corrected, correct};
 use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::ResidualModel;
 use crate::model::settled::settled;
-use crate::motion::Supply;
 use crate::noise::allowance::CycleScatter;
 use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
 use crate::sync::encoder::{EncoderConfig, EncoderState};
 use crate::sync::phasor::{CyclePhasors, PhasorState, Unit};
-use crate::sync::pll::{SyncConfig, SyncState, SyncTick};
+use crate::sync::pll::{Supply, SyncConfig, SyncState, SyncTick};
 use crate::window::{Cycle, Window, WindowState};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.
@@ -75,7 +74,7 @@ impl MonitorState {
         self.rehearsal = gains;
     }
 
-    /// The supply's oscillator after the latest sample, for [`crate::Motion`]; `None` while none is followed.
+    /// The supply's oscillator at the next sample; `None` while no supply is followed.
     pub fn supply(&self) -> Option<Supply> {
         (!self.sync.is_searching()).then(|| Supply {
             axis: self.sync.axis(),

@@ -24,7 +24,7 @@ pub mod causes;
 pub mod channels;
 pub mod check;
 mod judgement;
-mod motion;
+mod moving;
 pub mod operating_points;
 mod rotor;
 mod samples;
@@ -34,7 +34,7 @@ mod trace;
 pub mod words;
 
 pub use judgement::{Direction, NotJudgedShare, Unjudged};
-pub use motion::{Follower, MotionFault, MotionShare, MotionSummary};
+pub use moving::{Follower, MotionFault, MotionShare, MotionSummary};
 pub use rotor::{RotorCage, RotorSummary};
 pub use samples::{Samples, Timed};
 pub use timeline::{LampState, SequenceSummary, Timeline, Verdict, VerdictState};

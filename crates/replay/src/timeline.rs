@@ -13,7 +13,7 @@ use super::rotor::{RotorHistory, RotorSummary};
 use super::trace::Trace;
 use crate::causes::{self, Candidate};
 use crate::judgement::{Direction, NotJudgedShare, Reasons, Unjudged};
-use crate::motion::MotionSummary;
+use crate::moving::MotionSummary;
 
 /// The lamps from one moment on.
 #[derive(Clone, Debug, PartialEq, Serialize)]

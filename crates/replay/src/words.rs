@@ -1,7 +1,8 @@
 //! What the core's findings are called in front of people.
 
 use crate::{RotorCage, RotorSummary};
-use monitor::{NotInMotion, NotJudged, Reason, SensorFinding, Sidebands, SupplyFinding};
+use monitor::{NotJudged, Reason, SensorFinding, Sidebands, SupplyFinding};
+use motion::NotInMotion;
 
 /// Why a window was not judged, with what to do about it.
 pub fn not_judged(reason: NotJudged) -> String {

@@ -1,6 +1,7 @@
 //! Faults in motion: share found, median delay, cause.
 
-use monitor::{Cause, MotionCause, Phase, SensorFinding};
+use monitor::{Cause, Phase, SensorFinding};
+use motion::MotionCause;
 use rayon::prelude::*;
 use scenario::{Asymmetry, Parameter, Probe, Target};
 

@@ -1,9 +1,7 @@
 //! One run through the core as the board samples it: windows at rest and cycles in motion side by side.
 
-use monitor::{
-    Abc, Monitor, MonitorConfig, MonitorState, Motion, MotionCause, MotionCycle, MotionSample,
-    MotionState, RawSample, Sample,
-};
+use monitor::{Abc, Monitor, MonitorConfig, MonitorState, RawSample, Sample};
+use motion::{Motion, MotionCause, MotionCycle, MotionSample, MotionState};
 use motor::MotorFile;
 use scenario::simulate::{SimSample, Simulation};
 

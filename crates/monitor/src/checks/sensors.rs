@@ -151,8 +151,8 @@ fn amplitudes(window: &Window, first: usize) -> [f32; 3] {
     result
 }
 
-/// The channel of three that shows next to nothing while its neighbours do.
-pub(crate) fn dead_channel([a, b, c]: &[f32; 3]) -> Option<Phase> {
+/// The channel of three, by their amplitudes, that shows next to nothing while its neighbours do.
+pub fn dead_channel([a, b, c]: &[f32; 3]) -> Option<Phase> {
     let neighbours = [(a, b + c), (b, a + c), (c, a + b)];
     Phase::ALL
         .into_iter()

@@ -8,7 +8,7 @@ pub(crate) mod calibrated;
 mod cause;
 mod directions;
 mod evidence;
-pub(crate) mod gauss;
+mod gauss;
 mod healthy;
 mod temperature;
 

@@ -65,6 +65,15 @@ enum Mode {
     Tracking { good: u8, missed: u8 },
 }
 
+/// The supply's oscillator as others see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Supply {
+    /// Axis `e^{j theta}` of length 1.
+    pub axis: Complex32,
+    /// Frequency, rad/s.
+    pub omega: f32,
+}
+
 /// The oscillator at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SyncTick {

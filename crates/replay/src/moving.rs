@@ -1,8 +1,8 @@
 //! What of a recording was judged while current, speed or supply changed, beside the windows at rest.
 
-use monitor::{
-    Monitor, MonitorState, Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample,
-    MotionState, NoMotion, NotInMotion, NotJudged, Report, Sample,
+use monitor::{Monitor, MonitorState, NotJudged, Report, Sample};
+use motion::{
+    Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NoMotion, NotInMotion,
 };
 use serde::Serialize;
 

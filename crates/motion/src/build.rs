@@ -1,13 +1,11 @@
 //! Which motors can be judged in motion, and with which constants.
 
-use crate::config::{LoadKind, MonitorConfig};
-use crate::model::effects::ActiveEffect;
-use crate::model::residuals::FieldCurrent;
+use monitor::{ActiveEffect, FieldCurrent, LoadKind, MonitorConfig};
 
-use super::circuit::{Circuit, Iron, Scales};
-use super::decision::Limits;
-use super::departures::{Priors, place};
-use super::{KnownLoad, Motion, rated_step};
+use crate::circuit::{Circuit, Iron, Scales};
+use crate::decision::Limits;
+use crate::departures::{Priors, place};
+use crate::{KnownLoad, Motion, rated_step};
 
 /// Why a motor cannot be judged in motion at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,8 +4,9 @@ use num_complex::{Complex32, Complex64};
 
 use super::plant::{MOTOR, Plant, phases};
 use super::{believed, root_mean_square};
-use crate::motion::{MotionSample, MotionState, Supply};
-use crate::{Abc, Sample, SpeedSample};
+use crate::{MotionSample, MotionState};
+use monitor::Supply;
+use monitor::{Abc, Sample, SpeedSample};
 
 const T: f64 = 1e-4;
 

@@ -4,12 +4,12 @@
 //! run through the flux's own equation, in parts of a cycle of a millisecond. Saturating iron takes most of a departure back:
 //! what moves the flux moves `L_m` the other way.
 
+use monitor::magnitude;
 use num_complex::Complex32;
 
-use super::circuit::{Circuit, Coefficients};
-use super::departures::FLUXES;
-use super::observer::Interval;
-use super::rows::PHASES;
+use crate::circuit::{Circuit, Coefficients, PHASES};
+use crate::departures::FLUXES;
+use crate::observer::Interval;
 
 const J: Complex32 = Complex32::new(0.0, 1.0);
 /// Squared slip at which half of the skin effect has come.
@@ -187,7 +187,7 @@ impl Point {
     fn new(circuit: &Circuit, c: &Coefficients, interval: &Interval, slip: f32) -> Point {
         let current = interval.i.norm_sqr() / (circuit.rated.current * circuit.rated.current);
         let psi_m = (interval.psi_r + interval.i * c.l_lr) * c.k_r;
-        let bend = circuit.bend(crate::frames::magnitude(psi_m));
+        let bend = circuit.bend(magnitude(psi_m));
         let scale = 1.0 + circuit.iron.saturation * bend;
         Point {
             i: interval.i,
@@ -231,7 +231,7 @@ fn magnetizing(c: &Coefficients, part: &Part, point: &Point) -> Direct {
     }
 }
 
-/// One unit of each departure, in the order of [`super::departures::FLUX_PLACES`].
+/// One unit of each departure, in the order of [`crate::departures::FLUX_PLACES`].
 fn directs(
     c: &Coefficients,
     part: &Part,

@@ -3,7 +3,7 @@
 //! Departures are in units of their priors, rows in units of their noise. Symmetric matrices are kept row by row up to the
 //! diagonal.
 
-use super::departures::UNKNOWNS;
+use crate::departures::UNKNOWNS;
 
 /// Rows of one cycle.
 pub const ROWS: usize = 9;

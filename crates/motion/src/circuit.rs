@@ -3,7 +3,7 @@
 use motor::{Mechanics, TParams};
 use num_complex::Complex32;
 
-use crate::frames::magnitude;
+use monitor::magnitude;
 
 /// Saturating iron: `L_m = L_m0/(1 + s ((psi_m/psi_n)^n - 1))`, the library's `magnetizing-saturation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,3 +143,8 @@ impl Coefficients {
         i_s * self.l_a + psi_r * self.k_r
     }
 }
+
+/// `e^{j 2 pi/3}`.
+const TURN: Complex32 = Complex32::new(-0.5, 0.866_025_4);
+/// Axis of each phase.
+pub const PHASES: [Complex32; 3] = [Complex32::ONE, TURN, Complex32::new(-0.5, -0.866_025_4)];

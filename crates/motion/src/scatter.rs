@@ -2,11 +2,11 @@
 
 use num_complex::Complex32;
 
-use super::circuit::Circuit;
-use super::departures::{Priors, UNKNOWNS, place};
-use super::influence::SKIN_SLIP;
-use super::information::{ROWS, White};
-use super::rows::{I_0, Q, Rows, V_0};
+use crate::circuit::Circuit;
+use crate::departures::{Priors, place};
+use crate::influence::SKIN_SLIP;
+use crate::information::{ROWS, White};
+use crate::rows::{Q, Rows};
 
 /// Third differences of a signal: those of a sinusoid sampled 200 times a cycle are 3e-5 of its amplitude, those of white noise
 /// have 20 times its variance.
@@ -116,7 +116,7 @@ impl Scatter {
         let n = now.samples.max(1.0);
         let (of_u, of_i) = (self.voltage.take(n), self.current.take(n));
         let [slip, present] = now.slip;
-        let z = circuit.impedance(slip.max(0.0).min(2.0));
+        let z = circuit.impedance(if slip > 0.0 { slip.min(2.0) } else { 0.0 });
         let current = now.current / rated.current;
         let step = current - core::mem::replace(&mut self.before, current);
         let turn = rows.acceleration * n * circuit.t_sample * circuit.mechanics.n_p / rated.omega;
@@ -165,7 +165,6 @@ impl Scatter {
         let zero =
             |variance: f32, scale: f32| libm::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
         let (i_0, v_0) = (zero(of_i, rated.current), zero(of_u, rated.voltage));
-        debug_assert!(Q < I_0 && I_0 < V_0);
         [e, e, e, e, q, i_0, i_0, v_0, v_0]
     }
 }
@@ -173,7 +172,6 @@ impl Scatter {
 const SQRT_3: f32 = 1.732_050_8;
 
 fn sensitivity(rows: &Rows, row: usize, k: usize) -> f32 {
-    debug_assert!(k < UNKNOWNS);
     let row = rows.sensitivities.get(row);
     row.and_then(|row| row.get(k)).copied().unwrap_or_default()
 }

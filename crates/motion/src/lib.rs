@@ -1,10 +1,11 @@
+#![cfg_attr(not(test), no_std)]
 //! Judging while current, speed or supply change: the dynamic residuals (36) in integral form.
 //!
 //! (36) as printed takes the rotor flux for constant, and in a start shows a healthy motor as grossly faulty. Here the flux
 //! follows the current through its own equation (`observer`), the stator's equation is integrated over a cycle under the
 //! weight `e^{-j theta}` (`rows`), departures of a healthy motor's parameters are run through the flux equation
 //! (`influence`), and a likelihood ratio decides what no healthy departure explains (`decision`). No derivative of a
-//! measurement is taken. Windows at rest are judged as before, by [`crate::Monitor`].
+//! measurement is taken. Windows at rest are judged as before, by [`monitor::Monitor`].
 
 mod build;
 mod circuit;
@@ -26,15 +27,15 @@ pub use decision::Limits;
 pub use departures::Priors;
 pub use gate::NotInMotion;
 
-use crate::checks::sensors::{SensorFinding, dead_channel};
-use crate::input::sample::{CHANNELS, ClippedChannels, SpeedSample};
-use crate::isolation::Cause;
-use crate::sync::rotation::small_rotation;
 use circuit::{Circuit, Coefficients};
 use decision::{Decision, Outcome, Scores};
 use departures::ALL;
 use gate::{Gate, Seen};
 use influence::Influences;
+use monitor::{
+    Abc, CHANNELS, Cause, ClippedChannels, Sample, SensorFinding, SpeedSample, Supply,
+    dead_channel, magnitude, small_rotation,
+};
 use observer::{Instant, Interval, Observer};
 use rows::{Past, Sums};
 use scatter::{Circumstances, Scatter};
@@ -98,19 +99,10 @@ pub struct MotionState {
 /// One instant for [`Motion::update`], in SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionSample {
-    /// Phase voltages and currents; see [`crate::Sample`].
-    pub sample: crate::input::sample::Sample,
-    /// The supply's oscillator; see [`crate::MonitorState::supply`].
+    /// Phase voltages and currents; see [`monitor::Sample`].
+    pub sample: Sample,
+    /// The supply's oscillator; see [`monitor::MonitorState::supply`].
     pub supply: Option<Supply>,
-}
-
-/// The supply's oscillator at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Supply {
-    /// Axis of length 1.
-    pub axis: Complex32,
-    /// Frequency, rad/s.
-    pub omega: f32,
 }
 
 /// What one cycle of rated length came to.
@@ -193,7 +185,7 @@ impl Motion {
         let vectors = [instant.u, instant.i].map(observer::vector);
         state.scatter.add(vectors[0], vectors[1]);
         let Some(interval) = state.observer.step(&c, t_sample, &instant) else {
-            state.seen.first_current = crate::frames::magnitude(vectors[1]);
+            state.seen.first_current = magnitude(vectors[1]);
             return None;
         };
         state.sums.add(&self.circuit, &c, &instant, &interval);
@@ -210,9 +202,7 @@ impl Motion {
     fn instant(&self, state: &mut MotionState, sample: &MotionSample) -> Option<Instant> {
         let s = &sample.sample;
         let [g_a, g_b, g_c, h_a, h_b, h_c] = self.channel_gain;
-        let corrected = |x: crate::frames::Abc, gains: [f32; 3]| {
-            x.zip(crate::frames::Abc::from_array(gains), |x, gain| x * gain)
-        };
+        let corrected = |x: Abc, gains: [f32; 3]| x.zip(Abc::from_array(gains), |x, gain| x * gain);
         let u = s.u_s_abc.filter(|u| u.is_finite())?;
         let i = s.i_s_abc.filter(|i| i.is_finite())?;
         let turned = self.turned(state.last_speed.replace(s.speed), s.speed)?;
@@ -296,7 +286,7 @@ impl Motion {
                 slip * self.circuit.rated.omega / state.omega_supply.max(1.0),
             ],
             current: sums.current(),
-            flux: crate::frames::magnitude(state.observer.flux),
+            flux: magnitude(state.observer.flux),
             heating_square: self.heating_square(state),
         };
         let white = state

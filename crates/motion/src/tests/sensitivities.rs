@@ -2,7 +2,7 @@
 
 use super::plant::{MOTOR, Plant, State};
 use super::{Motion, MotionSample, MotionState, believed};
-use crate::motion::departures::{UNKNOWNS, place};
+use crate::departures::{UNKNOWNS, place};
 
 /// Rows of a cycle and their sensitivities to departures of size 1.
 type Cycle = ([f32; 9], [[f32; UNKNOWNS]; 9]);

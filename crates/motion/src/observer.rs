@@ -11,9 +11,8 @@
 
 use num_complex::Complex32;
 
-use super::circuit::Coefficients;
-use crate::frames::{Abc, AlphaBeta};
-use crate::sync::rotation::{renormalise, small_rotation};
+use crate::circuit::Coefficients;
+use monitor::{Abc, AlphaBeta, renormalise, small_rotation};
 
 /// One instant as the observer takes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,8 +3,8 @@
 use super::plant::{MOTOR, Plant, State};
 use super::rows::INSTRUMENT;
 use super::{believed, cycles};
-use crate::motion::{MotionCycle, MotionSample, NotInMotion};
-use crate::{ClippedChannels, SpeedSample};
+use crate::{MotionCycle, MotionSample, NotInMotion};
+use monitor::{ClippedChannels, SpeedSample};
 
 /// `3 L_r/R_r` of the motor, in cycles.
 fn memory() -> usize {

@@ -8,12 +8,11 @@ use rand_pcg::Pcg64;
 use super::plant::Plant;
 use super::rows::INSTRUMENT;
 use super::{MotionCycle, MotionState, believed, cycles};
-use crate::checks::sensors::{Phase, SensorFinding};
-use crate::isolation::Cause;
-use crate::motion::decision::{Decision, Limits};
-use crate::motion::departures::{ALL, UNKNOWNS};
-use crate::motion::information::{Information, ROWS, White};
-use crate::motion::{MotionCause, MotionSample};
+use crate::decision::{Decision, Limits};
+use crate::departures::{ALL, UNKNOWNS};
+use crate::information::{Information, ROWS, White};
+use crate::{MotionCause, MotionSample};
+use monitor::{Cause, Phase, SensorFinding};
 
 const LIMITS: Limits = Limits {
     statistic: 5.5,
@@ -107,7 +106,7 @@ fn statistics_agree_with_the_formulas_in_double_precision() {
                 }
             }
         }
-        let only_adds = |x: (&f64, &crate::motion::departures::Hypothesis)| {
+        let only_adds = |x: (&f64, &crate::departures::Hypothesis)| {
             if x.1.cause.only_adds() {
                 x.0.max(0.0)
             } else {

@@ -7,8 +7,9 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
-use crate::motion::{MotionSample, Supply};
-use crate::{Abc, ClippedChannels, Sample, SpeedSample};
+use crate::MotionSample;
+use monitor::Supply;
+use monitor::{Abc, ClippedChannels, Sample, SpeedSample};
 
 /// A motor with its supply, load and instruments.
 #[derive(Clone, Copy, Debug)]

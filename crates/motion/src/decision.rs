@@ -10,10 +10,8 @@
 //! `m_0` is where the prior stands once the rows are taken at a winding temperature of their own. A cause of which the cycles say
 //! next to nothing (`W` small) has T = 0.
 
-use super::departures::{ALL, HYPOTHESES, Hypothesis, UNKNOWNS, place};
-use crate::isolation::gauss::Covariance;
-
-use super::information::{Factor, Information, ROWS, Symmetric, Vector, White, dot};
+use crate::departures::{ALL, HYPOTHESES, Hypothesis, UNKNOWNS, place};
+use crate::information::{Factor, Information, Symmetric, Vector, White, dot};
 
 /// What the absolute test keeps from one cycle to the next.
 const ABSOLUTE_KEEP: f32 = 0.9;
@@ -329,15 +327,12 @@ impl Scores {
     }
 }
 
-/// `z' (1 + A A')^-1 z`: nine degrees of freedom on a healthy motor.
+/// `z' (1 + A A')^-1 z = z'z - b' (1 + A'A)^-1 b`: nine degrees of freedom on a healthy motor.
 fn squared_length(cycle: &White) -> f32 {
-    let mut covariance = Covariance::of_independent(&[1.0; ROWS]);
-    for k in 0..UNKNOWNS {
-        let column = cycle.sensitivities.map(|row| entry(&row, k));
-        covariance.add(&column, 1.0);
-    }
-    let white = covariance.factorise().whiten(&cycle.rows);
-    dot(&white, &white)
+    let mut own = Information::default();
+    own.add(cycle);
+    let explained = own.matrix.with_prior(1.0).factorise().whiten(&own.vector);
+    dot(&cycle.rows, &cycle.rows) - dot(&explained, &explained)
 }
 
 fn entry(x: &[f32], k: usize) -> f32 {

@@ -1,7 +1,6 @@
 //! What may be off, how far without being a fault, and which of it is one.
 
-use crate::checks::sensors::Phase;
-use crate::isolation::{Cause, Uncertainty};
+use monitor::{Cause, Phase, Uncertainty};
 
 /// Quantities that may depart from what the monitor was told.
 pub const UNKNOWNS: usize = 21;

@@ -9,18 +9,15 @@
 //! `A` is the mean angle of a cycle, `S0 S1 S2` moments of the torque over it. E+ and E- are zero for any angle `theta` and
 //! any length of the window: a wrong angle turns a row, but leaves no bias.
 
+use monitor::magnitude;
 use num_complex::Complex32;
 
-use super::circuit::{Circuit, Coefficients};
-use super::departures::{FLUX_PLACES, UNKNOWNS, place};
-use super::influence::Moved;
-use super::information::{ROWS, Vector};
-use super::observer::{Instant, Interval};
+use crate::circuit::{Circuit, Coefficients, PHASES};
+use crate::departures::{FLUX_PLACES, UNKNOWNS, place};
+use crate::influence::Moved;
+use crate::information::{ROWS, Vector};
+use crate::observer::{Instant, Interval};
 
-/// `e^{j 2 pi/3}`.
-const TURN: Complex32 = Complex32::new(-0.5, 0.866_025_4);
-/// Axis of each phase.
-pub const PHASES: [Complex32; 3] = [Complex32::ONE, TURN, Complex32::new(-0.5, -0.866_025_4)];
 /// Clarke's transform of one phase alone: two thirds of its axis.
 const CLARKE: f32 = 2.0 / 3.0;
 
@@ -152,7 +149,7 @@ impl Sums {
     /// Amplitudes of the six channels.
     pub fn amplitudes(&self) -> [f32; 6] {
         let scale = 2.0 / self.samples.max(1.0);
-        self.channels.map(|x| scale * crate::frames::magnitude(x))
+        self.channels.map(|x| scale * magnitude(x))
     }
 
     /// Length of the current vector, root mean square, A.

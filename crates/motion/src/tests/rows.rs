@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::plant::{MOTOR, Plant, State, T_SAMPLE};
 use super::{believed, cycles, root_mean_square, scatter_of_e};
-use crate::motion::MotionSample;
+use crate::MotionSample;
 
 /// 12 bit and 0.2 % noise of 600 V and 60 A.
 pub const INSTRUMENT: Plant = Plant {
@@ -111,15 +111,15 @@ fn the_printed_equation_calls_a_healthy_start_a_fault() {
 fn a_start_in_the_other_direction_is_no_different() {
     let mut samples = INSTRUMENT.run(0.8, 3);
     for (sample, _) in &mut samples {
-        let swap = |x: &mut Option<crate::Abc>| {
+        let swap = |x: &mut Option<monitor::Abc>| {
             if let Some(x) = x {
                 (x.b, x.c) = (x.c, x.b);
             }
         };
         swap(&mut sample.sample.u_s_abc);
         swap(&mut sample.sample.i_s_abc);
-        if let crate::SpeedSample::Count(n) = sample.sample.speed {
-            sample.sample.speed = crate::SpeedSample::Count(n.wrapping_neg());
+        if let monitor::SpeedSample::Count(n) = sample.sample.speed {
+            sample.sample.speed = monitor::SpeedSample::Count(n.wrapping_neg());
         }
     }
     let cycles = cycles(&believed(&INSTRUMENT), &samples);

@@ -1,7 +1,7 @@
 //! When a cycle cannot be judged in motion, and why.
 
-use super::circuit::Circuit;
-use super::rows::Sums;
+use crate::circuit::Circuit;
+use crate::rows::Sums;
 
 /// Why a cycle is not judged in motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
