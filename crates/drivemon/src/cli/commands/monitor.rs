@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use monitor::NotJudged;
 use motor::MotorFile;
 use recording::{LoadTable, Recording, Source};
 
@@ -17,7 +18,7 @@ use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use replay::operating_points::OperatingPoints;
 use replay::words;
-use replay::{MotionSummary, SequenceSummary, Timeline, Verdict, VerdictState};
+use replay::{SequenceSummary, Timeline, Unjudged, Verdict, VerdictState};
 use report::Subject;
 use report::study::{MonitorError, Monitored};
 
@@ -158,17 +159,25 @@ fn print(recording: &Recording, result: &Monitored) {
     print_windows(timeline);
     print_sequence(&timeline.sequence());
     say!("{}", words::rotor(&timeline.rotor()));
-    print_motion(&timeline.motion);
+    print_motion(timeline);
     print_verdict(timeline, &result.verdict);
 }
 
 /// What was judged while something changed.
-fn print_motion(motion: &MotionSummary) {
-    if motion.windows == 0 {
+fn print_motion(timeline: &Timeline) {
+    let motion = &timeline.motion;
+    if let Some(why) = &motion.not_possible {
+        let transient = Unjudged::ByCore(NotJudged::Transient);
+        if timeline
+            .not_judged
+            .iter()
+            .any(|share| share.reason == transient)
+        {
+            say!("in motion not judged: {why}");
+        }
         return;
     }
-    if let Some(why) = &motion.not_possible {
-        say!("in motion not judged: {why}");
+    if motion.windows == 0 {
         return;
     }
     say!(
@@ -267,6 +276,7 @@ pub(crate) fn print_sequence(sequence: &SequenceSummary) {
 
 pub(crate) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
     match verdict.state {
+        VerdictState::Healthy if timeline.motion.is_fault() => say!("at rest no fault was lit"),
         VerdictState::Healthy => say!("{}", paint::good("healthy: no fault was lit")),
         VerdictState::NotJudged if timeline.motion.judged > 0 => {
             say!("{}", paint::caution("at rest not judged"));
