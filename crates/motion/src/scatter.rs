@@ -112,60 +112,94 @@ impl Scatter {
 
     /// Standard deviations of the rows.
     fn deviations(&mut self, circuit: &Circuit, rows: &Rows, now: &Circumstances) -> [f32; ROWS] {
-        let rated = &circuit.rated;
         let n = now.samples.max(1.0);
-        let (of_u, of_i) = (self.voltage.take(n), self.current.take(n));
-        let [slip, present] = now.slip;
-        let z = circuit.impedance(if slip > 0.0 { slip.min(2.0) } else { 0.0 });
-        let current = now.current / rated.current;
+        let noise = [self.voltage.take(n), self.current.take(n)];
+        let current = now.current / circuit.rated.current;
         let step = current - core::mem::replace(&mut self.before, current);
-        let turn = rows.acceleration * n * circuit.t_sample * circuit.mechanics.n_p / rated.omega;
+        self.remember(circuit, now, current);
+        let e = self.of_voltages(circuit, rows, now, noise, [current, step]);
+        let q = self.of_torque(circuit, rows, now, noise, current);
+        // A component of the space vector has two thirds of a channel's variance, a zero sequence a third, and the
+        // demodulated one half of that.
+        let zero =
+            |variance: f32, scale: f32| libm::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
+        let [of_u, of_i] = noise;
+        let i_0 = zero(of_i, circuit.rated.current);
+        let v_0 = zero(of_u, circuit.rated.voltage);
+        [e, e, e, e, q, i_0, i_0, v_0, v_0]
+    }
+
+    /// What the rotor flux remembers of high current and high slip.
+    fn remember(&mut self, circuit: &Circuit, now: &Circumstances, current: f32) {
+        let keep = libm::expf(-now.samples * circuit.t_sample / circuit.rotor_time());
         let square = current * current;
-        let remembered = libm::expf(-n * circuit.t_sample / circuit.rotor_time());
-        let high = square / (square + HIGH_CURRENT);
-        self.high = high.max(remembered * self.high);
-        let skin = skin_of(slip).max(skin_of(present));
-        self.skin = skin.max(remembered * self.skin);
-        let (high, skin) = (self.high, self.skin);
+        self.high = (square / (square + HIGH_CURRENT)).max(keep * self.high);
+        let [rated, present] = now.slip.map(skin_of);
+        self.skin = rated.max(present).max(keep * self.skin);
+    }
+
+    /// Of each component of E+ and E-.
+    fn of_voltages(
+        &self,
+        circuit: &Circuit,
+        rows: &Rows,
+        now: &Circumstances,
+        [of_u, of_i]: [f32; 2],
+        [current, step]: [f32; 2],
+    ) -> f32 {
+        let n = now.samples.max(1.0);
+        let rated = &circuit.rated;
+        let [slip, _] = now.slip;
+        let z = circuit.impedance(if slip > 0.0 { slip.min(2.0) } else { 0.0 });
         let end = libm::sqrtf(2.0 * of_i) * circuit.params.l_a() / (n * circuit.t_sample);
-        let column = |k: usize, row: usize| sensitivity(rows, row, k);
+        let turn = rows.acceleration * n * circuit.t_sample * circuit.mechanics.n_p / rated.omega;
         let length = |k: usize| {
-            let squares = (0..Q).map(|row| column(k, row) * column(k, row));
-            libm::sqrtf(0.5 * squares.sum::<f32>())
+            let squares = (0..Q).map(|row| sensitivity(rows, row, k));
+            libm::sqrtf(0.5 * squares.map(|x| x * x).sum::<f32>())
         };
-        // What is of second order in a temperature that is not known yet.
-        let second = now.heating_square;
-        let e = norm(&[
+        norm(&[
             libm::sqrtf((of_u + z * z * of_i) / n) / rated.voltage,
             // What the ends of the cycle leave of the current's noise.
             end / rated.voltage,
-            SKIN_SHARE * skin * length(place::R_R),
             VOLTAGE_FLOOR,
             STEP_SHARE * step,
             STEP_SHARE * turn,
-            STEP_SHARE * current * high,
-            HIGH_CURRENT_SHARE * high * length(place::LEAKAGE),
-            second * length(place::HEATING),
-        ]);
+            STEP_SHARE * current * self.high,
+            HIGH_CURRENT_SHARE * self.high * length(place::LEAKAGE),
+            SKIN_SHARE * self.skin * length(place::R_R),
+            // What is of second order in a temperature that is not known yet.
+            now.heating_square * length(place::HEATING),
+        ])
+    }
+
+    /// Of Q.
+    fn of_torque(
+        &self,
+        circuit: &Circuit,
+        rows: &Rows,
+        now: &Circumstances,
+        [_, of_i]: [f32; 2],
+        current: f32,
+    ) -> f32 {
+        if !rows.has_torque {
+            return SILENT;
+        }
+        let rated = &circuit.rated;
+        let column = |k: usize| sensitivity(rows, Q, k);
         let lever = 1.5 * circuit.mechanics.n_p * now.flux / rated.torque;
         let inertia = circuit.mechanics.inertia * rows.acceleration / rated.torque;
-        let leakage = column(place::LEAKAGE, Q).abs() + column(place::R_R, Q).abs() + 0.1;
-        let q = norm(&[
-            STEP_SHARE,
-            lever * libm::sqrtf(of_i / n),
-            ACCELERATION_SHARE * inertia,
-            HIGH_CURRENT_SHARE * high * current,
-            HIGH_CURRENT_SHARE * high * leakage,
-            second * column(place::HEATING, Q),
-            SKIN_SHARE * skin * column(place::R_R, Q),
-        ]);
+        let leakage = column(place::LEAKAGE).abs() + column(place::R_R).abs() + 0.1;
         // The three cycles of the torque's row are shared with two others.
-        let q = if rows.has_torque { SQRT_3 * q } else { SILENT };
-        // A component of the space vector has two thirds of a channel's variance, a zero sequence a third.
-        let zero =
-            |variance: f32, scale: f32| libm::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
-        let (i_0, v_0) = (zero(of_i, rated.current), zero(of_u, rated.voltage));
-        [e, e, e, e, q, i_0, i_0, v_0, v_0]
+        SQRT_3
+            * norm(&[
+                STEP_SHARE,
+                lever * libm::sqrtf(of_i / now.samples.max(1.0)),
+                ACCELERATION_SHARE * inertia,
+                HIGH_CURRENT_SHARE * self.high * current,
+                HIGH_CURRENT_SHARE * self.high * leakage,
+                SKIN_SHARE * self.skin * column(place::R_R),
+                now.heating_square * column(place::HEATING),
+            ])
     }
 }
 

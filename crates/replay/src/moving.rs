@@ -183,3 +183,67 @@ fn motion_cause(cause: MotionCause) -> String {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use audit::{Expectation, audit};
+    use formats::read_recording;
+    use monitor::Monitor;
+    use motor::MotorFile;
+    use recording::Mapping;
+
+    use crate::{MotionSummary, Samples, config_for, replay};
+
+    fn moved(recording: &str, motor: &str) -> MotionSummary {
+        let motor = MotorFile::read(format!("../../motors/{motor}.toml")).expect("it ships");
+        let file = format!("../../tests/data/peer/{recording}.csv.gz");
+        let recording = read_recording(file.as_ref(), &Mapping::default(), &mut |_| {});
+        let recording = recording.expect("readable");
+        let config = config_for(&motor, &recording).expect("effects of the library");
+        let monitor = Monitor::new(config).expect("a valid configuration");
+        let audit = audit(&recording, &Expectation::from(&motor));
+        replay(&monitor, &Samples::new(&recording, &audit), &mut |_| {}).motion
+    }
+
+    /// Recordings of another simulator, with its converter and its load steps: a healthy motor whose file is right is
+    /// judged in motion, and nothing is called a fault; one whose iron saturates neither, where the file knows it.
+    #[test]
+    fn healthy_recordings_of_another_simulator_are_judged_in_motion_without_an_alarm() {
+        let linear = "peer-2k2-calibrated";
+        let cases = [
+            ("none/recording", linear),
+            ("none/recording_b", linear),
+            ("supply-unbalance/recording", linear),
+            (
+                "magnetizing-saturation/recording",
+                "peer-2k2-saturating-calibrated",
+            ),
+        ];
+        for (recording, motor) in cases {
+            let motion = moved(recording, motor);
+            assert!(motion.alarms.is_empty(), "{recording}: {motion:?}");
+            assert!(5 * motion.judged > 4 * motion.windows, "{motion:?}");
+        }
+    }
+
+    /// A motor file that knows nothing of the saturation, or of one that is not there, is another motor.
+    #[test]
+    fn a_wrong_motor_file_is_seen_in_motion_too() {
+        for (recording, motor) in [
+            ("magnetizing-saturation/recording_b", "peer-2k2-calibrated"),
+            ("none/recording", "peer-2k2-saturating-calibrated"),
+        ] {
+            let motion = moved(recording, motor);
+            let fault = motion.alarms.first().expect("an alarm");
+            assert!(fault.onset_s <= fault.raised_s && fault.statistic > 6.5);
+        }
+    }
+
+    #[test]
+    fn without_a_calibration_nothing_is_judged_in_motion_and_it_says_why() {
+        let motion = moved("none/recording", "peer-2k2");
+        let why = motion.not_possible.expect("a reason");
+        assert!(why.contains("not calibrated"), "{why}");
+        assert_eq!((motion.judged, motion.alarms.len()), (0, 0));
+    }
+}

@@ -77,67 +77,45 @@ pub fn table(draws: u64, doubts: &Doubts) {
     );
 }
 
-/// The same with what was left open: alarms of runs and the largest T over all drives.
-pub fn doubts(draws: u64) {
+/// What may be off beyond parameters, gains and friction as a calibration leaves them.
+fn open_points() -> [(&'static str, Doubts); 8] {
     let usual = Doubts::USUAL;
-    let cases = [
-        (
-            "parameters, gains and friction off as a calibration may leave them",
-            usual,
-        ),
-        (
-            "parameters twice as far off",
-            Doubts {
-                wrong: 2.0,
-                ..usual
-            },
-        ),
+    let wrong = 2.0;
+    let warm_k = 100.0;
+    let undeclared_iron = 0.15;
+    let offset = 0.005;
+    let late_s = 5e-6;
+    let backwards = true;
+    let noise = 0.005;
+    [
+        ("nothing more", usual),
+        ("parameters twice as far off", Doubts { wrong, ..usual }),
         (
             "windings 20 K colder to 100 K warmer",
+            Doubts { warm_k, ..usual },
+        ),
+        (
+            "saturating iron (0.15), not declared",
             Doubts {
-                warm_k: 100.0,
+                undeclared_iron,
                 ..usual
             },
         ),
         (
-            "saturating iron (0.15) that is not declared",
-            Doubts {
-                undeclared_iron: 0.15,
-                ..usual
-            },
+            "current a off by 0.5 % of full scale",
+            Doubts { offset, ..usual },
         ),
-        (
-            "current sensor a off by 0.5 % of full scale",
-            Doubts {
-                offset: 0.005,
-                ..usual
-            },
-        ),
-        (
-            "currents 5 us late",
-            Doubts {
-                late_s: 5e-6,
-                ..usual
-            },
-        ),
-        (
-            "backwards",
-            Doubts {
-                backwards: true,
-                ..usual
-            },
-        ),
-        (
-            "noise 0.5 % of full scale",
-            Doubts {
-                noise: 0.005,
-                ..usual
-            },
-        ),
-    ];
+        ("currents 5 us late", Doubts { late_s, ..usual }),
+        ("backwards", Doubts { backwards, ..usual }),
+        ("noise 0.5 % of full scale", Doubts { noise, ..usual }),
+    ]
+}
+
+/// The same with what was left open: alarms of runs and the largest T over all drives.
+pub fn doubts(draws: u64) {
     println!("| what is off | {} |", MOTORS.join(" | "));
     println!("|---|{}", "---|".repeat(MOTORS.len()));
-    for (label, doubts) in cases {
+    for (label, doubts) in open_points() {
         let cells = MOTORS.map(|name| {
             let mut all = Cell::default();
             for drive in DRIVES {
