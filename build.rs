@@ -13,8 +13,6 @@ use motor::{effect, effects};
 /// The motor file that is compiled in unless the environment names another.
 const DEFAULT_MOTOR: &str = "motors/assumed-300w.toml";
 const MOTOR_VARIABLE: &str = "DRIVE_MONITOR_MOTOR";
-/// s; the board's sampling clock runs at 10 kHz.
-const T_SAMPLE: f64 = 1e-4;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -77,7 +75,7 @@ fn motor_path(here: &Path) -> PathBuf {
 
 fn constants(path: &Path) -> Result<String, Box<dyn Error>> {
     let file = MotorFile::read(path)?;
-    let config = MonitorConfig::from_motor_file(&file, T_SAMPLE)?;
+    let config = MonitorConfig::of_board(&file)?;
     Monitor::new(config).map_err(|error| format!("{}: {error}", path.display()))?;
     check_effects(&file).map_err(|error| format!("{}: {error}", path.display()))?;
     let words = MotorImage::new(&config).0;

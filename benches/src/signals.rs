@@ -73,6 +73,7 @@ fn codes(config: &MonitorConfig, point: &OperatingPoint<f64>, k: usize) -> RawSa
         current_codes: phases(point.i_s * turn)
             .map(|x| code(x, current.unit_per_code, current.zero_code)),
         encoder_count: (counts as u64 % 65_536) as u16,
+        ..RawSample::default()
     }
 }
 

@@ -1,4 +1,4 @@
-//! The shaft encoder: a hardware counter, read by DMA at every sampling instant.
+//! The shaft encoder: a hardware counter, read by DMA at every trigger of the converter.
 
 use embassy_stm32::Peri;
 use embassy_stm32::dma::{self, ReadableRingBuffer, TransferOptions};
@@ -37,6 +37,9 @@ pub fn snapshots<'a>(
     let request = <DMA1_CH2 as UpDma<TIM4>>::request(&*dma);
     let channel = dma::Channel::new(dma, Irqs);
     let counter = pac::TIM3.cnt().as_ptr().cast::<u16>();
+    // The converter's ring tells when both are full.
+    let mut options = TransferOptions::default();
+    options.complete_transfer_ir = false;
     // Safety: `counter` is the address of a 16-bit readable register that exists as long as the chip
     // does, and the buffer stays borrowed for the life of the ring, whose drop stops the channel.
     #[allow(unsafe_code)]
@@ -46,7 +49,7 @@ pub fn snapshots<'a>(
             request,
             counter,
             buffer,
-            TransferOptions::default(),
+            options,
         )
     }
 }

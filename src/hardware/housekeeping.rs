@@ -1,7 +1,7 @@
 //! The chip's own health: why it was reset, its analogue reference, its temperature.
 
 use embassy_stm32::Peri;
-use embassy_stm32::adc::{Adc, AdcConfig, SampleTime, Temperature, VREF_CALIB_MV, VrefInt};
+use embassy_stm32::adc::{Adc, AdcChannel, AdcConfig, SampleTime, Temperature, VREF_CALIB_MV, VrefInt};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::ADC5;
 
@@ -72,10 +72,7 @@ impl Housekeeping {
 
     /// Temperature of the chip, degrees Celsius, with converters supplied by `vdda_millivolt`.
     pub fn temperature_degc(&mut self, vdda_millivolt: u32) -> f32 {
-        // 247.5 cycles are 6.2 us; the sensor wants at least 5.
-        let code = self
-            .adc
-            .blocking_read(&mut self.temperature, SampleTime::CYCLES247_5);
+        let code = settled(&mut self.adc, &mut self.temperature);
         let at_calibration = f32::from(code) * vdda_millivolt as f32 / VREF_CALIB_MV as f32;
         let [(cold, cold_degc), (hot, hot_degc)] = self.calibration;
         cold_degc + (at_calibration - cold) * (hot_degc - cold_degc) / (hot - cold)
@@ -84,14 +81,18 @@ impl Housekeeping {
     /// Supply of the converters, mV; 0 when the reference shows nothing.
     pub fn vdda_millivolt(&mut self) -> u32 {
         let calibrated = u32::from(self.reference.calibrated_value());
-        // 247.5 cycles are 6.2 us; the reference wants at least 4.
-        let measured = self
-            .adc
-            .blocking_read(&mut self.reference, SampleTime::CYCLES247_5);
+        let measured = settled(&mut self.adc, &mut self.reference);
         (VREF_CALIB_MV * calibrated)
             .checked_div(u32::from(measured))
             .unwrap_or(0)
     }
+}
+
+/// The second of two results: the first one after a pause of 1 ms or more, and the first one of another channel, may be wrong
+/// (erratum of the family). 247.5 cycles are 6.2 us; the sensor wants at least 5, the reference 4.
+fn settled(adc: &mut Adc<'static, ADC5>, channel: &mut impl AdcChannel<ADC5>) -> u16 {
+    let _ = adc.blocking_read(channel, SampleTime::CYCLES247_5);
+    adc.blocking_read(channel, SampleTime::CYCLES247_5)
 }
 
 /// Reads a constant that the factory wrote beside the flash.

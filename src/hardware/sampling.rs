@@ -1,7 +1,7 @@
-//! Acquisition: six channels on one converter and the encoder count, all started by one timer.
+//! Acquisition: six channels on one converter and the encoder count, all started by one timer, sixteen times for each sample.
 //!
 //! One converter for all channels: two DMA rings of two converters can lose their alignment after an
-//! overrun. Voltage and current of a phase follow each other by 0.63 us (0.011 degrees at 50 Hz).
+//! overrun. Voltage and current of a phase follow each other by 0.625 us (0.011 degrees at 50 Hz).
 
 use embassy_stm32::adc::{Adc, AdcChannel, AdcConfig, Exten, RingBufferedAdc, SampleTime};
 use embassy_stm32::dma::ReadableRingBuffer;
@@ -10,27 +10,25 @@ use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{MasterMode, Timer};
 use embassy_stm32::{Peri, pac, triggers};
 use embassy_time::{Duration, with_timeout};
-use monitor::{RawBlock, RawSample};
+use monitor::{CHANNELS, ClippedChannels, RawBlock, RawSample};
 
 use super::encoder::{self, Encoder};
 use super::interrupts::Irqs;
-use super::ring::{self, Ring};
+use super::ring::{self, BLOCK, CODES, CONVERSIONS, COUNTS, Fault};
 
-/// Sampling instants per second; the motor constants are compiled for it.
-const SAMPLE_RATE: Hertz = Hertz(10_000);
-/// Instants per block: 3.2 ms, a sixth of a supply cycle, so that a report is never late by more.
-pub const BLOCK: usize = 32;
-/// Channels per instant.
-const CHANNELS: usize = 6;
-/// Two halves: one fills while the other is read.
-const RING: usize = 2 * BLOCK;
+/// Samples per second; the motor constants are compiled for it.
+const SAMPLE_RATE: u32 = 10_000;
+/// Sequences per second: sixteen in exactly the time of a sample, so that what the mean lets through has its zeros at the
+/// multiples of the sampling rate, which else would fold onto the supply.
+const TRIGGER_RATE: Hertz = Hertz(SAMPLE_RATE * CONVERSIONS as u32);
+/// Blocks that are thrown away after each start: the converter's first result after a pause of 1 ms or after its calibration
+/// may be wrong (erratum of the family).
+const IDLE_BLOCKS: u32 = 1;
+/// Codes beyond which one counts as clipped, as in the core.
+const RAILS: [u16; 2] = [2, 4_093];
 /// Three blocks' time: the converter has stopped, or its overrun flag blocks the DMA (which the
 /// driver never looks at), or the clock is gone.
 const STALL: Duration = Duration::from_micros(3 * 3_200);
-/// Instants by which the two rings may seem apart: the trigger can fall between the two look-ups,
-/// and the converter is behind the encoder by one sequence.
-const SKEW: usize = 2;
-
 /// What acquisition is made of. Kept by the caller so that it can be started anew after a gap.
 pub struct Sources {
     /// The converter.
@@ -56,50 +54,48 @@ type Pins = (
     Peri<'static, PC3>,
 );
 
-#[unsafe(link_section = ".dma.codes")]
-#[allow(unsafe_code)]
-static CODES: Ring<{ RING * CHANNELS / 2 }> = Ring::new();
-#[unsafe(link_section = ".dma.counts")]
-#[allow(unsafe_code)]
-static COUNTS: Ring<{ RING / 2 }> = Ring::new();
-
-/// The latest instants, in the order in which they were taken.
+/// The latest samples, in the order in which they were taken; codes are sums of sixteen.
 pub struct Block {
-    codes: [u16; BLOCK * CHANNELS],
+    codes: [[u16; CHANNELS]; BLOCK],
     counts: [u16; BLOCK],
+    clipped: [ClippedChannels; BLOCK],
+    is_clipped: bool,
 }
 
 impl Block {
     /// A block to be filled.
     pub const fn new() -> Self {
         Block {
-            codes: [0; BLOCK * CHANNELS],
+            codes: [[0; CHANNELS]; BLOCK],
             counts: [0; BLOCK],
+            clipped: [ClippedChannels::NONE; BLOCK],
+            is_clipped: false,
         }
     }
 
-    /// The instants one by one.
+    /// The samples one by one.
     pub fn samples(&self) -> impl Iterator<Item = RawSample> {
-        let (instants, _) = self.codes.as_chunks::<CHANNELS>();
-        instants.iter().zip(&self.counts).map(
-            |(&[v_a, i_a, v_b, i_b, v_c, i_c], &encoder_count)| RawSample {
+        let instants = self.codes.iter().zip(&self.counts).zip(&self.clipped);
+        instants.map(
+            |((&[v_a, i_a, v_b, i_b, v_c, i_c], &encoder_count), &clipped)| RawSample {
                 voltage_codes: [v_a, v_b, v_c],
                 current_codes: [i_a, i_b, i_c],
                 encoder_count,
+                clipped,
             },
         )
     }
 
-    /// Codes of the first instant: voltage and current of each phase in turn.
+    /// Codes of the first sample: voltage and current of each phase in turn.
     pub fn first(&self) -> &[u16; CHANNELS] {
-        let (instants, _) = self.codes.as_chunks::<CHANNELS>();
-        instants.first().unwrap_or(&[0; CHANNELS])
+        let [first, ..] = &self.codes;
+        first
     }
 
-    /// The instants as the core takes them.
+    /// The samples as the core takes them.
     pub fn raw(&self) -> RawBlock<'_> {
-        let (instants, _) = self.codes.as_chunks();
-        RawBlock::new(instants, &self.counts)
+        let clipped: &[ClippedChannels] = if self.is_clipped { &self.clipped } else { &[] };
+        RawBlock::new(&self.codes, &self.counts).with_clipped(clipped)
     }
 }
 
@@ -116,7 +112,7 @@ pub enum Gap {
 
 /// Running acquisition.
 pub struct Acquisition<'a> {
-    /// Halves that were read.
+    /// Blocks that were read.
     taken: u32,
     _adc: RingBufferedAdc<'a, ADC1>,
     _counts: ReadableRingBuffer<'a, u16>,
@@ -126,7 +122,21 @@ pub struct Acquisition<'a> {
 
 /// The count after which the timer begins anew. Not `set_frequency`: its division of 64 bits alone takes 0.7 kB of flash.
 fn last_count(clock: Hertz) -> u16 {
-    u16::try_from(clock.0 / SAMPLE_RATE.0 - 1).unwrap_or(u16::MAX)
+    u16::try_from(clock.0 / TRIGGER_RATE.0 - 1).unwrap_or(u16::MAX)
+}
+
+/// The converter itself looks at every conversion for one at a rail; which channel it is, the program finds then. Both rails are
+/// those of the core.
+fn watch_rails() {
+    let [lowest, highest] = RAILS;
+    pac::ADC1.tr1().write(|w| {
+        w.set_lt1(lowest);
+        w.set_ht1(highest);
+    });
+    pac::ADC1.cfgr().modify(|w| {
+        w.set_awd1sgl(pac::adc::vals::Awd1sgl::ALL);
+        w.set_awd1en(true);
+    });
 }
 
 impl<'a> Acquisition<'a> {
@@ -146,6 +156,7 @@ impl<'a> Acquisition<'a> {
             triggers::TIM4_TRGO,
             Exten::RISING_EDGE,
         );
+        watch_rails();
         ring::restart();
         counts.start();
         adc.start();
@@ -164,29 +175,36 @@ impl<'a> Acquisition<'a> {
     /// # Errors
     /// Samples are missing; the acquisition must be started anew.
     pub async fn read(&mut self, block: &mut Block) -> Result<(), Gap> {
+        loop {
+            self.take(block).await?;
+            if self.taken > IDLE_BLOCKS {
+                return Ok(());
+            }
+        }
+    }
+
+    async fn take(&mut self, block: &mut Block) -> Result<(), Gap> {
         let filled = with_timeout(STALL, ring::more_than(self.taken)).await;
         if filled.map_err(|_| Gap::Stalled)?.wrapping_sub(self.taken) > 1 {
             return Err(Gap::Overrun);
         }
-        CODES.copy_half(self.taken, &mut block.codes);
-        COUNTS.copy_half(self.taken, &mut block.counts);
+        block.is_clipped = ring::copy_block(
+            self.taken,
+            &mut block.codes,
+            &mut block.counts,
+            &mut block.clipped,
+        );
         self.taken = self.taken.wrapping_add(1);
-        match ring::filled() {
-            filled if filled != self.taken => Err(Gap::Overrun),
-            _ if skew() > SKEW => Err(Gap::Misaligned),
-            _ => Ok(()),
+        match ring::fault() {
+            Some(Fault::Overwritten) => Err(Gap::Overrun),
+            Some(Fault::Apart) => Err(Gap::Misaligned),
+            None if ring::filled() != self.taken => Err(Gap::Overrun),
+            None => Ok(()),
         }
     }
 }
 
-/// Instants by which the encoder's ring is ahead of the converter's.
-fn skew() -> usize {
-    let left = |channel| usize::from(pac::DMA1.ch(channel).ndtr().read().ndt());
-    let [codes, counts] = [left(0).div_ceil(CHANNELS), left(1)];
-    (RING + codes - counts) % RING
-}
-
-/// 12.5 cycles at 40 MHz: the front end of docs/wiring.md holds the charge (47 nF at the pin).
+/// 12.5 cycles at 40 MHz, 25 with the conversion: 3.75 us of the 6.25 us between triggers. The front end of docs/wiring.md holds the charge (47 nF at the pin).
 fn sequence(
     (v_a, i_a, v_b, i_b, v_c, i_c): &mut Pins,
 ) -> [(embassy_stm32::adc::AnyAdcChannel<'_, ADC1>, SampleTime); CHANNELS] {

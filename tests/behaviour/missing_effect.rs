@@ -27,6 +27,7 @@ fn watch(plant: &MotorFile, believed: &MotorFile, faults: Vec<Fault>) -> Report 
             voltage_codes: sample.measured.voltage_codes,
             current_codes: sample.measured.current_codes,
             encoder_count: sample.measured.encoder_count,
+            ..RawSample::default()
         };
         last = monitor.update_raw(&mut state, &raw).unwrap_or(last);
     }

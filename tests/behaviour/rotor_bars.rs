@@ -35,6 +35,7 @@ fn run(scenario: &Scenario) -> (Vec<SimSample>, Vec<Report>) {
         voltage_codes: sample.measured.voltage_codes,
         current_codes: sample.measured.current_codes,
         encoder_count: sample.measured.encoder_count,
+        ..RawSample::default()
     });
     let reports = raw
         .filter_map(|raw| monitor.update_raw(&mut state, &raw))

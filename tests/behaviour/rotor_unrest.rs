@@ -101,6 +101,7 @@ fn watched(scenario: &Scenario, cage: Cage) -> Vec<Report> {
         voltage_codes: sample.measured.voltage_codes,
         current_codes: sample.measured.current_codes,
         encoder_count: sample.measured.encoder_count,
+        ..RawSample::default()
     });
     raw.filter_map(|raw| monitor.update_raw(&mut state, &raw))
         .collect()

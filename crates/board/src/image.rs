@@ -38,7 +38,7 @@ const CHAIN_WORDS: usize = CHANNELS + 1;
 const CAGE_WORDS: usize = 6;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0008;
+const SCHEMA: u32 = 0x444D_0009;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -77,7 +77,7 @@ impl Collector {
 /// # Errors
 /// A motor file that the board was not flashed with.
 pub fn recording(fetched: &Fetched, motor: &MotorFile) -> Result<Recording, CaptureError> {
-    let config = MonitorConfig::from_motor_file(motor, T_SAMPLE)?;
+    let config = MonitorConfig::of_board(motor)?;
     if MotorImage::new(&config).identification() != fetched.motor {
         return Err(CaptureError::OtherMotor);
     }
@@ -165,13 +165,14 @@ mod tests {
 
     /// What a board captures of a wave in all channels, the voltages late.
     fn fetched(motor: &MotorFile) -> Fetched {
-        let config = MonitorConfig::from_motor_file(motor, T_SAMPLE).expect("valid");
-        let code = |t: f64| (2048.0 + 2000.0 * wave(t)).round() as u16;
+        let config = MonitorConfig::of_board(motor).expect("valid");
+        let code = |t: f64| (16.0 * (2048.0 + 2000.0 * wave(t))).round() as u16;
         let step = T_SAMPLE * CAPTURE_EVERY as f64;
         let sample = |k: usize| RawSample {
             voltage_codes: [code(k as f64 * step - LATE_S); 3],
             current_codes: [code(k as f64 * step); 3],
             encoder_count: 0,
+            ..RawSample::default()
         };
         Fetched {
             motor: MotorImage::new(&config).identification(),

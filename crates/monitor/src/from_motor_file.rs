@@ -209,6 +209,7 @@ fn converter(sensors: &Sensors) -> Converter {
         chain: chain(sensors),
         ..Converter::bipolar(1.0, 1.0, sensors.adc_bits as u8)
     }
+    .summed(sensors.conversions as u16)
 }
 
 fn chain(sensors: &Sensors) -> AnalogueChain {

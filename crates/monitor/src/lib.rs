@@ -44,6 +44,8 @@ mod config;
 mod frames;
 #[cfg(feature = "motor-file")]
 mod from_motor_file;
+#[cfg(feature = "motor-file")]
+mod of_board;
 mod input;
 mod isolation;
 mod lamps;
@@ -83,6 +85,8 @@ pub use model::effects::{
 pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
+#[cfg(feature = "motor-file")]
+pub use of_board::{BOARD_CONVERSIONS, BOARD_T_SAMPLE};
 pub use motor::FaultId;
 pub use reason::Reason;
 pub use rehearsal::Rehearsal;

@@ -91,6 +91,7 @@ fn instant(k: usize) -> RawSample {
         voltage_codes: [0, 1, 2].map(|phase| code(phase, 1_197.0)),
         current_codes: [0, 1, 2].map(|phase| code(phase, ampere)),
         encoder_count: (k * 117 / 10) as u16,
+        ..RawSample::default()
     }
 }
 

@@ -222,6 +222,7 @@ impl Board {
             voltage_codes: u.map(|u| self.code(u, volt, 2048.0)),
             current_codes: i.map(|i| self.code(i, amp, 2048.0)),
             encoder_count: (shaft_angle / TAU * 4096.0).floor() as i64 as u16,
+            ..RawSample::default()
         }
     }
 }

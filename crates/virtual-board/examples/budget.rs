@@ -33,6 +33,7 @@ impl Inputs for Motor {
                     voltage_codes: sample.measured.voltage_codes,
                     current_codes: sample.measured.current_codes,
                     encoder_count: sample.measured.encoder_count,
+                    ..RawSample::default()
                 };
             }
         }

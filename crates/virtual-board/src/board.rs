@@ -71,6 +71,7 @@ impl VirtualBoard {
             self.step()?;
         }
         self.cpu.machine().until = u64::MAX;
+        self.catch_up();
         Ok(())
     }
 
@@ -134,8 +135,17 @@ impl VirtualBoard {
         self.cpu.machine().ports[port].apply(number, pressed);
     }
 
+    /// Acquisition up to now, before the outside world changes.
+    fn catch_up(&mut self) {
+        let machine = self.cpu.machine();
+        if let Err(unmodelled) = machine.catch_up() {
+            machine.failure = Some(unmodelled.to_string());
+        }
+    }
+
     /// Stops or restarts the clock of the sampling converter.
     pub fn stop_converter_clock(&mut self, stopped: bool) {
+        self.catch_up();
         self.cpu.machine().adc1.clock_stopped = stopped;
     }
 
@@ -279,6 +289,7 @@ impl VirtualBoard {
 
     /// Sets the converters' supply, mV (3300 is nominal, > 0).
     pub fn set_vdda(&mut self, millivolt: u32) {
+        self.catch_up();
         self.cpu.machine().vdda_millivolt = millivolt.max(1);
     }
 
@@ -360,7 +371,7 @@ impl VirtualBoard {
         self.cpu.machine().tally
     }
 
-    /// Every instant that the firmware's converter took, in order; none after [`VirtualBoard::forget_taken`].
+    /// Every sample that the firmware's converter made, in order, sixteen codes added up; none after [`VirtualBoard::forget_taken`].
     pub fn taken(&mut self) -> &[RawSample] {
         self.cpu.machine().taken.as_deref().unwrap_or_default()
     }
@@ -432,11 +443,13 @@ impl VirtualBoard {
 
     /// Lets DMA answer no request, as when the bus is taken: the converter overruns.
     pub fn block_dma(&mut self, blocked: bool) {
+        self.catch_up();
         self.cpu.machine().dma_blocked = blocked;
     }
 
     /// Leaves the next `requests` of the encoder's DMA unanswered: its ring falls behind the converter's.
     pub fn lose_encoder_counts(&mut self, requests: u32) {
+        self.catch_up();
         self.cpu.machine().lost_encoder_requests = requests;
     }
 

@@ -78,7 +78,7 @@ fn expected(
     samples: &[RawSample],
     seen: &[Frame],
 ) -> Vec<Frame> {
-    let mut config = MonitorConfig::from_motor_file(&motor(), 1e-4).expect("shipped");
+    let mut config = MonitorConfig::of_board(&motor()).expect("shipped");
     if let Some(calibration) = calibration {
         calibration.apply(&mut config);
     }

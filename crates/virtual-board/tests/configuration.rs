@@ -26,7 +26,7 @@ fn running() -> VirtualBoard {
 
 /// The motor of the simulation, with thresholds a tenth larger.
 fn config() -> MonitorConfig {
-    let mut config = MonitorConfig::from_motor_file(&motor(), 1e-4).expect("shipped");
+    let mut config = MonitorConfig::of_board(&motor()).expect("shipped");
     config.thresholds = config.thresholds.map(|threshold| 1.1 * threshold);
     config
 }
@@ -263,7 +263,7 @@ fn another_motor_of_the_library_of_files_fits_in() {
         let Ok(file) = MotorFile::read(&path) else {
             continue;
         };
-        let Ok(config) = MonitorConfig::from_motor_file(&file, 1e-4) else {
+        let Ok(config) = MonitorConfig::of_board(&file) else {
             continue;
         };
         let wanted = Configuration::of(&file.name, &MotorImage::new(&config));

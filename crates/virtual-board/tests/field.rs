@@ -41,7 +41,7 @@ fn run_to(board: &mut VirtualBoard, at_s: f64) {
 
 /// The same motor with thresholds a tenth larger.
 fn less_touchy() -> Configuration {
-    let mut config = MonitorConfig::from_motor_file(&motor(), 1e-4).expect("shipped");
+    let mut config = MonitorConfig::of_board(&motor()).expect("shipped");
     config.thresholds = config.thresholds.map(|threshold| 1.1 * threshold);
     Configuration::of("less touchy", &MotorImage::new(&config))
 }

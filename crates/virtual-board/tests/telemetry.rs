@@ -9,7 +9,7 @@ use motor::motor_file::Frame as MotorFrame;
 use scenario::{Fault, Start};
 
 fn host_reports(taken: &[monitor::RawSample]) -> Vec<Report> {
-    let config = MonitorConfig::from_motor_file(&motor(), 1e-4).expect("shipped");
+    let config = MonitorConfig::of_board(&motor()).expect("shipped");
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut state = MonitorState::default();
     let judged = taken.iter().skip(INHIBITED);

@@ -290,7 +290,7 @@ fn what_is_not_confirmed_does_not_stay() {
 fn a_master_from_elsewhere_configures_a_board_and_follows_it_to_its_new_line() {
     let wire = Wire::new(|_| {});
     let file = motor::MotorFile::read(motor_file("chalmers-4kw")).expect("a motor file");
-    let config = MonitorConfig::from_motor_file(&file, 1e-4).expect("effects of the library");
+    let config = MonitorConfig::of_board(&file).expect("effects of the library");
     let mut wanted = Configuration::of(&file.name, &MotorImage::new(&config));
     wanted.set_line(Line {
         unit: 99,

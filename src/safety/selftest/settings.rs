@@ -36,6 +36,7 @@ fn acquisition() -> u32 {
         adc.cfgr().read().0,
         adc.sqr1().read().0,
         adc.sqr2().read().0,
+        adc.tr1().read().0,
         adc.smpr().read().0,
         adc.smpr2().read().0,
         dma.ch(0).cr().read().0,

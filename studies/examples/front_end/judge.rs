@@ -89,5 +89,6 @@ fn raw(measured: &Measured) -> RawSample {
         voltage_codes: measured.voltage_codes,
         current_codes: measured.current_codes,
         encoder_count: measured.encoder_count,
+        ..RawSample::default()
     }
 }

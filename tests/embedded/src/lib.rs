@@ -97,6 +97,7 @@ pub fn instant(k: u32) -> RawSample {
         voltage_codes: [voltage(0), voltage(1), voltage(2)],
         current_codes: [current(0), if dead { 2048 } else { current(1) }, current(2)],
         encoder_count: (u64::from(k) * 117 / 10) as u16,
+        ..RawSample::default()
     }
 }
 

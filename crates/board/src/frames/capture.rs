@@ -35,12 +35,12 @@ pub enum CaptureState {
     Complete = 2,
 }
 
-/// An instant in the ring: two codes of 12 bits in three bytes, then the encoder's count. Words would take 1.9 kB more.
-type Packed = [u8; 11];
+/// An instant in the ring: voltages, currents, the encoder's count.
+type Instant = [u16; 7];
 
 /// The ring.
 pub struct Capture {
-    instants: Deque<Packed, CAPTURE_INSTANTS>,
+    instants: Deque<Instant, CAPTURE_INSTANTS>,
     after: u16,
     state: CaptureState,
     number: u8,
@@ -59,7 +59,7 @@ pub struct CaptureChunk {
     pub count: u16,
     /// [`crate::MotorImage::identification`].
     pub motor: u32,
-    instants: [[u16; 7]; CHUNK],
+    instants: [Instant; CHUNK],
 }
 
 impl Default for Capture {
@@ -93,7 +93,7 @@ impl Capture {
         if self.instants.is_full() {
             self.instants.pop_front();
         }
-        let _ = self.instants.push_back(packed(raw));
+        let _ = self.instants.push_back(instant_of(raw));
         if self.state == CaptureState::Taking {
             self.after += 1;
             if self.after >= AFTER && self.instants.is_full() {
@@ -136,8 +136,8 @@ impl Capture {
         let (older, newer) = self.instants.as_slices();
         let piece = older.iter().chain(newer).skip(usize::from(index) * CHUNK);
         let mut instants = [[0; 7]; CHUNK];
-        for (instant, packed) in instants.iter_mut().zip(piece) {
-            *instant = unpacked(packed);
+        for (instant, kept) in instants.iter_mut().zip(piece) {
+            *instant = *kept;
         }
         Some(CaptureChunk {
             schema: SCHEMA,
@@ -150,39 +150,10 @@ impl Capture {
     }
 }
 
-/// Codes have 12 bits: what is above them is lost.
-fn packed(raw: &RawSample) -> Packed {
+fn instant_of(raw: &RawSample) -> Instant {
     let [u_a, u_b, u_c] = raw.voltage_codes;
     let [i_a, i_b, i_c] = raw.current_codes;
-    let pair = |low: u16, high: u16| {
-        [
-            low as u8,
-            (low >> 8 & 0xF) as u8 | (high << 4) as u8,
-            (high >> 4) as u8,
-        ]
-    };
-    let [[a, b, c], [d, e, f], [g, h, i]] = [pair(u_a, u_b), pair(u_c, i_a), pair(i_b, i_c)];
-    let [low, high] = raw.encoder_count.to_le_bytes();
-    [a, b, c, d, e, f, g, h, i, low, high]
-}
-
-/// Voltages, currents, count.
-fn unpacked(bytes: &Packed) -> [u16; 7] {
-    let [a, b, c, d, e, f, g, h, i, low, high] = *bytes;
-    let pair = |a: u8, b: u8, c: u8| {
-        let [a, b, c] = [a, b, c].map(u16::from);
-        [a | (b & 0xF) << 8, b >> 4 | c << 4]
-    };
-    let [[u_a, u_b], [u_c, i_a], [i_b, i_c]] = [pair(a, b, c), pair(d, e, f), pair(g, h, i)];
-    [
-        u_a,
-        u_b,
-        u_c,
-        i_a,
-        i_b,
-        i_c,
-        u16::from_le_bytes([low, high]),
-    ]
+    [u_a, u_b, u_c, i_a, i_b, i_c, raw.encoder_count]
 }
 
 impl CaptureChunk {
@@ -200,6 +171,7 @@ impl CaptureChunk {
                 voltage_codes: [u_a, u_b, u_c],
                 current_codes: [i_a, i_b, i_c],
                 encoder_count,
+                ..RawSample::default()
             })
     }
 }
@@ -211,9 +183,10 @@ mod tests {
 
     fn raw(k: u16) -> RawSample {
         RawSample {
-            voltage_codes: [k, k + 1, k + 2].map(|code| code & 0xFFF),
-            current_codes: [k + 3, k + 4, k + 5].map(|code| code & 0xFFF),
+            voltage_codes: [k, k + 1, k + 2].map(|code: u16| code.wrapping_mul(0x9E37)),
+            current_codes: [k + 3, k + 4, k + 5].map(|code: u16| code.wrapping_mul(0x9E37)),
             encoder_count: k.wrapping_mul(31),
+            ..RawSample::default()
         }
     }
 
@@ -228,23 +201,6 @@ mod tests {
         chunks
             .flat_map(|chunk| chunk.samples().collect::<Vec<_>>())
             .collect()
-    }
-
-    proptest::proptest! {
-        #[test]
-        fn codes_of_12_bits_and_any_count_survive_packing(
-            codes in proptest::array::uniform6(0_u16..4_096),
-            encoder_count: u16,
-        ) {
-            let [u_a, u_b, u_c, i_a, i_b, i_c] = codes;
-            let raw = RawSample {
-                voltage_codes: [u_a, u_b, u_c],
-                current_codes: [i_a, i_b, i_c],
-                encoder_count,
-            };
-            let expected = [u_a, u_b, u_c, i_a, i_b, i_c, encoder_count];
-            proptest::prop_assert_eq!(unpacked(&packed(&raw)), expected);
-        }
     }
 
     #[test]

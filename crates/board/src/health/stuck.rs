@@ -5,18 +5,21 @@
 
 use monitor::CHANNELS;
 
+/// Codes of 12 bits in the board's samples, which are sums of them.
+const CONVERSIONS: u16 = 16;
+
 /// Looks, one per 3.2 ms block, before anything is said (0.2 s): a sixth to a third of a cycle of 50 or 60 Hz apart, so
 /// that a channel that moves has shown nearly all of its range.
 const LOOKS: u8 = 62;
 /// Codes by which a channel that stands still may waver: the converter's noise and its last bits.
-const STILL: u16 = 16;
+const STILL: u16 = 16 * CONVERSIONS;
 /// Codes that a neighbour must have moved: a tenth of the range. Without a supply all channels stand.
-const MOVING: u16 = 410;
+const MOVING: u16 = 410 * CONVERSIONS;
 /// The code of zero.
-const ZERO: u16 = 2_048;
+const ZERO: u16 = 2_048 * CONVERSIONS;
 /// Codes from zero beyond which a standing channel is stuck: a tenth of half the range. Nearer to zero it may be an open
 /// phase, or a dead sensor, which the core tells apart.
-const FAR: u16 = 205;
+const FAR: u16 = 205 * CONVERSIONS;
 
 /// Codes seen since the last verdict, and the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +95,7 @@ mod tests {
             let angle = core::f64::consts::TAU * hz * 0.0032 * f64::from(block);
             let mut codes = core::array::from_fn(|place| {
                 let phase = core::f64::consts::TAU / 3.0 * (place / 2) as f64;
-                (2_048.0 + amplitude * (angle - phase).cos()) as u16
+                (16.0 * (2_048.0 + amplitude * (angle - phase).cos())) as u16
             });
             change(&mut codes);
             channels.look(&codes);
@@ -112,7 +115,9 @@ mod tests {
         for hz in 5..=100 {
             for place in 0..CHANNELS {
                 for code in [0, 700, 1_800, 2_300, 4_095] {
-                    let stuck = judged(f64::from(hz), 900.0, |codes| codes[place] = code);
+                    let stuck = judged(f64::from(hz), 900.0, |codes| {
+                        codes[place] = CONVERSIONS * code;
+                    });
                     assert!(stuck, "{hz} Hz, channel {place} at {code}");
                 }
             }
@@ -121,18 +126,18 @@ mod tests {
 
     #[test]
     fn an_open_phase_and_a_silent_motor_are_not_stuck() {
-        assert!(!judged(50.0, 900.0, |codes| codes[3] = 2_050));
+        assert!(!judged(50.0, 900.0, |codes| codes[3] = 2_050 * CONVERSIONS));
         // Nothing but noise moves: whatever the channels show, there is no supply.
         let last_bit = core::cell::Cell::new(0);
         assert!(!judged(50.0, 0.0, |codes| {
             last_bit.set(last_bit.get() ^ 1);
-            codes[2] = 700 + last_bit.get();
+            codes[2] = 700 * CONVERSIONS + last_bit.get();
         }));
     }
 
     #[test]
     fn a_converter_whose_channels_all_stand_is_stuck() {
-        let held: [u16; CHANNELS] = core::array::from_fn(|k| 1_500 + 217 * k as u16);
+        let held: [u16; CHANNELS] = core::array::from_fn(|k| CONVERSIONS * (1_500 + 217 * k as u16));
         assert!(judged(50.0, 900.0, |codes| *codes = held));
         assert!(!judged(50.0, 900.0, |codes| *codes = [ZERO + 3; CHANNELS]));
     }
@@ -140,10 +145,10 @@ mod tests {
     #[test]
     fn a_channel_that_moves_again_is_not_stuck_any_more() {
         let mut channels = StuckChannels::default();
-        let moving = |k: u16| [1_500 + 10 * k; CHANNELS];
+        let moving = |k: u16| [CONVERSIONS * (1_500 + 10 * k); CHANNELS];
         for k in 0..u16::from(LOOKS) {
             let mut codes = moving(k);
-            codes[4] = 3_000;
+            codes[4] = 3_000 * CONVERSIONS;
             channels.look(&codes);
         }
         assert!(channels.is_any());

@@ -26,13 +26,14 @@ fn codes(scenario: &Scenario) -> impl Iterator<Item = RawSample> {
         voltage_codes: sample.measured.voltage_codes,
         current_codes: sample.measured.current_codes,
         encoder_count: sample.measured.encoder_count,
+        ..RawSample::default()
     })
 }
 
 /// What the board sends about a stator that heats after half a second: frames, and the samples around the alarm.
 fn sent(seconds: f64) -> Vec<u8> {
     let motor = MotorFile::read(motor_path()).expect("a shipped motor file");
-    let config = MonitorConfig::from_motor_file(&motor, 1e-4).expect("shipped");
+    let config = MonitorConfig::of_board(&motor).expect("shipped");
     let image = MotorImage::new(&config);
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut scenario = Scenario::of(motor, seconds);

@@ -4,7 +4,7 @@
 //! wait for the end of the block (or of the turn) and then keep their place in the processor's registers. Sample by
 //! sample, in blocks of any length: the operations and their order are the same, and so is every bit of the result.
 
-use crate::input::sample::{CHANNELS, RawBlock, RawSample};
+use crate::input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample};
 use crate::input::validity::IntakeState;
 use crate::monitor::{Monitor, MonitorState};
 use crate::report::Report;
@@ -18,7 +18,7 @@ impl Monitor {
         let codes = raw.interleaved();
         let parts = (&mut state.intake, &mut state.sync, &mut state.encoder);
         let tick = self.follow_instant(parts, &codes, raw.encoder_count);
-        self.take_codes(state, &codes, &tick)
+        self.take_codes(state, (&codes, raw.clipped), &tick)
     }
 
     /// Takes instants from the front of `block` until a report is due or none is left. See [`Monitor::update`].
@@ -82,38 +82,49 @@ impl Monitor {
     }
 
     #[inline]
-    fn sum_up(&self, state: &mut MonitorState, codes: &[[u16; CHANNELS]]) {
+    fn sum_up(
+        &self,
+        state: &mut MonitorState,
+        (codes, clipped): (&[[u16; CHANNELS]], ClippedChannels),
+    ) {
         state.count(codes.len());
         let axes = state.axes.0.get(..codes.len()).unwrap_or_default();
         let inside = state.phasor.add_codes(codes, axes, &self.codes.range);
-        self.admit(state, codes, inside);
+        self.admit(state, (codes, clipped), inside);
     }
 
     #[inline]
-    fn admit(&self, state: &mut MonitorState, codes: &[[u16; CHANNELS]], inside: bool) {
-        let clipped = if inside {
-            Default::default()
+    fn admit(
+        &self,
+        state: &mut MonitorState,
+        (codes, clipped): (&[[u16; CHANNELS]], ClippedChannels),
+        inside: bool,
+    ) {
+        let at_rail = if inside {
+            ClippedChannels::NONE
         } else {
             self.config.converter.clipped(codes)
         };
-        state.intake.admit_codes(codes.len(), clipped);
+        state
+            .intake
+            .admit_codes(codes.len(), at_rail.union(clipped));
     }
 
     #[inline(never)]
     fn take_event(
         &self,
         state: &mut MonitorState,
-        codes: &[[u16; CHANNELS]],
+        (codes, clipped): (&[[u16; CHANNELS]], ClippedChannels),
         tick: &SyncTick,
     ) -> Option<Report> {
-        self.take_codes(state, codes.first()?, tick)
+        self.take_codes(state, (codes.first()?, clipped), tick)
     }
 
     #[inline(always)]
     fn take_codes(
         &self,
         state: &mut MonitorState,
-        codes: &[u16; CHANNELS],
+        (codes, clipped): (&[u16; CHANNELS], ClippedChannels),
         tick: &SyncTick,
     ) -> Option<Report> {
         let [v_a, i_a, v_b, i_b, v_c, i_c] = codes.map(f32::from);
@@ -127,7 +138,7 @@ impl Monitor {
             i_c - ampere,
         ];
         state.count(1);
-        self.admit(state, core::slice::from_ref(codes), false);
+        self.admit(state, (core::slice::from_ref(codes), clipped), false);
         self.take_instant(state, tick, &x, &self.codes.units)
     }
 }

@@ -47,6 +47,16 @@ impl ChannelScale {
         }
     }
 
+    /// The same quantity in sums of `conversions` codes.
+    fn summed(self, conversions: u16) -> Self {
+        let conversions = f32::from(conversions);
+        ChannelScale {
+            unit_per_code: self.unit_per_code / conversions,
+            zero_code: self.zero_code * conversions,
+            ..self
+        }
+    }
+
     fn units(&self) -> [Unit; 3] {
         let [gains, offsets] = [self.gain, self.offset].map(Abc::to_array);
         core::array::from_fn(|phase| {
@@ -76,6 +86,19 @@ impl Converter {
         }
     }
 
+    /// The same channels where `conversions` codes of each are added up to one code of an instant: 1 to as many as 16 bits hold,
+    /// 16 of a converter of 12 bits. Nothing is divided, so that no bit of the mean is lost. A single conversion at a rail does
+    /// not show in a sum: it has to be marked ([`RawSample::clipped`]).
+    #[must_use]
+    pub fn summed(self, conversions: u16) -> Self {
+        Converter {
+            voltage: self.voltage.summed(conversions),
+            current: self.current.summed(conversions),
+            max_code: self.max_code.saturating_mul(conversions),
+            ..self
+        }
+    }
+
     /// One instant in SI units, with the channels at a rail marked.
     pub fn convert(&self, raw: &RawSample) -> Sample {
         Sample {
@@ -83,7 +106,7 @@ impl Converter {
             i_s_abc: Some(self.current.convert(raw.current_codes)),
             speed: SpeedSample::Count(raw.encoder_count),
             tau_load: None,
-            clipped: self.clipped(&[raw.interleaved()]),
+            clipped: self.clipped(&[raw.interleaved()]).union(raw.clipped),
         }
     }
 
@@ -136,6 +159,7 @@ mod tests {
             voltage_codes: [2048, 3072, 1024],
             current_codes: [2048, 2049, 2047],
             encoder_count: 7,
+            ..RawSample::default()
         });
         assert_eq!(
             sample.u_s_abc,
@@ -179,6 +203,7 @@ mod tests {
             voltage_codes: [4095, 2048, 2048],
             current_codes: [2048, 2048, 0],
             encoder_count: 0,
+            ..RawSample::default()
         });
         assert!(sample.clipped.voltage(0) && sample.clipped.current(2));
         assert!(!sample.clipped.voltage(1) && !sample.clipped.current(0));
@@ -196,6 +221,7 @@ mod tests {
             voltage_codes: [2100; 3],
             current_codes: [2000; 3],
             encoder_count: 0,
+            ..RawSample::default()
         });
         let volts = sample.u_s_abc.unwrap_or_default().to_array();
         let amperes = sample.i_s_abc.unwrap_or_default().to_array();
@@ -228,6 +254,41 @@ mod tests {
                 "{code}"
             );
         }
+    }
+
+    /// Sixteen conversions added up are the mean in V and A, to the bit where the mean is a code.
+    #[test]
+    fn a_sum_of_codes_is_their_mean() {
+        let mut single = Converter::bipolar(600.0, 60.0, 12);
+        single.voltage.offset.b = 5.0;
+        single.current.gain.c = 0.9;
+        let summed = single.summed(16);
+        let raw = |factor: u16| RawSample {
+            voltage_codes: [3_000, 2_048, 17].map(|code| factor * code),
+            current_codes: [2_047, 1_000, 4_000].map(|code| factor * code),
+            ..RawSample::default()
+        };
+        assert_eq!(summed.convert(&raw(16)), single.convert(&raw(1)));
+        assert_eq!(summed.max_code, 65_520);
+        // A sixteenth of a code counts.
+        let mut more = raw(16);
+        more.voltage_codes[0] += 1;
+        let moved = summed.convert(&more).u_s_abc.unwrap_or_default().a
+            - summed.convert(&raw(16)).u_s_abc.unwrap_or_default().a;
+        assert!((moved - 1_200.0 / 65_536.0).abs() < 3e-5); // f32 at 280 V
+    }
+
+    #[test]
+    fn a_marked_conversion_is_clipped_whatever_the_sum_is() {
+        let converter = Converter::bipolar(600.0, 60.0, 12).summed(16);
+        let mut raw = RawSample {
+            voltage_codes: [32_768; 3],
+            current_codes: [32_768; 3],
+            ..RawSample::default()
+        };
+        assert!(!converter.convert(&raw).clipped.any());
+        raw.clipped.mark_current(1);
+        assert!(converter.convert(&raw).clipped.current(1));
     }
 
     #[test]

@@ -8,12 +8,14 @@ pub const CHANNELS: usize = 6;
 /// One sampling instant as the hardware delivers it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RawSample {
-    /// ADC codes of the phase voltages a, b, c.
+    /// ADC codes of the phase voltages a, b, c; sums of them where [`Converter::summed`](crate::Converter::summed) says so.
     pub voltage_codes: [u16; 3],
     /// ADC codes of the phase currents a, b, c.
     pub current_codes: [u16; 3],
     /// Free-running encoder counter, four counts per pulse, wrapping.
     pub encoder_count: u16,
+    /// Channels of which a single conversion was at a rail, which a sum does not show.
+    pub clipped: ClippedChannels,
 }
 
 /// Consecutive instants as the converter's and the encoder's DMA leave them; taken from the front.
@@ -21,6 +23,8 @@ pub struct RawSample {
 pub struct RawBlock<'a> {
     codes: &'a [[u16; CHANNELS]],
     counts: &'a [u16],
+    /// Of each instant, or empty: nothing is known of single conversions.
+    clipped: &'a [ClippedChannels],
 }
 
 impl<'a> RawBlock<'a> {
@@ -31,7 +35,14 @@ impl<'a> RawBlock<'a> {
         RawBlock {
             codes: codes.get(..length).unwrap_or_default(),
             counts: counts.get(..length).unwrap_or_default(),
+            clipped: &[],
         }
+    }
+
+    /// The same with the channels of each instant of which a single conversion was at a rail, for codes that are sums.
+    #[must_use]
+    pub fn with_clipped(self, clipped: &'a [ClippedChannels]) -> Self {
+        RawBlock { clipped, ..self }
     }
 
     /// Whether every instant was taken.
@@ -46,14 +57,24 @@ impl<'a> RawBlock<'a> {
         self.codes.iter().zip(self.counts.iter().copied())
     }
 
-    /// Takes at most `length` instants and gives their codes.
+    /// Takes at most `length` instants and gives their codes, and the channels that are marked in any of them.
     #[inline]
-    pub(crate) fn take(&mut self, length: usize) -> &'a [[u16; CHANNELS]] {
+    pub(crate) fn take(&mut self, length: usize) -> (&'a [[u16; CHANNELS]], ClippedChannels) {
         let length = length.min(self.codes.len());
         let taken = self.codes.get(..length).unwrap_or_default();
         self.codes = self.codes.get(length..).unwrap_or_default();
         self.counts = self.counts.get(length..).unwrap_or_default();
+        (taken, self.take_clipped(length))
+    }
+
+    #[inline]
+    fn take_clipped(&mut self, length: usize) -> ClippedChannels {
+        let length = length.min(self.clipped.len());
+        let taken = self.clipped.get(..length).unwrap_or_default();
+        self.clipped = self.clipped.get(length..).unwrap_or_default();
         taken
+            .iter()
+            .fold(ClippedChannels::NONE, |all, one| all.union(*one))
     }
 }
 
@@ -121,6 +142,11 @@ impl ClippedChannels {
         self.0 >> (3 + phase % 3) & 1 == 1
     }
 
+    /// Marks by bits: voltages a, b, c, then currents a, b, c from bit 0 on.
+    pub const fn from_bits(bits: u8) -> Self {
+        ClippedChannels(bits & 0x3F)
+    }
+
     /// Whether any channel is marked.
     pub fn any(self) -> bool {
         self.0 != 0
@@ -168,14 +194,25 @@ mod tests {
             .collect();
         assert_eq!(seen, [(1, 10), (2, 20)]);
         assert!(!block.is_empty());
-        assert_eq!(block.take(1), &codes[..1]);
+        assert_eq!(block.take(1), (&codes[..1], ClippedChannels::NONE));
         let left: Vec<_> = block
             .instants()
             .map(|(codes, count)| (codes[0], count))
             .collect();
         assert_eq!(left, [(2, 20)]);
-        assert_eq!(block.take(5), &codes[1..2], "no more than there are");
+        assert_eq!(block.take(5).0, &codes[1..2], "no more than there are");
         assert!(block.is_empty());
+    }
+
+    #[test]
+    fn marks_of_single_conversions_come_with_their_instants() {
+        let codes = [[1; CHANNELS]; 4];
+        let marks = [0, 0b1, 0b10_0000, 0].map(ClippedChannels::from_bits);
+        let mut block = RawBlock::new(&codes, &[0; 4]).with_clipped(&marks);
+        assert_eq!(block.take(1).1, ClippedChannels::NONE);
+        let (_, both) = block.take(2);
+        assert!(both.voltage(0) && both.current(2) && !both.voltage(1));
+        assert_eq!(block.take(1).1, ClippedChannels::NONE);
     }
 
     #[test]
@@ -184,6 +221,7 @@ mod tests {
             voltage_codes: [1, 2, 3],
             current_codes: [4, 5, 6],
             encoder_count: 7,
+            ..RawSample::default()
         };
         assert_eq!(raw.interleaved(), [1, 4, 2, 5, 3, 6]);
     }

@@ -34,6 +34,7 @@ fn late(k: usize, delays: [f64; CHANNELS]) -> RawSample {
         voltage_codes: codes(sample.u_s_abc, 600.0),
         current_codes: codes(sample.i_s_abc, 60.0),
         encoder_count: ((turns * 4096.0) as u64 % 65_536) as u16,
+        ..RawSample::default()
     }
 }
 

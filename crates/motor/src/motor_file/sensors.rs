@@ -19,6 +19,9 @@ pub struct Sensors {
     pub torque_full_scale_nm: f64,
     /// Resolution of the ADC, bit, 6..=16: the core takes 16-bit codes.
     pub adc_bits: u32,
+    /// Codes of each channel that are added up to one code of a sample, 1..=16. No key of a motor file: one in simulations and
+    /// recordings, unless they say otherwise, and as many as the board adds on the board.
+    pub conversions: u32,
     /// Encoder pulses per revolution of one channel, 1..=1000000 (four edges each in quadrature).
     pub encoder_pulses_per_revolution: u32,
     /// Standard deviation of the noise of every analogue channel, as a fraction of its full scale.
@@ -61,6 +64,7 @@ impl Sensors {
             speed_full_scale_rad_s: SPEED_HEADROOM * nameplate.synchronous_speed_mech(),
             torque_full_scale_nm: TORQUE_HEADROOM * nameplate.torque_nm,
             adc_bits: ADC_BITS,
+            conversions: 1,
             encoder_pulses_per_revolution: ENCODER_PULSES,
             noise_sigma_fraction_of_full_scale: 0.0,
             voltage_offset_volt: [0.0; 3],
@@ -171,6 +175,7 @@ fn read_values(section: &Section<'_>, base: &Sensors) -> Option<Sensors> {
         speed_full_scale_rad_s: speed?,
         torque_full_scale_nm: torque?,
         adc_bits: bits?,
+        conversions: base.conversions,
         encoder_pulses_per_revolution: pulses?,
         noise_sigma_fraction_of_full_scale: noise?,
         voltage_offset_volt: voltage_offset?,

@@ -219,5 +219,6 @@ fn raw(measured: &Measured) -> Reading {
         voltage_codes: measured.voltage_codes,
         current_codes: measured.current_codes,
         encoder_count: measured.encoder_count,
+        ..RawSample::default()
     })
 }

@@ -99,6 +99,20 @@ impl Machine {
 
     /// A read of the word, half-word or byte at `address`.
     pub fn read(&mut self, address: u32) -> Result<u32, Unmodelled> {
+        self.make_up_for(address)?;
+        self.read_as_it_is(address)
+    }
+
+    /// Acquisition is made up for before anybody touches what belongs to it.
+    fn make_up_for(&mut self, address: u32) -> Result<(), Unmodelled> {
+        match self.locate(address) {
+            Ok((Block::Tim3 | Block::Tim4 | Block::Adc1 | Block::Dma1 | Block::Dmamux | Block::Rcc, _)) => self.catch_up(),
+            _ => Ok(()),
+        }
+    }
+
+    /// A read that finds everything as it was left.
+    pub(super) fn read_as_it_is(&mut self, address: u32) -> Result<u32, Unmodelled> {
         let now = self.now;
         let (block, offset) = self.locate(address)?;
         match block {
@@ -134,6 +148,7 @@ impl Machine {
 
     /// A write. Returns the offset of a flash page to be erased.
     pub fn write(&mut self, address: u32, value: u32) -> Result<Option<u32>, Unmodelled> {
+        self.make_up_for(address)?;
         let now = self.now;
         let (block, offset) = self.locate(address)?;
         match block {
@@ -182,8 +197,14 @@ impl Machine {
                 self.ports[port].write(offset, value)?;
                 self.follow_relay();
             }
-            Block::Adc1 => self.adc1.write(offset, value, now)?,
-            Block::Adc5 => self.adc5.write(offset, value, now)?,
+            Block::Adc1 => {
+                if self.adc1.write(offset, value, now)? {
+                    self.begin_sample();
+                }
+            }
+            Block::Adc5 => {
+                self.adc5.write(offset, value, now)?;
+            }
             Block::AdcCommon(k) => {
                 self.common[k].write(offset, value)?;
                 self.follow_clocks()?;

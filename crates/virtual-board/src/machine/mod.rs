@@ -1,15 +1,16 @@
 //! All peripherals together, and what happens when.
 
+mod acquisition;
 pub(crate) mod bus;
 mod clocks;
 pub(crate) mod relay;
-
-use std::cell::RefCell;
-use std::rc::Rc;
+mod sensing;
 
 use monitor::RawSample;
 
-use crate::TICK_HZ;
+use acquisition::{Taking, Writes};
+use sensing::Sensing;
+
 use crate::peripherals::adc::Adc;
 use crate::peripherals::backup::Backup;
 use crate::peripherals::dma::{Dma, Transfer};
@@ -22,10 +23,18 @@ use crate::peripherals::registers::{Registers, Unmodelled};
 use crate::peripherals::timer::Timer;
 use crate::peripherals::usart::Usart;
 
-/// What the sensors deliver, sampling instant by sampling instant.
+/// What the sensors deliver.
 pub trait Inputs {
-    /// Instant `index` after the first one; called with growing indices, some of which may be left out.
+    /// Codes of single conversions, 100 us times `index` after the first look; called with growing indices, some of which may be
+    /// left out. Between them the pins follow straight lines, which take (w 100 us)^2/12 from a sinusoid: 0.012 % at 60 Hz.
     fn at(&mut self, index: u64) -> RawSample;
+
+    /// What is added to the straight lines in a channel (voltages a, b, c, then currents a, b, c) `t` seconds after the first
+    /// look, in codes: what is too fast for them, such as the carrier of an inverter.
+    fn ripple(&mut self, channel: usize, t: f64) -> f64 {
+        let _ = (channel, t);
+        0.0
+    }
 }
 
 /// A serial port, as docs/wiring.md names them.
@@ -44,7 +53,7 @@ pub struct Tally {
     pub instructions: u64,
     /// Emulated time, in units of 1/[`crate::TICK_HZ`] s.
     pub ticks: u64,
-    /// Triggers that started a sequence.
+    /// Samples of which every conversion was made: sixteen sequences each.
     pub conversions: u64,
     /// Triggers that came while the converter was not ready.
     pub missed_triggers: u64,
@@ -63,10 +72,8 @@ const IRQ_LPUART1: usize = 91;
 const LINE_ADC1: u32 = 5;
 const LINE_TIM4_UP: u32 = 71;
 const LINE_LPUART1_TX: u32 = 35;
-/// Units of time between sampling instants of the simulated sensors.
 /// Hz of the low-speed oscillator.
 const LSI_HZ: u64 = 32_000;
-const INSTANT: u64 = TICK_HZ / 10_000;
 /// ADC5's channel of the reference.
 const VREFINT_CHANNEL: u32 = 18;
 /// ADC5's channel of the temperature sensor, and its codes at 30 and 130 degrees Celsius (3.0 V).
@@ -109,11 +116,13 @@ pub(crate) struct Machine {
     pub syscfg: Registers,
     pub exti: Registers,
     pub dbgmcu: Registers,
-    /// Shared by all snapshots: the outside world does not go back in time.
-    pub inputs: Rc<RefCell<Box<dyn Inputs>>>,
-    pub sample: RawSample,
-    pub first_instant: Option<u64>,
-    /// Every instant whose conversion began, in order; `None` when they are not recorded.
+    pub sensing: Sensing,
+    /// The encoder's count at the last trigger.
+    pub count: u16,
+    taking: Taking,
+    /// What DMA carried to memory and memory has not got yet.
+    pub writes: Writes,
+    /// Every sample whose conversions are made, in order; `None` when they are not recorded.
     pub taken: Option<Vec<RawSample>>,
     /// Converter supply, mV.
     pub vdda_millivolt: u32,
@@ -196,9 +205,10 @@ impl Machine {
             syscfg: Registers::new("SYSCFG", SYSCFG),
             exti: Registers::new("EXTI", EXTI),
             dbgmcu: Registers::new("DBGMCU", DBGMCU),
-            inputs: Rc::new(RefCell::new(inputs)),
-            sample: RawSample::default(),
-            first_instant: None,
+            sensing: Sensing::new(inputs),
+            count: 0,
+            taking: Taking::default(),
+            writes: Writes::default(),
             taken: Some(Vec::new()),
             vdda_millivolt: 3_300,
             detector_millivolt: None,
@@ -238,6 +248,7 @@ impl Machine {
         self.lpuart1.reset();
         self.adc1.reset();
         self.adc5.reset();
+        self.taking = Taking::default();
         self.dma = Dma::new();
         self.nvic = Nvic::new();
         self.flash
@@ -262,9 +273,8 @@ impl Machine {
     /// When the next thing happens without the program.
     pub fn next_happening(&self) -> u64 {
         let events = [
-            self.tim4.next_event(),
+            self.acquisition_horizon(),
             self.tim15.next_event(),
-            self.adc1.next_event(),
             self.adc5.next_event(),
             self.iwdg.deadline(),
             self.spurious.map(|(_, next)| next),
@@ -275,29 +285,9 @@ impl Machine {
         events.into_iter().flatten().min().unwrap_or(u64::MAX)
     }
 
-    /// Lets everything happen up to `now`. Returns what DMA carries to memory.
-    pub fn advance(&mut self) -> Result<Vec<(u32, u16)>, Unmodelled> {
-        let mut writes = Vec::new();
-        let ticked = self.tim4.advance(self.now);
-        if ticked.trigger || ticked.update_dma {
-            self.sense();
-        }
-        if ticked.update_dma {
-            match self.lost_encoder_requests.checked_sub(1) {
-                Some(left) => self.lost_encoder_requests = left,
-                None => self.serve(LINE_TIM4_UP, &mut writes)?,
-            }
-        }
-        if ticked.trigger {
-            if self.adc1.trigger(self.now) {
-                self.tally.conversions += 1;
-                if let Some(taken) = &mut self.taken {
-                    taken.push(self.sample);
-                }
-            } else {
-                self.tally.missed_triggers += 1;
-            }
-        }
+    /// Lets everything happen up to `now`.
+    pub fn advance(&mut self) -> Result<(), Unmodelled> {
+        self.catch_up()?;
         self.tim15.advance(self.now);
         if let Some((period, next)) = &mut self.spurious
             && *next <= self.now
@@ -305,15 +295,8 @@ impl Machine {
             *next = self.now + *period;
             self.nvic.pend(IRQ_DMA1_CH1);
         }
-        let sample = self.sample;
-        if self
-            .adc1
-            .advance(self.now, |channel| code_of(&sample, channel))
-        {
-            self.serve(LINE_ADC1, &mut writes)?;
-        }
         let (reference, temperature) = (self.reference_code(), self.temperature_code());
-        self.adc5.advance(self.now, |channel| match channel {
+        self.adc5.advance(self.now, |channel, _| match channel {
             VREFINT_CHANNEL => reference,
             TEMPERATURE_CHANNEL => temperature,
             _ => 0,
@@ -321,14 +304,7 @@ impl Machine {
         self.usart1.advance(self.now);
         self.lpuart1.advance(self.now);
         self.update_lines();
-        Ok(writes)
-    }
-
-    /// Looks at the simulated sensors.
-    fn sense(&mut self) {
-        let first = *self.first_instant.get_or_insert(self.now);
-        self.sample = self.inputs.borrow_mut().at((self.now - first) / INSTANT);
-        self.tim3.apply_encoder(self.sample.encoder_count);
+        Ok(())
     }
 
     fn reference_code(&self) -> u16 {
@@ -364,17 +340,6 @@ impl Machine {
         }
     }
 
-    fn serve(&mut self, line: u32, writes: &mut Vec<(u32, u16)>) -> Result<(), Unmodelled> {
-        if self.dma_blocked {
-            return Ok(());
-        }
-        if let Some(Transfer { peripheral, memory }) = self.dma.request(line)? {
-            let value = self.read(peripheral)? as u16;
-            writes.push((memory, value));
-        }
-        Ok(())
-    }
-
     /// Whether anything asserts the non-maskable interrupt.
     pub fn non_maskable(&self) -> bool {
         self.flash.interrupt() || self.rcc.interrupt() || self.parity_failed
@@ -397,20 +362,5 @@ impl Machine {
         for (_, irq) in lines.iter().filter(|(asserted, _)| *asserted) {
             self.nvic.pend(*irq);
         }
-    }
-}
-
-/// Code of a channel of ADC1, as wired in docs/wiring.md.
-fn code_of(sample: &RawSample, channel: u32) -> u16 {
-    let [v_a, v_b, v_c] = sample.voltage_codes;
-    let [i_a, i_b, i_c] = sample.current_codes;
-    match channel {
-        1 => v_a,
-        2 => i_a,
-        6 => v_b,
-        7 => i_b,
-        8 => v_c,
-        9 => i_c,
-        _ => 0,
     }
 }

@@ -1,7 +1,9 @@
-//! Converters: calibration, software and timer start, sequences, DMA requests, overrun.
+//! Converters: calibration, software and timer start, sequences, DMA requests, overrun, analogue watchdog, and the wrong first
+//! result after a pause.
 
 use std::collections::VecDeque;
 
+use crate::TICK_HZ;
 use crate::peripherals::registers::{Registers, Unmodelled};
 
 const ISR: u32 = 0x00;
@@ -9,6 +11,7 @@ const CR: u32 = 0x08;
 const CFGR: u32 = 0x0C;
 const SMPR1: u32 = 0x14;
 const SMPR2: u32 = 0x18;
+const TR1: u32 = 0x20;
 const SQR1: u32 = 0x30;
 const DR: u32 = 0x40;
 const RESET: &[(u32, u32)] = &[
@@ -18,6 +21,7 @@ const RESET: &[(u32, u32)] = &[
     (0x10, 0), // CFGR2
     (SMPR1, 0),
     (SMPR2, 0),
+    (TR1, 0x0FFF_0000),
     (SQR1, 0),
     (0x34, 0),
     (0x38, 0),
@@ -35,6 +39,12 @@ const READY: u32 = 1;
 const END_OF_CONVERSION: u32 = 1 << 2;
 const END_OF_SEQUENCE: u32 = 1 << 3;
 const OVERRUN: u32 = 1 << 4;
+const WATCHDOG: u32 = 1 << 7;
+/// CFGR: analogue watchdog 1 looks, at one channel alone.
+const WATCHDOG_ENABLE: u32 = 1 << 23;
+const WATCHDOG_SINGLE: u32 = 1 << 22;
+/// A pause after which the first result is wrong (erratum of the family).
+const IDLE: u64 = TICK_HZ / 1_000;
 /// Doubled sampling times in converter clocks, by the code in SMPR.
 const SAMPLE_CLOCKS_X2: [u64; 8] = [5, 13, 25, 49, 95, 185, 495, 1281];
 /// Doubled: 12.5 clocks for 12 bits.
@@ -55,6 +65,19 @@ pub struct Adc {
     pub clock_stopped: bool,
     /// Units of time per cycle of its clock.
     pub clock: u64,
+    /// End of the last conversion since the calibration.
+    last_end: Option<u64>,
+    /// The conversion under way began after a pause.
+    is_wrong: bool,
+}
+
+/// A conversion that has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ended {
+    pub channel: u32,
+    pub code: u16,
+    pub ends_sequence: bool,
+    pub asks_dma: bool,
 }
 
 impl Adc {
@@ -68,6 +91,8 @@ impl Adc {
             done_at: 0,
             clock_stopped: false,
             clock: 1,
+            last_end: None,
+            is_wrong: false,
         }
     }
 
@@ -112,8 +137,16 @@ impl Adc {
         first.chain(rest).take(length)
     }
 
+    /// Conversions of a sequence.
+    pub fn length(&self) -> u32 {
+        (self.registers.get(SQR1) & 0xF) + 1
+    }
+
     fn begin(&mut self, now: u64) {
-        self.queue = self.sequence().collect();
+        let sequence = self.sequence();
+        self.queue.clear();
+        self.queue.extend(sequence);
+        self.is_wrong = self.last_end.is_none_or(|end| now - end > IDLE);
         self.schedule(now);
     }
 
@@ -139,26 +172,46 @@ impl Adc {
         (!self.queue.is_empty() && !self.clock_stopped).then_some(self.done_at)
     }
 
-    /// Ends the conversion that is due; `level` gives the code of a channel. Returns whether DMA is asked for.
-    pub fn advance(&mut self, now: u64, level: impl Fn(u32) -> u16) -> bool {
+    /// Ends the conversion that is due; `level` gives the code of a channel sampled at a time.
+    pub fn advance(&mut self, now: u64, level: impl FnOnce(u32, u64) -> u16) -> Option<Ended> {
         if self.next_event().is_none_or(|at| at > now) {
-            return false;
+            return None;
         }
-        let Some(channel) = self.queue.pop_front() else {
-            return false;
-        };
+        let channel = self.queue.pop_front()?;
+        let sampled = now.saturating_sub(CONVERSION_CLOCKS_X2 * self.clock / 2);
+        // Wrong by half: what silicon shows is not known, and it must not matter.
+        let code = level(channel, sampled) >> u16::from(std::mem::take(&mut self.is_wrong));
         if self.status & END_OF_CONVERSION != 0 && self.uses_dma() {
             // The previous result was never fetched: it stays, and DMA is refused until OVR is cleared.
             self.status |= OVERRUN;
         } else {
-            self.data = level(channel);
+            self.data = code;
         }
         self.status |= END_OF_CONVERSION;
+        self.last_end = Some(now);
+        self.watch(channel, code);
         self.schedule(now);
-        if self.queue.is_empty() {
+        let ends_sequence = self.queue.is_empty();
+        if ends_sequence {
             self.end_sequence();
         }
-        self.uses_dma() && self.status & OVERRUN == 0
+        Some(Ended {
+            channel,
+            code,
+            ends_sequence,
+            asks_dma: self.uses_dma() && self.status & OVERRUN == 0,
+        })
+    }
+
+    /// The analogue watchdog: a result beyond its limits raises its flag (12 bits, no filter).
+    fn watch(&mut self, channel: u32, code: u16) {
+        let (cfgr, limits) = (self.registers.get(CFGR), self.registers.get(TR1));
+        let is_watched = cfgr & WATCHDOG_ENABLE != 0
+            && (cfgr & WATCHDOG_SINGLE == 0 || cfgr >> 26 & 0x1F == channel);
+        let sound = limits & 0xFFF..=limits >> 16 & 0xFFF;
+        if is_watched && !sound.contains(&u32::from(code)) {
+            self.status |= WATCHDOG;
+        }
     }
 
     fn end_sequence(&mut self) {
@@ -184,21 +237,33 @@ impl Adc {
         }
     }
 
-    /// A bus write.
-    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Result<(), Unmodelled> {
+    /// A bus write; whether it starts conversions. What decides about them must not change while they run.
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Result<bool, Unmodelled> {
         match offset {
             ISR => self.status &= !value,
-            CR => self.command(value, now),
-            _ => return self.registers.write(offset, value),
+            CR => return Ok(self.command(value, now)),
+            CFGR | TR1 | SMPR1 | SMPR2 | SQR1 | 0x34 | 0x38 | 0x3C if self.is_locked(offset, value) => {
+                return Err(Unmodelled {
+                    block: "ADC",
+                    access: format!("write of {value:#x} while conversions run"),
+                    offset,
+                });
+            }
+            _ => self.registers.write(offset, value)?,
         }
-        Ok(())
+        Ok(false)
     }
 
-    fn command(&mut self, value: u32, now: u64) {
+    fn is_locked(&self, offset: u32, value: u32) -> bool {
+        self.is_started() && self.registers.get(offset) != value
+    }
+
+    fn command(&mut self, value: u32, now: u64) -> bool {
         let powered = value & REGULATOR != 0 && value >> 29 & 1 == 0;
         let mut next = value;
         if value & CALIBRATE != 0 && !self.clock_stopped {
             next &= !CALIBRATE;
+            self.last_end = None;
         }
         if value & ENABLE != 0 && powered {
             self.status |= READY;
@@ -213,5 +278,6 @@ impl Adc {
         if starts && by_software {
             self.begin(now);
         }
+        starts
     }
 }

@@ -101,6 +101,15 @@ impl Dma {
         Ok(Some(transfer))
     }
 
+    /// Requests of a line until a flag of its channel is raised; `None` where no enabled channel listens.
+    pub fn until_flag(&self, line: u32) -> Option<u32> {
+        let listens = |k: &usize| self.multiplexer.get(4 * *k as u32) & 0x7F == line;
+        let channel = &self.channels[(0..CHANNELS).find(listens)?];
+        let left = channel.remaining;
+        let half = left.checked_sub(channel.reload / 2).filter(|left| *left > 0);
+        (channel.control & ENABLE != 0 && left > 0).then(|| half.unwrap_or(left))
+    }
+
     /// Whether an enabled channel with something left listens to a request line.
     pub fn listens(&self, line: u32) -> bool {
         (0..CHANNELS).any(|k| {

@@ -128,6 +128,11 @@ impl Timer {
         u64::from(self.registers.get(ARR)) + 1
     }
 
+    /// Units of time from one wrap to the next.
+    pub fn whole_period(&self) -> u64 {
+        self.period() * self.step()
+    }
+
     fn ticks(&self, now: u64) -> u64 {
         if self.is_counting() {
             (now - self.since) / self.step()

@@ -184,13 +184,11 @@ impl Cpu {
 
     /// Lets the peripherals catch up.
     pub fn happen(&mut self) -> Result<(), BoardError> {
-        let writes = match self.machine().advance() {
-            Ok(writes) => writes,
-            Err(unmodelled) => return Err(self.stopped(unmodelled.to_string())),
-        };
-        for (address, value) in writes {
-            self.core
-                .mem_write(u64::from(address), &value.to_le_bytes())?;
+        if let Err(unmodelled) = self.machine().advance() {
+            return Err(self.stopped(unmodelled.to_string()));
+        }
+        for (address, bytes) in std::mem::take(&mut self.machine().writes).0 {
+            self.core.mem_write(u64::from(address), &bytes)?;
         }
         self.feed()
     }

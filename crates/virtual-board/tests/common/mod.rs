@@ -14,8 +14,8 @@ use scenario::Scenario;
 use scenario::simulate::Simulation;
 use virtual_board::{Inputs, VirtualBoard};
 
-/// Blocks of 32 instants that the firmware throws away after power-up.
-pub const INHIBITED: usize = 31 * 32;
+/// Blocks of 32 samples that the firmware throws away after power-up: one after every start, 31 after this one.
+pub const INHIBITED: usize = 32 * 32;
 /// The lamp test lasts nine times 0.15 s; the test of the RAM comes before it, that of the flash behind. Sampling begins then.
 pub const LAMP_TEST_S: f64 = 1.435;
 /// Two windows of a 60 Hz supply and a block, in instants: the lag that the lamps may have.
@@ -120,6 +120,7 @@ impl Inputs for Sensors {
                     voltage_codes: measured.voltage_codes,
                     current_codes: measured.current_codes,
                     encoder_count: measured.encoder_count,
+                    ..RawSample::default()
                 };
                 if self.mirrored {
                     self.latest.voltage_codes.swap(1, 2);
@@ -181,7 +182,7 @@ pub fn host_lamps(taken: &[RawSample]) -> Vec<Lamps> {
 }
 
 fn host_lamps_of(motor: &MotorFile, taken: &[RawSample]) -> Vec<Lamps> {
-    let config = MonitorConfig::from_motor_file(motor, 1e-4).expect("effects of the library");
+    let config = MonitorConfig::of_board(motor).expect("effects of the library");
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut state = MonitorState::default();
     let mut lamps = Lamps {

@@ -179,6 +179,7 @@ fn codes_and_values_agree_with_the_boards_converter() {
             voltage_codes: shown.voltage_codes,
             current_codes: shown.current_codes,
             encoder_count: shown.encoder_count,
+            ..RawSample::default()
         });
         let (u, i) = (
             converted.u_s_abc.expect("there"),

@@ -19,7 +19,7 @@ pub const T_SAMPLE: f64 = 1e-4;
 pub fn read(path: &Path) -> Result<(String, MotorImage), Failure> {
     let file = path.display().to_string();
     let motor = read_motor(path)?;
-    let config = MonitorConfig::from_motor_file(&motor, T_SAMPLE)?;
+    let config = MonitorConfig::of_board(&motor)?;
     Monitor::new(config).map_err(|error| Failure::Config {
         file: file.clone(),
         error,
