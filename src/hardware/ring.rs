@@ -14,8 +14,8 @@ use monitor::{CHANNELS, ClippedChannels};
 
 /// Conversions of each channel in a sample.
 pub const CONVERSIONS: usize = 16;
-/// Samples in half of the DMA's ring: 0.8 ms. As long the interrupt may wait.
-const PART: usize = 8;
+/// Samples in half of the DMA's ring: 1.6 ms. As long the interrupt may wait.
+const PART: usize = 16;
 /// Samples in a block.
 pub const BLOCK: usize = 32;
 /// Samples in two blocks: one fills while the other is read.
@@ -103,7 +103,7 @@ impl Handler<DMA1_CHANNEL1> for HalfFilled {
             FAULT.store(Fault::Apart as u8 + 1, Ordering::Release);
         }
         PARTS.store(part.wrapping_add(1), Ordering::Release);
-        if (part as usize + 1).is_multiple_of(BLOCK / PART) {
+        if (part as usize + 1).is_multiple_of(BLOCK / PART) || fault().is_some() {
             WAKER.wake();
         }
     }
@@ -226,12 +226,12 @@ pub fn restart() {
     PARTS.store(0, Ordering::Release);
 }
 
-/// Waits until more than `taken` blocks are filled, and says how many.
+/// Waits until more than `taken` blocks are filled or something is wrong, and says how many there are.
 pub async fn more_than(taken: u32) -> u32 {
     poll_fn(|context| {
         WAKER.register(context.waker());
         match filled() {
-            now if now == taken => Poll::Pending,
+            now if now == taken && fault().is_none() => Poll::Pending,
             now => Poll::Ready(now),
         }
     })

@@ -2,7 +2,7 @@
 
 /// `(text after the motor's line, line, key, remedy)`.
 #[rustfmt::skip]
-pub const CASES: [(&str, usize, &str, &str); 54] = [
+pub const CASES: [(&str, usize, &str, &str); 56] = [
     ("", 1, "duration_s", "is missing: add length of the experiment"),
     ("duration = 3", 2, "duration", "did you mean `duration_s`?"),
     ("duration_s = 0", 2, "duration_s", "above 0"),
@@ -45,6 +45,8 @@ pub const CASES: [(&str, usize, &str, &str); 54] = [
     ("duration_s = 1\n[sensors.chain]\ncarrier_ripple_amp = 1", 4, "sensors.chain.carrier_ripple_amp", "add carrier_hz"),
     ("duration_s = 1\n[sensors.chain]\ncrosstalk_percent = 11", 4, "sensors.chain.crosstalk_percent", "at most 10 percent"),
     ("duration_s = 1\n[sensors.chain]\ninl_lsb = 2\ninl_shape = \"wave\"", 5, "sensors.chain.inl_shape", "\"bow\", \"cubic\", \"bits\""),
+    ("duration_s = 1\n[sensors.chain]\nconversions_per_sample = 17", 4, "sensors.chain.conversions_per_sample", "the board adds 16"),
+    ("duration_s = 1\n[sensors]\nadc_bits = 14\n[sensors.chain]\nconversions_per_sample = 16", 6, "sensors.chain.conversions_per_sample", "write at most 4"),
     ("duration_s = 1\n[sensors.chain]\ndelay_us = 3", 4, "sensors.chain.delay_us", "voltage_filter_hz"),
     ("duration_s = 1\n[[faults]]\nfault = \"Rx\"\nchange_percent = 5", 4, "faults[1].fault", "\"Rx\" is not known: write one of \"Rs\""),
     ("duration_s = 1\n[[faults]]\nfault = \"Rs\"", 3, "faults[1].change_percent", "0 changes are given"),

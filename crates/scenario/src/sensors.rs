@@ -43,11 +43,13 @@ impl SensorSpec {
         }
     }
 
-    /// What the simulated board is told of its motor: without a chain of their own its channels are not late.
+    /// What the simulated board is told of its motor: without a chain of their own its channels are not late, and its codes are
+    /// sums of as many as its chain adds.
     pub fn told(&self, motor: &MotorFile) -> MotorFile {
         let mut told = motor.clone();
-        if self.chain.is_none() {
-            told.sensors = told.sensors.without_delays();
+        match &self.chain {
+            Some(chain) => told.sensors.conversions = chain.conversions,
+            None => told.sensors = told.sensors.without_delays(),
         }
         told
     }
@@ -118,7 +120,7 @@ fn read_values(
     let quantise = section.flag_or("quantise", base.quantise);
     let speed = section.choice_or("speed", &SPEEDS, base.speed);
     let torque = section.flag_or("torque", base.torque);
-    let chain = chain::read(section, duration_s);
+    let chain = chain::read(section, duration_s, bits);
     Some(SensorSpec {
         instrument: Sensors {
             noise_sigma_fraction_of_full_scale: noise?,

@@ -1,7 +1,7 @@
 //! One experiment on the published timeline: start, fault in, fault out.
 
 use monitor::{
-    Candidates, FaultId, Lamps, Monitor, MonitorConfig, MonitorState, RawSample, Rehearsal, Report,
+    Candidates, ClippedChannels, FaultId, Lamps, Monitor, MonitorConfig, MonitorState, RawSample, Rehearsal, Report,
 };
 use motor::MotorFile;
 use motor::motor_file::Frame;
@@ -128,7 +128,7 @@ fn raw(measured: &Measured) -> RawSample {
         voltage_codes: measured.voltage_codes,
         current_codes: measured.current_codes,
         encoder_count: measured.encoder_count,
-        ..RawSample::default()
+        clipped: ClippedChannels::of(measured.clipped),
     }
 }
 

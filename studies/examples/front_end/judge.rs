@@ -1,7 +1,7 @@
 //! A healthy motor behind a board, judged by the core as the board does: from the converter's codes.
 
 use crate::board::{Board, Known};
-use monitor::{Lamp, Monitor, MonitorConfig, MonitorState, RawSample};
+use monitor::{ClippedChannels, Lamp, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
 use motor::motor_file::{LoadKind, Sensors};
 use replay::Timeline;
@@ -89,6 +89,6 @@ fn raw(measured: &Measured) -> RawSample {
         voltage_codes: measured.voltage_codes,
         current_codes: measured.current_codes,
         encoder_count: measured.encoder_count,
-        ..RawSample::default()
+        clipped: ClippedChannels::of(measured.clipped),
     }
 }

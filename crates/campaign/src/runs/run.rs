@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use monitor::{Monitor, MonitorConfig, MonitorState, RawSample, Report};
+use monitor::{ClippedChannels, Monitor, MonitorConfig, MonitorState, RawSample, Report};
 use motor::MotorFile;
 use motor::dynamic::Harmonic;
 use motor::motor_file::{LoadKind, Sensors};
@@ -377,6 +377,6 @@ fn raw(measured: &Measured) -> RawSample {
         voltage_codes: measured.voltage_codes,
         current_codes: measured.current_codes,
         encoder_count: measured.encoder_count,
-        ..RawSample::default()
+        clipped: ClippedChannels::of(measured.clipped),
     }
 }

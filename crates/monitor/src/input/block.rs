@@ -31,7 +31,7 @@ impl Monitor {
         state.expect_codes(true);
         while !block.is_empty() {
             let (plain, event) = self.follow(state, block);
-            self.sum_up(state, block.take(plain));
+            self.sum_up(state, block.take(plain), block.is_watched);
             let report = event.and_then(|tick| self.take_event(state, block.take(1), &tick));
             if report.is_some() {
                 return report;
@@ -86,10 +86,16 @@ impl Monitor {
         &self,
         state: &mut MonitorState,
         (codes, clipped): (&[[u16; CHANNELS]], ClippedChannels),
+        is_watched: bool,
     ) {
         state.count(codes.len());
         let axes = state.axes.0.get(..codes.len()).unwrap_or_default();
-        let inside = state.phasor.add_codes(codes, axes, &self.codes.range);
+        let range = &self.codes.range;
+        let inside = if is_watched {
+            state.phasor.add_codes::<false>(codes, axes, range)
+        } else {
+            state.phasor.add_codes::<true>(codes, axes, range)
+        };
         self.admit(state, (codes, clipped), inside);
     }
 

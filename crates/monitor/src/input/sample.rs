@@ -23,8 +23,10 @@ pub struct RawSample {
 pub struct RawBlock<'a> {
     codes: &'a [[u16; CHANNELS]],
     counts: &'a [u16],
-    /// Of each instant, or empty: nothing is known of single conversions.
+    /// Of each instant, or empty where none is marked.
     clipped: &'a [ClippedChannels],
+    /// Whether single conversions were looked at: then codes need not be.
+    pub(crate) is_watched: bool,
 }
 
 impl<'a> RawBlock<'a> {
@@ -36,13 +38,19 @@ impl<'a> RawBlock<'a> {
             codes: codes.get(..length).unwrap_or_default(),
             counts: counts.get(..length).unwrap_or_default(),
             clipped: &[],
+            is_watched: false,
         }
     }
 
-    /// The same with the channels of each instant of which a single conversion was at a rail, for codes that are sums.
+    /// The same, of codes that are sums of conversions each of which was looked at: the channels of each instant of which one was
+    /// at a rail; empty where there are none. The sums themselves are not compared with rails then.
     #[must_use]
     pub fn with_clipped(self, clipped: &'a [ClippedChannels]) -> Self {
-        RawBlock { clipped, ..self }
+        RawBlock {
+            clipped,
+            is_watched: true,
+            ..self
+        }
     }
 
     /// Whether every instant was taken.
@@ -140,6 +148,12 @@ impl ClippedChannels {
     /// Whether current channel `phase` (0..=2) is marked.
     pub fn current(self, phase: usize) -> bool {
         self.0 >> (3 + phase % 3) & 1 == 1
+    }
+
+    /// Marks of channels: voltages a, b, c, then currents a, b, c.
+    pub fn of(channels: [bool; CHANNELS]) -> Self {
+        let marks = channels.iter().enumerate();
+        ClippedChannels(marks.fold(0, |all, (k, marked)| all | u8::from(*marked) << k))
     }
 
     /// Marks by bits: voltages a, b, c, then currents a, b, c from bit 0 on.

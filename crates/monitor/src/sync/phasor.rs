@@ -134,9 +134,10 @@ impl PhasorState {
         cycle
     }
 
-    /// Adds instants inside a turn, in codes above the code of zero; tells whether none of them is at a rail.
+    /// Adds instants inside a turn, in codes above the code of zero; tells whether none of them is at a rail, where it is to
+    /// look for them.
     #[inline]
-    pub fn add_codes(
+    pub fn add_codes<const LOOKS: bool>(
         &mut self,
         codes: &[[u16; CHANNELS]],
         axes: &[Complex32],
@@ -145,8 +146,8 @@ impl PhasorState {
         self.gram.whole += codes.len().min(axes.len()) as u32;
         self.gram.add_axes(axes);
         let [v_a, v_b, v_c, i_a, i_b, i_c] = &mut self.channels;
-        let voltages = add_phases::<0>([v_a, v_b, v_c], codes, axes, range);
-        let currents = add_phases::<1>([i_a, i_b, i_c], codes, axes, range);
+        let voltages = add_phases::<0, LOOKS>([v_a, v_b, v_c], codes, axes, range);
+        let currents = add_phases::<1, LOOKS>([i_a, i_b, i_c], codes, axes, range);
         voltages && currents
     }
 
@@ -183,7 +184,7 @@ impl PhasorState {
 /// One quantity of the three phases over many instants; `QUANTITY` is 0 for voltages, 1 for currents. The sums of
 /// three channels fit into the processor's registers, those of six do not.
 #[inline(always)]
-fn add_phases<const QUANTITY: usize>(
+fn add_phases<const QUANTITY: usize, const LOOKS: bool>(
     mut channels: [&mut Projection; 3],
     codes: &[[u16; CHANNELS]],
     axes: &[Complex32],
@@ -197,7 +198,9 @@ fn add_phases<const QUANTITY: usize>(
         let (phases, _) = codes.as_chunks::<2>();
         for (sums, phase) in sums.iter_mut().zip(phases) {
             let code = phase[QUANTITY];
-            inside |= (i32::from(code) - range.lowest) | (range.highest - i32::from(code));
+            if LOOKS {
+                inside |= (i32::from(code) - range.lowest) | (range.highest - i32::from(code));
+            }
             let x = f32::from(code) - zero;
             sums.one += x;
             sums.cos += axis.re * x;

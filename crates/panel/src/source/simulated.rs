@@ -1,7 +1,7 @@
 //! A simulated motor that runs for ever and whose faults are switched from the page.
 
 use document::FileError;
-use monitor::{FaultId, MonitorConfig, RawSample, Rehearsal, TABLE_1};
+use monitor::{ClippedChannels, FaultId, MonitorConfig, RawSample, Rehearsal, TABLE_1};
 use motor::MotorFile;
 use motor::motor_file::Frame;
 use serde::Serialize;
@@ -219,6 +219,6 @@ fn raw(measured: &Measured) -> Reading {
         voltage_codes: measured.voltage_codes,
         current_codes: measured.current_codes,
         encoder_count: measured.encoder_count,
-        ..RawSample::default()
+        clipped: ClippedChannels::of(measured.clipped),
     })
 }

@@ -11,7 +11,7 @@ pub const CHANNELS: usize = 6;
 pub const SEQUENCE: [usize; CHANNELS] = [0, 3, 1, 4, 2, 5];
 
 /// One signal chain for each channel and the converter that they share. [`SignalChain::default`] changes nothing.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SignalChain {
     /// Voltages a, b, c, then currents a, b, c.
     pub channels: [ChannelChain; CHANNELS],
@@ -23,6 +23,22 @@ pub struct SignalChain {
     pub inl: Inl,
     /// The voltage that the converter compares with.
     pub reference: Reference,
+    /// Conversions of each channel, evenly over the sampling time and the last one at its end, that a sample is the mean of,
+    /// 1..=16; its codes are their sum.
+    pub conversions: u32,
+}
+
+impl Default for SignalChain {
+    fn default() -> Self {
+        SignalChain {
+            channels: Default::default(),
+            carrier: Carrier::default(),
+            crosstalk: 0.0,
+            inl: Inl::default(),
+            reference: Reference::default(),
+            conversions: 1,
+        }
+    }
 }
 
 /// The way of one channel to the converter's pin.

@@ -16,6 +16,7 @@ const CARRIER: Bounds = Bounds::between(0.0, 1e6, "Hz");
 const CROSSTALK: Bounds = Bounds::between(0.0, 10.0, "percent");
 const INL: Bounds = Bounds::between(0.0, 64.0, "LSB");
 const REFERENCE: Bounds = Bounds::between(-20.0, 20.0, "percent");
+const CONVERSIONS: Bounds = Bounds::between(1.0, 16.0, "conversions").hint("the board adds 16");
 /// A day at this is far beyond any converter; together with the length of the experiment it is checked again.
 const DRIFT: Bounds = Bounds::between(-10.0, 10.0, "percent per second");
 /// Beyond this the reference is not wrong but gone.
@@ -59,14 +60,19 @@ const CURRENTS: Group = Group {
     reference: "current_reference",
 };
 
-/// The chain of a `[sensors]` section; `None` inside where there is none.
-pub(crate) fn read(sensors: &Section<'_>, duration_s: Option<f64>) -> Option<Option<SignalChain>> {
+/// The chain of a `[sensors]` section; `None` inside where there is none. `bits` is the converter's resolution.
+pub(crate) fn read(
+    sensors: &Section<'_>,
+    duration_s: Option<f64>,
+    bits: Option<u32>,
+) -> Option<Option<SignalChain>> {
     let Some(section) = sensors.optional_section("chain")? else {
         return Some(None);
     };
     let chain = read_values(&section);
     if let Some(chain) = &chain {
         check_reference(&section, &chain.reference, duration_s);
+        check_conversions(&section, chain.conversions, bits);
     }
     section.finish();
     chain.map(Some)
@@ -81,6 +87,7 @@ fn read_values(section: &Section<'_>) -> Option<SignalChain> {
     let shape = section.choice_or("inl_shape", &SHAPES, InlShape::Bow);
     let error = section.number_or("reference_error_percent", &REFERENCE, 0.0);
     let drift = section.number_or("reference_drift_percent_per_s", &DRIFT, 0.0);
+    let conversions = section.integer_or("conversions_per_sample", &CONVERSIONS, 1);
     let [a, b, c] = voltages?;
     let [d, e, f] = currents?;
     Some(SignalChain {
@@ -95,6 +102,7 @@ fn read_values(section: &Section<'_>) -> Option<SignalChain> {
             error: error? / 100.0,
             drift_per_s: drift? / 100.0,
         },
+        conversions: conversions?,
     })
 }
 
@@ -166,6 +174,22 @@ fn one_or_three(section: &Section<'_>, key: &str, bounds: &Bounds) -> Option<[f6
     match section.entries().iter().find(is_list) {
         Some(_) => Some(section.optional_numbers(key, bounds)?.unwrap_or([0.0; 3])),
         None => Some([section.number_or(key, bounds, 0.0)?; 3]),
+    }
+}
+
+/// The sum of all codes is the core's code of 16 bits.
+fn check_conversions(section: &Section<'_>, conversions: u32, bits: Option<u32>) {
+    let Some(bits) = bits else {
+        return;
+    };
+    if conversions << bits > 1 << 16 {
+        section.report(
+            "conversions_per_sample",
+            format!(
+                "{conversions} codes of {bits} bits are more than 16 bits hold: write at most {}, or lower adc_bits",
+                (1_u32 << 16) >> bits
+            ),
+        );
     }
 }
 

@@ -53,12 +53,14 @@ pub struct Measured {
     pub omega_mech: f64,
     /// Shaft torque, N m.
     pub tau_load: f64,
-    /// ADC codes of the voltages.
+    /// ADC codes of the voltages; sums of them where the chain adds conversions up.
     pub voltage_codes: [u16; 3],
     /// ADC codes of the currents.
     pub current_codes: [u16; 3],
     /// Free-running encoder counter, four counts per pulse, wrapping.
     pub encoder_count: u16,
+    /// Channels (voltages a, b, c, then currents a, b, c) of which any conversion was at a rail.
+    pub clipped: [bool; 6],
 }
 
 /// One sample of a simulation.

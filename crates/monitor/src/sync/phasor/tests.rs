@@ -93,7 +93,7 @@ fn instants() -> ([[u16; CHANNELS]; 8], [Complex32; 8]) {
 fn codes_in_bulk_are_summed_up_like_instants() {
     let (codes, axes) = instants();
     let mut bulk = PhasorState::default();
-    assert!(bulk.add_codes(&codes, &axes, &RANGE));
+    assert!(bulk.add_codes::<true>(&codes, &axes, &RANGE));
     let mut single = PhasorState::default();
     for ([v_a, i_a, v_b, i_b, v_c, i_c], axis) in codes.into_iter().zip(axes) {
         let tick = SyncTick {
@@ -117,7 +117,7 @@ fn a_code_at_a_rail_is_told_whichever_channel_it_is_in() {
         for (code, inside) in [(1, false), (2, true), (4093, true), (4094, false)] {
             let mut codes = sound;
             codes[3][channel] = code;
-            let told = PhasorState::default().add_codes(&codes, &axes, &RANGE);
+            let told = PhasorState::default().add_codes::<true>(&codes, &axes, &RANGE);
             assert_eq!(told, inside, "{code} in channel {channel}");
         }
     }

@@ -49,10 +49,45 @@ impl Channel {
         code.clamp(0.0, largest) as u16
     }
 
+    /// As the core sees it: within a code of either end.
+    fn is_at_rail(&self, code: u16) -> bool {
+        u32::from(code) <= 1 || u32::from(code) + 2 >= 1_u32 << self.bits
+    }
+
     fn raw_of(&self, code: u16) -> f64 {
         let middle = f64::from(1_u32 << (self.bits - 1));
         (f64::from(code) - middle) * self.step()
     }
+}
+
+/// What one channel shows: value, code, and whether any conversion of it was at a rail.
+#[derive(Clone, Copy, Default)]
+struct Shown {
+    value: f64,
+    code: u16,
+    clipped: bool,
+}
+
+impl Shown {
+    /// Adds a conversion. The scenario's reader sees to it that the codes of all fit into 16 bits.
+    fn add(&mut self, one: Shown) {
+        self.value += one.value;
+        self.code = self.code.saturating_add(one.code);
+        self.clipped |= one.clipped;
+    }
+
+    /// The mean of so many conversions; the codes stay a sum.
+    fn of(self, number: f64) -> Shown {
+        Shown {
+            value: self.value / number,
+            ..self
+        }
+    }
+}
+
+/// Values at the pins ahead of the motor file's correction.
+fn uncorrected(x: [f64; CHANNELS], channels: &[Channel; CHANNELS]) -> [f64; CHANNELS] {
+    std::array::from_fn(|k| x[k] / channels[k].gain + channels[k].offset)
 }
 
 impl Instruments {
@@ -65,7 +100,7 @@ impl Instruments {
             last_theta: None,
             encoder_angle: 0.0,
             counts: VecDeque::new(),
-            chain: chain.map(|chain| Chain::new(chain, scenario.seed)),
+            chain: chain.map(|chain| Chain::new(chain, scenario.seed, scenario.t_sample())),
         }
     }
 
@@ -84,19 +119,18 @@ impl Instruments {
     ) -> Measured {
         let active = active(faults, t);
         let channels: [Channel; CHANNELS] = std::array::from_fn(|k| self.channel(k));
-        let raw = self.raw(t, sensed(truth, &active), &channels);
-        let shown: [(f64, u16); CHANNELS] =
-            std::array::from_fn(|k| self.convert(&channels[k], raw[k]));
+        let shown = self.sample(t, sensed(truth, &active), &channels);
         let [a, b, c, d, e, f] = shown;
         let (u, i) = ([a, b, c], [d, e, f]);
         let count = self.count(truth, &active);
         Measured {
-            u_s_abc: u.map(|(value, _)| value),
-            i_s_abc: i.map(|(value, _)| value),
+            u_s_abc: u.map(|one| one.value),
+            i_s_abc: i.map(|one| one.value),
             omega_mech: self.speed(truth, count, &active),
             tau_load: self.plain(truth.tau_load, self.spec.instrument.torque_full_scale_nm),
-            voltage_codes: u.map(|(_, code)| code),
-            current_codes: i.map(|(_, code)| code),
+            voltage_codes: u.map(|one| one.code),
+            current_codes: i.map(|one| one.code),
+            clipped: shown.map(|one| one.clipped),
             // The hardware counter has 16 bits and wraps.
             encoder_count: count as u16,
         }
@@ -126,26 +160,44 @@ impl Instruments {
         }
     }
 
-    /// What reaches the converter's pins, before the motor file's correction.
-    fn raw(
+    /// All channels of a sample: one conversion, or the mean of those that the chain asks for.
+    fn sample(
         &mut self,
         t: f64,
         sensed: [f64; CHANNELS],
         channels: &[Channel; CHANNELS],
-    ) -> [f64; CHANNELS] {
-        let uncorrected = |x: [f64; CHANNELS]| -> [f64; CHANNELS] {
-            std::array::from_fn(|k| x[k] / channels[k].gain + channels[k].offset)
-        };
+    ) -> [Shown; CHANNELS] {
         let Some(chain) = &mut self.chain else {
-            return uncorrected(sensed);
+            let raw = uncorrected(sensed, channels);
+            return std::array::from_fn(|k| self.convert(&channels[k], raw[k]));
         };
         chain.observe(t, sensed);
+        let times = chain.conversions(t);
+        let (mut sums, mut number) = ([Shown::default(); CHANNELS], 0.0);
+        for t in times {
+            let raw = self.raw(t, channels);
+            for (k, sum) in sums.iter_mut().enumerate() {
+                sum.add(self.convert(&channels[k], raw[k]));
+            }
+            number += 1.0;
+        }
+        sums.map(|sum| sum.of(number))
+    }
+
+    /// What reaches the converter's pins at `t`, s, before the motor file's correction.
+    fn raw(&mut self, t: f64, channels: &[Channel; CHANNELS]) -> [f64; CHANNELS] {
         let full_scales = std::array::from_fn(|k| channels[k].full_scale);
-        chain.distorted(t, uncorrected(chain.filtered(t)), full_scales)
+        match &mut self.chain {
+            Some(chain) => {
+                let pins = uncorrected(chain.filtered(t), channels);
+                chain.distorted(t, pins, full_scales)
+            }
+            None => [0.0; CHANNELS],
+        }
     }
 
     /// The calibrated value and the code of what reaches the pin.
-    fn convert(&mut self, channel: &Channel, raw: f64) -> (f64, u16) {
+    fn convert(&mut self, channel: &Channel, raw: f64) -> Shown {
         let raw = raw + self.noise(channel.full_scale);
         let bent = match &self.chain {
             Some(chain) => raw + chain.inl_lsb(raw / channel.full_scale) * channel.step(),
@@ -155,14 +207,18 @@ impl Instruments {
     }
 
     /// The calibrated value and the code.
-    fn shown(&self, channel: &Channel, raw: f64) -> (f64, u16) {
+    fn shown(&self, channel: &Channel, raw: f64) -> Shown {
         let code = channel.code(raw);
         let shown = if self.spec.quantise {
             channel.raw_of(code)
         } else {
             raw
         };
-        ((shown - channel.offset) * channel.gain, code)
+        Shown {
+            value: (shown - channel.offset) * channel.gain,
+            code,
+            clipped: channel.is_at_rail(code),
+        }
     }
 
     /// A channel without calibration, such as the tachometer.
@@ -174,7 +230,7 @@ impl Instruments {
             offset: 0.0,
         };
         let raw = x + self.noise(full_scale);
-        self.shown(&channel, raw).0
+        self.shown(&channel, raw).value
     }
 
     fn noise(&mut self, full_scale: f64) -> f64 {

@@ -194,3 +194,81 @@ fn effects_on_the_instruments_come_ahead_of_the_chain() {
         assert!((1.02 * 1.01 * x - y).abs() < 1e-9);
     }
 }
+
+/// Sixteen conversions of a sinusoid, the last at the time of the sample: late by half of what lies between the first and the
+/// last, and shrunk by `sin(8 w h) / (16 sin(w h / 2))`.
+#[test]
+fn the_mean_of_sixteen_conversions_is_late_and_small_as_its_transfer_function_says() {
+    let scenario = behind(
+        "voltage_filter_us = [78.1, 7.05]\nvoltage_delay_us = 3.1\nconversions_per_sample = 16",
+        0.21,
+    );
+    let [u, i] = ratios(&run(&scenario), 60.0);
+    let half = TAU * 60.0 * 6.25e-6 / 2.0;
+    let kept = (16.0 * half).sin() / (16.0 * half.sin());
+    let mean = kept * closed_form(&[], 46.875, 60.0);
+    let expected = closed_form(&[78.1, 7.05], 3.1, 60.0) * mean;
+    assert!((u - expected).norm() < EXACT, "{u} {expected}");
+    assert!((i - mean).norm() < EXACT, "{i} {mean}");
+}
+
+/// A ripple at the sampling rate is a constant in single conversions and nothing in their mean over a sampling time.
+#[test]
+fn the_mean_over_a_sampling_time_is_blind_to_ripple_at_the_sampling_rate() {
+    let ripple = "carrier_hz = 10000\ncarrier_ripple_volt = 100";
+    let of = |more: &str| run(&behind(more, 0.01));
+    let off = |more: &str| {
+        let (with, without) = (of(&format!("{more}\n{ripple}")), of(more));
+        let pairs = with.iter().zip(&without);
+        rms(pairs.map(|(a, b)| a.measured.u_s_abc[0] - b.measured.u_s_abc[0]))
+    };
+    assert!((off("") - 100.0).abs() < 1e-6, "{}", off(""));
+    let mean = off("conversions_per_sample = 16");
+    assert!(mean < 1e-9, "{mean}");
+}
+
+/// Codes are sums: with as many conversions they are sixteen times those of one, and a step of one code is a sixteenth.
+#[test]
+fn codes_are_sums_of_conversions() {
+    let text = |more: &str| {
+        parse(&format!(
+            "start = \"running\"\nduration_s = 0.05\n[sensors.chain]\n{more}"
+        ))
+    };
+    let (one, sixteen) = (text(""), text("conversions_per_sample = 16"));
+    let told = sixteen.sensors.told(&sixteen.motor).sensors;
+    assert_eq!(told.conversions, 16);
+    let full_scale = told.voltage_full_scale_volt;
+    for (single, summed) in run(&one).iter().zip(&run(&sixteen)).skip(1) {
+        for k in 0..3 {
+            let volt = |code: u16, number: f64| {
+                (f64::from(code) / number / 2048.0 - 1.0) * full_scale
+            };
+            let shown = volt(summed.measured.voltage_codes[k], 16.0);
+            assert!((shown - summed.measured.u_s_abc[k]).abs() < 1e-9);
+            // The mean is 46.9 us older: 1.8 % of the amplitude; noise and steps beside it.
+            let single = volt(single.measured.voltage_codes[k], 1.0);
+            assert!((shown - single).abs() < 0.05 * full_scale, "{shown} {single}");
+        }
+    }
+}
+
+/// The noise of sixteen conversions is a quarter of that of one.
+#[test]
+fn the_mean_has_a_quarter_of_the_noise() {
+    let noise = |more: &str| {
+        let with = |sigma: f64| {
+            let text = format!(
+                "start = \"running\"\nduration_s = 0.3\n[sensors]\nquantise = false\n\
+                 noise_sigma_fraction_of_full_scale = {sigma}\n[sensors.chain]\n{more}"
+            );
+            run(&parse(&text))
+        };
+        let (noisy, clean) = (with(0.01), with(0.0));
+        let pairs = noisy.iter().zip(&clean);
+        rms(pairs.map(|(a, b)| a.measured.u_s_abc[1] - b.measured.u_s_abc[1]))
+    };
+    let ratio = noise("conversions_per_sample = 16") / noise("");
+    // 3000 samples each: the ratio of two such estimates scatters by 1.8 %.
+    assert!((ratio - 0.25).abs() < 0.02, "{ratio}");
+}

@@ -7,15 +7,18 @@ use std::collections::VecDeque;
 pub(super) struct Line {
     poles: [Pole; 2],
     delay_s: f64,
-    /// Times, s, and filtered values, no older than the delay needs.
+    /// How long before the last quantity a value may be asked for, s.
+    span_s: f64,
+    /// Times, s, and filtered values, no older than delay and span need.
     past: VecDeque<(f64, f64)>,
 }
 
 impl Line {
-    pub(super) fn new(channel: ChannelChain) -> Line {
+    pub(super) fn new(channel: ChannelChain, span_s: f64) -> Line {
         Line {
             poles: channel.time_constants_s.map(Pole::new),
             delay_s: channel.delay_s,
+            span_s,
             past: VecDeque::new(),
         }
     }
@@ -24,21 +27,21 @@ impl Line {
     pub(super) fn observe(&mut self, t: f64, step: f64, x: f64) {
         let filtered = self.poles.iter_mut().fold(x, |x, pole| pole.next(step, x));
         self.past.push_back((t, filtered));
-        let wanted = t - self.delay_s;
+        let wanted = t - self.span_s - self.delay_s;
         while self.past.get(1).is_some_and(|(time, _)| *time <= wanted) {
             self.past.pop_front();
         }
     }
 
-    /// The value at `t`, the time of the last quantity, s; the first value before there was one.
+    /// The value at `t`, at most the span before the last quantity, s; the first value before there was one.
     pub(super) fn at(&self, t: f64) -> f64 {
         let wanted = t - self.delay_s;
-        match (self.past.front(), self.past.get(1)) {
-            (Some((t0, y0)), Some((t1, y1))) if wanted > *t0 => {
-                y0 + (y1 - y0) * (wanted - t0) / (t1 - t0)
-            }
-            (Some((_, first)), _) => *first,
-            (None, _) => 0.0,
+        let after = self.past.partition_point(|(time, _)| *time < wanted);
+        let before = after.checked_sub(1).and_then(|k| self.past.get(k));
+        match (before, self.past.get(after)) {
+            (Some((t0, y0)), Some((t1, y1))) => y0 + (y1 - y0) * (wanted - t0) / (t1 - t0),
+            (Some((_, edge)), None) | (None, Some((_, edge))) => *edge,
+            (None, None) => 0.0,
         }
     }
 }
@@ -80,11 +83,16 @@ mod tests {
     use super::*;
 
     fn line(time_constants_s: [f64; 2], delay_s: f64) -> Line {
-        Line::new(ChannelChain {
+        spanning(time_constants_s, delay_s, 0.0)
+    }
+
+    fn spanning(time_constants_s: [f64; 2], delay_s: f64, span_s: f64) -> Line {
+        let channel = ChannelChain {
             time_constants_s,
             delay_s,
             ..ChannelChain::default()
-        })
+        };
+        Line::new(channel, span_s)
     }
 
     /// Output of a line at `t_end` for an input of time, in steps of `h`.
@@ -113,6 +121,16 @@ mod tests {
         let y = output(line(taus, delay), 1e-5, 5e-3, |t| t);
         let late = 5e-3 - y;
         assert!((late - 108.5e-6).abs() < 1e-12, "{late}");
+    }
+
+    #[test]
+    fn values_of_the_whole_span_can_be_asked_for() {
+        let mut line = spanning([0.0; 2], 23.5e-6, 93.75e-6);
+        (0..=50).for_each(|k| line.observe(f64::from(k) * 1e-5, 1e-5, f64::from(k) * 1e-5));
+        for k in 0..16 {
+            let t = 5e-4 - f64::from(k) * 6.25e-6;
+            assert!((line.at(t) - (t - 23.5e-6)).abs() < 1e-12, "{k}");
+        }
     }
 
     #[test]

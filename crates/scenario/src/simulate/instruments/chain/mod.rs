@@ -14,20 +14,33 @@ pub(super) struct Chain {
     spec: SignalChain,
     lines: [Line; CHANNELS],
     linearity: Linearity,
+    /// From one conversion of a channel to the next, s.
+    apart_s: f64,
     last_t: Option<f64>,
     /// What the converter took last, as a share of full scale.
     last_share: f64,
 }
 
 impl Chain {
-    pub(super) fn new(spec: &SignalChain, seed: u64) -> Chain {
+    /// `t_sample` is the time, s, over which the conversions of a sample lie.
+    pub(super) fn new(spec: &SignalChain, seed: u64, t_sample: f64) -> Chain {
+        let apart = t_sample / f64::from(spec.conversions.max(1));
+        let span = t_sample - apart;
         Chain {
-            lines: spec.channels.map(Line::new),
+            apart_s: apart,
+            lines: spec.channels.map(|channel| Line::new(channel, span)),
             linearity: Linearity::new(&spec.inl, seed),
             spec: spec.clone(),
             last_t: None,
             last_share: 0.0,
         }
+    }
+
+    /// Times of the conversions of the sample at `t`, s, the last of them.
+    pub(super) fn conversions(&self, t: f64) -> impl Iterator<Item = f64> + use<> {
+        let apart = self.apart_s;
+        let number = self.spec.conversions.max(1);
+        (0..number).rev().map(move |k| t - f64::from(k) * apart)
     }
 
     /// Takes the six quantities at `t`, s, later than the last ones: V, A.
@@ -39,7 +52,7 @@ impl Chain {
         }
     }
 
-    /// What stands behind the filters and delays at `t`, with the carrier's ripple: V, A.
+    /// What stands behind the filters and delays at `t`, one of the times of a sample's conversions, with the carrier's ripple: V, A.
     pub(super) fn filtered(&self, t: f64) -> [f64; CHANNELS] {
         std::array::from_fn(|k| self.lines[k].at(t) + self.ripple(k, t))
     }
