@@ -88,6 +88,7 @@ async fn main(spawner: Spawner) -> ! {
         button: board.button,
         press: Button::default(),
         housekeeping: Housekeeping::new(board.housekeeping),
+        supply: 1.0,
         record: Record::new(
             Telemetry::default(),
             &start,
@@ -211,6 +212,7 @@ async fn watch(
         if let Err(gap) = acquisition.read(&mut block).await {
             return Pause::Gap(gap);
         }
+        state.note_converter_supply(panel.supply);
         if panel.blocks >= INHIBITED_BLOCKS
             && let Some(report) = process_block(monitor, state, &block)
         {

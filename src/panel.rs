@@ -12,7 +12,7 @@ use monitor::{Lamp, Lamps, Monitor, Report};
 use crate::commissioning::Commissioning;
 use crate::configuration::{Change, Settings};
 use crate::events::Events;
-use crate::hardware::housekeeping::{Housekeeping, is_vdda_credible};
+use crate::hardware::housekeeping::{self, Housekeeping, is_vdda_credible};
 use crate::hardware::lamps::{Lamps as LampWires, RelayWires};
 use crate::hardware::serial;
 use crate::record::Record;
@@ -48,6 +48,8 @@ pub struct Panel {
     pub press: Button,
     /// Supply and temperature of the chip.
     pub housekeeping: Housekeeping,
+    /// Supply of the converters as it was measured last, a share of the nominal one.
+    pub supply: f32,
     /// What is told.
     pub record: Record,
     /// Calibration and learning.
@@ -267,6 +269,7 @@ impl Panel {
     /// Measures the supply of the converters and the chip's temperature.
     pub fn look_after_supply(&mut self) {
         let millivolt = self.housekeeping.vdda_millivolt();
+        self.supply = housekeeping::share_of_nominal(millivolt);
         let faulty = !is_vdda_credible(millivolt);
         if self.doubts.set(Doubt::Supply, faulty) {
             defmt::warn!("VDDA {=u32} mV", millivolt);

@@ -44,12 +44,6 @@ pub fn snapshots<'a>(
     // does, and the buffer stays borrowed for the life of the ring, whose drop stops the channel.
     #[allow(unsafe_code)]
     unsafe {
-        ReadableRingBuffer::new(
-            channel,
-            request,
-            counter,
-            buffer,
-            options,
-        )
+        ReadableRingBuffer::new(channel, request, counter, buffer, options)
     }
 }

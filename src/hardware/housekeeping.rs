@@ -1,14 +1,21 @@
 //! The chip's own health: why it was reset, its analogue reference, its temperature.
 
 use embassy_stm32::Peri;
-use embassy_stm32::adc::{Adc, AdcChannel, AdcConfig, SampleTime, Temperature, VREF_CALIB_MV, VrefInt};
+use embassy_stm32::adc::{
+    Adc, AdcChannel, AdcConfig, SampleTime, Temperature, VREF_CALIB_MV, VrefInt,
+};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::ADC5;
 
 /// mV; the supply that all dividers and current sensors of docs/wiring.md are computed for.
 const NOMINAL_VDDA: u32 = 3_300;
+/// Readings of the reference that are averaged: one code of it is 2 mV.
+const READINGS: u32 = 16;
 /// Per mille; the NUCLEO's regulator and the factory's reference value together stay within 2 %.
 const VDDA_TOLERANCE: u32 = 30;
+
+/// 247.5 cycles are 6.2 us; the temperature sensor wants at least 5, the reference 4.
+const SAMPLE_TIME: SampleTime = SampleTime::CYCLES247_5;
 
 /// Codes of the temperature sensor at two temperatures, degrees Celsius, which the factory leaves in the chip (3.0 V).
 const TEMPERATURE_CALIBRATION: [(*const u16, f32); 2] = [
@@ -81,18 +88,22 @@ impl Housekeeping {
     /// Supply of the converters, mV; 0 when the reference shows nothing.
     pub fn vdda_millivolt(&mut self) -> u32 {
         let calibrated = u32::from(self.reference.calibrated_value());
-        let measured = settled(&mut self.adc, &mut self.reference);
-        (VREF_CALIB_MV * calibrated)
-            .checked_div(u32::from(measured))
+        let mut measured = u32::from(settled(&mut self.adc, &mut self.reference));
+        for _ in 1..READINGS {
+            measured += u32::from(self.adc.blocking_read(&mut self.reference, SAMPLE_TIME));
+        }
+        // Rounded: half of the divisor more.
+        (VREF_CALIB_MV * calibrated * READINGS + measured / 2)
+            .checked_div(measured)
             .unwrap_or(0)
     }
 }
 
 /// The second of two results: the first one after a pause of 1 ms or more, and the first one of another channel, may be wrong
-/// (erratum of the family). 247.5 cycles are 6.2 us; the sensor wants at least 5, the reference 4.
+/// (erratum of the family).
 fn settled(adc: &mut Adc<'static, ADC5>, channel: &mut impl AdcChannel<ADC5>) -> u16 {
-    let _ = adc.blocking_read(channel, SampleTime::CYCLES247_5);
-    adc.blocking_read(channel, SampleTime::CYCLES247_5)
+    let _ = adc.blocking_read(channel, SAMPLE_TIME);
+    adc.blocking_read(channel, SAMPLE_TIME)
 }
 
 /// Reads a constant that the factory wrote beside the flash.
@@ -110,6 +121,12 @@ pub fn serial_number() -> [u32; 3] {
         bytes.map_or(0, |bytes| u32::from_le_bytes(*bytes))
     };
     [word(2), word(1), word(0)]
+}
+
+/// The converters' supply as a share of the one that all full scales are meant for. To a millivolt, so that what is corrected by
+/// is what frames and registers tell.
+pub fn share_of_nominal(millivolt: u32) -> f32 {
+    millivolt as f32 / NOMINAL_VDDA as f32
 }
 
 /// Whether codes can be taken for volts and amperes at this converter supply, mV.

@@ -63,8 +63,7 @@ pub static COUNTS: Ring<{ SEQUENCES / 2 }> = Ring::new();
 /// A sample: sums of codes by pairs, then count and marks of clipped channels.
 struct Kept([AtomicU32; WORDS + 1]);
 
-static KEPT: [Kept; SAMPLES] =
-    [const { Kept([const { AtomicU32::new(0) }; WORDS + 1]) }; SAMPLES];
+static KEPT: [Kept; SAMPLES] = [const { Kept([const { AtomicU32::new(0) }; WORDS + 1]) }; SAMPLES];
 /// Half rings since [`restart`].
 static PARTS: AtomicU32 = AtomicU32::new(0);
 static FAULT: AtomicU8 = AtomicU8::new(0);
@@ -172,7 +171,8 @@ fn clipped(group: &[[AtomicU32; WORDS]; CONVERSIONS]) -> u32 {
     for sequence in group {
         for (beyond, word) in beyond.iter_mut().zip(sequence) {
             let codes = word.load(Ordering::Relaxed);
-            *beyond |= codes.wrapping_add(FROM_HIGHEST_RAIL) | UP_TO_LOWEST_RAIL.wrapping_sub(codes);
+            *beyond |=
+                codes.wrapping_add(FROM_HIGHEST_RAIL) | UP_TO_LOWEST_RAIL.wrapping_sub(codes);
         }
     }
     let mut marks = 0;

@@ -131,7 +131,8 @@ fn write_measurement(w: &mut Writer, config: &MonitorConfig) {
     w.number(config.t_sample);
     w.scale(&config.converter.voltage);
     w.scale(&config.converter.current);
-    w.word(u32::from(config.converter.max_code));
+    let [voltage, current] = config.converter.ratiometric.map(u32::from);
+    w.word(u32::from(config.converter.max_code) | voltage << 16 | current << 17);
     w.numbers(&config.converter.chain.delay);
     w.number(config.converter.chain.roll_off);
     w.number(config.encoder_counts_per_revolution);
@@ -314,10 +315,12 @@ fn effects(r: &mut Reader<'_>) -> Result<ActiveEffects, ImageError> {
 
 fn read(r: &mut Reader<'_>) -> Result<MonitorConfig, ImageError> {
     let t_sample = r.number();
+    let (voltage, current, codes) = (r.scale(), r.scale(), r.word());
     let converter = Converter {
-        voltage: r.scale(),
-        current: r.scale(),
-        max_code: r.word() as u16,
+        voltage,
+        current,
+        max_code: codes as u16,
+        ratiometric: [codes >> 16 & 1 == 1, codes >> 17 & 1 == 1],
         chain: AnalogueChain {
             delay: r.numbers(),
             roll_off: r.number(),

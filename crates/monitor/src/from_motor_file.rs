@@ -207,6 +207,7 @@ fn converter(sensors: &Sensors) -> Converter {
             sensors.current_offset_amp,
         ),
         chain: chain(sensors),
+        ratiometric: sensors.ratiometric,
         ..Converter::bipolar(1.0, 1.0, sensors.adc_bits as u8)
     }
     .summed(sensors.conversions as u16)

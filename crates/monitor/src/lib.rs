@@ -44,14 +44,14 @@ mod config;
 mod frames;
 #[cfg(feature = "motor-file")]
 mod from_motor_file;
-#[cfg(feature = "motor-file")]
-mod of_board;
 mod input;
 mod isolation;
 mod lamps;
 mod model;
 mod monitor;
 mod noise;
+#[cfg(feature = "motor-file")]
+mod of_board;
 mod reason;
 mod rehearsal;
 mod report;
@@ -85,9 +85,9 @@ pub use model::effects::{
 pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
+pub use motor::FaultId;
 #[cfg(feature = "motor-file")]
 pub use of_board::{BOARD_CONVERSIONS, BOARD_T_SAMPLE};
-pub use motor::FaultId;
 pub use reason::Reason;
 pub use rehearsal::Rehearsal;
 pub use report::{NotJudged, Report};

@@ -9,6 +9,7 @@ use crate::checks::rotor_bars::{RotorState, Sidebands};
 use crate::checks::sensors::{HealthConfig, SensorFinding};
 use crate::checks::supply::{SupplyConfig, SupplyFinding};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
+use crate::input::chain::ConverterSupply;
 use crate::input::codes::{Axes, Codes};
 use crate::input::sample::{CHANNELS, Sample};
 use crate::input::validity::{
@@ -64,6 +65,7 @@ pub struct MonitorState {
     samples: u64,
     pub(crate) since_report: u32,
     pub(crate) rehearsal: Rehearsal,
+    converter_supply: ConverterSupply,
     /// Whether the open cycle is summed up in codes.
     in_codes: bool,
 }
@@ -80,6 +82,12 @@ impl MonitorState {
             axis: self.sync.axis(),
             omega: self.sync.omega(),
         })
+    }
+
+    /// The converter's supply is `share` of the nominal one, from the next cycle on: absolute readings in codes are corrected by it.
+    /// Beyond 0.9 to 1.1 nothing is corrected.
+    pub fn note_converter_supply(&mut self, share: f32) {
+        self.converter_supply = ConverterSupply::measured(share);
     }
 
     /// Counts samples that ended no cycle.
@@ -106,6 +114,7 @@ impl MonitorState {
             temperature: self.temperature,
             samples: self.samples,
             rehearsal: self.rehearsal,
+            converter_supply: self.converter_supply,
             ..MonitorState::default()
         };
     }
@@ -245,7 +254,10 @@ impl Monitor {
     fn at_terminals(&self, state: &MonitorState, cycle: Cycle) -> Cycle {
         let cycle = cycle.corrected(&self.config.channel_gain);
         if state.in_codes {
-            cycle.ahead_of(&self.config.converter.chain, state.sync.omega())
+            let converter = &self.config.converter;
+            let gains = converter.supply_gains(state.converter_supply.0);
+            let cycle = cycle.corrected(&gains);
+            cycle.ahead_of(&converter.chain, state.sync.omega())
         } else {
             cycle
         }

@@ -69,6 +69,9 @@ mod tests {
         motor.sensors.adc_bits = 14;
         let error = MonitorConfig::of_board(&motor).expect_err("another converter");
         let told = std::string::ToString::to_string(&error);
-        assert!(told.contains("sensors.adc_bits") && told.contains("write 12"), "{told}");
+        assert!(
+            told.contains("sensors.adc_bits") && told.contains("write 12"),
+            "{told}"
+        );
     }
 }

@@ -37,6 +37,7 @@ fn config() -> MonitorConfig {
             current: channel(0.01, 0.05),
             max_code: 4095,
             chain: monitor::AnalogueChain::NONE,
+            ratiometric: [false; 2],
         },
         encoder_counts_per_revolution: 4096.0,
         params: TParams {

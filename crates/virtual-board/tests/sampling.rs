@@ -6,6 +6,7 @@ mod common;
 use std::f64::consts::{PI, TAU};
 
 use board::modbus::Field;
+use board::{Frame, Message};
 use common::master::{Master, UNIT};
 use common::{INHIBITED, LAMP_TEST_S, Sensors, board as board_of, firmware, motor, scenario};
 use monitor::{Lamp, Monitor, MonitorConfig, MonitorState, NotJudged, RawSample, Report};
@@ -31,7 +32,10 @@ struct Pins(Vec<(f64, f64)>);
 
 impl Pins {
     fn at(&self, t: f64) -> f64 {
-        self.0.iter().map(|(a, hertz)| a * (TAU * hertz * t).cos()).sum()
+        self.0
+            .iter()
+            .map(|(a, hertz)| a * (TAU * hertz * t).cos())
+            .sum()
     }
 
     /// The mean of sixteen values `TRIGGER_S` apart, the last at `t`: each cosine shrunk by `sin(8 w h) / (16 sin(w h / 2))`
@@ -107,7 +111,10 @@ fn each_channel_is_late_by_the_mean_and_early_by_its_place_in_the_sequence() {
         let kept = (16.0 * half).sin() / (16.0 * half.sin());
         let expected = Complex64::from_polar(900.0 * kept, -TAU * SUPPLY_HZ * late);
         let off = (shown - expected).norm() / 900.0;
-        assert!(off < STEPS, "channel {channel}: {shown} instead of {expected}");
+        assert!(
+            off < STEPS,
+            "channel {channel}: {shown} instead of {expected}"
+        );
     }
     // The order of conversion is seen: 0.625 us are 2.4e-4 of a turn's radian.
     let skew = (shown[3] / shown[0]).arg() / (TAU * SUPPLY_HZ);
@@ -125,11 +132,18 @@ fn inverter(carrier_hz: f64) -> Pins {
         let poles = [78.1e-6, 7.05e-6].map(|tau| (TAU * hertz * tau).hypot(1.0).recip());
         (900.0 * share * poles[0] * poles[1], hertz)
     };
-    let sidebands = [(1.0, 2.0, J2), (1.0, -2.0, J2), (2.0, 1.0, J1), (2.0, -1.0, J1)];
+    let sidebands = [
+        (1.0, 2.0, J2),
+        (1.0, -2.0, J2),
+        (2.0, 1.0, J1),
+        (2.0, -1.0, J1),
+    ];
     let mut pins = vec![(900.0, SUPPLY_HZ)];
-    pins.extend(sidebands.map(|(m, n, bessel)| {
-        behind(4.0 / PI * bessel / m / 0.5, m * carrier_hz + n * SUPPLY_HZ)
-    }));
+    pins.extend(
+        sidebands.map(|(m, n, bessel)| {
+            behind(4.0 / PI * bessel / m / 0.5, m * carrier_hz + n * SUPPLY_HZ)
+        }),
+    );
     Pins(pins)
 }
 
@@ -156,7 +170,11 @@ fn sidebands_of_an_inverter_err_in_single_conversions_and_not_in_means() {
         );
         let mean = error(&pins, measured, Pins::mean);
         let single = error(&pins, phasor(|k| pins.at(t(k))), Pins::at);
-        println!("{carrier_khz} kHz: single {:.2} %, mean {:.3} %", 100.0 * single, 100.0 * mean);
+        println!(
+            "{carrier_khz} kHz: single {:.2} %, mean {:.3} %",
+            100.0 * single,
+            100.0 * mean
+        );
         assert!(mean < 0.002, "{carrier_khz} kHz: {mean}");
         let folds = [5.0, 10.0].contains(&carrier_khz);
         assert_eq!(single > 0.05, folds, "{carrier_khz} kHz: {single}");
@@ -243,15 +261,24 @@ fn a_single_conversion_at_a_rail_counts() {
         assert_eq!((before, board.lamps()), (0, HEALTHY), "channel {channel}");
         board.run(0.9).expect("a run");
         let not_judged = Master::new(UNIT).word(&mut board, Field::NotJudged);
-        assert_eq!(not_judged, NotJudged::Clipped.reason().number() as u16, "channel {channel}");
+        assert_eq!(
+            not_judged,
+            NotJudged::Clipped.reason().number() as u16,
+            "channel {channel}"
+        );
         let host = common::host_lamps(board.taken());
         let levels = board.lamps();
-        assert!(common::shows(levels, host.last().expect("samples")), "{levels:?}");
+        assert!(
+            common::shows(levels, host.last().expect("samples")),
+            "{levels:?}"
+        );
         // Sums alone show nothing.
         let mut unmarked = board.taken().to_vec();
         let marked = unmarked.iter().filter(|raw| raw.clipped.any()).count();
         assert!((30..70).contains(&marked), "{marked}");
-        unmarked.iter_mut().for_each(|raw| raw.clipped = Default::default());
+        unmarked
+            .iter_mut()
+            .for_each(|raw| raw.clipped = Default::default());
         let config = MonitorConfig::of_board(&motor()).expect("shipped");
         let monitor = Monitor::new(config).expect("valid");
         let mut state = MonitorState::default();
@@ -272,4 +299,42 @@ fn the_first_result_after_a_pause_is_not_used() {
     let master = Master::new(UNIT);
     let millivolt = master.word(&mut board, Field::ConverterSupply);
     assert!(millivolt.abs_diff(3_300) < 10, "{millivolt} mV");
+}
+
+/// Mean amplitude of voltage and current over the last frames, V and A, on a converter supply of so many mV.
+fn amplitudes_on(millivolt: u32) -> [f32; 2] {
+    let mut board = board_of(&scenario(60.0));
+    board.set_vdda(millivolt);
+    board.run(LAMP_TEST_S + 1.0).expect("a run");
+    board.frames();
+    board.run(0.5).expect("a run");
+    assert_eq!(board.lamps(), HEALTHY, "{millivolt} mV");
+    let bytes = board.frames();
+    let frames: Vec<Frame> = bytes
+        .split_inclusive(|byte| *byte == 0)
+        .filter_map(|bytes| match Message::decode(bytes) {
+            Ok(Message::Window(frame)) => Some(frame),
+            _ => None,
+        })
+        .collect();
+    assert!(frames.len() > 20, "{}", frames.len());
+    let mean = |of: fn(&Frame) -> f32| frames.iter().map(of).sum::<f32>() / frames.len() as f32;
+    [mean(|frame| frame.u_s_volt), mean(|frame| frame.i_s_amp)]
+}
+
+/// Sensors are absolute: a supply that is 2 % high makes codes 2 % small, which the reference of the chip tells.
+#[test]
+fn a_converter_supply_that_is_off_is_corrected() {
+    let nominal = amplitudes_on(3_300);
+    for millivolt in [3_234, 3_366] {
+        let shown = amplitudes_on(millivolt);
+        for (shown, nominal) in shown.iter().zip(nominal) {
+            // One code of the reference is 0.07 %, and its emulation has no noise that would average.
+            let off = shown / nominal - 1.0;
+            assert!(
+                off.abs() < 1e-3,
+                "{millivolt} mV: {shown} instead of {nominal}"
+            );
+        }
+    }
 }

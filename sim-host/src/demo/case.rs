@@ -1,7 +1,8 @@
 //! One experiment on the published timeline: start, fault in, fault out.
 
 use monitor::{
-    Candidates, ClippedChannels, FaultId, Lamps, Monitor, MonitorConfig, MonitorState, RawSample, Rehearsal, Report,
+    Candidates, ClippedChannels, FaultId, Lamps, Monitor, MonitorConfig, MonitorState, RawSample,
+    Rehearsal, Report,
 };
 use motor::MotorFile;
 use motor::motor_file::Frame;

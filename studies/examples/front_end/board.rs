@@ -86,9 +86,10 @@ impl Known {
 
     fn of(nominal: &[ChannelChain; CHANNELS]) -> Known {
         let [voltage, ..] = nominal;
-        let squares = voltage.time_constants_s.iter().map(|t| t * t);
+        let filter = voltage.time_constants_s.iter().map(|t| t * t);
+        let squares = filter.chain([MEAN_ROLL_OFF_S * MEAN_ROLL_OFF_S]);
         Known {
-            delays_s: nominal.map(whole_delay),
+            delays_s: nominal.map(|channel| whole_delay(channel) + MEAN_DELAY_S),
             roll_off_s: squares.sum::<f64>().sqrt(),
         }
     }
@@ -96,8 +97,12 @@ impl Known {
 
 /// What is left of a gain after calibration.
 const CALIBRATED: f64 = 0.001;
-/// From one conversion to the next: 25 cycles of 42.5 MHz.
-const RANK_S: f64 = 25.0 / 42.5e6;
+/// From one conversion to the next: 25 cycles of 40 MHz.
+const RANK_S: f64 = 25.0 / 40e6;
+/// Conversions of a channel in a sample, 6.25 us apart, the last one at its time: half of their span, and `sqrt((16^2 - 1)/12)`.
+const CONVERSIONS: u32 = 16;
+const MEAN_DELAY_S: f64 = 7.5 * 6.25e-6;
+const MEAN_ROLL_OFF_S: f64 = 4.609_772 * 6.25e-6;
 
 impl Board {
     pub fn draw(variant: Variant, random: &mut Pcg64) -> Board {
@@ -118,6 +123,7 @@ impl Board {
         Board {
             chain: SignalChain {
                 channels,
+                conversions: CONVERSIONS,
                 ..SignalChain::default()
             },
             known: variant.delays_are_known().then(|| Known::of(&nominal)),

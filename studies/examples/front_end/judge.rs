@@ -56,6 +56,7 @@ fn behind(board: &Board, motor: &MotorFile) -> Result<MotorFile, Box<dyn Error>>
         current_full_scale_amp: board.current_headroom * motor.nameplate.current_amplitude(),
         noise_sigma_fraction_of_full_scale: NOISE_LSB / FULL_SCALE_LSB,
         adc_bits: 12,
+        conversions: board.chain.conversions,
         voltage_delay_s: [a, b, c],
         current_delay_s: [d, e, f],
         roll_off_s: known.roll_off_s,

@@ -15,6 +15,7 @@ pub const CONFIG: MonitorConfig = MonitorConfig {
         current: CHANNEL,
         max_code: 4095,
         chain: monitor::AnalogueChain::NONE,
+        ratiometric: [false; 2],
     },
     encoder_counts_per_revolution: 4096.0,
     params: TParams {

@@ -137,7 +137,8 @@ mod tests {
 
     #[test]
     fn a_converter_whose_channels_all_stand_is_stuck() {
-        let held: [u16; CHANNELS] = core::array::from_fn(|k| CONVERSIONS * (1_500 + 217 * k as u16));
+        let held: [u16; CHANNELS] =
+            core::array::from_fn(|k| CONVERSIONS * (1_500 + 217 * k as u16));
         assert!(judged(50.0, 900.0, |codes| *codes = held));
         assert!(!judged(50.0, 900.0, |codes| *codes = [ZERO + 3; CHANNELS]));
     }

@@ -34,6 +34,16 @@ fn effects_and_channel_gains_survive_the_round_trip() {
 }
 
 #[test]
+fn the_kind_of_sensors_and_the_largest_code_survive_the_round_trip() {
+    for ratiometric in [[false, true], [true, false], [true, true]] {
+        let mut config = shipped("assumed-300w.toml");
+        config.converter = config.converter.summed(16);
+        config.converter.ratiometric = ratiometric;
+        assert_eq!(image(&config).config(), Ok(config));
+    }
+}
+
+#[test]
 fn every_effect_has_a_number_of_its_own() {
     let numbers: std::collections::BTreeSet<u32> =
         STEADY.iter().map(|effect| number(*effect)).collect();

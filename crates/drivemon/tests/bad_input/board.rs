@@ -15,7 +15,7 @@ pub struct Fault {
 }
 
 /// What is seen of a fault, by the name of the patch that takes its handling out.
-const SEEN: [(&str, &str); 55] = [
+const SEEN: [(&str, &str); 56] = [
     (
         "block-overwritten",
         "the gap is logged; the lamps stay as they are; no reset",
@@ -41,10 +41,7 @@ const SEEN: [(&str, &str); 55] = [
     ("event-busy", "an exception for 22 ms; no sample is lost"),
     ("event-stalls", "no sample is lost"),
     ("channel-stuck", "SENSOR on, FAULT on"),
-    (
-        "clip-unseen",
-        "the window is not judged: clipped",
-    ),
+    ("clip-unseen", "the window is not judged: clipped"),
     (
         "clock-ratio",
         "SENSOR and FAULT on within three seconds; an oscillator that is merely hot or cold changes nothing",
@@ -85,19 +82,13 @@ const SEEN: [(&str, &str); 55] = [
         "the old or the new calibration, never half of one",
     ),
     ("lamp-wires", "SENSOR blinks; nothing is learnt"),
-    (
-        "idle-conversion",
-        "nothing: the supply reads right",
-    ),
+    ("idle-conversion", "nothing: the supply reads right"),
     (
         "learn-doubted",
         "refused with the reason; the old values stay",
     ),
     ("low-supply", "nothing is written; learning says so"),
-    (
-        "mean-single",
-        "nothing: the voltage reads right",
-    ),
+    ("mean-single", "nothing: the voltage reads right"),
     ("modbus-damaged", "no answer; nothing changes"),
     ("modbus-endless", "no answer; the next request is answered"),
     ("modbus-locked", "an exception; nothing changes"),
@@ -149,6 +140,10 @@ const SEEN: [(&str, &str); 55] = [
     (
         "stack-overflow",
         "the board starts again and tells the stack pointer",
+    ),
+    (
+        "supply-uncorrected",
+        "nothing: voltage and current read right",
     ),
     (
         "task-silent",

@@ -38,6 +38,28 @@ impl AnalogueChain {
     }
 }
 
+/// Supply of the converter as a share of the one that the full scales are meant for; 1 where nobody measures it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ConverterSupply(pub f32);
+
+impl ConverterSupply {
+    /// Beyond these shares it is the measurement that is wrong.
+    const CREDIBLE: core::ops::RangeInclusive<f32> = 0.9..=1.1;
+
+    pub fn measured(share: f32) -> Self {
+        match Self::CREDIBLE.contains(&share) {
+            true => ConverterSupply(share),
+            false => ConverterSupply::default(),
+        }
+    }
+}
+
+impl Default for ConverterSupply {
+    fn default() -> Self {
+        ConverterSupply(1.0)
+    }
+}
+
 impl Default for AnalogueChain {
     fn default() -> Self {
         AnalogueChain::NONE

@@ -33,6 +33,8 @@ pub struct Converter {
     pub max_code: u16,
     /// What lies ahead of the converter; undone on the phasors of codes, not by [`Converter::convert`].
     pub chain: AnalogueChain,
+    /// Whether the sensors of voltages and of currents follow the converter's supply, so that it does not show in their codes.
+    pub ratiometric: [bool; 2],
 }
 
 impl ChannelScale {
@@ -83,6 +85,7 @@ impl Converter {
             current: ChannelScale::bipolar(current_full_scale, bits),
             max_code: ((1_u32 << bits.min(16)) - 1) as u16,
             chain: AnalogueChain::NONE,
+            ratiometric: [false; 2],
         }
     }
 
@@ -97,6 +100,15 @@ impl Converter {
             max_code: self.max_code.saturating_mul(conversions),
             ..self
         }
+    }
+
+    /// What brings each channel back that was read against a supply of `share` of the nominal one: a low supply makes absolute
+    /// readings large.
+    pub(crate) fn supply_gains(&self, share: f32) -> [f32; CHANNELS] {
+        let [voltage, current] = self
+            .ratiometric
+            .map(|follows| if follows { 1.0 } else { share });
+        [voltage, voltage, voltage, current, current, current]
     }
 
     /// One instant in SI units, with the channels at a rail marked.

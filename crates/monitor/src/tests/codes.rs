@@ -165,3 +165,104 @@ fn a_chain_outside_its_range_is_refused() {
     let roll_off = |c: &mut crate::MonitorConfig| c.converter.chain.roll_off = -1e-5;
     assert_eq!(refused(roll_off), "converter.chain.roll_off");
 }
+
+fn window_on(share: f32, ratiometric: [bool; 2]) -> [f32; 2] {
+    let mut config = config();
+    config.converter.ratiometric = ratiometric;
+    let monitor = Monitor::new(config).expect("valid");
+    let mut state = MonitorState::default();
+    state.note_converter_supply(share);
+    let reports = (0..SAMPLES).filter_map(|k| monitor.update_raw(&mut state, &raw(k)));
+    let window = reports.filter_map(|report| report.window).last();
+    let channels = window.expect("a window").channels;
+    [channels[0].phasor.norm(), channels[3].phasor.norm()]
+}
+
+/// A converter on 2 % more than its nominal supply shows 2 % too little of absolute sensors.
+#[test]
+fn the_converters_supply_scales_absolute_channels_and_no_others() {
+    let [u, i] = window_on(1.0, [false; 2]);
+    for ratiometric in [[false, false], [true, false], [false, true], [true, true]] {
+        let shown = window_on(1.02, ratiometric);
+        for ((shown, nominal), follows) in shown.iter().zip([u, i]).zip(ratiometric) {
+            let expected = if follows { 1.0 } else { 1.02 };
+            assert!(
+                (shown / nominal - expected).abs() < 1e-6,
+                "{ratiometric:?}: {shown}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_supply_that_cannot_be_corrects_nothing() {
+    let nominal = window_on(1.0, [false; 2]);
+    for share in [0.0, 0.89, 1.11, f32::NAN, f32::INFINITY] {
+        assert_eq!(window_on(share, [false; 2]), nominal, "{share}");
+    }
+}
+
+/// The same codes, each the sum of sixteen: the same reports but for the rounding of single precision.
+#[test]
+fn sums_of_codes_are_judged_like_codes() {
+    let mut config = config();
+    config.converter = config.converter.summed(16);
+    let monitor = Monitor::new(config).expect("valid");
+    let mut state = MonitorState::default();
+    let summed = (0..SAMPLES).filter_map(|k| {
+        let mut raw = raw(k);
+        let codes = raw.voltage_codes.iter_mut().chain(&mut raw.current_codes);
+        codes.for_each(|code| *code *= 16);
+        monitor.update_raw(&mut state, &raw)
+    });
+    for (summed, single) in summed.zip(one_by_one()) {
+        assert_eq!(summed.lamps, single.lamps);
+        let [summed, single] = [summed, single].map(|report| report.normalised.unwrap_or_default());
+        for (a, b) in summed.iter().zip(single) {
+            assert!((a - b).abs() < 1e-3, "{a} {b}");
+        }
+    }
+}
+
+/// A single conversion at a rail, which its sum hides, spoils the windows that hold its instant, in blocks as one by one.
+#[test]
+fn a_marked_conversion_spoils_its_window_and_no_other() {
+    let monitor = Monitor::new(config()).expect("valid");
+    let all: Vec<_> = (0..SAMPLES)
+        .map(|k| {
+            let mut raw = raw(k);
+            if k == 3_000 {
+                raw.clipped.mark_current(1);
+            }
+            raw
+        })
+        .collect();
+    let mut state = MonitorState::default();
+    let single: Vec<_> = all
+        .iter()
+        .filter_map(|raw| monitor.update_raw(&mut state, raw))
+        .collect();
+    let clipped = |report: &&Report| report.not_judged == Some(crate::NotJudged::Clipped);
+    assert_eq!(
+        single.iter().filter(clipped).count(),
+        config().window_cycles
+    );
+    let codes: Vec<[u16; CHANNELS]> = all.iter().map(RawSample::interleaved).collect();
+    let counts: Vec<u16> = all.iter().map(|raw| raw.encoder_count).collect();
+    let marks: Vec<_> = all.iter().map(|raw| raw.clipped).collect();
+    let mut state = MonitorState::default();
+    let mut reports = Vec::new();
+    let blocks = codes
+        .chunks(32)
+        .zip(counts.chunks(32))
+        .zip(marks.chunks(32));
+    for ((codes, counts), marks) in blocks {
+        let is_marked = marks.iter().any(|marks| marks.any());
+        let mut block =
+            RawBlock::new(codes, counts).with_clipped(if is_marked { marks } else { &[] });
+        while !block.is_empty() {
+            reports.extend(monitor.update_block(&mut state, &mut block));
+        }
+    }
+    assert_eq!(format!("{reports:?}"), format!("{single:?}"));
+}

@@ -40,6 +40,8 @@ pub struct Sensors {
     pub current_delay_s: [f64; 3],
     /// Time constant `T` of the roll-off `1 - (w T)^2/2` of all of the board's channels, s, 0..=3e-4.
     pub roll_off_s: f64,
+    /// Whether the sensors of voltages and of currents follow the converter's supply, so that it does not show in their codes.
+    pub ratiometric: [bool; 2],
 }
 
 /// A 12-bit ADC is what microcontrollers have.
@@ -74,6 +76,7 @@ impl Sensors {
             voltage_delay_s: [0.0; 3],
             current_delay_s: [0.0; 3],
             roll_off_s: 0.0,
+            ratiometric: [false; 2],
         }
     }
 
@@ -120,6 +123,7 @@ const DELAY: Bounds =
     Bounds::between(-50.0, 200.0, "us").hint("the documented front end has 90 us");
 const ROLL_OFF: Bounds =
     Bounds::between(0.0, 300.0, "us").hint("the documented front end has 78.5 us");
+pub(super) const REFERENCES: [(&str, bool); 2] = [("absolute", false), ("ratiometric", true)];
 pub(super) const MICROSECOND: f64 = 1e-6;
 
 pub(super) fn read(root: &Section<'_>, nameplate: Option<&Nameplate>) -> Option<Sensors> {
@@ -169,6 +173,8 @@ fn read_values(section: &Section<'_>, base: &Sensors) -> Option<Sensors> {
     let voltage_delay = triple("voltage_delay_us", &DELAY, [0.0; 3]);
     let current_delay = triple("current_delay_us", &DELAY, [0.0; 3]);
     let roll_off = number("roll_off_us", &ROLL_OFF, 0.0);
+    let voltage_reference = section.choice_or("voltage_reference", &REFERENCES, false);
+    let current_reference = section.choice_or("current_reference", &REFERENCES, false);
     Some(Sensors {
         voltage_full_scale_volt: voltage?,
         current_full_scale_amp: current?,
@@ -185,6 +191,7 @@ fn read_values(section: &Section<'_>, base: &Sensors) -> Option<Sensors> {
         voltage_delay_s: voltage_delay?.map(|us| us * MICROSECOND),
         current_delay_s: current_delay?.map(|us| us * MICROSECOND),
         roll_off_s: roll_off? * MICROSECOND,
+        ratiometric: [voltage_reference?, current_reference?],
     })
 }
 

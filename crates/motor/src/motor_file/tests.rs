@@ -61,6 +61,7 @@ current_gain = [1.0, -1.0, 1.0]
 voltage_delay_us = [88.94, 90.13, 89.0]
 current_delay_us = [-50, 0, 85.73]
 roll_off_us = 78.5
+current_reference = "ratiometric"
 [monitor]
 frame = "voltage"
 field_current = "nominal"
@@ -120,6 +121,8 @@ fn every_optional_key_is_read() {
     assert!((motor.sensors.voltage_delay_s[1] - 90.13e-6).abs() < 1e-18);
     assert!((motor.sensors.current_delay_s[0] + 50e-6).abs() < 1e-18);
     assert!((motor.sensors.roll_off_s - 78.5e-6).abs() < 1e-18);
+    assert_eq!(motor.sensors.ratiometric, [false, true]);
+    assert_eq!(motor.sensors.conversions, 1, "no key of the file");
     assert_eq!(motor.monitor.frame, Frame::Voltage);
     assert_eq!(motor.monitor.field_current, FieldCurrent::Nominal);
     assert_eq!(motor.monitor.nominal_field_current_amp, Some(3.25));

@@ -125,6 +125,12 @@ fn sensors(text: &mut Text, sensors: &Sensors) {
     text.numbers("current_offset_amp", &sensors.current_offset_amp);
     text.numbers("voltage_gain", &sensors.voltage_gain);
     text.numbers("current_gain", &sensors.current_gain);
+    let references = ["voltage_reference", "current_reference"];
+    for (key, ratiometric) in references.into_iter().zip(sensors.ratiometric) {
+        if ratiometric {
+            text.words(key, "ratiometric");
+        }
+    }
     if *sensors != sensors.without_delays() {
         text.numbers(
             "voltage_delay_us",

@@ -54,7 +54,9 @@ pub(crate) struct Writes(pub Vec<(u32, Vec<u8>)>);
 
 impl Writes {
     fn push(&mut self, address: u32, value: u16) {
-        let follows = |(start, bytes): &&mut (u32, Vec<u8>)| start.wrapping_add(bytes.len() as u32) == address;
+        let follows = |(start, bytes): &&mut (u32, Vec<u8>)| {
+            start.wrapping_add(bytes.len() as u32) == address
+        };
         match self.0.iter_mut().rev().take(4).find(follows) {
             Some((_, bytes)) => bytes.extend(value.to_le_bytes()),
             None => self.0.push((address, value.to_le_bytes().to_vec())),
@@ -94,7 +96,12 @@ impl Machine {
             Some(u64::from(left) / each)
         };
         let triggers = [until(LINE_ADC1, sequence), until(LINE_TIM4_UP, 1)];
-        let free = triggers.into_iter().flatten().min().unwrap_or(0).min(u64::from(CONVERSIONS));
+        let free = triggers
+            .into_iter()
+            .flatten()
+            .min()
+            .unwrap_or(0)
+            .min(u64::from(CONVERSIONS));
         // A sequence may be under way, and the flag comes within the last one.
         Some(next + free.saturating_sub(2) * self.tim4.whole_period())
     }
@@ -125,7 +132,10 @@ impl Machine {
             return Ok(());
         };
         let count = self.count;
-        if let Some(sample) = self.taking.take(ended.channel, ended.code, ended.ends_sequence, count) {
+        if let Some(sample) =
+            self.taking
+                .take(ended.channel, ended.code, ended.ends_sequence, count)
+        {
             self.tally.conversions += 1;
             if let Some(taken) = &mut self.taken {
                 taken.push(sample);

@@ -106,7 +106,10 @@ impl Machine {
     /// Acquisition is made up for before anybody touches what belongs to it.
     fn make_up_for(&mut self, address: u32) -> Result<(), Unmodelled> {
         match self.locate(address) {
-            Ok((Block::Tim3 | Block::Tim4 | Block::Adc1 | Block::Dma1 | Block::Dmamux | Block::Rcc, _)) => self.catch_up(),
+            Ok((
+                Block::Tim3 | Block::Tim4 | Block::Adc1 | Block::Dma1 | Block::Dmamux | Block::Rcc,
+                _,
+            )) => self.catch_up(),
             _ => Ok(()),
         }
     }

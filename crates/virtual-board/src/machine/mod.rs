@@ -80,8 +80,9 @@ const VREFINT_CHANNEL: u32 = 18;
 const TEMPERATURE_CHANNEL: u32 = 4;
 pub(crate) const TS_CAL_30: u16 = 1037;
 pub(crate) const TS_CAL_130: u16 = 1379;
-/// Factory value of the reference: its code at 3.0 V.
-pub(crate) const VREFINT_CAL: u16 = 1655;
+/// Factory value of the reference: its code at 3.0 V (1.208 V); at 3.3 V it is a whole code too, so that a nominal supply is measured as
+/// nominal.
+pub(crate) const VREFINT_CAL: u16 = 1650;
 
 #[derive(Clone)]
 pub(crate) struct Machine {
@@ -309,7 +310,7 @@ impl Machine {
 
     fn reference_code(&self) -> u16 {
         // The reference does not move; the scale does: code = cal * 3.0 V / VDDA.
-        (u32::from(VREFINT_CAL) * 3_000 / self.vdda_millivolt) as u16
+        ((u32::from(VREFINT_CAL) * 3_000 + self.vdda_millivolt / 2) / self.vdda_millivolt) as u16
     }
 
     fn temperature_code(&self) -> u16 {

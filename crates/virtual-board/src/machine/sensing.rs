@@ -68,12 +68,19 @@ impl Sensing {
     /// Code of a channel of ADC1, as wired in docs/wiring.md, sampled at `now` with converters supplied by `millivolt`. The
     /// sensors are absolute: their middle alone follows the supply.
     pub fn code(&mut self, channel: u32, now: u64, millivolt: u32) -> u16 {
-        let Some(place) = [1, 6, 8, 2, 7, 9].iter().position(|wired| *wired == channel) else {
+        let Some(place) = [1, 6, 8, 2, 7, 9]
+            .iter()
+            .position(|wired| *wired == channel)
+        else {
             return 0;
         };
         let share = self.look(now);
         let [before, after] = self.around.map(|raw| {
-            let codes = if place < 3 { raw.voltage_codes } else { raw.current_codes };
+            let codes = if place < 3 {
+                raw.voltage_codes
+            } else {
+                raw.current_codes
+            };
             f64::from(codes[place % 3])
         });
         let t = now.saturating_sub(self.first.unwrap_or(now)) as f64 / TICK_HZ as f64;

@@ -106,7 +106,9 @@ impl Dma {
         let listens = |k: &usize| self.multiplexer.get(4 * *k as u32) & 0x7F == line;
         let channel = &self.channels[(0..CHANNELS).find(listens)?];
         let left = channel.remaining;
-        let half = left.checked_sub(channel.reload / 2).filter(|left| *left > 0);
+        let half = left
+            .checked_sub(channel.reload / 2)
+            .filter(|left| *left > 0);
         (channel.control & ENABLE != 0 && left > 0).then(|| half.unwrap_or(left))
     }
 

@@ -241,14 +241,16 @@ fn codes_are_sums_of_conversions() {
     let full_scale = told.voltage_full_scale_volt;
     for (single, summed) in run(&one).iter().zip(&run(&sixteen)).skip(1) {
         for k in 0..3 {
-            let volt = |code: u16, number: f64| {
-                (f64::from(code) / number / 2048.0 - 1.0) * full_scale
-            };
+            let volt =
+                |code: u16, number: f64| (f64::from(code) / number / 2048.0 - 1.0) * full_scale;
             let shown = volt(summed.measured.voltage_codes[k], 16.0);
             assert!((shown - summed.measured.u_s_abc[k]).abs() < 1e-9);
             // The mean is 46.9 us older: 1.8 % of the amplitude; noise and steps beside it.
             let single = volt(single.measured.voltage_codes[k], 1.0);
-            assert!((shown - single).abs() < 0.05 * full_scale, "{shown} {single}");
+            assert!(
+                (shown - single).abs() < 0.05 * full_scale,
+                "{shown} {single}"
+            );
         }
     }
 }
