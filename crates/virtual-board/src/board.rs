@@ -167,6 +167,7 @@ impl VirtualBoard {
 
     /// The crystal oscillates from now on, or is dead.
     pub fn set_crystal(&mut self, oscillates: bool) {
+        self.catch_up();
         let machine = self.cpu.machine();
         machine.rcc.set_crystal(oscillates, machine.now);
         machine.change_clocks();

@@ -107,7 +107,15 @@ impl Machine {
     fn make_up_for(&mut self, address: u32) -> Result<(), Unmodelled> {
         match self.locate(address) {
             Ok((
-                Block::Tim3 | Block::Tim4 | Block::Adc1 | Block::Dma1 | Block::Dmamux | Block::Rcc,
+                Block::Pwr
+                | Block::Flash
+                | Block::AdcCommon(_)
+                | Block::Tim3
+                | Block::Tim4
+                | Block::Adc1
+                | Block::Dma1
+                | Block::Dmamux
+                | Block::Rcc,
                 _,
             )) => self.catch_up(),
             _ => Ok(()),
