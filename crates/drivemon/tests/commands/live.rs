@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use crate::common::{drivemon, stderr};
 use board::{CAPTURE_EVERY, Capture, Frame, MAX_FRAME_BYTES, MotorImage, Shown};
-use monitor::{Monitor, MonitorConfig, MonitorState, RawSample};
+use monitor::{BOARD_CONVERSIONS, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
 use motor::motor_file::Frame as MotorFrame;
 use scenario::simulate::Simulation;
-use scenario::{Fault, Scenario};
+use scenario::{Fault, Scenario, SignalChain};
 use serialport::{SerialPort, TTYPort};
 
 fn motor_path() -> String {
@@ -37,6 +37,11 @@ fn sent(seconds: f64) -> Vec<u8> {
     let image = MotorImage::new(&config);
     let monitor = Monitor::new(config).expect("a valid configuration");
     let mut scenario = Scenario::of(motor, seconds);
+    // The board's samples are sums of so many conversions.
+    scenario.sensors.chain = Some(SignalChain {
+        conversions: u32::from(BOARD_CONVERSIONS),
+        ..SignalChain::default()
+    });
     let fault = Fault::percent("Rs", 50.0, MotorFrame::RotorFlux).expect("a known fault");
     scenario.faults = vec![Fault {
         from_s: 0.5,

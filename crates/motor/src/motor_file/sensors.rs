@@ -19,8 +19,7 @@ pub struct Sensors {
     pub torque_full_scale_nm: f64,
     /// Resolution of the ADC, bit, 6..=16: the core takes 16-bit codes.
     pub adc_bits: u32,
-    /// Codes of each channel that are added up to one code of a sample, 1..=16. No key of a motor file: one in simulations and
-    /// recordings, unless they say otherwise, and as many as the board adds on the board.
+    /// Codes of each channel that are added up to one code of a sample, 1..=16. No key of a motor file: 1 unless somebody adds.
     pub conversions: u32,
     /// Encoder pulses per revolution of one channel, 1..=1000000 (four edges each in quadrature).
     pub encoder_pulses_per_revolution: u32,

@@ -106,41 +106,32 @@ fn parameters(text: &mut Text, motor: &MotorFile) {
     text.number("load_friction_nm_s", motor.mechanics.load_friction);
 }
 
-fn sensors(text: &mut Text, sensors: &Sensors) {
+fn sensors(text: &mut Text, own: &Sensors) {
     text.header("[sensors]");
-    text.number("voltage_full_scale_volt", sensors.voltage_full_scale_volt);
-    text.number("current_full_scale_amp", sensors.current_full_scale_amp);
-    text.number("speed_full_scale_rad_s", sensors.speed_full_scale_rad_s);
-    text.number("torque_full_scale_nm", sensors.torque_full_scale_nm);
-    text.integer("adc_bits", sensors.adc_bits);
-    text.integer(
-        "encoder_pulses_per_revolution",
-        sensors.encoder_pulses_per_revolution,
-    );
-    text.number(
-        "noise_sigma_fraction_of_full_scale",
-        sensors.noise_sigma_fraction_of_full_scale,
-    );
-    text.numbers("voltage_offset_volt", &sensors.voltage_offset_volt);
-    text.numbers("current_offset_amp", &sensors.current_offset_amp);
-    text.numbers("voltage_gain", &sensors.voltage_gain);
-    text.numbers("current_gain", &sensors.current_gain);
+    text.number("voltage_full_scale_volt", own.voltage_full_scale_volt);
+    text.number("current_full_scale_amp", own.current_full_scale_amp);
+    text.number("speed_full_scale_rad_s", own.speed_full_scale_rad_s);
+    text.number("torque_full_scale_nm", own.torque_full_scale_nm);
+    text.integer("adc_bits", own.adc_bits);
+    let pulses = own.encoder_pulses_per_revolution;
+    text.integer("encoder_pulses_per_revolution", pulses);
+    let noise = own.noise_sigma_fraction_of_full_scale;
+    text.number("noise_sigma_fraction_of_full_scale", noise);
+    text.numbers("voltage_offset_volt", &own.voltage_offset_volt);
+    text.numbers("current_offset_amp", &own.current_offset_amp);
+    text.numbers("voltage_gain", &own.voltage_gain);
+    text.numbers("current_gain", &own.current_gain);
     let references = ["voltage_reference", "current_reference"];
-    for (key, ratiometric) in references.into_iter().zip(sensors.ratiometric) {
+    for (key, ratiometric) in references.into_iter().zip(own.ratiometric) {
         if ratiometric {
             text.words(key, "ratiometric");
         }
     }
-    if *sensors != sensors.without_delays() {
-        text.numbers(
-            "voltage_delay_us",
-            &sensors.voltage_delay_s.map(microseconds),
-        );
-        text.numbers(
-            "current_delay_us",
-            &sensors.current_delay_s.map(microseconds),
-        );
-        text.number("roll_off_us", microseconds(sensors.roll_off_s));
+    if *own != own.without_delays() {
+        let us = |seconds: [f64; 3]| seconds.map(microseconds);
+        text.numbers("voltage_delay_us", &us(own.voltage_delay_s));
+        text.numbers("current_delay_us", &us(own.current_delay_s));
+        text.number("roll_off_us", microseconds(own.roll_off_s));
     }
 }
 
