@@ -199,23 +199,24 @@ fn rippled(ripple: impl FnMut(usize, f64) -> f64 + 'static) -> VirtualBoard {
     VirtualBoard::new(&firmware(), Box::new(inputs)).expect("a firmware that loads")
 }
 
-/// Sidebands of a carrier of 5 kHz behind the front end in phase voltage `channel`, in codes.
-fn sidebands(channel: usize, t: f64) -> f64 {
-    if channel >= 3 {
-        return 0.0;
-    }
+/// Sidebands of a carrier of 5 kHz behind the front end in the phase voltages, in codes, by channel and time.
+fn sidebands() -> impl Fn(usize, f64) -> f64 {
     let motor = motor();
     let fundamental = motor.nameplate.phase_voltage_amplitude() / motor.sensors.volt_per_code();
-    let third = TAU / 3.0 * channel as f64;
     let pins = inverter(5e3);
-    let sum: f64 = [(3, 1.0), (4, -1.0)]
-        .map(|(k, n)| {
-            let (a, hertz) = pins.0[k];
-            a / 900.0 * (TAU * hertz * t - n * third).cos()
-        })
-        .iter()
-        .sum();
-    fundamental * sum
+    let pair = [(3, 1.0), (4, -1.0)].map(|(k, n)| {
+        let (share, hertz) = pins.0[k];
+        (fundamental * share / 900.0, TAU * hertz, n * TAU / 3.0)
+    });
+    move |channel, t| {
+        let one =
+            |(a, omega, third): &(f64, f64, f64)| a * (omega * t - third * channel as f64).cos();
+        if channel < 3 {
+            pair.iter().map(one).sum()
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Reports of the host's core on single conversions, one each 100 us, as the board took them before it took means.
@@ -224,6 +225,7 @@ fn single_conversions(seconds: f64) -> Vec<Report> {
     let monitor = Monitor::new(config).expect("valid");
     let mut state = MonitorState::default();
     let mut sensors = Sensors::new(&scenario(60.0));
+    let sidebands = sidebands();
     let instants = 0..(seconds * 1e4) as u64;
     instants
         .filter_map(|k| {
@@ -241,7 +243,7 @@ fn a_healthy_motor_on_an_inverter_lights_nothing() {
     let single = single_conversions(1.0);
     let last = single.last().expect("reports").lamps;
     assert_eq!(last.fault, Lamp::On, "single conversions: {last:?}");
-    let mut board = rippled(sidebands);
+    let mut board = rippled(sidebands());
     board.run(LAMP_TEST_S + 0.8).expect("a run");
     for _ in 0..20 {
         board.run(0.02).expect("a run");
