@@ -242,9 +242,7 @@ impl Adc {
         match offset {
             ISR => self.status &= !value,
             CR => return Ok(self.command(value, now)),
-            CFGR | TR1 | SMPR1 | SMPR2 | SQR1 | 0x34 | 0x38 | 0x3C
-                if self.is_locked(offset, value) =>
-            {
+            CFGR | TR1 | SQR1 | 0x34 | 0x38 | 0x3C if self.is_locked(offset, value) => {
                 return Err(Unmodelled {
                     block: "ADC",
                     access: format!("write of {value:#x} while conversions run"),

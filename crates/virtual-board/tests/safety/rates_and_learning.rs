@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// The trigger's last count: 7999 at 80 MHz.
+/// The trigger's last count: 499 at 80 MHz.
 const TRIGGER_RELOAD: u32 = 0x4000_082C;
 const WATCHDOG_KEY: u32 = 0x4000_3000;
 const FEED: u32 = 0xAAAA;
@@ -11,7 +11,7 @@ const FEED: u32 = 0xAAAA;
 fn blocks_that_come_at_a_wrong_rate_are_found() {
     let mut board = running();
     // 5 % too slow: between two looks nothing else is late.
-    board.poke(TRIGGER_RELOAD, 8_399).expect("a register");
+    board.poke(TRIGGER_RELOAD, 524).expect("a register");
     board.run(2.6).expect("a run");
     assert!(doubts(&mut board).has(Doubt::Blocks));
     assert!(board.lamps()[SENSOR] && board.lamps()[FAULT] && !board.relay());
