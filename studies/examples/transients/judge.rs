@@ -96,6 +96,7 @@ fn shown(monitor: &Monitor, sample: &SimSample, torque_gain: f64, backwards: boo
         } else {
             m.encoder_count
         },
+        ..RawSample::default()
     };
     let tau = (m.tau_load * torque_gain) as f32;
     Sample {
