@@ -1,4 +1,5 @@
-//! A motor with iron losses: a fault to the plain motor file, nothing to the one that adopted them.
+//! Motors with iron losses, and with contacts that follow no effect of the library but a law: a fault to the plain motor
+//! file, nothing to the one that adopted them.
 
 mod common;
 
@@ -8,9 +9,12 @@ use scenario::{Fault, Scenario};
 
 const END_S: f64 = 2.0;
 
-/// The motor with its losses, whatever the program knows of them.
-fn lossy(faults: &[(&str, f64)]) -> Scenario {
-    let mut scenario = Scenario::of(variant("core-loss").motor, END_S);
+/// Programs whose motor file adopted what their motor does: an effect of the library, a curve of 18 knots.
+const ADOPTED: [&str; 2] = ["core-loss", "contact"];
+
+/// The motor of a program, whatever another program knows of it.
+fn motor_of(program: &Program, faults: &[(&str, f64)]) -> Scenario {
+    let mut scenario = Scenario::of(program.motor.clone(), END_S);
     scenario.seed = 11;
     let fault = |(name, percent): &(&str, f64)| {
         let fault = Fault::percent(name, *percent, Frame::RotorFlux).expect("a known fault");
@@ -37,27 +41,34 @@ fn check(program: &Program, scenario: &Scenario, what: &str) -> Seen {
 }
 
 #[test]
-fn losses_that_the_motor_file_does_not_know_light_a_lamp() {
-    let seen = check(&plain(), &lossy(&[]), "losses, plain motor file");
-    assert!(!seen.lit().is_empty());
+fn what_the_motor_file_does_not_know_lights_a_lamp() {
+    for name in ADOPTED {
+        let scenario = motor_of(&variant(name), &[]);
+        let seen = check(&plain(), &scenario, &format!("{name}, plain motor file"));
+        assert!(!seen.lit().is_empty(), "{name}");
+    }
 }
 
 #[test]
-fn adopted_losses_light_nothing() {
-    let seen = check(&variant("core-loss"), &lossy(&[]), "losses, adopted");
-    let (levels, _) = seen.observed.last().expect("observations");
-    assert_eq!(
-        levels,
-        &[true, false, false, false, false, false, false, false, false]
-    );
+fn what_was_adopted_lights_nothing() {
+    for name in ADOPTED {
+        let program = variant(name);
+        let seen = check(&program, &motor_of(&program, &[]), name);
+        let (levels, _) = seen.observed.last().expect("observations");
+        assert_eq!(
+            levels,
+            &[true, false, false, false, false, false, false, false, false],
+            "{name}"
+        );
+    }
 }
 
 #[test]
-fn a_fault_beside_adopted_losses_still_lights_a_lamp() {
-    let seen = check(
-        &variant("core-loss"),
-        &lossy(&[("Rs", 50.0)]),
-        "losses adopted, Rs +50 %",
-    );
-    assert!(seen.lit().contains(&"fault"), "{:?}", seen.lit());
+fn a_fault_beside_what_was_adopted_still_lights_a_lamp() {
+    for name in ADOPTED {
+        let program = variant(name);
+        let scenario = motor_of(&program, &[("Rs", 50.0)]);
+        let seen = check(&program, &scenario, &format!("{name} adopted, Rs +50 %"));
+        assert!(seen.lit().contains(&"fault"), "{name}: {:?}", seen.lit());
+    }
 }
