@@ -290,7 +290,7 @@ fn what_no_test_shows_is_refused_with_line_column_and_remedy() {
         ("voltage_volt\n400", "has no column test"),
         (
             "test,voltage_volt,voltage_volt\nno-load,400,400",
-            "stands twice",
+            "appears twice",
         ),
         (
             "test,power_kw,power_watt\nno-load,1,1000",

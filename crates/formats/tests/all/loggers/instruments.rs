@@ -31,7 +31,7 @@ pub(super) fn devices() -> Vec<Device> {
             write: hioki,
             channels: &[(Signal::Voltages, 5e-4), (Signal::Currents, 5e-5)],
             clock_s: 5e-6,
-            said: &["stand above the table", "column U1(V) is va, by its name"],
+            said: &["are above the table", "column U1(V) is va, by its name"],
         },
         Device {
             name: "Yokogawa DL850",

@@ -15,7 +15,7 @@ pub(super) fn devices() -> Vec<Device> {
             write: tektronix,
             channels: &[(Signal::Voltages, 5e-4), (Signal::Currents, 5e-6)],
             clock_s: 5e-9,
-            said: &["names the columns", "stand above the table", "CH1 is va"],
+            said: &["names the columns", "are above the table", "CH1 is va"],
         },
         Device {
             name: "Keysight InfiniiVision",
