@@ -83,21 +83,23 @@ impl<F: Float> SteadyCurve<F> {
 
     /// Value at `x`; beyond the ends it stays.
     fn at(&self, x: F) -> F {
-        let (Some(begin), Some(end)) = (self.x.first(), self.x.iter().take(self.knots).last())
-        else {
+        let knots = self.x.get(..self.knots).unwrap_or_default();
+        let [begin, .., end] = *knots else {
             return self.mean;
         };
-        let x = x.max(*begin).min(*end);
-        let mut before = (*begin, self.y[0], self.second[0]);
-        let knots = self.x.iter().zip(&self.y).zip(&self.second);
-        for ((&knot, &y), &second) in knots.take(self.knots).skip(1) {
-            if x <= knot {
-                let (x0, y0, m0) = before;
-                return piece([x0, knot], [y0, y], [m0, second], x);
+        let x = x.max(begin).min(end);
+        let after = knots.partition_point(|&knot| knot < x).max(1);
+        let here = after - 1..=after;
+        match (
+            self.x.get(here.clone()),
+            self.y.get(here.clone()),
+            self.second.get(here),
+        ) {
+            (Some(&[x0, x1]), Some(&[y0, y1]), Some(&[m0, m1])) => {
+                piece([x0, x1], [y0, y1], [m0, m1], x)
             }
-            before = (knot, y, second);
+            _ => self.y[0],
         }
-        before.1
     }
 
     /// Value of the curve at an operating point; `None` where steady state does not tell the coordinate.
