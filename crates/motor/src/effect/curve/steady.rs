@@ -89,17 +89,9 @@ impl<F: Float> SteadyCurve<F> {
         };
         let x = x.max(begin).min(end);
         let after = knots.partition_point(|&knot| knot < x).max(1);
-        let here = after - 1..=after;
-        match (
-            self.x.get(here.clone()),
-            self.y.get(here.clone()),
-            self.second.get(here),
-        ) {
-            (Some(&[x0, x1]), Some(&[y0, y1]), Some(&[m0, m1])) => {
-                piece([x0, x1], [y0, y1], [m0, m1], x)
-            }
-            _ => self.y[0],
-        }
+        let ends =
+            |of: &[F; BOARD_KNOTS]| [after - 1, after].map(|k| *of.get(k).unwrap_or(&self.mean));
+        piece(ends(&self.x), ends(&self.y), ends(&self.second), x)
     }
 
     /// Value of the curve at an operating point; `None` where steady state does not tell the coordinate.
