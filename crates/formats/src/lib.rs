@@ -15,6 +15,7 @@
 
 mod contained;
 mod read;
+mod rows;
 mod seal;
 mod write;
 
@@ -22,6 +23,7 @@ pub use read::{
     MemoryTable, Preview, Progress, preview, read_any, read_load_table, read_recording,
     read_stream, read_table, with_most_numbers, workbook_text,
 };
+pub use rows::{read_rows, write_rows};
 pub use write::{
     reading_text, sidecar_text, write_csv, write_parquet, write_recording, write_whole,
 };

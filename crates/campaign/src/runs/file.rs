@@ -3,15 +3,10 @@
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use parquet::basic::Compression;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
-use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
-use parquet::file::writer::SerializedFileWriter;
-use parquet::record::{RecordReader, RecordWriter};
 use serde::{Deserialize, Serialize};
 
 use crate::planned::plan::{Plan, Target};
@@ -59,8 +54,6 @@ pub enum StoreError {
 
 /// The key under which [`About`] stands in a file.
 const KEY: &str = "drivemon.campaign";
-/// Rows in one group: any file of a usual campaign has one.
-const GROUP: usize = 1 << 16;
 
 impl About {
     /// What the files of a plan say.
@@ -92,19 +85,8 @@ impl Results {
     fn write_rows(&self, file: &mut (impl Write + Send)) -> Result<(), ParquetError> {
         let about = serde_json::to_string(&self.about)
             .map_err(|error| ParquetError::External(Box::new(error)))?;
-        let properties = WriterProperties::builder()
-            .set_compression(Compression::SNAPPY)
-            .set_key_value_metadata(Some(vec![KeyValue::new(KEY.to_owned(), about)]))
-            .build();
-        let schema = self.rows.as_slice().schema()?;
-        let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
-        for rows in self.rows.chunks(GROUP) {
-            let mut group = writer.next_row_group()?;
-            rows.write_to_row_group(&mut group)?;
-            group.close()?;
-        }
-        writer.close()?;
-        Ok(())
+        let about = vec![KeyValue::new(KEY.to_owned(), about)];
+        formats::write_rows(file, &self.rows, about)
     }
 
     /// Reads a file of rows.
@@ -116,7 +98,7 @@ impl Results {
         let content = |error: String| StoreError::Content(named(path), error);
         let reader = SerializedFileReader::new(file).map_err(|error| content(error.to_string()))?;
         let about = about(&reader).map_err(content)?;
-        let rows = rows(&reader).map_err(|error| content(error.to_string()))?;
+        let rows = formats::read_rows(&reader).map_err(|error| content(error.to_string()))?;
         Ok(Results { about, rows })
     }
 
@@ -181,18 +163,6 @@ fn about(reader: &SerializedFileReader<File>) -> Result<About, String> {
         .find_map(|pair| pair.value.as_deref())
         .ok_or_else(|| format!("it has no {KEY}"))?;
     serde_json::from_str(text).map_err(|error| error.to_string())
-}
-
-fn rows(reader: &SerializedFileReader<File>) -> Result<Vec<Row>, ParquetError> {
-    let mut all = Vec::new();
-    for k in 0..reader.num_row_groups() {
-        let mut group = reader.get_row_group(k)?;
-        let count = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let mut rows: Vec<Row> = Vec::with_capacity(count);
-        rows.read_from_row_group(&mut *group, count)?;
-        all.extend(rows);
-    }
-    Ok(all)
 }
 
 fn named(path: &Path) -> String {

@@ -28,6 +28,22 @@ fn the_page_of_a_monitored_fault_is_self_contained_and_true_to_its_json() {
 }
 
 #[test]
+fn the_page_of_a_fault_in_motion_says_so_though_nothing_lit_at_rest() {
+    let recording = page::scratch("press-page.csv.gz");
+    let scenario = page::project("sim-host/scenarios/press.toml");
+    let made = page::drivemon(&["simulate", &scenario, "-o", &recording]);
+    assert!(made.status.success(), "{made:?}");
+    let motor = page::project("motors/peer-2k2-calibrated.toml");
+    let page = Page::of("motion", &["monitor", &recording, "--motor", &motor]);
+    page.check();
+    assert_eq!(page.text("/verdict/state"), "healthy");
+    assert_eq!(page.text("/state"), "fault");
+    assert!(page.html.contains("Fault in motion at"));
+    assert!(!page.html.contains("Healthy: no fault was lit"));
+    browser::check(&page);
+}
+
+#[test]
 fn a_recording_without_voltages_gives_a_page_too() {
     let recording = page::project("tests/data/itsc_075hp/sc_a3_b0_c0_001.csv.gz");
     let page = Page::of("currents", &["monitor", &recording]);

@@ -5,7 +5,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
-use super::plant::Plant;
+use super::plant::{Plant, press_torque};
 use super::rows::INSTRUMENT;
 use super::{MotionCycle, MotionState, believed, cycles};
 use crate::decision::{Decision, Limits};
@@ -152,16 +152,9 @@ fn noise_alone_raises_no_alarm() {
     }
 }
 
-/// A press: 12 N m in half of every eighth cycle, never steady for five cycles.
 fn press() -> Plant {
     Plant {
-        load: |t| {
-            if t > 0.4 && (t * 6.25).fract() < 0.5 {
-                12.0
-            } else {
-                0.0
-            }
-        },
+        load: press_torque,
         ..INSTRUMENT
     }
 }

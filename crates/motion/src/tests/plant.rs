@@ -94,6 +94,14 @@ impl State {
     }
 }
 
+/// The load of a press: 12 N m in half of every eighth cycle, never steady for five cycles.
+pub fn press_torque(t: f64) -> f64 {
+    match t > 0.4 && (t * 6.25).fract() < 0.5 {
+        true => 12.0,
+        false => 0.0,
+    }
+}
+
 impl Plant {
     pub fn voltage(&self, t: f64) -> Complex64 {
         let angle = TAU * self.hertz * t + 0.7;

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::plant::{MOTOR, Plant, State, T_SAMPLE};
+use super::plant::{MOTOR, Plant, State, T_SAMPLE, press_torque};
 use super::{believed, cycles, root_mean_square, scatter_of_e};
 use crate::MotionSample;
 
@@ -37,13 +37,7 @@ fn motions() -> [(&'static str, Plant); 5] {
         (
             "press",
             Plant {
-                load: |t| {
-                    if t > 0.4 && (t * 6.25).fract() < 0.5 {
-                        12.0
-                    } else {
-                        0.0
-                    }
-                },
+                load: press_torque,
                 ..plant
             },
         ),

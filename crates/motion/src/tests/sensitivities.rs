@@ -31,14 +31,21 @@ fn rows(motion: &Motion, samples: &[(MotionSample, State)]) -> Vec<Cycle> {
     all
 }
 
-fn check(
-    name: &str,
-    plant: Plant,
-    k: usize,
-    size: f64,
-    among: std::ops::Range<usize>,
-    tolerance: f32,
-) {
+/// A motor that really is so: name, motor, place of its sensitivity, relative size.
+type Departure = (&'static str, Plant, usize, f64);
+
+fn rotor_resistance() -> Departure {
+    let r_r = 1.02 * MOTOR.r_r;
+    ("Rr", Plant { r_r, ..MOTOR }, place::R_R, 0.02)
+}
+
+fn magnetizing_inductance() -> Departure {
+    let l_m = 1.01 * MOTOR.l_m;
+    ("Lm", Plant { l_m, ..MOTOR }, place::L_M, 0.01)
+}
+
+/// Whether the rows `among` move as the sensitivities say, within a share `tolerance` of the move.
+fn check((name, plant, k, size): Departure, among: std::ops::Range<usize>, tolerance: f32) {
     let motion = believed(&MOTOR);
     let departed = rows(&motion, &plant.run(1.0, 1));
     let (mut error, mut length) = (0.0, 0.0);
@@ -63,109 +70,56 @@ fn check(
 #[test]
 fn what_departs_moves_the_rows_as_the_sensitivities_say() {
     let p = MOTOR;
+    let voltages = 0..4;
+    let r_s = 1.1 * p.r_s;
     check(
-        "Rs",
-        Plant {
-            r_s: 1.1 * p.r_s,
-            ..p
-        },
-        place::R_S,
-        0.1,
-        0..4,
+        ("Rs", Plant { r_s, ..p }, place::R_S, 0.1),
+        voltages.clone(),
         0.05,
     );
+    check(rotor_resistance(), voltages.clone(), 0.08);
+    check(magnetizing_inductance(), voltages.clone(), 0.08);
+    let [l_ls, l_lr] = [p.l_ls, p.l_lr].map(|l| 1.04 * l);
+    let leakage = Plant { l_ls, l_lr, ..p };
     check(
-        "Rr",
-        Plant {
-            r_r: 1.02 * p.r_r,
-            ..p
-        },
-        place::R_R,
-        0.02,
-        0..4,
+        ("leakage", leakage, place::LEAKAGE, 0.04),
+        voltages.clone(),
         0.08,
     );
+    let speed_gain = 1.001;
     check(
-        "Lm",
-        Plant {
-            l_m: 1.01 * p.l_m,
-            ..p
-        },
-        place::L_M,
-        0.01,
-        0..4,
-        0.08,
-    );
-    let leakage = Plant {
-        l_ls: 1.04 * p.l_ls,
-        l_lr: 1.04 * p.l_lr,
-        ..p
-    };
-    check("leakage", leakage, place::LEAKAGE, 0.04, 0..4, 0.08);
-    check(
-        "speed",
-        Plant {
-            speed_gain: 1.001,
-            ..p
-        },
-        place::SPEED,
-        0.001,
-        0..4,
+        ("speed", Plant { speed_gain, ..p }, place::SPEED, 0.001),
+        voltages.clone(),
         0.1,
     );
     for channel in 0..6 {
         let mut gains = [1.0; 6];
         gains[channel] = 1.02;
         let k = place::VOLTAGE + channel;
-        check("gain", Plant { gains, ..p }, k, 0.02, 0..4, 0.08);
+        check(
+            ("gain", Plant { gains, ..p }, k, 0.02),
+            voltages.clone(),
+            0.08,
+        );
     }
 }
 
 #[test]
 fn what_departs_moves_the_torque_row_as_the_sensitivities_say() {
     let p = MOTOR;
+    let torque = 4..5;
+    let inertia = 1.02 * p.inertia;
     check(
-        "J",
-        Plant {
-            inertia: 1.02 * p.inertia,
-            ..p
-        },
-        place::INERTIA,
-        0.02,
-        4..5,
+        ("J", Plant { inertia, ..p }, place::INERTIA, 0.02),
+        torque.clone(),
         0.1,
     );
+    let friction = 1.05 * p.friction;
     check(
-        "B",
-        Plant {
-            friction: 1.05 * p.friction,
-            ..p
-        },
-        place::FRICTION,
-        0.05,
-        4..5,
+        ("B", Plant { friction, ..p }, place::FRICTION, 0.05),
+        torque.clone(),
         0.1,
     );
-    check(
-        "Rr",
-        Plant {
-            r_r: 1.02 * p.r_r,
-            ..p
-        },
-        place::R_R,
-        0.02,
-        4..5,
-        0.25,
-    );
-    check(
-        "Lm",
-        Plant {
-            l_m: 1.01 * p.l_m,
-            ..p
-        },
-        place::L_M,
-        0.01,
-        4..5,
-        0.25,
-    );
+    check(rotor_resistance(), torque.clone(), 0.25);
+    check(magnetizing_inductance(), torque, 0.25);
 }

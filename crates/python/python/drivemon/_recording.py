@@ -7,6 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _drivemon
+from ._arrow import Columns
 from ._columns import arrays, speaks_arrow
 from ._motor import Motor
 from ._progress import Progress, told
@@ -16,14 +17,12 @@ if TYPE_CHECKING:
     import numpy
     import numpy.typing
     import pandas
-    import polars
-    import pyarrow
     from typing_extensions import Unpack
 
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-class Recording:
+class Recording(Columns[_drivemon.Recording]):
     """Samples over time in SI units, or the operating points of a load test.
 
     Channels: `t` (s), `va vb vc` (phase to neutral, V), `ia ib ic` (A), `speed` (rad/s), `torque` (N m), `temperature` (degC); a
@@ -96,27 +95,9 @@ class Recording:
         """What had to be assumed to read it, one sentence each."""
         return self._native.assumptions
 
-    def __len__(self) -> int:
-        return len(self._native)
-
     def __getitem__(self, column: str) -> numpy.typing.NDArray[numpy.float64]:
         """A column in SI as a read-only numpy array over the recording's own numbers; needs numpy."""
         return self._native.array(column)
-
-    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        return self._native.__arrow_c_stream__(requested_schema)
-
-    def to_pyarrow(self) -> pyarrow.Table:
-        """The columns for pyarrow, which must be installed; nothing is copied."""
-        import pyarrow
-
-        return pyarrow.table(self)
-
-    def to_polars(self) -> polars.DataFrame:
-        """The columns for polars, which must be installed."""
-        import polars
-
-        return polars.DataFrame(self)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The columns for pandas, which must be installed."""
@@ -135,6 +116,3 @@ class Recording:
         """
         found: dict[str, Any] = json.loads(self._native.audit(None if motor is None else motor._native))
         return found
-
-    def __repr__(self) -> str:
-        return repr(self._native)

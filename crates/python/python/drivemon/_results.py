@@ -81,18 +81,23 @@ class Monitored(Page):
 
     @property
     def state(self) -> str:
-        """`healthy`, `fault` or `not-judged`."""
-        return str(self.data["verdict"]["state"])
+        """`healthy`, `fault` or `not-judged`: at rest and in motion together."""
+        return str(self.data["state"])
 
     @property
     def candidates(self) -> list[dict[str, Any]]:
-        """Possible causes of a fault, likeliest first: `fault`, `phase`, `probability`."""
+        """Possible causes of a fault that was seen at rest, likeliest first: `fault`, `phase`, `probability`."""
         return list(self.data["verdict"]["candidates"])
 
     @property
     def first_alarm_s(self) -> Optional[float]:
-        """When FAULT first lit, s."""
+        """When FAULT first lit at rest, s."""
         return self.data["first_alarm_s"]  # type: ignore[no-any-return]
+
+    @property
+    def motion_alarms(self) -> list[dict[str, Any]]:
+        """FAULT in motion: `onset_s`, `raised_s` (s), `statistic`, `cause`."""
+        return list(self.data["motion"]["alarms"])
 
     @property
     def judged(self) -> int:

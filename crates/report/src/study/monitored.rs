@@ -6,7 +6,7 @@ use motor::{FileError, MotorFile};
 use recording::Recording;
 use replay::{
     Direction, LampState, MotionSummary, NotJudgedShare, RotorSummary, Samples, SequenceSummary,
-    Timeline, Verdict, WindowOperation, WindowResiduals,
+    Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
 };
 use serde::{Serialize, Serializer};
 
@@ -21,7 +21,7 @@ pub struct Monitored {
     pub audit: Audit,
     /// Every window; empty where the audit refused.
     pub timeline: Timeline,
-    /// The verdict.
+    /// The verdict on the windows at rest.
     pub verdict: Verdict,
     /// Thresholds of the motor file, percent of each residual's scale.
     pub threshold_percent: Option<[f64; 4]>,
@@ -42,6 +42,7 @@ struct MonitorJson<'a> {
     recording: &'a str,
     assumptions: &'a [String],
     audit: &'a Audit,
+    state: VerdictState,
     windows: u64,
     judged: u64,
     not_judged: &'a [NotJudgedShare],
@@ -100,6 +101,18 @@ impl Monitored {
     }
 }
 
+impl Monitored {
+    /// What the recording comes to: FAULT at rest or in motion; healthy where either was judged and neither lit.
+    pub fn state(&self) -> VerdictState {
+        let motion = &self.timeline.motion;
+        match self.verdict.state {
+            _ if motion.is_fault() => VerdictState::Fault,
+            VerdictState::NotJudged if motion.judged > 0 => VerdictState::Healthy,
+            state => state,
+        }
+    }
+}
+
 fn replayed(
     monitor: &Monitor,
     recording: &Recording,
@@ -126,6 +139,7 @@ impl Serialize for Monitored {
             recording: &self.recording,
             assumptions: &self.assumptions,
             audit: &self.audit,
+            state: self.state(),
             windows: timeline.windows,
             judged: timeline.judged,
             not_judged: &timeline.not_judged,

@@ -103,13 +103,10 @@ impl MonitorArgs {
         });
         bar.finish_and_clear();
         let result = monitored.map_err(|error| self.failure(error))?;
-        let motion = &result.timeline.motion;
-        let finding = match (result.audit.supported, result.verdict.state) {
-            (false, _) => Finding::Unsupported,
-            (true, _) if motion.is_fault() => Finding::Something,
+        let finding = match (result.audit.supported, result.state()) {
             (true, VerdictState::Fault) => Finding::Something,
-            (true, VerdictState::NotJudged) if motion.judged == 0 => Finding::Unsupported,
-            (true, VerdictState::Healthy | VerdictState::NotJudged) => Finding::Nothing,
+            (true, VerdictState::Healthy) => Finding::Nothing,
+            (false, _) | (true, VerdictState::NotJudged) => Finding::Unsupported,
         };
         answers.give(Subject::Monitor, &result, || print(recording, &result))?;
         Ok(finding)

@@ -6,7 +6,7 @@ use crate::page::elements::chart::{Chart, Kind, Series};
 use crate::page::elements::number::{decimals, shown, significant};
 use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, verdict};
-use crate::page::sections::audit;
+use crate::page::sections::{audit, motion};
 use motor::FaultId;
 use replay::VerdictState;
 
@@ -16,6 +16,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (answer(result))
         (cards(&summary(result)))
         (candidates(result))
+        (motion::section(result))
         (lamps(result))
         (residuals(result))
         (audit::section(result))
@@ -26,16 +27,23 @@ pub fn content(result: &Place<'_>) -> Markup {
 }
 
 fn answer(result: &Place<'_>) -> Markup {
-    let state = result.read("verdict/state");
-    let state = state.unwrap_or(VerdictState::NotJudged);
+    let read = |path: &str| result.read(path).unwrap_or(VerdictState::NotJudged);
+    let (state, at_rest) = (read("state"), read("verdict/state"));
     let (mood, text) = match (result.is_true("audit/supported"), state) {
         (false, _) => (
             Mood::Caution,
             html! { "The audit refused this recording: nothing was judged" },
         ),
+        (true, VerdictState::Fault) if at_rest != VerdictState::Fault => {
+            (Mood::Bad, motion::alarm(result).unwrap_or_default())
+        }
         (true, VerdictState::Fault) => (
             Mood::Bad,
             html! { "Fault, first lit at " (shown(result, "first_alarm_s", decimals(3))) " s" },
+        ),
+        (true, VerdictState::Healthy) if at_rest == VerdictState::NotJudged => (
+            Mood::Good,
+            html! { "No fault was seen in motion; nothing could be judged at rest" },
         ),
         (true, VerdictState::Healthy) => (Mood::Good, html! { "Healthy: no fault was lit" }),
         (true, VerdictState::NotJudged) => (

@@ -4,6 +4,7 @@ pub mod audit;
 pub mod frame;
 pub mod laws;
 pub mod models;
+pub mod motion;
 pub mod next_run;
 pub mod overlay;
 pub mod parameters;

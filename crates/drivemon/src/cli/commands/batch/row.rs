@@ -38,6 +38,10 @@ pub struct Row {
     pub tied: u32,
     /// When FAULT first lit, s.
     pub first_alarm_s: f64,
+    /// When FAULT was first raised in motion, s.
+    pub motion_alarm_s: f64,
+    /// What that alarm is put down to; empty where it was over before its cause could be told, and without one.
+    pub motion_cause: String,
     /// Windows.
     pub windows: u32,
     /// Windows judged.
@@ -103,6 +107,7 @@ impl Row {
         Row {
             probability: f64::NAN,
             first_alarm_s: f64::NAN,
+            motion_alarm_s: f64::NAN,
             duration_s: f64::NAN,
             sample_rate_hz: f64::NAN,
             i2_over_i1_percent: f64::NAN,
@@ -142,7 +147,7 @@ impl Row {
 
     fn take(&mut self, monitored: &Monitored) {
         let (timeline, verdict) = (&monitored.timeline, &monitored.verdict);
-        self.state = match verdict.state {
+        self.state = match monitored.state() {
             VerdictState::Healthy => HEALTHY,
             VerdictState::Fault => FAULT,
             VerdictState::NotJudged => NOT_JUDGED,
@@ -155,6 +160,10 @@ impl Row {
             self.tied = verdict.tied as u32;
         }
         self.first_alarm_s = timeline.first_alarm_s.unwrap_or(f64::NAN);
+        if let Some(alarm) = timeline.motion.alarms.first() {
+            self.motion_alarm_s = alarm.raised_s;
+            self.motion_cause = alarm.cause.clone().unwrap_or_default();
+        }
         self.windows = timeline.windows as u32;
         self.judged_windows = timeline.judged as u32;
         let most = timeline.not_judged.first();

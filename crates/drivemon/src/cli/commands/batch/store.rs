@@ -3,23 +3,14 @@
 use std::collections::HashMap;
 use std::fs::File;
 use std::hash::Hasher;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use parquet::basic::Compression;
 use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{FileReader, SerializedFileReader};
-use parquet::file::writer::SerializedFileWriter;
-use parquet::record::{RecordReader, RecordWriter};
+use parquet::file::reader::SerializedFileReader;
 use twox_hash::XxHash64;
 
 use super::row::Row;
 use crate::cli::printing::failure::Failure;
-
-/// Rows in one group: any table of a plant has one.
-const GROUP: usize = 1 << 16;
 
 /// Where rows go.
 pub struct Store {
@@ -112,7 +103,7 @@ impl Store {
     /// A path that cannot be written.
     pub fn finish(&self, rows: &[Row]) -> Result<(), Failure> {
         self.write(&self.out, rows)?;
-        // What is left over is no error: the table stands.
+        // What is left over is no error: the table is written.
         let _ = std::fs::remove_dir_all(&self.parts);
         Ok(())
     }
@@ -123,7 +114,7 @@ impl Store {
 
     fn write(&self, path: &Path, rows: &[Row]) -> Result<(), Failure> {
         let written = formats::write_whole(path, |file| {
-            write(file, rows).map_err(std::io::Error::other)
+            formats::write_rows(file, rows, Vec::new()).map_err(std::io::Error::other)
         });
         written.map_err(|error| self.failure(error))
     }
@@ -151,29 +142,6 @@ fn earlier(out: &Path) -> Result<HashMap<String, Row>, Failure> {
     Ok(named.collect())
 }
 
-fn write(file: &mut (impl Write + Send), rows: &[Row]) -> Result<(), ParquetError> {
-    let properties = WriterProperties::builder()
-        .set_compression(Compression::SNAPPY)
-        .build();
-    let mut writer = SerializedFileWriter::new(file, rows.schema()?, Arc::new(properties))?;
-    for rows in rows.chunks(GROUP) {
-        let mut group = writer.next_row_group()?;
-        rows.write_to_row_group(&mut group)?;
-        group.close()?;
-    }
-    writer.close()?;
-    Ok(())
-}
-
 fn read(path: &Path) -> Result<Vec<Row>, ParquetError> {
-    let reader = SerializedFileReader::new(File::open(path)?)?;
-    let mut all = Vec::new();
-    for k in 0..reader.num_row_groups() {
-        let mut group = reader.get_row_group(k)?;
-        let count = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let mut rows: Vec<Row> = Vec::with_capacity(count);
-        rows.read_from_row_group(&mut *group, count)?;
-        all.extend(rows);
-    }
-    Ok(all)
+    formats::read_rows(&SerializedFileReader::new(File::open(path)?)?)
 }
