@@ -2,7 +2,7 @@
 
 The functions are the commands of `drivemon`, and answer the same, bit for bit: `simulate`, `monitor`, `check`, `calibrate`,
 `compare`, `explain`, `adopt`. A `Recording` comes from a file or from a table in memory, a `Motor` from a file, a text or a
-nameplate. Everything is in SI units; where it is not, the unit stands in the name.
+nameplate. Everything is in SI units; where it is not, the name holds the unit.
 
     import drivemon
 

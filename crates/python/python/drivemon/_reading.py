@@ -40,7 +40,7 @@ class Reading(TypedDict, total=False):
     decimal_comma: bool
     """Whether numbers of a text file are written 3,7."""
     thousands: str
-    """What stands between thousands: `.`, `,`, `'`, `space` or `none`."""
+    """Separator of thousands: `.`, `,`, `'`, `space` or `none`."""
     date_order: str
     """Order of day and month in dates: `dmy` or `mdy`."""
     pulses_per_revolution: int
