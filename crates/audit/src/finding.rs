@@ -1,10 +1,11 @@
 //! What an audit says.
 
 use recording::Channel;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The kinds of finding; the names are stable in JSON.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Code {
     /// A channel ran into the end of its range; value: the level.
@@ -58,7 +59,7 @@ pub enum Code {
 }
 
 /// One finding.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Finding {
     /// What kind it is.
     pub code: Code,
@@ -84,7 +85,7 @@ pub struct Finding {
 }
 
 /// The audit of one recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Audit {
     /// Whether anything trustworthy can be computed from the recording.
     pub supported: bool,

@@ -4,6 +4,7 @@ use audit::Audit;
 use motor::MotorFile;
 use motor::motor_file::{ParameterInterval, Uncertainty};
 use recording::Source;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::{Progress, as_believed, errors, updated};
@@ -15,7 +16,7 @@ use estimation::fit::output_error::Effort;
 use estimation::model::prior::{FRICTION, LEAKAGE, NOMINALS};
 
 /// Parameters before and after, and what would tell those that the recordings did not.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct IdentifyReport {
     /// Audit of the fitted recording.
     pub audit: Audit,
@@ -28,7 +29,7 @@ pub struct IdentifyReport {
 }
 
 /// One parameter with its 95 % intervals.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct IdentifiedParameter {
     /// Key in the motor file.
     pub name: String,

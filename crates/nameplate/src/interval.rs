@@ -1,12 +1,13 @@
 //! A positive quantity with its 95 % interval.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// 97.5 % of a normal distribution lie below this many standard deviations.
 const TWO_SIDED_95: f64 = 1.959_964;
 
 /// A positive quantity with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Interval {
     /// The most likely value.
     pub value: f64,

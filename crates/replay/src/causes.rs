@@ -6,16 +6,18 @@ use std::fmt;
 
 use audit::{Code, Finding};
 use monitor::{Channel, FaultId, Known, Lamp, Phase, Report, Suspicion, likely};
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 /// Causes less likely than this are not listed.
 const LEAST_PROBABILITY: f64 = 0.01;
 
 /// One possible cause.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Candidate {
     /// What is wrong.
     #[serde(serialize_with = "by_name")]
+    #[schemars(with = "String")]
     pub fault: FaultId,
     /// The phase, where it is known.
     pub phase: Option<&'static str>,

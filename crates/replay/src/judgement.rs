@@ -3,6 +3,7 @@
 use std::fmt;
 
 use monitor::NotJudged;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use crate::words;
@@ -32,9 +33,10 @@ impl Serialize for Unjudged {
 }
 
 /// How many windows one reason kept from being judged.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NotJudgedShare {
     /// The reason.
+    #[schemars(with = "String")]
     pub reason: Unjudged,
     /// Windows.
     pub windows: u64,
@@ -63,7 +65,7 @@ impl Reasons {
 }
 
 /// How the field turned in the windows of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Direction {
     /// Phases a, b, c.

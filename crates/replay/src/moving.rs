@@ -4,12 +4,13 @@ use monitor::{Monitor, MonitorState, NotJudged, Report, Sample};
 use motion::{
     Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NoMotion, NotInMotion,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::words;
 
 /// Windows that are not at rest, and what motion says of them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct MotionSummary {
     /// Why the motor is not judged in motion at all.
     pub not_possible: Option<String>,
@@ -24,7 +25,7 @@ pub struct MotionSummary {
 }
 
 /// How many windows one reason kept from being judged in motion.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MotionShare {
     /// The reason in words.
     pub reason: &'static str,
@@ -33,7 +34,7 @@ pub struct MotionShare {
 }
 
 /// An alarm in motion.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MotionFault {
     /// When the statistic left the noise, s: about when the fault showed first.
     pub onset_s: f64,

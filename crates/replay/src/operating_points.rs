@@ -2,10 +2,11 @@
 
 use motor::MotorFile;
 use recording::LoadTable;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// All points of a table with what follows from them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct OperatingPoints {
     /// Name of the table.
     pub table: String,
@@ -14,7 +15,7 @@ pub struct OperatingPoints {
 }
 
 /// One operating point; what neither the table nor the nameplate gives is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Point {
     /// Shaft power, W.
     pub power_watt: Option<f64>,

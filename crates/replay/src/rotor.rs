@@ -1,10 +1,11 @@
 //! What a whole replay says about the rotor's bars.
 
 use monitor::{Cage, CageLimits, RotorReading, Sidebands};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The answer about the cage.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub enum RotorCage {
     /// No block was measured.
     #[default]
@@ -22,7 +23,7 @@ pub enum RotorCage {
 }
 
 /// Sidebands of the current at twice the slip frequency, over a recording.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct RotorSummary {
     /// The answer.
     pub state: RotorCage,

@@ -6,7 +6,8 @@ use monitor::{
     Witness,
 };
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize, Serializer};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::alarm_causes::Causes;
 use super::rotor::{RotorHistory, RotorSummary};
@@ -16,43 +17,44 @@ use crate::judgement::{Direction, NotJudgedShare, Reasons, Unjudged};
 use crate::moving::MotionSummary;
 
 /// The lamps from one moment on.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LampState {
     /// Time of the recording, s.
     pub t: f64,
     /// RUN.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub run: Lamp,
     /// Residual r1.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub r1: Lamp,
     /// Residual r2.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub r2: Lamp,
     /// Residual r3.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub r3: Lamp,
     /// Residual r4.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub r4: Lamp,
     /// SENSOR.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub sensor: Lamp,
     /// LINE.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub line: Lamp,
     /// LOAD.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub load: Lamp,
     /// FAULT.
-    #[serde(serialize_with = "by_name")]
+    #[serde(with = "LampWord")]
     pub fault: Lamp,
     /// Why the window at this moment was not judged.
+    #[schemars(with = "Option<String>")]
     pub not_judged: Option<Unjudged>,
 }
 
 /// The outcome in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VerdictState {
     /// Judged, and FAULT never lit.
@@ -64,7 +66,7 @@ pub enum VerdictState {
 }
 
 /// Verdict over the whole recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Verdict {
     /// The outcome.
     pub state: VerdictState,
@@ -96,7 +98,7 @@ impl Verdict {
 ///
 /// The windows are averaged as complex ratios under a Hann weight over the recording, so that what was
 /// cut off at its beginning and end counts little; `largest` looks at single windows instead.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct SequenceSummary {
     /// Negative over positive sequence of the currents.
     pub i2_over_i1: Option<f64>,
@@ -398,8 +400,16 @@ impl Timeline {
     }
 }
 
-fn by_name<S: Serializer>(lamp: &Lamp, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(lamp.name())
+/// A lamp.
+#[derive(Serialize, JsonSchema)]
+#[serde(remote = "Lamp", rename_all = "lowercase")]
+enum LampWord {
+    /// Dark.
+    Off,
+    /// Steady light.
+    On,
+    /// Slow blinking: waiting or not judged.
+    Blink,
 }
 
 fn lamp_state(t: f64, report: &Report) -> LampState {

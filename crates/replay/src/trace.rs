@@ -1,10 +1,11 @@
 //! What each window measured, kept for figures over time.
 
 use monitor::{Report, Window};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The residuals of one window.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct WindowResiduals {
     /// End of the window, s.
     pub t: f64,
@@ -15,7 +16,7 @@ pub struct WindowResiduals {
 }
 
 /// What the machine did in one window.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct WindowOperation {
     /// End of the window, s.
     pub t: f64,

@@ -12,6 +12,7 @@
 //! assert!(changed != text && comments(&changed) == comments(&text));
 //! ```
 
+pub mod json;
 pub mod motor_text;
 pub mod overlay;
 mod page;

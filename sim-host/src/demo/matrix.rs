@@ -3,6 +3,7 @@
 use monitor::TABLE_1;
 use motor::MotorFile;
 use motor::motor_file::Frame;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::DemoError;
@@ -15,7 +16,7 @@ const CHANGES_PERCENT: [f64; 2] = [50.0, -50.0];
 pub const CASES: usize = TABLE_1.len() * CHANGES_PERCENT.len();
 
 /// Table 1 on one plant, seen in one frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FaultMatrix {
     /// `linear`, the paper's model, or `full`, the three-phase motor.
     pub plant: &'static str,
@@ -30,7 +31,7 @@ pub struct FaultMatrix {
 }
 
 /// One fault in one direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FaultRow {
     /// Row of Table 1.
     pub fault: &'static str,
@@ -51,7 +52,7 @@ pub struct FaultRow {
 }
 
 /// The healthy motor at one load in one frame; the load is declared in its motor file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct HealthyRow {
     /// Load, percent of the motor file's friction.
     pub load_percent: f64,

@@ -10,6 +10,7 @@ pub use matrix::{FaultMatrix, FaultRow, HealthyRow};
 use motor::FileError;
 use motor::MotorFile;
 use motor::motor_file::{FieldCurrent, Frame};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use scenario::PlantKind;
@@ -30,7 +31,7 @@ const LOADS_PERCENT: [f64; 4] = [10.0, 50.0, 100.0, 150.0];
 const NOISE: f64 = 0.002;
 
 /// Everything that the demonstration measured.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Demo {
     /// Name of the motor file.
     pub motor: String,

@@ -11,6 +11,7 @@ const MAGIC: u32 = 0x444D_5201;
 
 /// What ended the program. The numbers are those of the Modbus register and of the event log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[repr(u8)]
 pub enum FaultCause {
     /// The processor could not execute or reach something.
@@ -66,6 +67,7 @@ impl FaultCause {
 
 /// A crash. What does not apply to its cause is 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FaultRecord {
     /// What happened.
     pub cause: FaultCause,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use motor::MotorFile;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::planned::axis::{AXES, Conditions, Grid};
@@ -81,7 +82,7 @@ pub struct Case {
 }
 
 /// What is wanted of a fault, and why it may be out of reach.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema, Deserialize)]
 pub struct Target {
     /// Name of the block.
     pub block: String,

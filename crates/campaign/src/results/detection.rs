@@ -1,5 +1,6 @@
 //! What is detected: smallest sizes, delays, and what is named.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::planned::fault::FaultKind;
@@ -13,7 +14,7 @@ use crate::runs::row::Row;
 pub const DETECTED: f64 = 0.99;
 
 /// How well one fault is detected in one direction.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Detection {
     /// The motor.
     pub motor: String,
@@ -53,7 +54,7 @@ pub struct Detection {
 pub const TOLD_APART: f64 = 0.95;
 
 /// A pair that shares a row of the paper's Table 1.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Rival {
     /// The other side.
     pub cause: &'static str,
@@ -66,7 +67,7 @@ pub struct Rival {
 }
 
 /// One size of a fault.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Size {
     /// Change, percent.
     pub change_percent: f64,
@@ -125,7 +126,7 @@ pub(crate) fn detection(results: &Results) -> Vec<Detection> {
 }
 
 /// Which way a fault moves what it breaks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 pub enum Direction {
     /// Upwards.
     #[serde(rename = "+")]

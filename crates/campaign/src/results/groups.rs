@@ -1,12 +1,13 @@
 //! Rows in groups, and how often each answer came.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::runs::row::Row;
 
 /// An answer and how often it came.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Named {
     /// Likeliest cause, with what is known about its phase.
     pub cause: String,

@@ -1,5 +1,6 @@
 //! Shares with their confidence, and quantiles.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{Beta, ContinuousCDF};
 
@@ -7,7 +8,7 @@ use statrs::distribution::{Beta, ContinuousCDF};
 pub const RISK: f64 = 0.05;
 
 /// So many out of so many.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 #[serde(into = "Written")]
 pub struct Share {
     /// How many.
@@ -17,7 +18,7 @@ pub struct Share {
 }
 
 /// A share as JSON holds it.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Written {
     count: u64,
     of: u64,

@@ -1,5 +1,6 @@
 //! What rows amount to: healthy windows and their alarms, and what is detected.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::results::detection::{Detection, detection};
@@ -9,7 +10,7 @@ use crate::runs::file::{About, Results};
 use crate::runs::row::Row;
 
 /// A campaign, counted.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Table {
     /// Which campaign.
     #[serde(flatten)]
@@ -35,7 +36,7 @@ pub struct Table {
 }
 
 /// The healthy windows of one motor in one block.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Healthy {
     /// The motor.
     pub motor: String,
@@ -52,7 +53,7 @@ pub struct Healthy {
 }
 
 /// FAULT on a healthy motor.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Alarm {
     /// The run.
     pub index: u64,

@@ -7,13 +7,14 @@ use std::path::{Path, PathBuf};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::reader::{FileReader, SerializedFileReader};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::planned::plan::{Plan, Target};
 use crate::runs::row::Row;
 
 /// What a file of rows says about its campaign.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Deserialize)]
 pub struct About {
     /// Name of the plan.
     pub plan: String,

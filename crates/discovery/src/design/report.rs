@@ -4,6 +4,7 @@ use super::goal::{DECISIVE, Goal, Verdict};
 use super::plan::{Level, Plan, SWITCH_ON};
 use super::search::Design;
 use motor::MotorFile;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
@@ -13,7 +14,7 @@ const SURE: f64 = 2.0;
 const NARROWS: [f64; 2] = [0.5, 0.2];
 
 /// The next experiment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Deserialize)]
 pub struct DesignReport {
     /// What it is to do.
     pub goal: DesignGoal,
@@ -36,7 +37,7 @@ pub struct DesignReport {
 }
 
 /// What a run is to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DesignGoal {
     /// Tell explanations apart.
@@ -48,7 +49,7 @@ pub enum DesignGoal {
 }
 
 /// How surely a run decides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Certainty {
     /// It gains twice what a proof asks for; of a standard error more than half goes.
@@ -83,7 +84,7 @@ impl Certainty {
 }
 
 /// A run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Deserialize)]
 pub struct RunReport {
     /// Length, s.
     pub duration_s: f64,
@@ -98,7 +99,7 @@ pub struct RunReport {
 }
 
 /// What holds from an instant on.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema, Deserialize)]
 pub struct LevelReport {
     /// Beginning, s.
     pub at_s: f64,
@@ -132,7 +133,7 @@ impl RunReport {
 }
 
 /// One question that a run decides.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema, Deserialize)]
 pub struct DecidesReport {
     /// The explanation that is found wrong, the effect that is shown, or the parameter.
     pub what: String,

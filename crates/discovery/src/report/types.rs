@@ -4,10 +4,11 @@ use crate::design::report::DesignReport;
 use audit::Audit;
 use estimation::model::scale_report::SpeedScaleReport;
 use motor::motor_file::EffectEntry;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The answer of an explanation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The model explains the recording; parameters may have moved.
@@ -27,7 +28,7 @@ pub enum Verdict {
 }
 
 /// Where a law acts and over what.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct LawPlace {
     /// Place in the equations.
     pub place: String,
@@ -36,7 +37,7 @@ pub struct LawPlace {
 }
 
 /// A curve with its 95 % band.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct LawCurve {
     /// Coordinate, unit `x_unit`.
     pub x: Vec<f64>,
@@ -53,7 +54,7 @@ pub struct LawCurve {
 }
 
 /// A formula that explains the recordings as well as the curve of a law.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FormulaReport {
     /// Name of its shape in the dictionary.
     pub shape: String,
@@ -71,7 +72,7 @@ pub struct FormulaReport {
 }
 
 /// A law that no library holds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LawReport {
     /// Place in the equations.
     pub place: String,
@@ -119,7 +120,7 @@ impl LawReport {
 }
 
 /// What comes and goes: all bursts of all recordings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BurstsReport {
     /// How many there are.
     pub count: usize,
@@ -138,7 +139,7 @@ pub struct BurstsReport {
 }
 
 /// One burst.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BurstReport {
     /// Number of the recording, from 1.
     pub recording: usize,
@@ -151,7 +152,7 @@ pub struct BurstReport {
 }
 
 /// A nominal parameter, believed and fitted.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct NominalReport {
     /// Key in the motor file.
     pub name: String,
@@ -170,7 +171,7 @@ pub struct NominalReport {
 }
 
 /// A parameter of an effect.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ParameterReport {
     /// Key in the motor file.
     pub name: String,
@@ -183,7 +184,7 @@ pub struct ParameterReport {
 }
 
 /// One effect that was added.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StepReport {
     /// Name of the effect.
     pub effect: String,
@@ -213,7 +214,7 @@ pub struct StepReport {
 }
 
 /// A model's error and parameters.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FitReport {
     /// Held-out error over noise.
     pub held_out_error_over_noise: f64,
@@ -224,7 +225,7 @@ pub struct FitReport {
 }
 
 /// An effect in the ranking of the first screen.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RankReport {
     /// Name of the effect.
     pub effect: String,
@@ -239,7 +240,7 @@ pub struct RankReport {
 }
 
 /// What is left when nothing in the library explains the recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Unexplained {
     /// A colleague's description.
     pub description: String,
@@ -252,7 +253,7 @@ pub struct Unexplained {
 }
 
 /// Something that cannot be concluded while the scale of the speed is free.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Inconclusive {
     /// A parameter of the motor file, a quantity or an effect.
     pub name: String,
@@ -272,7 +273,7 @@ pub struct Inconclusive {
 }
 
 /// The report of `explain`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExplainReport {
     /// Audit of the fitted recording.
     pub audit: Audit,
@@ -307,7 +308,7 @@ pub struct ExplainReport {
 }
 
 /// One signal: model against measurement.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SignalReport {
     /// Channel.
     pub name: String,
@@ -324,7 +325,7 @@ pub struct SignalReport {
 }
 
 /// A part of the recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RegionReport {
     /// What the machine did.
     pub name: String,
@@ -337,7 +338,7 @@ pub struct RegionReport {
 }
 
 /// A class of operating points, spread over the recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BandReport {
     /// What is divided: load, voltage, slip, frequency.
     pub quantity: String,
@@ -350,7 +351,7 @@ pub struct BandReport {
 }
 
 /// A rotating component of the current error.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct OrderReport {
     /// Order of the supply frequency; negative turns backwards, 0 is a constant.
     pub order: f64,
@@ -359,14 +360,14 @@ pub struct OrderReport {
 }
 
 /// Rms error over noise of everything.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Overall {
     /// Rms error over noise.
     pub error_over_noise: f64,
 }
 
 /// The residual at one load, with the parameters of the motor file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FrameBand {
     /// Air-gap torque over rated torque, percent, to the nearest ten.
     pub load_percent: f64,
@@ -379,7 +380,7 @@ pub struct FrameBand {
 }
 
 /// What the frame of the motor file costs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FrameReport {
     /// Windows of steady running.
     pub windows: usize,
@@ -399,7 +400,7 @@ pub struct FrameReport {
 }
 
 /// The report of `compare`: the motor file as it is, nothing refitted.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct CompareReport {
     /// Audit of the recording.
     pub audit: Audit,
@@ -422,7 +423,7 @@ pub struct CompareReport {
 }
 
 /// Errors before or after an adoption.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ErrorReport {
     /// Rms error over noise on the fitted data.
     pub error_over_noise: f64,
@@ -431,7 +432,7 @@ pub struct ErrorReport {
 }
 
 /// The report of `adopt`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct AdoptReport {
     /// Audit of the fitted recording.
     pub audit: Audit,

@@ -64,6 +64,7 @@ enum Command {
     Panel(commands::panel::Panel),
     Flash(commands::flash::Flash),
     Board(commands::board::Board),
+    Schema(commands::schema::SchemaArgs),
     Completions(commands::completions::Completions),
     Man(commands::completions::Man),
 }
@@ -96,6 +97,7 @@ impl Cli {
             Command::Panel(panel) => panel.run(),
             Command::Flash(flash) => flash.run(),
             Command::Board(board) => board.run(),
+            Command::Schema(schema) => schema.run(),
             Command::Completions(completions) => completions.run(),
             Command::Man(man) => man.run(),
         };

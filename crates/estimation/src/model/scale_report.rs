@@ -1,9 +1,10 @@
 //! What a report says of a speed whose scale was unknown.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Where the reading at rest comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AtRest {
     /// The user gave it.
@@ -15,7 +16,7 @@ pub enum AtRest {
 }
 
 /// Where the standard error of a fitted scale comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ErrorSource {
     /// The recording, which the model explains.
@@ -26,7 +27,7 @@ pub enum ErrorSource {
 }
 
 /// The scale of a speed channel that was declared unknown, as fitted: speed = factor x (column - offset).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SpeedScaleReport {
     /// Factor.
     pub factor: f64,

@@ -4,12 +4,13 @@ use motor::FaultId;
 use motor::MotorFile;
 use motor::motor_file::LoadKind;
 use recording::{Channel, Recording};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::Verdict;
 
 /// Something that cannot be seen, and what would show it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct BlindSpot {
     /// What cannot be seen.
     pub unseen: &'static str,

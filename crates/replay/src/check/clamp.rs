@@ -1,12 +1,13 @@
 //! What one or two channels say: frequency and size, and how the size changes.
 
 use recording::{Channel, Recording};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::clamp_bars::{BesideSupply, beside_supply};
 
 /// One channel of a recording that has no three of a kind.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ClampSignal {
     /// Its name.
     pub channel: String,

@@ -7,10 +7,11 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What lies beside the supply in one current.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BesideSupply {
     /// Distances from the supply that were looked at, Hz.
     pub looked_hz: [f64; 2],
@@ -21,7 +22,7 @@ pub struct BesideSupply {
 }
 
 /// A line beside the supply.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SupplySideband {
     /// Distance from the supply, Hz: twice the slip frequency where bars leave it.
     pub distance_hz: f64,

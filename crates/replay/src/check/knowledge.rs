@@ -3,13 +3,14 @@
 use discovery::{Error, IdentifyReport};
 use motor::MotorFile;
 use recording::{Recording, Source};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::calibrate::{Surroundings, calibrate};
 use crate::speed::with_estimated_speed;
 
 /// How well a motor is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Knowledge {
     /// By its motor file or its plate alone.

@@ -18,6 +18,7 @@ use audit::{Audit, Expectation};
 use monitor::Monitor;
 use motor::MotorFile;
 use recording::Recording;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
@@ -27,7 +28,7 @@ use crate::{
 };
 
 /// What one recording says of a motor.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Checked {
     /// Audit of the recording.
     pub audit: Audit,

@@ -1,12 +1,13 @@
 //! The size of a cause in words.
 
 use monitor::FaultId;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::Verdict;
 
 /// How bad a cause is, by the change of its quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
     /// Below 5 %.

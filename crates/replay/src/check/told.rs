@@ -1,6 +1,7 @@
 //! The answer in words: one wording for terminal, page and panel.
 
 use motor::FaultId;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Checked;
@@ -9,7 +10,7 @@ use crate::VerdictState;
 use crate::causes::Candidate;
 
 /// What a technician reads first.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Told {
     /// The state.
     pub state: &'static str,

@@ -17,12 +17,13 @@ use std::f64::consts::TAU;
 
 use motor::MotorFile;
 use recording::{Channel, Recording};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use circuit::CircuitSlip;
 
 /// Where an estimated speed comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpeedSource {
     /// The slip that the circuit needs for the measured voltages and currents.
@@ -32,7 +33,7 @@ pub enum SpeedSource {
 }
 
 /// A speed that nobody measured.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct EstimatedSpeed {
     /// Mean over the recording, rpm.
     pub mean_rpm: f64,

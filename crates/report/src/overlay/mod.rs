@@ -12,6 +12,7 @@ pub use table::{Quantities, TableOverlay, TablePoint};
 
 use motor::effect::Outputs;
 use recording::{Recording, Source};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use drive::Drive;
@@ -26,7 +27,7 @@ const CLOSE_S: f64 = 0.12;
 const DIGITS: i32 = 5;
 
 /// A recording with models beside it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Overlay {
     /// The recording.
     pub recording: String,
@@ -41,7 +42,7 @@ pub struct Overlay {
 }
 
 /// Signals over one clock.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Traces {
     /// Time, s.
     pub t: Vec<f64>,
@@ -50,7 +51,7 @@ pub struct Traces {
 }
 
 /// One signal, measured and modelled.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Trace {
     /// Channel.
     pub name: &'static str,
@@ -63,7 +64,7 @@ pub struct Trace {
 }
 
 /// One block of a recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Block {
     /// Middle, s.
     pub t: f64,

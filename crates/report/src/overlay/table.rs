@@ -3,6 +3,7 @@
 use discovery::table_values;
 use motor::MotorFile;
 use recording::{LoadPoint, Source};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Model, rounded};
@@ -11,7 +12,7 @@ use super::{Model, rounded};
 const RPM: f64 = 60.0 / std::f64::consts::TAU;
 
 /// A load table with models beside it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TableOverlay {
     /// The table.
     pub recording: String,
@@ -22,7 +23,7 @@ pub struct TableOverlay {
 }
 
 /// One operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TablePoint {
     /// Shaft power, or torque, or line current, whichever is measured: percent of rated.
     pub load_percent: f64,
@@ -33,7 +34,7 @@ pub struct TablePoint {
 }
 
 /// What a table tells of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Quantities {
     /// Line current, A rms.
     pub current_rms_amp: Option<f64>,

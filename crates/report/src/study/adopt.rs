@@ -2,13 +2,14 @@
 
 use discovery::{AdoptReport, Error, Progress};
 use motor::MotorFile;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Inputs, in_fitted_scale};
 use crate::overlay::{Model, Overlay, TableOverlay};
 
 /// Everything that an adoption says.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Adopted {
     /// The recordings.
     pub recordings: Vec<String>,

@@ -8,6 +8,7 @@ use motor::MotorFile;
 use motor::motor_file::HealthySettings;
 use recording::Recording;
 use replay::calibrate::{Calibrated, Kind, Refusal, Surroundings, calibrate};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// FAULT lamps per judged window that may be accepted on a healthy motor.
@@ -16,7 +17,7 @@ pub const FALSE_ALARM_RATES: RangeInclusive<f64> = 1e-12..=0.01;
 pub const WINDING_KELVINS: RangeInclusive<f64> = 0.0..=200.0;
 
 /// Everything that a calibration says.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Calibration {
     /// The recordings.
     pub recordings: Vec<String>,
@@ -43,7 +44,7 @@ pub struct Calibration {
 }
 
 /// One parameter before and after.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct CalibratedParameter {
     /// Its key in the motor file.
     pub name: &'static str,
@@ -60,7 +61,7 @@ pub struct CalibratedParameter {
 }
 
 /// Gains of three channels.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ChannelGains {
     /// The effect that holds them.
     pub effect: &'static str,
@@ -69,7 +70,7 @@ pub struct ChannelGains {
 }
 
 /// What remains after the fit, percent of each scale.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct MisfitPercent {
     /// Torque balance.
     pub torque: f64,
@@ -80,7 +81,7 @@ pub struct MisfitPercent {
 }
 
 /// What is normal.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct HealthyStatistics {
     /// Standard deviations beyond which FAULT lights.
     pub significance: f64,
@@ -98,7 +99,7 @@ pub struct HealthyStatistics {
 }
 
 /// The healthy cage, percent of the active current; loads in percent of the rated current.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct HealthyCage {
     /// The light and the heavy load.
     pub active_percent: [f64; 2],

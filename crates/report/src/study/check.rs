@@ -5,12 +5,13 @@ use motor::MotorFile;
 use recording::Recording;
 use replay::VerdictState;
 use replay::check::{Checked, Knowledge, check, learn};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::known::{Known, ParameterRow, PlateRow, parameters};
 
 /// Everything that a check says.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Checkup {
     /// The motor's name.
     pub motor: String,
@@ -38,7 +39,7 @@ pub struct Checkup {
 }
 
 /// What one recording says.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct CheckedRecording {
     /// Its name.
     pub recording: String,

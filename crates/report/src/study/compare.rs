@@ -1,13 +1,14 @@
 //! Where a model fails.
 
 use discovery::{CompareReport, Error, Progress};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Inputs, in_fitted_scale};
 use crate::overlay::{Model, Overlay, TableOverlay};
 
 /// Everything that a comparison says.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Compared {
     /// The recording.
     pub recording: String,

@@ -1,6 +1,7 @@
 //! Which physical effect a model misses.
 
 use discovery::{Asked, Error, ExplainReport, Progress, Verdict};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::places::{Place, worst};
@@ -12,7 +13,7 @@ use discovery::LAW;
 const SEARCH: f64 = 0.9;
 
 /// Everything that an explanation says.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Explained {
     /// The recordings.
     pub recordings: Vec<String>,
@@ -32,7 +33,7 @@ pub struct Explained {
 }
 
 /// What to do next.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Next {
     /// In words.
     pub why: String,

@@ -5,6 +5,7 @@ use motor::MotorFile;
 use motor::motor_file::ParameterInterval;
 use nameplate::plate::PlateFile;
 use nameplate::{COLUMN_KEYS, Estimate, motor_text};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A motor by its plate or its file.
@@ -21,7 +22,7 @@ pub struct Known {
 }
 
 /// One number of a plate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PlateRow {
     /// Its key.
     pub name: &'static str,
@@ -36,7 +37,7 @@ pub struct PlateRow {
 }
 
 /// One parameter of the motor as it is known in the end.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ParameterRow {
     /// Key in the motor file; it ends with its unit.
     pub name: String,

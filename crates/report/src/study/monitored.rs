@@ -1,5 +1,7 @@
 //! What the lamps would have shown.
 
+use std::borrow::Cow;
+
 use audit::{Audit, Expectation, audit};
 use monitor::{ConfigError, Monitor};
 use motor::{FileError, MotorFile};
@@ -8,6 +10,7 @@ use replay::{
     Direction, LampState, MotionSummary, NotJudgedShare, RotorSummary, Samples, SequenceSummary,
     Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
 };
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 
 /// Everything that a replay through the board's core says.
@@ -36,34 +39,55 @@ pub enum MonitorError {
     Config(ConfigError),
 }
 
-/// The keys of the JSON.
-#[derive(Serialize)]
+/// What the lamps would have shown of a recording.
+#[derive(Serialize, JsonSchema)]
 struct MonitorJson<'a> {
+    /// The recording.
     recording: &'a str,
+    /// What had to be assumed to read it.
     assumptions: &'a [String],
+    /// What the audit found.
     audit: &'a Audit,
+    /// What the recording comes to, at rest and in motion together.
     state: VerdictState,
+    /// Windows of the replay.
     windows: u64,
+    /// Of these judged: the motor was at rest and every sensor was trusted.
     judged: u64,
+    /// Why windows were not judged, the most frequent reason first.
     not_judged: &'a [NotJudgedShare],
+    /// Residuals r1 to r4 over the judged windows; `null` where no window was judged.
     residual_percent: Option<ResidualPercent>,
+    /// The lamps, from each change on.
     lamps: &'a [LampState],
+    /// The verdict on the windows at rest, and the likely causes.
     verdict: &'a Verdict,
+    /// Sense of rotation of the supply; `null` where it was not seen.
     direction: Option<Direction>,
+    /// Time of the recording at which FAULT first lit at rest, s; `null` where it never did.
     first_alarm_s: Option<f64>,
+    /// Positive and negative sequence of voltage and current.
     sequence: SequenceSummary,
+    /// The rotor cage, from the sidebands of the current.
     rotor: RotorSummary,
+    /// Thresholds of r1 to r4, percent of each residual's scale; `null` without a motor file.
     threshold_percent: Option<[f64; 4]>,
+    /// Smallest residuals that would have lit a lamp in the noise of this recording, percent of each residual's scale.
     smallest_visible_percent: Option<[f64; 4]>,
+    /// Residuals of every window.
     residuals: &'a [WindowResiduals],
+    /// Operating point of every window.
     operation: &'a [WindowOperation],
+    /// What was judged while something changed.
     motion: &'a MotionSummary,
 }
 
 /// Residuals over the judged windows, percent of their scales.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ResidualPercent {
+    /// Means of r1 to r4.
     mean: [f64; 4],
+    /// Standard deviations of r1 to r4.
     standard_deviation: [f64; 4],
 }
 
@@ -129,6 +153,16 @@ fn replayed(
         timeline.blame_missing_motor_file();
     }
     timeline
+}
+
+impl JsonSchema for Monitored {
+    fn schema_name() -> Cow<'static, str> {
+        "Monitored".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        MonitorJson::json_schema(generator)
+    }
 }
 
 impl Serialize for Monitored {

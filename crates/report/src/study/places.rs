@@ -1,13 +1,14 @@
 //! Where a model fails, in three lines.
 
 use discovery::{CompareReport, RegionReport, SignalReport};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Places that are named.
 const PLACES: usize = 3;
 
 /// A part of a recording, or a column of a load table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Place {
     /// What the motor did there, or the column.
     pub name: String,

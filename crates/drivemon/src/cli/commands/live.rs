@@ -7,6 +7,8 @@ use board::{Frame, LAMPS, Message};
 use clap::Args;
 use monitor::Lamp;
 use motor::MotorFile;
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::arguments::input::read_motor;
@@ -56,8 +58,8 @@ fn seconds(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "write a time in seconds above 0, as 60".to_owned())
 }
 
-/// What was seen, as JSON.
-#[derive(Debug, Default, PartialEq, Serialize)]
+/// What was seen of a running board.
+#[derive(Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Watched {
     /// Windows that arrived.
     pub windows: u64,
@@ -71,6 +73,10 @@ pub struct Watched {
     pub fault: bool,
     /// File of the samples around the alarm.
     pub capture: Option<String>,
+}
+
+impl Answer for Watched {
+    const FORMAT: &'static str = "watch/1";
 }
 
 /// Where results go and when to stop.

@@ -11,5 +11,6 @@ pub(crate) mod monitor;
 pub(crate) mod motor;
 #[cfg(feature = "panel")]
 pub(crate) mod panel;
+pub(crate) mod schema;
 pub(crate) mod simulated;
 pub(crate) mod study;

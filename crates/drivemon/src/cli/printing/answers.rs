@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::json;
 
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::{OutputArgs, text_of};
@@ -11,6 +11,7 @@ use crate::cli::printing::paint;
 use crate::cli::printing::terminal::{self, say};
 use crate::cli::told;
 use report::Subject;
+use report::json::Answer;
 
 /// Where an answer goes: straight out where it is the only one, into the list where it is one of several.
 pub struct Answers<'a> {
@@ -60,6 +61,19 @@ pub fn each(
     Ok(worst(&codes))
 }
 
+/// A recording that could not be read, among others.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Refused {
+    /// The file.
+    recording: String,
+    /// Why, and what to do about it.
+    error: String,
+}
+
+impl Answer for Refused {
+    const FORMAT: &'static str = "refused/1";
+}
+
 /// A page shows one recording.
 const ONE_PAGE: &str =
     "--report draws one recording, and several are named: ask for the page of each by itself";
@@ -72,7 +86,7 @@ impl Answers<'_> {
     pub fn give(
         &mut self,
         subject: Subject,
-        value: &impl Serialize,
+        value: &impl Answer,
         show: impl FnOnce(),
     ) -> Result<(), Failure> {
         let Some(list) = &mut self.list else {
@@ -87,7 +101,10 @@ impl Answers<'_> {
 
     fn refused(&mut self, recording: &Path, failure: &Failure) -> Result<u8, Failure> {
         let name = recording.display().to_string();
-        let answer = json!({ "recording": name, "error": failure.to_string() });
+        let answer = Refused {
+            recording: name.clone(),
+            error: failure.to_string(),
+        };
         self.list.get_or_insert_default().push(text_of(&answer)?);
         self.output.json.show(|| say!("{}", paint::strong(name)));
         terminal::flush();

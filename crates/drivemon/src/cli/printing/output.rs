@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Serialize;
+use report::json::Answer;
 
 use crate::cli::printing::failure::Failure;
 use crate::cli::printing::terminal;
@@ -39,14 +39,14 @@ impl OutputArgs {
     pub fn give(
         &self,
         subject: Subject,
-        value: &impl Serialize,
+        value: &impl Answer,
         show: impl FnOnce(),
     ) -> Result<(), Failure> {
         let page = self.write_page(subject, value);
         self.json.give(value, show).and(page)
     }
 
-    fn write_page(&self, subject: Subject, value: &impl Serialize) -> Result<(), Failure> {
+    fn write_page(&self, subject: Subject, value: &impl Answer) -> Result<(), Failure> {
         let Some(path) = &self.report else {
             return Ok(());
         };
@@ -62,7 +62,7 @@ impl JsonArgs {
     ///
     /// # Errors
     /// A path that cannot be written; the result is shown all the same.
-    pub fn give(&self, value: &impl Serialize, show: impl FnOnce()) -> Result<(), Failure> {
+    pub fn give(&self, value: &impl Answer, show: impl FnOnce()) -> Result<(), Failure> {
         let written = self.write(value);
         self.show(show);
         written
@@ -79,7 +79,7 @@ impl JsonArgs {
     ///
     /// # Errors
     /// A path that cannot be written.
-    pub fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
+    pub fn write(&self, value: &impl Answer) -> Result<(), Failure> {
         match &self.json {
             Some(_) => self.write_text(&text_of(value)?),
             None => Ok(()),
@@ -118,8 +118,8 @@ impl JsonArgs {
 ///
 /// # Errors
 /// A value that JSON cannot say.
-pub(crate) fn text_of(value: &impl Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(value)
+pub(crate) fn text_of(value: &impl Answer) -> Result<String, Failure> {
+    report::json::text(value)
         .map_err(|error| Failure::Usage(format!("the result cannot be written as JSON: {error}")))
 }
 

@@ -11,6 +11,8 @@ use board::{
 };
 use clap::{Args, ValueEnum};
 use live::ModbusLine;
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::{LineArgs, Parity};
@@ -90,16 +92,29 @@ enum Relay {
     Blind,
 }
 
-#[derive(Debug, Serialize)]
-struct Told {
+/// The configuration in force.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ConfigurationJson {
+    /// Name of the motor.
     motor: String,
+    /// Checksum of the motor's constants.
     motor_constants: String,
+    /// Address on the bus.
     unit: u8,
+    /// Speed of the line, bit/s.
     baud: u32,
+    /// Parity of the line.
     parity: &'static str,
+    /// What opens the relay.
     relay: &'static str,
+    /// Where the configuration comes from.
     source: &'static str,
+    /// Time that is left of a trial, s; 0 without one.
     trial_seconds_left: u16,
+}
+
+impl Answer for ConfigurationJson {
+    const FORMAT: &'static str = "board-configure/1";
 }
 
 /// Between a command and a look at what it did: a block and the answer, and 40 ms of flash.
@@ -272,7 +287,7 @@ fn refusal(refused: Refused) -> Failure {
     ))
 }
 
-fn tell(line: &mut ModbusLine) -> Result<Told, Failure> {
+fn tell(line: &mut ModbusLine) -> Result<ConfigurationJson, Failure> {
     let holds = read(line)?;
     let registers = Registers::read(line)?;
     let settings = holds.line().map_err(refusal)?;
@@ -286,7 +301,7 @@ fn tell(line: &mut ModbusLine) -> Result<Told, Failure> {
         4 => "as flashed: what was configured is lost",
         _ => "unknown",
     };
-    Ok(Told {
+    Ok(ConfigurationJson {
         motor: holds.name().text().unwrap_or_default().to_owned(),
         motor_constants: format!("{:08x}", holds.identification()),
         unit: settings.unit,
@@ -305,7 +320,7 @@ fn tell(line: &mut ModbusLine) -> Result<Told, Failure> {
     })
 }
 
-fn print(told: &Told) {
+fn print(told: &ConfigurationJson) {
     let row = |name: &str, value: String| say!("{}  {value}", paint::strong(format!("{name:15}")));
     row("motor", told.motor.clone());
     row("motor constants", told.motor_constants.clone());

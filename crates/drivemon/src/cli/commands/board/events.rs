@@ -3,6 +3,8 @@
 use board::modbus::Field;
 use board::{Event, EventCause, LOG_EVENTS};
 use clap::Args;
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::LineArgs;
@@ -27,13 +29,31 @@ pub struct Events {
     json: JsonArgs,
 }
 
-#[derive(Debug, Serialize)]
+/// The board's log.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct EventsJson {
+    /// The oldest first.
+    events: Vec<Told>,
+}
+
+impl Answer for EventsJson {
+    const FORMAT: &'static str = "board-events/1";
+}
+
+/// An event.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Told {
+    /// Counts every event since the board was made.
     number: u32,
+    /// Time since the board's start, s.
     uptime_s: u32,
+    /// What happened.
     cause: &'static str,
+    /// How often in a row.
     times: u16,
+    /// What belongs to the cause, as the log holds it.
     values: [u32; 2],
+    /// The same in words.
     text: String,
 }
 
@@ -46,8 +66,10 @@ impl Events {
         let bar = progress::bar("events", u64::from(count));
         let read = line.events(newest - count + 1, newest, |more| bar.inc(more));
         bar.finish_and_clear();
-        let told: Vec<Told> = read?.iter().map(tell).collect();
-        self.json.give(&told, || print(&told))?;
+        let told = EventsJson {
+            events: read?.iter().map(tell).collect(),
+        };
+        self.json.give(&told, || print(&told.events))?;
         Ok(Finding::Nothing)
     }
 }

@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use board::modbus::Object;
 use clap::Args;
+use report::json::Answer;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::line::LineArgs;
 use crate::cli::printing::failure::{Failure, Finding};
@@ -22,16 +25,29 @@ pub struct Identify {
     json: JsonArgs,
 }
 
+/// What the board is, by the names of the objects of function 43/14.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct IdentityJson<'a> {
+    /// Maker, product, revision, checksums and serial number, each by its name.
+    #[serde(flatten)]
+    objects: BTreeMap<&'a str, &'a str>,
+}
+
+impl Answer for IdentityJson<'_> {
+    const FORMAT: &'static str = "board-identify/1";
+}
+
 impl Identify {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         let told = self.line.open()?.identify()?;
         let named: Vec<(String, String)> = told.into_iter().map(named).collect();
-        let values: BTreeMap<&str, &str> = named
+        let objects = named
             .iter()
             .map(|(name, value)| (name.as_str(), value.as_str()))
             .collect();
-        self.json.give(&values, || print(&named))?;
+        let identity = IdentityJson { objects };
+        self.json.give(&identity, || print(&named))?;
         Ok(Finding::Nothing)
     }
 }

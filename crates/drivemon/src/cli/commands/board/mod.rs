@@ -13,6 +13,8 @@ mod registers;
 
 use clap::{Args, Subcommand};
 
+use report::json::Format;
+
 use crate::cli::printing::failure::{Failure, Finding};
 
 /// Ask a board in the field, and tell it what to do, over its Modbus line (RS-485).
@@ -61,4 +63,15 @@ impl Board {
             Command::Learn(learn) => learn.run(),
         }
     }
+}
+
+/// The formats of their JSON.
+pub fn formats() -> Vec<Format> {
+    vec![
+        Format::of::<read::ReadJson>(),
+        Format::of::<identify::IdentityJson<'_>>(),
+        Format::of::<events::EventsJson>(),
+        Format::of::<record::RecordJson>(),
+        Format::of::<configure::ConfigurationJson>(),
+    ]
 }

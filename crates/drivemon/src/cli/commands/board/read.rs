@@ -1,6 +1,8 @@
 //! `drivemon board read`: the whole register map.
 
 use clap::Args;
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::LineArgs;
@@ -19,10 +21,25 @@ pub struct ReadBoard {
     json: JsonArgs,
 }
 
-#[derive(Debug, Serialize)]
+/// Every value that the board shows.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ReadJson {
+    /// In the order of the register map.
+    values: Vec<Value>,
+}
+
+impl Answer for ReadJson {
+    const FORMAT: &'static str = "board-read/1";
+}
+
+/// A value as the board shows it.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Value {
+    /// What it is.
     name: String,
+    /// In words or digits.
     value: String,
+    /// Its unit; empty where it has no unit.
     unit: &'static str,
 }
 
@@ -31,11 +48,12 @@ impl ReadBoard {
     pub fn run(&self) -> Result<Finding, Failure> {
         let registers = Registers::read(&mut self.line.open()?)?;
         let rows = registers.rows();
-        let values: Vec<Value> = rows
+        let values = rows
             .into_iter()
             .map(|(name, value, unit)| Value { name, value, unit })
             .collect();
-        self.json.give(&values, || print(&values))?;
+        let read = ReadJson { values };
+        self.json.give(&read, || print(&read.values))?;
         let fault = registers.word(board::modbus::Field::Verdict) == 2;
         Ok(match fault || registers.doubts().is_any() {
             true => Finding::Something,

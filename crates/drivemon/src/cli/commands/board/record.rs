@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use board::modbus::Field;
 use board::{Doubts, FaultCause, FaultRecord};
 use clap::Args;
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::LineArgs;
@@ -30,19 +32,31 @@ pub struct Record {
     json: JsonArgs,
 }
 
-/// As JSON.
-#[derive(Debug, Serialize)]
-struct Told {
+/// What the last reset left behind.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct RecordJson {
+    /// Bits of the processor's reset register.
     reset_cause: u16,
+    /// Crashes without a quiet minute between them.
     crashes: u16,
+    /// The crash before the last start; `null` where there was none.
     crash: Option<FaultRecord>,
-    /// Function, file and line of program counter and link register, innermost first.
+    /// Function, file and line of the program counter, innermost first; needs the program (`--elf`).
     at: Vec<String>,
+    /// The same of the link register.
     called_from: Vec<String>,
+    /// File of a panic; needs the program (`--elf`).
     panicked_in: Option<String>,
+    /// What the board doubts of itself.
     doubts: Vec<&'static str>,
+    /// Most bytes of stack that were in use.
     stack_bytes: u16,
+    /// Time since the start, s.
     uptime_s: u32,
+}
+
+impl Answer for RecordJson {
+    const FORMAT: &'static str = "board-record/1";
 }
 
 impl Record {
@@ -81,7 +95,7 @@ fn check_seal(program: &Program, registers: &Registers) -> Result<(), Failure> {
     }
 }
 
-fn tell(registers: &Registers, program: Option<&Program>) -> Told {
+fn tell(registers: &Registers, program: Option<&Program>) -> RecordJson {
     let crash = registers.crash();
     let place = |address: fn(&FaultRecord) -> u32| match (program, &crash) {
         (Some(program), Some(crash)) if address(crash) != 0 => program.place(address(crash)),
@@ -93,7 +107,7 @@ fn tell(registers: &Registers, program: Option<&Program>) -> Told {
             .filter(|_| panicked)?
             .text(crash.address, crash.length)
     };
-    Told {
+    RecordJson {
         reset_cause: registers.word(Field::ResetCause),
         crashes: registers.word(Field::Crashes),
         at: place(|crash| crash.pc),
@@ -106,7 +120,7 @@ fn tell(registers: &Registers, program: Option<&Program>) -> Told {
     }
 }
 
-fn print(told: &Told, doubts: Doubts, has_program: bool) {
+fn print(told: &RecordJson, doubts: Doubts, has_program: bool) {
     match &told.crash {
         None => say!("The last start followed no crash."),
         Some(crash) => print_crash(told, crash, has_program),
@@ -122,7 +136,7 @@ fn print(told: &Told, doubts: Doubts, has_program: bool) {
     say!("running    for {} s", told.uptime_s);
 }
 
-fn print_crash(told: &Told, crash: &FaultRecord, has_program: bool) {
+fn print_crash(told: &RecordJson, crash: &FaultRecord, has_program: bool) {
     let after = f64::from(crash.uptime_ms) / 1_000.0;
     say!("{} after {after:.1} s", paint::error(crash.cause.label()));
     match crash.cause {
@@ -139,7 +153,7 @@ fn print_crash(told: &Told, crash: &FaultRecord, has_program: bool) {
     }
 }
 
-fn print_registers(told: &Told, crash: &FaultRecord) {
+fn print_registers(told: &RecordJson, crash: &FaultRecord) {
     for (name, value, places) in [
         ("at", crash.pc, &told.at),
         ("called by", crash.lr, &told.called_from),

@@ -7,7 +7,9 @@ use motor::MotorFile;
 use motor::motor_file::Sensors;
 use recording::Recording;
 use replay::channels::{Estimate, Found, NAMES, Setup, find};
+use report::json::Answer;
 use report::motor_text;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::arguments::input::read_motor;
@@ -45,35 +47,53 @@ pub struct ChannelArgs {
     load_us: f64,
 }
 
-/// Everything that `drivemon calibrate --channels` says.
-#[derive(Debug, Serialize)]
-struct ChannelsJson {
+/// What the calibration of the channels found.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ChannelsJson {
+    /// The recordings.
     recordings: Vec<String>,
+    /// Frequencies of the recordings, Hz.
     frequencies_hz: Vec<f64>,
+    /// Stretches that were evaluated.
     blocks: usize,
     /// Root mean squares of the channels, the largest of the recordings.
     amplitude_rms: AmplitudeJson,
+    /// The six channels.
     channels: Vec<ChannelJson>,
+    /// The file that was written.
     written: String,
 }
 
-#[derive(Debug, Serialize)]
+impl Answer for ChannelsJson {
+    const FORMAT: &'static str = "calibrate-channels/1";
+}
+
+/// Root mean squares.
+#[derive(Debug, Serialize, JsonSchema)]
 struct AmplitudeJson {
+    /// Of the voltage, V.
     volt: f64,
+    /// Of the current, A.
     amp: f64,
 }
 
 /// One channel; numbers as the file has them now, with what this calibration added.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct ChannelJson {
+    /// The channel.
     name: &'static str,
+    /// Gain.
     gain: f64,
+    /// Standard error of the gain.
     gain_std_error: f64,
+    /// Delay, us.
     delay_us: f64,
+    /// Standard error of the delay, us.
     delay_std_error_us: f64,
-    /// Angle that does not grow with the frequency; absent where the recordings have one frequency.
+    /// Angle that does not grow with the frequency, degrees; absent where the recordings have one frequency.
     #[serde(skip_serializing_if = "Option::is_none")]
     rotation_deg: Option<f64>,
+    /// Standard error of the angle, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     rotation_std_error_deg: Option<f64>,
 }

@@ -17,6 +17,7 @@ use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use channels::ChannelArgs;
 use replay::calibrate::{Refusal, Surroundings};
+use report::json::Format;
 use report::motor_text;
 use report::study::{Calibration, FALSE_ALARM_RATES, HealthyCage, WINDING_KELVINS};
 
@@ -252,4 +253,9 @@ fn print_rotor(rotor: Option<&HealthyCage>) {
             paint::caution("rotor:")
         );
     }
+}
+
+/// The formats of their JSON.
+pub fn formats() -> Vec<Format> {
+    vec![Format::of::<channels::ChannelsJson>()]
 }

@@ -6,6 +6,7 @@ use clap::Args;
 use nameplate::catalogue::{Row, header, read, record};
 use nameplate::{COLUMN_KEYS, Estimate};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::arguments::files::Files;
@@ -39,15 +40,27 @@ Example:
 Exit codes: 0 every motor has its circuit, 1 some rows have contradictions or no circuit (columns contradiction and problem),
 2 bad input.";
 
-#[derive(Debug, Serialize)]
-struct CatalogueJson {
+/// What came of a list of plates.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct CatalogueJson {
+    /// Rows of the table.
     motors: usize,
+    /// Of these with a circuit.
     solved: usize,
+    /// Of these with numbers that contradict each other.
     contradictions: usize,
+    /// Largest difference between plate and circuit, the median over the motors, percent.
     median_worst_error_percent: f64,
+    /// Motors whose largest difference is at most 1 %.
     within_1_percent: usize,
+    /// Motors whose largest difference is at most 5 %.
     within_5_percent: usize,
+    /// Time that it took, s.
     seconds: f64,
+}
+
+impl report::json::Answer for CatalogueJson {
+    const FORMAT: &'static str = "motor-catalogue/1";
 }
 
 type Answer = Result<Estimate, String>;

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use discovery::{IdentifiedParameter, IdentifyReport};
 use motor::MotorFile;
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::arguments::study::{StudyArgs, print_audit, quantity, with_progress};
@@ -42,11 +44,17 @@ Exit codes: 0 written, 1 the model does not fit the recordings, and the file is 
 /// An error over noise from here on is no noise.
 const MISFIT: f64 = 1.5;
 
-#[derive(Debug, Serialize)]
-struct IdentifyJson<'a> {
+/// Parameters that recordings tell.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct IdentifyJson<'a> {
     #[serde(flatten)]
     report: &'a IdentifyReport,
+    /// The motor file that was written; `null` where it was not.
     motor_file: Option<String>,
+}
+
+impl Answer for IdentifyJson<'_> {
+    const FORMAT: &'static str = "motor-identify/1";
 }
 
 impl Identify {

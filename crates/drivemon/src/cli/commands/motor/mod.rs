@@ -7,6 +7,7 @@ pub(crate) mod plate;
 mod standard_tests;
 
 use clap::{Args, Subcommand};
+use report::json::Format;
 
 use crate::cli::printing::failure::{Failure, Finding};
 
@@ -35,4 +36,14 @@ impl Motor {
             Command::Identify(identify) => identify.run(),
         }
     }
+}
+
+/// The formats of their JSON.
+pub fn formats() -> Vec<Format> {
+    vec![
+        Format::of::<new::NewJson>(),
+        Format::of::<standard_tests::TestsJson>(),
+        Format::of::<identify::IdentifyJson<'_>>(),
+        Format::of::<catalogue::CatalogueJson>(),
+    ]
 }

@@ -6,6 +6,8 @@ use clap::Args;
 use nameplate::contradiction::Contradiction;
 use nameplate::physical::KEYS;
 use nameplate::{COLUMN_KEYS, Estimate, Interval, motor_text};
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::plate::PlateArgs;
@@ -39,31 +41,49 @@ Example:
   drivemon monitor today.csv --motor pump.toml
 Exit codes: 0 written, 1 written, but numbers of the plate contradict each other, 2 bad input.";
 
-#[derive(Debug, Serialize)]
-struct NewJson {
+/// What the numbers of a plate tell of the motor.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct NewJson {
+    /// The motor file that was written.
     motor_file: String,
+    /// Parameters of the circuit with their intervals.
     parameters: Vec<Named>,
+    /// Numbers of the plate as the circuit gives them.
     plate: Vec<Named>,
+    /// Largest difference between the plate and the circuit, percent.
     worst_error_percent: f64,
+    /// Numbers that contradict each other.
     contradictions: Vec<String>,
+    /// What would narrow the intervals, the best first.
     would_help: Vec<Help>,
 }
 
-#[derive(Debug, Serialize)]
+impl Answer for NewJson {
+    const FORMAT: &'static str = "motor-new/1";
+}
+
+/// A quantity with its interval.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Named {
+    /// Its name, with the unit.
     name: &'static str,
     #[serde(flatten)]
     interval: Interval,
+    /// The number on the plate; absent where the plate has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     printed: Option<f64>,
 }
 
 /// What a number that is missing would narrow.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Help {
+    /// The number.
     missing: &'static str,
+    /// The parameter.
     parameter: &'static str,
+    /// Ends of its interval over each other, as it is now.
     factor_now: f64,
+    /// The same with the number.
     factor_then: f64,
 }
 

@@ -4,6 +4,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::arguments::files::{Files, spare_what_is_no_sidecar};
@@ -101,10 +103,15 @@ struct Replay {
     output: Option<PathBuf>,
 }
 
-/// Everything that `drivemon campaign table` says.
-#[derive(Debug, Serialize)]
-struct TableJson {
+/// What campaigns found.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct TableJson {
+    /// One table each.
     campaigns: Vec<Table>,
+}
+
+impl Answer for TableJson {
+    const FORMAT: &'static str = "campaign/1";
 }
 
 impl Campaign {

@@ -11,6 +11,9 @@ use crate::cli::printing::output::OutputArgs;
 use crate::cli::printing::progress;
 use crate::cli::printing::terminal::say;
 use report::Subject;
+use report::json::Answer;
+use schemars::JsonSchema;
+use serde::Serialize;
 use sim_host::demo;
 
 /// Show the published method at work: healthy motor and every fault of Table 1, through the board's core.
@@ -31,6 +34,15 @@ pub struct Demo {
     output: OutputArgs,
 }
 
+/// What the demonstration measured.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct DemoJson(demo::Demo);
+
+impl Answer for DemoJson {
+    const FORMAT: &'static str = "demo/1";
+}
+
 impl Demo {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
@@ -45,8 +57,9 @@ impl Demo {
         let bar = progress::bar("simulating", demo::EXPERIMENTS as u64);
         let result = demo::run(&motor, self.seed, || bar.inc(1));
         bar.finish_and_clear();
-        let demo = result.map_err(|error| Failure::Usage(error.to_string()))?;
-        self.output.give(Subject::Demo, &demo, || say!("{demo}"))?;
+        let demo = DemoJson(result.map_err(|error| Failure::Usage(error.to_string()))?);
+        let show = || say!("{}", demo.0);
+        self.output.give(Subject::Demo, &demo, show)?;
         Ok(Finding::Nothing)
     }
 }

@@ -6,54 +6,81 @@ use nameplate::measured::table::{Column, Row, Test};
 use nameplate::measured::{Culprit, Doubt, Help, NAMES, Step, Tested, What};
 use nameplate::plate::Value;
 use nameplate::{Estimate, Interval};
+use report::json::Answer;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-#[derive(Debug, Serialize)]
+/// What the standard tests tell of the motor.
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct TestsJson {
+    /// The motor file that was written.
     pub motor_file: String,
+    /// What was known after each test.
     pub steps: Vec<StepJson>,
+    /// What contradicts each other.
     pub contradictions: Vec<ContradictionJson>,
+    /// What a reader should know of the tests.
     pub notes: Vec<String>,
+    /// Parameters that are still wide, and what would narrow them.
     pub still_wide: Vec<HelpJson>,
 }
 
+impl Answer for TestsJson {
+    const FORMAT: &'static str = "motor-tests/1";
+}
+
 /// What was known after a test.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct StepJson {
     /// `plate`, then the tests.
     pub after: &'static str,
+    /// Rows of the test.
     pub rows: usize,
+    /// Parameters with their intervals.
     pub parameters: Vec<ParameterJson>,
 }
 
-#[derive(Debug, Serialize)]
+/// A parameter with its interval.
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ParameterJson {
+    /// Its name, with the unit.
     pub name: &'static str,
+    /// Its interval.
     #[serde(flatten)]
     pub interval: Interval,
 }
 
-#[derive(Debug, Serialize)]
+/// A test that contradicts the others.
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ContradictionJson {
     /// The test, or `plate`.
     pub test: &'static str,
     /// Table and lines, as `tests.csv:7`.
     pub places: Vec<String>,
-    /// Chi-square against what all others say, its degrees of freedom, and what one row in 10 000 exceeds by chance.
+    /// Chi-square against what all others say.
     pub chi_square: Option<f64>,
+    /// Its degrees of freedom.
     pub degrees_of_freedom: Option<usize>,
+    /// What one row in 10 000 exceeds by chance.
     pub limit: Option<f64>,
+    /// The same in words.
     pub message: String,
 }
 
-#[derive(Debug, Serialize)]
+/// A parameter that is still wide.
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct HelpJson {
+    /// The parameter.
     pub parameter: &'static str,
+    /// Ends of its interval over each other, as it is now.
     pub factor_now: f64,
+    /// The test that would narrow it most; `null` where no test would.
     pub test: Option<&'static str>,
+    /// Ends of its interval over each other after that test.
     pub factor_then: Option<f64>,
     /// The test was done: once more averages its scatter.
     pub again: bool,
+    /// How the test is done.
     #[serde(skip)]
     pub how: &'static str,
 }

@@ -17,7 +17,7 @@ use crate::cli::arguments::files::Files;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::{JsonArgs, write_text};
 use crate::cli::printing::terminal;
-use answer::TestsJson;
+pub use answer::TestsJson;
 use instruments::InstrumentArgs;
 
 /// Learn a motor's parameters from standard tests: DC resistance, no-load, locked rotor, load, coast-down.
