@@ -27,6 +27,6 @@ pub use results::statistics::{RISK, Share};
 pub use results::table::{Alarm, Healthy, Table, conditions};
 pub use runs::file::{About, Results, StoreError};
 pub use runs::outcome::{Answer, LampsSeen, Outcome};
-pub use runs::parts::{Done, run as run_range};
+pub use runs::parts::{Done, finished, run as run_range, share};
 pub use runs::row::Row;
 pub use runs::run::{Run, T_SAMPLE_S};

@@ -5,8 +5,7 @@ use crate::motor::Motor;
 use pyo3::prelude::*;
 use replay::operating_points::OperatingPoints;
 use report::study::{Adopted, Calibration, Checkup, Compared, Explained, Monitored};
-use report::{Subject, page};
-use serde::Serialize;
+use report::{Subject, json, page};
 
 /// What was asked, and what came out.
 #[derive(Clone, Debug)]
@@ -35,16 +34,28 @@ impl Outcome {
     }
 }
 
-impl Serialize for Outcome {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+impl Outcome {
+    fn page(&self, subject: Subject) -> serde_json::Result<String> {
         match self {
-            Outcome::Monitor(x) => x.serialize(serializer),
-            Outcome::LoadTable(x) => x.serialize(serializer),
-            Outcome::Check(x) => x.serialize(serializer),
-            Outcome::Compare(x) => x.serialize(serializer),
-            Outcome::Explain(x) => x.serialize(serializer),
-            Outcome::Adopt(x) => x.serialize(serializer),
-            Outcome::Calibrate(x) => x.serialize(serializer),
+            Outcome::Monitor(x) => page(subject, &**x),
+            Outcome::LoadTable(x) => page(subject, x),
+            Outcome::Check(x) => page(subject, &**x),
+            Outcome::Compare(x) => page(subject, &**x),
+            Outcome::Explain(x) => page(subject, &**x),
+            Outcome::Adopt(x) => page(subject, &**x),
+            Outcome::Calibrate(x) => page(subject, &**x),
+        }
+    }
+
+    fn json(&self) -> serde_json::Result<String> {
+        match self {
+            Outcome::Monitor(x) => json::text(&**x),
+            Outcome::LoadTable(x) => json::text(x),
+            Outcome::Check(x) => json::text(&**x),
+            Outcome::Compare(x) => json::text(&**x),
+            Outcome::Explain(x) => json::text(&**x),
+            Outcome::Adopt(x) => json::text(&**x),
+            Outcome::Calibrate(x) => json::text(&**x),
         }
     }
 }
@@ -67,7 +78,7 @@ impl Answer {
 impl Answer {
     /// The bytes that `--json FILE` of the command writes.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        let text = py.detach(|| serde_json::to_string_pretty(&self.outcome));
+        let text = py.detach(|| self.outcome.json());
         text.map(|text| text + "\n").map_err(no_json)
     }
 
@@ -77,7 +88,7 @@ impl Answer {
             .outcome
             .subject()
             .ok_or_else(|| usage("this answer has no page"))?;
-        py.detach(|| page(subject, &self.outcome)).map_err(no_json)
+        py.detach(|| self.outcome.page(subject)).map_err(no_json)
     }
 
     #[getter]

@@ -71,10 +71,22 @@ struct Named<'a, A> {
 /// # Errors
 /// A value that JSON cannot say.
 pub fn text<A: Answer>(answer: &A) -> Result<String, serde_json::Error> {
-    serde_json::to_string_pretty(&Named {
+    serde_json::to_string_pretty(&named(answer))
+}
+
+/// An answer as a JSON value.
+///
+/// # Errors
+/// A value that JSON cannot say.
+pub fn value<A: Answer>(answer: &A) -> Result<Value, serde_json::Error> {
+    serde_json::to_value(named(answer))
+}
+
+fn named<A: Answer>(answer: &A) -> Named<'_, A> {
+    Named {
         format: A::FORMAT,
         answer,
-    })
+    }
 }
 
 /// A format and its JSON Schema.

@@ -127,6 +127,7 @@ pub(crate) fn detection(results: &Results) -> Vec<Detection> {
 
 /// Which way a fault moves what it breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[schemars(rename = "SizeDirection")]
 pub enum Direction {
     /// Upwards.
     #[serde(rename = "+")]

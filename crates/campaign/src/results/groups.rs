@@ -8,6 +8,7 @@ use crate::runs::row::Row;
 
 /// An answer and how often it came.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "NamedCause")]
 pub struct Named {
     /// Likeliest cause, with what is known about its phase.
     pub cause: String,

@@ -20,9 +20,11 @@ pub struct Share {
 /// A share as JSON holds it.
 #[derive(Serialize, JsonSchema)]
 struct Written {
+    /// How many.
     count: u64,
+    /// Out of how many.
     of: u64,
-    /// Absent of nothing.
+    /// Percent; `null` of nothing.
     percent: Option<f64>,
 }
 

@@ -37,7 +37,7 @@ pub fn run(
     done: &(impl Fn(u64) + Sync),
 ) -> Result<Done, StoreError> {
     let about = About::of(plan);
-    if let Some(results) = finished(&about, &range, output)? {
+    if let Some(results) = finished(plan, &range, output)? {
         let there_already = range.end - range.start;
         done(there_already);
         return Ok(Done {
@@ -70,9 +70,12 @@ pub fn run(
     })
 }
 
-/// The results that are there already, if they are complete.
-fn finished(
-    about: &About,
+/// The results of `range` that `output` holds already; `None` without that file.
+///
+/// # Errors
+/// Anything else in the way: another campaign, or other runs of this one.
+pub fn finished(
+    plan: &Plan,
     range: &Range<u64>,
     output: &Path,
 ) -> Result<Option<Results>, StoreError> {
@@ -80,7 +83,7 @@ fn finished(
         return Ok(None);
     }
     let results = Results::read(output)?;
-    results.expect(about, output)?;
+    results.expect(&About::of(plan), output)?;
     let indices = results.rows.iter().map(|row| row.index);
     if indices.eq(range.clone()) {
         return Ok(Some(results));
@@ -139,18 +142,23 @@ fn part_of(
         done(part.end - part.start);
         return Ok(results);
     }
-    let runs = part.clone().filter_map(|index| Run::new(plan, index));
-    let rows = runs.map(|run| {
-        let row = Row::of(&run);
-        done(1);
-        row
-    });
-    let results = Results {
-        about: about.clone(),
-        rows: rows.collect(),
-    };
+    let results = share(plan, part.clone(), &mut || done(1));
     results.write(path)?;
     Ok(results)
+}
+
+/// Makes the runs of `range`, one after the other on this core. `done` is called after each.
+pub fn share(plan: &Plan, range: Range<u64>, done: &mut dyn FnMut()) -> Results {
+    let runs = range.filter_map(|index| Run::new(plan, index));
+    let rows = runs.map(|run| {
+        let row = Row::of(&run);
+        done();
+        row
+    });
+    Results {
+        about: About::of(plan),
+        rows: rows.collect(),
+    }
 }
 
 #[cfg(test)]

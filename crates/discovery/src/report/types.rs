@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 /// The answer of an explanation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[schemars(rename = "ExplainVerdict")]
 pub enum Verdict {
     /// The model explains the recording; parameters may have moved.
     Adequate,

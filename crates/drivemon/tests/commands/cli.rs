@@ -233,6 +233,33 @@ fn a_folder_that_does_not_exist_is_named_and_the_result_is_still_shown() {
     assert!(stdout(&output).contains("18 of 18"));
 }
 
+/// tools/check-json holds the answers of all commands against their schemas.
+#[test]
+fn an_answer_names_the_format_whose_schema_is_printed() {
+    let table = "tests/data/imc_18k5_load_test/load_test.csv";
+    let told = drivemon(&[
+        "monitor",
+        table,
+        "--motor",
+        "motors/imc-18k5.toml",
+        "--json",
+        "-",
+    ]);
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&told)).expect("JSON");
+    assert_eq!(answer["format"], "load-table/1");
+    let printed = stdout(&drivemon(&["schema", "load-table"]));
+    assert_eq!(printed, stdout(&drivemon(&["schema", "load-table/1"])));
+    let schema: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+    let keys = schema["properties"].as_object().expect("keys");
+    for key in answer.as_object().expect("an object").keys() {
+        assert!(keys.contains_key(key), "{key}");
+    }
+    let unknown = drivemon(&["schema", "load-table/9"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&unknown.stderr);
+    assert!(said.contains("load-table/1"), "{said}");
+}
+
 #[test]
 fn shells_complete_every_command_and_man_has_a_page_for_each() {
     let help = stdout(&drivemon(&["--help"]));

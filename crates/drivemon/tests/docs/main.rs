@@ -10,6 +10,7 @@
 mod agree;
 mod effects_page;
 mod formula;
+mod json_page;
 mod links;
 mod new_effect;
 mod pieces;

@@ -10,7 +10,7 @@ use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use nameplate::plate::{PlateFile, Printing, QUESTIONS};
 use report::study::{Known, PlateRow};
-use report::{Subject, page};
+use report::{Subject, page_of_json};
 use serde::Serialize;
 
 use super::desk::{Bench, Kind};
@@ -154,7 +154,7 @@ pub(super) async fn next(State(bench): State<Arc<Bench>>) -> Response {
 pub(super) async fn report(State(bench): State<Arc<Bench>>) -> Response {
     let json = bench.desk().results.get(&Kind::Check).cloned();
     let shown: Option<serde_json::Value> = json.and_then(|json| serde_json::from_str(&json).ok());
-    let html = shown.and_then(|shown| page(Subject::Check, &shown["result"]).ok());
+    let html = shown.and_then(|shown| page_of_json(Subject::Check, &shown["result"]).ok());
     let Some(html) = html else {
         return refused(&Refusal {
             status: 404,

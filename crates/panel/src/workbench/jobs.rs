@@ -9,12 +9,13 @@ use axum::extract::rejection::JsonRejection;
 use axum::response::Response;
 use recording::{Recording, Source};
 use replay::check::Knowledge;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::desk::{Bench, Desk, Job, Kind};
 use super::motors::Motor;
 use super::{answer, check};
 use crate::running::shared::Refusal;
+use report::json::Answer;
 use report::study::{Adopted, Checkup, Compared, Explained, Inputs, Known};
 use report::{Subject, fragment};
 
@@ -292,7 +293,7 @@ fn recorded(source: &Source) -> Option<&Recording> {
 }
 
 /// A result that leaves the motor file as it is.
-fn stays(subject: Subject, result: &impl Serialize) -> Outcome {
+fn stays(subject: Subject, result: &impl Answer) -> Outcome {
     Ok(Done {
         json: shown(subject, result)?,
         motor: Change::Stays,
@@ -301,7 +302,7 @@ fn stays(subject: Subject, result: &impl Serialize) -> Outcome {
 
 /// The same that the report of the command shows. Styles of single elements, which the page's policy forbids, become
 /// data that its script applies.
-fn shown(subject: Subject, result: &impl Serialize) -> Result<String, String> {
+fn shown(subject: Subject, result: &impl Answer) -> Result<String, String> {
     let failed = |error: serde_json::Error| format!("the result cannot be shown: {error}");
     let mut fragment = fragment(subject, result).map_err(failed)?;
     fragment.html = fragment.html.replace(" style=\"", " data-style=\"");

@@ -12,9 +12,11 @@ pub use commands::compare::AGREES;
 pub use elements::number::{Style, decimals, significant};
 pub use elements::place::Place;
 
+use crate::json::{self, Answer};
 use commands::{adopt, campaign, check, compare, demo, explain, load_table, monitor};
 use elements::shell;
 use serde::Serialize;
+use serde_json::Value;
 
 /// Which command's result a page shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,14 +43,17 @@ pub enum Subject {
 ///
 /// # Errors
 /// A result that is no JSON.
-pub fn page(subject: Subject, result: &impl Serialize) -> Result<String, serde_json::Error> {
-    let value = serde_json::to_value(result)?;
-    let (title, content) = content(subject, &value);
-    Ok(shell::page(
-        title,
-        &content,
-        &serde_json::to_string(&value)?,
-    ))
+pub fn page(subject: Subject, result: &impl Answer) -> Result<String, serde_json::Error> {
+    page_of_json(subject, &json::value(result)?)
+}
+
+/// The page for the JSON of a result, complete.
+///
+/// # Errors
+/// None with a value that JSON can say.
+pub fn page_of_json(subject: Subject, value: &Value) -> Result<String, serde_json::Error> {
+    let (title, content) = content(subject, value);
+    Ok(shell::page(title, &content, &serde_json::to_string(value)?))
 }
 
 /// What a page holds between heading and footer, for pages that have their own.
@@ -59,15 +64,15 @@ pub struct Fragment {
     /// HTML without scripts; figures are drawn by `report.js` from `result`.
     pub html: String,
     /// The result that every number comes from.
-    pub result: serde_json::Value,
+    pub result: Value,
 }
 
 /// The fragment for a result.
 ///
 /// # Errors
 /// A result that is no JSON.
-pub fn fragment(subject: Subject, result: &impl Serialize) -> Result<Fragment, serde_json::Error> {
-    let result = serde_json::to_value(result)?;
+pub fn fragment(subject: Subject, result: &impl Answer) -> Result<Fragment, serde_json::Error> {
+    let result = json::value(result)?;
     let (title, content) = content(subject, &result);
     Ok(Fragment {
         title,
@@ -77,7 +82,7 @@ pub fn fragment(subject: Subject, result: &impl Serialize) -> Result<Fragment, s
 }
 
 /// Heading and content.
-fn content(subject: Subject, value: &serde_json::Value) -> (&'static str, maud::Markup) {
+fn content(subject: Subject, value: &Value) -> (&'static str, maud::Markup) {
     let place = Place::root(value);
     match subject {
         Subject::Demo => ("Table 1 on a simulated motor", demo::content(&place)),

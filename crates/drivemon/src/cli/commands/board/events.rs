@@ -42,6 +42,7 @@ impl Answer for EventsJson {
 
 /// An event.
 #[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "BoardEvent")]
 struct Told {
     /// Counts every event since the board was made.
     number: u32,

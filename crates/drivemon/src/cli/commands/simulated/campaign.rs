@@ -8,6 +8,7 @@ use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::engine::{Engine, EngineArgs};
 use crate::cli::arguments::files::{Files, spare_what_is_no_sidecar};
 use crate::cli::commands::monitor;
 use crate::cli::printing::failure::{Failure, Finding};
@@ -32,6 +33,8 @@ const EXAMPLES: &str = "\
 Examples:
   drivemon campaign run campaigns/smoke.toml -o smoke.parquet       killed? The same command goes on
   drivemon campaign run PLAN.toml --from 0 --to 5000 -o a.parquet   one machine's share
+  drivemon campaign run PLAN.toml -o all.parquet --engine ray       on all machines of a Ray cluster (--address auto)
+  drivemon campaign run PLAN.toml -o all.parquet --engine slurm | bash      as an array job of Slurm
   drivemon campaign merge a.parquet b.parquet -o all.parquet
   drivemon campaign table all.parquet --report table.html           what is detected, how small, how fast, how often wrongly
   drivemon campaign replay PLAN.toml --index 17 -o run17.csv.gz     that very run as a recording, with its lamps
@@ -63,6 +66,8 @@ struct RunArgs {
     /// Run after the last; all that are left when it is not given
     #[arg(long, value_name = "INDEX")]
     to: Option<u64>,
+    #[command(flatten)]
+    engine: EngineArgs,
 }
 
 /// Put shares of one campaign together.
@@ -131,6 +136,11 @@ impl RunArgs {
         let plan = Plan::read(&self.plan)?;
         read(&self.plan, &plan).writes("-o", &self.output).check()?;
         let range = self.range(plan.runs())?;
+        match self.engine.engine {
+            Engine::Here => {}
+            Engine::Ray => return self.engine.ray(&self.plan, &range, &self.output),
+            Engine::Slurm => return self.engine.slurm(&plan, &self.plan, &range, &self.output),
+        }
         let bar = progress::bar("campaign", range.end - range.start);
         let done = campaign::run_range(&plan, range, &self.output, &|runs| bar.inc(runs))?;
         bar.finish_and_clear();

@@ -36,8 +36,10 @@ pub struct Demo {
 
 /// What the demonstration measured.
 #[derive(Debug, Serialize, JsonSchema)]
-#[serde(transparent)]
-pub struct DemoJson(demo::Demo);
+pub struct DemoJson {
+    #[serde(flatten)]
+    demo: demo::Demo,
+}
 
 impl Answer for DemoJson {
     const FORMAT: &'static str = "demo/1";
@@ -57,9 +59,10 @@ impl Demo {
         let bar = progress::bar("simulating", demo::EXPERIMENTS as u64);
         let result = demo::run(&motor, self.seed, || bar.inc(1));
         bar.finish_and_clear();
-        let demo = DemoJson(result.map_err(|error| Failure::Usage(error.to_string()))?);
-        let show = || say!("{}", demo.0);
-        self.output.give(Subject::Demo, &demo, show)?;
+        let demo = result.map_err(|error| Failure::Usage(error.to_string()))?;
+        let json = DemoJson { demo };
+        let show = || say!("{}", json.demo);
+        self.output.give(Subject::Demo, &json, show)?;
         Ok(Finding::Nothing)
     }
 }

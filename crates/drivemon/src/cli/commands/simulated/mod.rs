@@ -2,6 +2,7 @@
 
 pub(crate) mod campaign;
 pub(crate) mod demo;
+mod engine;
 pub(crate) mod simulate;
 
 use report::json::Format;
