@@ -44,6 +44,9 @@ pub struct MotionFault {
     pub statistic: f64,
     /// The cause in words; absent where the motion ended before it could be told.
     pub cause: Option<String>,
+    /// The same cause, for a program.
+    #[serde(skip)]
+    pub named: Option<MotionCause>,
 }
 
 /// Judges in motion beside the windows at rest.
@@ -106,18 +109,20 @@ impl Follower {
         self.latest = Some(cycle);
     }
 
-    /// Takes the window that the sample ended.
-    pub fn window(&mut self, report: &Report) {
+    /// Takes the window that the sample ended. Of one that is not at rest: whether it was judged in motion.
+    pub fn window(&mut self, report: &Report) -> Option<bool> {
         self.at_rest = !is_motion(report.not_judged);
         if self.at_rest {
-            return;
+            return None;
         }
         self.summary.windows += 1;
-        match self.latest.as_ref().map(|cycle| cycle.not_judged) {
-            Some(None) => self.summary.judged += 1,
-            Some(Some(reason)) => self.count(reason),
-            None => self.count(NotInMotion::FluxUnknown),
+        let latest = self.latest.as_ref().map(|cycle| cycle.not_judged);
+        let reason = latest.unwrap_or(Some(NotInMotion::FluxUnknown));
+        match reason {
+            None => self.summary.judged += 1,
+            Some(reason) => self.count(reason),
         }
+        Some(reason.is_none())
     }
 
     fn count(&mut self, reason: NotInMotion) {
@@ -143,6 +148,7 @@ impl Follower {
                     raised_s: time(alarm.raised_sample),
                     statistic: f64::from(alarm.statistic),
                     cause: None,
+                    named: None,
                 });
             }
             return;
@@ -150,6 +156,7 @@ impl Follower {
         if let Some(fault) = self.summary.alarms.last_mut().filter(|_| self.in_motion) {
             fault.statistic = f64::from(alarm.statistic);
             fault.cause = Some(motion_cause(cause));
+            fault.named = Some(cause);
         }
     }
 

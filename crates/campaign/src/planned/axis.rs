@@ -35,10 +35,12 @@ pub enum Axis {
     Ramp,
     /// Supply frequency after the step, Hz.
     FrequencyStepTo,
+    /// How long a cycle of the load takes, s: half of it before the step, half after.
+    LoadCycle,
 }
 
 /// Number of axes.
-pub const AXES: usize = 15;
+pub const AXES: usize = 16;
 
 /// Axes that every plan draws from one stream of random numbers; those that came later have another, so that the runs of a
 /// plan which does not name them stay what they were.
@@ -157,6 +159,12 @@ pub(crate) const DESCRIBED: [Described; AXES] = [
         Axis::FrequencyStepTo,
         "frequency_step_to_hz",
         Bounds::between(1.0, 400.0, "Hz"),
+        f64::NAN,
+    ),
+    described(
+        Axis::LoadCycle,
+        "load_cycle_s",
+        Bounds::between(0.02, 60.0, "s"),
         f64::NAN,
     ),
 ];

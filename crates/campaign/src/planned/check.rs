@@ -36,6 +36,12 @@ pub(crate) fn block(section: &Section<'_>, block: &Block, motors: &[MotorPair]) 
             "is a fault where load_kind = \"friction\", which says that the load never changes: use \"Bl\", or \"free\"",
         );
     }
+    if section.has("load_cycle_s") && !has_steps {
+        section.report(
+            "load_cycle_s",
+            "goes between two loads: add load_step_to_percent",
+        );
+    }
     if block.cases.is_empty() && section.has("faulty_s") {
         section.report(
             "faulty_s",

@@ -56,6 +56,8 @@ pub struct Block {
     pub load: LoadKnowledge,
     /// At rest, switched on at t = 0, or running.
     pub start: Start,
+    /// Whether FAULT in motion counts too, as `drivemon monitor` judges; the board judges at rest alone.
+    pub in_motion: bool,
     /// Healthy time before the fault, or altogether, s.
     pub healthy_s: f64,
     /// Time with the fault, s.

@@ -159,6 +159,7 @@ fn block_values(section: &Section<'_>, motors: &[MotorPair]) -> Option<Block> {
     let name = section.text("name", "what this block is called");
     let load = section.choice("load_kind", &LOADS);
     let start = section.choice_or("start", &STARTS, Start::Running);
+    let in_motion = section.flag_or("in_motion", false);
     let healthy = section.number("healthy_s", &SECONDS, "healthy time of a run");
     let faulty = section.number_or("faulty_s", &SECONDS, 1.0);
     let draws = section.optional_number("draws", &REPEATS);
@@ -178,6 +179,7 @@ fn block_values(section: &Section<'_>, motors: &[MotorPair]) -> Option<Block> {
         name: name?,
         load: load?,
         start: start?,
+        in_motion: in_motion?,
         healthy_s: healthy?,
         faulty_s: faulty?,
         grids: grids.try_into().ok()?,

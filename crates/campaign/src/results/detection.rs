@@ -73,6 +73,8 @@ pub struct Size {
     pub change_percent: f64,
     /// Runs with FAULT after the fault.
     pub detected: Share,
+    /// Of these, runs in which FAULT came in motion first.
+    pub found_in_motion: u64,
     /// Probability of that, at least, with 95 % confidence.
     pub probability_at_least: f64,
     /// Median delay, s.
@@ -216,6 +218,7 @@ fn size(change_percent: f64, rows: &[&Row]) -> Size {
     Size {
         change_percent,
         detected,
+        found_in_motion: found.iter().filter(|row| row.found_in_motion).count() as u64,
         probability_at_least: detected.at_least(),
         delay_median_s: quantile(&mut delays, 0.5),
         delay_95_s: quantile(&mut delays, 0.95),

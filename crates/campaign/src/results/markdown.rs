@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use crate::planned::fault::FaultKind;
 use crate::results::detection::{Detection, Size, TOLD_APART};
-use crate::results::print::{named, percent, size_of};
+use crate::results::print::{in_motion, named, percent, size_of};
 use crate::results::table::Table;
 
 /// Alarms that are listed one by one.
@@ -75,7 +75,11 @@ fn healthy(page: &mut String, table: &Table) -> std::fmt::Result {
         page,
         "\nAltogether {} healthy windows were judged, FAULT was lit in {}.",
         table.healthy_windows, table.fault_windows
-    )
+    )?;
+    match in_motion(table) {
+        Some(moved) => writeln!(page, "{moved}."),
+        None => Ok(()),
+    }
 }
 
 fn alarms(page: &mut String, table: &Table) -> std::fmt::Result {

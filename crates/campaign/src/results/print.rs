@@ -5,7 +5,7 @@ use std::fmt::{Display, Formatter, Result};
 use crate::results::detection::{Detection, Direction, Size};
 use crate::results::groups::Named;
 use crate::results::statistics::Share;
-use crate::results::table::Table;
+use crate::results::table::{Healthy, Table};
 
 /// More alarms than this are left to the JSON.
 const MOST_ALARMS: usize = 20;
@@ -49,6 +49,9 @@ fn healthy(f: &mut Formatter<'_>, table: &Table) -> Result {
             100.0 * row.fault_run_probability_at_most
         )?;
     }
+    if let Some(moved) = in_motion(table) {
+        writeln!(f, "  {moved}")?;
+    }
     if !table.causes.is_empty() {
         writeln!(
             f,
@@ -76,6 +79,16 @@ fn healthy(f: &mut Formatter<'_>, table: &Table) -> Result {
         writeln!(f, "  ... and {more} more runs (--json FILE has them all)")?;
     }
     Ok(())
+}
+
+/// What came of the windows that were not at rest, where the plan asks for them.
+pub(crate) fn in_motion(table: &Table) -> Option<String> {
+    let sum = |of: fn(&Healthy) -> u64| table.healthy.iter().map(of).sum::<u64>();
+    let moved = sum(|row| row.moved_windows);
+    let judged = sum(|row| row.motion_judged_windows);
+    (moved > 0).then(|| {
+        format!("{moved} windows were not at rest; {judged} of them were judged in motion")
+    })
 }
 
 fn detection(f: &mut Formatter<'_>, table: &Table) -> Result {

@@ -44,7 +44,11 @@ pub struct Healthy {
     pub block: String,
     /// Windows judged.
     pub judged_windows: u64,
-    /// Windows with FAULT lit.
+    /// Windows that were not at rest; 0 where the plan does not ask for them.
+    pub moved_windows: u64,
+    /// Of these judged in motion, among those judged.
+    pub motion_judged_windows: u64,
+    /// Windows with FAULT lit, and alarms in motion.
     pub fault_windows: u64,
     /// Runs with such windows.
     pub fault_runs: Share,
@@ -115,6 +119,8 @@ fn healthy(rows: &[Row]) -> Vec<Healthy> {
             motor: group[0].motor.clone(),
             block: group[0].block.clone(),
             judged_windows: sum(|row| row.healthy_judged_windows),
+            moved_windows: sum(|row| row.moved_windows),
+            motion_judged_windows: sum(|row| row.motion_judged_windows),
             fault_windows: sum(|row| row.healthy_fault_windows),
             fault_runs,
             fault_run_probability_at_most: fault_runs.at_most(),
@@ -175,6 +181,9 @@ fn beyond_the_board(row: &Row) -> String {
     }
     if row.frequency_step_to_hz > 0.0 {
         more += &format!(", to {:.1} Hz", row.frequency_step_to_hz);
+    }
+    if row.load_cycle_s > 0.0 {
+        more += &format!(", load in cycles of {:.2} s", row.load_cycle_s);
     }
     if row.ramp_s > 0.0 {
         more += &format!(", within {:.1} s", row.ramp_s);

@@ -1,10 +1,11 @@
 //! What a stream of reports amounts to: the only place of a campaign that looks into the monitor's answers.
 
-use monitor::{Lamp, Lamps, NotJudged, Report};
+use monitor::{Channel, Lamp, Lamps, NotJudged, Phase, Report, Suspect};
+use motion::MotionCause;
 
 use crate::planned::fault::FaultKind;
 use replay::causes::{self, Candidate};
-use replay::words;
+use replay::{MotionFault, words};
 
 /// Probabilities closer than this are equal: the core computes them in single precision.
 const EQUAL: f64 = 1e-3;
@@ -28,6 +29,14 @@ pub struct Outcome {
     pub delay_s: Option<f64>,
     /// Whether FAULT was lit at the end.
     pub lit_at_end: bool,
+    /// Windows that were left to motion.
+    pub moved: u32,
+    /// Of these judged there.
+    pub judged_in_motion: u32,
+    /// What was named in motion, where FAULT came there first.
+    motion_cause: Option<MotionCause>,
+    /// Whether FAULT came in motion first.
+    pub found_in_motion: bool,
     /// Lamps seen while the motor was healthy, RUN apart.
     pub healthy_lamps: LampsSeen,
     /// Lamps seen with the fault.
@@ -83,6 +92,39 @@ impl Outcome {
         }
     }
 
+    /// Adds a window that was left to motion, and whether it was judged there.
+    pub fn take_moved(&mut self, t: f64, fault_from_s: f64, judged: bool) {
+        self.moved += 1;
+        let judged = u32::from(judged);
+        self.judged_in_motion += judged;
+        self.judged += judged;
+        self.healthy_judged += if t < fault_from_s { judged } else { 0 };
+    }
+
+    /// Adds the alarms that came in motion; call it last. One that came before the fault stays on.
+    pub fn take_alarms(&mut self, fault_from_s: f64, alarms: &[MotionFault]) {
+        let (early, late): (Vec<_>, Vec<_>) = alarms
+            .iter()
+            .partition(|alarm| alarm.raised_s < fault_from_s);
+        if let Some(first) = early.first() {
+            self.healthy_fault += early.len() as u32;
+            let at_rest = self.first_false_s.unwrap_or(f64::INFINITY);
+            self.first_false_s = Some(first.raised_s.min(at_rest));
+            self.lit_before = true;
+            self.delay_s = None;
+            return;
+        }
+        let Some(first) = late.first().filter(|_| !self.lit_before) else {
+            return;
+        };
+        let delay_s = first.raised_s - fault_from_s;
+        if self.delay_s.is_none_or(|at_rest| delay_s < at_rest) {
+            self.delay_s = Some(delay_s);
+            self.found_in_motion = true;
+            self.motion_cause = first.named;
+        }
+    }
+
     fn note_judgement(&mut self, healthy: bool, not_judged: Option<NotJudged>) {
         let Some(reason) = not_judged else {
             self.judged += 1;
@@ -103,6 +145,9 @@ impl Outcome {
 
     /// What the monitor said last, beside the fault that was there.
     pub fn answer(&self, truth: Option<&FaultKind>) -> Answer {
+        if let Some(cause) = self.motion_cause {
+            return answer_in_motion(cause, truth);
+        }
         let causes = &self.causes;
         let is_right = |cause: &Candidate| truth.is_some_and(|kind| kind.is_named_by(cause.fault));
         let largest = |right: bool| {
@@ -128,6 +173,24 @@ impl Outcome {
             name_is_right: largest(true) > largest(false) + EQUAL,
             truth_is_named,
         }
+    }
+}
+
+/// What was named in motion: one cause, or none of a size that occurs.
+fn answer_in_motion(cause: MotionCause, truth: Option<&FaultKind>) -> Answer {
+    let suspect = match cause {
+        MotionCause::Departure(cause) => Suspect::Cause(cause),
+        MotionCause::Dead(finding) => Suspect::Channel(Channel::of(finding)),
+        MotionCause::Untold => Suspect::Unknown,
+    };
+    let right = truth.is_some_and(|kind| kind.is_named_by(suspect.fault()));
+    Answer {
+        named: suspect.fault().name().to_owned(),
+        phase: suspect.phase().map_or("", Phase::letter).to_owned(),
+        probability: 1.0,
+        truth: if right { 1.0 } else { 0.0 },
+        name_is_right: right,
+        truth_is_named: right,
     }
 }
 

@@ -55,6 +55,8 @@ pub struct Row {
     pub ramp_s: f64,
     /// Supply frequency after the step, Hz.
     pub frequency_step_to_hz: f64,
+    /// How long a cycle of the load took, s.
+    pub load_cycle_s: f64,
     /// Why the motor cannot run under these conditions; empty where it ran.
     pub not_run: String,
     /// Time of the fault, s.
@@ -67,6 +69,12 @@ pub struct Row {
     pub healthy_judged_windows: u32,
     /// Windows with FAULT lit while healthy.
     pub healthy_fault_windows: u32,
+    /// Windows that were not at rest; 0 where the plan does not ask for them.
+    pub moved_windows: u32,
+    /// Of these judged in motion; they count as judged.
+    pub motion_judged_windows: u32,
+    /// Whether FAULT came in motion.
+    pub found_in_motion: bool,
     /// Time of the first of them, s.
     pub first_false_s: f64,
     /// The conditions without any single one of which FAULT stays dark on the healthy motor; empty without FAULT.
@@ -172,6 +180,7 @@ fn conditions(run: &Run<'_>) -> Row {
         backwards: of(Axis::Backwards).round(),
         ramp_s: of(Axis::Ramp),
         frequency_step_to_hz: of(Axis::FrequencyStepTo),
+        load_cycle_s: of(Axis::LoadCycle),
         fault_from_s: if case.is_some() {
             run.fault_from_s
         } else {
@@ -191,6 +200,9 @@ fn with_outcome(row: Row, run: &Run<'_>, outcome: &Outcome) -> Row {
         judged_windows: outcome.judged,
         healthy_judged_windows: outcome.healthy_judged,
         healthy_fault_windows: outcome.healthy_fault,
+        moved_windows: outcome.moved,
+        motion_judged_windows: outcome.judged_in_motion,
+        found_in_motion: outcome.found_in_motion,
         first_false_s: outcome.first_false_s.unwrap_or(f64::NAN),
         false_cause: match outcome.healthy_fault {
             0 => String::new(),

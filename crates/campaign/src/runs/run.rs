@@ -15,6 +15,7 @@ use twox_hash::XxHash64;
 use crate::planned::axis::{Axis, Conditions, FIRST_STREAM};
 use crate::planned::plan::{LoadKnowledge, Place, Plan};
 use crate::runs::outcome::Outcome;
+use replay::{Follower, MotionSummary};
 use scenario::simulate::{Measured, Simulation};
 use scenario::{
     Interpolation, Load, LoadSpec, Piecewise, Profile, Scenario, SensorSpec, SpeedSensor, Start,
@@ -241,7 +242,9 @@ impl<'p> Run<'p> {
             active,
         };
         let (from_s, second) = (self.step_time(0), torque(step_to));
+        let cycle_s = self.conditions.of(Axis::LoadCycle);
         let (points, between) = match self.ramp_s() > 0.0 {
+            _ if cycle_s > 0.0 => (self.strokes(first, second, cycle_s), Interpolation::Linear),
             true => (
                 vec![
                     (0.0, first),
@@ -259,6 +262,28 @@ impl<'p> Run<'p> {
             other,
             ..LoadSpec::default()
         }
+    }
+
+    /// Load of a press or a crane: half of each cycle at one torque, half at the other, with flanks as long as a step takes,
+    /// a hundredth of the cycle at least.
+    fn strokes(&self, first: f64, second: f64, cycle_s: f64) -> Vec<(f64, f64)> {
+        let flank_s = self.ramp_s().clamp(0.01 * cycle_s, 0.4 * cycle_s);
+        let begins = self.step_time(0) % cycle_s;
+        let strokes = (self.duration_s / cycle_s).ceil() as usize;
+        let stroke = |k: usize| {
+            let up = begins + k as f64 * cycle_s;
+            let down = up + 0.5 * cycle_s;
+            [
+                (up, first),
+                (up + flank_s, second),
+                (down, second),
+                (down + flank_s, first),
+            ]
+        };
+        let all = (0..strokes).flat_map(stroke);
+        std::iter::once((0.0, first))
+            .chain(all.filter(|(t, _)| *t > 0.0))
+            .collect()
     }
 
     fn ramp_s(&self) -> f64 {
@@ -288,17 +313,22 @@ impl<'p> Run<'p> {
         }
     }
 
-    /// Simulates the run and replays it through the core in ADC codes; `each` sees every report with its time.
+    /// Simulates the run and replays it through the core in ADC codes; `each` sees every report with its time, and whether a
+    /// window that is left to motion was judged there. Returns what came in motion, where the plan asks for it.
     ///
     /// # Errors
     /// Why the motor cannot run under these conditions, in words.
-    pub fn replay(&self, mut each: impl FnMut(f64, &Report)) -> Result<(), String> {
+    pub fn replay(
+        &self,
+        mut each: impl FnMut(f64, &Report, Option<bool>),
+    ) -> Result<MotionSummary, String> {
         let simulation = Simulation::new(&self.scenario()).map_err(|error| error.to_string())?;
         let t_sample = 1.0 / self.sample_rate_hz();
         let config = MonitorConfig::from_motor_file(&self.monitor_file(), t_sample)
             .map_err(|error| error.to_string())?;
         let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
         let mut state = MonitorState::default();
+        let mut follower = self.place.block.in_motion.then(|| Follower::new(&monitor));
         for sample in simulation {
             let shown = raw(&sample.measured);
             let shown = if self.is_backwards() {
@@ -306,11 +336,18 @@ impl<'p> Run<'p> {
             } else {
                 shown
             };
-            if let Some(report) = monitor.update_raw(&mut state, &shown) {
-                each(sample.t, &report);
+            let shown = monitor.config().converter.convert(&shown);
+            let report = monitor.update(&mut state, &shown);
+            if let Some(follower) = &mut follower {
+                follower.update(sample.t, &shown, &state);
+            }
+            if let Some(report) = report {
+                let follower = follower.as_mut();
+                let moved = follower.and_then(|follower| follower.window(&report));
+                each(sample.t, &report, moved);
             }
         }
-        Ok(())
+        Ok(follower.map_or_else(MotionSummary::default, Follower::finish))
     }
 
     /// What the core showed.
@@ -319,7 +356,13 @@ impl<'p> Run<'p> {
     /// Why the motor cannot run under these conditions, in words.
     pub fn outcome(&self) -> Result<Outcome, String> {
         let mut outcome = Outcome::default();
-        self.replay(|t, report| outcome.take(t, self.fault_from_s, report))?;
+        let motion = self.replay(|t, report, moved| {
+            outcome.take(t, self.fault_from_s, report);
+            if let Some(judged) = moved {
+                outcome.take_moved(t, self.fault_from_s, judged);
+            }
+        })?;
+        outcome.take_alarms(self.fault_from_s, &motion.alarms);
         Ok(outcome)
     }
 }

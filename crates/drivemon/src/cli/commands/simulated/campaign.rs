@@ -249,9 +249,11 @@ impl Replay {
 
     fn show(&self, run: &Run<'_>) -> Result<(), Failure> {
         let mut timeline = Timeline::default();
-        run.replay(|t, report| timeline.add(t, report))
+        let motion = run
+            .replay(|t, report, _| timeline.add(t, report))
             .map_err(Failure::Usage)?;
         timeline.finish();
+        timeline.motion = motion;
         print_run(run);
         monitor::print_lamps(&timeline);
         monitor::print_windows(&timeline);
