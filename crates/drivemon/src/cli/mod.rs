@@ -35,6 +35,7 @@ First steps:
   drivemon compare rec.csv.gz --motor motor.toml       where the model fails
   drivemon explain rec.csv.gz --motor motor.toml       which physical effect it misses
   drivemon adopt EFFECT rec.csv.gz --motor motor.toml -o better.toml
+  drivemon export better.toml --to python              the model in another language: Python, C, MATLAB, Modelica, FMU
   drivemon calibrate healthy.csv.gz --motor motor.toml -o calibrated.toml
   drivemon batch DIR --motor-map map.toml -o out.parquet   many recordings, one row each
   drivemon panel                                       the lamps in a browser, on a simulated motor
@@ -55,6 +56,7 @@ enum Command {
     Compare(commands::study::compare::Compare),
     Explain(commands::study::explain::Explain),
     Adopt(commands::study::adopt::Adopt),
+    Export(commands::export::Export),
     Campaign(commands::simulated::campaign::Campaign),
     Calibrate(commands::calibrate::Calibrate),
     Check(commands::check::Check),
@@ -88,6 +90,7 @@ impl Cli {
             Command::Compare(compare) => compare.run(),
             Command::Explain(explain) => explain.run(),
             Command::Adopt(adopt) => adopt.run(),
+            Command::Export(export) => export.run(),
             Command::Campaign(campaign) => campaign.run(),
             Command::Calibrate(calibrate) => calibrate.run(),
             Command::Check(check) => check.run(),

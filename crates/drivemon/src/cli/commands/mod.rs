@@ -5,6 +5,7 @@ pub(crate) mod board;
 pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod completions;
+pub(crate) mod export;
 pub(crate) mod flash;
 pub(crate) mod live;
 pub(crate) mod monitor;

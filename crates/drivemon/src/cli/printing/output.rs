@@ -125,7 +125,12 @@ pub(crate) fn text_of(value: &impl Answer) -> Result<String, Failure> {
 
 /// Writes a text file, whole or not at all.
 pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
-    formats::write_whole(path, |file| file.write_all(text.as_bytes()))
+    write_bytes(path, text.as_bytes())
+}
+
+/// Writes a file, whole or not at all.
+pub(crate) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    formats::write_whole(path, |file| file.write_all(bytes))
         .map_err(|error| cannot_write(path, error))
 }
 
