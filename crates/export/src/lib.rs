@@ -50,6 +50,21 @@ pub enum ExportError {
          give stator_leakage_henry and rotor_leakage_henry a part of the leakage each"
     )]
     NoLeakage,
+    /// An archive that cannot be packed.
+    #[error("the archive cannot be packed: {0}")]
+    Archive(String),
+    /// What a language cannot hold.
+    #[error(
+        "effect `{effect}` cannot be written for {language}: {reason}; export the model without it: --without {effect}"
+    )]
+    Language {
+        /// The effect.
+        effect: String,
+        /// The language.
+        language: &'static str,
+        /// Why.
+        reason: &'static str,
+    },
     /// A parameter that is no number.
     #[error(
         "parameter `{parameter}` is infinite in this motor file: give it a finite value, or leave its effect out with --without"

@@ -5,14 +5,14 @@ A dynamic model written by drivemon @VERSION@ from @SOURCE@.
 Space vectors are amplitude-invariant, in the frame of the stator; all units are SI. Voltages, currents and speed are what the
 instruments show, where the motor file has effects on instruments. Nothing but Python's own library is needed:
 
-    import @NAME@ as motor
+    import @NAME@
 
-    p, x = motor.Parameters(), motor.START
+    p, x = @NAME@.Parameters(), @NAME@.START
     for k in range(5000):
-        t = k * motor.STEP_S
+        t = k * @NAME@.STEP_S
         u = (...)                                   # as in INPUTS: volts of the phases, load torque, supply frequency
-        i_a, i_b, i_c, speed, angle, torque = motor.outputs(t, x, u, p)
-        x = motor.step(t, x, u, motor.STEP_S, p)    # a classical Runge-Kutta step, u held
+        i_a, i_b, i_c, speed, angle, torque = @NAME@.outputs(t, x, u, p)
+        x = @NAME@.step(t, x, u, @NAME@.STEP_S, p)    # a classical Runge-Kutta step, u held
 
 As a program it reads a table of inputs with their time and prints the outputs: python3 @NAME@.py < inputs.csv > outputs.csv
 """

@@ -167,12 +167,16 @@ fn air_gap_flux(
     let rated = body.name("psi_rated", at.rated.flux());
     let flux = body.name("psi_m", &drive * linear);
     body.repeat(ROUNDS, |body| {
-        let x = body.name("x", &flux / &rated);
-        let (mut f, mut slope) = (number(1.0), number(0.0));
+        let x = body.name("flux_over_rated", &flux / &rated);
+        let mut factor: Option<(Expr, Expr)> = None;
         for part in parts.with(Hook::Magnetizing) {
             let (g, dg) = part.equations().magnetizing(&part.own, body, &x);
-            (f, slope) = (f + g - 1.0, slope + dg);
+            factor = Some(match factor {
+                None => (g, dg),
+                Some((f, slope)) => (f + g - 1.0, slope + dg),
+            });
         }
+        let (f, slope) = factor.unwrap_or((number(1.0), number(0.0)));
         let f = body.name("factor", f);
         let excess = &flux * (admittance + &f / l_m) - &drive;
         let gradient = admittance + (f + &flux * slope / &rated) / l_m;

@@ -1,6 +1,9 @@
 //! One printer for each language.
 
+mod c;
+mod fmu;
 mod infix;
+mod matlab;
 mod page;
 mod python;
 
@@ -12,6 +15,12 @@ use page::harmless;
 pub enum Language {
     /// Python without libraries.
     Python,
+    /// C99: a source and a header.
+    C,
+    /// MATLAB and Octave.
+    Matlab,
+    /// A functional mock-up unit.
+    Fmu,
 }
 
 impl Language {
@@ -19,12 +28,18 @@ impl Language {
     pub fn ending(self) -> &'static str {
         match self {
             Language::Python => "py",
+            Language::C => "c",
+            Language::Matlab => "m",
+            Language::Fmu => "fmu",
         }
     }
 
     /// How files beside it end, in the order of [`files`].
     pub fn beside(self) -> &'static [&'static str] {
-        &[]
+        match self {
+            Language::C => &["h"],
+            _ => &[],
+        }
     }
 }
 
@@ -68,6 +83,9 @@ pub fn files(
 ) -> Result<Vec<File>, crate::ExportError> {
     Ok(match language {
         Language::Python => python::files(model, job),
+        Language::C => c::files(model, job),
+        Language::Matlab => matlab::files(model, job),
+        Language::Fmu => fmu::files(model, job)?,
     })
 }
 

@@ -20,6 +20,11 @@ pub fn names(quantities: &[Quantity], around: &str) -> String {
     each(quantities, ", ", |q| format!("{around}{}{around}", q.name))
 }
 
+/// Names, with this between them.
+pub fn plain_names(quantities: &[Quantity], between: &str) -> String {
+    each(quantities, between, |q| q.name.clone())
+}
+
 /// Results of a section, each as `one` writes it, its number and its text given.
 pub fn results(
     syntax: &dyn Syntax,

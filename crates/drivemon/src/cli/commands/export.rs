@@ -44,12 +44,21 @@ Examples:
 enum To {
     /// One file of plain functions, without libraries
     Python,
+    /// C99: a source and a header
+    C,
+    /// A function file for MATLAB and Octave
+    Matlab,
+    /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange
+    Fmu,
 }
 
 impl To {
     fn language(self) -> Language {
         match self {
             To::Python => Language::Python,
+            To::C => Language::C,
+            To::Matlab => Language::Matlab,
+            To::Fmu => Language::Fmu,
         }
     }
 }
