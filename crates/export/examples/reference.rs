@@ -1,7 +1,8 @@
 //! Inputs of a start and what our own simulation makes of them, at full precision: what exported models are held against.
 //!
-//! Usage: `reference MOTOR.toml INPUTS.csv OUTPUTS.csv`. Both tables have a row every 100 us, the step of the simulation; inputs are held from row
-//! to row.
+//! Usage: `reference MOTOR.toml INPUTS.csv OUTPUTS.csv [smooth]`. The tables have a row every 100 us, the step of the simulation; inputs are held from
+//! row to row, and the load comes after 60 % of the time. With `smooth` the inputs are what a solver with steps of its own sees: a voltage without
+//! steps and a constant load, sampled every 10 us, of which our simulation takes two in a step; outputs have a row every 20 us.
 
 use motor::MotorFile;
 use motor::dynamic::{clarke, phases};
@@ -13,17 +14,27 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Step, s.
-const STEP_S: f64 = export::model::STEP_S;
-/// Steps: 0.4 s.
-const STEPS: usize = 4000;
+/// Duration, s.
+const DURATION_S: f64 = 0.4;
+/// Time between samples that are held, and of a smooth supply, s.
+const HELD_S: f64 = export::model::STEP_S;
+const SMOOTH_S: f64 = 10e-6;
 /// Load from here on, share of the start.
 const LOADED_FROM: f64 = 0.6;
+/// Load of each kind of start, share of the rated torque.
+const LOAD: f64 = 0.8;
+const SMOOTH_LOAD: f64 = 0.2;
+/// Components of the supply: share of the rated voltage, order.
+const SUPPLY: [(f64, f64); 3] = [(1.0, 1.0), (0.02, -5.0), (0.01, -1.0)];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [motor, inputs, outputs] = arguments.as_slice() else {
-        return Err("usage: reference MOTOR.toml INPUTS.csv OUTPUTS.csv".into());
+    let (motor, inputs, outputs, between) = match arguments.as_slice() {
+        [motor, inputs, outputs] => (motor, inputs, outputs, Between::Held),
+        [motor, inputs, outputs, smooth] if smooth == "smooth" => {
+            (motor, inputs, outputs, Between::Smooth)
+        }
+        _ => return Err("usage: reference MOTOR.toml INPUTS.csv OUTPUTS.csv [smooth]".into()),
     };
     let file = MotorFile::read(motor)?;
     let rated = rated(&file);
@@ -33,52 +44,58 @@ fn main() -> Result<(), Box<dyn Error>> {
         rated,
         effects: from_motor_file(&file, motor)?,
     };
-    let (table, driven) = start(&plant);
+    let (table, driven) = start(&plant, between);
     std::fs::write(inputs, table)?;
-    let timeline = Arc::new(Timeline::constant(rated.omega_sync));
-    let shown = simulate(
-        &plant,
-        &Run {
-            inputs: &driven,
-            between: Between::Held,
-            speed: SpeedSource::Free,
-            timeline: &timeline,
-            running_at: None,
-            running_at_cuts: &[],
-            open: &[],
-        },
-    );
-    let mut table = "t,i_a,i_b,i_c,speed,angle\n".to_owned();
-    for (k, [a, b, c]) in shown.i_s_abc.iter().enumerate() {
-        let t = STEP_S * k as f64;
-        let (speed, angle) = (shown.omega_mech[k], shown.theta_mech[k]);
-        writeln!(table, "{t:?},{a:?},{b:?},{c:?},{speed:?},{angle:?}")?;
-    }
-    std::fs::write(outputs, table)?;
+    std::fs::write(outputs, shown(&plant, &driven, between)?)?;
     Ok(())
 }
 
-/// Rated voltage switched on a motor at rest, with a fifth harmonic and some unbalance; rated torque later. The table and the same as inputs of
-/// a simulation.
-fn start(plant: &Plant) -> (String, Inputs) {
+/// What the simulation makes of the inputs, as a table.
+fn shown(plant: &Plant, inputs: &Inputs, between: Between) -> Result<String, std::fmt::Error> {
+    let timeline = Arc::new(Timeline {
+        t_sample: inputs.t_sample,
+        ..Timeline::constant(plant.rated.omega_sync)
+    });
+    let run = Run {
+        inputs,
+        between,
+        speed: SpeedSource::Free,
+        timeline: &timeline,
+        running_at: None,
+        running_at_cuts: &[],
+        open: &[],
+    };
+    let shown = simulate(plant, &run);
+    let mut table = "t,i_a,i_b,i_c,speed,angle\n".to_owned();
+    for (k, [a, b, c]) in shown.i_s_abc.iter().enumerate() {
+        let t = inputs.t_sample * (k * between.stride()) as f64;
+        let (speed, angle) = (shown.omega_mech[k], shown.theta_mech[k]);
+        writeln!(table, "{t:?},{a:?},{b:?},{c:?},{speed:?},{angle:?}")?;
+    }
+    Ok(table)
+}
+
+/// Voltage switched on a motor at rest: as a table, and as inputs of a simulation.
+fn start(plant: &Plant, between: Between) -> (String, Inputs) {
     let rated = &plant.rated;
     let mut table = "t,u_a,u_b,u_c,tau_load,omega_sync\n".to_owned();
+    let (t_sample, load, from) = match between {
+        Between::Held => (HELD_S, LOAD, LOADED_FROM * DURATION_S),
+        Between::Smooth => (SMOOTH_S, SMOOTH_LOAD, 0.0),
+    };
     let mut inputs = Inputs {
-        t_sample: STEP_S,
+        t_sample,
         ..Inputs::default()
     };
-    for k in 0..=STEPS {
-        let t = STEP_S * k as f64;
-        let turned = |size: f64, order: f64| {
+    let steps = (DURATION_S / t_sample).round() as usize;
+    for k in 0..=steps {
+        let t = t_sample * k as f64;
+        let turned = |(size, order): (f64, f64)| {
             Complex64::from_polar(size * rated.voltage, order * rated.omega_sync * t)
         };
-        let u = phases(turned(1.0, 1.0) + turned(0.02, -5.0) + turned(0.01, -1.0));
-        let load = match k as f64 >= LOADED_FROM * STEPS as f64 {
-            true => 0.8 * rated.torque,
-            false => 0.0,
-        };
-        let [a, b, c] = u;
-        let omega = rated.omega_sync;
+        let u = phases(SUPPLY.into_iter().map(turned).sum());
+        let load = if t >= from { load * rated.torque } else { 0.0 };
+        let ([a, b, c], omega) = (u, rated.omega_sync);
         // A string takes whatever is written.
         let _ = writeln!(table, "{t:?},{a:?},{b:?},{c:?},{load:?},{omega:?}");
         inputs.u_s.push(clarke(u));

@@ -279,6 +279,12 @@ impl Builder {
             outputs: outputs(),
             derivatives: derivatives.unwrap_or_else(empty),
             shown: shown.unwrap_or_else(empty),
+            held_by: self
+                .parts
+                .with(Hook::HeldVoltage)
+                .map(|part| part.label.as_str())
+                .collect::<Vec<_>>()
+                .join(", "),
             held,
         };
         finite(model)
@@ -289,7 +295,9 @@ impl Builder {
         let inputs = inputs(&self.rated);
         let outputs = outputs();
         let quantities = self.states.iter().chain(&inputs).chain(&outputs);
-        let taken = quantities.map(|q| q.name.as_str());
+        let taken = quantities
+            .map(|q| q.name.as_str())
+            .chain(self.parameters.names());
         let tables = self.tables.iter().map(|table| table.name.as_str());
         let reserved = ["t", "h", "x", "u", "p"];
         let mut body = Body::new(taken.chain(tables).chain(HELD).chain(reserved));

@@ -81,6 +81,8 @@ pub struct Model {
     /// Stator voltage (alpha, beta) that is decided at the beginning of a step and added during it, V. [`Model::derivatives`] then takes it
     /// by the names [`HELD`].
     pub held: Option<Section>,
+    /// The effects that decide it.
+    pub held_by: String,
 }
 
 /// Names of the voltage that is decided once a step.

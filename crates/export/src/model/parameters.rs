@@ -33,6 +33,11 @@ impl Parameters {
         self.all
     }
 
+    /// Names in use.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
+    }
+
     /// Adds one, under a free name.
     fn add(&mut self, name: &str, value: f64, unit: &str, meaning: &str) -> Expr {
         let mut free = name.to_owned();

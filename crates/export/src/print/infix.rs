@@ -37,10 +37,12 @@ pub trait Syntax {
 }
 
 /// How tightly a text holds together.
+///
+/// A sign before a value stands beside no operator: Modelica does not take that.
+const SIGN: u8 = 0;
 const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
-const SIGN: u8 = 3;
-const VALUE: u8 = 4;
+const VALUE: u8 = 3;
 
 /// An expression as text.
 pub fn expression(syntax: &dyn Syntax, expr: &Expr) -> String {
@@ -65,7 +67,6 @@ fn written(syntax: &dyn Syntax, expr: &Expr) -> (String, u8) {
         Expr::Number(x) => (format!("{x:?}"), VALUE),
         Expr::Name(name) => (name.to_string(), VALUE),
         Expr::Parameter(name) => (syntax.parameter(name), VALUE),
-        // A sign first would stand beside an operator: it takes brackets of its own.
         Expr::Negative(a) => (format!("-{}", within(syntax, a, VALUE)), SIGN),
         Expr::Sum(a, b) => two(a, "+", b, SUM),
         Expr::Difference(a, b) => two(a, "-", b, SUM),

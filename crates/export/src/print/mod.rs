@@ -4,6 +4,7 @@ mod c;
 mod fmu;
 mod infix;
 mod matlab;
+mod modelica;
 mod page;
 mod python;
 
@@ -19,6 +20,8 @@ pub enum Language {
     C,
     /// MATLAB and Octave.
     Matlab,
+    /// Modelica.
+    Modelica,
     /// A functional mock-up unit.
     Fmu,
 }
@@ -30,6 +33,7 @@ impl Language {
             Language::Python => "py",
             Language::C => "c",
             Language::Matlab => "m",
+            Language::Modelica => "mo",
             Language::Fmu => "fmu",
         }
     }
@@ -85,6 +89,7 @@ pub fn files(
         Language::Python => python::files(model, job),
         Language::C => c::files(model, job),
         Language::Matlab => matlab::files(model, job),
+        Language::Modelica => modelica::files(model, job)?,
         Language::Fmu => fmu::files(model, job)?,
     })
 }

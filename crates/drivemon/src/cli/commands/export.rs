@@ -48,6 +48,8 @@ enum To {
     C,
     /// A function file for MATLAB and Octave
     Matlab,
+    /// A model of equations in Modelica
+    Modelica,
     /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange
     Fmu,
 }
@@ -58,6 +60,7 @@ impl To {
             To::Python => Language::Python,
             To::C => Language::C,
             To::Matlab => Language::Matlab,
+            To::Modelica => Language::Modelica,
             To::Fmu => Language::Fmu,
         }
     }
