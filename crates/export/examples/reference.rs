@@ -2,7 +2,7 @@
 //!
 //! Usage: `reference MOTOR.toml INPUTS.csv OUTPUTS.csv [smooth]`. The tables have a row every 100 us, the step of the simulation; inputs are held from
 //! row to row, and the load comes after 60 % of the time. With `smooth` the inputs are what a solver with steps of its own sees: a voltage without
-//! steps and a constant load, sampled every 10 us, of which our simulation takes two in a step; outputs have a row every 20 us.
+//! steps and a constant load, sampled every microsecond, of which our simulation takes two in a step.
 
 use motor::MotorFile;
 use motor::dynamic::{clarke, phases};
@@ -18,7 +18,9 @@ use std::sync::Arc;
 const DURATION_S: f64 = 0.4;
 /// Time between samples that are held, and of a smooth supply, s.
 const HELD_S: f64 = export::model::STEP_S;
-const SMOOTH_S: f64 = 10e-6;
+const SMOOTH_S: f64 = 1e-6;
+/// Smooth samples in a row of the tables.
+const SMOOTH_ROW: usize = 100;
 /// Load from here on, share of the start.
 const LOADED_FROM: f64 = 0.6;
 /// Load of each kind of start, share of the rated torque.
@@ -50,6 +52,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Samples of a row.
+fn row(between: Between) -> usize {
+    match between {
+        Between::Held => 1,
+        Between::Smooth => SMOOTH_ROW,
+    }
+}
+
 /// What the simulation makes of the inputs, as a table.
 fn shown(plant: &Plant, inputs: &Inputs, between: Between) -> Result<String, std::fmt::Error> {
     let timeline = Arc::new(Timeline {
@@ -67,7 +77,8 @@ fn shown(plant: &Plant, inputs: &Inputs, between: Between) -> Result<String, std
     };
     let shown = simulate(plant, &run);
     let mut table = "t,i_a,i_b,i_c,speed,angle\n".to_owned();
-    for (k, [a, b, c]) in shown.i_s_abc.iter().enumerate() {
+    let rows = shown.i_s_abc.iter().enumerate();
+    for (k, [a, b, c]) in rows.step_by(row(between) / between.stride()) {
         let t = inputs.t_sample * (k * between.stride()) as f64;
         let (speed, angle) = (shown.omega_mech[k], shown.theta_mech[k]);
         writeln!(table, "{t:?},{a:?},{b:?},{c:?},{speed:?},{angle:?}")?;
@@ -96,8 +107,10 @@ fn start(plant: &Plant, between: Between) -> (String, Inputs) {
         let u = phases(SUPPLY.into_iter().map(turned).sum());
         let load = if t >= from { load * rated.torque } else { 0.0 };
         let ([a, b, c], omega) = (u, rated.omega_sync);
-        // A string takes whatever is written.
-        let _ = writeln!(table, "{t:?},{a:?},{b:?},{c:?},{load:?},{omega:?}");
+        if k % row(between) == 0 {
+            // A string takes whatever is written.
+            let _ = writeln!(table, "{t:?},{a:?},{b:?},{c:?},{load:?},{omega:?}");
+        }
         inputs.u_s.push(clarke(u));
         inputs.tau_load.push(load);
     }

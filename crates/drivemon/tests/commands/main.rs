@@ -7,6 +7,7 @@ mod batch;
 mod calibrate;
 mod campaign;
 mod cli;
+mod export;
 mod flash;
 mod full_disk;
 mod import;

@@ -105,7 +105,8 @@ fn is_absent(config: &EffectConfig) -> bool {
     sizes.peek().is_some() && sizes.all(|size| size == 0.0)
 }
 
-fn check_without(configs: &[EffectConfig], without: &[String]) -> Result<(), ExportError> {
+/// Every name is that of an effect of the file.
+pub fn check_without(configs: &[EffectConfig], without: &[String]) -> Result<(), ExportError> {
     let names: BTreeSet<&str> = configs.iter().map(|c| c.effect.descriptor().name).collect();
     match without.iter().find(|name| !names.contains(name.as_str())) {
         None => Ok(()),
@@ -117,7 +118,7 @@ fn check_without(configs: &[EffectConfig], without: &[String]) -> Result<(), Exp
 }
 
 /// Name and form.
-fn label_of(config: &EffectConfig) -> String {
+pub fn label_of(config: &EffectConfig) -> String {
     let descriptor = config.effect.descriptor();
     match descriptor.form {
         "" => descriptor.name.to_owned(),

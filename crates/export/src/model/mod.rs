@@ -6,6 +6,8 @@ mod parameters;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use build::{check_without, label_of};
+
 pub use build::model_of;
 
 use crate::algebra::{Expr, Statement, Table};

@@ -3,6 +3,7 @@
 mod c;
 mod fmu;
 mod infix;
+mod libraries;
 mod matlab;
 mod modelica;
 mod page;
@@ -10,6 +11,8 @@ mod python;
 
 use crate::model::Model;
 use page::harmless;
+
+pub use libraries::{Library, parameters};
 
 /// What a model is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,13 +88,17 @@ pub fn files(
     language: Language,
     job: &Job<'_>,
 ) -> Result<Vec<File>, crate::ExportError> {
-    Ok(match language {
+    let mut files = match language {
         Language::Python => python::files(model, job),
         Language::C => c::files(model, job),
         Language::Matlab => matlab::files(model, job),
         Language::Modelica => modelica::files(model, job)?,
         Language::Fmu => fmu::files(model, job)?,
-    })
+    };
+    if let Some(first) = files.first_mut() {
+        first.remarks.splice(0..0, model.remarks.iter().cloned());
+    }
+    Ok(files)
 }
 
 /// Words that no language takes as a name.

@@ -4,8 +4,9 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use export::ExportError;
 use export::model::model_of;
-use export::print::{self, File, Job, Language};
+use export::print::{self, File, Job, Language, Library};
 use motor::MotorFile;
 
 use crate::cli::arguments::files::Files;
@@ -16,7 +17,8 @@ use crate::cli::printing::terminal::say;
 /// Write a motor with its adopted effects as a dynamic model in another language.
 ///
 /// The model has the equations of the simulation, effects of the motor file included: with the same inputs and the same step it does
-/// the same. An effect that a language cannot hold is an error that names it, never a poorer model.
+/// the same. An effect that a language cannot hold is an error that names it, never a poorer model. For motulator and
+/// gym-electric-motor, whose motors are linear, parameters are written by their names, and which effects are lost is said.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Export {
@@ -38,7 +40,11 @@ const EXAMPLES: &str = "\
 Examples:
   drivemon export motors/peer-2k2-saturating.toml --to python -o motor.py
   python3 motor.py < inputs.csv > outputs.csv          columns t, u_a, u_b, u_c, tau_load, omega_sync
-  drivemon export motor.toml --to c -o motor.c --without sensor-filter";
+  drivemon export motors/peer-2k2-saturating.toml --to fmu -o motor.fmu
+  drivemon export motor.toml --to c -o motor.c --without sensor-filter
+
+Inputs are phase voltages (V), load torque (N m) and the supply frequency (rad/s, needed by effects of slip and frequency).
+docs/export.md says what each language gets.";
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum To {
@@ -50,71 +56,106 @@ enum To {
     Matlab,
     /// A model of equations in Modelica
     Modelica,
-    /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange
+    /// A functional mock-up unit, FMI 2.0, for co-simulation and model exchange; compiled where there is a C compiler
     Fmu,
+    /// Parameters by motulator's names, a Python file
+    Motulator,
+    /// Parameters by gym-electric-motor's names, a Python file
+    GymElectricMotor,
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Model(Language),
+    Parameters(Library),
 }
 
 impl To {
-    fn language(self) -> Language {
+    fn kind(self) -> Kind {
         match self {
-            To::Python => Language::Python,
-            To::C => Language::C,
-            To::Matlab => Language::Matlab,
-            To::Modelica => Language::Modelica,
-            To::Fmu => Language::Fmu,
+            To::Python => Kind::Model(Language::Python),
+            To::C => Kind::Model(Language::C),
+            To::Matlab => Kind::Model(Language::Matlab),
+            To::Modelica => Kind::Model(Language::Modelica),
+            To::Fmu => Kind::Model(Language::Fmu),
+            To::Motulator => Kind::Parameters(Library::Motulator),
+            To::GymElectricMotor => Kind::Parameters(Library::GymElectricMotor),
         }
+    }
+}
+
+impl Kind {
+    fn ending(self) -> &'static str {
+        match self {
+            Kind::Model(language) => language.ending(),
+            Kind::Parameters(_) => "py",
+        }
+    }
+
+    /// The files that are written: the named one, and those beside it.
+    fn written(self, path: &Path) -> Vec<PathBuf> {
+        let beside = match self {
+            Kind::Model(language) => language.beside(),
+            Kind::Parameters(_) => &[],
+        };
+        let beside = beside.iter().map(|ending| path.with_extension(ending));
+        std::iter::once(path.to_owned()).chain(beside).collect()
     }
 }
 
 impl Export {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        let language = self.to.language();
-        let path = self.path(language)?;
-        let files = written(&path, language);
+        let kind = self.to.kind();
+        let path = self.path(kind.ending())?;
+        let files = kind.written(&path);
         let check = Files::default().reads("the motor file", &self.motor);
         let check = files
             .iter()
             .fold(check, |check, path| check.writes("-o", path));
         check.check()?;
         let motor = MotorFile::read(&self.motor)?;
-        let label = self.motor.display().to_string();
-        let model =
-            model_of(&motor, &label, &self.without).map_err(|error| self.refused(&error))?;
-        let job = Job {
-            name: stem(&path),
-            source: &label,
-            version: env!("CARGO_PKG_VERSION"),
-        };
-        let made = print::files(&model, language, &job).map_err(|error| self.refused(&error))?;
+        let made = self
+            .made(kind, &motor, stem(&path))
+            .map_err(|error| Failure::Usage(format!("{}: {error}", self.motor.display())))?;
         for (path, file) in files.iter().zip(&made) {
             write_bytes(path, &file.content)?;
         }
-        self.tell(&files, &made, &model.remarks);
-        Ok(Finding::Nothing)
-    }
-
-    fn refused(&self, error: &export::ExportError) -> Failure {
-        Failure::Usage(format!("{}: {error}", self.motor.display()))
-    }
-
-    fn tell(&self, files: &[PathBuf], made: &[File], remarks: &[String]) {
         let names: Vec<_> = files
             .iter()
             .map(|path| path.display().to_string())
             .collect();
         say!("{}: written", names.join(", "));
-        for remark in remarks
-            .iter()
-            .chain(made.iter().flat_map(|file| &file.remarks))
-        {
+        for remark in made.iter().flat_map(|file| &file.remarks) {
             say!("  {remark}");
+        }
+        Ok(Finding::Nothing)
+    }
+
+    fn made(&self, kind: Kind, motor: &MotorFile, name: String) -> Result<Vec<File>, ExportError> {
+        let label = self.motor.display().to_string();
+        let job = Job {
+            name,
+            source: &label,
+            version: env!("CARGO_PKG_VERSION"),
+        };
+        match kind {
+            Kind::Model(language) => {
+                let model = model_of(motor, &label, &self.without)?;
+                print::files(&model, language, &job)
+            }
+            Kind::Parameters(library) => Ok(vec![print::parameters(
+                motor,
+                library,
+                &self.without,
+                &job,
+            )?]),
         }
     }
 
     /// The file to write.
-    fn path(&self, language: Language) -> Result<PathBuf, Failure> {
-        let ending = language.ending();
+    fn path(&self, ending: &str) -> Result<PathBuf, Failure> {
         let path = match &self.output {
             Some(path) => path.clone(),
             None => PathBuf::from(format!(
@@ -132,8 +173,8 @@ impl Export {
         match name == plain {
             true => Ok(path),
             false => Err(Failure::Usage(format!(
-                "-o {}: the file's name becomes the model's, which has letters, digits and underlines only and is no word of a language; \
-                 call it {plain}.{ending}",
+                "-o {}: the file's name becomes the model's, which has letters, digits and underlines only and is no word of a \
+                 language; call it {plain}.{ending}",
                 path.display()
             ))),
         }
@@ -145,13 +186,4 @@ fn stem(path: &Path) -> String {
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned()
-}
-
-/// The files that a language writes: the named one, and those beside it.
-fn written(path: &Path, language: Language) -> Vec<PathBuf> {
-    let beside = language
-        .beside()
-        .iter()
-        .map(|ending| path.with_extension(ending));
-    std::iter::once(path.to_owned()).chain(beside).collect()
 }
