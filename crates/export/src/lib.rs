@@ -16,12 +16,13 @@ pub enum ExportError {
     File(#[from] motor::FileError),
     /// An effect whose equations are not written for other languages.
     #[error(
-        "effect `{effect}` cannot be exported: it works on whole signals of an instrument and has no equation at one instant; \
-         export the model without it: --without {effect}"
+        "effect `{effect}` cannot be exported: {reason}; export the model without it: --without {effect}"
     )]
     NoEquations {
         /// The effect.
         effect: String,
+        /// Why.
+        reason: &'static str,
     },
     /// A formula that is not understood.
     #[error(

@@ -232,9 +232,10 @@ fn c_does_what_the_simulation_does() {
             .output()
             .expect("cc");
         assert!(made.status.success(), "{}", stderr(&made));
+        let simulated = start(&folder);
         hold(
             &answer(&folder, &mut Command::new(folder.join("peer"))),
-            &start(&folder),
+            &simulated,
         );
     }
 }
@@ -245,7 +246,9 @@ fn an_fmu_has_its_description_and_sources_with_and_without_a_compiler() {
     let entries = || {
         let file = fs::File::open(folder.join("motor.fmu")).expect("an archive");
         let archive = zip::ZipArchive::new(file).expect("an archive");
-        let names = archive.file_names().map(|name| name.expect("a name").into_owned());
+        let names = archive
+            .file_names()
+            .map(|name| name.expect("a name").into_owned());
         names.collect::<Vec<String>>()
     };
     let sources = [

@@ -117,6 +117,17 @@ static ALL: &[(&str, &str, &(dyn Equations + Sync))] = &[
     ("speed-ripple", "", &readings::SpeedRipple),
 ];
 
+/// Effects that work on whole signals of an instrument: delays and filters.
+pub const OF_WHOLE_SIGNALS: [&str; 3] = ["sample-delay", "sensor-filter", "speed-delay"];
+
+/// Why an effect without equations has none.
+pub fn without_equations(effect: &str) -> &'static str {
+    match OF_WHOLE_SIGNALS.contains(&effect) {
+        true => "it works on whole signals of an instrument and has no equation at one instant",
+        false => "its equations are not written for other languages",
+    }
+}
+
 /// The equations of an effect of the library, `None` where there are none.
 pub fn of_library(config: &EffectConfig) -> Option<&'static (dyn Equations + Sync)> {
     let descriptor = config.effect.descriptor();

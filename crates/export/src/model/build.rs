@@ -4,7 +4,7 @@ use super::parameters::{Constants, Parameters};
 use super::{HELD, MOTOR_STATES, Model, Quantity, Section, assemble};
 use crate::ExportError;
 use crate::algebra::{Body, Expr, Table, Vector, needed};
-use crate::effects::{Equations, Expression, Own, of_curve, of_library};
+use crate::effects::{Equations, Expression, Own, of_curve, of_library, without_equations};
 use motor::MotorFile;
 use motor::effect::curve::knots_and_values;
 use motor::effect::{EffectConfig, Hook, Rated, Role, from_motor_file, rated};
@@ -182,6 +182,7 @@ impl Builder {
         if descriptor.name != motor::effect::expression::NAME {
             return Err(ExportError::NoEquations {
                 effect: descriptor.name.to_owned(),
+                reason: without_equations(descriptor.name),
             });
         }
         let texts = config.effect.texts();

@@ -2,6 +2,7 @@
 
 use super::{HELD, Model, Section, model_of};
 use crate::algebra::{Expr, Values};
+use crate::effects::OF_WHOLE_SIGNALS;
 use motor::MotorFile;
 use motor::dynamic::{Dynamic, DynamicState, Flow, Hooks, Linear, clarke, phases};
 use motor::effect::curve::{Action, curve};
@@ -19,8 +20,6 @@ use std::sync::Arc;
 /// Points and states for each set of effects.
 const POINTS: usize = 12;
 const STATES: usize = 20;
-/// Effects without an equation at one instant.
-const OF_WHOLE_SIGNALS: [&str; 3] = ["sample-delay", "sensor-filter", "speed-delay"];
 
 fn motor_file() -> MotorFile {
     let mut file = MotorFile::read("../../motors/peer-2k2.toml").expect("a motor file");
