@@ -1,7 +1,7 @@
 //! The equations in their order: what `motor::dynamic` and the stack of effects compute at one instant.
 
-use super::build::{Part, Parts};
 use super::parameters::Constants;
+use super::parts::{Part, Parts};
 use crate::algebra::{Body, Expr, Function, Vector, clarke, number, phases};
 use crate::effects::{
     At, Flow, Given, Motor, Now, Rates, Shown, Terminal, Winding, linear_currents,

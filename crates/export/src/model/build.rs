@@ -1,6 +1,7 @@
 //! From a motor file to a model.
 
 use super::parameters::{Constants, Parameters};
+use super::parts::{Part, Parts, Source};
 use super::{HELD, MOTOR_STATES, Model, Quantity, Section, assemble};
 use crate::ExportError;
 use crate::algebra::{Body, Expr, Table, Vector, needed};
@@ -9,61 +10,6 @@ use motor::MotorFile;
 use motor::effect::curve::knots_and_values;
 use motor::effect::{EffectConfig, Hook, Rated, Role, from_motor_file, rated};
 use std::collections::BTreeSet;
-
-/// An effect of a model.
-pub struct Part {
-    /// What notes call it.
-    pub label: String,
-    /// Its place in the motor file.
-    pub number: usize,
-    /// Its parameters and states.
-    pub own: Own,
-    hooks: &'static [Hook],
-    source: Source,
-}
-
-enum Source {
-    Library(&'static (dyn Equations + Sync)),
-    File(Box<dyn Equations>),
-}
-
-impl Part {
-    /// Its equations.
-    pub fn equations(&self) -> &dyn Equations {
-        match &self.source {
-            Source::Library(equations) => *equations,
-            Source::File(equations) => &**equations,
-        }
-    }
-}
-
-/// The effects of a model.
-#[derive(Default)]
-pub struct Parts {
-    all: Vec<Part>,
-}
-
-impl Parts {
-    /// All in the order of the file.
-    pub fn all(&self) -> &[Part] {
-        &self.all
-    }
-
-    /// Those that take part at a hook outside of the motor, in the order of the file.
-    pub fn with_outer(&self, hook: Hook) -> impl Iterator<Item = &Part> {
-        self.all
-            .iter()
-            .filter(move |part| part.hooks.contains(&hook))
-    }
-
-    /// Those that take part at a hook inside of the motor: two masses split whatever torque the others leave on the shaft, so that
-    /// those with the fewest states come first.
-    pub fn with(&self, hook: Hook) -> impl Iterator<Item = &Part> {
-        let mut with: Vec<_> = self.with_outer(hook).collect();
-        with.sort_by_key(|part| part.own.extra.len());
-        with.into_iter()
-    }
-}
 
 /// The model of a motor file, without the effects named `without`.
 ///
@@ -158,7 +104,7 @@ impl Builder {
         };
         let part = Part {
             label: label_of(config),
-            number: self.parts.all.len(),
+            number: self.parts.all().len(),
             own: Own {
                 p,
                 extra: Vec::new(),
@@ -167,7 +113,7 @@ impl Builder {
             source,
         };
         let extra = self.add_states(part.equations());
-        self.parts.all.push(Part {
+        self.parts.push(Part {
             own: Own { extra, ..part.own },
             ..part
         });
@@ -234,62 +180,55 @@ impl Builder {
     }
 
     fn finish(self, file: &MotorFile) -> Result<Model, ExportError> {
-        let needs_leakage = self.parts.with(Hook::Magnetizing).next().is_some()
-            || self
-                .states
-                .iter()
-                .any(|state| state.name.starts_with("psi_cage"));
-        if needs_leakage && (file.parameters.l_ls == 0.0 || file.parameters.l_lr == 0.0) {
-            return Err(ExportError::NoLeakage);
-        }
+        self.check_leakage(file)?;
+        let (constants, parts) = (&self.constants, &self.parts);
         let held = self.section(|body| {
-            let instant = assemble::instant(body, &self.constants, &self.parts, None);
-            assemble::held(body, &self.parts, &instant)
+            let instant = assemble::instant(body, constants, parts, None);
+            assemble::held(body, parts, &instant)
         });
-        let added = held
-            .as_ref()
-            .map(|_| Vector::new(Expr::name(HELD[0]), Expr::name(HELD[1])));
+        let added = Vector::new(Expr::name(HELD[0]), Expr::name(HELD[1]));
+        let added = held.as_ref().map(|_| &added);
         let derivatives = self.section(|body| {
-            let instant = assemble::instant(body, &self.constants, &self.parts, added.as_ref());
-            Some(assemble::rates(
-                body,
-                &self.constants,
-                &self.parts,
-                &instant,
-            ))
+            let instant = assemble::instant(body, constants, parts, added);
+            Some(assemble::rates(body, constants, parts, &instant))
         });
         let shown = self.section(|body| {
-            let instant = assemble::instant(body, &self.constants, &self.parts, None);
-            Some(assemble::shown(
-                body,
-                &self.constants,
-                &self.parts,
-                &instant,
-            ))
+            let instant = assemble::instant(body, constants, parts, None);
+            Some(assemble::shown(body, constants, parts, &instant))
         });
-        let empty = || Section {
-            statements: Vec::new(),
-            results: Vec::new(),
-        };
-        let model = Model {
+        let held_by: Vec<_> = parts
+            .with(Hook::HeldVoltage)
+            .map(|part| part.label.as_str())
+            .collect();
+        finite(Model {
             title: file.name.clone(),
             remarks: Vec::new(),
+            held_by: held_by.join(", "),
             parameters: self.parameters.into_all(),
             tables: self.tables,
             states: self.states,
             inputs: inputs(&self.rated),
             outputs: outputs(),
-            derivatives: derivatives.unwrap_or_else(empty),
-            shown: shown.unwrap_or_else(empty),
-            held_by: self
-                .parts
-                .with(Hook::HeldVoltage)
-                .map(|part| part.label.as_str())
-                .collect::<Vec<_>>()
-                .join(", "),
+            derivatives: derivatives.unwrap_or_default(),
+            shown: shown.unwrap_or_default(),
             held,
+        })
+    }
+
+    /// A star of branches needs leakage on both sides.
+    fn check_leakage(&self, file: &MotorFile) -> Result<(), ExportError> {
+        let is_saturating = self.parts.with(Hook::Magnetizing).next().is_some();
+        let has_cage = |part: &Part| {
+            part.own
+                .extra
+                .iter()
+                .any(|x| *x == Expr::name("psi_cage_alpha"))
         };
-        finite(model)
+        let is_star = is_saturating || self.parts.all().iter().any(has_cage);
+        match is_star && (file.parameters.l_ls == 0.0 || file.parameters.l_lr == 0.0) {
+            true => Err(ExportError::NoLeakage),
+            false => Ok(()),
+        }
     }
 
     /// A function of the instant, without what it does not need.

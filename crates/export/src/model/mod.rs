@@ -3,6 +3,7 @@
 mod assemble;
 mod build;
 mod parameters;
+mod parts;
 #[cfg(test)]
 mod tests;
 
@@ -51,7 +52,7 @@ impl Quantity {
 }
 
 /// A function of time, states, inputs and parameters.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
     /// What is computed on the way.
     pub statements: Vec<Statement>,
