@@ -15,7 +15,7 @@ function model = @NAME@()
 %         x = m.step(t, x, u, m.step_s, p); % a classical Runge-Kutta step, u held
 %     end
 %
-% m.derivatives(t, x, u, p@HELD_ARGUMENT@) gives the rates of change for an integrator of your own.
+% m.derivatives(t, x, u, p@HELD_ARGUMENT@) gives the rates of change as a row, for an integrator of your own.
     model.parameters = parameters();
     model.states = {@STATES@};
     model.start = zeros(1, @STATE_COUNT@);

@@ -10,6 +10,6 @@ mod vector;
 pub use body::{Body, Statement};
 pub use evaluate::Values;
 pub use expr::{Compared, Condition, Expr, Function, TableOf, number};
-pub use needed::needed;
+pub use needed::{needed, parameters};
 pub use table::Table;
 pub use vector::{Vector, clarke, phases};

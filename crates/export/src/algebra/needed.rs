@@ -62,3 +62,31 @@ fn ask_name(part: &Expr, asked: &mut BTreeSet<String>) {
         asked.insert(name.to_string());
     }
 }
+
+/// Names of the parameters that statements and results ask for.
+pub fn parameters(statements: &[Statement], results: &[Expr]) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    let mut see = |part: &Expr| {
+        if let Expr::Parameter(name) = part {
+            found.insert(name.to_string());
+        }
+    };
+    results.iter().for_each(|result| result.walk(&mut see));
+    walk(statements, &mut see);
+    found
+}
+
+fn walk(statements: &[Statement], see: &mut dyn FnMut(&Expr)) {
+    for statement in statements {
+        match statement {
+            Statement::Note(_) => {}
+            Statement::Set(_, value) => value.walk(see),
+            Statement::Repeat {
+                statements, until, ..
+            } => {
+                walk(statements, see);
+                until.walk(see);
+            }
+        }
+    }
+}

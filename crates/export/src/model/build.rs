@@ -4,7 +4,7 @@ use super::parameters::{Constants, Parameters};
 use super::parts::{Part, Parts, Source};
 use super::{HELD, MOTOR_STATES, Model, Quantity, Section, assemble};
 use crate::ExportError;
-use crate::algebra::{Body, Expr, Table, Vector, needed};
+use crate::algebra::{Body, Expr, Table, Vector, needed, parameters};
 use crate::effects::{Equations, Expression, Own, of_curve, of_library, without_equations};
 use motor::MotorFile;
 use motor::effect::curve::knots_and_values;
@@ -200,17 +200,25 @@ impl Builder {
             .with(Hook::HeldVoltage)
             .map(|part| part.label.as_str())
             .collect();
+        let derivatives = derivatives.unwrap_or_default();
+        let shown = shown.unwrap_or_default();
+        let sections = [&derivatives, &shown].into_iter().chain(&held);
+        let used: BTreeSet<String> = sections
+            .flat_map(|section| parameters(&section.statements, &section.results))
+            .collect();
+        let mut constants = self.parameters.into_all();
+        constants.retain(|parameter| used.contains(&parameter.name));
         finite(Model {
             title: file.name.clone(),
             remarks: Vec::new(),
             held_by: held_by.join(", "),
-            parameters: self.parameters.into_all(),
+            parameters: constants,
             tables: self.tables,
             states: self.states,
             inputs: inputs(&self.rated),
             outputs: outputs(),
-            derivatives: derivatives.unwrap_or_default(),
-            shown: shown.unwrap_or_default(),
+            derivatives,
+            shown,
             held,
         })
     }

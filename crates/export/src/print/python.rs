@@ -188,7 +188,7 @@ def _slope(table, x):
 
 fn tables(tables: &[Table]) -> String {
     if tables.is_empty() {
-        return "\n".to_owned();
+        return String::new();
     }
     let one = |table: &Table| {
         let values = numbers(&table.values, "    ", "");
@@ -201,5 +201,5 @@ fn tables(tables: &[Table]) -> String {
         )
     };
     let all: String = tables.iter().map(one).collect();
-    format!("{all}{LOOK_UP}\n")
+    format!("{all}{LOOK_UP}")
 }
