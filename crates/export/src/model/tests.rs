@@ -1,7 +1,7 @@
 //! The equations of every effect against the effect itself, at random points and states.
 
 use super::{HELD, Model, Section, model_of};
-use crate::algebra::{Expr, Values};
+use crate::algebra::{Expr, Statement, Values};
 use crate::effects::OF_WHOLE_SIGNALS;
 use motor::MotorFile;
 use motor::dynamic::{Dynamic, DynamicState, Flow, Hooks, Linear, clarke, phases};
@@ -14,6 +14,7 @@ use motor::effects::ALL;
 use num_complex::Complex64;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -206,6 +207,27 @@ fn compare(what: &str, ours: &[f64], theirs: &[f64], size: f64) {
     }
 }
 
+/// Where a language takes rates and readings together, one name means one thing in both.
+fn hold_names(model: &Model, what: &str) {
+    let set = |section: &Section| {
+        let statements = section
+            .statements
+            .iter()
+            .filter_map(|statement| match statement {
+                Statement::Set(name, value) => Some((name.clone(), value.clone())),
+                _ => None,
+            });
+        statements.collect::<BTreeMap<_, _>>()
+    };
+    let (rates, shown) = (set(&model.derivatives), set(&model.shown));
+    for (name, value) in &shown {
+        assert!(
+            rates.get(name).is_none_or(|other| other == value),
+            "{what}: {name}"
+        );
+    }
+}
+
 /// Holds the model of these effects against the simulation.
 fn hold(configs: &[EffectConfig], rng: &mut Pcg64Mcg) {
     let mut file = motor_file();
@@ -217,6 +239,9 @@ fn hold(configs: &[EffectConfig], rng: &mut Pcg64Mcg) {
         .collect();
     let what = what.join(" + ");
     let model = model_of(&file, "test", &[]).unwrap_or_else(|error| panic!("{what}: {error}"));
+    if model.held.is_none() {
+        hold_names(&model, &what);
+    }
     let rated = rated(&file);
     for _ in 0..POINTS {
         let point = point(&rated, model.states.len() - 6, rng);
