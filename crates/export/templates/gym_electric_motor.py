@@ -1,7 +1,7 @@
 """@TITLE@
 
 Parameters for gym-electric-motor (names of its version 3.0), written by drivemon @VERSION@ from @SOURCE@.
-Its squirrel-cage motor is linear. What is lost:
+Its squirrel-cage motor is linear. What becomes of the effects of the motor file:
 @LOST@
     import gym_electric_motor as gem
     from gym_electric_motor.physical_systems.mechanical_loads import PolynomialStaticLoad

@@ -1,7 +1,7 @@
 """@TITLE@
 
 Parameters for motulator (names of its version 0.5), written by drivemon @VERSION@ from @SOURCE@.
-motulator's induction machine is linear. What is lost:
+motulator's induction machine is linear. What becomes of the effects of the motor file:
 @LOST@
     from motulator.drive import model, utils
     import @NAME@

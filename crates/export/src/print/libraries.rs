@@ -64,7 +64,7 @@ pub fn parameters(
         .iter()
         .map(|r| format!("    {}\n", harmless(r)))
         .collect();
-    let nothing = "    nothing: the motor file has no effects\n".to_owned();
+    let nothing = "    it has none\n".to_owned();
     places.extend([
         ("@LOST@", if remarks.is_empty() { nothing } else { lines }),
         ("@NAME@", job.name.clone()),
