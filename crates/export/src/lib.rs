@@ -1,6 +1,6 @@
 //! A motor with its adopted effects as a dynamic model in other languages.
 //!
-//! [`model::model_of`] writes the equations of a motor file as expressions ([`algebra`]), each effect its own ([`effects`]); [`print`] has one
+//! [`model::model_of`] writes the equations of a motor file as expressions ([`algebra`]), each effect its own ([`effects`]); [`mod@print`] has one
 //! printer for each language.
 
 pub mod algebra;

@@ -1,4 +1,4 @@
-//! The equations of each effect as expressions: one file each, one line in [`ALL`].
+//! The equations of each effect as expressions: one file each, one line in the list `ALL`.
 //!
 //! The names of the methods are those of `motor::effect::Effect`, which computes the same with numbers; a test holds both together.
 
