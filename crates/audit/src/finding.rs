@@ -82,6 +82,9 @@ pub struct Finding {
     /// End of that stretch, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to_s: Option<f64>,
+    /// Share of the recording's pieces that have it, where it was audited in several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub share: Option<f64>,
 }
 
 /// The audit of one recording.
@@ -109,6 +112,7 @@ impl Finding {
             refuses: false,
             from_s: None,
             to_s: None,
+            share: None,
         }
     }
 

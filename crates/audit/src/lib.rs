@@ -8,12 +8,14 @@ mod expectation;
 mod finding;
 mod levels;
 mod measure;
+mod merged;
 mod silent;
 mod timing;
 mod wiring;
 
 pub use expectation::{Circuit, Expectation};
 pub use finding::{Audit, Code, Finding};
+pub use merged::Merger;
 pub use wiring::probes::with_sound_probes;
 
 use context::Context;

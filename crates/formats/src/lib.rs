@@ -20,8 +20,9 @@ mod seal;
 mod write;
 
 pub use read::{
-    MemoryTable, Preview, Progress, preview, read_any, read_load_table, read_recording,
-    read_stream, read_table, with_most_numbers, workbook_text,
+    MemoryTable, PIECE_ROWS, Preview, Progress, preview, read_any, read_in_pieces, read_load_table,
+    read_recording, read_stream, read_stream_in_pieces, read_table, with_most_numbers,
+    workbook_text,
 };
 pub use rows::{read_rows, write_rows};
 pub use write::{

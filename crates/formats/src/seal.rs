@@ -17,3 +17,64 @@ pub(crate) fn of<'c>(columns: impl IntoIterator<Item = (&'c str, &'c [f64])>) ->
     }
     format!("{:08x}", crc.sum())
 }
+
+/// The same checksum of columns that come in blocks of rows.
+pub(crate) struct Seal {
+    columns: Vec<(String, Crc)>,
+    bytes: Vec<u8>,
+}
+
+impl Seal {
+    /// Of columns of these names, without a row so far.
+    pub fn new<'n>(names: impl Iterator<Item = &'n str>) -> Seal {
+        Seal {
+            columns: names.map(|name| (name.to_owned(), Crc::new())).collect(),
+            bytes: Vec::new(),
+        }
+    }
+
+    /// Takes the next rows of every column.
+    pub fn add(&mut self, block: &[Vec<f64>]) {
+        for ((_, crc), values) in self.columns.iter_mut().zip(block) {
+            self.bytes.clear();
+            let bytes = values.iter().flat_map(|x| x.to_le_bytes());
+            self.bytes.extend(bytes);
+            crc.update(&self.bytes);
+        }
+    }
+
+    /// The checksum of all `rows` rows that were taken.
+    pub fn sum(&self, rows: u64) -> String {
+        let mut all = Crc::new();
+        for (name, values) in &self.columns {
+            all.update(name.as_bytes());
+            all.update(&rows.to_le_bytes());
+            all.combine(values);
+        }
+        format!("{:08x}", all.sum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Seal, of};
+
+    #[test]
+    fn blocks_of_rows_have_the_checksum_of_the_whole() {
+        let columns = [
+            ("t", vec![0.0, 0.1, 0.2]),
+            ("ia", vec![1.0, -2.0, f64::NAN]),
+        ];
+        let whole = of(columns.iter().map(|(name, x)| (*name, x.as_slice())));
+        let mut seal = Seal::new(columns.iter().map(|(name, _)| *name));
+        for rows in [0..2, 2..3] {
+            let block: Vec<Vec<f64>> = columns
+                .iter()
+                .map(|(_, x)| x[rows.clone()].to_vec())
+                .collect();
+            seal.add(&block);
+        }
+        assert_eq!(seal.sum(3), whole);
+        assert_ne!(seal.sum(2), whole);
+    }
+}

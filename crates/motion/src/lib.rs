@@ -166,6 +166,11 @@ const LEAST_SHARE: f32 = 0.7;
 const FASTEST: f32 = 0.7;
 
 impl Motion {
+    /// Samples of a cycle, rounded up.
+    pub fn cycle_samples(&self) -> usize {
+        self.samples as usize + 1
+    }
+
     /// Takes one instant; something comes back at the end of each cycle of rated length.
     #[inline]
     pub fn update(&self, state: &mut MotionState, sample: &MotionSample) -> Option<MotionCycle> {
@@ -441,6 +446,11 @@ impl Motion {
 }
 
 impl MotionState {
+    /// Number of the sample with which the statistic left the noise, counted from 1; `None` while it is in the noise.
+    pub fn restless_since(&self) -> Option<u64> {
+        self.restless_since
+    }
+
     /// After missing samples: flux and sums begin anew; alarm and temperature stay.
     pub fn resume_after_gap(&mut self) {
         *self = MotionState {

@@ -27,22 +27,25 @@ mod judgement;
 mod moving;
 pub mod operating_points;
 mod rotor;
+mod run;
 mod samples;
 pub mod speed;
 mod timeline;
-mod trace;
 pub mod words;
 
 pub use judgement::{Direction, NotJudgedShare, Unjudged};
 pub use moving::{Follower, MotionFault, MotionShare, MotionSummary};
 pub use rotor::{RotorCage, RotorSummary};
-pub use samples::{Samples, Timed};
-pub use timeline::{LampState, SequenceSummary, Timeline, Verdict, VerdictState};
-pub use trace::{Trace, WindowOperation, WindowResiduals};
+pub use run::{Replay, replay};
+pub use samples::{Before, Samples, Timed};
+pub use timeline::{
+    LampState, SequenceSummary, Timeline, Trace, Verdict, VerdictState, WindowOperation,
+    WindowResiduals,
+};
 
 use monitor::{
-    ActiveEffects, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, Monitor,
-    MonitorConfig, MonitorState, ParameterDoubt,
+    ActiveEffects, ComparatorConfig, Converter, FieldCurrent, Frame, LoadKind, MonitorConfig,
+    ParameterDoubt,
 };
 use motor::FileError;
 use motor::{Mechanics, MotorFile, TParams};
@@ -116,33 +119,6 @@ pub fn stand_in_config(recording: &Recording) -> MonitorConfig {
 
 /// 50 Hz, rad/s.
 const STAND_IN_OMEGA: f32 = 314.16;
-
-/// Runs every sample through the core; `progress` gets the number of samples done.
-pub fn replay(
-    monitor: &Monitor,
-    samples: &Samples<'_>,
-    progress: &mut dyn FnMut(usize),
-) -> Timeline {
-    let mut state = MonitorState::default();
-    let mut timeline = Timeline::new(monitor.config());
-    let mut follower = Follower::new(monitor);
-    for (k, timed) in samples.iter().enumerate() {
-        if timed.after_gap {
-            state.resume_after_gap();
-            follower.resume_after_gap();
-        }
-        let report = monitor.update(&mut state, &timed.sample);
-        follower.update(timed.t, &timed.sample, &state);
-        if let Some(report) = report {
-            follower.window(&report);
-            timeline.add(timed.t, &report);
-            progress(k + 1);
-        }
-    }
-    timeline.finish();
-    timeline.motion = follower.finish();
-    timeline
-}
 
 #[cfg(test)]
 mod tests {

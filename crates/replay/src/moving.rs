@@ -6,6 +6,7 @@ use motion::{
 };
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::collections::VecDeque;
 
 use crate::words;
 
@@ -58,8 +59,36 @@ pub struct Follower {
     at_rest: bool,
     /// Whether the alarm that is on came in motion.
     in_motion: bool,
-    times: Vec<f64>,
+    times: RecentTimes,
+    /// Number and time of the sample with which the statistic left the noise, s.
+    restless: Option<(u64, f64)>,
     summary: MotionSummary,
+}
+
+/// The times of the latest samples, s.
+#[derive(Clone, Debug, Default)]
+struct RecentTimes {
+    times: VecDeque<f64>,
+    most: usize,
+    /// Samples that came before the ones that are kept.
+    before: u64,
+}
+
+impl RecentTimes {
+    fn push(&mut self, t: f64) {
+        if self.times.len() == self.most {
+            self.times.pop_front();
+            self.before += 1;
+        }
+        self.times.push_back(t);
+    }
+
+    /// Of a sample counted from 1; the oldest one that is kept stands for those before it.
+    fn of(&self, sample: u64) -> f64 {
+        let k = sample.saturating_sub(1).saturating_sub(self.before);
+        let k = usize::try_from(k).unwrap_or(usize::MAX);
+        self.times.get(k).copied().unwrap_or_default()
+    }
 }
 
 impl MotionSummary {
@@ -78,7 +107,14 @@ impl Follower {
             latest: None,
             at_rest: false,
             in_motion: false,
-            times: Vec::new(),
+            times: RecentTimes {
+                // What is asked for lies a cycle back.
+                most: motion
+                    .as_ref()
+                    .map_or(1, |motion| motion.cycle_samples() + 1),
+                ..RecentTimes::default()
+            },
+            restless: None,
             summary: MotionSummary {
                 not_possible: motion.err().map(|why| why.to_string()),
                 ..MotionSummary::default()
@@ -103,6 +139,10 @@ impl Follower {
         let Some(cycle) = motion.update(&mut self.state, &MotionSample { sample, supply }) else {
             return;
         };
+        let since = self.state.restless_since();
+        if since != self.restless.map(|(sample, _)| sample) {
+            self.restless = since.map(|sample| (sample, self.times.of(sample)));
+        }
         if let Some(alarm) = &cycle.alarm {
             self.note(alarm);
         }
@@ -135,9 +175,9 @@ impl Follower {
     }
 
     fn note(&mut self, alarm: &MotionAlarm) {
-        let time = |sample: u64| {
-            let k = usize::try_from(sample.saturating_sub(1)).unwrap_or(usize::MAX);
-            self.times.get(k).copied().unwrap_or_default()
+        let time = |sample: u64| match self.restless {
+            Some((since, t)) if since == sample => t,
+            _ => self.times.of(sample),
         };
         let Some(cause) = alarm.named else {
             // What comes in a window that is judged at rest is its affair.

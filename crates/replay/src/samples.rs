@@ -11,7 +11,8 @@ const LARGEST_STEP: f64 = 1.5;
 #[derive(Clone, Copy, Debug)]
 struct Rails([f64; 6]);
 
-/// The samples of one recording.
+/// The samples of one recording, or of a piece of one.
+#[derive(Clone, Copy)]
 pub struct Samples<'r> {
     recording: &'r Recording,
     voltages: Option<[&'r [f64]; 3]>,
@@ -20,6 +21,17 @@ pub struct Samples<'r> {
     torque: Option<&'r [f64]>,
     held_voltage: bool,
     rails: Rails,
+    t_sample: f64,
+    before: Option<Before>,
+}
+
+/// The last sample of a piece, which the next one continues.
+#[derive(Clone, Copy, Debug)]
+pub struct Before {
+    t: f64,
+    u_s_abc: Option<Abc>,
+    /// Sampling time of the first piece, s.
+    t_sample: f64,
 }
 
 /// One sample with what the clock says about it.
@@ -51,7 +63,28 @@ impl<'r> Samples<'r> {
             torque: recording.torque().filter(|_| usable(&[Channel::TORQUE])),
             held_voltage: recording.metadata.voltage == VoltageKind::Hold,
             rails: Rails::new(recording, audit),
+            t_sample: recording.t_sample(),
+            before: None,
         }
+    }
+
+    /// The same as what follows a piece.
+    pub fn continuing(self, before: Before) -> Self {
+        Samples {
+            t_sample: before.t_sample,
+            before: Some(before),
+            ..self
+        }
+    }
+
+    /// What the next piece continues.
+    pub fn end(&self) -> Option<Before> {
+        let last = self.len().checked_sub(1)?;
+        Some(Before {
+            t: self.recording.t()[last],
+            u_s_abc: self.voltages.map(|u| abc(u, last)),
+            t_sample: self.t_sample,
+        })
     }
 
     /// Leaves out the speed: of an unknown motor nothing can be judged from it.
@@ -80,10 +113,14 @@ impl<'r> Samples<'r> {
     /// From [`Samples::len`] on.
     pub fn at(&self, k: usize) -> Timed {
         let t = self.recording.t();
-        let step = if k == 0 { 0.0 } else { t[k] - t[k - 1] };
+        let before = match k {
+            0 => self.before.map(|before| before.t),
+            _ => Some(t[k - 1]),
+        };
+        let step = before.map_or(0.0, |before| t[k] - before);
         Timed {
             t: t[k],
-            after_gap: step > LARGEST_STEP * self.recording.t_sample(),
+            after_gap: step > LARGEST_STEP * self.t_sample,
             sample: Sample {
                 u_s_abc: self.voltages.map(|u| self.voltage_at(u, k)),
                 i_s_abc: self.currents.map(|i| abc(i, k)),
@@ -100,10 +137,13 @@ impl<'r> Samples<'r> {
     /// that meet there, which puts the half sample of delay where the motor sees it.
     fn voltage_at(&self, u: [&[f64]; 3], k: usize) -> Abc {
         let now = abc(u, k);
-        if self.held_voltage && k > 0 {
-            now.zip(abc(u, k - 1), |x, y| 0.5 * (x + y))
-        } else {
-            now
+        let before = match k {
+            0 => self.before.and_then(|before| before.u_s_abc),
+            _ => Some(abc(u, k - 1)),
+        };
+        match before.filter(|_| self.held_voltage) {
+            Some(before) => now.zip(before, |x, y| 0.5 * (x + y)),
+            None => now,
         }
     }
 

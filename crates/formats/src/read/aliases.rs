@@ -1,7 +1,6 @@
 //! What other recorders call the channels.
 
-use super::Target;
-use recording::{Channel, Signal};
+use recording::{Channel, Signal, Target};
 
 /// A name with its capitals, blanks and marks gone: `U_L1-N` is `ul1n`.
 fn plain(name: &str) -> String {

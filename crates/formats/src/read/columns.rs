@@ -2,7 +2,7 @@
 
 use super::budget::{most_numbers, too_large};
 use super::header::Header;
-use super::table_file::{Row, TableFile, missing, not_finite};
+use super::table_file::{Block, Row, TableFile};
 use crate::read::text::source::Progress;
 use recording::Error;
 
@@ -10,7 +10,6 @@ use recording::Error;
 pub(super) struct Columns {
     header: Header,
     values: Vec<Vec<f64>>,
-    rows: usize,
     bytes: u64,
 }
 
@@ -29,7 +28,6 @@ impl Columns {
         Ok(Columns {
             header,
             values,
-            rows,
             bytes,
         })
     }
@@ -56,39 +54,12 @@ impl TableFile for Columns {
         progress: &mut dyn FnMut(Progress),
         row: &mut dyn FnMut(&dyn Row) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        for k in 0..self.rows {
-            row(&Sample { columns: self, k })?;
-        }
+        let block = Block::new(&self.header.file, &self.values, 1);
+        (0..block.rows()).try_for_each(|k| row(&block.row(k)))?;
         progress(Progress {
             bytes_read: self.bytes,
             bytes_total: self.bytes,
         });
         Ok(())
-    }
-}
-
-/// One sample of all columns.
-struct Sample<'c> {
-    columns: &'c Columns,
-    k: usize,
-}
-
-impl Row for Sample<'_> {
-    fn line(&self) -> u64 {
-        self.k as u64 + 1
-    }
-
-    fn number(&self, column: usize, _name: &str) -> Result<Option<f64>, Error> {
-        let x = self.columns.values[column][self.k];
-        Ok(Some(x).filter(|x| !x.is_nan()))
-    }
-
-    fn not_finite(&self, _column: usize, name: &str, x: f64) -> Error {
-        let file = &self.columns.header.file;
-        not_finite(file, self.line(), name, &x.to_string(), x)
-    }
-
-    fn missing(&self, name: &str) -> Error {
-        missing(&self.columns.header.file, self.line(), name)
     }
 }

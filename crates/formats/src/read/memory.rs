@@ -3,11 +3,12 @@
 use super::columns::Columns;
 use super::convert::finish;
 use super::header::{Header, Unreadable};
+use super::opened::plan_is_sufficient;
 use super::plan::Plan;
-use super::raw::{Raw, Rows};
+use super::samples::{Raw, Rows};
+use super::sidecar_named;
 use super::table::{self, Kind};
 use super::table_file::{missing, not_finite};
-use super::{plan_is_sufficient, sidecar_named};
 use recording::{Column, Error, Mapping, Source, Target};
 use std::collections::BTreeMap;
 
@@ -53,7 +54,8 @@ pub fn read_table(table: MemoryTable, flags: &Mapping) -> Result<Source, Error> 
     let plan = Plan::new(&header, &mapping)?;
     plan_is_sufficient(&header, &plan)?;
     let raw = raw(&header, &columns, rows, &plan)?;
-    finish::recording(&header.file, raw, plan, sidecar.metadata).map(Source::Recording)
+    let all = 0..raw.rows.len();
+    finish::recording(&header.file, raw, plan, sidecar.metadata, all).map(Source::Recording)
 }
 
 /// The rows of all columns.

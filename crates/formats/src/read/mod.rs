@@ -9,10 +9,11 @@ mod format;
 mod header;
 mod mat;
 mod memory;
+mod opened;
 mod parquet;
 mod plan;
 mod preview;
-mod raw;
+mod samples;
 mod table;
 mod table_file;
 mod text;
@@ -20,20 +21,13 @@ mod wav;
 mod xlsx;
 
 pub use budget::with_most_numbers;
-use convert::finish;
-use header::Header;
 pub use memory::{MemoryTable, read_table};
-use plan::Plan;
+use opened::Opened;
 pub use preview::{Preview, preview};
-use raw::{Raw, Rows};
-use recording::{
-    Column, Error, LoadTable, Mapping, Metadata, Recording, Sidecar, Source, Target, names,
-};
+use recording::{Error, LoadTable, Mapping, Recording, Sidecar, Source, names};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-use table::Kind;
-use table_file::{Row, TableFile};
 pub use text::source::Progress;
 pub use xlsx::workbook_text;
 
@@ -85,20 +79,7 @@ pub fn read_any(
     flags: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Source, Error> {
-    // A file that cannot be opened is the first thing to say, before anything about its sidecar.
-    let metadata = std::fs::metadata(path).map_err(|error| Error::io(path, &error))?;
-    refuse_others(path, metadata.is_dir())?;
-    if !metadata.is_file() {
-        let stream = File::open(path).map_err(|error| Error::io(path, &error))?;
-        return read_stream(&path.display().to_string(), stream, flags, progress);
-    }
-    let sidecar = match &flags.sidecar {
-        Some(path) => Sidecar::read(path)?,
-        None => Sidecar::beside(path)?,
-    };
-    read_as(sidecar, flags, progress, |mapping| {
-        format::open(path, mapping)
-    })
+    open(path, flags)?.whole(progress)
 }
 
 /// Reads whatever a stream holds: standard input, a pipe. Its content tells the format, compressed or not; it has a sidecar
@@ -112,7 +93,63 @@ pub fn read_stream(
     flags: &Mapping,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Source, Error> {
-    read_as(sidecar_named(flags)?, flags, progress, |mapping| {
+    open_stream(name, stream, flags)?.whole(progress)
+}
+
+/// Rows of a piece: a minute at 10 kHz. With ten columns they take 50 MB.
+pub const PIECE_ROWS: usize = 600_000;
+
+/// Reads a recording of any length as consecutive pieces of `rows` rows, of which one is in memory at a time: text and
+/// Parquet; other formats are read as a whole first. `take` gets each piece when the one before is done; the last one is up to
+/// a fifteenth longer, so that what is little longer than a piece is one. The assumptions of the last piece are those of the file. A
+/// load table is no recording and comes back.
+///
+/// Encoder counts, delays and spikes at the ends of a piece are treated with the rows beside it, as they are in its middle.
+///
+/// # Errors
+/// Whatever is wrong with the file or its sidecar, with file, line, column and remedy, and what `take` returns.
+pub fn read_in_pieces<E: From<Error>>(
+    path: &Path,
+    flags: &Mapping,
+    rows: usize,
+    progress: &mut dyn FnMut(Progress),
+    take: &mut dyn FnMut(Recording) -> Result<(), E>,
+) -> Result<Option<LoadTable>, E> {
+    open(path, flags)?.in_pieces(rows, progress, take)
+}
+
+/// The same of a stream; `name` is what errors call it.
+///
+/// # Errors
+/// As [`read_in_pieces`].
+pub fn read_stream_in_pieces<E: From<Error>>(
+    name: &str,
+    stream: impl Read + 'static,
+    flags: &Mapping,
+    rows: usize,
+    progress: &mut dyn FnMut(Progress),
+    take: &mut dyn FnMut(Recording) -> Result<(), E>,
+) -> Result<Option<LoadTable>, E> {
+    open_stream(name, stream, flags)?.in_pieces(rows, progress, take)
+}
+
+fn open(path: &Path, flags: &Mapping) -> Result<Opened, Error> {
+    // A file that cannot be opened is the first thing to say, before anything about its sidecar.
+    let metadata = std::fs::metadata(path).map_err(|error| Error::io(path, &error))?;
+    refuse_others(path, metadata.is_dir())?;
+    if !metadata.is_file() {
+        let stream = File::open(path).map_err(|error| Error::io(path, &error))?;
+        return open_stream(&path.display().to_string(), stream, flags);
+    }
+    let sidecar = match &flags.sidecar {
+        Some(path) => Sidecar::read(path)?,
+        None => Sidecar::beside(path)?,
+    };
+    Opened::new(sidecar, flags, |mapping| format::open(path, mapping))
+}
+
+fn open_stream(name: &str, stream: impl Read + 'static, flags: &Mapping) -> Result<Opened, Error> {
+    Opened::new(sidecar_named(flags)?, flags, |mapping| {
         format::open_stream(name, stream, mapping)
     })
 }
@@ -138,138 +175,4 @@ fn refuse_others(path: &Path, is_folder: bool) -> Result<(), Error> {
         return Err(Error::bad(&name, message, remedy));
     }
     Ok(())
-}
-
-fn read_as(
-    sidecar: Sidecar,
-    flags: &Mapping,
-    progress: &mut dyn FnMut(Progress),
-    open: impl FnOnce(&Mapping) -> Result<Box<dyn TableFile>, Error>,
-) -> Result<Source, Error> {
-    let mapping = flags.clone().over(sidecar.mapping);
-    let mut file = open(&mapping)?;
-    match table::kind(file.header(), &mapping)? {
-        Kind::LoadTable => table::load_table(&mut *file, progress).map(Source::LoadTable),
-        Kind::Recording => {
-            recording_of(&mut *file, sidecar.metadata, &mapping, progress).map(Source::Recording)
-        }
-    }
-}
-
-fn recording_of(
-    file: &mut dyn TableFile,
-    metadata: Metadata,
-    mapping: &Mapping,
-    progress: &mut dyn FnMut(Progress),
-) -> Result<Recording, Error> {
-    let mut plan = Plan::new(file.header(), mapping)?;
-    let rate = file.header().rate.as_ref().filter(|_| !plan.has_clock());
-    if let Some(rate) = rate {
-        plan.mapping.sample_rate_hz = Some(rate.hz);
-        plan.rate_is_declared = true;
-        plan.notes.push(rate.note.clone());
-    }
-    plan_is_sufficient(file.header(), &plan)?;
-    let raw = read_columns(file, &plan, progress)?;
-    plan.notes.extend(file.notes());
-    plan.reading.sample_rate_hz = plan.mapping.sample_rate_hz;
-    plan.reading = plan.reading.over(file.layout());
-    finish::recording(&file.header().file, raw, plan, metadata)
-}
-
-fn plan_is_sufficient(header: &Header, plan: &Plan) -> Result<(), Error> {
-    let electrical = |target: &Target| matches!(target, Target::Channel(c) if c.is_electrical());
-    if !plan.columns.keys().any(electrical) {
-        let names = plan::list(&header.names);
-        let message = format!("has neither currents nor voltages among {names}");
-        let remedy = "name the columns ia ib ic, va vb vc, or map them: --column ia=NAME, or all in their order: --columns t,va,vb,-,ia";
-        return Err(header.error("", message, remedy));
-    }
-    if !plan.has_clock() {
-        let message = "the file has no clock";
-        let remedy =
-            "name the time column t, map it with --column t=NAME, or declare --sample-rate HZ";
-        return Err(header.error("t", message, remedy));
-    }
-    Ok(())
-}
-
-fn read_columns(
-    file: &mut dyn TableFile,
-    plan: &Plan,
-    progress: &mut dyn FnMut(Progress),
-) -> Result<Raw, Error> {
-    let mut collector = Collector::new(file.header(), plan);
-    file.for_each_row(progress, &mut |row| collector.take(row))?;
-    let Collector {
-        used,
-        values,
-        lines,
-        numbers,
-        skipped,
-        ..
-    } = collector;
-    let targets = used.into_iter().map(|column| column.target);
-    Ok(Raw {
-        columns: targets.zip(values.into_iter().map(Column::from)).collect(),
-        rows: Rows::Kept { lines, numbers },
-        skipped,
-    })
-}
-
-struct UsedColumn {
-    target: Target,
-    index: usize,
-    name: String,
-}
-
-/// Gathers the used columns row by row.
-struct Collector {
-    used: Vec<UsedColumn>,
-    values: Vec<Vec<f64>>,
-    row: Vec<f64>,
-    lines: Vec<u64>,
-    numbers: Vec<u64>,
-    skipped: u64,
-    skip_missing: bool,
-}
-
-impl Collector {
-    fn new(header: &Header, plan: &Plan) -> Collector {
-        let used = plan.columns.iter().map(|(target, index)| UsedColumn {
-            target: *target,
-            index: *index,
-            name: header.names[*index].clone(),
-        });
-        let used: Vec<UsedColumn> = used.collect();
-        Collector {
-            values: vec![Vec::new(); used.len()],
-            row: vec![0.0; used.len()],
-            used,
-            lines: Vec::new(),
-            numbers: Vec::new(),
-            skipped: 0,
-            skip_missing: plan.mapping.skip_missing.unwrap_or(false),
-        }
-    }
-
-    fn take(&mut self, cells: &dyn Row) -> Result<(), Error> {
-        for (slot, column) in self.row.iter_mut().zip(&self.used) {
-            match cells.number(column.index, &column.name)? {
-                Some(x) if x.is_finite() => *slot = x,
-                _ if self.skip_missing => {
-                    self.skipped += 1;
-                    return Ok(());
-                }
-                Some(x) => return Err(cells.not_finite(column.index, &column.name, x)),
-                None => return Err(cells.missing(&column.name)),
-            }
-        }
-        for (column, x) in self.values.iter_mut().zip(&self.row) {
-            column.push(*x);
-        }
-        self.numbers.push(self.skipped + self.lines.len() as u64);
-        self.lines.push(cells.line());
-        Ok(())
-    }
 }

@@ -1,5 +1,6 @@
 //! Load tables from files, and telling them from recordings.
 
+use super::budget::{most_numbers, too_large};
 use super::header::{Header, Unreadable, shown};
 use super::plan::list;
 use super::table_file::TableFile;
@@ -56,7 +57,14 @@ pub(super) fn load_table(
     let name = file.header().file.clone();
     LoadTable::sufficient(&name, used.iter().map(|(column, _)| *column))?;
     let mut columns: BTreeMap<TableColumn, Vec<f64>> = BTreeMap::new();
+    let width = file.header().names.len() as u64;
+    let mut rows = 0;
+    file.check_size()?;
     file.for_each_row(progress, &mut |cells| {
+        rows += 1;
+        if rows * width > most_numbers() {
+            return Err(too_large(&name));
+        }
         for (column, k) in &used {
             let x = cells
                 .number(*k, column.name())?

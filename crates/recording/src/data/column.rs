@@ -1,7 +1,7 @@
 //! The numbers of one column: owned, or lent by whoever measured them.
 
 use std::fmt;
-use std::ops::Deref;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 /// Numbers that somebody else keeps in memory, and does not change.
@@ -30,6 +30,19 @@ impl Column {
         match self {
             Column::Own(values) => Column::Lent(Arc::new(values)),
             lent @ Column::Lent(_) => lent,
+        }
+    }
+
+    /// Keeps the numbers of a range that lies inside; lent ones are copied.
+    pub(crate) fn cut(&mut self, range: &Range<usize>) {
+        match self {
+            Column::Own(values) => {
+                values.truncate(range.end);
+                values.drain(..range.start);
+            }
+            Column::Lent(lent) => {
+                *self = Column::Own((**lent).as_ref()[range.clone()].to_vec());
+            }
         }
     }
 

@@ -247,6 +247,24 @@ impl Recording {
         self.channel(Channel::TEMPERATURE)
     }
 
+    /// The same without the samples outside a range; the sampling time stays that of all of them.
+    ///
+    /// # Errors
+    /// A range of fewer than two samples or beyond the end.
+    pub fn cut(mut self, range: Range<usize>) -> Result<Recording, Error> {
+        if range == (0..self.len()) {
+            return Ok(self);
+        }
+        if range.end > self.len() || range.len() < 2 {
+            let message = format!("samples {range:?} of {}", self.t.len());
+            return Err(Error::bad(&self.name, message, "choose a range inside it"));
+        }
+        self.t.cut(&range);
+        let channels = self.channels.values_mut();
+        channels.for_each(|values| values.cut(&range));
+        Ok(self)
+    }
+
     /// The samples of a range, with the same clock, metadata and assumptions.
     ///
     /// # Errors
@@ -311,6 +329,22 @@ mod tests {
 
     fn two() -> Recording {
         Recording::new("x.csv", vec![0.0, 0.1], Metadata::default()).unwrap()
+    }
+
+    #[test]
+    fn a_cut_keeps_the_samples_of_its_range() {
+        let t: Vec<f64> = (0..9).map(f64::from).collect();
+        let speed: Vec<f64> = t.iter().map(|t| 10.0 * t).collect();
+        let all = Recording::new("x.csv", t, Metadata::default()).unwrap();
+        let all = all.with_channel(Channel::SPEED, speed).unwrap();
+        for whole in [all.clone(), all.clone().lent()] {
+            let cut = whole.cut(3..5).unwrap();
+            assert_eq!(
+                (cut.t(), cut.speed()),
+                (&[3.0, 4.0][..], Some(&[30.0, 40.0][..]))
+            );
+        }
+        assert!(all.clone().cut(8..9).is_err() && all.cut(3..10).is_err());
     }
 
     #[test]

@@ -130,8 +130,8 @@ fn answer(
         audit,
         speed,
         told: Told::default(),
-        residuals: timeline.trace.residuals.clone(),
-        operation: timeline.trace.operation.clone(),
+        residuals: timeline.trace.residuals.to_vec(),
+        operation: timeline.trace.operation.to_vec(),
     }
 }
 

@@ -19,7 +19,7 @@ pub use check::{CheckedRecording, Checkup};
 pub use compare::Compared;
 pub use explain::{Explained, Next, anything_off};
 pub use known::{Known, ParameterRow, PlateRow};
-pub use monitored::{MonitorError, Monitored};
+pub use monitored::{MonitorError, Monitored, Monitoring};
 pub use places::{Place, worst};
 pub use typed::Typed;
 

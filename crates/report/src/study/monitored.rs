@@ -2,13 +2,13 @@
 
 use std::borrow::Cow;
 
-use audit::{Audit, Expectation, audit};
-use monitor::{ConfigError, Monitor};
+use audit::{Audit, Expectation, Merger, audit};
+use monitor::{ConfigError, Monitor, MonitorConfig};
 use motor::{FileError, MotorFile};
 use recording::Recording;
 use replay::{
-    Direction, LampState, MotionSummary, NotJudgedShare, RotorSummary, Samples, SequenceSummary,
-    Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
+    Direction, LampState, MotionSummary, NotJudgedShare, Replay, RotorSummary, Samples,
+    SequenceSummary, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
@@ -18,11 +18,15 @@ use serde::{Serialize, Serializer};
 pub struct Monitored {
     /// The recording.
     pub recording: String,
+    /// Time from its first to its last sample, s.
+    pub duration_s: f64,
+    /// Median time between two samples, s; of many pieces that of the first.
+    pub t_sample: f64,
     /// What had to be assumed to read it.
     pub assumptions: Vec<String>,
     /// What the audit found.
     pub audit: Audit,
-    /// Every window; empty where the audit refused.
+    /// The windows; empty where the audit refused.
     pub timeline: Timeline,
     /// The verdict on the windows at rest.
     pub verdict: Verdict,
@@ -58,8 +62,11 @@ struct MonitorJson<'a> {
     not_judged: &'a [NotJudgedShare],
     /// Residuals r1 to r4 over the judged windows; `null` where no window was judged.
     residual_percent: Option<ResidualPercent>,
-    /// The lamps, from each change on.
+    /// The lamps, from each change on; of a long recording the first ten thousand changes.
     lamps: &'a [LampState],
+    /// Changes of the lamps that are not in `lamps`; absent where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    further_lamp_changes: Option<u64>,
     /// The verdict on the windows at rest, and the likely causes.
     verdict: &'a Verdict,
     /// Sense of rotation of the supply; `null` where it was not seen.
@@ -74,10 +81,13 @@ struct MonitorJson<'a> {
     threshold_percent: Option<[f64; 4]>,
     /// Smallest residuals that would have lit a lamp in the noise of this recording, percent of each residual's scale.
     smallest_visible_percent: Option<[f64; 4]>,
-    /// Residuals of every window.
+    /// Residuals of every window, or of one of `one_window_of`.
     residuals: &'a [WindowResiduals],
-    /// Operating point of every window.
+    /// Operating point of every window, or of one of `one_window_of`.
     operation: &'a [WindowOperation],
+    /// `residuals` and `operation` hold one of so many windows; absent where they hold all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    one_window_of: Option<u64>,
     /// What was judged while something changed.
     motion: &'a MotionSummary,
 }
@@ -102,26 +112,113 @@ impl Monitored {
         motor: Option<&MotorFile>,
         progress: &mut dyn FnMut(usize),
     ) -> Result<Monitored, MonitorError> {
-        let expectation = motor.map_or_else(Expectation::default, Expectation::from);
-        let audit = audit(recording, &expectation);
-        let config = match motor {
-            Some(motor) => replay::config_for(motor, recording).map_err(MonitorError::File)?,
-            None => replay::stand_in_config(recording),
+        let mut monitoring = Monitoring::new(motor);
+        monitoring.take(recording, progress)?;
+        Ok(monitoring.finish())
+    }
+}
+
+/// A recording that is monitored piece by piece, and of which no sample is kept.
+pub struct Monitoring<'m> {
+    motor: Option<&'m MotorFile>,
+    expectation: Expectation,
+    merger: Merger,
+    /// As the motor file and the first piece say.
+    config: Option<MonitorConfig>,
+    replay: Option<Replay>,
+    first: Option<First>,
+    end_s: f64,
+}
+
+/// What the first piece tells of the recording.
+#[derive(Default)]
+struct First {
+    name: String,
+    begin_s: f64,
+    t_sample: f64,
+}
+
+impl<'m> Monitoring<'m> {
+    /// Before the first piece; without a motor file only audit and sequence components are told.
+    pub fn new(motor: Option<&'m MotorFile>) -> Monitoring<'m> {
+        Monitoring {
+            motor,
+            expectation: motor.map_or_else(Expectation::default, Expectation::from),
+            merger: Merger::default(),
+            config: None,
+            replay: None,
+            first: None,
+            end_s: 0.0,
+        }
+    }
+
+    /// Takes the next piece. Each is audited by itself; one that the audit refuses is passed over, as time without samples.
+    /// `progress` gets the number of its samples that are done.
+    ///
+    /// # Errors
+    /// A motor file that the core cannot take.
+    pub fn take(
+        &mut self,
+        piece: &Recording,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<(), MonitorError> {
+        let audit = audit(piece, &self.expectation);
+        self.merger.add(piece, &audit);
+        self.first.get_or_insert_with(|| First {
+            name: piece.name().to_owned(),
+            begin_s: piece.t()[0],
+            t_sample: piece.t_sample(),
+        });
+        self.end_s = piece.t()[piece.len() - 1];
+        // Scales of an unknown motor come from a piece in which it is supplied.
+        let is_supplied = audit.has_supply() || self.motor.is_some();
+        if self.config.is_none() && is_supplied {
+            self.config = Some(self.config_for(piece)?);
+        }
+        let Some(config) = self.config.filter(|_| audit.is_usable_piece()) else {
+            return Ok(());
         };
-        let timeline = if audit.supported {
-            let monitor = Monitor::new(config).map_err(MonitorError::Config)?;
-            replayed(&monitor, recording, &audit, motor.is_some(), progress)
-        } else {
-            Timeline::default()
+        let mut samples = Samples::new(piece, &audit);
+        if self.motor.is_none() {
+            samples.leave_out_speed();
+        }
+        let replay = match &mut self.replay {
+            Some(replay) => replay,
+            none => {
+                let monitor = Monitor::new(config).map_err(MonitorError::Config)?;
+                none.insert(Replay::new(monitor))
+            }
         };
-        Ok(Monitored {
-            recording: recording.name().to_owned(),
-            assumptions: recording.assumptions.clone(),
+        replay.take(samples, progress);
+        Ok(())
+    }
+
+    fn config_for(&self, piece: &Recording) -> Result<MonitorConfig, MonitorError> {
+        match self.motor {
+            Some(motor) => replay::config_for(motor, piece).map_err(MonitorError::File),
+            None => Ok(replay::stand_in_config(piece)),
+        }
+    }
+
+    /// What all pieces come to.
+    pub fn finish(self) -> Monitored {
+        let audit = self.merger.finish();
+        let first = self.first.unwrap_or_default();
+        let replay = self.replay.filter(|_| audit.supported);
+        let mut timeline = replay.map_or_else(Timeline::default, Replay::finish);
+        if self.motor.is_none() && audit.supported {
+            timeline.blame_missing_motor_file();
+        }
+        Monitored {
+            recording: first.name,
+            duration_s: self.end_s - first.begin_s,
+            t_sample: first.t_sample,
+            assumptions: audit.assumptions.clone(),
             verdict: timeline.verdict(&audit.findings),
             audit,
             timeline,
-            threshold_percent: motor.map(|motor| motor.monitor.threshold_percent),
-        })
+            threshold_percent: self.motor.map(|motor| motor.monitor.threshold_percent),
+        }
     }
 }
 
@@ -135,24 +232,6 @@ impl Monitored {
             state => state,
         }
     }
-}
-
-fn replayed(
-    monitor: &Monitor,
-    recording: &Recording,
-    audit: &Audit,
-    motor_known: bool,
-    progress: &mut dyn FnMut(usize),
-) -> Timeline {
-    let mut samples = Samples::new(recording, audit);
-    if !motor_known {
-        samples.leave_out_speed();
-    }
-    let mut timeline = replay::replay(monitor, &samples, progress);
-    if !motor_known {
-        timeline.blame_missing_motor_file();
-    }
-    timeline
 }
 
 impl JsonSchema for Monitored {
@@ -182,6 +261,7 @@ impl Serialize for Monitored {
                 standard_deviation,
             }),
             lamps: &timeline.lamps,
+            further_lamp_changes: Some(timeline.further_changes).filter(|n| *n > 0),
             verdict: &self.verdict,
             direction: timeline.direction(),
             first_alarm_s: timeline.first_alarm_s,
@@ -191,6 +271,7 @@ impl Serialize for Monitored {
             smallest_visible_percent: timeline.visible_percent(),
             residuals: &timeline.trace.residuals,
             operation: &timeline.trace.operation,
+            one_window_of: Some(timeline.trace.every()).filter(|n| *n > 1),
             motion: &timeline.motion,
         };
         json.serialize(serializer)

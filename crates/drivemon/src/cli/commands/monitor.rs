@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use monitor::NotJudged;
 use motor::MotorFile;
-use recording::{LoadTable, Recording, Source};
+use recording::LoadTable;
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};
@@ -14,13 +14,13 @@ use crate::cli::printing::answers::{self, Answers};
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::lamp_symbol::symbol;
 use crate::cli::printing::output::OutputArgs;
+use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
-use crate::cli::printing::{paint, progress};
 use replay::operating_points::OperatingPoints;
 use replay::words;
 use replay::{SequenceSummary, Timeline, Unjudged, Verdict, VerdictState};
 use report::Subject;
-use report::study::{MonitorError, Monitored};
+use report::study::{MonitorError, Monitored, Monitoring};
 
 /// Replay a recording through the very core that the board runs: lamps, verdict, probabilities.
 ///
@@ -62,9 +62,16 @@ impl MonitorArgs {
         let motor = self.motor.as_deref().map(read_motor).transpose()?;
         let motor = motor.as_ref();
         answers::each(&self.recordings, &self.output, |path, answers| {
-            match self.input.read(path)? {
-                Source::Recording(recording) => self.monitor(&recording, motor, answers),
-                Source::LoadTable(table) => show_table(&table, motor, answers),
+            let mut monitoring = Monitoring::new(motor);
+            let table = self
+                .input
+                .read_in_pieces(path, "monitoring", &mut |piece| {
+                    let taken = monitoring.take(piece, &mut |_| {});
+                    taken.map_err(|error| self.failure(error))
+                })?;
+            match table {
+                None => told(&monitoring.finish(), answers),
+                Some(table) => show_table(&table, motor, answers),
             }
         })
     }
@@ -91,27 +98,6 @@ impl MonitorArgs {
         Ok(finding)
     }
 
-    fn monitor(
-        &self,
-        recording: &Recording,
-        motor: Option<&MotorFile>,
-        answers: &mut Answers<'_>,
-    ) -> Result<Finding, Failure> {
-        let bar = progress::bar("monitoring", recording.len() as u64);
-        let monitored = Monitored::new(recording, motor, &mut |done| {
-            bar.set_position(done as u64);
-        });
-        bar.finish_and_clear();
-        let result = monitored.map_err(|error| self.failure(error))?;
-        let finding = match (result.audit.supported, result.state()) {
-            (true, VerdictState::Fault) => Finding::Something,
-            (true, VerdictState::Healthy) => Finding::Nothing,
-            (false, _) | (true, VerdictState::NotJudged) => Finding::Unsupported,
-        };
-        answers.give(Subject::Monitor, &result, || print(recording, &result))?;
-        Ok(finding)
-    }
-
     fn failure(&self, error: MonitorError) -> Failure {
         let file = self.motor.as_deref().unwrap_or(Path::new("the recording"));
         match error {
@@ -122,6 +108,16 @@ impl MonitorArgs {
             },
         }
     }
+}
+
+fn told(result: &Monitored, answers: &mut Answers<'_>) -> Result<Finding, Failure> {
+    let finding = match (result.audit.supported, result.state()) {
+        (true, VerdictState::Fault) => Finding::Something,
+        (true, VerdictState::Healthy) => Finding::Nothing,
+        (false, _) | (true, VerdictState::NotJudged) => Finding::Unsupported,
+    };
+    answers.give(Subject::Monitor, result, || print(result))?;
+    Ok(finding)
 }
 
 fn show_table(
@@ -141,13 +137,13 @@ const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board se
 /// More lamp changes than this are left to the JSON.
 const LONGEST_TIMELINE: usize = 40;
 
-fn print(recording: &Recording, result: &Monitored) {
+fn print(result: &Monitored) {
     let (audit, timeline) = (&result.audit, &result.timeline);
     say!(
         "{}  {:.3} s at {:.0} Hz",
-        paint::strong(recording.name()),
-        recording.duration(),
-        1.0 / recording.t_sample()
+        paint::strong(&result.recording),
+        result.duration_s,
+        1.0 / result.t_sample
     );
     for finding in &audit.findings {
         say!("  {} {}", paint::caution("audit:"), finding.detail);
@@ -226,7 +222,15 @@ pub(crate) fn print_lamps(timeline: &Timeline) {
     }
     let more = timeline.lamps.len().saturating_sub(LONGEST_TIMELINE);
     if more > 0 {
-        say!("  ... and {more} more changes (--json FILE has them all)");
+        let beyond = timeline.further_changes;
+        match beyond {
+            0 => say!("  ... and {more} more changes (--json FILE has them all)"),
+            _ => say!(
+                "  ... and {} more changes (--json FILE has the first {})",
+                more as u64 + beyond,
+                timeline.lamps.len()
+            ),
+        }
     }
 }
 

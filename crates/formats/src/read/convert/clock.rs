@@ -1,6 +1,6 @@
 //! The clock of a recording: the `t` column, or a declared sampling rate.
 
-use crate::read::raw::{Raw, Rows};
+use crate::read::samples::{Raw, Rows};
 use recording::{Column, Error, Mapping, Target};
 
 /// Takes the clock out of the raw columns, in seconds, strictly rising.

@@ -2,16 +2,30 @@
 
 use super::{clock, encoder, spikes};
 use crate::read::plan::Plan;
-use crate::read::raw::Raw;
+use crate::read::samples::{Piece, Raw};
 use recording::{
     Channel, Column, Error, Factor, Mapping, Metadata, Recording, Target, Unit, UnknownScale, delay,
 };
+use std::ops::Range;
 
+/// The channels of a piece of a file; the rows beside it, which belong to other pieces, help to convert its ends.
+pub(in crate::read) fn piece(
+    file: &str,
+    piece: Piece,
+    plan: Plan,
+    metadata: Metadata,
+) -> Result<Recording, Error> {
+    let kept = piece.kept;
+    recording(file, piece.raw, plan, metadata, kept.clone())?.cut(kept)
+}
+
+/// The channels of all rows; spikes are counted in those that are `kept`.
 pub(in crate::read) fn recording(
     file: &str,
     mut raw: Raw,
     plan: Plan,
     metadata: Metadata,
+    kept: Range<usize>,
 ) -> Result<Recording, Error> {
     let mapping = &plan.mapping;
     let t = clock::clock(file, &mut raw, mapping)?;
@@ -23,7 +37,7 @@ pub(in crate::read) fn recording(
     for (target, values) in raw.columns {
         if let Target::Channel(channel) = target {
             let values = converted(&recording, channel, values, mapping)?;
-            let values = sound(&mut recording, channel, values, mapping);
+            let values = sound(&mut recording, channel, values, mapping, &kept);
             recording.set_column(channel, values)?;
         }
     }
@@ -107,8 +121,9 @@ fn sound(
     channel: Channel,
     mut values: Column,
     mapping: &Mapping,
+    kept: &Range<usize>,
 ) -> Column {
-    if let Some(bridged) = spikes::bridge(recording.t(), &mut values, channel.quantity()) {
+    if let Some(bridged) = spikes::bridge(recording.t(), &mut values, channel.quantity(), kept) {
         recording.note_bridged(channel, bridged);
     }
     let map = mapping.columns.get(&Target::Channel(channel));

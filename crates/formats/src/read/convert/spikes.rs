@@ -31,8 +31,13 @@ const MOST_ELECTRICAL: f64 = 0.01;
 /// Fewer samples than this are not looked at.
 const FEWEST: usize = 4 * AROUND;
 
-/// Replaces spikes by straight lines between their neighbours; says how many samples, where there were any.
-pub(in crate::read) fn bridge(t: &[f64], x: &mut Column, quantity: Quantity) -> Option<Bridged> {
+/// Replaces spikes by straight lines between their neighbours; says how many of the samples in `kept`, where there were any.
+pub(in crate::read) fn bridge(
+    t: &[f64],
+    x: &mut Column,
+    quantity: Quantity,
+    kept: &Range<usize>,
+) -> Option<Bridged> {
     if x.len() < FEWEST {
         return None;
     }
@@ -44,23 +49,37 @@ pub(in crate::read) fn bridge(t: &[f64], x: &mut Column, quantity: Quantity) -> 
     let mut bridged: Option<Bridged> = None;
     for _ in 0..PASSES {
         let spikes = find(x);
-        let farther = spikes
-            .iter()
-            .max_by(|a, b| x[**a].abs().total_cmp(&x[**b].abs()));
-        let Some(at) = farther.copied() else { break };
-        let so_far = bridged.get_or_insert(Bridged {
-            samples: 0,
-            farthest: x[at],
-            at_s: t[at],
-        });
-        so_far.samples += spikes.len();
-        if x[at].abs() > so_far.farthest.abs() {
-            (so_far.farthest, so_far.at_s) = (x[at], t[at]);
+        if spikes.is_empty() {
+            break;
         }
+        note(t, x, &spikes, kept, &mut bridged);
         let x = x.to_mut();
         runs(&spikes).into_iter().for_each(|run| line(t, x, run));
     }
     bridged
+}
+
+fn note(
+    t: &[f64],
+    x: &[f64],
+    spikes: &[usize],
+    kept: &Range<usize>,
+    bridged: &mut Option<Bridged>,
+) {
+    let spikes = spikes.iter().copied().filter(|k| kept.contains(k));
+    let farther = |a: &usize, b: &usize| x[*a].abs().total_cmp(&x[*b].abs());
+    let Some(at) = spikes.clone().max_by(farther) else {
+        return;
+    };
+    let so_far = bridged.get_or_insert(Bridged {
+        samples: 0,
+        farthest: x[at],
+        at_s: t[at],
+    });
+    so_far.samples += spikes.count();
+    if x[at].abs() > so_far.farthest.abs() {
+        (so_far.farthest, so_far.at_s) = (x[at], t[at]);
+    }
 }
 
 fn of_speed(x: &[f64]) -> Vec<usize> {
@@ -179,7 +198,7 @@ mod tests {
                 count += 1;
             }
         }
-        let bridged = bridge(&t, &mut spoilt, Quantity::Speed).expect("spikes");
+        let bridged = bridge(&t, &mut spoilt, Quantity::Speed, &(0..t.len())).expect("spikes");
         // A value of 4e5 falls by chance within 8 rad/s of the truth once in 25 000.
         assert!(count - bridged.samples <= 1, "{count} {bridged:?}");
         let worst = spoilt
@@ -211,7 +230,10 @@ mod tests {
             .enumerate()
         {
             let mut same = Column::from(x.clone());
-            assert!(bridge(&t, &mut same, Quantity::Speed).is_none(), "{k}");
+            assert!(
+                bridge(&t, &mut same, Quantity::Speed, &(0..t.len())).is_none(),
+                "{k}"
+            );
             assert_eq!(same[..], x);
         }
     }
@@ -222,11 +244,12 @@ mod tests {
         let wave = |t: f64| 5.0 * (1.0 + 12.0 * (-t / 0.05).exp()) * (TAU * 50.0 * t).sin();
         let truth: Vec<f64> = t.iter().map(|t| wave(*t)).collect();
         let mut same = Column::from(truth.clone());
-        assert!(bridge(&t, &mut same, Quantity::Current).is_none());
+        assert!(bridge(&t, &mut same, Quantity::Current, &(0..t.len())).is_none());
         for at in [0, 1, 9_000, 15_050, 19_999] {
             let mut spoilt = Column::from(truth.clone());
             spoilt.to_mut()[at] = -3e5;
-            let bridged = bridge(&t, &mut spoilt, Quantity::Current).expect("a spike");
+            let bridged =
+                bridge(&t, &mut spoilt, Quantity::Current, &(0..t.len())).expect("a spike");
             assert_eq!(
                 (bridged.samples, bridged.farthest, bridged.at_s),
                 (1, -3e5, t[at])

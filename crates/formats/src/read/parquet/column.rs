@@ -24,9 +24,6 @@ pub(super) enum Kind {
     Instant(f64),
 }
 
-/// Samples that are decoded at once.
-const BATCH: usize = 1 << 14;
-
 impl Kind {
     /// The kind of a column whose integers last as long as `duration_s` says, where it says anything.
     ///
@@ -112,69 +109,131 @@ fn nanoseconds(instant: Int96) -> i64 {
         .wrapping_add(of_day)
 }
 
-/// Reads the values of a column, one a row; NaN where there is none.
-///
-/// # Errors
-/// A damaged file, or one that holds another number of values than it declares.
-pub(super) fn read(
-    file: &Arc<PagedFile>,
-    metadata: &ParquetMetaData,
+/// One column of all groups of rows, read from its beginning to its end; NaN where a row has no number.
+pub(super) struct Column {
+    file: Arc<PagedFile>,
+    metadata: Arc<ParquetMetaData>,
     index: usize,
     kind: Kind,
-) -> Result<Vec<f64>, ParquetError> {
-    let rows = metadata.file_metadata().num_rows().unsigned_abs();
-    let mut target = Target::new(kind);
-    for group in metadata.row_groups() {
-        let column = group.column(index);
-        target.level = column.column_descr().max_def_level();
-        let pages = Pages::new(file, column, rows)?;
-        let reader = get_column_reader(column.column_descr_ptr(), Box::new(pages));
-        target.take(reader, rows)?;
-    }
-    if target.values.len() as u64 == rows {
-        return Ok(target.values);
-    }
-    let held = target.values.len();
-    Err(ParquetError::General(format!(
-        "column {index} holds {held} values, the file declares {rows}"
-    )))
-}
-
-/// The values that were read so far.
-struct Target {
-    kind: Kind,
+    /// The group of rows after the one that `reader` reads.
+    next_group: usize,
+    reader: Option<ColumnReader>,
     /// Definition level of a value that is there; 0 when all are.
     level: i16,
     first: Option<i64>,
-    values: Vec<f64>,
+    held: u64,
 }
 
-impl Target {
-    fn new(kind: Kind) -> Target {
-        Target {
+impl Column {
+    /// Before its first value.
+    pub fn new(
+        file: &Arc<PagedFile>,
+        metadata: &Arc<ParquetMetaData>,
+        index: usize,
+        kind: Kind,
+    ) -> Column {
+        Column {
+            file: Arc::clone(file),
+            metadata: Arc::clone(metadata),
+            index,
             kind,
+            next_group: 0,
+            reader: None,
             level: 0,
             first: None,
-            values: Vec::new(),
+            held: 0,
         }
     }
 
-    fn take(&mut self, reader: ColumnReader, rows: u64) -> Result<(), ParquetError> {
-        match reader {
-            ColumnReader::DoubleColumnReader(reader) => self.batches(reader, rows, |_, x| x),
-            ColumnReader::FloatColumnReader(reader) => {
-                self.batches(reader, rows, |_, x| f64::from(x))
+    fn rows(&self) -> u64 {
+        self.metadata.file_metadata().num_rows().unsigned_abs()
+    }
+
+    /// Appends the next `rows` values.
+    ///
+    /// # Errors
+    /// A damaged file, or one that holds fewer values than it declares.
+    pub fn read(&mut self, rows: u64, values: &mut Vec<f64>) -> Result<(), ParquetError> {
+        let wanted = usize::try_from(rows).unwrap_or(usize::MAX);
+        let before = values.len();
+        while values.len() - before < wanted {
+            let left = wanted - (values.len() - before);
+            let Some(mut reader) = self
+                .reader
+                .take()
+                .map_or_else(|| self.next_reader(), |it| Ok(Some(it)))?
+            else {
+                let (index, held) = (self.index, self.held + (values.len() - before) as u64);
+                let declared = self.rows();
+                return Err(ParquetError::General(format!(
+                    "column {index} holds {held} values, the file declares {declared}"
+                )));
+            };
+            if self.take(&mut reader, left, values)? > 0 {
+                self.reader = Some(reader);
             }
-            ColumnReader::Int64ColumnReader(reader) => self.batches(reader, rows, Target::integer),
+        }
+        self.held += rows;
+        Ok(())
+    }
+
+    /// Refuses what follows the last row.
+    ///
+    /// # Errors
+    /// A damaged file, or one that holds more values than it declares.
+    pub fn check_end(&mut self) -> Result<(), ParquetError> {
+        let mut beyond = Vec::new();
+        while let Some(mut reader) = self
+            .reader
+            .take()
+            .map_or_else(|| self.next_reader(), |it| Ok(Some(it)))?
+        {
+            if self.take(&mut reader, 1, &mut beyond)? > 0 {
+                let message = "a column holds more values than the file declares";
+                return Err(ParquetError::General(message.to_owned()));
+            }
+        }
+        Ok(())
+    }
+
+    fn next_reader(&mut self) -> Result<Option<ColumnReader>, ParquetError> {
+        let Some(group) = self.metadata.row_groups().get(self.next_group) else {
+            return Ok(None);
+        };
+        self.next_group += 1;
+        let column = group.column(self.index);
+        self.level = column.column_descr().max_def_level();
+        let pages = Pages::new(&self.file, column, self.rows())?;
+        let descriptor = column.column_descr_ptr();
+        Ok(Some(get_column_reader(descriptor, Box::new(pages))))
+    }
+
+    /// Appends at most `most` values of a group; returns how many there were.
+    fn take(
+        &mut self,
+        reader: &mut ColumnReader,
+        most: usize,
+        values: &mut Vec<f64>,
+    ) -> Result<usize, ParquetError> {
+        match reader {
+            ColumnReader::DoubleColumnReader(reader) => self.batch(reader, most, values, |_, x| x),
+            ColumnReader::FloatColumnReader(reader) => {
+                self.batch(reader, most, values, |_, x| f64::from(x))
+            }
+            ColumnReader::Int64ColumnReader(reader) => {
+                self.batch(reader, most, values, Column::integer)
+            }
             ColumnReader::Int32ColumnReader(reader) => {
                 let unsigned = self.kind == Kind::Unsigned;
-                self.batches(reader, rows, move |target, x: i32| {
+                self.batch(reader, most, values, move |column, x: i32| {
                     let wide = i64::from(x);
-                    target.integer(if unsigned { wide & 0xFFFF_FFFF } else { wide })
+                    column.integer(if unsigned { wide & 0xFFFF_FFFF } else { wide })
                 })
             }
             ColumnReader::Int96ColumnReader(reader) => {
-                self.batches(reader, rows, |target, x| target.integer(nanoseconds(x)))
+                self.batch(reader, most, values, |column, x| {
+                    column.integer(nanoseconds(x))
+                })
             }
             _ => Err(ParquetError::General(
                 "another type than declared".to_owned(),
@@ -187,35 +246,25 @@ impl Target {
         self.kind.number(first, x)
     }
 
-    fn batches<T: DataType>(
+    fn batch<T: DataType>(
         &mut self,
-        mut reader: ColumnReaderImpl<T>,
-        rows: u64,
-        number: impl Fn(&mut Target, T::T) -> f64,
-    ) -> Result<(), ParquetError>
+        reader: &mut ColumnReaderImpl<T>,
+        most: usize,
+        values: &mut Vec<f64>,
+        number: impl Fn(&mut Column, T::T) -> f64,
+    ) -> Result<usize, ParquetError>
     where
         T::T: Copy,
     {
         let (mut levels, mut batch) = (Vec::new(), Vec::new());
-        loop {
-            levels.clear();
-            batch.clear();
-            let wanted = (self.level > 0).then_some(&mut levels);
-            let (records, _, _) = reader.read_records(BATCH, wanted, None, &mut batch)?;
-            if records == 0 {
-                return Ok(());
-            }
-            let mut present = batch.iter().copied();
-            for k in 0..records {
-                let there = levels.get(k).is_none_or(|level| *level == self.level);
-                let value = if there { present.next() } else { None };
-                let value = value.map_or(f64::NAN, |x| number(self, x));
-                self.values.push(value);
-            }
-            if self.values.len() as u64 > rows {
-                let message = "a column holds more values than the file declares";
-                return Err(ParquetError::General(message.to_owned()));
-            }
+        let wanted = (self.level > 0).then_some(&mut levels);
+        let (records, _, _) = reader.read_records(most, wanted, None, &mut batch)?;
+        let mut present = batch.iter().copied();
+        for k in 0..records {
+            let there = levels.get(k).is_none_or(|level| *level == self.level);
+            let value = if there { present.next() } else { None };
+            values.push(value.map_or(f64::NAN, |x| number(self, x)));
         }
+        Ok(records)
     }
 }

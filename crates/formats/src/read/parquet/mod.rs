@@ -6,8 +6,8 @@ mod content;
 mod extent;
 mod paged_file;
 mod pages;
+mod stream;
 
-use super::columns::{Columns, check_size};
 use super::header::{Header, Unreadable};
 use super::table_file::TableFile;
 use crate::contained::contained;
@@ -22,6 +22,7 @@ use recording::Error;
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
+use stream::ParquetFile;
 
 /// Whether a file begins as Parquet files do.
 pub(super) fn is(head: &[u8]) -> bool {
@@ -56,38 +57,22 @@ fn read(name: &str, content: Content) -> Result<Box<dyn TableFile>, Error> {
         let error = ParquetError::General(format!("it declares {rows} rows"));
         damaged(name, &error)
     })?;
-    check_size(name, rows, used.len())?;
     extent::check(&metadata, bytes).map_err(|error| damaged(name, &error))?;
     let file = Arc::new(PagedFile::new(content, rows));
-    let columns = used.iter().map(|(index, kind)| {
-        let column = column::read(&file, &metadata, *index, *kind);
-        column.map_err(|error| damaged(name, &error))
-    });
-    let columns = columns.collect::<Result<Vec<Vec<f64>>, _>>()?;
-    check_seal(&metadata, &header, &columns).map_err(|error| damaged(name, &error))?;
-    Ok(Box::new(Columns::new(header, columns, bytes)?))
+    let seal = seal_of(&metadata);
+    let metadata = Arc::new(metadata);
+    Ok(Box::new(ParquetFile::new(
+        header, &metadata, &file, &used, seal,
+    )))
 }
 
-/// Refuses a file of ours that does not say what it was made to say.
-fn check_seal(
-    metadata: &ParquetMetaData,
-    header: &Header,
-    columns: &[Vec<f64>],
-) -> Result<(), ParquetError> {
+/// What a file of ours says of all its numbers.
+fn seal_of(metadata: &ParquetMetaData) -> Option<String> {
     let file = metadata.file_metadata();
-    let pairs = file.key_value_metadata().into_iter().flatten();
-    let sum = pairs
-        .filter(|pair| pair.key == seal::KEY)
-        .find_map(|pair| pair.value.as_ref());
+    let mut pairs = file.key_value_metadata().into_iter().flatten();
     let ours = file.created_by() == Some(seal::CREATED_BY);
-    let named = header.names.iter().map(String::as_str);
-    let held = named.zip(columns.iter().map(Vec::as_slice));
-    match sum.filter(|_| ours) {
-        Some(sum) if *sum != seal::of(held) => Err(ParquetError::General(
-            "its checksum does not fit".to_owned(),
-        )),
-        _ => Ok(()),
-    }
+    let pair = pairs.find(|pair| pair.key == seal::KEY && pair.value.is_some());
+    pair.and_then(|pair| pair.value.clone()).filter(|_| ours)
 }
 
 type Used = Vec<(usize, Kind)>;

@@ -3,6 +3,7 @@
 //! The library skips what is not there as often as the file says so, and makes room for what a page declares before it looks.
 
 use super::content::Content;
+use crate::read::budget::most_numbers;
 use bytes::Bytes;
 use parquet::errors::Result;
 use parquet::file::reader::{ChunkReader, Length};
@@ -28,9 +29,9 @@ const MOST_ROW_BYTES: u64 = 32;
 const MOST_SMALL_PAGE_BYTES: u64 = 1 << 16;
 
 impl PagedFile {
-    /// `rows`: of the whole file.
+    /// `rows`: of the whole file; a page holds no more than what may be kept of a file.
     pub fn new(content: Content, rows: u64) -> PagedFile {
-        let most_page_bytes = rows.saturating_mul(MOST_ROW_BYTES);
+        let most_page_bytes = rows.min(most_numbers()).saturating_mul(MOST_ROW_BYTES);
         PagedFile {
             content,
             most_page_bytes: most_page_bytes.saturating_add(MOST_SMALL_PAGE_BYTES),

@@ -11,7 +11,7 @@ use recording::{Channel, Error, Mapping, Origin, Slot, Target, Unit, closest};
 use std::collections::BTreeMap;
 
 /// The columns of a file by target.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Plan {
     /// Column index by target.
     pub columns: BTreeMap<Target, usize>,

@@ -8,7 +8,6 @@ use super::head::peek;
 use super::layout::rows::comment;
 use super::layout::{Layout, layout};
 use super::source::{self, Progress, Source};
-use crate::read::budget::{most_numbers, too_large};
 use crate::read::header::{DeclaredRate, Header};
 use crate::read::table_file::{Row, TableFile};
 use csv::ByteRecord;
@@ -94,7 +93,7 @@ impl CsvFile {
         self
     }
 
-    fn check_row(&self, k: u64, line: u64, cells: usize) -> Result<(), Error> {
+    fn check_row(&self, line: u64, cells: usize) -> Result<(), Error> {
         let width = self.header.names.len();
         if cells > width || cells < width.min(self.layout.width.max(1)) {
             let message = format!("has {cells} columns, the header has {width}");
@@ -104,9 +103,6 @@ impl CsvFile {
                 "complete the row or remove it"
             };
             return Err(Error::at(&self.header.file, line, "", message, remedy));
-        }
-        if k * width as u64 > most_numbers() {
-            return Err(too_large(&self.header.file));
         }
         Ok(())
     }
@@ -256,7 +252,7 @@ impl TableFile for CsvFile {
                 continue;
             }
             trim(&mut record, self.header.names.len());
-            self.check_row(k, line, record.len())?;
+            self.check_row(line, record.len())?;
             row(&Cells {
                 file: &self.header.file,
                 line,

@@ -1,5 +1,6 @@
-//! What each window measured, kept for figures over time.
+//! What the windows measured, kept for figures over time.
 
+use super::thinned::Thinned;
 use monitor::{Report, Window};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -36,13 +37,13 @@ pub struct WindowOperation {
     pub v2_over_v1: Option<f64>,
 }
 
-/// Every window in the order of time.
+/// The windows in the order of time, thinned out where they are many.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
     /// Wherever residuals could be evaluated.
-    pub residuals: Vec<WindowResiduals>,
+    pub residuals: Thinned<WindowResiduals>,
     /// Wherever a window was complete.
-    pub operation: Vec<WindowOperation>,
+    pub operation: Thinned<WindowOperation>,
 }
 
 impl Trace {
@@ -58,6 +59,13 @@ impl Trace {
         if let Some(window) = &report.window {
             self.operation.push(WindowOperation::new(t, window));
         }
+    }
+}
+
+impl Trace {
+    /// One of how many windows is kept at least.
+    pub fn every(&self) -> u64 {
+        self.residuals.every().max(self.operation.every())
     }
 }
 

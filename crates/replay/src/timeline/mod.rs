@@ -1,20 +1,25 @@
 //! What a whole recording came to: lamp changes, verdict, sequence components.
 
+mod sequences;
+mod thinned;
+mod trace;
+
 use audit::Finding;
 use monitor::{
     Candidates, Channel, FAULTS, Known, Lamp, Lamps, LoadKind, MonitorConfig, NotJudged, Report,
     Witness,
 };
-use num_complex::Complex64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::alarm_causes::Causes;
-use super::rotor::{RotorHistory, RotorSummary};
-use super::trace::Trace;
+use crate::alarm_causes::Causes;
 use crate::causes::{self, Candidate};
 use crate::judgement::{Direction, NotJudgedShare, Reasons, Unjudged};
 use crate::moving::MotionSummary;
+use crate::rotor::{RotorHistory, RotorSummary};
+pub use sequences::SequenceSummary;
+use sequences::Sequences;
+pub use trace::{Trace, WindowOperation, WindowResiduals};
 
 /// The lamps from one moment on.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -94,24 +99,6 @@ impl Verdict {
     }
 }
 
-/// Sequence components over the recording. Angles refer to phase a.
-///
-/// The windows are averaged as complex ratios under a Hann weight over the recording, so that what was
-/// cut off at its beginning and end counts little; `largest` looks at single windows instead.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
-pub struct SequenceSummary {
-    /// Negative over positive sequence of the currents.
-    pub i2_over_i1: Option<f64>,
-    /// Angle of that ratio, degrees.
-    pub i2_over_i1_angle_deg: Option<f64>,
-    /// Negative over positive sequence of the voltages.
-    pub v2_over_v1: Option<f64>,
-    /// Zero over positive sequence of the currents.
-    pub i0_over_i1: Option<f64>,
-    /// Largest negative over positive sequence of the currents in a single window.
-    pub largest_i2_over_i1: Option<f64>,
-}
-
 /// Residuals over the judged windows, percent of their scales.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
@@ -120,6 +107,9 @@ struct Moments {
     square: [f64; 4],
 }
 
+/// Changes of the lamps that are kept.
+pub const MOST_CHANGES: usize = 10_000;
+
 /// The collected result of a replay.
 #[derive(Clone, Debug, Default)]
 pub struct Timeline {
@@ -127,13 +117,15 @@ pub struct Timeline {
     pub windows: u64,
     /// Windows judged.
     pub judged: u64,
-    /// Lamps at every change.
+    /// Lamps at every change, up to [`MOST_CHANGES`].
     pub lamps: Vec<LampState>,
+    /// Changes of the lamps beyond those.
+    pub further_changes: u64,
     /// Time of the first FAULT, s.
     pub first_alarm_s: Option<f64>,
     /// Why windows were not judged, most frequent first.
     pub not_judged: Vec<NotJudgedShare>,
-    /// Every window in the order of time.
+    /// The windows in the order of time, thinned out where they are many.
     pub trace: Trace,
     /// What was judged while something changed.
     pub motion: MotionSummary,
@@ -161,20 +153,6 @@ pub struct Timeline {
     /// Resistance rise of the judged windows of a calibrated motor.
     heating_sum: f64,
     heating_windows: u64,
-}
-
-/// Ratios of the sequence components of each complete window.
-#[derive(Clone, Debug, Default)]
-struct Sequences {
-    current: Vec<CurrentRatios>,
-    voltage: Vec<(f64, Complex64)>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct CurrentRatios {
-    t: f64,
-    negative: Complex64,
-    zero: Complex64,
 }
 
 impl Timeline {
@@ -262,7 +240,10 @@ impl Timeline {
         let now = (report.lamps, report.not_judged);
         if self.shown != Some(now) {
             self.shown = Some(now);
-            self.lamps.push(lamp_state(t, report));
+            match self.lamps.len() < MOST_CHANGES {
+                true => self.lamps.push(lamp_state(t, report)),
+                false => self.further_changes += 1,
+            }
         }
     }
 
@@ -428,54 +409,4 @@ fn lamp_state(t: f64, report: &Report) -> LampState {
         fault: lamps.fault,
         not_judged: report.not_judged.map(Unjudged::ByCore),
     }
-}
-
-impl Sequences {
-    /// `t` is the time of the window's end; what it measured belongs to its middle.
-    fn add(&mut self, t: f64, report: &Report) {
-        let Some(window) = &report.window else {
-            return;
-        };
-        let half_cycle = std::f64::consts::PI / f64::from(window.omega_sync);
-        let t = t - 0.5 * f64::from(window.span) - half_cycle;
-        let wide = |x: num_complex::Complex32| Complex64::new(f64::from(x.re), f64::from(x.im));
-        if window.i_s.positive.norm_sqr() > 0.0 {
-            self.current.push(CurrentRatios {
-                t,
-                negative: wide(window.i_s.unbalance()),
-                zero: wide(window.i_s.zero_ratio()),
-            });
-        }
-        if window.u_s.positive.norm_sqr() > 0.0 {
-            self.voltage.push((t, wide(window.u_s.unbalance())));
-        }
-    }
-
-    fn summary(&self) -> SequenceSummary {
-        let of_current = |part: fn(&CurrentRatios) -> Complex64| {
-            hann_mean(self.current.iter().map(|ratios| (ratios.t, part(ratios))))
-        };
-        let i2 = of_current(|ratios| ratios.negative);
-        let sizes = self.current.iter().map(|ratios| ratios.negative.norm());
-        SequenceSummary {
-            i2_over_i1: i2.map(Complex64::norm),
-            i2_over_i1_angle_deg: i2.map(|x| x.arg().to_degrees()),
-            v2_over_v1: hann_mean(self.voltage.iter().copied()).map(Complex64::norm),
-            i0_over_i1: of_current(|ratios| ratios.zero).map(Complex64::norm),
-            largest_i2_over_i1: sizes.max_by(f64::total_cmp),
-        }
-    }
-}
-
-/// Mean of values over time under a Hann weight that spans them; `None` without values.
-fn hann_mean(values: impl Iterator<Item = (f64, Complex64)> + Clone) -> Option<Complex64> {
-    let (first, _) = values.clone().next()?;
-    let (last, _) = values.clone().last()?;
-    // Half a step beyond either end, so that a single value has a weight.
-    let span = (last - first).max(f64::MIN_POSITIVE) * 1.001;
-    let weight = |t: f64| 1.0 - (std::f64::consts::TAU * ((t - first) / span + 0.0005)).cos();
-    let (sum, weights) = values.fold((Complex64::ZERO, 0.0), |(sum, weights), (t, x)| {
-        (sum + x * weight(t), weights + weight(t))
-    });
-    Some(sum / weights)
 }

@@ -1,0 +1,148 @@
+//! Gathers the columns of a file that are used, row by row or block by block.
+
+use super::pieces::Piece;
+use super::raw::{Raw, Rows};
+use crate::read::budget::{most_numbers, too_large};
+use crate::read::header::Header;
+use crate::read::plan::Plan;
+use crate::read::table_file::{Block, Row};
+use recording::{Column, Error, Target};
+
+struct UsedColumn {
+    target: Target,
+    index: usize,
+    name: String,
+}
+
+/// The rows that were gathered and not yet given away.
+pub(super) struct Collector {
+    file: String,
+    width: u64,
+    used: Vec<UsedColumn>,
+    values: Vec<Vec<f64>>,
+    row: Vec<f64>,
+    lines: Vec<u64>,
+    numbers: Vec<u64>,
+    taken: u64,
+    skipped: u64,
+    skip_missing: bool,
+    /// Rows at the front that were in the piece before.
+    before: usize,
+    /// Whether all rows are to be kept, so that their number is bounded.
+    is_bounded: bool,
+}
+
+impl Collector {
+    /// `is_bounded`: refuses more numbers than fit into memory.
+    pub fn new(header: &Header, plan: &Plan, is_bounded: bool) -> Collector {
+        let used = plan.columns.iter().map(|(target, index)| UsedColumn {
+            target: *target,
+            index: *index,
+            name: header.names[*index].clone(),
+        });
+        let used: Vec<UsedColumn> = used.collect();
+        Collector {
+            file: header.file.clone(),
+            width: header.names.len() as u64,
+            values: vec![Vec::new(); used.len()],
+            row: vec![0.0; used.len()],
+            used,
+            lines: Vec::new(),
+            numbers: Vec::new(),
+            taken: 0,
+            skipped: 0,
+            skip_missing: plan.mapping.skip_missing.unwrap_or(false),
+            before: 0,
+            is_bounded,
+        }
+    }
+
+    /// Rows that were in no piece yet.
+    pub fn fresh(&self) -> usize {
+        self.lines.len() - self.before
+    }
+
+    /// Takes one row.
+    ///
+    /// # Errors
+    /// A cell without a finite number, or too many rows.
+    pub fn take(&mut self, cells: &dyn Row) -> Result<(), Error> {
+        self.count(1)?;
+        for (slot, column) in self.row.iter_mut().zip(&self.used) {
+            match cells.number(column.index, &column.name)? {
+                Some(x) if x.is_finite() => *slot = x,
+                _ if self.skip_missing => {
+                    self.skipped += 1;
+                    return Ok(());
+                }
+                Some(x) => return Err(cells.not_finite(column.index, &column.name, x)),
+                None => return Err(cells.missing(&column.name)),
+            }
+        }
+        for (column, x) in self.values.iter_mut().zip(&self.row) {
+            column.push(*x);
+        }
+        self.numbers.push(self.taken - 1);
+        self.lines.push(cells.line());
+        Ok(())
+    }
+
+    /// Takes a block of rows, column by column where every number is finite.
+    ///
+    /// # Errors
+    /// As [`Collector::take`].
+    pub fn take_block(&mut self, block: &Block<'_>) -> Result<(), Error> {
+        let is_whole =
+            |column: &UsedColumn| block.column(column.index).iter().all(|x| x.is_finite());
+        if !self.used.iter().all(is_whole) {
+            return (0..block.rows()).try_for_each(|k| self.take(&block.row(k)));
+        }
+        self.count(block.rows() as u64)?;
+        for (values, column) in self.values.iter_mut().zip(&self.used) {
+            values.extend_from_slice(block.column(column.index));
+        }
+        self.numbers
+            .extend(self.taken - block.rows() as u64..self.taken);
+        let first = block.row(0).line();
+        self.lines.extend(first..first + block.rows() as u64);
+        Ok(())
+    }
+
+    fn count(&mut self, rows: u64) -> Result<(), Error> {
+        self.taken += rows;
+        match self.is_bounded && self.taken.saturating_mul(self.width) > most_numbers() {
+            true => Err(too_large(&self.file)),
+            false => Ok(()),
+        }
+    }
+
+    /// Gives away the first `rows` fresh rows with `margin` rows on either side, as far as there are any.
+    pub fn give(&mut self, rows: usize, margin: usize) -> Piece {
+        let kept = self.before..self.before + rows;
+        let end = (kept.end + margin).min(self.lines.len());
+        let again = kept.end.saturating_sub(margin);
+        let targets = self.used.iter().map(|column| column.target);
+        let columns = self.values.iter_mut().map(|x| front(x, end, again));
+        let piece = Piece {
+            raw: Raw {
+                columns: targets.zip(columns.map(Column::from)).collect(),
+                rows: Rows::Kept {
+                    lines: front(&mut self.lines, end, again),
+                    numbers: front(&mut self.numbers, end, again),
+                },
+                skipped: self.skipped,
+            },
+            kept: kept.clone(),
+        };
+        self.before = kept.end - again;
+        piece
+    }
+}
+
+/// The first `end` of `all`, which goes on with what follows from `again` on.
+fn front<T: Copy>(all: &mut Vec<T>, end: usize, again: usize) -> Vec<T> {
+    let rest = all[again..].to_vec();
+    let mut front = std::mem::replace(all, rest);
+    front.truncate(end);
+    front
+}

@@ -1,0 +1,72 @@
+//! Samples through the core, at once or piece by piece.
+
+use monitor::{Monitor, MonitorState};
+
+use crate::moving::Follower;
+use crate::samples::{Before, Samples};
+use crate::timeline::Timeline;
+
+/// A replay of a recording that comes in pieces: all that the core remembers goes on from one to the next, so that the
+/// answer is that of the recording as a whole, bit for bit.
+pub struct Replay {
+    monitor: Monitor,
+    state: MonitorState,
+    follower: Follower,
+    timeline: Timeline,
+    before: Option<Before>,
+}
+
+impl Replay {
+    /// Before the first sample.
+    pub fn new(monitor: Monitor) -> Replay {
+        Replay {
+            state: MonitorState::default(),
+            follower: Follower::new(&monitor),
+            timeline: Timeline::new(monitor.config()),
+            before: None,
+            monitor,
+        }
+    }
+
+    /// Takes the samples that follow; where time has passed since the last ones, as after a gap. `progress` gets the number
+    /// of samples done.
+    pub fn take(&mut self, samples: Samples<'_>, progress: &mut dyn FnMut(usize)) {
+        let samples = match self.before {
+            Some(before) => samples.continuing(before),
+            None => samples,
+        };
+        for (k, timed) in samples.iter().enumerate() {
+            if timed.after_gap {
+                self.state.resume_after_gap();
+                self.follower.resume_after_gap();
+            }
+            let report = self.monitor.update(&mut self.state, &timed.sample);
+            self.follower.update(timed.t, &timed.sample, &self.state);
+            if let Some(report) = report {
+                self.follower.window(&report);
+                self.timeline.add(timed.t, &report);
+                progress(k + 1);
+            }
+        }
+        self.before = samples.end();
+    }
+
+    /// What all samples came to.
+    pub fn finish(self) -> Timeline {
+        let mut timeline = self.timeline;
+        timeline.finish();
+        timeline.motion = self.follower.finish();
+        timeline
+    }
+}
+
+/// Runs every sample through the core; `progress` gets the number of samples done.
+pub fn replay(
+    monitor: &Monitor,
+    samples: &Samples<'_>,
+    progress: &mut dyn FnMut(usize),
+) -> Timeline {
+    let mut replay = Replay::new(*monitor);
+    replay.take(*samples, progress);
+    replay.finish()
+}
