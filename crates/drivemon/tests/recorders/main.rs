@@ -6,6 +6,7 @@ mod common;
 mod instruments;
 mod likely_cause;
 mod noise_and_ramps;
+mod pieces;
 mod plate_only;
 mod random_instruments;
 mod unknown_scale;

@@ -4,6 +4,7 @@ mod common;
 mod formats;
 mod loggers;
 mod malformed;
+mod pieces;
 mod random_input;
 mod reading_real_files;
 mod writing;
