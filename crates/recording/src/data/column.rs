@@ -33,9 +33,12 @@ impl Column {
         }
     }
 
-    /// Keeps the numbers of a range that lies inside; lent ones are copied.
+    /// Keeps the numbers of a range that lies inside; lent ones, and few of many, are copied.
     pub(crate) fn cut(&mut self, range: &Range<usize>) {
         match self {
+            Column::Own(values) if 2 * range.len() < values.len() => {
+                *values = values[range.clone()].to_vec();
+            }
             Column::Own(values) => {
                 values.truncate(range.end);
                 values.drain(..range.start);

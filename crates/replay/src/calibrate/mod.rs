@@ -5,6 +5,7 @@
 
 mod fit;
 mod gains;
+mod pieces;
 mod refuse;
 mod rotor;
 mod statistics;
@@ -18,6 +19,7 @@ use motor::motor_file::HealthySettings;
 use recording::Recording;
 
 pub use gains::Kind;
+pub use pieces::Pieces;
 pub use statistics::Surroundings;
 
 use crate::config_for;
@@ -34,7 +36,8 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    fn new(recording: &str, reason: impl Into<String>) -> Self {
+    /// Of one recording, or of all of them.
+    pub fn new(recording: &str, reason: impl Into<String>) -> Self {
         Refusal {
             recording: recording.to_owned(),
             reason: reason.into(),
@@ -82,11 +85,24 @@ pub fn calibrate(
     recordings: &[Recording],
     surroundings: &Surroundings,
 ) -> Result<Calibrated, Refusal> {
+    let recordings: Vec<&dyn Pieces> = recordings.iter().map(|one| one as &dyn Pieces).collect();
+    calibrate_pieces(motor, &recordings, surroundings)
+}
+
+/// The same from recordings of any length, each of which is gone through several times.
+///
+/// # Errors
+/// As [`calibrate`], and a recording that can be read no more.
+pub fn calibrate_pieces(
+    motor: &MotorFile,
+    recordings: &[&dyn Pieces],
+    surroundings: &Surroundings,
+) -> Result<Calibrated, Refusal> {
     let mut believed = motor.clone();
     believed.healthy = None;
     let sources = windows::audited(recordings, &believed)?;
     let monitor_of = |motor: &MotorFile, k: usize| {
-        let mut config = configured(motor, sources[k].recording)?;
+        let mut config = configured(motor, sources[k].head())?;
         config.healthy = Some(Healthy::unknown());
         monitor(motor, config)
     };
@@ -131,7 +147,7 @@ pub fn calibrate(
     motor.healthy = Some(healthy);
     if has_voltages {
         let monitor_of =
-            |motor: &MotorFile, k: usize| monitor(motor, configured(motor, sources[k].recording)?);
+            |motor: &MotorFile, k: usize| monitor(motor, configured(motor, sources[k].head())?);
         motor.monitor.threshold_percent = statistics::thresholds(&motor, &observed, &monitor_of)?;
     }
     refuse::contradictions(&motor, &sources, &observed)?;

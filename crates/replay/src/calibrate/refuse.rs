@@ -3,9 +3,9 @@
 use monitor::{Healthy, Row, magnitude};
 use motor::MotorFile;
 use num_complex::Complex32;
-use recording::Recording;
 
 use super::fit::{Beliefs, Fitted};
+use super::pieces::Pieces;
 use super::windows::{Healthily, Observed};
 use super::{MonitorOf, Refusal, configured};
 
@@ -24,7 +24,7 @@ fn strays_allowed(windows: usize) -> usize {
 pub fn implausible(
     beliefs: &Beliefs<'_>,
     fitted: &Fitted,
-    recordings: &[Recording],
+    recordings: &[&dyn Pieces],
 ) -> Result<(), Refusal> {
     let limits = beliefs.largest_changes();
     let mut changes = Fitted::causes().zip(fitted.changes.iter().zip(limits));
@@ -42,8 +42,8 @@ pub fn implausible(
     }
 }
 
-fn names(recordings: &[Recording]) -> String {
-    let names: Vec<&str> = recordings.iter().map(Recording::name).collect();
+fn names(recordings: &[&dyn Pieces]) -> String {
+    let names: Vec<&str> = recordings.iter().map(|one| one.name()).collect();
     names.join(", ")
 }
 
@@ -72,24 +72,26 @@ pub fn contradictions(
 ) -> Result<(), Refusal> {
     changing_unbalance(sources, observed)?;
     for source in sources {
-        let config = configured(motor, source.recording)?;
+        let config = configured(motor, source.head())?;
         let limit = config.healthy.map_or(f32::INFINITY, |h| h.significance);
-        let (mut judged, mut alarms) = (0, Vec::new());
+        let (mut judged, mut alarms, mut first_s) = (0, 0, None);
         source.monitored(config, &mut |t, report| {
             if let Some(isolation) = &report.isolation {
                 judged += 1;
-                alarms.extend((isolation.significance > limit).then_some(t));
+                if isolation.significance > limit {
+                    alarms += 1;
+                    first_s.get_or_insert(t);
+                }
             }
             Ok(())
         })?;
-        if alarms.len() > strays_allowed(judged) {
+        if alarms > strays_allowed(judged) {
             return Err(Refusal::new(
-                source.recording.name(),
+                source.name(),
                 format!(
-                    "{} of {judged} steady windows, first at {:.3} s, would light FAULT after calibration: this recording is not of \
+                    "{alarms} of {judged} steady windows, first at {:.3} s, would light FAULT after calibration: this recording is not of \
                      the same healthy motor as the others, or the model misses an effect: see what `drivemon explain` says of it",
-                    alarms.len(),
-                    alarms[0]
+                    first_s.unwrap_or_default()
                 ),
             ));
         }
@@ -118,7 +120,7 @@ fn changing_unbalance(sources: &[Healthily<'_>], observed: &[Observed]) -> Resul
         let from_others = magnitude(middles[k] - common) > LARGEST_UNBALANCE_CHANGE;
         let from = if from_others { common } else { middles[k] };
         if let Some(stray) = astray(from) {
-            return Err(not_one_state(source.recording.name(), stray, from));
+            return Err(not_one_state(source.name(), stray, from));
         }
     }
     Ok(())

@@ -6,6 +6,7 @@ use motor::motor_file::HealthyRotor;
 
 use super::windows::Healthily;
 use super::{Refusal, configured};
+use crate::timeline::Thinned;
 
 /// Fewest blocks of sidebands: their scatter has to be seen.
 const FEWEST: usize = 6;
@@ -27,9 +28,10 @@ pub fn healthy(
     motor: &MotorFile,
     sources: &[Healthily<'_>],
 ) -> Result<Option<HealthyRotor>, Refusal> {
-    let mut blocks = Vec::new();
+    let mut all = Vec::new();
     for source in sources {
-        let config = configured(motor, source.recording)?;
+        let mut blocks = Thinned::default();
+        let config = configured(motor, source.head())?;
         let rated = f64::from(config.rated_current);
         source.monitored(config, &mut |_, report| {
             let (Some(sidebands), Some(limits)) = (&report.rotor.sidebands, &report.rotor.limits)
@@ -41,8 +43,9 @@ pub fn healthy(
             }
             Ok(())
         })?;
+        all.extend_from_slice(&blocks);
     }
-    Ok(of_blocks(&mut blocks))
+    Ok(of_blocks(&mut all))
 }
 
 fn block(sidebands: &Sidebands, rated_current: f64) -> Block {

@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use audit::{Audit, Expectation, audit};
+use audit::{Audit, Expectation, Merger, audit};
 use monitor::{Healthy, Monitor, MonitorConfig, MonitorState, Report, Window};
 use motor::MotorFile;
 use recording::Recording;
 
+use super::pieces::Pieces;
 use super::{Refusal, configured};
-use crate::Samples;
+use crate::samples::{Before, Samples};
+use crate::timeline::Thinned;
 use crate::words;
 
 /// One steady window.
@@ -26,10 +28,12 @@ pub struct Observed {
 
 /// A recording with its audit.
 pub struct Healthily<'r> {
-    /// The recording.
-    pub recording: &'r Recording,
+    pieces: &'r dyn Pieces,
     /// What the audit found.
     pub audit: Audit,
+    of_pieces: Vec<Audit>,
+    /// The first samples, with the sampling time of the first piece.
+    head: Recording,
 }
 
 /// Fewest steady windows: one second at 50 Hz.
@@ -40,20 +44,14 @@ const FEWEST: usize = 50;
 /// # Errors
 /// A recording that the audit refuses.
 pub fn audited<'r>(
-    recordings: &'r [Recording],
+    recordings: &[&'r dyn Pieces],
     motor: &MotorFile,
 ) -> Result<Vec<Healthily<'r>>, Refusal> {
     let expectation = Expectation::from(motor);
-    let one = |recording: &'r Recording| {
-        let audit = audit(recording, &expectation);
-        if audit.supported {
-            return Ok(Healthily { recording, audit });
-        }
-        let detail = audit.findings.iter().map(|f| f.detail.clone());
-        let detail = detail.collect::<Vec<_>>().join("; ");
-        Err(Refusal::new(recording.name(), detail))
-    };
-    recordings.iter().map(one).collect()
+    let recordings = recordings.iter();
+    recordings
+        .map(|one| Healthily::new(*one, &expectation))
+        .collect()
 }
 
 /// The steady windows of all recordings under `motor`.
@@ -77,7 +75,7 @@ pub fn observe(sources: &[Healthily<'_>], motor: &MotorFile) -> Result<Vec<Obser
 type Reasons = BTreeMap<String, usize>;
 
 fn too_few(sources: &[Healthily<'_>], windows: usize, reasons: &Reasons) -> Refusal {
-    let names: Vec<&str> = sources.iter().map(|s| s.recording.name()).collect();
+    let names: Vec<&str> = sources.iter().map(|s| s.name()).collect();
     let most = reasons.iter().max_by_key(|(_, count)| **count);
     let passed_over = most.map_or_else(String::new, |(reason, count)| {
         format!(" ({count} are not: {reason})")
@@ -96,16 +94,17 @@ fn observe_one(
     all: &mut Vec<Observed>,
     reasons: &mut Reasons,
 ) -> Result<(), Refusal> {
-    let mut config = configured(motor, source.recording)?;
+    let mut config = configured(motor, source.head())?;
     config.healthy = Some(Healthy::unknown());
-    let name = source.recording.name();
+    let name = source.name();
+    let mut observed = Thinned::default();
     source.monitored(config, &mut |t, report| {
         refuse_sensor(name, t, report)?;
         if let Some(reason) = report.not_judged {
             *reasons.entry(words::not_judged(reason)).or_default() += 1;
         }
         if let (None, Some(window)) = (report.not_judged, report.window) {
-            all.push(Observed {
+            observed.push(Observed {
                 recording: k,
                 t,
                 window,
@@ -113,10 +112,47 @@ fn observe_one(
             });
         }
         Ok(())
-    })
+    })?;
+    all.extend_from_slice(&observed);
+    Ok(())
 }
 
-impl Healthily<'_> {
+impl<'r> Healthily<'r> {
+    fn new(pieces: &'r dyn Pieces, expectation: &Expectation) -> Result<Healthily<'r>, Refusal> {
+        let (mut merger, mut of_pieces, mut head) = (Merger::default(), Vec::new(), None);
+        pieces.each(&mut |piece| {
+            let audit = audit(piece, expectation);
+            merger.add(piece, &audit);
+            of_pieces.push(audit);
+            head = head.take().or_else(|| piece.clone().cut(0..2).ok());
+            Ok(())
+        })?;
+        let audit = merger.finish();
+        match head.filter(|_| audit.supported) {
+            Some(head) => Ok(Healthily {
+                pieces,
+                audit,
+                of_pieces,
+                head,
+            }),
+            None => {
+                let detail = audit.findings.iter().map(|f| f.detail.clone());
+                let detail = detail.collect::<Vec<_>>().join("; ");
+                Err(Refusal::new(pieces.name(), detail))
+            }
+        }
+    }
+
+    /// The recording's name.
+    pub fn name(&self) -> &str {
+        self.pieces.name()
+    }
+
+    /// The first samples, with what is known of the whole.
+    pub fn head(&self) -> &Recording {
+        &self.head
+    }
+
     /// Sends the recording through the core; `look` takes the time, s, and each report.
     ///
     /// # Errors
@@ -126,19 +162,28 @@ impl Healthily<'_> {
         config: MonitorConfig,
         look: &mut dyn FnMut(f64, &Report) -> Result<(), Refusal>,
     ) -> Result<(), Refusal> {
-        let refused =
-            |error: monitor::ConfigError| Refusal::new(self.recording.name(), error.to_string());
+        let refused = |error: monitor::ConfigError| Refusal::new(self.name(), error.to_string());
         let monitor = Monitor::new(config).map_err(refused)?;
         let mut state = MonitorState::default();
-        for timed in Samples::new(self.recording, &self.audit).iter() {
-            if timed.after_gap {
-                state.resume_after_gap();
+        let mut audits = self.of_pieces.iter();
+        let mut before: Option<Before> = None;
+        self.pieces.each(&mut |piece| {
+            let Some(audit) = audits.next().filter(|audit| audit.is_usable_piece()) else {
+                return Ok(());
+            };
+            let samples = Samples::new(piece, audit);
+            let samples = before.map_or(samples, |before| samples.continuing(before));
+            before = samples.end();
+            for timed in samples.iter() {
+                if timed.after_gap {
+                    state.resume_after_gap();
+                }
+                if let Some(report) = monitor.update(&mut state, &timed.sample) {
+                    look(timed.t, &report)?;
+                }
             }
-            if let Some(report) = monitor.update(&mut state, &timed.sample) {
-                look(timed.t, &report)?;
-            }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 }
 

@@ -19,6 +19,7 @@ use crate::moving::MotionSummary;
 use crate::rotor::{RotorHistory, RotorSummary};
 pub use sequences::SequenceSummary;
 use sequences::Sequences;
+pub(crate) use thinned::Thinned;
 pub use trace::{Trace, WindowOperation, WindowResiduals};
 
 /// The lamps from one moment on.

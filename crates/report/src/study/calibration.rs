@@ -7,7 +7,7 @@ use monitor::Cause;
 use motor::MotorFile;
 use motor::motor_file::HealthySettings;
 use recording::Recording;
-use replay::calibrate::{Calibrated, Kind, Refusal, Surroundings, calibrate};
+use replay::calibrate::{Calibrated, Kind, Pieces, Refusal, Surroundings, calibrate_pieces};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -121,7 +121,22 @@ impl Calibration {
         believed: &MotorFile,
         surroundings: &Surroundings,
     ) -> Result<(Calibration, MotorFile), Refusal> {
-        let calibrated = calibrate(believed, recordings, surroundings)?;
+        let recordings: Vec<&dyn Pieces> =
+            recordings.iter().map(|one| one as &dyn Pieces).collect();
+        Calibration::of_pieces(names, &recordings, believed, surroundings)
+    }
+
+    /// The same from recordings of any length, each of which is gone through several times.
+    ///
+    /// # Errors
+    /// As [`Calibration::new`], and a recording that can be read no more.
+    pub fn of_pieces(
+        names: Vec<String>,
+        recordings: &[&dyn Pieces],
+        believed: &MotorFile,
+        surroundings: &Surroundings,
+    ) -> Result<(Calibration, MotorFile), Refusal> {
+        let calibrated = calibrate_pieces(believed, recordings, surroundings)?;
         let [torque, e_d, e_q] = calibrated.misfit_percent;
         let gain = |(kind, gain): &(Kind, [f64; 3])| ChannelGains {
             effect: kind.effect().map_or("", |effect| effect.name),

@@ -84,7 +84,11 @@ impl InputArgs {
         self.flags().typed()
     }
 
-    fn mapping(&self) -> Result<Mapping, Failure> {
+    /// What the flags say.
+    ///
+    /// # Errors
+    /// A flag that cannot be understood.
+    pub fn mapping(&self) -> Result<Mapping, Failure> {
         Ok(self.flags().mapping()?)
     }
 
@@ -156,7 +160,7 @@ impl InputArgs {
         &self,
         path: &Path,
         title: &'static str,
-        take: &mut dyn FnMut(&Recording) -> Result<(), Failure>,
+        take: &mut dyn FnMut(Recording) -> Result<(), Failure>,
     ) -> Result<Option<LoadTable>, Failure> {
         let mapping = self.mapping()?;
         let bar = progress::bar(title, 0);
@@ -164,9 +168,8 @@ impl InputArgs {
         // What had to be assumed is known with the last piece, of which its beginning tells as much as all of it.
         let mut last = None;
         let mut each = |piece: Recording| {
-            take(&piece)?;
             last = Some(piece.slice(0..2)?);
-            Ok::<(), Failure>(())
+            take(piece)
         };
         let rows = formats::PIECE_ROWS;
         let table = match path.as_os_str() == DASH {

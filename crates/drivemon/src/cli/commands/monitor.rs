@@ -66,7 +66,7 @@ impl MonitorArgs {
             let table = self
                 .input
                 .read_in_pieces(path, "monitoring", &mut |piece| {
-                    let taken = monitoring.take(piece, &mut |_| {});
+                    let taken = monitoring.take(&piece, &mut |_| {});
                     taken.map_err(|error| self.failure(error))
                 })?;
             match table {

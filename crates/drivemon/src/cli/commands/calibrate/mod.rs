@@ -1,6 +1,7 @@
 //! `drivemon calibrate`: what a healthy motor looks like, and what the instrument's channels do.
 
 mod channels;
+mod healthy;
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +17,8 @@ use crate::cli::printing::output::{JsonArgs, write_text};
 use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use channels::ChannelArgs;
-use replay::calibrate::{Refusal, Surroundings};
+use healthy::HealthyRecording;
+use replay::calibrate::{Pieces, Refusal, Surroundings};
 use report::json::Format;
 use report::motor_text;
 use report::study::{Calibration, FALSE_ALARM_RATES, HealthyCage, WINDING_KELVINS};
@@ -67,20 +69,23 @@ impl Calibrate {
     pub fn run(&self) -> Result<Finding, Failure> {
         self.check()?;
         self.files().check()?;
-        let recordings = self.read()?;
         match &self.motor {
             _ if self.channels.channels => {
+                let recordings = self.read()?;
                 let files = (self.motor.as_deref(), &self.out);
                 channels::run(&self.channels, &recordings, files, &self.json)
             }
-            Some(motor) => self.learn(motor, &recordings),
+            Some(motor) => self.learn(motor),
             None => Err(Failure::Usage(
                 "--motor is missing: name the motor file with what is believed so far".to_owned(),
             )),
         }
     }
 
-    fn learn(&self, path: &Path, recordings: &[Recording]) -> Result<Finding, Failure> {
+    fn learn(&self, path: &Path) -> Result<Finding, Failure> {
+        let recordings = self.recordings.iter();
+        let read = recordings.map(|path| HealthyRecording::read(path, &self.input));
+        let recordings = read.collect::<Result<Vec<_>, _>>()?;
         let motor = read_motor(path)?;
         let surroundings = Surroundings {
             winding_kelvin: self.winding_kelvin,
@@ -88,7 +93,8 @@ impl Calibrate {
         };
         let spinner = progress::bar("calibrating", 0);
         let names = self.recordings.iter().map(|p| p.display().to_string());
-        let learnt = Calibration::new(names.collect(), recordings, &motor, &surroundings);
+        let recordings: Vec<&dyn Pieces> = recordings.iter().map(|one| one as _).collect();
+        let learnt = Calibration::of_pieces(names.collect(), &recordings, &motor, &surroundings);
         spinner.finish_and_clear();
         let (mut result, calibrated) = learnt.map_err(refused)?;
         self.write_motor(path, &calibrated)?;
