@@ -1,8 +1,8 @@
 //! What each block of a recording shows: phasors, means, and whether it was steady.
 
-use crate::measure::fit::{Basis, Fit};
+use crate::measure::fit::Fit;
 use crate::measure::sequence::Sequence;
-use crate::measure::track::{Span, Tracked};
+use crate::measure::track::{Found, Tracked};
 use num_complex::Complex64;
 use recording::{Channel, Recording};
 use std::ops::Range;
@@ -82,13 +82,9 @@ const STEADY_FREQUENCY: f64 = 0.005;
 /// Change of the speed over a block, relative to a turn per supply period, that counts as steady.
 const STEADY_SPEED: f64 = 0.01;
 
-/// The blocks of a recording, and which channels they were found in.
+/// The blocks of a recording: of its voltages, or of the currents where the voltages are absent or carry no fundamental.
 pub(crate) fn blocks(recording: &Recording) -> Vec<Block> {
-    let spans = spans(recording);
-    let mut blocks: Vec<Block> = spans
-        .iter()
-        .filter_map(|span| block(recording, span))
-        .collect();
+    let mut blocks = followed(recording);
     let jumps: Vec<bool> = (0..blocks.len()).map(|k| jumps(&blocks, k)).collect();
     for (block, jumps) in blocks.iter_mut().zip(jumps) {
         block.steady &= !jumps;
@@ -96,23 +92,29 @@ pub(crate) fn blocks(recording: &Recording) -> Vec<Block> {
     blocks
 }
 
-/// Follows the voltages, or the currents where the voltages are absent or carry no fundamental.
-fn spans(recording: &Recording) -> Vec<Span> {
-    let of = |channels: Option<[&[f64]; 3]>| match channels {
-        Some(channels) => tracked(recording, &channels).spans(),
-        None => Vec::new(),
-    };
-    let covered = |spans: &[Span]| spans.iter().map(|span| span.range.len()).sum::<usize>();
-    let by_voltage = of(recording.voltages());
+fn followed(recording: &Recording) -> Vec<Block> {
+    let covered = |blocks: &[Block]| blocks.iter().map(|block| block.range.len()).sum::<usize>();
+    let by_voltage = of(recording, Channel::VOLTAGES);
     if 2 * covered(&by_voltage) > recording.len() {
         return by_voltage;
     }
-    let by_current = of(recording.currents());
+    let by_current = of(recording, Channel::CURRENTS);
     if covered(&by_current) > covered(&by_voltage) {
         by_current
     } else {
         by_voltage
     }
+}
+
+/// The blocks over which three channels carry a fundamental.
+fn of(recording: &Recording, three: [Channel; 3]) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let channels = three.map(|channel| recording.channel(channel));
+    if let [Some(a), Some(b), Some(c)] = channels {
+        let tracked = tracked(recording, &[a, b, c]);
+        tracked.for_each(&mut |found| blocks.push(block(recording, found, three)));
+    }
+    blocks
 }
 
 /// A tracker over some channels of a recording.
@@ -124,14 +126,19 @@ pub(crate) fn tracked<'r>(recording: &'r Recording, channels: &[&'r [f64]]) -> T
     }
 }
 
-fn block(recording: &Recording, span: &Span) -> Option<Block> {
+/// `followed`: the channels of which `found` has the fits.
+fn block(recording: &Recording, found: &Found, followed: [Channel; 3]) -> Block {
+    let Found { span, basis, fits } = found;
     let range = span.range.clone();
-    let basis = Basis::new(&recording.t()[range.clone()], span.omega)?;
-    let three = |channels: Option<[&[f64]; 3]>| {
-        let fits = channels?.map(|x| basis.fit(&x[range.clone()]));
+    let three = |three: [Channel; 3], channels: Option<[&[f64]; 3]>| {
+        let fits = match fits[..] {
+            [a, b, c] if three == followed => [a, b, c],
+            _ => basis.fit_each(channels?.map(|x| &x[range.clone()])),
+        };
         Some(Three { fits })
     };
-    let (voltages, currents) = (three(recording.voltages()), three(recording.currents()));
+    let voltages = three(Channel::VOLTAGES, recording.voltages());
+    let currents = three(Channel::CURRENTS, recording.currents());
     let known = recording.unknown_speed_scale.is_none();
     let speed = recording.speed().filter(|_| known);
     let speed = speed.map(|speed| &speed[range.clone()]);
@@ -142,14 +149,14 @@ fn block(recording: &Recording, span: &Span) -> Option<Block> {
             .as_ref()
             .is_none_or(|i| i.change() < STEADY_CURRENT)
         && speed.is_none_or(|speed| change(speed) < STEADY_SPEED * span.omega);
-    Some(Block {
+    Block {
         omega: span.omega,
         voltages,
         currents,
         speed: speed.map(mean),
         steady,
         range,
-    })
+    }
 }
 
 pub(crate) fn mean(x: &[f64]) -> f64 {

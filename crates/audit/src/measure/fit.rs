@@ -52,15 +52,26 @@ impl Basis {
 
     /// Fits one channel over the block; `x` is as long as the block.
     pub fn fit(&self, x: &[f64]) -> Fit {
-        let n = self.rows.len() as f64;
-        let (mut rhs, mut sum, mut square) = ([0.0; N], 0.0, 0.0);
-        for (row, x) in self.rows.iter().zip(x) {
-            for (rhs, column) in rhs.iter_mut().zip(row) {
-                *rhs += column * x;
+        let [fit] = self.fit_each([x]);
+        fit
+    }
+
+    /// Fits several channels in one pass over the block, each by itself.
+    pub fn fit_each<const K: usize>(&self, x: [&[f64]; K]) -> [Fit; K] {
+        let mut sums = [Sums::default(); K];
+        let length = x.iter().map(|x| x.len()).min().unwrap_or(0);
+        let x = x.map(|x| &x[..length]);
+        for (k, row) in self.rows.iter().take(length).enumerate() {
+            for (sums, x) in sums.iter_mut().zip(x) {
+                sums.add(row, x[k]);
             }
-            sum += x;
-            square += x * x;
         }
+        sums.map(|sums| self.solved(sums))
+    }
+
+    fn solved(&self, sums: Sums) -> Fit {
+        let n = self.rows.len() as f64;
+        let Sums { rhs, sum, square } = sums;
         let s = solve(&self.factor, rhs);
         let explained: f64 = s.iter().zip(&rhs).map(|(s, r)| s * r).sum();
         Fit {
@@ -80,6 +91,24 @@ impl Basis {
             .sum();
         let power: f64 = fits.iter().map(|fit| fit.phasor.norm_sqr()).sum();
         turning / (power * self.half)
+    }
+}
+
+/// What a channel adds up to over a block.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    rhs: Row,
+    sum: f64,
+    square: f64,
+}
+
+impl Sums {
+    fn add(&mut self, row: &Row, x: f64) {
+        for (rhs, column) in self.rhs.iter_mut().zip(row) {
+            *rhs += column * x;
+        }
+        self.sum += x;
+        self.square += x * x;
     }
 }
 

@@ -28,6 +28,25 @@ pub(crate) struct Span {
     pub omega: f64,
 }
 
+/// A block with what was found in it.
+pub(crate) struct Found {
+    pub span: Span,
+    pub basis: Basis,
+    /// One of each channel that was followed.
+    pub fits: Vec<Fit>,
+}
+
+/// A block with a fundamental of some frequency.
+struct Fitted {
+    /// Frequency error, rad/s.
+    error: f64,
+    /// Share of the variance that the fundamental explains.
+    share: f64,
+    range: Range<usize>,
+    basis: Basis,
+    fits: Vec<Fit>,
+}
+
 /// The clock and the channels that carry the fundamental.
 pub(crate) struct Tracked<'r> {
     pub t: &'r [f64],
@@ -38,15 +57,21 @@ pub(crate) struct Tracked<'r> {
 impl Tracked<'_> {
     /// Every block over which the fundamental was found, in the order of time.
     pub fn spans(&self) -> Vec<Span> {
-        let mut spans: Vec<Span> = Vec::new();
+        let mut spans = Vec::new();
+        self.for_each(&mut |found| spans.push(found.span.clone()));
+        spans
+    }
+
+    /// Gives every block over which the fundamental was found, in the order of time.
+    pub fn for_each(&self, give: &mut dyn FnMut(&Found)) {
         let (mut at, mut known) = (0, None);
         while at + 8 < self.t.len() {
             let followed = known.and_then(|omega| self.follow(at, omega));
             match followed.or_else(|| self.search(at, &self.candidates())) {
-                Some(span) => {
-                    at = span.range.end;
-                    known = Some(span.omega);
-                    spans.push(span);
+                Some(found) => {
+                    at = found.span.range.end;
+                    known = Some(found.span.omega);
+                    give(&found);
                 }
                 None => {
                     known = None;
@@ -55,7 +80,6 @@ impl Tracked<'_> {
                 }
             }
         }
-        spans
     }
 
     /// The fundamental whatever the clock's unit: periods from a few samples to a third of the file.
@@ -63,7 +87,7 @@ impl Tracked<'_> {
         let longest = self.t.len() as f64 / PERIODS;
         let periods = ladder(FEWEST_SAMPLES, longest, RATIO);
         let omegas: Vec<f64> = periods.map(|n| TAU / (n * self.t_sample)).collect();
-        self.search(0, &omegas).map(|span| span.omega)
+        self.search(0, &omegas).map(|found| found.span.omega)
     }
 
     fn candidates(&self) -> Vec<f64> {
@@ -80,47 +104,67 @@ impl Tracked<'_> {
             .max(1)
     }
 
-    fn follow(&self, at: usize, omega: f64) -> Option<Span> {
+    fn follow(&self, at: usize, omega: f64) -> Option<Found> {
         self.refined(at, omega)
-            .filter(|span| (span.omega / omega - 1.0).abs() < FOLLOWED)
+            .filter(|found| (found.span.omega / omega - 1.0).abs() < FOLLOWED)
     }
 
-    fn search(&self, at: usize, omegas: &[f64]) -> Option<Span> {
+    fn search(&self, at: usize, omegas: &[f64]) -> Option<Found> {
         let coarse = omegas.iter().filter_map(|&omega| {
-            let (_, share) = self.fitted(at, omega)?;
-            Some((omega, share))
+            let fitted = self.fitted(at, omega)?;
+            Some((omega, fitted.share))
         });
         let (omega, _) = coarse.max_by(|a, b| a.1.total_cmp(&b.1))?;
         self.refined(at, omega)
     }
 
     /// Newton steps on the frequency; the block follows its period.
-    fn refined(&self, at: usize, mut omega: f64) -> Option<Span> {
+    fn refined(&self, at: usize, mut omega: f64) -> Option<Found> {
         for _ in 0..4 {
-            let (error, _) = self.fitted(at, omega)?;
+            let error = self.fitted(at, omega)?.error;
             omega += error.clamp(-0.1 * omega, 0.1 * omega);
         }
-        let (_, share) = self.fitted(at, omega)?;
-        let range = self.block(at, omega)?;
+        let Fitted {
+            share,
+            range,
+            basis,
+            fits,
+            ..
+        } = self.fitted(at, omega)?;
         let needed = LOCKED_SHARE + SHORT_BLOCK / range.len() as f64;
-        (share > needed).then_some(Span { range, omega })
+        (share > needed).then_some(Found {
+            span: Span { range, omega },
+            basis,
+            fits,
+        })
     }
 
-    /// Frequency error and explained share of the block that begins at a sample.
-    fn fitted(&self, at: usize, omega: f64) -> Option<(f64, f64)> {
+    /// The block that begins at a sample with a fundamental of `omega`, rad/s.
+    fn fitted(&self, at: usize, omega: f64) -> Option<Fitted> {
         let range = self.block(at, omega)?;
         let basis = Basis::new(&self.t[range.clone()], omega)?;
-        let fits: Vec<Fit> = self
-            .channels
-            .iter()
-            .map(|x| basis.fit(&x[range.clone()]))
-            .collect();
+        let fits: Vec<Fit> = match self.channels[..] {
+            [a, b, c] => basis
+                .fit_each([a, b, c].map(|x| &x[range.clone()]))
+                .to_vec(),
+            _ => self
+                .channels
+                .iter()
+                .map(|x| basis.fit(&x[range.clone()]))
+                .collect(),
+        };
         let total: f64 = fits.iter().map(|fit| fit.variance).sum();
         let rest: f64 = fits.iter().map(|fit| fit.rest).sum();
         let error = basis.frequency_error(&fits);
         let n = range.len() as f64;
         let share = 1.0 - rest / total * (n - 1.0) / (n - 5.0);
-        (total > 0.0 && n > 5.0 && error.is_finite()).then_some((error, share))
+        (total > 0.0 && n > 5.0 && error.is_finite()).then_some(Fitted {
+            error,
+            share,
+            range,
+            basis,
+            fits,
+        })
     }
 
     fn block(&self, at: usize, omega: f64) -> Option<Range<usize>> {

@@ -4,6 +4,7 @@ use crate::context::Context;
 use crate::finding::{Code, Finding, names};
 use crate::measure::statistics::median;
 use recording::Channel;
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -63,12 +64,14 @@ fn stretches(context: &Context<'_>, held: &[(Channel, &[f64])]) -> Vec<Range<usi
     }
     let periods = FEWEST_PERIODS * TAU / (omega * context.recording.t_sample());
     let fewest = (periods as usize).max(FEWEST_SAMPLES);
-    let usual: Vec<f64> = held
-        .iter()
-        .map(|(_, x)| median(x.iter().map(|x| x.abs())).unwrap_or(0.0))
-        .collect();
+    let usual = || {
+        let median = |x: &[f64]| median(x.iter().map(|x| x.abs())).unwrap_or(0.0);
+        held.iter().map(|(_, x)| median(x)).collect::<Vec<f64>>()
+    };
+    // Asked for where something is held, which is rare.
+    let known = OnceCell::new();
     let alive = |k: usize| {
-        let mut each = held.iter().zip(&usual);
+        let mut each = held.iter().zip(known.get_or_init(usual));
         each.any(|((_, x), usual)| x[k].abs() > ALIVE * usual && *usual > 0.0)
     };
     let (mut found, mut from) = (Vec::new(), 0);

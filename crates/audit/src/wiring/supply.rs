@@ -3,6 +3,7 @@
 use crate::context::Context;
 use crate::finding::{Code, Finding, names};
 use crate::measure::blocks::{Block, Three};
+use crate::measure::harmonics::{self as measure, HIGHEST, Ratios};
 use crate::measure::sequence::a;
 use crate::measure::statistics::median_phasor;
 use crate::wiring::zero_sequence::gain_error;
@@ -14,8 +15,6 @@ use std::f64::consts::TAU;
 const UNBALANCE_PERCENT: f64 = 0.5;
 /// Smallest distortion worth a word, percent; a quiet grid has 1 to 2.
 const HARMONICS_PERCENT: f64 = 2.5;
-/// Highest harmonic that is looked at.
-const HIGHEST: usize = 25;
 /// A sensor's gain explains negative and zero sequence together when they agree to this share.
 const AGREES: f64 = 0.25;
 
@@ -67,10 +66,14 @@ fn harmonics(context: &Context<'_>) -> Option<Finding> {
     // From 0.4 of the sampling rate on, anti-alias filters distort.
     let highest = HIGHEST.min((0.4 * per_period) as usize);
     let orders = 2..=highest;
-    let shares: Vec<f64> = orders
-        .clone()
-        .map(|h| share(context, &settled, h))
-        .collect();
+    let voltages = context.recording.voltages()?;
+    let t = context.recording.t();
+    let of_block = |(block, three): &(&Block, &Three)| {
+        let x = voltages.map(|x| &x[block.range.clone()]);
+        measure::harmonics(&t[block.range.clone()], x, block.omega, &three.fits)
+    };
+    let ratios: Vec<Ratios> = settled.iter().map(of_block).collect();
+    let shares: Vec<f64> = orders.clone().map(|order| share(&ratios, order)).collect();
     let percent = 100.0 * shares.iter().map(|share| share * share).sum::<f64>().sqrt();
     let (strongest, _) = orders.zip(&shares).max_by(|a, b| a.1.total_cmp(b.1))?;
     (percent > HARMONICS_PERCENT).then(|| {
@@ -82,42 +85,10 @@ fn harmonics(context: &Context<'_>) -> Option<Finding> {
 }
 
 /// One harmonic over the fundamental, effective over the phases, averaged coherently over blocks.
-fn share(context: &Context<'_>, settled: &[(&Block, &Three)], order: usize) -> f64 {
-    let Some(voltages) = context.recording.voltages() else {
-        return 0.0;
-    };
-    let t = context.recording.t();
+fn share(blocks: &[Ratios], order: usize) -> f64 {
     let phases = (0..3).map(|k| {
-        let ratios: Vec<Complex64> = settled
-            .iter()
-            .map(|(block, three)| {
-                let (t, x) = (&t[block.range.clone()], &voltages[k][block.range.clone()]);
-                harmonic(t, x, block.omega, &three.fits[k], order)
-            })
-            .collect();
+        let ratios: Vec<Complex64> = blocks.iter().map(|block| block[k][order]).collect();
         median_phasor(&ratios).map_or(0.0, |ratio| ratio.norm_sqr())
     });
     (phases.sum::<f64>() / 3.0).sqrt()
-}
-
-/// A harmonic over the fundamental, in the fundamental's phase.
-fn harmonic(
-    t: &[f64],
-    x: &[f64],
-    omega: f64,
-    fit: &crate::measure::fit::Fit,
-    order: usize,
-) -> Complex64 {
-    let (first, last) = (t[0], t[t.len() - 1]);
-    let centre = 0.5 * (first + last);
-    let sum: Complex64 = t
-        .iter()
-        .zip(x)
-        .map(|(t, x)| {
-            let turn = Complex64::cis(omega * (t - centre));
-            (x - fit.mean - (fit.phasor * turn).re) * turn.conj().powu(order as u32)
-        })
-        .sum();
-    let unit = fit.phasor / fit.phasor.norm();
-    2.0 * sum / t.len() as f64 / (fit.phasor.norm() * unit.powu(order as u32))
 }

@@ -112,6 +112,12 @@ fn is_off(x: &[f64], steps: &[f64], k: usize, limit: f64) -> bool {
 }
 
 fn electrical(x: &[f64]) -> Vec<usize> {
+    // Where more than a hundredth is larger than a third of the largest, nothing is three times what 99 % stay below.
+    let largest = x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let many = x.iter().filter(|x| BEYOND * x.abs() >= largest).count();
+    if many > x.len() - x.len() * 99 / 100 {
+        return Vec::new();
+    }
     let mut sizes: Vec<f64> = x.iter().map(|x| x.abs()).collect();
     let at = sizes.len() * 99 / 100;
     let usual = *sizes.select_nth_unstable_by(at, f64::total_cmp).1;
