@@ -1,6 +1,7 @@
 //! From recordings and what is known of a motor to an answer on which a technician can act.
 
 mod blind;
+mod checking;
 mod clamp;
 mod clamp_bars;
 mod knowledge;
@@ -8,24 +9,21 @@ mod severity;
 mod told;
 
 pub use blind::{BlindSpot, blind_spots, channels_missing};
+pub use checking::Checking;
 pub use clamp::{ClampSignal, clamp_signals};
 pub use clamp_bars::{BesideSupply, SupplySideband};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use severity::Severity;
 pub use told::Told;
 
-use audit::{Audit, Expectation};
-use monitor::Monitor;
+use audit::Audit;
 use motor::MotorFile;
 use recording::Recording;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::speed::{EstimatedSpeed, with_estimated_speed};
-use crate::{
-    Samples, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals, causes, config_for,
-    replay, words,
-};
+use crate::speed::EstimatedSpeed;
+use crate::{Verdict, VerdictState, WindowOperation, WindowResiduals, causes};
 
 /// What one recording says of a motor.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -78,61 +76,9 @@ pub fn check(
     motor: &MotorFile,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Checked, String> {
-    let (estimated, speed) = match with_estimated_speed(recorded, motor) {
-        Some((with_speed, speed)) => (Some(with_speed), Some(speed)),
-        None => (None, None),
-    };
-    let shown = estimated.as_ref().unwrap_or(recorded);
-    let audit = audit::audit(shown, &Expectation::from(motor));
-    let config = config_for(motor, shown).map_err(|error| error.to_string())?;
-    let monitor = Monitor::new(config).map_err(|error| error.to_string())?;
-    let timeline = replay(&monitor, &Samples::new(shown, &audit), progress);
-    let mut answer = answer(motor, shown, audit, &timeline, speed);
-    if answer.speed.is_some() {
-        // An estimate is no channel of the recorder: the audit is about what was recorded.
-        answer.audit = audit::audit(recorded, &Expectation::from(motor));
-    }
-    answer.told = Told::of(&answer);
-    Ok(answer)
-}
-
-fn answer(
-    motor: &MotorFile,
-    recording: &Recording,
-    audit: Audit,
-    timeline: &Timeline,
-    speed: Option<EstimatedSpeed>,
-) -> Checked {
-    let mut verdict = timeline.verdict(&audit.findings);
-    if speed.is_some() {
-        blind::forget_speed(&mut verdict);
-    }
-    if !audit.supported {
-        verdict.state = VerdictState::NotJudged;
-    }
-    let share =
-        |share: &crate::NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
-    let clamps = clamp_signals(recording);
-    Checked {
-        severity: severity::of(&verdict),
-        todo: todo(motor, &verdict),
-        windows: [timeline.judged, timeline.windows],
-        not_judged: match clamps.is_empty() {
-            true => timeline.not_judged.iter().map(share).collect(),
-            false => vec!["three voltages or three currents are needed".to_owned()],
-        },
-        clamps,
-        visible_percent: timeline.visible_percent(),
-        rotor: words::rotor(&timeline.rotor()),
-        current_unbalance_percent: timeline.sequence().i2_over_i1.map(|x| 100.0 * x),
-        blind: blind_spots(recording, motor, speed.is_some()),
-        verdict,
-        audit,
-        speed,
-        told: Told::default(),
-        residuals: timeline.trace.residuals.to_vec(),
-        operation: timeline.trace.operation.to_vec(),
-    }
+    let mut checking = Checking::new(motor);
+    checking.take(recorded, progress)?;
+    Ok(checking.finish())
 }
 
 /// Steps for the causes that cannot be told apart, or what makes a dark answer worth more.

@@ -4,7 +4,7 @@ use discovery::Progress;
 use motor::MotorFile;
 use recording::Recording;
 use replay::VerdictState;
-use replay::check::{Checked, Knowledge, check, learn};
+use replay::check::{Checked, Checking, Knowledge, learn};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -67,18 +67,37 @@ impl Checkup {
         recordings: &[(String, &Recording)],
         progress: &mut Progress<'_>,
     ) -> Result<(Checkup, MotorFile), String> {
+        let names: Vec<String> = recordings.iter().map(|(name, _)| name.clone()).collect();
+        let mut read = |k: usize, take: &mut Taken<'_>| match recordings.get(k) {
+            Some((_, recording)) => take(recording),
+            None => Ok(()),
+        };
+        Checkup::of_pieces(known, healthy, &names, progress, &mut read)
+    }
+
+    /// The same of recordings of any length: `read` gives the pieces of a recording by its number, one after the other.
+    ///
+    /// # Errors
+    /// As [`Checkup::new`], and what `read` returns.
+    pub fn of_pieces<E>(
+        known: &Known,
+        healthy: &[&Recording],
+        names: &[String],
+        progress: &mut Progress<'_>,
+        read: &mut dyn FnMut(usize, &mut Taken<'_>) -> Result<(), E>,
+    ) -> Result<(Checkup, MotorFile), E> {
         let begin = if healthy.is_empty() { 0.0 } else { LEARNING };
         let learnt = learn(&known.motor, healthy, &mut |what, share| {
             progress(what, begin * share);
         });
-        let share = (1.0 - begin) / recordings.len().max(1) as f64;
+        let share = (1.0 - begin) / names.len().max(1) as f64;
         let mut checked = Vec::new();
-        for (k, (name, recording)) in recordings.iter().enumerate() {
+        for (k, name) in names.iter().enumerate() {
             let at = begin + share * k as f64;
             let mut tell = |part: f64| progress("checking", at + share * part);
-            let mut one = CheckedRecording::new(name, recording, &learnt.motor, &mut tell)?;
-            one.is_reference = healthy.contains(recording);
-            checked.push(one);
+            let mut one = Pieces::new(&learnt.motor, healthy);
+            read(k, &mut |piece| one.take(piece, &mut tell))?;
+            checked.push(one.finish(name));
         }
         let checkup = Checkup {
             motor: learnt.motor.name.clone(),
@@ -109,21 +128,47 @@ impl Checkup {
     }
 }
 
-impl CheckedRecording {
-    fn new(
-        name: &str,
-        recording: &Recording,
-        motor: &MotorFile,
-        progress: &mut dyn FnMut(f64),
-    ) -> Result<CheckedRecording, String> {
-        let all = recording.len().max(1) as f64;
-        let mut tell = |sample: usize| progress(sample as f64 / all);
-        Ok(CheckedRecording {
-            recording: name.to_owned(),
-            duration_s: recording.duration(),
+/// Takes a piece of a recording.
+pub type Taken<'t> = dyn FnMut(&Recording) -> Result<(), String> + 't;
+
+/// The pieces of one recording.
+struct Pieces<'l> {
+    checking: Checking<'l>,
+    healthy: &'l [&'l Recording],
+    /// Begin and end so far, s.
+    span: Option<[f64; 2]>,
+    pieces: u64,
+    is_reference: bool,
+}
+
+impl<'l> Pieces<'l> {
+    fn new(motor: &'l MotorFile, healthy: &'l [&'l Recording]) -> Pieces<'l> {
+        Pieces {
+            checking: Checking::new(motor),
+            healthy,
+            span: None,
+            pieces: 0,
             is_reference: false,
-            checked: check(recording, motor, &mut tell)?,
-        })
+        }
+    }
+
+    fn take(&mut self, piece: &Recording, progress: &mut dyn FnMut(f64)) -> Result<(), String> {
+        self.pieces += 1;
+        self.is_reference = self.pieces == 1 && self.healthy.contains(&piece);
+        let [begin, end] = [piece.t()[0], piece.t()[piece.len() - 1]];
+        self.span = Some([self.span.map_or(begin, |[begin, _]| begin), end]);
+        let all = piece.len().max(1) as f64;
+        let mut tell = |sample: usize| progress(sample as f64 / all);
+        self.checking.take(piece, &mut tell)
+    }
+
+    fn finish(self, name: &str) -> CheckedRecording {
+        CheckedRecording {
+            recording: name.to_owned(),
+            duration_s: self.span.map_or(0.0, |[begin, end]| end - begin),
+            is_reference: self.is_reference,
+            checked: self.checking.finish(),
+        }
     }
 }
 

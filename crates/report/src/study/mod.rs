@@ -15,7 +15,7 @@ pub use calibration::{
     CalibratedParameter, Calibration, ChannelGains, FALSE_ALARM_RATES, HealthyCage,
     HealthyStatistics, MisfitPercent, WINDING_KELVINS,
 };
-pub use check::{CheckedRecording, Checkup};
+pub use check::{CheckedRecording, Checkup, Taken};
 pub use compare::Compared;
 pub use explain::{Explained, Next, anything_off};
 pub use known::{Known, ParameterRow, PlateRow};

@@ -1,6 +1,6 @@
 //! `drivemon check`: from recordings and a plate to an answer on which a technician can act.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use recording::{Recording, Source};
@@ -8,7 +8,7 @@ use replay::check::Checked;
 use replay::speed::{EstimatedSpeed, SpeedSource};
 use replay::{Verdict, VerdictState};
 use report::Subject;
-use report::study::{CheckedRecording, Checkup, Known};
+use report::study::{CheckedRecording, Checkup, Known, Taken};
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};
@@ -62,16 +62,16 @@ impl Check {
         self.files().check()?;
         let known = self.known()?;
         let healthy = self.read(&self.healthy)?;
-        let recordings = self.read(&self.recordings)?;
-        let names = self
-            .recordings
-            .iter()
-            .map(|path| path.display().to_string());
-        let recordings: Vec<_> = names.zip(&recordings).collect();
+        let names = self.recordings.iter();
+        let names: Vec<String> = names.map(|path| path.display().to_string()).collect();
         let healthy: Vec<&Recording> = healthy.iter().collect();
-        let checked =
-            with_progress(|progress| Ok(Checkup::new(&known, &healthy, &recordings, progress)))?;
-        let (mut checkup, motor) = checked.map_err(Failure::Usage)?;
+        let mut read = |k: usize, take: &mut Taken<'_>| self.give(k, take);
+        let checked = with_progress(|progress| {
+            Ok(Checkup::of_pieces(
+                &known, &healthy, &names, progress, &mut read,
+            ))
+        })?;
+        let (mut checkup, motor) = checked?;
         if let Some(out) = &self.out {
             write_text(out, &motor.to_toml())?;
             checkup.motor_file = Some(out.display().to_string());
@@ -112,16 +112,32 @@ impl Check {
         Ok(Known::of_file(motor, text))
     }
 
+    /// Gives a recording piece by piece.
+    fn give(&self, k: usize, take: &mut Taken<'_>) -> Result<(), Failure> {
+        let Some(path) = self.recordings.get(k) else {
+            return Ok(());
+        };
+        let mut each = |piece: Recording| take(&piece).map_err(Failure::Usage);
+        match self.input.read_in_pieces(path, "checking", &mut each)? {
+            None => Ok(()),
+            Some(_) => Err(no_waveforms(path)),
+        }
+    }
+
     fn read(&self, paths: &[PathBuf]) -> Result<Vec<Recording>, Failure> {
         let one = |path: &PathBuf| match self.input.read(path)? {
             Source::Recording(recording) => Ok(recording),
-            Source::LoadTable(_) => Err(Failure::Usage(format!(
-                "{}: a load table has no waveforms to judge; `drivemon explain` takes it",
-                path.display()
-            ))),
+            Source::LoadTable(_) => Err(no_waveforms(path)),
         };
         paths.iter().map(one).collect()
     }
+}
+
+fn no_waveforms(path: &Path) -> Failure {
+    Failure::Usage(format!(
+        "{}: a load table has no waveforms to judge; `drivemon explain` takes it",
+        path.display()
+    ))
 }
 
 fn print(checkup: &Checkup) {

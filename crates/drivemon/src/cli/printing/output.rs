@@ -81,6 +81,8 @@ impl JsonArgs {
     /// A path that cannot be written.
     pub fn write(&self, value: &impl Answer) -> Result<(), Failure> {
         match &self.json {
+            // A long answer is not made a text first: it would be in memory once more.
+            Some(path) if path.as_os_str() != DASH => write_json(path, value),
             Some(_) => self.write_text(&text_of(value)?),
             None => Ok(()),
         }
@@ -121,6 +123,14 @@ impl JsonArgs {
 pub(crate) fn text_of(value: &impl Answer) -> Result<String, Failure> {
     report::json::text(value)
         .map_err(|error| Failure::Usage(format!("the result cannot be written as JSON: {error}")))
+}
+
+fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    formats::write_whole(path, |file| {
+        serde_json::to_writer_pretty(&mut *file, value)?;
+        file.write_all(b"\n")
+    })
+    .map_err(|error| cannot_write(path, error))
 }
 
 /// Writes a text file, whole or not at all.
