@@ -104,9 +104,7 @@ struct Sums {
 
 impl Sums {
     fn add(&mut self, row: &Row, x: f64) {
-        for (rhs, column) in self.rhs.iter_mut().zip(row) {
-            *rhs += column * x;
-        }
+        self.rhs = std::array::from_fn(|k| self.rhs[k] + row[k] * x);
         self.sum += x;
         self.square += x * x;
     }
@@ -116,8 +114,8 @@ fn normal(rows: &[Row]) -> [Row; N] {
     let mut matrix = [[0.0; N]; N];
     for row in rows {
         for (i, line) in matrix.iter_mut().enumerate() {
-            for (entry, column) in line[..=i].iter_mut().zip(row) {
-                *entry += row[i] * column;
+            for (j, entry) in line.iter_mut().enumerate().take(i + 1) {
+                *entry += row[i] * row[j];
             }
         }
     }

@@ -99,7 +99,9 @@ impl Tops<'_> {
                     band,
                     floor,
                 };
-                self.resolved(&level).or_else(|| self.drifting(&level))
+                let tops = self.tops(&level);
+                let drifting = || self.drifting(&level, &tops);
+                self.resolved(&level, &tops).or_else(drifting)
             })
     }
 
@@ -117,8 +119,8 @@ impl Tops<'_> {
     }
 
     /// Tops of several samples each, wherever they are.
-    fn resolved(&self, level: &Level) -> Option<Cut> {
-        let mut tops = self.tops(level);
+    fn resolved(&self, level: &Level, tops: &[Range<usize>]) -> Option<Cut> {
+        let mut tops = tops.to_vec();
         tops.retain(|top| top.len() >= FEWEST_SAMPLES);
         if tops.len() < FEWEST_TOPS {
             return None;
@@ -134,9 +136,8 @@ impl Tops<'_> {
     }
 
     /// Tops of few samples each, from the first to the last, while the sampling drifts through the period.
-    fn drifting(&self, level: &Level) -> Option<Cut> {
+    fn drifting(&self, level: &Level, tops: &[Range<usize>]) -> Option<Cut> {
         let (fewest, share) = FEWEST_SPREAD;
-        let tops = self.tops(level);
         let (first, last) = (tops.first()?, tops.last()?);
         let place = first.start..last.end;
         let count: usize = tops.iter().map(Range::len).sum();

@@ -3,7 +3,7 @@
 use super::cells::{is_missing, unquoted};
 use super::clocks::{Clock, Wrong, since};
 use super::layout::Layout;
-use super::number::Numbers;
+use super::number::{self, Numbers};
 use crate::read::header::shown;
 use crate::read::table_file::{Row, missing, not_finite};
 use csv::ByteRecord;
@@ -23,11 +23,19 @@ impl Row for Cells<'_> {
     }
 
     fn number(&self, column: usize, name: &str) -> Result<Option<f64>, Error> {
+        let clock = self.layout.clocks.get(column);
+        if self.layout.numbers == Numbers::default() && !matches!(clock, Some(Some(_))) {
+            // What most cells are: no blanks, no quotes, no word for a missing number.
+            let plain = number::plain(self.record.get(column).unwrap_or_default());
+            if plain.is_some() {
+                return Ok(plain);
+            }
+        }
         let text = self.text(column, name)?;
         if is_missing(text) {
             return Ok(None);
         }
-        let parsed = match self.layout.clocks.get(column) {
+        let parsed = match clock {
             Some(Some(clock)) => self.time(clock, name, text)?,
             _ => self.layout.numbers.parse(text),
         };

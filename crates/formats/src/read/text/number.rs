@@ -33,6 +33,42 @@ impl Numbers {
     }
 }
 
+/// Digits that a mantissa may have for it and its power of ten to be doubles without rounding.
+const MOST_DIGITS: usize = 15;
+
+/// Powers of ten that are doubles without rounding, as far as a mantissa has digits.
+const TENS: [f64; MOST_DIGITS + 1] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+];
+
+/// The number of a cell such as `-12.345`, a point as its mark, no more than fifteen digits, no exponent; `None` for every
+/// other cell, whatever it holds. Both parts of the quotient are exact, so that it is rounded once, as the number itself
+/// would be (Clinger, How to read floating point numbers accurately, 1990).
+pub(super) fn plain(cell: &[u8]) -> Option<f64> {
+    let (is_negative, digits) = match cell {
+        [b'-', rest @ ..] => (true, rest),
+        _ => (false, cell),
+    };
+    if digits.is_empty() || digits.len() > MOST_DIGITS + 1 {
+        return None;
+    }
+    let (mut mantissa, mut point) = (0_u64, None);
+    for (k, byte) in digits.iter().enumerate() {
+        match byte {
+            b'0'..=b'9' => mantissa = 10 * mantissa + u64::from(byte - b'0'),
+            b'.' if point.is_none() => point = Some(k),
+            _ => return None,
+        }
+    }
+    let count = digits.len() - usize::from(point.is_some());
+    let behind = point.map_or(0, |at| digits.len() - 1 - at);
+    if count == 0 || count > MOST_DIGITS {
+        return None;
+    }
+    let x = mantissa as f64 / TENS[behind];
+    Some(if is_negative { -x } else { x })
+}
+
 fn is_blank(c: char) -> bool {
     matches!(c, ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}')
 }
@@ -203,6 +239,56 @@ impl Evidence {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn plain_numbers_are_those_of_the_library_to_the_last_bit() {
+        let mut state = 1_u64;
+        for _ in 0..20_000 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let digits = format!("{:015}", (state >> 11) % 1_000_000_000_000_000);
+            let at = (state % 16) as usize;
+            let text = format!("-{}.{}", &digits[..at], &digits[at..]);
+            for text in [
+                &text[..],
+                &text[1..],
+                &text[2..],
+                &text[..at + 1],
+                &text[9..],
+            ] {
+                let Some(x) = plain(text.as_bytes()) else {
+                    assert!(
+                        text.len() < 2 || !text.starts_with(|c: char| c.is_ascii_digit()),
+                        "{text}"
+                    );
+                    continue;
+                };
+                assert_eq!(
+                    x.to_bits(),
+                    text.parse::<f64>().unwrap().to_bits(),
+                    "{text}"
+                );
+            }
+        }
+        for other in [
+            "",
+            "-",
+            ".",
+            "-.",
+            "1e3",
+            "nan",
+            "1,5",
+            " 1",
+            "1.2.3",
+            "+1",
+            "inf",
+            "0123456789012345",
+        ] {
+            assert_eq!(plain(other.as_bytes()), None, "{other}");
+        }
+        assert_eq!(plain(b"-0").map(f64::to_bits), Some((-0.0_f64).to_bits()));
+    }
 
     fn decided(cells: &[&str], point_is_open: bool) -> Result<Numbers, Box<Ambiguous>> {
         let mut evidence = Evidence::default();

@@ -277,6 +277,26 @@ impl<R: Read> Lines<R> {
         Ok(Some(byte))
     }
 
+    /// Takes bytes that stay as they are; `false` where they may not, or a line is too long: nothing is taken then.
+    fn pass_all(&mut self, bytes: &[u8]) -> bool {
+        if self.after_return || bytes.iter().any(|byte| matches!(byte, 0 | b'\r')) {
+            return false;
+        }
+        let is_end = |byte: &u8| *byte == b'\n';
+        let Some(first) = bytes.iter().position(is_end) else {
+            let fits = self.length + bytes.len() <= LONGEST_LINE;
+            self.length += if fits { bytes.len() } else { 0 };
+            return fits;
+        };
+        if self.length + first > LONGEST_LINE || bytes.len() > LONGEST_LINE {
+            return false;
+        }
+        let last = bytes.iter().rposition(is_end).unwrap_or(first);
+        self.line += bytes.iter().filter(|byte| is_end(byte)).count() as u64;
+        self.length = bytes.len() - 1 - last;
+        true
+    }
+
     /// The line feed that the last line may lack.
     fn end(&mut self, buffer: &mut [u8]) -> usize {
         let lacks = !self.ended && self.length > 0;
@@ -304,6 +324,9 @@ impl<R: Read> Read for Lines<R> {
             let n = self.reader.read(buffer)?;
             if n == 0 {
                 return Ok(self.end(buffer));
+            }
+            if self.pass_all(&buffer[..n]) {
+                return Ok(n);
             }
             let mut kept = 0;
             for k in 0..n {
