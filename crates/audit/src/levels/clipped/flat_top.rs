@@ -72,6 +72,9 @@ const FEWEST_PER_PERIOD: f64 = 10.0;
 /// Tops this many periods apart belong to one stretch: a sensor recovers slowly.
 const TOGETHER_PERIODS: f64 = 3.0;
 
+/// Samples that are looked at together.
+const PART: usize = 32;
+
 impl Tops<'_> {
     /// The polarities that are cut off, negative first.
     pub fn cuts(&self) -> Vec<Cut> {
@@ -186,14 +189,23 @@ impl Tops<'_> {
     }
 
     fn runs(&self, level: &Level) -> Vec<Range<usize>> {
+        let above = |x: &f64| level.sign * x >= level.floor;
         let (mut tops, mut from) = (Vec::new(), None);
-        for k in 0..=self.x.len() {
-            let above = k < self.x.len() && level.sign * self.x[k] >= level.floor;
-            if let Some(begin) = from.filter(|_| !above) {
-                tops.push(begin..k);
+        for (part, x) in self.x.chunks(PART).enumerate() {
+            // Most of a wave is below its top.
+            let any = x.iter().fold(false, |any, x| any | above(x));
+            if !any && from.is_none() {
+                continue;
             }
-            from = above.then(|| from.unwrap_or(k));
+            for (k, x) in (part * PART..).zip(x) {
+                let above = above(x);
+                if let Some(begin) = from.filter(|_| !above) {
+                    tops.push(begin..k);
+                }
+                from = above.then(|| from.unwrap_or(k));
+            }
         }
+        tops.extend(from.map(|begin| begin..self.x.len()));
         tops
     }
 

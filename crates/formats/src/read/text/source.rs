@@ -279,7 +279,9 @@ impl<R: Read> Lines<R> {
 
     /// Takes bytes that stay as they are; `false` where they may not, or a line is too long: nothing is taken then.
     fn pass_all(&mut self, bytes: &[u8]) -> bool {
-        if self.after_return || bytes.iter().any(|byte| matches!(byte, 0 | b'\r')) {
+        // Without a way out of the loop it goes over many bytes at once.
+        let changes = |found: bool, byte: &u8| found | (*byte == 0) | (*byte == b'\r');
+        if self.after_return || bytes.iter().fold(false, changes) {
             return false;
         }
         let is_end = |byte: &u8| *byte == b'\n';
