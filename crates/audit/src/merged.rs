@@ -2,7 +2,7 @@
 //!
 //! A finding that several pieces share is told once: as it is in the piece where it is largest, with the share of the pieces
 //! that have it and its first place. A piece that the audit refuses is not judged; the recording is refused as a whole where
-//! most of it is.
+//! most of what the motor was supplied is.
 
 use crate::finding::{Audit, Code, Finding};
 use crate::timing::clock::GAP;
@@ -12,26 +12,29 @@ use recording::Recording;
 /// Sampling times of pieces that differ by more are two clocks, percent.
 const OTHER_CLOCK_PERCENT: f64 = 1.0;
 
+/// Shares of the largest current or voltage of any piece below which a motor stood idle: what is said of its channels then is
+/// said of noise.
+const IDLE: f64 = 0.05;
+/// A sample in so many tells the size of a signal.
+const STRIDE: usize = 7;
+
 /// The audits of the pieces so far, in the order of time.
 #[derive(Clone, Debug, Default)]
 pub struct Merger {
-    found: Vec<Found>,
-    pieces: u64,
-    /// Pieces with a supply, and those of them that were refused.
-    supplied: u64,
-    refused: u64,
+    pieces: Vec<Piece>,
     first: Option<Audit>,
     latest: Option<Audit>,
-    clock: Option<Clock>,
+    /// Largest root mean square of the voltages, V, and the currents, A, of a piece.
+    largest: [f64; 2],
 }
 
-/// The clock of the pieces so far.
-#[derive(Clone, Copy, Debug)]
-struct Clock {
-    begin_s: f64,
-    end_s: f64,
-    /// Sampling time of the first piece, s.
+/// What is kept of a piece.
+#[derive(Clone, Debug)]
+struct Piece {
+    span: [f64; 2],
     t_sample: f64,
+    rms: [f64; 2],
+    findings: Vec<Finding>,
 }
 
 /// A finding and the pieces that have it.
@@ -45,22 +48,93 @@ struct Found {
     latest: u64,
     from_s: f64,
     to_s: f64,
-    /// Whether a piece says itself where it begins, and the latest where it ends.
+    /// Whether the first says itself where it begins, and the latest where it ends.
     says: [bool; 2],
 }
 
-impl Audit {
-    /// Whether a piece with this audit may be judged with the others: a motor that is switched off for a while is no fault of the
-    /// recording.
-    pub fn is_usable_piece(&self) -> bool {
-        let refused = |finding: &Finding| finding.refuses && !is_about_supply(finding);
-        !self.findings.iter().any(refused)
+impl Merger {
+    /// Takes the next piece with its audit; `true` where it may be judged with the others. A motor that is switched off or
+    /// idle for a while is no fault of the recording.
+    pub fn add(&mut self, piece: &Recording, audit: &Audit) -> bool {
+        let rms = [piece.voltages(), piece.currents()].map(rms);
+        for (largest, rms) in self.largest.iter_mut().zip(rms) {
+            *largest = rms.max(*largest);
+        }
+        let mut piece = Piece {
+            span: [piece.t()[0], piece.t()[piece.len() - 1]],
+            t_sample: piece.t_sample(),
+            rms,
+            findings: audit.findings.clone(),
+        };
+        if let Some(before) = self.pieces.last() {
+            let first_t_sample = self
+                .pieces
+                .first()
+                .map_or(before.t_sample, |first| first.t_sample);
+            piece.add_border(before, first_t_sample);
+        }
+        let is_usable = !piece.is_refused(self.largest);
+        self.pieces.push(piece);
+        self.first.get_or_insert_with(|| audit.clone());
+        self.latest = Some(audit.clone());
+        is_usable
     }
 
-    /// Whether a supply was found.
-    pub fn has_supply(&self) -> bool {
-        !self.findings.iter().any(is_about_supply)
+    /// What the pieces come to; of a single one its own audit.
+    pub fn finish(self) -> Audit {
+        let (Some(first), Some(latest)) = (self.first, self.latest) else {
+            return Audit {
+                supported: false,
+                findings: Vec::new(),
+                assumptions: Vec::new(),
+                unusable: Vec::new(),
+            };
+        };
+        if self.pieces.len() < 2 {
+            return first;
+        }
+        let begin_s = self.pieces.first().map_or(0.0, |piece| piece.span[0]);
+        let end_s = self.pieces.last().map_or(0.0, |piece| piece.span[1]);
+        let supplied = self
+            .pieces
+            .iter()
+            .filter(|piece| piece.is_supplied(self.largest));
+        let refused = supplied
+            .clone()
+            .filter(|piece| piece.is_refused(self.largest));
+        let (supplied, refused) = (supplied.count(), refused.count());
+        let whole = Whole {
+            pieces: self.pieces.len() as u64,
+            is_supported: supplied > 0 && 2 * refused <= supplied,
+            piece_s: (end_s - begin_s) / self.pieces.len() as f64,
+        };
+        let mut found = Vec::new();
+        for (k, piece) in self.pieces.iter().enumerate() {
+            let said = piece
+                .findings
+                .iter()
+                .filter(|one| piece.means(one, self.largest));
+            said.for_each(|finding| note(&mut found, finding, piece.span, k as u64 + 1));
+        }
+        let in_both = |channel: &String| latest.unusable.contains(channel);
+        Audit {
+            supported: whole.is_supported,
+            findings: found.into_iter().map(|one| whole.told(one)).collect(),
+            // How a file was read is known when it was read to its end.
+            assumptions: latest.assumptions.clone(),
+            unusable: first.unusable.into_iter().filter(in_both).collect(),
+        }
     }
+}
+
+/// Root mean square of three channels; 0 where they were not recorded.
+fn rms(three: Option<[&[f64]; 3]>) -> f64 {
+    let Some(three) = three else {
+        return 0.0;
+    };
+    let samples = || three.iter().flat_map(|x| x.iter().step_by(STRIDE));
+    let square: f64 = samples().map(|x| x * x).sum();
+    (square / samples().count().max(1) as f64).sqrt()
 }
 
 /// Whether a finding says that there is no supply, or none at the clock as it was read.
@@ -69,108 +143,94 @@ fn is_about_supply(finding: &Finding) -> bool {
     finding.refuses && (finding.code == Code::NotLocked || by_clock)
 }
 
-impl Merger {
-    /// Takes the next piece with its audit.
-    pub fn add(&mut self, piece: &Recording, audit: &Audit) {
-        self.pieces += 1;
-        if audit.has_supply() {
-            self.supplied += 1;
-            self.refused += u64::from(!audit.is_usable_piece());
-        }
-        let span = [piece.t()[0], piece.t()[piece.len() - 1]];
-        for finding in self.at_the_border(piece, &audit.findings) {
-            self.note(finding, span);
-        }
-        let clock = self.clock.get_or_insert(Clock {
-            begin_s: span[0],
-            end_s: span[1],
-            t_sample: piece.t_sample(),
-        });
-        clock.end_s = span[1];
-        self.first.get_or_insert_with(|| audit.clone());
-        self.latest = Some(audit.clone());
+impl Audit {
+    /// Whether a supply was found.
+    pub fn has_supply(&self) -> bool {
+        !self.findings.iter().any(is_about_supply)
+    }
+}
+
+impl Piece {
+    fn is_idle(&self, largest: [f64; 2]) -> bool {
+        let mut each = self.rms.iter().zip(largest);
+        each.any(|(rms, largest)| *rms < IDLE * largest)
     }
 
-    /// The findings of a piece with what shows where it meets the one before: a gap, another clock.
-    fn at_the_border(&self, piece: &Recording, findings: &[Finding]) -> Vec<Finding> {
-        let mut all = findings.to_vec();
-        let Some(clock) = self.clock else {
-            return all;
-        };
-        let step = piece.t()[0] - clock.end_s;
-        if step >= GAP * clock.t_sample {
-            let between = gap::finding(&[(clock.end_s, step)], clock.t_sample);
-            match all.iter_mut().find(|finding| finding.code == Code::Gap) {
+    /// Whether a finding is about more than the noise of an idle motor.
+    fn means(&self, finding: &Finding, largest: [f64; 2]) -> bool {
+        use Code::{ChannelMissing, Clipping, Clock, Frozen, Gap, NotLocked, ScaleUnknown, Spikes};
+        let anyway = [
+            ChannelMissing,
+            Clipping,
+            Clock,
+            Frozen,
+            Gap,
+            NotLocked,
+            ScaleUnknown,
+            Spikes,
+        ];
+        !self.is_idle(largest) || anyway.contains(&finding.code)
+    }
+
+    fn is_supplied(&self, largest: [f64; 2]) -> bool {
+        !self.is_idle(largest) && !self.findings.iter().any(is_about_supply)
+    }
+
+    fn is_refused(&self, largest: [f64; 2]) -> bool {
+        let refuses = |finding: &&Finding| finding.refuses && !is_about_supply(finding);
+        let mut refusing = self.findings.iter().filter(refuses);
+        refusing.any(|finding| self.means(finding, largest))
+    }
+
+    /// Adds what shows where the piece meets the one before: a gap, another clock.
+    fn add_border(&mut self, before: &Piece, first_t_sample: f64) {
+        let step = self.span[0] - before.span[1];
+        if step >= GAP * first_t_sample {
+            let between = gap::finding(&[(before.span[1], step)], first_t_sample);
+            let inside = self.findings.iter_mut().find(|one| one.code == Code::Gap);
+            match inside {
                 Some(inside) if inside.value >= step => {}
                 Some(inside) => *inside = between,
-                None => all.push(between),
+                None => self.findings.push(between),
             }
         }
-        let percent = 100.0 * piece.t_sample() / clock.t_sample;
+        let percent = 100.0 * self.t_sample / first_t_sample;
         if (percent - 100.0).abs() > OTHER_CLOCK_PERCENT {
-            all.push(other_clock(piece, clock, percent));
+            self.findings
+                .push(other_clock(self, first_t_sample, percent));
         }
-        all
     }
+}
 
-    fn note(&mut self, finding: Finding, span: [f64; 2]) {
-        let same = |found: &&mut Found| {
-            let known = &found.largest;
-            (known.code, &known.channel, &known.unit)
-                == (finding.code, &finding.channel, &finding.unit)
-        };
-        let to_s = finding.to_s.unwrap_or(span[1]);
-        match self.found.iter_mut().find(same) {
-            Some(found) => {
-                found.pieces += 1;
-                found.latest = self.pieces;
-                found.to_s = to_s;
-                found.says[1] = finding.to_s.is_some();
-                found.is_refusing |= finding.refuses;
-                found.is_same &= found.largest.detail == finding.detail;
-                if finding.value.abs() > found.largest.value.abs() {
-                    found.largest = finding;
-                }
+/// Adds the finding of piece number `k`, counted from 1, to what was found before.
+fn note(all: &mut Vec<Found>, finding: &Finding, span: [f64; 2], k: u64) {
+    let same = |found: &&mut Found| {
+        let known = &found.largest;
+        (known.code, &known.channel, &known.unit) == (finding.code, &finding.channel, &finding.unit)
+    };
+    let to_s = finding.to_s.unwrap_or(span[1]);
+    match all.iter_mut().find(same) {
+        Some(found) => {
+            found.pieces += 1;
+            found.latest = k;
+            found.to_s = to_s;
+            found.says[1] = finding.to_s.is_some();
+            found.is_refusing |= finding.refuses;
+            found.is_same &= found.largest.detail == finding.detail;
+            if finding.value.abs() > found.largest.value.abs() {
+                found.largest = finding.clone();
             }
-            None => self.found.push(Found {
-                is_refusing: finding.refuses,
-                is_same: true,
-                pieces: 1,
-                latest: self.pieces,
-                from_s: finding.from_s.unwrap_or(span[0]),
-                to_s,
-                says: [finding.from_s.is_some(), finding.to_s.is_some()],
-                largest: finding,
-            }),
         }
-    }
-
-    /// What the pieces come to; of a single one its own audit.
-    pub fn finish(self) -> Audit {
-        let whole = Whole {
-            pieces: self.pieces,
-            is_supported: self.supplied > 0 && 2 * self.refused <= self.supplied,
-            piece_s: self.clock.map_or(0.0, |clock| {
-                (clock.end_s - clock.begin_s) / self.pieces.max(1) as f64
-            }),
-        };
-        let Some(first) = self.first.filter(|_| self.pieces > 1) else {
-            return self.latest.unwrap_or(Audit {
-                supported: false,
-                findings: Vec::new(),
-                assumptions: Vec::new(),
-                unusable: Vec::new(),
-            });
-        };
-        let latest = self.latest.unwrap_or_else(|| first.clone());
-        let in_both = |channel: &String| latest.unusable.contains(channel);
-        Audit {
-            supported: whole.is_supported,
-            findings: self.found.into_iter().map(|one| whole.told(one)).collect(),
-            // How a file was read is known when it was read to its end.
-            assumptions: latest.assumptions.clone(),
-            unusable: first.unusable.into_iter().filter(in_both).collect(),
-        }
+        None => all.push(Found {
+            is_refusing: finding.refuses,
+            is_same: true,
+            pieces: 1,
+            latest: k,
+            from_s: finding.from_s.unwrap_or(span[0]),
+            to_s,
+            says: [finding.from_s.is_some(), finding.to_s.is_some()],
+            largest: finding.clone(),
+        }),
     }
 }
 
@@ -217,19 +277,18 @@ impl Whole {
     }
 }
 
-fn other_clock(piece: &Recording, clock: Clock, percent: f64) -> Finding {
-    let (t_sample, begin_s) = (piece.t_sample(), piece.t()[0]);
+fn other_clock(piece: &Piece, first_t_sample: f64, percent: f64) -> Finding {
+    let (t_sample, begin_s) = (piece.t_sample, piece.span[0]);
     Finding::new(Code::Clock, "t", percent, "% of the first sampling time").detail(format!(
-        "From about {begin_s:.3} s on samples are {t_sample:.3e} s apart, at the beginning {:.3e} s: the core takes them all at \
-         the first. Judge the two parts as two recordings.",
-        clock.t_sample
+        "From about {begin_s:.3} s on samples are {t_sample:.3e} s apart, at the beginning {first_t_sample:.3e} s: the core takes \
+         them all at the first. Judge the two parts as two recordings."
     ))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use recording::Metadata;
+    use recording::{Channel, Metadata};
 
     fn piece(begin_s: f64, step_s: f64) -> Recording {
         let t = (0..100).map(|k| begin_s + step_s * f64::from(k)).collect();
@@ -297,6 +356,36 @@ mod tests {
             at(2, vec![frozen()]),
         ]);
         assert!(!most.supported && most.findings[0].refuses);
+    }
+
+    /// What an idle motor's currents look like is said of noise, before it first runs and after.
+    #[test]
+    fn the_noise_of_an_idle_motor_refuses_nothing() {
+        let of = |k: usize, amp: f64| {
+            let mut piece = piece(k as f64, 0.01);
+            for (phase, channel) in Channel::CURRENTS.into_iter().enumerate() {
+                let wave = |t: f64| amp * (314.0 * t - 2.094 * phase as f64).cos();
+                let values = piece.t().iter().map(|t| wave(*t)).collect();
+                piece.set(channel, values).expect("a channel");
+            }
+            piece
+        };
+        let unit = || Finding::new(Code::Unit, "ia ib ic", 1e-3, "x").refusing();
+        let mut merger = Merger::default();
+        let usable: Vec<bool> = [(0.01, true), (5.0, false), (0.01, true), (0.01, true)]
+            .into_iter()
+            .enumerate()
+            .map(|(k, (amp, is_far))| {
+                let findings = is_far.then(unit).into_iter().collect();
+                merger.add(&of(k, amp), &audit(findings))
+            })
+            .collect();
+        // Before the motor ran nothing told the idle current from one in another unit.
+        assert_eq!(usable, [false, true, true, true]);
+        let all = merger.finish();
+        assert!(all.supported && all.findings.is_empty(), "{all:?}");
+        let everywhere = merged(vec![(of(0, 5.0), vec![unit()]), (of(1, 5.0), vec![unit()])]);
+        assert!(!everywhere.supported && everywhere.findings[0].refuses);
     }
 
     #[test]

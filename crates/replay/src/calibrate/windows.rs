@@ -31,7 +31,8 @@ pub struct Healthily<'r> {
     pieces: &'r dyn Pieces,
     /// What the audit found.
     pub audit: Audit,
-    of_pieces: Vec<Audit>,
+    /// Those of the pieces, where they may be used.
+    of_pieces: Vec<Option<Audit>>,
     /// The first samples, with the sampling time of the first piece.
     head: Recording,
 }
@@ -122,8 +123,8 @@ impl<'r> Healthily<'r> {
         let (mut merger, mut of_pieces, mut head) = (Merger::default(), Vec::new(), None);
         pieces.each(&mut |piece| {
             let audit = audit(piece, expectation);
-            merger.add(piece, &audit);
-            of_pieces.push(audit);
+            let is_usable = merger.add(piece, &audit);
+            of_pieces.push(Some(audit).filter(|_| is_usable));
             head = head.take().or_else(|| piece.clone().cut(0..2).ok());
             Ok(())
         })?;
@@ -168,7 +169,7 @@ impl<'r> Healthily<'r> {
         let mut audits = self.of_pieces.iter();
         let mut before: Option<Before> = None;
         self.pieces.each(&mut |piece| {
-            let Some(audit) = audits.next().filter(|audit| audit.is_usable_piece()) else {
+            let Some(Some(audit)) = audits.next() else {
                 return Ok(());
             };
             let samples = Samples::new(piece, audit);

@@ -75,7 +75,7 @@ impl<'m> Checking<'m> {
         let estimated = with_estimated_speed(recorded, self.motor);
         let shown = estimated.as_ref().map_or(recorded, |(shown, _)| shown);
         let audit = audit(shown, &self.expectation);
-        self.shown.add(shown, &audit);
+        let is_usable = self.shown.add(shown, &audit);
         if let Some((_, speed)) = &estimated {
             // An estimate is no channel of the recorder: the audit is about what was recorded.
             let own = audit::audit(recorded, &self.expectation);
@@ -87,13 +87,14 @@ impl<'m> Checking<'m> {
             self.blind = blind_spots(recorded, self.motor, estimated.is_some());
         }
         self.pieces += 1;
-        self.judge(shown, &audit, progress)
+        self.judge(shown, &audit, is_usable, progress)
     }
 
     fn judge(
         &mut self,
         shown: &Recording,
         audit: &Audit,
+        is_usable: bool,
         progress: &mut dyn FnMut(usize),
     ) -> Result<(), String> {
         let monitor = match self.monitor {
@@ -106,7 +107,7 @@ impl<'m> Checking<'m> {
             }
         };
         let samples = Samples::new(shown, audit);
-        if audit.is_usable_piece() {
+        if is_usable {
             let replay = self.replay.get_or_insert_with(|| Replay::new(monitor));
             replay.take(samples, progress);
         } else if self.pieces == 1 {

@@ -163,7 +163,7 @@ impl<'m> Monitoring<'m> {
         progress: &mut dyn FnMut(usize),
     ) -> Result<(), MonitorError> {
         let audit = audit(piece, &self.expectation);
-        self.merger.add(piece, &audit);
+        let is_usable = self.merger.add(piece, &audit);
         self.first.get_or_insert_with(|| First {
             name: piece.name().to_owned(),
             begin_s: piece.t()[0],
@@ -175,7 +175,7 @@ impl<'m> Monitoring<'m> {
         if self.config.is_none() && is_supplied {
             self.config = Some(self.config_for(piece)?);
         }
-        let Some(config) = self.config.filter(|_| audit.is_usable_piece()) else {
+        let Some(config) = self.config.filter(|_| is_usable) else {
             return Ok(());
         };
         let mut samples = Samples::new(piece, &audit);

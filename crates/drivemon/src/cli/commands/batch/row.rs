@@ -1,10 +1,10 @@
 //! One recording as one row of a table that other programs can read.
 
-use formats::read_any;
+use formats::{PIECE_ROWS, read_in_pieces};
 use parquet_derive::{ParquetRecordReader, ParquetRecordWriter};
-use recording::{Error, Mapping, Recording, Source};
+use recording::{Error, Mapping, Recording};
 use replay::{VerdictState, WindowOperation};
-use report::study::{MonitorError, Monitored};
+use report::study::{MonitorError, Monitored, Monitoring};
 use serde::Serialize;
 
 use super::map::{Job, Motor};
@@ -91,9 +91,18 @@ impl Row {
             fingerprint: fingerprint.to_owned(),
             ..Row::without_numbers()
         };
-        match read_any(&job.path, mapping, &mut |_| {}) {
-            Ok(Source::Recording(recording)) => row.judge(&recording, motor),
-            Ok(Source::LoadTable(table)) => {
+        let mut monitoring = Monitoring::new(Some(&motor.file));
+        let (mut samples, mut refused) = (0, None);
+        let mut take = |piece: Recording| {
+            samples += piece.len() as u64;
+            if refused.is_none() {
+                refused = monitoring.take(&piece, &mut |_| {}).err();
+            }
+            Ok::<(), Error>(())
+        };
+        match read_in_pieces(&job.path, mapping, PIECE_ROWS, &mut |_| {}, &mut take) {
+            Ok(None) => row.judge(&monitoring.finish(), samples, refused, motor),
+            Ok(Some(table)) => {
                 row.state = NOT_JUDGED.to_owned();
                 row.not_judged = "a load table has no waveforms".to_owned();
                 row.samples = table.len() as u64;
@@ -129,13 +138,19 @@ impl Row {
         self.error = error.to_string();
     }
 
-    fn judge(&mut self, recording: &Recording, motor: &Motor) {
-        self.samples = recording.len() as u64;
-        self.duration_s = recording.duration();
-        self.sample_rate_hz = 1.0 / recording.t_sample();
-        match Monitored::new(recording, Some(&motor.file), &mut |_| {}) {
-            Ok(monitored) => self.take(&monitored),
-            Err(error) => {
+    fn judge(
+        &mut self,
+        monitored: &Monitored,
+        samples: u64,
+        refused: Option<MonitorError>,
+        motor: &Motor,
+    ) {
+        self.samples = samples;
+        self.duration_s = monitored.duration_s;
+        self.sample_rate_hz = 1.0 / monitored.t_sample;
+        match refused {
+            None => self.take(monitored),
+            Some(error) => {
                 self.state = NOT_JUDGED.to_owned();
                 self.error = match error {
                     MonitorError::File(error) => error.to_string(),
