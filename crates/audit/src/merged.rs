@@ -15,6 +15,8 @@ const OTHER_CLOCK_PERCENT: f64 = 1.0;
 /// Shares of the largest current or voltage of any piece below which a motor stood idle: what is said of its channels then is
 /// said of noise.
 const IDLE: f64 = 0.05;
+/// Shortest piece that a supply must be found in, s: a file may end in a short one.
+const SHORTEST_S: f64 = 0.2;
 /// A sample in so many tells the size of a signal.
 const STRIDE: usize = 7;
 
@@ -169,7 +171,9 @@ impl Piece {
             ScaleUnknown,
             Spikes,
         ];
-        !self.is_idle(largest) || anyway.contains(&finding.code)
+        let is_short = self.span[1] - self.span[0] < SHORTEST_S;
+        let is_said = !self.is_idle(largest) || anyway.contains(&finding.code);
+        is_said && !(is_short && is_about_supply(finding))
     }
 
     fn is_supplied(&self, largest: [f64; 2]) -> bool {

@@ -3,6 +3,7 @@
 use crate::context::Context;
 use crate::finding::{Code, Finding, names};
 use crate::measure::blocks::{Block, Three};
+use crate::measure::fit::Fit;
 use crate::measure::harmonics::{self as measure, HIGHEST, Ratios};
 use crate::measure::sequence::a;
 use crate::measure::statistics::median_phasor;
@@ -62,6 +63,9 @@ fn harmonics(context: &Context<'_>) -> Option<Finding> {
         return None;
     }
     let settled = context.settled(Channel::VOLTAGES);
+    if largest_percent(&settled) < HARMONICS_PERCENT {
+        return None;
+    }
     let per_period = TAU / (context.omega()? * context.recording.t_sample());
     // From 0.4 of the sampling rate on, anti-alias filters distort.
     let highest = HIGHEST.min((0.4 * per_period) as usize);
@@ -84,6 +88,20 @@ fn harmonics(context: &Context<'_>) -> Option<Finding> {
     })
 }
 
+/// What the harmonics of all orders cannot exceed, percent, without computing one.
+///
+/// Of a residual of mean square `p` the harmonics of a block have at most `2 p` together (Bessel), four times that where half
+/// of its samples are missing and the rest is uneven. The median over blocks of each is no more than twice its mean square: at
+/// least half of the blocks reach it. So the sum of their squares is at most `16 p` over the square of the amplitude. The residual is what
+/// the fit leaves with the slope that it takes out.
+fn largest_percent(settled: &[(&Block, &Three)]) -> f64 {
+    let of_phase = |fit: &Fit| 2.0 * (fit.rest + fit.slope.norm_sqr()) / fit.phasor.norm_sqr();
+    let of_block =
+        |(_, three): &(&Block, &Three)| three.fits.iter().map(of_phase).sum::<f64>() / 3.0;
+    let mean = settled.iter().map(of_block).sum::<f64>() / settled.len().max(1) as f64;
+    100.0 * (16.0 * mean).sqrt()
+}
+
 /// One harmonic over the fundamental, effective over the phases, averaged coherently over blocks.
 fn share(blocks: &[Ratios], order: usize) -> f64 {
     let phases = (0..3).map(|k| {
@@ -91,4 +109,41 @@ fn share(blocks: &[Ratios], order: usize) -> f64 {
         median_phasor(&ratios).map_or(0.0, |ratio| ratio.norm_sqr())
     });
     (phases.sum::<f64>() / 3.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expectation::Expectation;
+    use recording::{Metadata, Recording};
+
+    /// Voltages with a fifth, an eleventh and an unevenness of the samples: the bound is above what is found, and not far.
+    #[test]
+    fn the_bound_lies_above_the_harmonics() {
+        for (fifth, eleventh) in [(0.0, 0.0), (0.004, 0.0), (0.0, 0.02), (0.03, 0.05)] {
+            let t: Vec<f64> = (0..20_000).map(|k| f64::from(k) * 1e-4).collect();
+            let mut recording = Recording::new("x", t, Metadata::default()).expect("a clock");
+            for (k, channel) in Channel::VOLTAGES.into_iter().enumerate() {
+                let wave = |t: &f64| {
+                    let x = TAU * (50.0 * t - k as f64 / 3.0);
+                    300.0 * (x.cos() + fifth * (5.0 * x).cos() + eleventh * (11.0 * x).cos())
+                };
+                let values = recording.t().iter().map(wave).collect();
+                recording.set(channel, values).expect("a channel");
+            }
+            let expectation = Expectation::default();
+            let context = Context::new(&recording, &expectation);
+            let bound = largest_percent(&context.settled(Channel::VOLTAGES));
+            let percent = 100.0 * fifth.hypot(eleventh);
+            assert!(
+                bound >= percent && bound <= 5.0 * percent + 0.1,
+                "{percent} {bound}"
+            );
+            let found = harmonics(&context).map(|finding| finding.value);
+            match percent > HARMONICS_PERCENT {
+                true => assert!((found.expect("a finding") - percent).abs() < 0.05),
+                false => assert_eq!(found, None),
+            }
+        }
+    }
 }

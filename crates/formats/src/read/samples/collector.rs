@@ -33,8 +33,8 @@ pub(super) struct Collector {
 }
 
 impl Collector {
-    /// `is_bounded`: refuses more numbers than fit into memory.
-    pub fn new(header: &Header, plan: &Plan, is_bounded: bool) -> Collector {
+    /// With room for `room` rows; `is_bounded`: refuses more numbers than fit into memory.
+    pub fn new(header: &Header, plan: &Plan, room: usize, is_bounded: bool) -> Collector {
         let used = plan.columns.iter().map(|(target, index)| UsedColumn {
             target: *target,
             index: *index,
@@ -44,11 +44,11 @@ impl Collector {
         Collector {
             file: header.file.clone(),
             width: header.names.len() as u64,
-            values: vec![Vec::new(); used.len()],
+            values: used.iter().map(|_| Vec::with_capacity(room)).collect(),
             row: vec![0.0; used.len()],
             used,
-            lines: Vec::new(),
-            numbers: Vec::new(),
+            lines: Vec::with_capacity(room),
+            numbers: Vec::with_capacity(room),
             taken: 0,
             skipped: 0,
             skip_missing: plan.mapping.skip_missing.unwrap_or(false),
@@ -139,9 +139,11 @@ impl Collector {
     }
 }
 
-/// The first `end` of `all`, which goes on with what follows from `again` on.
+/// The first `end` of `all`, which goes on with what follows from `again` on. It keeps its room: growing step by step would
+/// leave holes in the memory.
 fn front<T: Copy>(all: &mut Vec<T>, end: usize, again: usize) -> Vec<T> {
-    let rest = all[again..].to_vec();
+    let mut rest = Vec::with_capacity(all.capacity());
+    rest.extend_from_slice(&all[again..]);
     let mut front = std::mem::replace(all, rest);
     front.truncate(end);
     front

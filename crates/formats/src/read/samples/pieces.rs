@@ -39,6 +39,14 @@ impl Extent {
             Extent::Rows(rows) => rows + (LONGER * rows as f64) as usize,
         }
     }
+
+    /// Rows that are in memory at once, as far as that is known; what is not used costs nothing.
+    fn room(self) -> usize {
+        match self {
+            Extent::Whole => 0,
+            Extent::Rows(_) => self.most() + 3 * MARGIN,
+        }
+    }
 }
 
 /// Reads the used columns of a file; `take` gets the pieces in their order, and the last one comes back when the file has
@@ -57,7 +65,7 @@ pub(in crate::read) fn gather(
         file.check_size()?;
     }
     let mut gathered = Gathered {
-        collector: Collector::new(file.header(), plan, extent == Extent::Whole),
+        collector: Collector::new(file.header(), plan, extent.room(), extent == Extent::Whole),
         extent,
         take,
     };
