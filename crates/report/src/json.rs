@@ -14,6 +14,8 @@
 //! assert!(json.starts_with("{\n  \"format\": \"turns/1\","));
 //! ```
 
+use std::io::Write;
+
 use replay::operating_points::OperatingPoints;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
@@ -72,6 +74,14 @@ struct Named<'a, A> {
 /// A value that JSON cannot say.
 pub fn text<A: Answer>(answer: &A) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&named(answer))
+}
+
+/// Writes an answer as JSON, in lines, as it is made: a long one is no text in memory first.
+///
+/// # Errors
+/// A value that JSON cannot say, and what `out` refuses.
+pub fn write<A: Answer>(answer: &A, out: impl Write) -> Result<(), serde_json::Error> {
+    serde_json::to_writer_pretty(out, &named(answer))
 }
 
 /// An answer as a JSON value.

@@ -2,7 +2,9 @@
 
 use formats::{read_in_pieces, read_recording, write_recording};
 use motor::MotorFile;
-use recording::{Error, Mapping};
+use recording::{Error, Mapping, Recording};
+use replay::calibrate::{Pieces, Refusal, Surroundings, calibrate, calibrate_pieces};
+use replay::check::{Checking, check};
 use report::study::{Monitored, Monitoring};
 use scenario::Scenario;
 use scenario::simulate::record;
@@ -73,4 +75,57 @@ fn alarms_and_numbers_are_those_of_the_whole_to_the_last_bit() {
         in_motion += whole.timeline.motion.judged;
     }
     assert!(faults >= 2 && in_motion > 0, "{faults} {in_motion}");
+}
+
+/// A recording that comes in pieces each time that it is asked for.
+struct InPieces(Vec<Recording>);
+
+impl Pieces for InPieces {
+    fn name(&self) -> &str {
+        self.0[0].name()
+    }
+
+    fn each(&self, take: &mut dyn FnMut(&Recording) -> Result<(), Refusal>) -> Result<(), Refusal> {
+        self.0.iter().try_for_each(take)
+    }
+}
+
+fn shipped(scenario: &str, motor: &str) -> (Recording, InPieces, MotorFile) {
+    let path = project(&format!("sim-host/scenarios/{scenario}.toml"));
+    let whole = record(&Scenario::read(&path).expect("it ships"), |_| {}).expect("it runs");
+    let cuts = (0..whole.len()).step_by(13_001);
+    let piece = |from: usize| whole.slice(from..(from + 13_001).min(whole.len()));
+    let pieces = cuts.map(piece).collect::<Result<_, _>>().expect("pieces");
+    let motor = MotorFile::read(project(&format!("motors/{motor}.toml"))).expect("it ships");
+    (whole, InPieces(pieces), motor)
+}
+
+#[test]
+fn a_motor_is_learnt_from_pieces_as_from_the_whole() {
+    let (whole, pieces, motor) = shipped("healthy-2k2", "peer-2k2");
+    let surroundings = Surroundings::default();
+    let learnt = calibrate(&motor, &[whole], &surroundings).expect("healthy");
+    assert!(pieces.0.len() > 3);
+    let again = calibrate_pieces(&motor, &[&pieces], &surroundings).expect("healthy");
+    assert_eq!(again.motor.to_toml(), learnt.motor.to_toml());
+    assert_eq!(again.windows, learnt.windows);
+}
+
+#[test]
+fn a_check_in_pieces_says_what_a_check_of_the_whole_says() {
+    let (whole, pieces, motor) = shipped("broken-bars", "peer-2k2-calibrated");
+    let all = check(&whole, &motor, &mut |_| {}).expect("a motor");
+    let mut checking = Checking::new(&motor);
+    for piece in &pieces.0 {
+        checking.take(piece, &mut |_| {}).expect("a motor");
+    }
+    let in_pieces = checking.finish();
+    assert_eq!(in_pieces.verdict, all.verdict);
+    assert_eq!(in_pieces.told, all.told);
+    assert_eq!(
+        (in_pieces.windows, in_pieces.rotor),
+        (all.windows, all.rotor)
+    );
+    assert_eq!(in_pieces.residuals, all.residuals);
+    assert_eq!(all.verdict.state, replay::VerdictState::Fault);
 }

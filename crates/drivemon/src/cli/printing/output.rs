@@ -125,9 +125,9 @@ pub(crate) fn text_of(value: &impl Answer) -> Result<String, Failure> {
         .map_err(|error| Failure::Usage(format!("the result cannot be written as JSON: {error}")))
 }
 
-fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+fn write_json(path: &Path, value: &impl Answer) -> Result<(), Failure> {
     formats::write_whole(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, value)?;
+        report::json::write(value, &mut *file)?;
         file.write_all(b"\n")
     })
     .map_err(|error| cannot_write(path, error))
