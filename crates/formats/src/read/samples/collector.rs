@@ -1,7 +1,6 @@
 //! Gathers the columns of a file that are used, row by row or block by block.
 
-use super::pieces::Piece;
-use super::raw::{Raw, Rows};
+use super::raw::{Piece, Raw, Rows};
 use crate::read::budget::{most_numbers, too_large};
 use crate::read::header::Header;
 use crate::read::plan::Plan;

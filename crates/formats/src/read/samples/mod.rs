@@ -4,5 +4,5 @@ mod collector;
 mod pieces;
 mod raw;
 
-pub(super) use pieces::{Extent, Piece, gather};
-pub(super) use raw::{Raw, Rows};
+pub(super) use pieces::{Extent, gather};
+pub(super) use raw::{Piece, Raw, Rows};

@@ -1,12 +1,11 @@
 //! A file as consecutive pieces: the next one is read when the one before is done.
 
 use super::collector::Collector;
-use super::raw::Raw;
+use super::raw::Piece;
 use crate::read::plan::Plan;
 use crate::read::table_file::TableFile;
 use crate::read::text::source::Progress;
 use recording::Error;
-use std::ops::Range;
 
 /// How much of a file is in memory at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,13 +22,6 @@ const MARGIN: usize = 4096;
 
 /// The last piece is longer by this share rather than followed by a shorter one.
 const LONGER: f64 = 1.0 / 15.0;
-
-/// Rows of a file, with rows beside them.
-pub(in crate::read) struct Piece {
-    pub raw: Raw,
-    /// Which rows of `raw` the piece holds; the others belong to its neighbours.
-    pub kept: Range<usize>,
-}
 
 impl Extent {
     /// Rows beyond which a piece is given away.

@@ -2,6 +2,7 @@
 
 use recording::{Column, Target};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// The samples of a file as they stand there, with their rows.
 pub(crate) struct Raw {
@@ -9,6 +10,13 @@ pub(crate) struct Raw {
     pub rows: Rows,
     /// Rows that were dropped.
     pub skipped: u64,
+}
+
+/// Rows of a file, with rows beside them.
+pub(crate) struct Piece {
+    pub raw: Raw,
+    /// Which rows of `raw` the piece holds; the others belong to its neighbours.
+    pub kept: Range<usize>,
 }
 
 /// Which rows of a file the samples are.
