@@ -96,12 +96,12 @@ pub fn read_stream(
     open_stream(name, stream, flags)?.whole(progress)
 }
 
-/// Rows of a piece: a minute at 10 kHz. With ten columns they take 50 MB.
-pub const PIECE_ROWS: usize = 600_000;
+/// Rows of a piece: 50 s at 10 kHz. With ten columns they take 40 MB.
+pub const PIECE_ROWS: usize = 500_000;
 
 /// Reads a recording of any length as consecutive pieces of `rows` rows, of which one is in memory at a time: text and
 /// Parquet; other formats are read as a whole first. `take` gets each piece when the one before is done; the last one is up to
-/// a fifteenth longer, so that what is little longer than a piece is one. The assumptions of the last piece are those of the file. A
+/// a thirtieth longer, so that what is little longer than a piece is one. The assumptions of the last piece are those of the file. A
 /// load table is no recording and comes back.
 ///
 /// Encoder counts, delays and spikes at the ends of a piece are treated with the rows beside it, as they are in its middle.

@@ -105,7 +105,7 @@ fn parquet_in_pieces_is_the_file_as_a_whole() {
 fn what_is_little_longer_than_a_piece_is_one_and_an_error_ends_the_reading() {
     let folder = Folder::new("pieces-one");
     let text = table();
-    let lines: Vec<&str> = text.lines().take(1 + PIECE + PIECE / 20).collect();
+    let lines: Vec<&str> = text.lines().take(1 + PIECE + PIECE / 40).collect();
     let path = folder.file("x.csv", lines.join("\n").as_bytes());
     assert_eq!(pieces(&path, &flags()).len(), 1);
     let path = folder.file("y.csv", text.as_bytes());

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 
 /// Values that are kept at most. A minute of windows at 100 Hz is kept whole.
-pub const MOST: usize = 16_384;
+pub const MOST: usize = 8_192;
 
 /// Every value up to [`MOST`], then every second, fourth and so on.
 #[derive(Clone, Debug, PartialEq)]

@@ -115,6 +115,16 @@ impl Collector {
         }
     }
 
+    /// Makes room for `room` rows where the piece before had its own: growing step by step would leave holes in the memory.
+    pub fn reserve(&mut self, room: usize) {
+        let rows = room.saturating_sub(self.lines.len());
+        self.values
+            .iter_mut()
+            .for_each(|values| values.reserve_exact(rows));
+        self.lines.reserve_exact(rows);
+        self.numbers.reserve_exact(rows);
+    }
+
     /// Gives away the first `rows` fresh rows with `margin` rows on either side, as far as there are any.
     pub fn give(&mut self, rows: usize, margin: usize) -> Piece {
         let kept = self.before..self.before + rows;
@@ -138,11 +148,9 @@ impl Collector {
     }
 }
 
-/// The first `end` of `all`, which goes on with what follows from `again` on. It keeps its room: growing step by step would
-/// leave holes in the memory.
+/// The first `end` of `all`, which goes on with what follows from `again` on.
 fn front<T: Copy>(all: &mut Vec<T>, end: usize, again: usize) -> Vec<T> {
-    let mut rest = Vec::with_capacity(all.capacity());
-    rest.extend_from_slice(&all[again..]);
+    let rest = all[again..].to_vec();
     let mut front = std::mem::replace(all, rest);
     front.truncate(end);
     front

@@ -21,7 +21,7 @@ pub(in crate::read) enum Extent {
 const MARGIN: usize = 4096;
 
 /// The last piece is longer by this share rather than followed by a shorter one.
-const LONGER: f64 = 1.0 / 15.0;
+const LONGER: f64 = 1.0 / 30.0;
 
 impl Extent {
     /// Rows beyond which a piece is given away.
@@ -85,7 +85,9 @@ impl Gathered<'_> {
     fn give_away(&mut self) -> Result<(), Error> {
         match self.extent {
             Extent::Rows(rows) if self.collector.fresh() > self.extent.most() => {
-                (self.take)(self.collector.give(rows, MARGIN))
+                (self.take)(self.collector.give(rows, MARGIN))?;
+                self.collector.reserve(self.extent.room());
+                Ok(())
             }
             _ => Ok(()),
         }
