@@ -2,8 +2,8 @@
 
 use std::ops::Deref;
 
-/// Values that are kept at most. A minute of windows at 100 Hz is kept whole.
-pub const MOST: usize = 8_192;
+/// Values that are kept at most. Of 50 s at 100 Hz every window is kept.
+pub const MOST: usize = 5_120;
 
 /// Every value up to [`MOST`], then every second, fourth and so on.
 #[derive(Clone, Debug, PartialEq)]
