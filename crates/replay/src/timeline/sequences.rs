@@ -151,7 +151,8 @@ impl Sequences {
 mod tests {
     use super::*;
 
-    /// Closed form: under `1 - cos x` the mean of `cos x` over a turn is -1/2, and that of a constant itself.
+    /// Closed form: under `1 - cos x` the mean of `cos x` over a turn is -1/2, and that of a constant itself; the weight goes on
+    /// for a two-thousandth of the turn at either end.
     #[test]
     fn many_values_have_the_mean_of_a_hann_weight() {
         let mut all = Averages::<1>::default();
@@ -164,7 +165,7 @@ mod tests {
         assert!(all.groups.len() <= MOST);
         let mean = all.mean(0).expect("values");
         assert!(
-            (mean - Complex64::new(0.3 - 0.5, 1.0)).norm() < 1e-4,
+            (mean - Complex64::new(0.3 - 0.5, 1.0)).norm() < 1e-3,
             "{mean}"
         );
     }
