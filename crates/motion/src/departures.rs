@@ -3,11 +3,11 @@
 use monitor::{Cause, Phase, Uncertainty};
 
 /// Quantities that may depart from what the monitor was told.
-pub const UNKNOWNS: usize = 21;
+pub const UNKNOWNS: usize = 22;
 /// Causes that are weighed against each other.
 pub const HYPOTHESES: usize = 17;
 /// Departures that act on the rotor flux, each with a flux of its own.
-pub const FLUXES: usize = 10;
+pub const FLUXES: usize = 11;
 
 /// Places of the departures. Relative, unless said otherwise.
 pub mod place {
@@ -39,8 +39,10 @@ pub mod place {
     pub const LEAKAGE_BEND: usize = 18;
     /// Saturation of the iron, absolute.
     pub const IRON: usize = 19;
+    /// Time by which a speed channel is late, s.
+    pub const SPEED_LAG: usize = 20;
     /// Both resistances together.
-    pub const HEATING: usize = 20;
+    pub const HEATING: usize = 21;
 }
 
 /// Departures of the rotor flux, in the order in which their fluxes are kept, with their places among all.
@@ -55,6 +57,7 @@ pub const FLUX_PLACES: [usize; FLUXES] = [
     place::CURRENT,
     place::CURRENT + 1,
     place::CURRENT + 2,
+    place::SPEED_LAG,
 ];
 
 /// Standard deviations of the departures of a healthy motor.
@@ -64,10 +67,20 @@ pub struct Priors(pub [f32; UNKNOWNS]);
 /// What even a calibration leaves open in motion, where each parameter counts that rest does not show.
 const LEAST: [f32; UNKNOWNS] = [
     0.02, 0.03, 0.01, 0.05, 0.2, 0.02, 0.003, 0.003, 0.003, 0.003, 0.003, 0.003, 1e-4, 0.003,
-    0.003, 0.003, 0.005, 0.3, 0.25, 0.04, 0.03,
+    0.003, 0.003, 0.005, 0.3, 0.25, 0.04, 0.0, 0.03,
 ];
 
+/// What a tachometer's filter, a frequency counter or a drive's filter is late by, standard deviation, s: an encoder's count is
+/// not late.
+const LATE_SPEED: f32 = 0.01;
+
 impl Priors {
+    /// The same where the speed is a channel that shows rad/s, and not an encoder's count.
+    pub fn with_speed_channel(mut self) -> Self {
+        self.widen(place::SPEED_LAG, LATE_SPEED);
+        self
+    }
+
     /// From what a calibration left open.
     pub fn of(uncertainty: &Uncertainty) -> Self {
         let u = uncertainty;
@@ -91,6 +104,11 @@ impl Priors {
             priors.widen(k, deviation);
         }
         priors
+    }
+
+    /// By how much the speed may be late, standard deviation, s.
+    pub fn late_s(&self) -> f32 {
+        self.0.get(place::SPEED_LAG).copied().unwrap_or_default()
     }
 
     /// A departure is known no better than this.

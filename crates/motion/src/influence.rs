@@ -53,6 +53,8 @@ struct Response {
 pub struct Influences {
     responses: [Response; FLUXES],
     part: Part,
+    /// Electrical speed of the rotor in the latest part, rad/s; `None` before the first.
+    omega: Option<f32>,
 }
 
 /// What one departure does at once.
@@ -127,7 +129,9 @@ impl Influences {
         let weight = part.weight / part.samples;
         let factor = 1.5 * circuit.mechanics.n_p * part.samples;
         let magnetizing = magnetizing(c, &part, &point);
-        let all = directs(c, &part, &point, &magnetizing, time);
+        let omega = part.turned / time;
+        let acceleration = (omega - self.omega.replace(omega).unwrap_or(omega)) / time;
+        let all = directs(c, &part, &point, &magnetizing, [omega, acceleration]);
         let places = self.responses.iter_mut().zip(all);
         let sums = moved.linkage.iter_mut().zip(&mut moved.torque);
         for ((response, direct), (linkage, torque)) in places.zip(sums) {
@@ -237,7 +241,7 @@ fn directs(
     part: &Part,
     point: &Point,
     magnetizing: &Direct,
-    time: f32,
+    [omega, acceleration]: [f32; 2],
 ) -> [Direct; FLUXES] {
     let n = part.samples;
     let (x, y, mirrored) = (part.x / n, part.y / n, part.mirrored / n);
@@ -269,12 +273,13 @@ fn directs(
         rotor,
         *magnetizing,
         leakage,
-        driven_by(-J * x * (part.turned / time)),
+        driven_by(-J * x * omega),
         rotor.scaled(point.skin),
         leakage.scaled(point.bend),
         magnetizing.scaled(point.iron),
         a,
         b,
         d,
+        driven_by(J * x * acceleration),
     ]
 }

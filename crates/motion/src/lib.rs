@@ -94,6 +94,10 @@ pub struct MotionState {
     count: u64,
     restless_since: Option<u64>,
     raised: Option<(u64, u64)>,
+    /// Electrical speeds of the latest two cycles, rad/s.
+    turned: [f32; 2],
+    /// Whether the speed went from turning to nothing at once.
+    speed_died: bool,
 }
 
 /// One instant for [`Motion::update`], in SI units.
@@ -162,6 +166,8 @@ const KNOWN_HEATING: f32 = 0.25;
 const MOST_TYPICAL: f32 = 2.5;
 /// The cause that is named explains at least this share of what the strongest would.
 const LEAST_SHARE: f32 = 0.7;
+/// Share of rated speed from which a shaft does not come to rest within two cycles.
+const TURNING: f32 = 0.2;
 /// A rotor that turns further from one sample to the next is no rotor, electrical rad.
 const FASTEST: f32 = 0.7;
 
@@ -284,6 +290,10 @@ impl Motion {
         }
         let mut rows = sums.rows(&self.circuit, c, &mut state.past);
         rows.has_torque &= self.load != KnownLoad::Nothing;
+        let priors = match state.last_speed {
+            Some(SpeedSample::RadPerSecond(_)) => self.priors.with_speed_channel(),
+            _ => self.priors,
+        };
         let now = Circumstances {
             samples: sums.samples,
             slip: [
@@ -293,16 +303,18 @@ impl Motion {
             current: sums.current(),
             flux: magnitude(state.observer.flux),
             heating_square: self.heating_square(state),
+            late_s: priors.late_s(),
         };
-        let white = state
-            .scatter
-            .whiten(&self.circuit, &self.priors, &rows, &now);
+        let white = state.scatter.whiten(&self.circuit, &priors, &rows, &now);
         if let Some(reason) = state.gate.close(&self.circuit, &sums, &seen, slip) {
             state.decision.pass();
             return self.not_judged(state, rows.rows, reason);
         }
         let outcome = state.decision.take(&white, &self.limits);
-        let dead = self.dead_channel(&sums);
+        self.follow_speed(state, omega);
+        let dead = self
+            .dead_channel(&sums)
+            .or(state.speed_died.then_some(SensorFinding::SpeedImplausible));
         self.follow_heating(state, &outcome);
         let alarm = self.note_alarm(state, &outcome, dead);
         MotionCycle {
@@ -404,6 +416,14 @@ impl Motion {
         voltage.or_else(|| dead_channel(&[d, e, f]).map(SensorFinding::DeadCurrent))
     }
 
+    /// A shaft needs time to come to rest; a sensor that dies does not.
+    fn follow_speed(&self, state: &mut MotionState, omega: f32) {
+        let [older, newer] = state.turned.map(f32::abs);
+        let turning = older.max(newer) > TURNING * self.circuit.rated.omega;
+        state.speed_died = omega == 0.0 && (state.speed_died || turning);
+        state.turned = [state.turned[1], omega];
+    }
+
     fn note_alarm(
         &self,
         state: &mut MotionState,
@@ -438,7 +458,12 @@ impl Motion {
             (size * prior).abs() < MOST_TYPICAL * hypothesis.cause.typical_size()
         });
         let hypothesis = ALL.get(told.hypothesis);
-        match hypothesis.filter(|_| told.statistic.abs() > LEAST_SHARE * best.statistic.abs()) {
+        // An alarm by the rows' length alone has no cause yet.
+        let least = self
+            .limits
+            .statistic
+            .max(LEAST_SHARE * best.statistic.abs());
+        match hypothesis.filter(|_| told.statistic.abs() > least) {
             Some(hypothesis) => MotionCause::Departure(hypothesis.cause),
             None => MotionCause::Untold,
         }

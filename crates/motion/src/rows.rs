@@ -70,6 +70,8 @@ struct Turned {
 pub struct Past {
     cycles: [Turned; 2],
     known: u8,
+    /// Acceleration of the latest three cycles, mechanical rad/s2.
+    acceleration: f32,
 }
 
 /// Rows of one cycle with their sensitivities to departures of size 1.
@@ -240,12 +242,14 @@ impl Sums {
         if past.known >= 2 {
             let period = self.samples * circuit.t_sample;
             let spline = Spline::new([&first, &second, &now], period);
+            let jerk = (spline.acceleration - past.acceleration) / period;
+            past.acceleration = spline.acceleration;
             rows.acceleration = spline.acceleration;
             rows.has_torque = true;
             let row = spline.balance(circuit);
             set(&mut rows.rows, Q, row);
             if let Some(place) = rows.sensitivities.get_mut(Q) {
-                *place = spline.sensitivities(circuit, [&first, &second, &now]);
+                *place = spline.sensitivities(circuit, [&first, &second, &now], jerk);
             }
         }
         past.cycles = [second, now];
@@ -296,7 +300,8 @@ impl Spline {
         left / circuit.rated.torque
     }
 
-    fn sensitivities(&self, circuit: &Circuit, cycles: [&Turned; 3]) -> Vector {
+    /// `jerk` is the rate of the acceleration, rad/s3.
+    fn sensitivities(&self, circuit: &Circuit, cycles: [&Turned; 3], jerk: f32) -> Vector {
         /// Areas of the spline over its three cycles.
         const AREAS: [f32; 3] = [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0];
         let per = 1.0 / circuit.rated.torque;
@@ -312,6 +317,9 @@ impl Spline {
         set(&mut row, place::FRICTION, -friction);
         let speed = row.get(place::SPEED).copied().unwrap_or_default();
         set(&mut row, place::SPEED, speed + inertia + friction);
+        let of_lag = circuit.friction * self.acceleration + circuit.mechanics.inertia * jerk;
+        let lag = row.get(place::SPEED_LAG).copied().unwrap_or_default();
+        set(&mut row, place::SPEED_LAG, lag - of_lag * per);
         row
     }
 }

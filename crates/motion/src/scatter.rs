@@ -61,6 +61,8 @@ pub struct Circumstances {
     pub flux: f32,
     /// How far the resistances' common rise may be from the one that the rows are taken at, or was lately, squared.
     pub heating_square: f32,
+    /// By how much the speed may be late, s.
+    pub late_s: f32,
 }
 
 /// Scatter that stays of E+ and E- without any noise: the encoder's steps.
@@ -77,6 +79,8 @@ const HIGH_CURRENT: f32 = 9.0;
 const SKIN_SHARE: f32 = 0.07;
 /// Share of the inertia's torque that a step within a cycle leaves open.
 const ACCELERATION_SHARE: f32 = 0.02;
+/// Share of a late speed that no delay explains.
+const LATE_SHARE: f32 = 0.5;
 /// Standard deviation of a row that says nothing.
 const SILENT: f32 = 1e6;
 
@@ -169,6 +173,8 @@ impl Scatter {
             SKIN_SHARE * self.skin * length(place::R_R),
             // What is of second order in a temperature that is not known yet.
             now.heating_square * length(place::HEATING),
+            // A filter is no pure delay, and a long one no first order.
+            LATE_SHARE * now.late_s * length(place::SPEED_LAG),
         ])
     }
 
@@ -199,6 +205,7 @@ impl Scatter {
                 HIGH_CURRENT_SHARE * self.high * leakage,
                 SKIN_SHARE * self.skin * column(place::R_R),
                 now.heating_square * column(place::HEATING),
+                LATE_SHARE * now.late_s * column(place::SPEED_LAG),
             ])
     }
 }

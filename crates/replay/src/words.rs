@@ -25,6 +25,10 @@ pub fn not_judged(reason: NotJudged) -> String {
     }
 }
 
+/// What an alarm in motion is that no fault explains, and what to do.
+pub const UNEXPLAINED: &str = "a larger fault, a speed channel that lags, or an effect that the motor file lacks; \
+     compare the recording with the model (drivemon compare), or record the shaft without a filter";
+
 /// Why a cycle was not judged in motion.
 pub fn not_in_motion(reason: NotInMotion) -> &'static str {
     match reason {

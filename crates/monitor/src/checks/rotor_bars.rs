@@ -27,6 +27,9 @@ const SIDEBAND: usize = 2;
 /// and in a row of three blocks, which FAULT takes, in 7 of ten million; and it must pass the limit as well. A step of the
 /// load stays below 1.3 times. A swing passes within 9 % of twice the slip frequency: so well must the slip be known.
 const CLEAR: f32 = 3.0;
+/// Largest sideband of a cage, share of the active current: what a third of the bars of a small cage would leave. A press whose
+/// stroke takes half a turn of the slip leaves more.
+const LARGEST: f32 = 0.2;
 
 /// What one block of whole turns says about the cage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,9 +50,10 @@ impl Sidebands {
     /// Slip beyond which nothing is tested: the motor is starting, and the sidebands lie too far from the supply's frequency.
     pub const LARGEST_SLIP: f32 = 0.13;
 
-    /// Whether the lower sideband stands clear of the lines beside it: what it shows is at twice the slip frequency.
+    /// Whether the lower sideband stands clear of the lines beside it, so that what it shows is at twice the slip frequency, and
+    /// is no larger than a cage can leave.
     pub fn is_clear(&self) -> bool {
-        self.lower > CLEAR * self.beside
+        self.lower > CLEAR * self.beside && self.lower < LARGEST
     }
 }
 
@@ -193,6 +197,22 @@ mod tests {
             }) {
                 assert!(!counts(&block), "{ratio}: {block:?}");
             }
+        }
+    }
+
+    /// A press of the same rhythm swings the current by tens of per cent; a cage with a third of its bars broken does not.
+    #[test]
+    fn a_swing_that_no_cage_leaves_is_not_taken_for_bars() {
+        let swings = |share: f32| {
+            blocks(1000, move |angle| {
+                Complex32::new(10.0 * share * angle.cos(), 0.0)
+            })
+        };
+        for block in swings(0.3) {
+            assert!(block.lower > 0.25 && !counts(&block), "{block:?}");
+        }
+        for block in swings(0.15) {
+            assert!(counts(&block), "{block:?}");
         }
     }
 

@@ -31,6 +31,8 @@ pub struct Plant {
     pub reverses_s: f64,
     pub gains: [f64; 6],
     pub speed_gain: f64,
+    /// Time by which the shaft is seen late, s.
+    pub late_s: f64,
     /// Noise and step of voltages, V, and currents, A.
     pub noise: [f64; 2],
     pub step: [f64; 2],
@@ -58,6 +60,7 @@ pub const MOTOR: Plant = Plant {
     reverses_s: f64::INFINITY,
     gains: [1.0; 6],
     speed_gain: 1.0,
+    late_s: 0.0,
     noise: [0.0; 2],
     step: [0.0; 2],
     rail: f64::INFINITY,
@@ -179,7 +182,8 @@ impl Plant {
             Abc::from_array(shown.map(|x| x as f32))
         };
         let (u, i) = (show(u, 0), show(i, 1));
-        let count = (state.angle * self.speed_gain * self.counts / TAU).floor();
+        let seen = state.angle - self.late_s * state.omega;
+        let count = (seen * self.speed_gain * self.counts / TAU).floor();
         let [angle, share] = self.wrong;
         let omega = TAU * self.hertz * (1.0 + share);
         let axis = Complex64::cis(omega * t + 0.7 + angle);

@@ -92,6 +92,12 @@ fn what_departs_moves_the_rows_as_the_sensitivities_say() {
         voltages.clone(),
         0.1,
     );
+    let late_s = 1e-3;
+    check(
+        ("late speed", Plant { late_s, ..p }, place::SPEED_LAG, 1e-3),
+        voltages.clone(),
+        0.15,
+    );
     for channel in 0..6 {
         let mut gains = [1.0; 6];
         gains[channel] = 1.02;
@@ -119,6 +125,12 @@ fn what_departs_moves_the_torque_row_as_the_sensitivities_say() {
         ("B", Plant { friction, ..p }, place::FRICTION, 0.05),
         torque.clone(),
         0.1,
+    );
+    let late_s = 2e-3;
+    check(
+        ("late speed", Plant { late_s, ..p }, place::SPEED_LAG, 2e-3),
+        torque.clone(),
+        0.35,
     );
     check(rotor_resistance(), torque.clone(), 0.25);
     check(magnetizing_inductance(), torque, 0.25);

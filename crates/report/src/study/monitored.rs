@@ -223,12 +223,15 @@ impl<'m> Monitoring<'m> {
 }
 
 impl Monitored {
-    /// What the recording comes to: FAULT at rest or in motion; healthy where either was judged and neither lit.
+    /// What the recording comes to: FAULT at rest or in motion; healthy where either was judged and neither lit; not judged
+    /// where something came in motion that no fault explains.
     pub fn state(&self) -> VerdictState {
         let motion = &self.timeline.motion;
         match self.verdict.state {
+            VerdictState::Fault => VerdictState::Fault,
             _ if motion.is_fault() => VerdictState::Fault,
-            VerdictState::NotJudged if motion.judged > 0 => VerdictState::Healthy,
+            _ if !motion.unexplained.is_empty() => VerdictState::NotJudged,
+            VerdictState::NotJudged if motion.is_healthy() => VerdictState::Healthy,
             state => state,
         }
     }

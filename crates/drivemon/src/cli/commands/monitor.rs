@@ -190,7 +190,14 @@ fn print_motion(timeline: &Timeline) {
         );
         say!("{} {cause}", paint::error(alarm));
     }
-    if motion.alarms.is_empty() && motion.judged > 0 {
+    for doubt in &motion.unexplained {
+        let found = format!(
+            "from about {:.3} s on something does not fit, T = {:.1}, and no fault of a size that occurs explains it:",
+            doubt.onset_s, doubt.statistic
+        );
+        say!("{} {}", paint::caution(found), words::UNEXPLAINED);
+    }
+    if motion.is_healthy() {
         say!("{}", paint::good("in motion no fault was seen"));
     }
 }
@@ -278,6 +285,14 @@ pub(crate) fn print_sequence(sequence: &SequenceSummary) {
 pub(crate) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
     match verdict.state {
         VerdictState::Healthy if timeline.motion.is_fault() => say!("at rest no fault was lit"),
+        VerdictState::Healthy if !timeline.motion.unexplained.is_empty() => {
+            say!(
+                "{}",
+                paint::caution(
+                    "not judged: at rest no fault was lit, and in motion something does not fit"
+                )
+            );
+        }
         VerdictState::Healthy => say!("{}", paint::good("healthy: no fault was lit")),
         VerdictState::NotJudged if timeline.motion.judged > 0 => {
             say!("{}", paint::caution("at rest not judged"));

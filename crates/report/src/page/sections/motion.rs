@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use crate::page::elements::number::{decimals, shown};
 use crate::page::elements::place::Place;
+use replay::words;
 
 /// The first alarm in motion, as a heading says it; `None` without one.
 pub fn alarm(result: &Place<'_>) -> Option<Markup> {
@@ -21,6 +22,7 @@ pub fn section(result: &Place<'_>) -> Markup {
     };
     let windows = motion.number("windows").unwrap_or_default();
     let alarms = motion.items("alarms");
+    let unexplained = motion.items("unexplained");
     html! {
         @if windows > 0.0 {
             section aria-labelledby="motion" {
@@ -30,7 +32,13 @@ pub fn section(result: &Place<'_>) -> Markup {
                         "Windows that were not at rest were not judged: " (motion.text("not_possible")) "."
                     } @else {
                         (shown(&motion, "judged", decimals(0))) " of " (shown(&motion, "windows", decimals(0)))
-                        " windows that were not at rest were judged" @if alarms.is_empty() { "; no fault was seen" } "."
+                        " windows that were not at rest were judged" @if alarms.is_empty() && unexplained.is_empty() { "; no fault was seen" } "."
+                    }
+                }
+                @for doubt in &unexplained {
+                    p {
+                        "From about " (shown(doubt, "onset_s", decimals(3))) " s on something does not fit (T = "
+                        (shown(doubt, "statistic", decimals(1))) "), and no fault of a size that occurs explains it: " (words::UNEXPLAINED) "."
                     }
                 }
                 @if !alarms.is_empty() {
