@@ -4,6 +4,7 @@ mod browser;
 mod page;
 
 use page::Page;
+use recording::{Channel, Mapping};
 
 #[test]
 fn the_demo_page_is_self_contained_and_true_to_its_json() {
@@ -41,6 +42,36 @@ fn the_page_of_a_fault_in_motion_says_so_though_nothing_lit_at_rest() {
     assert!(page.html.contains("Fault in motion at"));
     assert!(!page.html.contains("Healthy: no fault was lit"));
     browser::check(&page);
+}
+
+/// A healthy motor whose speed is the mean over a tenth of a second.
+#[test]
+fn the_page_of_a_speed_that_lags_says_that_something_does_not_fit() {
+    let path = page::scratch("late.parquet");
+    let motor = page::project("motors/peer-2k2-calibrated.toml");
+    write_with_late_speed("tests/data/peer/none/recording.csv.gz", 1000, &path);
+    let page = Page::of("late", &["monitor", &path, "--motor", &motor]);
+    page.check();
+    assert_eq!(page.text("/state"), "not-judged");
+    assert!(page.html.contains("something in motion does not fit"));
+    assert!(page.html.contains("a speed channel that lags"));
+    browser::check(&page);
+}
+
+fn write_with_late_speed(source: &str, samples: usize, path: &str) {
+    let source = page::project(source);
+    let read = formats::read_recording(source.as_ref(), &Mapping::default(), &mut |_| {});
+    let recording = read.expect("shipped");
+    let speed = recording.speed().expect("measured");
+    let mean = |k: usize| {
+        let seen = &speed[k.saturating_sub(samples)..=k];
+        seen.iter().sum::<f64>() / seen.len() as f64
+    };
+    let late = (0..speed.len()).map(mean).collect();
+    let late = recording
+        .with_channel(Channel::SPEED, late)
+        .expect("as long");
+    formats::write_recording(path.as_ref(), &late).expect("writable");
 }
 
 #[test]

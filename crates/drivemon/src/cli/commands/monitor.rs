@@ -192,10 +192,13 @@ fn print_motion(timeline: &Timeline) {
     }
     for doubt in &motion.unexplained {
         let found = format!(
-            "from about {:.3} s on something does not fit, T = {:.1}, and no fault of a size that occurs explains it:",
+            "from about {:.3} s on something does not fit, T = {:.1}, and no fault of a size that occurs explains it",
             doubt.onset_s, doubt.statistic
         );
-        say!("{} {}", paint::caution(found), words::UNEXPLAINED);
+        say!("{}", paint::caution(found));
+    }
+    if !motion.unexplained.is_empty() {
+        say!("  it may be {}", words::UNEXPLAINED);
     }
     if motion.is_healthy() {
         say!("{}", paint::good("in motion no fault was seen"));

@@ -46,6 +46,10 @@ fn answer(result: &Place<'_>) -> Markup {
             html! { "No fault was seen in motion; nothing could be judged at rest" },
         ),
         (true, VerdictState::Healthy) => (Mood::Good, html! { "Healthy: no fault was lit" }),
+        (true, VerdictState::NotJudged) if !result.items("motion/unexplained").is_empty() => (
+            Mood::Caution,
+            html! { "Not judged: something in motion does not fit, and no fault explains it" },
+        ),
         (true, VerdictState::NotJudged) => (
             Mood::Caution,
             html! { "Not judged: no window met the conditions" },

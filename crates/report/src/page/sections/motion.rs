@@ -35,10 +35,14 @@ pub fn section(result: &Place<'_>) -> Markup {
                         " windows that were not at rest were judged" @if alarms.is_empty() && unexplained.is_empty() { "; no fault was seen" } "."
                     }
                 }
-                @for doubt in &unexplained {
+                @if !unexplained.is_empty() {
                     p {
-                        "From about " (shown(doubt, "onset_s", decimals(3))) " s on something does not fit (T = "
-                        (shown(doubt, "statistic", decimals(1))) "), and no fault of a size that occurs explains it: " (words::UNEXPLAINED) "."
+                        "Something does not fit, and no fault of a size that occurs explains it: from about "
+                        @for (k, doubt) in unexplained.iter().enumerate() {
+                            @if k > 0 { ", " }
+                            (shown(doubt, "onset_s", decimals(3))) " s (T = " (shown(doubt, "statistic", decimals(1))) ")"
+                        }
+                        " on. It may be " (words::UNEXPLAINED) "."
                     }
                 }
                 @if !alarms.is_empty() {
