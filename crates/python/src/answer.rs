@@ -34,30 +34,23 @@ impl Outcome {
     }
 }
 
-impl Outcome {
-    fn page(&self, subject: Subject) -> serde_json::Result<String> {
-        match self {
-            Outcome::Monitor(x) => page(subject, &**x),
-            Outcome::LoadTable(x) => page(subject, x),
-            Outcome::Check(x) => page(subject, &**x),
-            Outcome::Compare(x) => page(subject, &**x),
-            Outcome::Explain(x) => page(subject, &**x),
-            Outcome::Adopt(x) => page(subject, &**x),
-            Outcome::Calibrate(x) => page(subject, &**x),
+/// Does the same with whatever the outcome holds.
+macro_rules! with_answer {
+    ($outcome:expr, $answer:ident => $done:expr) => {
+        match $outcome {
+            Outcome::LoadTable($answer) => $done,
+            Outcome::Monitor(boxed) => with_answer!(@unboxed boxed, $answer => $done),
+            Outcome::Check(boxed) => with_answer!(@unboxed boxed, $answer => $done),
+            Outcome::Compare(boxed) => with_answer!(@unboxed boxed, $answer => $done),
+            Outcome::Explain(boxed) => with_answer!(@unboxed boxed, $answer => $done),
+            Outcome::Adopt(boxed) => with_answer!(@unboxed boxed, $answer => $done),
+            Outcome::Calibrate(boxed) => with_answer!(@unboxed boxed, $answer => $done),
         }
-    }
-
-    fn json(&self) -> serde_json::Result<String> {
-        match self {
-            Outcome::Monitor(x) => json::text(&**x),
-            Outcome::LoadTable(x) => json::text(x),
-            Outcome::Check(x) => json::text(&**x),
-            Outcome::Compare(x) => json::text(&**x),
-            Outcome::Explain(x) => json::text(&**x),
-            Outcome::Adopt(x) => json::text(&**x),
-            Outcome::Calibrate(x) => json::text(&**x),
-        }
-    }
+    };
+    (@unboxed $boxed:ident, $answer:ident => $done:expr) => {{
+        let $answer = &**$boxed;
+        $done
+    }};
 }
 
 /// An answer: its JSON, its page, its tables, and the motor that came out of it.
@@ -78,7 +71,7 @@ impl Answer {
 impl Answer {
     /// The bytes that `--json FILE` of the command writes.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        let text = py.detach(|| self.outcome.json());
+        let text = py.detach(|| with_answer!(&self.outcome, answer => json::text(answer)));
         text.map(|text| text + "\n").map_err(no_json)
     }
 
@@ -88,7 +81,8 @@ impl Answer {
             .outcome
             .subject()
             .ok_or_else(|| usage("this answer has no page"))?;
-        py.detach(|| self.outcome.page(subject)).map_err(no_json)
+        py.detach(|| with_answer!(&self.outcome, answer => page(subject, answer)))
+            .map_err(no_json)
     }
 
     #[getter]

@@ -5,7 +5,7 @@ use motion::{
     Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NoMotion, NotInMotion,
 };
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::VecDeque;
 
 use crate::words;
@@ -46,11 +46,21 @@ pub struct MotionFault {
     pub raised_s: f64,
     /// Statistic of the likeliest cause; a healthy motor's stays below the limit.
     pub statistic: f64,
-    /// The cause in words; absent where the motion ended before it could be told.
-    pub cause: Option<String>,
-    /// The same cause, for a program.
-    #[serde(skip)]
-    pub named: Option<MotionCause>,
+    /// The cause in words; `null` where the motion ended before it could be told, and where no fault of a size that occurs is one.
+    #[serde(serialize_with = "in_words")]
+    #[schemars(with = "Option<String>")]
+    pub cause: Option<MotionCause>,
+}
+
+impl MotionFault {
+    /// The cause in words; `None` where it could not be told, or no fault of a size that occurs is one.
+    pub fn words(&self) -> Option<String> {
+        self.cause.and_then(motion_cause)
+    }
+}
+
+fn in_words<S: Serializer>(cause: &Option<MotionCause>, serializer: S) -> Result<S::Ok, S::Error> {
+    cause.and_then(motion_cause).serialize(serializer)
 }
 
 /// Judges in motion beside the windows at rest.
@@ -196,7 +206,6 @@ impl Follower {
                     raised_s: time(alarm.raised_sample),
                     statistic: f64::from(alarm.statistic),
                     cause: None,
-                    named: None,
                 });
             }
             return;
@@ -205,8 +214,7 @@ impl Follower {
             return;
         };
         fault.statistic = f64::from(alarm.statistic);
-        fault.cause = motion_cause(cause);
-        fault.named = Some(cause);
+        fault.cause = Some(cause);
         match cause {
             MotionCause::Untold => self.summary.unexplained.push(fault),
             _ => self.summary.alarms.push(fault),

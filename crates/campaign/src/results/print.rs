@@ -86,8 +86,12 @@ pub(crate) fn in_motion(table: &Table) -> Option<String> {
     let sum = |of: fn(&Healthy) -> u64| table.healthy.iter().map(of).sum::<u64>();
     let moved = sum(|row| row.moved_windows);
     let judged = sum(|row| row.motion_judged_windows);
+    let unexplained = sum(|row| row.unexplained_runs);
     (moved > 0).then(|| {
-        format!("{moved} windows were not at rest; {judged} of them were judged in motion")
+        format!(
+            "{moved} windows were not at rest; {judged} of them were judged in motion; in {unexplained} runs something came that no \
+             fault explains"
+        )
     })
 }
 

@@ -48,6 +48,8 @@ pub struct Healthy {
     pub moved_windows: u64,
     /// Of these judged in motion, among those judged.
     pub motion_judged_windows: u64,
+    /// Runs in which something came in motion on the healthy motor that no fault explains: no FAULT, and not called healthy.
+    pub unexplained_runs: u64,
     /// Windows with FAULT lit, and alarms in motion.
     pub fault_windows: u64,
     /// Runs with such windows.
@@ -121,6 +123,7 @@ fn healthy(rows: &[Row]) -> Vec<Healthy> {
             judged_windows: sum(|row| row.healthy_judged_windows),
             moved_windows: sum(|row| row.moved_windows),
             motion_judged_windows: sum(|row| row.motion_judged_windows),
+            unexplained_runs: sum(|row| u32::from(row.healthy_unexplained > 0)),
             fault_windows: sum(|row| row.healthy_fault_windows),
             fault_runs,
             fault_run_probability_at_most: fault_runs.at_most(),

@@ -5,7 +5,7 @@ use motion::MotionCause;
 
 use crate::planned::fault::FaultKind;
 use replay::causes::{self, Candidate};
-use replay::{MotionFault, words};
+use replay::{MotionSummary, words};
 
 /// Probabilities closer than this are equal: the core computes them in single precision.
 const EQUAL: f64 = 1e-3;
@@ -33,6 +33,8 @@ pub struct Outcome {
     pub moved: u32,
     /// Of these judged there.
     pub judged_in_motion: u32,
+    /// Alarms in motion of the healthy motor that no fault explains: no FAULT, and nothing is called healthy.
+    pub healthy_unexplained: u32,
     /// What was named in motion, where FAULT came there first.
     motion_cause: Option<MotionCause>,
     /// Whether FAULT came in motion first.
@@ -102,7 +104,10 @@ impl Outcome {
     }
 
     /// Adds the alarms that came in motion; call it last. One that came before the fault stays on.
-    pub fn take_alarms(&mut self, fault_from_s: f64, alarms: &[MotionFault]) {
+    pub fn take_alarms(&mut self, fault_from_s: f64, motion: &MotionSummary) {
+        let (alarms, unexplained) = (&motion.alarms, motion.unexplained.iter());
+        let healthy = unexplained.filter(|doubt| doubt.raised_s < fault_from_s);
+        self.healthy_unexplained = healthy.count() as u32;
         let (early, late): (Vec<_>, Vec<_>) = alarms
             .iter()
             .partition(|alarm| alarm.raised_s < fault_from_s);
@@ -121,7 +126,7 @@ impl Outcome {
         if self.delay_s.is_none_or(|at_rest| delay_s < at_rest) {
             self.delay_s = Some(delay_s);
             self.found_in_motion = true;
-            self.motion_cause = first.named;
+            self.motion_cause = first.cause;
         }
     }
 

@@ -73,6 +73,8 @@ pub struct Row {
     pub moved_windows: u32,
     /// Of these judged in motion; they count as judged.
     pub motion_judged_windows: u32,
+    /// Alarms in motion of the healthy motor that no fault explains; they are no FAULT.
+    pub healthy_unexplained: u32,
     /// Whether FAULT came in motion.
     pub found_in_motion: bool,
     /// Time of the first of them, s.
@@ -202,6 +204,7 @@ fn with_outcome(row: Row, run: &Run<'_>, outcome: &Outcome) -> Row {
         healthy_fault_windows: outcome.healthy_fault,
         moved_windows: outcome.moved,
         motion_judged_windows: outcome.judged_in_motion,
+        healthy_unexplained: outcome.healthy_unexplained,
         found_in_motion: outcome.found_in_motion,
         first_false_s: outcome.first_false_s.unwrap_or(f64::NAN),
         false_cause: match outcome.healthy_fault {

@@ -362,7 +362,7 @@ impl<'p> Run<'p> {
                 outcome.take_moved(t, self.fault_from_s, judged);
             }
         })?;
-        outcome.take_alarms(self.fault_from_s, &motion.alarms);
+        outcome.take_alarms(self.fault_from_s, &motion);
         Ok(outcome)
     }
 }

@@ -66,6 +66,43 @@ pub enum Function {
     Max,
 }
 
+impl Function {
+    /// Its usual name, which most languages share: a printer names those that its language calls otherwise, or lacks.
+    pub fn name(self) -> &'static str {
+        match self {
+            Function::Abs => "abs",
+            Function::Sign => "sign",
+            Function::Sin => "sin",
+            Function::Cos => "cos",
+            Function::Tan => "tan",
+            Function::Asin => "asin",
+            Function::Acos => "acos",
+            Function::Atan => "atan",
+            Function::Sinh => "sinh",
+            Function::Cosh => "cosh",
+            Function::Tanh => "tanh",
+            Function::Asinh => "asinh",
+            Function::Acosh => "acosh",
+            Function::Atanh => "atanh",
+            Function::Floor => "floor",
+            Function::Ceil => "ceil",
+            Function::Round => "round",
+            Function::Trunc => "trunc",
+            Function::Exp => "exp",
+            Function::Expm1 => "expm1",
+            Function::Sqrt => "sqrt",
+            Function::Cbrt => "cbrt",
+            Function::Ln => "log",
+            Function::Log2 => "log2",
+            Function::Log10 => "log10",
+            Function::Power => "pow",
+            Function::Atan2 => "atan2",
+            Function::Min => "min",
+            Function::Max => "max",
+        }
+    }
+}
+
 /// How a condition compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compared {

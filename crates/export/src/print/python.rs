@@ -15,7 +15,6 @@ impl Syntax for Python {
 
     fn call(&self, function: Function, x: &[String]) -> String {
         let name = match function {
-            Function::Abs => "abs",
             Function::Sign => return format!("math.copysign(1.0, {})", x[0]),
             Function::Round => {
                 return format!("math.copysign(math.floor(abs({0}) + 0.5), {0})", x[0]);
@@ -23,31 +22,8 @@ impl Syntax for Python {
             Function::Cbrt => {
                 return format!("math.copysign(math.pow(abs({0}), 1.0 / 3.0), {0})", x[0]);
             }
-            Function::Sin => "math.sin",
-            Function::Cos => "math.cos",
-            Function::Tan => "math.tan",
-            Function::Asin => "math.asin",
-            Function::Acos => "math.acos",
-            Function::Atan => "math.atan",
-            Function::Sinh => "math.sinh",
-            Function::Cosh => "math.cosh",
-            Function::Tanh => "math.tanh",
-            Function::Asinh => "math.asinh",
-            Function::Acosh => "math.acosh",
-            Function::Atanh => "math.atanh",
-            Function::Floor => "math.floor",
-            Function::Ceil => "math.ceil",
-            Function::Trunc => "math.trunc",
-            Function::Exp => "math.exp",
-            Function::Expm1 => "math.expm1",
-            Function::Sqrt => "math.sqrt",
-            Function::Ln => "math.log",
-            Function::Log2 => "math.log2",
-            Function::Log10 => "math.log10",
-            Function::Power => "math.pow",
-            Function::Atan2 => "math.atan2",
-            Function::Min => "min",
-            Function::Max => "max",
+            Function::Abs | Function::Min | Function::Max => function.name().to_owned(),
+            of_library => format!("math.{}", of_library.name()),
         };
         format!("{name}({})", x.join(", "))
     }

@@ -149,7 +149,7 @@ impl CageLimits {
     /// Over what counts as broken; NaN where something else shook the current.
     pub fn normalised(&self, sidebands: &Sidebands) -> f32 {
         let share = sidebands.lower / self.broken;
-        if share < 1.0 || sidebands.is_clear() {
+        if share < 1.0 || sidebands.may_be_bars() {
             share
         } else {
             f32::NAN
@@ -158,7 +158,7 @@ impl CageLimits {
 
     /// Whether a line that stands clear lies from where the cage is doubtful on.
     pub fn raises_doubt(&self, sidebands: &Sidebands) -> bool {
-        sidebands.is_clear() && sidebands.lower >= self.doubtful
+        sidebands.may_be_bars() && sidebands.lower >= self.doubtful
     }
 }
 

@@ -28,7 +28,7 @@ const SIDEBAND: usize = 2;
 /// load stays below 1.3 times. A swing passes within 9 % of twice the slip frequency: so well must the slip be known.
 const CLEAR: f32 = 3.0;
 /// Largest sideband of a cage, share of the active current: what a third of the bars of a small cage would leave. A press whose
-/// stroke takes half a turn of the slip leaves more.
+/// strokes come at twice the slip frequency leaves more.
 const LARGEST: f32 = 0.2;
 
 /// What one block of whole turns says about the cage.
@@ -52,7 +52,7 @@ impl Sidebands {
 
     /// Whether the lower sideband stands clear of the lines beside it, so that what it shows is at twice the slip frequency, and
     /// is no larger than a cage can leave.
-    pub fn is_clear(&self) -> bool {
+    pub fn may_be_bars(&self) -> bool {
         self.lower > CLEAR * self.beside && self.lower < LARGEST
     }
 }
@@ -178,7 +178,7 @@ mod tests {
         for block in found {
             assert!((block.lower - 0.05).abs() < 1e-3, "{block:?}");
             assert!((block.upper - 0.02).abs() < 1e-3, "{block:?}");
-            assert!(block.is_clear() && (normalised(&block) - 4.0).abs() < 0.08);
+            assert!(block.may_be_bars() && (normalised(&block) - 4.0).abs() < 0.08);
         }
     }
 

@@ -126,6 +126,7 @@ fn what_departs_moves_the_torque_row_as_the_sensitivities_say() {
         torque.clone(),
         0.1,
     );
+    // The rate of the acceleration is that of two cycles, one cycle late.
     let late_s = 2e-3;
     check(
         ("late speed", Plant { late_s, ..p }, place::SPEED_LAG, 2e-3),

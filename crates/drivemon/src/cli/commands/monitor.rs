@@ -182,8 +182,9 @@ fn print_motion(timeline: &Timeline) {
         say!("  {} not judged: {}", share.windows, share.reason);
     }
     for fault in &motion.alarms {
-        let cause = fault.cause.as_deref();
-        let cause = cause.unwrap_or("it was over before its cause could be told");
+        let cause = fault.words();
+        let cause =
+            cause.unwrap_or_else(|| "it was over before its cause could be told".to_owned());
         let alarm = format!(
             "FAULT in motion at {:.3} s, first seen at about {:.3} s, T = {:.1}:",
             fault.raised_s, fault.onset_s, fault.statistic

@@ -177,7 +177,7 @@ impl Row {
         self.first_alarm_s = timeline.first_alarm_s.unwrap_or(f64::NAN);
         if let Some(alarm) = timeline.motion.alarms.first() {
             self.motion_alarm_s = alarm.raised_s;
-            self.motion_cause = alarm.cause.clone().unwrap_or_default();
+            self.motion_cause = alarm.words().unwrap_or_default();
         }
         self.windows = timeline.windows as u32;
         self.judged_windows = timeline.judged as u32;
