@@ -18,6 +18,7 @@ pub fn content(result: &Place<'_>) -> Markup {
             (answer(campaign))
             (cards(&summary(campaign)))
             (healthy(campaign))
+            (in_motion(campaign))
             (alarms(campaign))
             (detection(campaign))
         }
@@ -69,6 +70,31 @@ fn healthy(campaign: &Place<'_>) -> Markup {
                     td { (shown(&row, "judged_windows", decimals(0))) } td { (shown(&row, "fault_windows", decimals(0))) }
                     td { (shown(&row, "fault_runs/of", decimals(0))) } td { (shown(&row, "fault_runs/count", decimals(0))) }
                     td { (shown(&row, "fault_run_probability_at_most", decimals(2).times(100.0))) }
+                } } }
+            } }
+        }
+    }
+}
+
+/// Windows that were not at rest, where the plan asks for them.
+fn in_motion(campaign: &Place<'_>) -> Markup {
+    let rows = campaign.items("healthy");
+    let moved = |row: &&Place<'_>| row.number("moved_windows") > Some(0.0);
+    if !rows.iter().any(|row| moved(&row)) {
+        return html! {};
+    }
+    html! {
+        section {
+            h2 { "In motion" }
+            p.subtle { "Unexplained: runs in which something came on the healthy motor that no fault explains. It is no FAULT, and nothing is called healthy." }
+            div.wide tabindex="0" { table {
+                thead { tr {
+                    @for head in ["motor", "block", "windows not at rest", "judged in motion", "unexplained, runs"] { th scope="col" { (head) } }
+                } }
+                tbody { @for row in rows.iter().filter(moved) { tr {
+                    th scope="row" { (row.text("motor")) } td { (row.text("block")) }
+                    td { (shown(row, "moved_windows", decimals(0))) } td { (shown(row, "motion_judged_windows", decimals(0))) }
+                    td { (shown(row, "unexplained_runs", decimals(0))) }
                 } } }
             } }
         }
