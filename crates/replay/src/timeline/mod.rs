@@ -118,7 +118,7 @@ pub struct Timeline {
     pub windows: u64,
     /// Windows judged.
     pub judged: u64,
-    /// Lamps at every change, up to [`MOST_CHANGES`].
+    /// Lamps at every change, up to a bound that keeps memory constant (`further_changes` counts the rest).
     pub lamps: Vec<LampState>,
     /// Changes of the lamps beyond those.
     pub further_changes: u64,
