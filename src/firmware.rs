@@ -78,6 +78,7 @@ async fn main(spawner: Spawner) -> ! {
     let relay = Relay::new(holds.relay().unwrap_or_default());
     let mut lamps = board.lamps;
     test_lamps(&mut lamps, &mut watchdog).await;
+    let events = Events::new(log, &start);
     let mut panel = Panel {
         wires: lamps,
         relay_wires: board.relay,
@@ -92,11 +93,12 @@ async fn main(spawner: Spawner) -> ! {
         record: Record::new(
             Telemetry::default(),
             &start,
+            events.newest().wrapping_add(1),
             identity.serial,
             CAPTURE.take(),
         ),
         commissioning: Commissioning::new(calibration),
-        events: Events::new(log, &start),
+        events,
         display: Display::default(),
         selftest: SelfTest::at_start(),
         channels: StuckChannels::default(),

@@ -1,6 +1,6 @@
 //! What is kept and told about every window: frames, registers, and the samples around an alarm.
 
-use board::modbus::{BoardStatus, Image, Status};
+use board::modbus::{BoardStatus, Image, SecondCollector, Status};
 use board::{CAPTURE_EVERY, Capture, Doubts, Shown};
 use monitor::{Lamp, Monitor, RawSample, Report};
 
@@ -18,16 +18,18 @@ pub struct Record {
     capture: &'static mut Capture,
     was_lit: bool,
     registers: Image,
+    seconds: SecondCollector,
     shown: Shown,
     /// Something about the board changed that no master knows yet.
     stale: bool,
 }
 
 impl Record {
-    /// Nothing recorded yet.
+    /// Nothing recorded yet, in a run of the program whose first event gets the number `start_number`.
     pub fn new(
         telemetry: Telemetry,
         start: &Start,
+        start_number: u32,
         serial: [u32; 3],
         capture: &'static mut Capture,
     ) -> Self {
@@ -37,6 +39,7 @@ impl Record {
             crashes: start.crashes as u16,
             program: safety::program(),
             serial,
+            start_number,
             ..BoardStatus::default()
         };
         let (shown, status) = (Shown::default(), Status::default());
@@ -45,6 +48,7 @@ impl Record {
             registers: status.nothing_yet(&shown, &board),
             shown,
             status,
+            seconds: SecondCollector::new(start_number),
             board,
             capture,
             was_lit: false,
@@ -88,8 +92,10 @@ impl Record {
         self.status.not_judged()
     }
 
-    /// Notes the time since the start, s, and the deepest stack, bytes.
+    /// Ends a second. Notes the time since the start, s, and the deepest stack, bytes.
     pub fn note_second(&mut self, uptime_s: u32, stack_bytes: u32, crashes: u32) {
+        serial::keep(&self.seconds.close(&self.registers));
+        self.board.last_second = self.seconds.newest();
         self.board.uptime_s = uptime_s;
         self.board.stack_bytes = stack_bytes as u16;
         self.board.crashes = crashes as u16;
@@ -134,6 +140,7 @@ impl Record {
         self.board.capture = self.capture.state() as u16;
         self.shown = *shown;
         self.registers = self.status.take(report, shown, &self.board);
+        self.seconds.take(&self.registers);
         serial::publish(self.registers);
         self.telemetry
             .send(report, shown, self.board.vdda_millivolt);

@@ -5,8 +5,10 @@
 
 use core::cell::{Cell, RefCell};
 
-use board::modbus::{Collector, Command, Identity, Image, MAX_RESPONSE_BYTES, Memory, Slave};
-use board::{Configuration, Desk, Line, LineParity, MAX_FRAME_BYTES};
+use board::modbus::{
+    Collector, Command, Files, Identity, Image, MAX_RESPONSE_BYTES, Memory, Slave,
+};
+use board::{Configuration, Desk, Line, LineParity, MAX_FRAME_BYTES, Second, SecondRing};
 use embassy_executor::Spawner;
 use embassy_stm32::peripherals::{DMA1_CH3, LPUART1, PA2, PA9, PA10, PA12, USART1};
 use embassy_stm32::usart::{self, BufferedUart, Config, Parity, StopBits, UartTx};
@@ -70,6 +72,10 @@ static IMAGE: CriticalSectionMutex<Cell<Option<Image>>> =
 static COMMAND: CriticalSectionMutex<Cell<Option<Command>>> =
     CriticalSectionMutex::new(Cell::new(None));
 
+/// The last two minutes.
+static SECONDS: CriticalSectionMutex<RefCell<SecondRing>> =
+    CriticalSectionMutex::new(RefCell::new(SecondRing::new()));
+
 /// What holds, and what a master is writing. Neither side ever keeps it across a wait.
 static DESK: CriticalSectionMutex<RefCell<Desk>> =
     CriticalSectionMutex::new(RefCell::new(Desk::blank()));
@@ -96,6 +102,22 @@ pub fn send(frame: &[u8]) {
 /// Shows these registers from now on.
 pub fn publish(image: Image) {
     IMAGE.lock(|shared| shared.set(Some(image)));
+}
+
+/// Keeps a second for masters that ask for it later.
+pub fn keep(second: &Second) {
+    SECONDS.lock(|seconds| {
+        if let Ok(mut seconds) = seconds.try_borrow_mut() {
+            seconds.push(second);
+        }
+    });
+}
+
+fn read_seconds(at: usize, bytes: &mut [u8]) -> bool {
+    SECONDS.lock(|seconds| {
+        let seconds = seconds.try_borrow();
+        seconds.is_ok_and(|seconds| seconds.read(at, bytes))
+    })
 }
 
 /// This configuration holds from now on: read by masters, and the line follows it behind the answer that is being sent.
@@ -191,7 +213,10 @@ async fn serve_modbus(parts: ModbusLine, settings: Line, identity: Identity) {
             let mut memory = Memory {
                 image: &image,
                 identity: &identity,
-                events: flash_store::read_events,
+                files: Files {
+                    events: &flash_store::read_events,
+                    seconds: &read_seconds,
+                },
                 desk: &mut desk,
             };
             slave.respond(now_ms, collector.frame(), &mut memory, &mut response)

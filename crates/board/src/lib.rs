@@ -24,6 +24,7 @@ mod health;
 mod image;
 mod learn;
 pub mod modbus;
+mod seconds;
 
 pub use calibration::{
     COVARIANCES, Calibration, CalibrationSource, ChannelTrim, Healthy, Loaded, PAGE_BYTES, PAGES,
@@ -51,3 +52,4 @@ pub use health::fault_record::{FAULT_RECORD_WORDS, FaultCause, FaultRecord};
 pub use health::stuck::StuckChannels;
 pub use image::{IMAGE_WORDS, ImageError, MotorImage};
 pub use learn::{LEARN_WINDOWS, LearnState, Learner, Progress, Refusal};
+pub use seconds::{SECOND_BYTES, SECONDS, Second, SecondRing, place_of_second};

@@ -74,10 +74,12 @@ pub enum Field {
     Configuration,
     ConfigurationRefused,
     TrialSeconds,
+    StartNumber,
+    LastSecond,
 }
 
 /// Number of values.
-pub(super) const FIELDS: usize = Field::TrialSeconds as usize + 1;
+pub(super) const FIELDS: usize = Field::LastSecond as usize + 1;
 
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

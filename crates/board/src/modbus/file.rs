@@ -1,15 +1,19 @@
-//! Function 20: the event log as a file of records, which the protocol counts in words of 16 bits.
+//! Function 20: event log and seconds as files of records, which the protocol counts in words of 16 bits.
 
 use super::answer::Answer;
 use super::exception::Exception;
-use super::memory::ReadEvents;
+use super::memory::{Files, ReadFile};
 use crate::events::{EVENT_BYTES, LOG_EVENTS};
+use crate::seconds::{SECOND_BYTES, SECONDS};
 
 /// Number of the file that is the event log. Its words are the bytes of flash, in their order.
 pub const EVENT_FILE: u16 = 1;
-/// Words of one answer at most: seven events.
-pub const MOST_FILE_WORDS: u16 = 7 * EVENT_BYTES as u16 / 2;
-const FILE_WORDS: u32 = LOG_EVENTS * EVENT_BYTES as u32 / 2;
+/// Number of the file that is the ring of seconds.
+pub const SECONDS_FILE: u16 = 2;
+/// Words of one answer at most: six seconds, or seven events.
+pub const MOST_FILE_WORDS: u16 = 6 * SECOND_BYTES as u16 / 2;
+const EVENT_WORDS: u32 = LOG_EVENTS * EVENT_BYTES as u32 / 2;
+const SECOND_WORDS: u32 = SECONDS * SECOND_BYTES as u32 / 2;
 /// The only type of reference that the protocol knows.
 const REFERENCE: u8 = 6;
 /// Bytes of one reference in a request.
@@ -18,7 +22,7 @@ const GROUP_BYTES: usize = 7;
 /// Answers a request for parts of files.
 pub(super) fn read(
     data: &[u8],
-    events: ReadEvents,
+    files: Files<'_>,
     answer: &mut Answer<'_>,
 ) -> Result<(), Exception> {
     let [bytes, groups @ ..] = data else {
@@ -31,7 +35,7 @@ pub(super) fn read(
     let at = answer.length();
     answer.push(0);
     for part in parts {
-        read_part(part, events, answer)?;
+        read_part(part, files, answer)?;
     }
     answer.set(at, (answer.length() - at - 1) as u8);
     Ok(())
@@ -39,13 +43,14 @@ pub(super) fn read(
 
 fn read_part(
     part: &[u8; GROUP_BYTES],
-    events: ReadEvents,
+    files: Files<'_>,
     answer: &mut Answer<'_>,
 ) -> Result<(), Exception> {
     let [reference, file @ .., a, b, c, d] = part;
     let (first, words) = (u16::from_be_bytes([*a, *b]), u16::from_be_bytes([*c, *d]));
-    let inside = u32::from(first) + u32::from(words) <= FILE_WORDS;
-    if *reference != REFERENCE || *file != EVENT_FILE.to_be_bytes() || !inside {
+    let (read, length) = file_of(u16::from_be_bytes(*file), files).ok_or(Exception::Address)?;
+    let inside = u32::from(first) + u32::from(words) <= length;
+    if *reference != REFERENCE || !inside {
         return Err(Exception::Address);
     }
     if words == 0 || words > MOST_FILE_WORDS || answer.room() < 2 + 2 * usize::from(words) {
@@ -55,10 +60,19 @@ fn read_part(
     answer.push(REFERENCE);
     for word in first..first + words {
         let mut two = [0; 2];
-        if !events(2 * usize::from(word), &mut two) {
+        if !read(2 * usize::from(word), &mut two) {
             return Err(Exception::Busy);
         }
         answer.push_all(&two);
     }
     Ok(())
+}
+
+/// A file, and how many words it has.
+fn file_of(number: u16, files: Files<'_>) -> Option<(ReadFile<'_>, u32)> {
+    match number {
+        EVENT_FILE => Some((files.events, EVENT_WORDS)),
+        SECONDS_FILE => Some((files.seconds, SECOND_WORDS)),
+        _ => None,
+    }
 }

@@ -61,6 +61,19 @@ impl Image {
         }
     }
 
+    /// A value of kind [`Kind::Word`](super::entry::Kind::Word).
+    pub fn word(&self, field: Field) -> u16 {
+        self.0
+            .get(usize::from(address(field)))
+            .copied()
+            .unwrap_or(0)
+    }
+
+    /// A value of kind [`Kind::Float`](super::entry::Kind::Float).
+    pub fn float(&self, field: Field) -> f32 {
+        f32::from_bits(self.long(field))
+    }
+
     /// A value of kind [`Kind::Long`](super::entry::Kind::Long).
     pub fn long(&self, field: Field) -> u32 {
         let first = usize::from(address(field));

@@ -3,8 +3,17 @@
 use super::map::Image;
 use crate::configuration::Desk;
 
-/// Copies bytes of the event log from a place on; `false` while flash cannot be read.
-pub type ReadEvents = fn(usize, &mut [u8]) -> bool;
+/// Copies bytes of a file from a place on; `false` while it cannot be read.
+pub type ReadFile<'a> = &'a dyn Fn(usize, &mut [u8]) -> bool;
+
+/// What a master may read as files.
+#[derive(Clone, Copy)]
+pub struct Files<'a> {
+    /// The event log, as it lies in flash.
+    pub events: ReadFile<'a>,
+    /// The last seconds ([`crate::SecondRing`]).
+    pub seconds: ReadFile<'a>,
+}
 
 /// What was compiled into the program, and the chip's serial number. What else identifies a board is in its registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +32,8 @@ pub struct Memory<'a> {
     pub image: &'a Image,
     /// Who the board is.
     pub identity: &'a Identity,
-    /// The event log.
-    pub events: ReadEvents,
+    /// Event log and seconds.
+    pub files: Files<'a>,
     /// Configurations.
     pub desk: &'a mut Desk,
 }

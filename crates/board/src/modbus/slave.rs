@@ -104,7 +104,7 @@ impl Slave {
         answer.push(function);
         let mut command = None;
         let outcome = match function {
-            READ_FILE => file::read(data, memory.events, &mut answer),
+            READ_FILE => file::read(data, memory.files, &mut answer),
             IDENTIFY => identity::read(data, memory, &mut answer),
             _ => self.execute(now_ms, function, data, memory, &mut answer, &mut command),
         };

@@ -81,6 +81,10 @@ pub struct BoardStatus {
     pub calibration_identification: u32,
     /// Number of the newest event.
     pub last_event: u32,
+    /// Which run of the program.
+    pub start_number: u32,
+    /// Number of the newest second of it.
+    pub last_second: u32,
     /// Where the configuration comes from.
     pub configuration: ConfigurationSource,
     /// What of the last one was refused.
@@ -231,6 +235,8 @@ fn put_identity(image: &mut Image, board: &BoardStatus) {
         board.calibration_identification,
     );
     image.set_long(Field::LastEvent, board.last_event);
+    image.set_long(Field::StartNumber, board.start_number);
+    image.set_long(Field::LastSecond, board.last_second);
     image.set_word(Field::Configuration, board.configuration as u16);
     let refused = board.refused.map_or(0, |refused| refused as u16);
     image.set_word(Field::ConfigurationRefused, refused);

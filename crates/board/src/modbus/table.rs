@@ -217,5 +217,17 @@ pub const MAP: [Entry; FIELDS] = {
             "s",
             "until the configuration on trial is given up, 0 without a trial",
         ),
+        entry(
+            StartNumber,
+            Long,
+            "",
+            "which run of the program: the number that its first event gets",
+        ),
+        entry(
+            LastSecond,
+            Long,
+            "",
+            "number of the newest second of this run; they count from 1; 0: no second yet",
+        ),
     ]
 };

@@ -9,7 +9,7 @@ use rmodbus::client::ModbusRequest;
 
 use super::super::entry::Field;
 use super::super::map::{Image, WORDS, address};
-use super::super::memory::{Identity, ReadEvents};
+use super::super::memory::{Files, Identity, ReadFile};
 use super::*;
 use crate::configuration::Configuration;
 use crate::image::{IMAGE_WORDS, MotorImage};
@@ -54,22 +54,32 @@ fn counting(from: usize, bytes: &mut [u8]) -> bool {
     true
 }
 
+/// A ring in which every byte is its own place's complement.
+fn seconds(from: usize, bytes: &mut [u8]) -> bool {
+    counting(from, bytes);
+    bytes.iter_mut().for_each(|byte| *byte = !*byte);
+    true
+}
+
 fn ask(slave: &mut Slave, now_ms: u32, request: &[u8]) -> (Vec<u8>, Option<Command>) {
-    ask_of(slave, now_ms, request, counting, &mut Desk::blank())
+    ask_of(slave, now_ms, request, &counting, &mut Desk::blank())
 }
 
 fn ask_of(
     slave: &mut Slave,
     now_ms: u32,
     request: &[u8],
-    events: ReadEvents,
+    events: ReadFile<'_>,
     desk: &mut Desk,
 ) -> (Vec<u8>, Option<Command>) {
     let mut response = [0; MAX_RESPONSE_BYTES];
     let mut memory = Memory {
         image: &image(),
         identity: &IDENTITY,
-        events,
+        files: Files {
+            events,
+            seconds: &seconds,
+        },
         desk,
     };
     let (length, command) = slave.respond(now_ms, request, &mut memory, &mut response);
@@ -316,7 +326,7 @@ fn a_million_random_frames_change_nothing_that_they_may_not_and_a_good_one_is_an
         let frame = random_frame(&mut random);
         let mut collector = Collector::default();
         frame.chunks(7).for_each(|bytes| collector.push(bytes));
-        let (_, command) = ask_of(&mut slave, 0, collector.frame(), counting, &mut desk);
+        let (_, command) = ask_of(&mut slave, 0, collector.frame(), &counting, &mut desk);
         let received = if frame.len() > MAX_REQUEST_BYTES {
             &[]
         } else {
@@ -352,7 +362,7 @@ fn answered(request: &[u8]) -> (u8, Vec<u8>) {
 
 fn answered_at(request: &[u8], desk: &mut Desk) -> (u8, Vec<u8>) {
     let mut slave = Slave::new(UNIT);
-    let (answer, _) = ask_of(&mut slave, 0, &sealed(request), counting, desk);
+    let (answer, _) = ask_of(&mut slave, 0, &sealed(request), &counting, desk);
     assert!(answer.len() <= 256, "{} bytes", answer.len());
     let (body, _) = answer.split_last_chunk::<2>().expect("a checksum");
     assert_eq!(sealed(body), answer);

@@ -11,7 +11,7 @@ fn write_block(desk: &mut Desk, first: u16, values: &[u16]) -> bool {
         .generate_set_holdings_bulk(first, values, &mut request)
         .expect("a request");
     let mut slave = Slave::new(UNIT);
-    let (answer, command) = ask_of(&mut slave, 0, &request, counting, desk);
+    let (answer, command) = ask_of(&mut slave, 0, &request, &counting, desk);
     assert_eq!(command, None);
     master.parse_ok(&answer).is_ok()
 }
@@ -22,7 +22,7 @@ fn read_block(desk: &mut Desk, first: u16, count: u16) -> Vec<u16> {
     master
         .generate_get_holdings(first, count, &mut request)
         .expect("a request");
-    let (answer, _) = ask_of(&mut Slave::new(UNIT), 0, &request, counting, desk);
+    let (answer, _) = ask_of(&mut Slave::new(UNIT), 0, &request, &counting, desk);
     let mut words: Vec<u16> = Vec::new();
     master.parse_u16(&answer, &mut words).expect("an answer");
     words

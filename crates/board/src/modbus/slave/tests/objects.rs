@@ -3,7 +3,8 @@
 use super::super::super::identity::Object;
 use super::*;
 use crate::events::{EVENT_BYTES, LOG_EVENTS};
-use crate::modbus::{EVENT_FILE, MOST_FILE_WORDS};
+use crate::modbus::{EVENT_FILE, MOST_FILE_WORDS, SECONDS_FILE};
+use crate::seconds::{SECOND_BYTES, SECONDS};
 
 /// All objects from `first` on, as a client of the specification collects them, and how many answers that took.
 fn identified(kind: u8, mut first: u8) -> (Vec<(u8, std::string::String)>, u32) {
@@ -90,9 +91,20 @@ fn events_are_read_as_a_file_in_the_order_of_their_bytes() {
 }
 
 #[test]
+fn seconds_are_the_second_file_and_one_request_may_read_both() {
+    let (_, data) = answered(&file_request(&[(EVENT_FILE, 1, 1), (SECONDS_FILE, 1, 1)]));
+    assert_eq!(data, [8, 3, 6, 2, 3, 3, 6, !2, !3]);
+    let words = (6 * SECOND_BYTES / 2) as u16;
+    let (_, six) = answered(&file_request(&[(SECONDS_FILE, 0, words)]));
+    assert_eq!(six.len(), 3 + 6 * SECOND_BYTES);
+    let end = (SECONDS as usize * SECOND_BYTES / 2) as u16;
+    assert_eq!(refused(&file_request(&[(SECONDS_FILE, end - 1, 2)])), 2);
+}
+
+#[test]
 fn parts_of_files_that_do_not_exist_get_an_exception() {
     let end = (LOG_EVENTS * EVENT_BYTES as u32 / 2) as u16;
-    assert_eq!(refused(&file_request(&[(2, 0, 1)])), 2, "no such file");
+    assert_eq!(refused(&file_request(&[(3, 0, 1)])), 2, "no such file");
     assert_eq!(refused(&file_request(&[(EVENT_FILE, end, 1)])), 2);
     assert_eq!(refused(&file_request(&[(EVENT_FILE, end - 1, 2)])), 2);
     assert_eq!(refused(&file_request(&[(EVENT_FILE, 0, 0)])), 3);
@@ -109,8 +121,8 @@ fn parts_of_files_that_do_not_exist_get_an_exception() {
 
 #[test]
 fn a_log_that_is_being_erased_is_busy() {
-    let busy: ReadEvents = |_, _| false;
+    let busy = |_: usize, _: &mut [u8]| false;
     let request = sealed(&file_request(&[(EVENT_FILE, 0, 16)]));
-    let (answer, _) = ask_of(&mut Slave::new(UNIT), 0, &request, busy, &mut desk());
+    let (answer, _) = ask_of(&mut Slave::new(UNIT), 0, &request, &busy, &mut desk());
     assert_eq!(answer[..3], [UNIT, 20 | 0x80, 6]);
 }
