@@ -2,7 +2,7 @@
 
 use super::answer::Answer;
 use super::exception::Exception;
-use super::memory::{Files, ReadFile};
+use super::memory::{File, Files};
 use crate::events::{EVENT_BYTES, LOG_EVENTS};
 use crate::seconds::{SECOND_BYTES, SECONDS};
 
@@ -48,7 +48,7 @@ fn read_part(
 ) -> Result<(), Exception> {
     let [reference, file @ .., a, b, c, d] = part;
     let (first, words) = (u16::from_be_bytes([*a, *b]), u16::from_be_bytes([*c, *d]));
-    let (read, length) = file_of(u16::from_be_bytes(*file), files).ok_or(Exception::Address)?;
+    let (source, length) = file_of(u16::from_be_bytes(*file), files).ok_or(Exception::Address)?;
     let inside = u32::from(first) + u32::from(words) <= length;
     if *reference != REFERENCE || !inside {
         return Err(Exception::Address);
@@ -60,7 +60,7 @@ fn read_part(
     answer.push(REFERENCE);
     for word in first..first + words {
         let mut two = [0; 2];
-        if !read(2 * usize::from(word), &mut two) {
+        if !source.read(2 * usize::from(word), &mut two) {
             return Err(Exception::Busy);
         }
         answer.push_all(&two);
@@ -69,7 +69,7 @@ fn read_part(
 }
 
 /// A file, and how many words it has.
-fn file_of(number: u16, files: Files<'_>) -> Option<(ReadFile<'_>, u32)> {
+fn file_of(number: u16, files: Files<'_>) -> Option<(&dyn File, u32)> {
     match number {
         EVENT_FILE => Some((files.events, EVENT_WORDS)),
         SECONDS_FILE => Some((files.seconds, SECOND_WORDS)),

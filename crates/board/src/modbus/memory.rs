@@ -3,16 +3,25 @@
 use super::map::Image;
 use crate::configuration::Desk;
 
-/// Copies bytes of a file from a place on; `false` while it cannot be read.
-pub type ReadFile<'a> = &'a dyn Fn(usize, &mut [u8]) -> bool;
+/// A file that a master may read. A function may be one; `dyn Fn` itself would need three entries of a table for each.
+pub trait File {
+    /// Copies bytes from place `at` on; `false` while they cannot be read.
+    fn read(&self, at: usize, bytes: &mut [u8]) -> bool;
+}
+
+impl<F: Fn(usize, &mut [u8]) -> bool> File for F {
+    fn read(&self, at: usize, bytes: &mut [u8]) -> bool {
+        self(at, bytes)
+    }
+}
 
 /// What a master may read as files.
 #[derive(Clone, Copy)]
 pub struct Files<'a> {
     /// The event log, as it lies in flash.
-    pub events: ReadFile<'a>,
+    pub events: &'a dyn File,
     /// The last seconds ([`crate::SecondRing`]).
-    pub seconds: ReadFile<'a>,
+    pub seconds: &'a dyn File,
 }
 
 /// What was compiled into the program, and the chip's serial number. What else identifies a board is in its registers.

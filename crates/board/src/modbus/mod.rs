@@ -20,7 +20,7 @@ pub use entry::{Entry, Field, Kind, Meaning};
 pub use file::{EVENT_FILE, MOST_FILE_WORDS, SECONDS_FILE};
 pub use identity::Object;
 pub use map::{Image, MAP_VERSION, WORDS, address};
-pub use memory::{Files, Identity, Memory};
+pub use memory::{File, Files, Identity, Memory};
 pub use second_collector::SecondCollector;
 pub use slave::{Collector, Command, MAX_REQUEST_BYTES, Slave, UNLOCK_KEY};
 pub use status::{BoardStatus, Status};

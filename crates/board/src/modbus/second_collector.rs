@@ -79,6 +79,7 @@ impl SecondCollector {
     }
 
     /// Takes the registers as a window has left them.
+    #[inline(never)]
     pub fn take(&mut self, registers: &Image) {
         let now = &mut self.now;
         now.windows = now.windows.saturating_add(1);
@@ -96,6 +97,7 @@ impl SecondCollector {
     }
 
     /// Ends the second; lamps and fault as the registers show them now count, too.
+    #[inline(never)]
     pub fn close(&mut self, registers: &Image) -> Second {
         self.number = self.number.wrapping_add(1);
         let now = core::mem::take(&mut self.now);

@@ -9,7 +9,7 @@ use rmodbus::client::ModbusRequest;
 
 use super::super::entry::Field;
 use super::super::map::{Image, WORDS, address};
-use super::super::memory::{Files, Identity, ReadFile};
+use super::super::memory::{File, Files, Identity};
 use super::*;
 use crate::configuration::Configuration;
 use crate::image::{IMAGE_WORDS, MotorImage};
@@ -69,7 +69,7 @@ fn ask_of(
     slave: &mut Slave,
     now_ms: u32,
     request: &[u8],
-    events: ReadFile<'_>,
+    events: &dyn File,
     desk: &mut Desk,
 ) -> (Vec<u8>, Option<Command>) {
     let mut response = [0; MAX_RESPONSE_BYTES];
