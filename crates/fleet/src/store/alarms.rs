@@ -1,0 +1,94 @@
+//! Alarms as they are now.
+
+use rusqlite::{Connection, Transaction, params};
+
+use super::StoreError;
+use crate::alarm::change::{Alarm, AlarmFilter, AlarmState, Severity};
+
+/// Alarms in one answer where nobody asks for less.
+const MOST: usize = 1000;
+
+/// Whether somebody has to look at it.
+fn open(state: AlarmState) -> bool {
+    use AlarmState::{Acknowledged, ReturnedUnacknowledged, Unacknowledged};
+    matches!(
+        state,
+        Unacknowledged | Acknowledged | ReturnedUnacknowledged
+    )
+}
+
+/// A state as the table holds it.
+fn word(state: AlarmState) -> &'static str {
+    match state {
+        AlarmState::Normal => "normal",
+        AlarmState::Unacknowledged => "unacknowledged",
+        AlarmState::Acknowledged => "acknowledged",
+        AlarmState::ReturnedUnacknowledged => "returned_unacknowledged",
+        AlarmState::Shelved => "shelved",
+        AlarmState::Suppressed => "suppressed",
+    }
+}
+
+/// Writes an alarm as it is after a change. `motor` is 0 of the plant.
+pub(super) fn put(tx: &Transaction<'_>, motor: i64, alarm: &Alarm) -> Result<(), StoreError> {
+    let text = "INSERT OR REPLACE INTO alarm(number, motor, cause, state, severity, open, raised_ms, changed_ms, body)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)";
+    let mut statement = tx.prepare_cached(text)?;
+    statement.execute(params![
+        alarm.number as i64,
+        (motor != 0).then_some(motor),
+        serde_json::to_value(alarm.cause)?.as_str(),
+        word(alarm.state),
+        alarm.severity as i64,
+        open(alarm.state),
+        alarm.raised_ms,
+        alarm.changed_ms,
+        serde_json::to_string(alarm)?,
+    ])?;
+    Ok(())
+}
+
+/// Alarms that a filter lets through: the worst first, then the newest.
+pub(super) fn get(connection: &Connection, filter: &AlarmFilter) -> Result<Vec<Alarm>, StoreError> {
+    let states: Vec<_> = filter.states.iter().map(|state| word(*state)).collect();
+    let states = serde_json::to_string(&states)?;
+    let text = "SELECT number, body FROM alarm WHERE (?1 IS NULL OR motor = (SELECT key FROM motor WHERE id = ?1))
+         AND (?2 = '[]' OR state IN (SELECT value FROM json_each(?2)))
+         AND (?3 IS NULL OR changed_ms >= ?3) AND (?4 IS NULL OR raised_ms < ?4)
+         ORDER BY open DESC, severity DESC, raised_ms DESC, number DESC LIMIT ?5";
+    let limit = if filter.limit == 0 {
+        MOST
+    } else {
+        filter.limit
+    } as i64;
+    let motor = filter.motor.as_ref().map(|motor| motor.as_str());
+    let mut statement = connection.prepare_cached(text)?;
+    let mut rows = statement.query(params![motor, states, filter.from_ms, filter.to_ms, limit])?;
+    let mut found = Vec::new();
+    while let Some(row) = rows.next()? {
+        let body: String = row.get(1)?;
+        let damaged = |e: serde_json::Error| StoreError::Damaged {
+            id: row.get::<_, i64>(0).unwrap_or(0) as u64,
+            reason: e.to_string(),
+        };
+        found.push(serde_json::from_str(&body).map_err(damaged)?);
+    }
+    Ok(found)
+}
+
+/// Open alarms and the worst severity by motor's key.
+pub(super) fn counts(
+    connection: &Connection,
+) -> rusqlite::Result<std::collections::HashMap<i64, (u32, Severity)>> {
+    let text = "SELECT motor, count(*), max(severity) FROM alarm WHERE open = 1 AND motor IS NOT NULL GROUP BY motor";
+    let mut statement = connection.prepare_cached(text)?;
+    let rows = statement.query_map([], |row| {
+        let worst = match row.get::<_, i64>(2)? {
+            2 => Severity::High,
+            1 => Severity::Medium,
+            _ => Severity::Low,
+        };
+        Ok((row.get(0)?, (row.get(1)?, worst)))
+    })?;
+    rows.collect()
+}
