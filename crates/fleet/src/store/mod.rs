@@ -4,13 +4,17 @@
 
 mod alarms;
 mod append;
+mod block;
 mod error;
+mod history;
 mod limits;
 mod marks;
+mod pack;
 mod read;
 mod schema;
 mod seconds;
 mod tally;
+mod thin;
 mod trend;
 
 use std::collections::HashMap;
@@ -202,6 +206,24 @@ impl Store {
     /// Writing failed.
     pub fn set_cursor(&self, sink: &str, id: u64) -> Result<(), StoreError> {
         lock(&self.writer).change(|tx, _, _| set_cursor(tx, sink, id))
+    }
+
+    /// Names the outputs of the configuration: each new one begins with what is stored from now on, and the queue no longer waits
+    /// for others.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn declare_sinks(&self, names: &[&str]) -> Result<(), StoreError> {
+        lock(&self.writer).change(|tx, _, next| {
+            let names_json = serde_json::to_string(names)?;
+            let others = "DELETE FROM sink WHERE memory = '' AND name NOT IN (SELECT value FROM json_each(?1))";
+            tx.execute(others, [names_json])?;
+            for name in names {
+                let text = "INSERT OR IGNORE INTO sink(name, cursor) VALUES (?1, ?2)";
+                tx.execute(text, params![name, next as i64 - 1])?;
+            }
+            Ok(())
+        })
     }
 
     /// Newest second of a motor that is durable: start and number. A gateway asks the board for what comes after.

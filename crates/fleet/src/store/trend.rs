@@ -1,10 +1,12 @@
 //! A motor's history for a chart: at most so many points, each with least, mean and largest value.
 
-use rusqlite::{Connection, params};
+use rusqlite::Connection;
 use serde::{Deserialize, Serialize};
 
+use super::block::{self, HOUR_MS, Level};
 use super::tally::Tally;
-use super::{StoreError, seconds};
+use super::{StoreError, history, seconds};
+use crate::entry::Second;
 
 /// Least, mean and largest of one quantity within a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,7 +98,86 @@ impl Points {
     }
 }
 
-/// The trend of a motor from `from_ms` to before `to_ms`.
+/// From this length of a point on, hours are fine enough.
+const HOURS_FROM_MS: i64 = HOUR_MS / 2;
+
+impl Points {
+    fn second(&mut self, second: &Second) {
+        if let Some(tally) = self.at(second.time_ms) {
+            tally.second(second);
+        }
+    }
+
+    fn merge(&mut self, time_ms: i64, other: &Tally) {
+        if let Some(tally) = self.at(time_ms) {
+            tally.merge(other);
+        }
+    }
+
+    fn end_ms(&self) -> i64 {
+        self.from_ms + self.step_ms * self.tallies.len() as i64
+    }
+
+    /// Takes hours that begin before a time. The first is taken whole where the trend begins within it.
+    fn hours(
+        &mut self,
+        connection: &Connection,
+        motor: i64,
+        before_ms: i64,
+    ) -> Result<(), StoreError> {
+        let text = "SELECT hour, body FROM hour WHERE motor = ?1 AND hour >= ?2 AND hour < ?3";
+        let mut statement = connection.prepare_cached(text)?;
+        let (first, end) = (
+            self.from_ms.div_euclid(HOUR_MS),
+            (self.end_ms().min(before_ms) - 1).div_euclid(HOUR_MS) + 1,
+        );
+        let mut rows = statement.query([motor, first, end])?;
+        while let Some(row) = rows.next()? {
+            let hour: i64 = row.get(0)?;
+            let body: Vec<u8> = row.get(1)?;
+            let reason = "an hour of the history is damaged".to_owned();
+            let tally = block::hour_of_bytes(&body);
+            let tally = tally.ok_or(StoreError::Damaged {
+                id: hour as u64,
+                reason,
+            })?;
+            self.merge((hour * HOUR_MS).max(self.from_ms), &tally);
+        }
+        Ok(())
+    }
+
+    fn blocks(&mut self, connection: &Connection, motor: i64) -> Result<(), StoreError> {
+        let (from_ms, to_ms) = (self.from_ms, self.end_ms());
+        history::blocks(connection, motor, Level::Minutes, from_ms, to_ms, |block| {
+            for minute in block::minutes_of(block)? {
+                self.merge(minute.from_ms, &minute.tally);
+            }
+            Ok(())
+        })?;
+        history::blocks(connection, motor, Level::Seconds, from_ms, to_ms, |block| {
+            block::seconds_of(block)?
+                .iter()
+                .for_each(|second| self.second(second));
+            Ok(())
+        })
+    }
+
+    /// Takes seconds that are not history yet.
+    fn waiting(&mut self, connection: &Connection, motor: i64) -> Result<(), StoreError> {
+        let text = format!(
+            "SELECT {} FROM queue WHERE id > ?1 AND motor = ?2",
+            seconds::COLUMNS
+        );
+        let mut statement = connection.prepare_cached(&text)?;
+        let mut rows = statement.query([history::sealed(connection)? as i64, motor])?;
+        while let Some(row) = rows.next()? {
+            self.second(&seconds::second_of(row, 0)?);
+        }
+        Ok(())
+    }
+}
+
+/// The trend of a motor from `from_ms` to before `to_ms`. Where seconds and minutes are gone, hours stand for them.
 pub(super) fn trend(
     connection: &Connection,
     motor: i64,
@@ -105,17 +186,15 @@ pub(super) fn trend(
     points: usize,
 ) -> Result<Trend, StoreError> {
     let mut points = Points::new(from_ms, to_ms, points);
-    let text = format!(
-        "SELECT {} FROM queue WHERE motor = ?1 AND time_ms >= ?2 AND time_ms < ?3",
-        seconds::COLUMNS
-    );
-    let mut statement = connection.prepare_cached(&text)?;
-    let mut rows = statement.query(params![motor, from_ms, to_ms])?;
-    while let Some(row) = rows.next()? {
-        let second = seconds::second_of(row, 0)?;
-        if let Some(tally) = points.at(second.time_ms) {
-            tally.second(&second);
-        }
+    // As of one moment: a second that becomes history meanwhile would count twice or not at all.
+    let tx = connection.unchecked_transaction()?;
+    let gone_ms = history::meta(&tx, "hours_done")?;
+    if points.step_ms >= HOURS_FROM_MS {
+        points.hours(&tx, motor, i64::MAX)?;
+    } else {
+        points.hours(&tx, motor, gone_ms)?;
+        points.blocks(&tx, motor)?;
     }
+    points.waiting(&tx, motor)?;
     Ok(points.trend())
 }

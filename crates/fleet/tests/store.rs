@@ -1,0 +1,578 @@
+//! The store through its public face, on real files.
+
+use std::path::{Path, PathBuf};
+
+use fleet::{
+    BoardEvent, Entry, Gap, GapOf, Limits, Link, MotorId, MotorInfo, Second, Store, StoreError,
+    ThinnedTo,
+};
+use tempfile::TempDir;
+
+/// 2026-09-21 00:00 UTC.
+const DAY: i64 = 1_789_948_800_000;
+const HOUR: i64 = 3_600_000;
+
+fn id(name: &str) -> MotorId {
+    name.parse().unwrap()
+}
+
+fn plant(limits: &Limits, motors: &[&str]) -> (TempDir, PathBuf, Store) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plant.db");
+    let store = Store::open(&path, limits).unwrap();
+    declare(&store, motors);
+    (folder, path, store)
+}
+
+fn declare(store: &Store, motors: &[&str]) {
+    let motors: Vec<_> = motors.iter().map(|name| MotorInfo::new(id(name))).collect();
+    store.declare(&motors).unwrap();
+}
+
+/// A second whose values follow from its number, so that what comes back is known.
+fn second(start: u32, number: u32) -> Second {
+    let x = number as f32;
+    Second {
+        start,
+        number,
+        time_ms: DAY + i64::from(number - 1) * 1000,
+        lamps: 1,
+        windows: 4,
+        judged: 3,
+        not_judged: 2,
+        fault: 0,
+        residuals: Some([0.001, -0.002, 0.25, f32::NAN]),
+        voltage_v: Some(230.0 + (number % 10) as f32),
+        current_a: None,
+        frequency_hz: Some(50.0),
+        speed_rpm: Some(x),
+    }
+}
+
+fn seconds(motor: &str, numbers: impl Iterator<Item = u32>) -> Vec<(MotorId, Entry)> {
+    numbers
+        .map(|number| (id(motor), Entry::Second(second(1, number))))
+        .collect()
+}
+
+fn event(number: u32) -> Entry {
+    Entry::Event(BoardEvent {
+        number,
+        time_ms: DAY,
+        cause: 3,
+        times: 1,
+        values: [1, 900],
+    })
+}
+
+fn all(store: &Store) -> Vec<Entry> {
+    store
+        .since(0, 1_000_000)
+        .unwrap()
+        .into_iter()
+        .map(|found| found.entry)
+        .collect()
+}
+
+#[test]
+fn what_is_stored_comes_back_in_order_and_once() {
+    let (_folder, path, store) = plant(&Limits::default(), &["a", "b"]);
+    let batch = [
+        (id("a"), Entry::Second(second(7, 1))),
+        (id("b"), event(12)),
+        (
+            id("a"),
+            Entry::Link(Link {
+                up: false,
+                time_ms: DAY,
+                why: "no answer".into(),
+            }),
+        ),
+        (id("a"), Entry::Second(second(7, 2))),
+    ];
+    let done = store.append(&batch).unwrap();
+    assert_eq!((done.stored, done.already, done.gaps), (4, 0, 0));
+    let done = store.append(&batch).unwrap();
+    assert_eq!((done.stored, done.already, done.gaps), (0, 4, 0));
+    drop(store);
+
+    let store = Store::open(&path, &Limits::default()).unwrap();
+    let found = store.since(0, 100).unwrap();
+    let same = |(found, (motor, entry)): (&fleet::Numbered, &(MotorId, Entry))| {
+        assert_eq!(found.motor.as_ref(), Some(motor));
+        match (&found.entry, entry) {
+            // NaN is no equal of itself.
+            (Entry::Second(found), Entry::Second(put)) => {
+                let residuals = |s: &Second| s.residuals.map(|r| r.map(f32::to_bits));
+                assert_eq!(residuals(found), residuals(put));
+                let without = |s: &Second| Second {
+                    residuals: None,
+                    ..s.clone()
+                };
+                assert_eq!(without(found), without(put));
+            }
+            (found, put) => assert_eq!(found, put),
+        }
+    };
+    assert_eq!(found.len(), batch.len());
+    found.iter().zip(&batch).for_each(same);
+    assert_eq!(store.last_second(&id("a")).unwrap(), Some((7, 2)));
+    assert_eq!(store.last_event(&id("b")).unwrap(), 12);
+    // In pieces it is the same.
+    let first = store.since(0, 3).unwrap();
+    let rest = store.since(first[2].id, 3).unwrap();
+    assert_eq!((first.len(), rest.len()), (3, 1));
+    assert_eq!(store.append(&batch).unwrap().already, 4);
+}
+
+#[test]
+fn a_hole_is_told_by_the_store_where_nobody_else_did() {
+    let (_folder, _path, store) = plant(&Limits::default(), &["a"]);
+    let told = Gap {
+        what: GapOf::Seconds { start: 1 },
+        first: 21,
+        last: 25,
+        time_ms: DAY,
+    };
+    store.append(&seconds("a", [500, 501].into_iter())).unwrap();
+    // What was before the first second was never promised; what is missing since is.
+    let later = [
+        (id("a"), Entry::Second(second(1, 504))),
+        (id("a"), event(5)),
+        (id("a"), event(9)),
+    ];
+    assert_eq!(store.append(&later).unwrap().gaps, 2);
+    let restarted = Second {
+        start: 10,
+        number: 3,
+        ..second(1, 1)
+    };
+    assert_eq!(
+        store
+            .append(&[(id("a"), Entry::Second(restarted))])
+            .unwrap()
+            .gaps,
+        1
+    );
+    let gaps: Vec<_> = all(&store)
+        .into_iter()
+        .filter_map(|entry| match entry {
+            Entry::Gap(gap) => Some((gap.what, gap.first, gap.last)),
+            _ => None,
+        })
+        .collect();
+    let expected = [
+        (GapOf::Seconds { start: 1 }, 502, 503),
+        (GapOf::Events, 6, 8),
+        (GapOf::Seconds { start: 10 }, 1, 2),
+    ];
+    assert_eq!(gaps, expected);
+
+    declare(&store, &["a", "b"]);
+    store.append(&seconds("b", 1..=20)).unwrap();
+    assert_eq!(
+        store
+            .append(&[(id("b"), Entry::Gap(told.clone()))])
+            .unwrap()
+            .stored,
+        1
+    );
+    let done = store.append(&seconds("b", 26..=27)).unwrap();
+    assert_eq!((done.stored, done.gaps), (2, 0));
+    // Told twice it is one; and what was called missing is not taken later as if it were new.
+    assert_eq!(
+        store
+            .append(&[(id("b"), Entry::Gap(told))])
+            .unwrap()
+            .already,
+        1
+    );
+    assert_eq!(store.append(&seconds("b", 21..=25)).unwrap().already, 5);
+}
+
+#[test]
+fn another_board_begins_anew() {
+    let (_folder, _path, store) = plant(&Limits::default(), &["a"]);
+    let board = |serial: &str| {
+        (
+            id("a"),
+            Entry::Board {
+                serial: serial.into(),
+                time_ms: DAY,
+            },
+        )
+    };
+    store
+        .append(&[board("one"), (id("a"), event(300))])
+        .unwrap();
+    assert_eq!(
+        store
+            .append(&[board("one"), (id("a"), event(300))])
+            .unwrap()
+            .already,
+        2
+    );
+    store.append(&[board("two")]).unwrap();
+    assert_eq!(store.last_event(&id("a")).unwrap(), 0);
+    // Event 300 of the other board is another event.
+    let done = store
+        .append(&[(id("a"), event(1)), (id("a"), event(300))])
+        .unwrap();
+    assert_eq!((done.stored, done.gaps), (2, 1));
+}
+
+#[test]
+fn a_batch_is_stored_as_a_whole_or_not_at_all() {
+    let (_folder, _path, store) = plant(&Limits::default(), &["a"]);
+    let batch = [(id("a"), event(1)), (id("stranger"), event(1))];
+    assert!(matches!(
+        store.append(&batch),
+        Err(StoreError::UnknownMotor(_))
+    ));
+    assert_eq!(store.last_event(&id("a")).unwrap(), 0);
+    assert!(all(&store).is_empty());
+    assert_eq!(store.append(&batch[..1]).unwrap().stored, 1);
+}
+
+#[test]
+fn the_last_who_opens_writes_and_others_read() {
+    let (_folder, path, first) = plant(&Limits::default(), &["a"]);
+    let second = Store::open(&path, &Limits::default()).unwrap();
+    second.append(&[(id("a"), event(1))]).unwrap();
+    assert!(matches!(
+        first.append(&[(id("a"), event(2))]),
+        Err(StoreError::OtherWriter)
+    ));
+    assert_eq!(all(&first).len(), 1);
+}
+
+#[test]
+fn files_that_are_no_store_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |path: &Path| {
+        Store::open(path, &Limits::default())
+            .err()
+            .unwrap()
+            .to_string()
+    };
+    let text = folder.path().join("notes.txt");
+    std::fs::write(
+        &text,
+        "a text that is longer than nothing, and no database at all",
+    )
+    .unwrap();
+    assert!(
+        refused(&text).contains("not a database"),
+        "{}",
+        refused(&text)
+    );
+    let foreign = folder.path().join("foreign.db");
+    let connection = rusqlite::Connection::open(&foreign).unwrap();
+    connection
+        .execute_batch("CREATE TABLE t(x); INSERT INTO t VALUES (1);")
+        .unwrap();
+    drop(connection);
+    assert!(
+        refused(&foreign).contains("another program"),
+        "{}",
+        refused(&foreign)
+    );
+    let newer = folder.path().join("newer.db");
+    drop(Store::open(&newer, &Limits::default()).unwrap());
+    let connection = rusqlite::Connection::open(&newer).unwrap();
+    connection
+        .execute("INSERT INTO migration VALUES (99, 'tomorrow')", [])
+        .unwrap();
+    drop(connection);
+    assert!(refused(&newer).contains("schema 99"), "{}", refused(&newer));
+    assert!(
+        refused(folder.path()).contains("unable to open"),
+        "{}",
+        refused(folder.path())
+    );
+    let limits = Limits {
+        minutes_days: 1,
+        ..Limits::default()
+    };
+    assert!(
+        Store::open(&newer, &limits)
+            .err()
+            .unwrap()
+            .to_string()
+            .contains("minutes_days = 1")
+    );
+}
+
+#[test]
+fn an_output_goes_on_where_it_delivered() {
+    let (_folder, path, store) = plant(&Limits::default(), &["a"]);
+    store.append(&[(id("a"), event(1))]).unwrap();
+    store.declare_sinks(&["mqtt"]).unwrap();
+    store
+        .append(&[(id("a"), event(2)), (id("a"), event(3))])
+        .unwrap();
+    let cursor = store.cursor("mqtt").unwrap();
+    let found = store.since(cursor, 10).unwrap();
+    assert_eq!(
+        found.len(),
+        2,
+        "a new output begins with what comes after it"
+    );
+    store.set_cursor("mqtt", found[0].id).unwrap();
+    store.set_cursor("mqtt", cursor).unwrap();
+    drop(store);
+    let store = Store::open(&path, &Limits::default()).unwrap();
+    store.declare_sinks(&["mqtt"]).unwrap();
+    assert_eq!(
+        store
+            .since(store.cursor("mqtt").unwrap(), 10)
+            .unwrap()
+            .len(),
+        1
+    );
+}
+
+#[test]
+fn the_present_state_of_each_motor() {
+    let (_folder, _path, store) = plant(&Limits::default(), &["b", "a", "gone"]);
+    store.append(&seconds("a", 1..=3)).unwrap();
+    store.append(&[(id("b"), event(4))]).unwrap();
+    store
+        .append(&[(
+            id("a"),
+            Entry::Link(Link {
+                up: true,
+                time_ms: DAY,
+                why: String::new(),
+            }),
+        )])
+        .unwrap();
+    declare(&store, &["a", "b"]);
+    let motors = store.motors().unwrap();
+    let names: Vec<_> = motors.iter().map(|m| m.info.id.as_str()).collect();
+    assert_eq!(names, ["a", "b"]);
+    assert_eq!(motors[0].last.as_ref().map(|s| s.number), Some(3));
+    assert_eq!(motors[0].link.as_ref().map(|link| link.up), Some(true));
+    assert_eq!((motors[1].last.clone(), motors[1].last_event), (None, 4));
+}
+
+/// Sum of seconds and the mean speed of a trend, weighed by them.
+fn sums(store: &Store, from: i64, to: i64, points: usize) -> (u32, f64, f32, f32) {
+    let trend = store.trend(&id("a"), from, to, points).unwrap();
+    assert!(trend.points.len() <= points);
+    let seconds = trend.points.iter().map(|p| p.seconds).sum::<u32>();
+    let speeds = trend
+        .points
+        .iter()
+        .filter_map(|p| p.speed_rpm.map(|v| (p.seconds, v)));
+    let (mut sum, mut min, mut max) = (0.0, f32::MAX, f32::MIN);
+    for (n, v) in speeds {
+        sum += f64::from(n) * f64::from(v.mean);
+        (min, max) = (min.min(v.min), max.max(v.max));
+    }
+    (seconds, sum / f64::from(seconds), min, max)
+}
+
+#[test]
+fn a_trend_is_the_same_from_seconds_blocks_minutes_and_hours() {
+    // Speed is the number of the second: the mean of 1 to n is (n + 1) / 2.
+    let limits = Limits {
+        seconds_days: 1,
+        minutes_days: 2,
+        hours_days: 3,
+        ..Limits::default()
+    };
+    let (_folder, _path, store) = plant(&limits, &["a"]);
+    let n = 30_000;
+    for part in 0..10 {
+        store
+            .append(&seconds("a", part * n / 10 + 1..=(part + 1) * n / 10))
+            .unwrap();
+        if part == 5 {
+            store.seal().unwrap();
+        }
+    }
+    let end = DAY + i64::from(n) * 1000;
+    let holds = |store: &Store, points: usize, what: &str| {
+        let (seconds, mean, min, max) = sums(store, DAY, end, points);
+        assert_eq!(seconds, n, "{what}");
+        // A float of 15 bits of fraction, and means of f32.
+        let near = |a: f64, b: f64| (a - b).abs() <= b * 2_f64.powi(-15);
+        assert!(near(mean, f64::from(n + 1) / 2.0), "{what}: mean {mean}");
+        assert!(
+            near(min.into(), 1.0) && near(max.into(), n.into()),
+            "{what}: {min} to {max}"
+        );
+    };
+    holds(&store, 1000, "half of it sealed");
+    store.seal().unwrap();
+    holds(&store, 1000, "sealed");
+    holds(&store, 5, "sealed, hours");
+    store.maintain(DAY + 50 * HOUR).unwrap();
+    holds(&store, 400, "minutes");
+    holds(&store, 5, "minutes, hours");
+    store.maintain(DAY + 80 * HOUR).unwrap();
+    holds(&store, 400, "hours alone");
+    // A point of a minute has the minute's own extremes.
+    store.maintain(DAY + 120 * HOUR).unwrap();
+    assert_eq!(sums(&store, DAY, end, 5).0, 0);
+    let said: Vec<_> = all(&store)
+        .into_iter()
+        .filter_map(|entry| match entry {
+            Entry::Thinned(thinned) => Some((thinned.to, thinned.before_ms)),
+            _ => None,
+        })
+        .collect();
+    let day = 24 * HOUR;
+    let expected = [
+        (ThinnedTo::Minutes, DAY + day),
+        (ThinnedTo::Hours, DAY + day),
+        (ThinnedTo::HoursDropped, DAY + 2 * day),
+    ];
+    assert_eq!(said, expected);
+}
+
+#[test]
+fn a_trend_of_one_second_a_point_shows_each_second() {
+    let (_folder, _path, store) = plant(&Limits::default(), &["a"]);
+    store.append(&seconds("a", 1..=50)).unwrap();
+    store.seal().unwrap();
+    store.append(&seconds("a", 51..=100)).unwrap();
+    let trend = store.trend(&id("a"), DAY, DAY + 100_000, 100).unwrap();
+    assert_eq!((trend.step_ms, trend.points.len()), (1000, 100));
+    for (point, number) in trend.points.iter().zip(1_u32..) {
+        assert_eq!(point.seconds, 1);
+        assert_eq!((point.windows, point.judged, point.lamps), (4, 3, 1));
+        assert_eq!(
+            point.speed_rpm.map(|v| (v.min, v.max)),
+            Some((number as f32, number as f32))
+        );
+        assert_eq!((point.current_a, point.residuals[3]), (None, None));
+        assert_eq!(point.residuals[2].map(|v| v.mean), Some(0.25));
+    }
+    assert!(
+        store
+            .trend(&id("a"), DAY + 100_000, DAY, 10)
+            .unwrap()
+            .points
+            .is_empty()
+    );
+}
+
+#[test]
+fn the_queue_waits_for_the_slowest_output_and_no_longer() {
+    let (_folder, _path, store) = plant(&Limits::default(), &["a"]);
+    store.declare_sinks(&["slow", "fast"]).unwrap();
+    store.append(&seconds("a", 1..=100)).unwrap();
+    store.set_cursor("fast", 100).unwrap();
+    store.seal().unwrap();
+    store.maintain(DAY).unwrap();
+    assert_eq!(store.since(0, 1000).unwrap().len(), 100);
+    store.set_cursor("slow", 60).unwrap();
+    store.maintain(DAY).unwrap();
+    let left: Vec<_> = store
+        .since(0, 1000)
+        .unwrap()
+        .iter()
+        .map(|found| found.id)
+        .collect();
+    assert_eq!(left, (61..=100).collect::<Vec<_>>());
+    assert_eq!(
+        store.trend(&id("a"), DAY, DAY + HOUR, 1).unwrap().points[0].seconds,
+        100
+    );
+}
+
+#[test]
+fn ids_are_never_given_twice_although_the_newest_rows_are_gone() {
+    let (_folder, path, store) = plant(&Limits::default(), &["a"]);
+    store.append(&seconds("a", 1..=100)).unwrap();
+    store.seal().unwrap();
+    store.maintain(DAY).unwrap();
+    assert!(store.since(0, 10).unwrap().is_empty());
+    drop(store);
+    let store = Store::open(&path, &Limits::default()).unwrap();
+    store.append(&seconds("a", 101..=101)).unwrap();
+    assert_eq!(store.since(0, 10).unwrap()[0].id, 101);
+}
+
+#[test]
+fn a_queue_that_nobody_takes_is_cut_and_that_is_said() {
+    let limits = Limits {
+        queue_seconds: 10_000,
+        ..Limits::default()
+    };
+    let (_folder, _path, store) = plant(&limits, &["a"]);
+    store.declare_sinks(&["away"]).unwrap();
+    store.append(&seconds("a", 1..=15_000)).unwrap();
+    store.append(&[(id("a"), event(1))]).unwrap();
+    store.maintain(DAY).unwrap();
+    let left = all(&store);
+    let kept = left
+        .iter()
+        .filter(|e| matches!(e, Entry::Second(_)))
+        .count();
+    assert!((8_000..=10_000).contains(&kept), "{kept}");
+    assert!(left.contains(&event(1)));
+    let said = left.iter().find_map(|e| match e {
+        Entry::Thinned(thinned) => Some((thinned.to, thinned.count)),
+        _ => None,
+    });
+    assert_eq!(said, Some((ThinnedTo::QueueCut, 15_000 - kept as u64)));
+    let trend = store.trend(&id("a"), DAY, DAY + 24 * HOUR, 1).unwrap();
+    assert_eq!(
+        trend.points[0].seconds, 15_000,
+        "what was cut is in the history"
+    );
+}
+
+/// Fills a store of the least size with noise, so that it must thin within its newest day.
+#[test]
+fn a_full_store_thins_its_oldest_seconds_and_keeps_every_event() {
+    use rand::{Rng, SeedableRng};
+    let limits = Limits {
+        bytes: 16_000_000,
+        ..Limits::default()
+    };
+    let (_folder, _path, store) = plant(&limits, &["a"]);
+    let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(5);
+    let (days, mut events) = (13, 0);
+    for day in 0..days {
+        let mut batch = Vec::new();
+        for s in 1..=86_400_u32 {
+            let mut new = second(1, day * 86_400 + s);
+            let volt = rng.random_range(100.0..400.0_f32);
+            let (amp, rpm) = (
+                rng.random_range(8.0..12.0),
+                rng.random_range(1440.0..1500.0),
+            );
+            (new.voltage_v, new.current_a, new.speed_rpm) = (Some(volt), Some(amp), Some(rpm));
+            new.residuals = Some(std::array::from_fn(|_| rng.random_range(-3.0..3.0)));
+            batch.push((id("a"), Entry::Second(new)));
+        }
+        events += 1;
+        batch.push((id("a"), event(events)));
+        store.append(&batch).unwrap();
+        store.seal().unwrap();
+        store
+            .maintain(DAY + i64::from(day + 1) * 24 * HOUR)
+            .unwrap();
+        assert!(store.bytes().unwrap() <= limits.bytes, "day {day}");
+    }
+    let left = all(&store);
+    let kept = left.iter().filter(|e| matches!(e, Entry::Event(_))).count();
+    assert_eq!(kept as u32, events);
+    let because = left.iter().filter_map(|e| match e {
+        Entry::Thinned(thinned) if thinned.why == "bytes" => Some(thinned.to),
+        _ => None,
+    });
+    assert!(because.clone().count() > 0);
+    assert!(!because.clone().any(|to| to == ThinnedTo::EntriesDropped));
+    // Every second is still counted, if only in its hour.
+    let end = DAY + i64::from(days) * 24 * HOUR;
+    let trend = store.trend(&id("a"), DAY, end, 12).unwrap();
+    assert_eq!(
+        trend.points.iter().map(|p| p.seconds).sum::<u32>(),
+        days * 86_400
+    );
+}
