@@ -26,6 +26,7 @@ pub struct Second {
     /// The likely fault of the last window, by its number (`motor::FaultId`).
     pub fault: u8,
     /// Means of r1 to r4, shares of their scales; NaN: that one is not known. Stored to 1e-4, within +-3.2767.
+    #[serde(with = "with_gaps")]
     pub residuals: Option<[f32; 4]>,
     /// Voltage, V RMS.
     pub voltage_v: Option<f32>,
@@ -35,6 +36,21 @@ pub struct Second {
     pub frequency_hz: Option<f32>,
     /// Speed, 1/min.
     pub speed_rpm: Option<f32>,
+}
+
+/// Text has no NaN: a residual that is not known is null there.
+mod with_gaps {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(all: &Option<[f32; 4]>, to: S) -> Result<S::Ok, S::Error> {
+        all.map(|all| all.map(|r| Some(r).filter(|r| r.is_finite())))
+            .serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f32; 4]>, D::Error> {
+        let all = Option::<[Option<f32>; 4]>::deserialize(from)?;
+        Ok(all.map(|all| all.map(|r| r.unwrap_or(f32::NAN))))
+    }
 }
 
 impl Second {

@@ -83,8 +83,8 @@ pub struct Evidence {
     pub second: Option<(u32, u32)>,
     /// Number of the board's event that showed it.
     pub event: Option<u32>,
-    /// Residuals r1 to r4 of that second, shares of their scales.
-    pub residuals: Option<[f32; 4]>,
+    /// Residuals r1 to r4 of that second, shares of their scales; `None`: that one is not known.
+    pub residuals: [Option<f32>; 4],
     /// File of the recording around it.
     pub recording: Option<String>,
     /// In words.
@@ -106,6 +106,8 @@ pub struct Alarm {
     pub present: bool,
     /// Whether it was acknowledged since it last rose.
     pub acknowledged: bool,
+    /// Whether the plant sets it aside.
+    pub suppressed: bool,
     /// How soon somebody must act.
     pub severity: Severity,
     /// The likely fault, number of `motor::FaultId`; 0: not known.

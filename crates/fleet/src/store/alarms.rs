@@ -63,12 +63,23 @@ pub(super) fn get(connection: &Connection, filter: &AlarmFilter) -> Result<Vec<A
     } as i64;
     let motor = filter.motor.as_ref().map(|motor| motor.as_str());
     let mut statement = connection.prepare_cached(text)?;
-    let mut rows = statement.query(params![motor, states, filter.from_ms, filter.to_ms, limit])?;
+    collected(statement.query(params![motor, states, filter.from_ms, filter.to_ms, limit])?)
+}
+
+/// Alarms that are not normal, by number.
+pub(super) fn not_normal(connection: &Connection) -> Result<Vec<Alarm>, StoreError> {
+    let text = "SELECT number, body FROM alarm WHERE state <> 'normal' ORDER BY number";
+    let mut statement = connection.prepare_cached(text)?;
+    collected(statement.query([])?)
+}
+
+/// Alarms from number and body.
+fn collected(mut rows: rusqlite::Rows<'_>) -> Result<Vec<Alarm>, StoreError> {
     let mut found = Vec::new();
     while let Some(row) = rows.next()? {
-        let body: String = row.get(1)?;
+        let (id, body) = (row.get::<_, i64>(0)? as u64, row.get::<_, String>(1)?);
         let damaged = |e: serde_json::Error| StoreError::Damaged {
-            id: row.get::<_, i64>(0).unwrap_or(0) as u64,
+            id,
             reason: e.to_string(),
         };
         found.push(serde_json::from_str(&body).map_err(damaged)?);

@@ -29,7 +29,7 @@ pub use error::StoreError;
 pub use limits::Limits;
 pub use trend::{Trend, TrendPoint, Values};
 
-use crate::alarm::change::{Alarm, AlarmFilter};
+use crate::alarm::change::{Alarm, AlarmChange, AlarmFilter};
 use crate::entry::{Entry, Numbered};
 use crate::motor::{MotorId, MotorInfo, MotorState};
 use append::Batch;
@@ -271,6 +271,46 @@ impl Store {
     ) -> Result<Trend, StoreError> {
         let key = self.marks_of(motor)?.key;
         self.reading(|connection| trend::trend(connection, key, from_ms, to_ms, points))
+    }
+
+    /// Name of the place of the alarms among the outputs.
+    const ALARMS: &str = " alarms";
+
+    /// How far alarms were looked for, and the memory that belongs to it.
+    pub(crate) fn alarm_place(&self) -> Result<(u64, String), StoreError> {
+        self.reading(|connection| {
+            let text = "SELECT cursor, memory FROM sink WHERE name = ?1";
+            let row = |row: &Row<'_>| Ok((row.get::<_, i64>(0)? as u64, row.get(1)?));
+            Ok(connection
+                .query_row(text, [Self::ALARMS], row)
+                .optional()?
+                .unwrap_or_default())
+        })
+    }
+
+    /// Alarms that are not normal, all of them.
+    pub(crate) fn alarms_not_normal(&self) -> Result<Vec<Alarm>, StoreError> {
+        self.reading(alarms::not_normal)
+    }
+
+    /// Stores changes of alarms, how far they were looked for and the memory that belongs to it, in one transaction.
+    pub(crate) fn keep_alarms(
+        &self,
+        changes: &[AlarmChange],
+        cursor: u64,
+        memory: &str,
+    ) -> Result<(), StoreError> {
+        let entries: Vec<_> = changes
+            .iter()
+            .map(|change| (change.alarm.motor.as_ref(), Entry::Alarm(change.clone())))
+            .collect();
+        let entries = entries.iter().map(|(motor, entry)| (*motor, entry));
+        lock(&self.writer).append(entries, |tx| {
+            let text = "INSERT OR REPLACE INTO sink(name, cursor, memory) VALUES (?1, ?2, ?3)";
+            tx.execute(text, params![Self::ALARMS, cursor as i64, memory])?;
+            Ok(())
+        })?;
+        Ok(())
     }
 
     fn marks_of(&self, motor: &MotorId) -> Result<Marks, StoreError> {

@@ -59,3 +59,4 @@ CREATE TABLE alarm(
 CREATE INDEX alarm_motor ON alarm(motor);
 CREATE INDEX alarm_changed ON alarm(changed_ms);
 CREATE INDEX alarm_open ON alarm(open) WHERE open = 1;
+CREATE INDEX alarm_state ON alarm(state) WHERE state <> 'normal';
