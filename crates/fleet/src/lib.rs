@@ -16,9 +16,11 @@
 //! ```
 
 pub mod alarm;
+pub mod answer;
 mod entry;
 mod motor;
 mod store;
+pub mod users;
 
 pub use entry::{
     BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, Second, Thinned, ThinnedTo,

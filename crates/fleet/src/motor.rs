@@ -138,6 +138,8 @@ pub struct MotorState {
     pub link: Option<Link>,
     /// Alarms that somebody has to look at: neither back to normal, nor shelved, nor suppressed.
     pub open_alarms: u32,
+    /// Those of them that nobody has acknowledged.
+    pub unacknowledged: u32,
     /// The worst of them.
     pub worst: Option<Severity>,
 }

@@ -1,5 +1,7 @@
 //! Alarms as they are now.
 
+use std::collections::HashMap;
+
 use rusqlite::{Connection, Transaction, params};
 
 use super::StoreError;
@@ -87,19 +89,32 @@ fn collected(mut rows: rusqlite::Rows<'_>) -> Result<Vec<Alarm>, StoreError> {
     Ok(found)
 }
 
-/// Open alarms and the worst severity by motor's key.
-pub(super) fn counts(
-    connection: &Connection,
-) -> rusqlite::Result<std::collections::HashMap<i64, (u32, Severity)>> {
-    let text = "SELECT motor, count(*), max(severity) FROM alarm WHERE open = 1 AND motor IS NOT NULL GROUP BY motor";
+/// Open alarms of a motor.
+pub(super) struct Counts {
+    pub open: u32,
+    pub unacknowledged: u32,
+    pub worst: Severity,
+}
+
+/// Open alarms by motor's key.
+pub(super) fn counts(connection: &Connection) -> rusqlite::Result<HashMap<i64, Counts>> {
+    let text = "SELECT motor, count(*), sum(state <> 'acknowledged'), max(severity) FROM alarm
+         WHERE open = 1 AND motor IS NOT NULL GROUP BY motor";
     let mut statement = connection.prepare_cached(text)?;
     let rows = statement.query_map([], |row| {
-        let worst = match row.get::<_, i64>(2)? {
+        let worst = match row.get::<_, i64>(3)? {
             2 => Severity::High,
             1 => Severity::Medium,
             _ => Severity::Low,
         };
-        Ok((row.get(0)?, (row.get(1)?, worst)))
+        Ok((
+            row.get(0)?,
+            Counts {
+                open: row.get(1)?,
+                unacknowledged: row.get(2)?,
+                worst,
+            },
+        ))
     })?;
     rows.collect()
 }

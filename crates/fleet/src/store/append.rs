@@ -218,9 +218,10 @@ impl<'a> Batch<'a> {
 }
 
 /// Kind, number and body of an entry as the table holds them.
-fn text_of(entry: &Entry) -> Result<(&'static str, Option<u32>, String), StoreError> {
+fn text_of(entry: &Entry) -> Result<(&'static str, Option<i64>, String), StoreError> {
     let number = match entry {
-        Entry::Event(event) => Some(event.number),
+        Entry::Event(event) => Some(i64::from(event.number)),
+        Entry::Alarm(change) => Some(change.alarm.number as i64),
         _ => None,
     };
     let kind = match entry {

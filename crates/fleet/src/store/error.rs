@@ -49,6 +49,12 @@ pub enum StoreError {
         /// What it may be.
         range: &'static str,
     },
+    /// A name that no user may have.
+    #[error("{0:?} is no user's name: use 1 to 64 characters, no control characters")]
+    UserName(String),
+    /// No random numbers for a token.
+    #[error("no random numbers for a token: {0}")]
+    Random(String),
     /// What is stored cannot be read.
     #[error("entry {id} of the store cannot be read: {reason}")]
     Damaged {

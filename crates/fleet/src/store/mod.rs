@@ -15,7 +15,9 @@ mod schema;
 mod seconds;
 mod tally;
 mod thin;
+mod timeline;
 mod trend;
+mod users;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

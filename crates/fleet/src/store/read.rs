@@ -95,10 +95,12 @@ pub(super) fn motors(connection: &Connection) -> Result<Vec<MotorState>, StoreEr
     );
     let mut statement = tx.prepare_cached(&text)?;
     let rows = statement.query_map([], |row| {
-        let (open_alarms, worst) = counts.get(&row.get(0)?).copied().unzip();
         let mut state = state_of(row)?;
-        state.open_alarms = open_alarms.unwrap_or(0);
-        state.worst = worst;
+        if let Some(counts) = counts.get(&row.get(0)?) {
+            state.open_alarms = counts.open;
+            state.unacknowledged = counts.unacknowledged;
+            state.worst = Some(counts.worst);
+        }
         Ok(state)
     })?;
     Ok(rows.collect::<Result<_, _>>()?)
@@ -132,6 +134,7 @@ fn state_of(row: &Row<'_>) -> rusqlite::Result<MotorState> {
         last_event: row.get(7)?,
         link,
         open_alarms: 0,
+        unacknowledged: 0,
         worst: None,
     })
 }

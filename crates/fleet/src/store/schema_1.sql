@@ -27,7 +27,7 @@ CREATE TABLE queue(
     r1 INTEGER, r2 INTEGER, r3 INTEGER, r4 INTEGER, voltage_v REAL, current_a REAL, frequency_hz REAL, speed_rpm REAL
 ) STRICT;
 
--- Everything but seconds; `body` is JSON. `number` is an event's.
+-- Everything but seconds; `body` is JSON. `number` is an event's or an alarm's.
 CREATE TABLE entry(
     id INTEGER PRIMARY KEY, motor INTEGER REFERENCES motor(key), kind TEXT NOT NULL, time_ms INTEGER NOT NULL,
     board INTEGER, number INTEGER, body TEXT NOT NULL
