@@ -13,8 +13,8 @@ use crate::store::{Store, StoreError};
 /// Entries that are read at once.
 const AT_ONCE: usize = 10_000;
 
-/// Entries after which the place is stored although nothing changed, so that a restart need not read far.
-const PLACE_AFTER: u64 = 200_000;
+/// Time after which the place is stored although nothing changed, ms: a restart need not read far, the queue need not wait.
+const PLACE_AFTER_MS: i64 = 20_000;
 
 /// Why alarms could not be worked on.
 #[derive(Debug, Error)]
@@ -42,6 +42,7 @@ struct AtWork {
     desk: Desk,
     cursor: u64,
     stored: u64,
+    stored_ms: i64,
 }
 
 impl Watch {
@@ -63,8 +64,9 @@ impl Watch {
             let mut changes = Vec::new();
             while at_work.read(store, &mut changes)? {}
             let ended = at_work.desk.tick(now_ms);
-            if !ended.is_empty() || at_work.cursor > at_work.stored + PLACE_AFTER {
+            if !ended.is_empty() || at_work.is_far(now_ms) {
                 at_work.keep(store, &ended)?;
+                at_work.stored_ms = now_ms;
             }
             changes.extend(ended);
             Ok(changes)
@@ -137,7 +139,13 @@ impl AtWork {
             desk,
             cursor,
             stored: cursor,
+            stored_ms: 0,
         })
+    }
+
+    /// Whether the place in the store is long ago.
+    fn is_far(&self, now_ms: i64) -> bool {
+        self.cursor > self.stored && now_ms - self.stored_ms >= PLACE_AFTER_MS
     }
 
     /// Takes some entries. `false`: there were none.

@@ -6,6 +6,9 @@ const LEVEL: i32 = 3;
 /// More bytes than any block unpacks to: a damaged one takes no memory.
 const MOST_BYTES: usize = 16_000_000;
 
+/// Bytes of the largest number.
+const LONGEST: usize = 10;
+
 /// Packs rows of `WIDTH` numbers.
 pub(super) fn pack<const WIDTH: usize>(rows: &[[i64; WIDTH]]) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(rows.len() * WIDTH);
@@ -21,10 +24,11 @@ pub(super) fn pack<const WIDTH: usize>(rows: &[[i64; WIDTH]]) -> std::io::Result
 
 /// The rows; `None` where the bytes are damaged.
 pub(super) fn unpack<const WIDTH: usize>(bytes: &[u8], count: usize) -> Option<Vec<[i64; WIDTH]>> {
-    if count > MOST_BYTES / WIDTH.max(1) {
+    let most = count.checked_mul(WIDTH)?.checked_mul(LONGEST)?;
+    if most > MOST_BYTES {
         return None;
     }
-    let bytes = zstd::bulk::decompress(bytes, MOST_BYTES).ok()?;
+    let bytes = zstd::bulk::decompress(bytes, most).ok()?;
     let mut bytes = bytes.iter().copied();
     let mut rows = vec![[0; WIDTH]; count];
     for column in 0..WIDTH {
