@@ -19,11 +19,13 @@ pub mod alarm;
 pub mod answer;
 mod entry;
 mod motor;
+mod state;
 mod store;
 pub mod users;
 
 pub use entry::{
     BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, Second, Thinned, ThinnedTo,
 };
-pub use motor::{MotorId, MotorIdError, MotorInfo, MotorState};
+pub use motor::{MotorId, MotorIdError, MotorInfo};
+pub use state::MotorState;
 pub use store::{Appended, Limits, Store, StoreError, Trend, TrendPoint, Values};

@@ -2,84 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
+use super::action::{Action, ActionError, apply};
 use super::change::{Alarm, AlarmCause, AlarmChange, AlarmState, Change, Evidence, Severity, Who};
-use super::flood::Flood;
+use super::life::{overruled, raised_again, updated, with_event};
+use super::memory::{Memory, Pending};
 use super::read::{Details, Told, conditions};
 use super::rules::Rules;
-use crate::entry::Entry;
+use crate::entry::{Entry, Recording};
 use crate::motor::MotorId;
 
 /// What an alarm is of: `None` is the plant.
 type Key = (Option<MotorId>, AlarmCause);
-
-/// A board writes an event within a minute of what it tells; within this time of an alarm that seconds raised, the event is the
-/// same occurrence, ms.
-const SAME_MS: i64 = 60_000;
-
-/// A size that grew by this factor is told.
-const GREW: f32 = 1.5;
-
-/// A condition whose delay runs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Pending {
-    motor: MotorId,
-    cause: AlarmCause,
-    on: bool,
-    since_ms: i64,
-    details: Details,
-}
-
-/// What a desk knows beside its alarms: running delays, recent alarms. It is stored with every change.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Memory {
-    /// Number of the newest alarm.
-    last: u64,
-    #[serde(with = "listed")]
-    pending: BTreeMap<(MotorId, AlarmCause), Pending>,
-    flood: Flood,
-}
-
-/// What a person does to an alarm.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Action {
-    /// Takes note.
-    Acknowledge,
-    /// Sets it aside until a time.
-    Shelve {
-        /// End, Unix ms.
-        until_ms: i64,
-    },
-    /// Ends the shelf.
-    Unshelve,
-    /// Sets it aside while the motor is out of service.
-    Suppress,
-    /// Ends that.
-    Unsuppress,
-}
-
-/// Why an action is refused.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum ActionError {
-    /// There never was such an alarm.
-    #[error("there is no alarm {0}")]
-    Unknown(u64),
-    /// It is over.
-    #[error("alarm {0} is back to normal: there is nothing to set aside")]
-    Over(u64),
-    /// Who sets an alarm aside says why.
-    #[error("give a reason: who finds the alarm set aside must know why")]
-    NoReason,
-    /// The end is past or too far away.
-    #[error("a shelf ends between now and {longest_h} hours from now")]
-    Shelf {
-        /// Longest shelf, hours.
-        longest_h: i64,
-    },
-}
 
 /// All alarms that are not normal, and what is about to become one.
 #[derive(Clone, Debug)]
@@ -118,11 +51,45 @@ impl Desk {
     /// Takes an entry of a motor; times are those of the entry.
     pub fn take(&mut self, motor: &MotorId, entry: &Entry) -> Vec<AlarmChange> {
         let time_ms = entry.time_ms();
-        let told = conditions(entry);
         let mut changes = Vec::new();
+        if let Entry::Recording(recording) = entry {
+            changes.extend(self.recorded(motor, recording));
+        }
+        let told = conditions(entry);
         told.into_iter()
             .for_each(|told| self.observe(motor, told, time_ms, &mut changes));
         changes
+    }
+
+    /// A recording belongs to the alarm that it names, else to the motor's fault or else sensor.
+    fn recorded(&mut self, motor: &MotorId, recording: &Recording) -> Option<AlarmChange> {
+        let causes = [AlarmCause::Fault, AlarmCause::Sensor];
+        let named = recording.alarm.and_then(|number| {
+            let mut alarms = self.alarms.iter();
+            alarms
+                .find(|(_, alarm)| alarm.number == number)
+                .map(|(key, _)| key.clone())
+        });
+        let own = || {
+            let keys = causes.into_iter().map(|cause| (Some(motor.clone()), cause));
+            keys.into_iter().find(|key| self.alarms.contains_key(key))
+        };
+        let key = if recording.alarm.is_some() {
+            named
+        } else {
+            own()
+        }?;
+        let alarm = self.alarms.get_mut(&key)?;
+        let why = format!("recording {} was fetched", recording.file);
+        Some(alarm.step(
+            Change::Updated,
+            Who::Gateway,
+            &why,
+            recording.time_ms,
+            |alarm| {
+                alarm.evidence.recording = Some(recording.file.clone());
+            },
+        ))
     }
 
     /// Lets delays, shelves and floods end. Call it when every entry was taken: `now_ms` is later than all of them.
@@ -414,126 +381,5 @@ impl Desk {
     fn forget_normal(&mut self) {
         self.alarms
             .retain(|_, alarm| alarm.state != AlarmState::Normal);
-    }
-}
-
-/// Whether an event tells nothing new of an alarm: it is the occurrence that seconds showed, and what is now they know better.
-fn overruled(alarm: &Alarm, on: bool, time_ms: i64) -> bool {
-    let by_seconds = alarm.evidence.second.is_some();
-    by_seconds && (!on || (time_ms - alarm.raised_ms).abs() <= SAME_MS)
-}
-
-/// The alarm gets the number of the event that tells the same.
-fn with_event(alarm: &mut Alarm, details: Details, time_ms: i64) -> AlarmChange {
-    let Details { evidence, who, .. } = details;
-    alarm.step(Change::Updated, who, &evidence.words, time_ms, |alarm| {
-        alarm.evidence.event = evidence.event;
-    })
-}
-
-/// It was there, went, and comes again before it was normal.
-fn raised_again(alarm: &mut Alarm, details: Details, time_ms: i64) -> AlarmChange {
-    let Details {
-        severity,
-        fault,
-        phase,
-        size,
-        evidence,
-        who,
-    } = details;
-    let why = evidence.words.clone();
-    alarm.step(Change::Raised, who, &why, time_ms, |alarm| {
-        alarm.present = true;
-        alarm.acknowledged = false;
-        alarm.severity = severity;
-        (alarm.fault, alarm.phase, alarm.size) = (fault, phase, size);
-        alarm.evidence = evidence;
-        alarm.raised_ms = time_ms;
-        alarm.times = alarm.times.saturating_add(1);
-    })
-}
-
-/// Cause, phase or size of an alarm that is there changed: the same alarm, told at most once in `update_ms`. Size and residuals
-/// are the largest since it rose.
-fn updated(alarm: &mut Alarm, new: &Details, time_ms: i64, update_ms: i64) -> Option<AlarmChange> {
-    let grew = match (alarm.size, new.size) {
-        (Some(before), Some(now)) => now > before * GREW,
-        (before, now) => before.is_none() && now.is_some(),
-    };
-    let other = new.fault != 0 && new.fault != alarm.fault;
-    let other_phase = new.phase.is_some() && new.phase != alarm.phase;
-    // Who must act sooner is told at once.
-    let worse = new.severity > alarm.severity;
-    let due = time_ms - alarm.changed_ms >= update_ms;
-    if !(worse || due && (grew || other || other_phase)) {
-        return None;
-    }
-    let (why, who) = (new.evidence.words.clone(), new.who.clone());
-    Some(alarm.step(Change::Updated, who, &why, time_ms, |alarm| {
-        alarm.phase = new.phase.or(alarm.phase);
-        alarm.severity = alarm.severity.max(new.severity);
-        if new.fault != 0 {
-            alarm.fault = new.fault;
-        }
-        if grew {
-            alarm.size = new.size;
-            alarm.evidence.residuals = new.evidence.residuals;
-            alarm.evidence.second = new.evidence.second.or(alarm.evidence.second);
-            alarm.evidence.words = new.evidence.words.clone();
-        }
-    }))
-}
-
-/// Does what a person asks; `None` where it is so already.
-fn apply(
-    alarm: &mut Alarm,
-    action: &Action,
-    who: Who,
-    why: &str,
-    now_ms: i64,
-) -> Option<AlarmChange> {
-    type Work = fn(&mut Alarm, Option<i64>);
-    let (change, until, work): (Change, Option<i64>, Work) = match action {
-        Action::Acknowledge if !alarm.acknowledged => (Change::Acknowledged, None, |alarm, _| {
-            alarm.acknowledged = true
-        }),
-        Action::Shelve { until_ms } if alarm.shelved_until_ms != Some(*until_ms) => {
-            (Change::Shelved, Some(*until_ms), |alarm, until| {
-                alarm.shelved_until_ms = until
-            })
-        }
-        Action::Unshelve if alarm.shelved_until_ms.is_some() => {
-            (Change::Unshelved, None, |alarm, until| {
-                alarm.shelved_until_ms = until
-            })
-        }
-        Action::Suppress if !alarm.suppressed => {
-            (Change::Suppressed, None, |alarm, _| alarm.suppressed = true)
-        }
-        Action::Unsuppress if alarm.suppressed => (Change::Unsuppressed, None, |alarm, _| {
-            alarm.suppressed = false
-        }),
-        _ => return None,
-    };
-    Some(alarm.step(change, who, why, now_ms, |alarm| work(alarm, until)))
-}
-
-/// A map whose keys are no text, as a list.
-mod listed {
-    use super::{AlarmCause, BTreeMap, MotorId, Pending};
-    use serde::{Deserialize, Deserializer, Serializer};
-
-    type Map = BTreeMap<(MotorId, AlarmCause), Pending>;
-
-    pub fn serialize<S: Serializer>(map: &Map, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(map.values())
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map, D::Error> {
-        let list = Vec::<Pending>::deserialize(deserializer)?;
-        Ok(list
-            .into_iter()
-            .map(|p| ((p.motor.clone(), p.cause), p))
-            .collect())
     }
 }

@@ -4,10 +4,12 @@ use std::collections::HashMap;
 
 use proptest::prelude::*;
 
+use super::action::{Action, ActionError};
 use super::change::{Alarm, AlarmCause, AlarmChange, AlarmState, Change, Severity, Who};
-use super::desk::{Action, ActionError, Desk, Memory};
+use super::desk::Desk;
+use super::memory::Memory;
 use super::rules::Rules;
-use crate::entry::{BoardEvent, Entry, Gap, GapOf, Link, Second};
+use crate::entry::{BoardEvent, Entry, Gap, GapOf, Link, Recording, Second};
 use crate::motor::MotorId;
 
 fn id(name: &str) -> MotorId {
@@ -169,6 +171,41 @@ fn lamp_and_event_of_one_fault_are_one_alarm() {
         steps(&gone),
         [(Change::Returned, AlarmState::ReturnedUnacknowledged)]
     );
+}
+
+#[test]
+fn a_recording_goes_to_its_alarm() {
+    let (mut desk, motor) = (desk(at_once()), id("a"));
+    desk.take(&motor, &second(1_000, 1 << 10, 4));
+    desk.take(&motor, &second(1_000, FAULT, 4));
+    let recording = |alarm, file: &str| {
+        let file = file.to_owned();
+        Entry::Recording(Recording {
+            time_ms: 2_000,
+            from_ms: 0,
+            to_ms: 1_000,
+            file,
+            bytes: 1,
+            alarm,
+        })
+    };
+    let told = desk.take(&motor, &recording(None, "one.parquet"));
+    assert_eq!(
+        (told[0].alarm.cause, told[0].change),
+        (AlarmCause::Fault, Change::Updated)
+    );
+    assert_eq!(
+        told[0].alarm.evidence.recording.as_deref(),
+        Some("one.parquet")
+    );
+    assert_eq!(
+        desk.take(&motor, &recording(Some(1), "two.parquet"))[0]
+            .alarm
+            .cause,
+        AlarmCause::Sensor
+    );
+    assert!(desk.take(&motor, &recording(Some(77), "x")).is_empty());
+    assert!(desk.take(&id("b"), &recording(None, "x")).is_empty());
 }
 
 #[test]

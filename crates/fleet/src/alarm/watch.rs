@@ -4,8 +4,10 @@ use std::sync::{Mutex, PoisonError};
 
 use thiserror::Error;
 
+use super::action::{Action, ActionError};
 use super::change::{Alarm, AlarmChange};
-use super::desk::{Action, ActionError, Desk, Memory};
+use super::desk::Desk;
+use super::memory::Memory;
 use super::rules::Rules;
 use crate::entry::Numbered;
 use crate::store::{Store, StoreError};

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motor::{fault_name, finite};
+use super::words::{fault_name, finite};
 use crate::alarm::change::{
     Alarm, AlarmCause, AlarmChange, AlarmState, Change, Phase, Severity, Who,
 };

@@ -7,6 +7,7 @@ mod alarms;
 mod motor;
 mod trend;
 mod wall;
+mod words;
 
 pub use actions::{ActionAnswer, ActionRequest, AuditAnswer, Refusal};
 pub use alarms::{AlarmAnswer, AlarmHistoryAnswer, AlarmsAnswer, ChangeAnswer};

@@ -5,34 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::alarms::AlarmAnswer;
 use super::wall::WallMotor;
+use super::words::{finite, lit_lamps};
 use crate::alarm::change::Alarm;
 use crate::entry::{Entry, Gap, GapOf, Numbered, Second};
-use crate::motor::MotorState;
-
-/// Names of the lamps, in the order of their bits.
-const LAMPS: [&str; 9] = [
-    "RUN", "r1", "r2", "r3", "r4", "SENSOR", "LINE", "LOAD", "FAULT",
-];
-
-/// Lamps that are on, by name.
-pub(super) fn lit_lamps(lamps: u32) -> Vec<String> {
-    let all = LAMPS.iter().zip(0..);
-    all.filter(|(_, k)| (lamps >> (2 * k)) & 3 == 1)
-        .map(|(name, _)| (*name).to_owned())
-        .collect()
-}
-
-/// Short name of a fault by its number; 0 and unknown numbers have none.
-pub(super) fn fault_name(number: u8) -> Option<String> {
-    let mut all = motor::FaultId::ALL.into_iter();
-    let found = all.find(|fault| number != 0 && fault.number() == u16::from(number));
-    found.map(|fault| fault.name().to_owned())
-}
-
-/// A number that JSON has.
-pub(super) fn finite(value: f32) -> Option<f32> {
-    Some(value).filter(|value| value.is_finite())
-}
+use crate::state::MotorState;
 
 /// One motor, all that is known of it now.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motor::finite;
+use super::words::finite;
 use crate::motor::MotorId;
 use crate::store::{Trend, TrendPoint, Values};
 

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motor::{fault_name, lit_lamps};
+use super::words::{fault_name, lit_lamps};
 use crate::alarm::change::Severity;
-use crate::motor::MotorState;
+use crate::state::MotorState;
 
 /// The worst that is known of a motor now. The order is that of the wall.
 #[derive(

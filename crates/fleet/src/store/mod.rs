@@ -4,19 +4,14 @@
 
 mod alarms;
 mod append;
-mod block;
 mod error;
 mod history;
 mod limits;
 mod marks;
-mod pack;
 mod read;
 mod schema;
 mod seconds;
-mod tally;
-mod thin;
 mod timeline;
-mod trend;
 mod users;
 
 use std::collections::HashMap;
@@ -28,12 +23,13 @@ use rusqlite::{Connection, OptionalExtension, Row, Transaction, TransactionBehav
 
 pub use append::Appended;
 pub use error::StoreError;
+pub use history::{Trend, TrendPoint, Values};
 pub use limits::Limits;
-pub use trend::{Trend, TrendPoint, Values};
 
 use crate::alarm::change::{Alarm, AlarmChange, AlarmFilter};
 use crate::entry::{Entry, Numbered};
-use crate::motor::{MotorId, MotorInfo, MotorState};
+use crate::motor::{MotorId, MotorInfo};
+use crate::state::MotorState;
 use append::Batch;
 use marks::Marks;
 
@@ -272,7 +268,7 @@ impl Store {
         points: usize,
     ) -> Result<Trend, StoreError> {
         let key = self.marks_of(motor)?.key;
-        self.reading(|connection| trend::trend(connection, key, from_ms, to_ms, points))
+        self.reading(|connection| history::trend(connection, key, from_ms, to_ms, points))
     }
 
     /// Name of the place of the alarms among the outputs.

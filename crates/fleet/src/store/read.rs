@@ -4,7 +4,8 @@ use rusqlite::{Connection, Row, params};
 
 use super::{StoreError, alarms, id_of, seconds};
 use crate::entry::{Entry, Link, Numbered};
-use crate::motor::{MotorInfo, MotorState};
+use crate::motor::MotorInfo;
+use crate::state::MotorState;
 
 /// Entries after an id, in order, at most `limit`.
 pub(super) fn since(

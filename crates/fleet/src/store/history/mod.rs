@@ -1,29 +1,39 @@
 //! From the queue into the history: seconds of one motor come together in blocks, and are added to its hours.
 
+mod block;
+mod pack;
+mod point;
+mod tally;
+mod thin;
+mod trend;
+
 use std::collections::{BTreeMap, HashMap};
 
 use rusqlite::{Connection, OptionalExtension, Row, Transaction, params};
 
-use super::block::{self, Block, HOUR_MS, Level};
-use super::tally::Tally;
+pub use point::{Trend, TrendPoint, Values};
+pub(super) use trend::trend;
+
 use super::{StoreError, seconds};
 use crate::entry::Second;
+use block::{Block, HOUR_MS, Level};
+use tally::Tally;
 
 /// Seconds that are sealed at once: some 60 MB of memory, and a block of a minute at 10 000 motors.
-pub(super) const MOST_AT_ONCE: u64 = 600_000;
+const MOST_AT_ONCE: u64 = 600_000;
 
 /// What becomes history, ready to be written.
-pub(super) struct Sealed {
+struct Sealed {
     /// It begins after this id ...
-    pub after: u64,
+    after: u64,
     /// ... and ends with this one.
-    pub up_to: u64,
+    up_to: u64,
     blocks: Vec<(i64, Block)>,
     hours: BTreeMap<(i64, i64), Tally>,
 }
 
 /// A number of the table `meta`; 0: not there.
-pub(super) fn meta(connection: &Connection, key: &str) -> rusqlite::Result<i64> {
+fn meta(connection: &Connection, key: &str) -> rusqlite::Result<i64> {
     let mut statement = connection.prepare_cached("SELECT value FROM meta WHERE key = ?1")?;
     Ok(statement
         .query_row([key], |row| row.get(0))
@@ -32,7 +42,7 @@ pub(super) fn meta(connection: &Connection, key: &str) -> rusqlite::Result<i64> 
 }
 
 /// Writes a number of the table `meta`.
-pub(super) fn set_meta(tx: &Transaction<'_>, key: &str, value: i64) -> rusqlite::Result<()> {
+fn set_meta(tx: &Transaction<'_>, key: &str, value: i64) -> rusqlite::Result<()> {
     let mut statement =
         tx.prepare_cached("INSERT OR REPLACE INTO meta(key, value) VALUES (?1, ?2)")?;
     statement.execute(params![key, value])?;
@@ -40,12 +50,12 @@ pub(super) fn set_meta(tx: &Transaction<'_>, key: &str, value: i64) -> rusqlite:
 }
 
 /// Id up to which the queue is history.
-pub(super) fn sealed(connection: &Connection) -> rusqlite::Result<u64> {
+fn sealed(connection: &Connection) -> rusqlite::Result<u64> {
     Ok(meta(connection, "sealed")? as u64)
 }
 
 /// Number of seconds that are not history yet, at most, and when the oldest of them was.
-pub(super) fn waiting(connection: &Connection) -> rusqlite::Result<(u64, Option<i64>)> {
+fn waiting(connection: &Connection) -> rusqlite::Result<(u64, Option<i64>)> {
     let sealed = sealed(connection)?;
     let oldest = "SELECT time_ms FROM queue WHERE id > ?1 ORDER BY id LIMIT 1";
     let oldest = connection
@@ -57,7 +67,7 @@ pub(super) fn waiting(connection: &Connection) -> rusqlite::Result<(u64, Option<
 }
 
 /// Reads and packs what is next. Committed seconds never change, so nobody is kept from writing meanwhile.
-pub(super) fn prepare(connection: &Connection) -> Result<Option<Sealed>, StoreError> {
+fn prepare(connection: &Connection) -> Result<Option<Sealed>, StoreError> {
     let after = sealed(connection)?;
     let Some((up_to, by_motor)) = next_seconds(connection, after)? else {
         return Ok(None);
@@ -86,7 +96,7 @@ pub(super) fn prepare(connection: &Connection) -> Result<Option<Sealed>, StoreEr
 }
 
 /// Packing fails only without memory.
-pub(super) fn packing(error: std::io::Error) -> StoreError {
+fn packing(error: std::io::Error) -> StoreError {
     StoreError::Damaged {
         id: 0,
         reason: error.to_string(),
@@ -113,7 +123,7 @@ fn next_seconds(connection: &Connection, after: u64) -> Result<Option<(u64, ByMo
 }
 
 /// Writes it. `false`: somebody else sealed meanwhile.
-pub(super) fn write(tx: &Transaction<'_>, sealed_now: &Sealed) -> Result<bool, StoreError> {
+fn write(tx: &Transaction<'_>, sealed_now: &Sealed) -> Result<bool, StoreError> {
     if sealed(tx)? != sealed_now.after {
         return Ok(false);
     }
@@ -128,12 +138,7 @@ pub(super) fn write(tx: &Transaction<'_>, sealed_now: &Sealed) -> Result<bool, S
 }
 
 /// Writes a block.
-pub(super) fn put(
-    tx: &Transaction<'_>,
-    motor: i64,
-    level: Level,
-    block: &Block,
-) -> rusqlite::Result<()> {
+fn put(tx: &Transaction<'_>, motor: i64, level: Level, block: &Block) -> rusqlite::Result<()> {
     let text = "INSERT INTO block(motor, level, from_ms, first, to_ms, count, body) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)";
     let Block {
         from_ms,
@@ -177,7 +182,7 @@ fn add_to_hour(
 }
 
 /// A block from `from_ms, first, to_ms, count, body`.
-pub(super) fn block_of(row: &Row<'_>) -> rusqlite::Result<Block> {
+fn block_of(row: &Row<'_>) -> rusqlite::Result<Block> {
     Ok(Block {
         from_ms: row.get(0)?,
         first: row.get(1)?,
@@ -188,7 +193,7 @@ pub(super) fn block_of(row: &Row<'_>) -> rusqlite::Result<Block> {
 }
 
 /// Blocks of a motor that reach into a time, in order.
-pub(super) fn blocks(
+fn blocks(
     connection: &Connection,
     motor: i64,
     level: Level,

@@ -1,6 +1,6 @@
 //! Least, mean and largest, taken together from seconds or from what was thinned before.
 
-use super::trend::{TrendPoint, Values};
+use super::point::{TrendPoint, Values};
 use crate::entry::Second;
 
 /// Quantities of a second: r1 to r4, voltage, current, frequency, speed.

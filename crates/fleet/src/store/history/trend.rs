@@ -1,59 +1,12 @@
 //! A motor's history for a chart: at most so many points, each with least, mean and largest value.
 
 use rusqlite::Connection;
-use serde::{Deserialize, Serialize};
 
 use super::block::{self, HOUR_MS, Level};
+use super::point::Trend;
 use super::tally::Tally;
-use super::{StoreError, history, seconds};
 use crate::entry::Second;
-
-/// Least, mean and largest of one quantity within a point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Values {
-    /// Least.
-    pub min: f32,
-    /// Mean.
-    pub mean: f32,
-    /// Largest.
-    pub max: f32,
-}
-
-/// One point of a trend.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TrendPoint {
-    /// Begin, Unix ms.
-    pub from_ms: i64,
-    /// End, Unix ms.
-    pub to_ms: i64,
-    /// Seconds that are in it.
-    pub seconds: u32,
-    /// Windows that were judged.
-    pub judged: u32,
-    /// Windows.
-    pub windows: u32,
-    /// Lamps, two bits each; of each the most severe state.
-    pub lamps: u32,
-    /// r1 to r4, shares of their scales; `None`: not known in any second.
-    pub residuals: [Option<Values>; 4],
-    /// Voltage, V RMS.
-    pub voltage_v: Option<Values>,
-    /// Current, A RMS.
-    pub current_a: Option<Values>,
-    /// Frequency of the supply, Hz.
-    pub frequency_hz: Option<Values>,
-    /// Speed, 1/min.
-    pub speed_rpm: Option<Values>,
-}
-
-/// A trend.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Trend {
-    /// Length of a point, ms.
-    pub step_ms: i64,
-    /// Points in which there is a second, in order.
-    pub points: Vec<TrendPoint>,
-}
+use crate::store::{StoreError, seconds};
 
 /// Most points of one trend: more than any screen has columns.
 const MOST: usize = 20_000;
@@ -148,13 +101,13 @@ impl Points {
 
     fn blocks(&mut self, connection: &Connection, motor: i64) -> Result<(), StoreError> {
         let (from_ms, to_ms) = (self.from_ms, self.end_ms());
-        history::blocks(connection, motor, Level::Minutes, from_ms, to_ms, |block| {
+        super::blocks(connection, motor, Level::Minutes, from_ms, to_ms, |block| {
             for minute in block::minutes_of(block)? {
                 self.merge(minute.from_ms, &minute.tally);
             }
             Ok(())
         })?;
-        history::blocks(connection, motor, Level::Seconds, from_ms, to_ms, |block| {
+        super::blocks(connection, motor, Level::Seconds, from_ms, to_ms, |block| {
             block::seconds_of(block)?
                 .iter()
                 .for_each(|second| self.second(second));
@@ -169,7 +122,7 @@ impl Points {
             seconds::COLUMNS
         );
         let mut statement = connection.prepare_cached(&text)?;
-        let mut rows = statement.query([history::sealed(connection)? as i64, motor])?;
+        let mut rows = statement.query([super::sealed(connection)? as i64, motor])?;
         while let Some(row) = rows.next()? {
             self.second(&seconds::second_of(row, 0)?);
         }
@@ -178,7 +131,7 @@ impl Points {
 }
 
 /// The trend of a motor from `from_ms` to before `to_ms`. Where seconds and minutes are gone, hours stand for them.
-pub(super) fn trend(
+pub(in crate::store) fn trend(
     connection: &Connection,
     motor: i64,
     from_ms: i64,
@@ -188,7 +141,7 @@ pub(super) fn trend(
     let mut points = Points::new(from_ms, to_ms, points);
     // As of one moment: a second that becomes history meanwhile would count twice or not at all.
     let tx = connection.unchecked_transaction()?;
-    let gone_ms = history::meta(&tx, "hours_done")?;
+    let gone_ms = super::meta(&tx, "hours_done")?;
     if points.step_ms >= HOURS_FROM_MS {
         points.hours(&tx, motor, i64::MAX)?;
     } else {

@@ -1,10 +1,10 @@
 //! Blocks of history: some minutes of seconds, or an hour of minutes, of one motor.
 
-use super::StoreError;
 use super::pack::{of_float, pack, to_float, unpack};
-use super::seconds::{all_steps, residuals_of};
 use super::tally::{QUANTITIES, Spread, Tally};
 use crate::entry::Second;
+use crate::store::StoreError;
+use crate::store::seconds::{all_steps, residuals_of};
 
 /// Level of a block in its table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
 use super::block::{self, DAY_MS, HOUR_MS, Level, MINUTE_MS, Minute};
-use super::history::{self, meta, set_meta};
 use super::tally::Tally;
-use super::{Limits, Store, StoreError, lock};
+use super::{meta, set_meta};
 use crate::entry::{Entry, Thinned, ThinnedTo};
+use crate::store::{Limits, Store, StoreError, lock};
 
 /// Seconds wait at most so long before they become history.
 const SEAL_AFTER_MS: i64 = 600_000;
@@ -36,9 +36,9 @@ impl Store {
     /// # Errors
     /// Reading or writing failed; what was done is kept.
     pub fn maintain(&self, now_ms: i64) -> Result<(), StoreError> {
-        let (waiting, oldest_ms) = self.reading(|c| Ok(history::waiting(c)?))?;
+        let (waiting, oldest_ms) = self.reading(|c| Ok(super::waiting(c)?))?;
         let late = oldest_ms.is_some_and(|oldest| now_ms - oldest >= SEAL_AFTER_MS);
-        if late || waiting >= history::MOST_AT_ONCE {
+        if late || waiting >= super::MOST_AT_ONCE {
             self.seal()?;
         }
         self.trim(now_ms)?;
@@ -51,9 +51,9 @@ impl Store {
     /// # Errors
     /// Reading or writing failed.
     pub fn seal(&self) -> Result<(), StoreError> {
-        while let Some(sealed) = self.reading(history::prepare)? {
+        while let Some(sealed) = self.reading(super::prepare)? {
             let mut writer = lock(&self.writer);
-            if !writer.change(|tx, _, _| history::write(tx, &sealed))? {
+            if !writer.change(|tx, _, _| super::write(tx, &sealed))? {
                 break;
             }
         }
@@ -93,7 +93,7 @@ impl Store {
         let up_to = self.reading(|c| {
             let first = "SELECT coalesce(min(id), 0) FROM queue";
             let first: i64 = c.query_row(first, [], |row| row.get(0))?;
-            Ok((first + count).min(history::sealed(c)? as i64))
+            Ok((first + count).min(super::sealed(c)? as i64))
         })?;
         let count = self.delete_queue(up_to)?;
         self.say(
@@ -267,7 +267,7 @@ fn queue_span(connection: &Connection) -> rusqlite::Result<(i64, i64, i64)> {
     let text = "SELECT coalesce(min(id), 0), coalesce(max(id), 0), (SELECT min(cursor) FROM sink) FROM queue";
     let (first, last, slowest): (i64, i64, Option<i64>) =
         connection.query_row(text, [], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))?;
-    let sealed = history::sealed(connection)? as i64;
+    let sealed = super::sealed(connection)? as i64;
     Ok((first, last, slowest.unwrap_or(sealed).min(sealed)))
 }
 
@@ -339,7 +339,7 @@ fn seconds_to_minutes(
 ) -> Result<usize, StoreError> {
     let mut minutes: BTreeMap<i64, Tally> = BTreeMap::new();
     let mut first = i64::MAX;
-    history::blocks(tx, motor, Level::Seconds, i64::MIN, before_ms, |block| {
+    super::blocks(tx, motor, Level::Seconds, i64::MIN, before_ms, |block| {
         first = first.min(block.first);
         for second in block::seconds_of(block)? {
             minutes
@@ -369,8 +369,8 @@ fn put_minutes(
     minutes: &[Minute],
     first: i64,
 ) -> Result<(), StoreError> {
-    if let Some(block) = block::of_minutes(minutes, first).map_err(history::packing)? {
-        history::put(tx, motor, Level::Minutes, &block)?;
+    if let Some(block) = block::of_minutes(minutes, first).map_err(super::packing)? {
+        super::put(tx, motor, Level::Minutes, &block)?;
     }
     Ok(())
 }
