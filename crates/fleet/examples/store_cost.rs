@@ -1,6 +1,7 @@
 //! What a store costs: rate, processor time, bytes a motor and day, time of queries. Prints the tables of docs/fleet/store.md.
 //!
-//! `cargo run --release -p fleet --example store_cost` (some minutes, some gigabytes in the folder of temporary files).
+//! `cargo run --release -p fleet --example store_cost` (some minutes, some gigabytes in the folder of temporary files); with
+//! `months`, the second table alone.
 
 use std::time::Instant;
 
@@ -134,11 +135,15 @@ fn open(folder: &tempfile::TempDir, plant: &Plant) -> Result<Store, Failed> {
     Ok(store)
 }
 
+/// Least time of five, ms: what other programs of the machine take is left out as far as it can be.
 fn time_ms<T>(work: impl Fn() -> Result<T, fleet::StoreError>) -> Result<f64, Failed> {
-    work()?;
-    let before = Instant::now();
-    work()?;
-    Ok(before.elapsed().as_secs_f64() * 1e3)
+    let mut least = f64::INFINITY;
+    for _ in 0..5 {
+        let before = Instant::now();
+        work()?;
+        least = least.min(before.elapsed().as_secs_f64() * 1e3);
+    }
+    Ok(least)
 }
 
 fn load(motors: usize, seconds: u32) -> Result<(), Failed> {
@@ -199,7 +204,7 @@ fn months() -> Result<(), Failed> {
         ("an hour", 1),
         ("a day", 24),
         ("a week", 168),
-        ("20 days", 480),
+        ("ten days", 240),
         ("90 days", 2160),
     ] {
         let from = end - hours * 3_600_000;

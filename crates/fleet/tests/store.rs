@@ -576,3 +576,56 @@ fn a_full_store_thins_its_oldest_seconds_and_keeps_every_event() {
         days * 86_400
     );
 }
+
+/// Read back by the library's own reader, row by row, without the types that wrote it.
+#[test]
+fn a_day_as_parquet_has_every_second_once() {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::RowAccessor;
+    let (folder, _path, store) = plant(&Limits::default(), &["b", "a"]);
+    store.append(&seconds("a", 1..=1_000)).unwrap();
+    store.append(&seconds("b", 1..=500)).unwrap();
+    let file = folder.path().join("day.parquet");
+    // From second 101 on.
+    assert_eq!(
+        store
+            .export_seconds(DAY + 100_000, DAY + 24 * HOUR, &file)
+            .unwrap(),
+        1_300
+    );
+    let reader = SerializedFileReader::new(std::fs::File::open(&file).unwrap()).unwrap();
+    let rows: Vec<_> = reader
+        .get_row_iter(None)
+        .unwrap()
+        .map(Result::unwrap)
+        .collect();
+    let expected = (101..=1_000)
+        .map(|n| ("a", n))
+        .chain((101..=500).map(|n| ("b", n)));
+    assert_eq!(rows.len(), 1_300);
+    for (row, (motor, number)) in rows.iter().zip(expected) {
+        let names: Vec<_> = row
+            .get_column_iter()
+            .map(|(name, _)| name.as_str())
+            .collect();
+        let at = |name: &str| names.iter().position(|n| *n == name).unwrap();
+        assert_eq!(row.get_string(at("motor")).unwrap(), motor);
+        assert_eq!(
+            row.get_long(at("time_unix_ms")).unwrap(),
+            DAY + i64::from(number - 1) * 1000
+        );
+        assert_eq!(row.get_uint(at("number")).unwrap(), number);
+        assert_eq!(row.get_float(at("speed_rpm")).unwrap(), number as f32);
+        assert_eq!(row.get_float(at("r3")).unwrap(), 0.25);
+        assert!(row.get_float(at("r4")).is_err() && row.get_float(at("current_a")).is_err());
+    }
+    // Nothing is left of a file that cannot be written.
+    let nowhere = folder.path().join("no/such/folder.parquet");
+    assert!(
+        store
+            .export_seconds(DAY, DAY + HOUR, &nowhere)
+            .unwrap_err()
+            .to_string()
+            .contains("folder.parquet")
+    );
+}

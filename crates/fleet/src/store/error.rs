@@ -55,6 +55,14 @@ pub enum StoreError {
     /// No random numbers for a token.
     #[error("no random numbers for a token: {0}")]
     Random(String),
+    /// A file for other programs cannot be written.
+    #[error("{}: {reason}", path.display())]
+    Export {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// What is stored cannot be read.
     #[error("entry {id} of the store cannot be read: {reason}")]
     Damaged {

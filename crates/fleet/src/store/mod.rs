@@ -8,6 +8,7 @@ mod error;
 mod history;
 mod limits;
 mod marks;
+mod parquet;
 mod read;
 mod schema;
 mod seconds;

@@ -211,3 +211,20 @@ fn blocks(
     }
     Ok(())
 }
+
+/// Seconds of a motor that are in the history, from `from_ms` to before `to_ms`.
+pub(super) fn seconds_between(
+    connection: &Connection,
+    motor: i64,
+    from_ms: i64,
+    to_ms: i64,
+    mut work: impl FnMut(&Second) -> Result<(), StoreError>,
+) -> Result<(), StoreError> {
+    blocks(connection, motor, Level::Seconds, from_ms, to_ms, |block| {
+        let seconds = block::seconds_of(block)?;
+        let mut within = seconds
+            .iter()
+            .filter(|s| (from_ms..to_ms).contains(&s.time_ms));
+        within.try_for_each(&mut work)
+    })
+}

@@ -8,6 +8,9 @@ use super::tally::Tally;
 use crate::entry::Second;
 use crate::store::{StoreError, seconds};
 
+/// From this length of a point on, ms, hours take the place of seconds and minutes: a million seconds would be read for it.
+const HOURS_FROM_MS: u64 = 900_000;
+
 /// Most points of one trend: more than any screen has columns.
 const MOST: usize = 20_000;
 
@@ -23,7 +26,10 @@ impl Points {
         let points = points.clamp(1, MOST);
         let span = to_ms.saturating_sub(from_ms).max(1).unsigned_abs();
         // Whole seconds: a point that is shorter would be empty every other time.
-        let step = span.div_ceil(points as u64).div_ceil(1000) * 1000;
+        let mut step = span.div_ceil(points as u64).div_ceil(1000) * 1000;
+        if step >= HOURS_FROM_MS {
+            step = step.max(HOUR_MS.unsigned_abs());
+        }
         let count = span.div_ceil(step) as usize;
         let step_ms = step as i64;
         Self {
@@ -50,9 +56,6 @@ impl Points {
         Trend { step_ms, points }
     }
 }
-
-/// From this length of a point on, hours are fine enough.
-const HOURS_FROM_MS: i64 = HOUR_MS / 2;
 
 impl Points {
     fn second(&mut self, second: &Second) {
@@ -142,7 +145,7 @@ pub(in crate::store) fn trend(
     // As of one moment: a second that becomes history meanwhile would count twice or not at all.
     let tx = connection.unchecked_transaction()?;
     let gone_ms = super::meta(&tx, "hours_done")?;
-    if points.step_ms >= HOURS_FROM_MS {
+    if points.step_ms >= HOUR_MS {
         points.hours(&tx, motor, i64::MAX)?;
     } else {
         points.hours(&tx, motor, gone_ms)?;
