@@ -1,0 +1,4 @@
+//! What a plant tells others: Sparkplug B over MQTT, metrics of Prometheus, registers of Modbus TCP.
+
+pub mod mqtt;
+pub mod sparkplug;

@@ -1,0 +1,15 @@
+//! Sparkplug B over MQTT 3.1.1, from the store to a broker.
+
+mod config;
+mod line;
+mod present;
+mod run;
+mod session_file;
+mod status;
+mod tls;
+
+pub use config::{MqttConfig, TlsConfig};
+pub use line::LineError;
+pub use present::present;
+pub use run::{OutputError, run};
+pub use status::{MqttState, MqttStatus};
