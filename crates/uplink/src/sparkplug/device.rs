@@ -20,9 +20,9 @@ pub struct Teller {
     groups: &'static [Group],
     block: u64,
     told: BTreeMap<Group, Told>,
-    /// What the birth told, for what is older than it.
+    /// What the births told, for what is older than it.
     horizon: BTreeMap<Group, Told>,
-    born_ms: i64,
+    renewed_ms: i64,
 }
 
 /// Unix time of a message; before 1970 there is none.
@@ -38,20 +38,20 @@ impl Teller {
             block,
             told: BTreeMap::new(),
             horizon: BTreeMap::new(),
-            born_ms: i64::MIN,
+            renewed_ms: i64::MIN,
         }
     }
 
-    /// Takes the present values, before a birth.
-    pub fn renew(&mut self, present: Vec<Update>) {
+    /// Takes the present values of all births of a session: what happened before is the past.
+    pub fn renew(&mut self, now_ms: i64, present: Vec<Update>) {
         self.told.clear();
         present.into_iter().for_each(|update| self.keep(update));
+        self.horizon = self.told.clone();
+        self.renewed_ms = now_ms;
     }
 
     /// Every metric with its present value.
-    pub fn birth(&mut self, now_ms: i64) -> Vec<Metric> {
-        self.born_ms = now_ms;
-        self.horizon = self.told.clone();
+    pub fn birth(&self, now_ms: i64) -> Vec<Metric> {
         let mut metrics = Vec::new();
         for group in self.groups {
             let told = self.told.get(group);
@@ -64,11 +64,11 @@ impl Teller {
         metrics
     }
 
-    /// Whether an update is older than what the birth told: it belongs to the past then.
+    /// Whether an update is older than what the births told: it belongs to the past then.
     pub fn is_past(&self, update: &Update) -> bool {
         let Some(told) = self.horizon.get(&update.group) else {
-            // The birth told no value of it: what happened before the birth is the past.
-            return update.time_ms < self.born_ms;
+            // They told no value of it.
+            return update.time_ms < self.renewed_ms;
         };
         match (update.group, told.values.first(), update.values.first()) {
             // A board numbers its events over its life; their times are not known where only the number is.

@@ -191,7 +191,7 @@ impl Node {
     pub fn birth(&mut self, now_ms: i64, plant: Vec<Update>, motors: Vec<Present>) -> Vec<Message> {
         self.phase = Phase::Online;
         self.seq = 0;
-        self.gateway.renew(plant);
+        self.gateway.renew(now_ms, plant);
         self.gateway.keep(Update {
             group: Group::Gateway,
             time_ms: now_ms,
@@ -206,7 +206,7 @@ impl Node {
             let device = self.device(&motor.device);
             device.up = motor.up;
             device.born = false;
-            device.teller.renew(motor.values);
+            device.teller.renew(now_ms, motor.values);
             if motor.up == Some(true) {
                 messages.push(self.device_birth(&motor.device, now_ms));
             }
