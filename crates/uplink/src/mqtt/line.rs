@@ -21,6 +21,8 @@ use crate::sparkplug::Message;
 
 /// Largest packet that is taken from a broker, bytes: a command, a STATE message.
 const LARGEST: u32 = 128 * 1024;
+/// Bytes that are collected before they are sent.
+const MOST_AT_ONCE: usize = 64 * 1024;
 /// How long the broker may take for an answer, or to take what is sent.
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -77,6 +79,8 @@ pub enum Arrived {
 /// A connection to a broker.
 pub struct Line {
     stream: Stream,
+    /// What is to be sent and was not yet.
+    out: Vec<u8>,
     protocol: mqtt::Connection<Client>,
     arrived: VecDeque<Arrived>,
     buffer: Box<[u8]>,
@@ -98,19 +102,20 @@ impl Line {
         protocol.set_auto_pub_response(true);
         let mut line = Line {
             stream,
+            out: Vec::new(),
             protocol,
             arrived: VecDeque::new(),
             buffer: vec![0; 16 * 1024].into_boxed_slice(),
         };
-        line.send(connect(config, will)?.into()).await?;
+        line.send(connect(config, will)?.into())?;
         // The protocol's state lets nothing be sent before the answer: no subscription either.
-        while !line.receive_connack().await? {}
-        line.subscribe(topics).await?;
+        while !within(line.receive_connack()).await? {}
+        line.subscribe(topics)?;
         while within(line.next()).await? != Arrived::Subscribed {}
         Ok(line)
     }
 
-    async fn subscribe(&mut self, topics: &[String]) -> Result<(), LineError> {
+    fn subscribe(&mut self, topics: &[String]) -> Result<(), LineError> {
         let at_least_once = SubOpts::new().set_qos(Qos::AtLeastOnce);
         let entries: Result<Vec<SubEntry>, MqttError> = topics
             .iter()
@@ -120,7 +125,7 @@ impl Line {
             .packet_id(self.protocol.acquire_packet_id()?)
             .entries(entries?)
             .build()?;
-        self.send(packet.into()).await
+        self.send(packet.into())
     }
 
     /// Sends messages, in their order.
@@ -138,9 +143,12 @@ impl Line {
             } else {
                 builder.qos(Qos::AtMostOnce)
             };
-            self.send(builder.build()?.into()).await?;
+            self.send(builder.build()?.into())?;
+            if self.out.len() > MOST_AT_ONCE {
+                within(self.flush()).await?;
+            }
         }
-        within(async { Ok(self.stream.flush().await?) }).await
+        within(self.flush()).await
     }
 
     /// Asks for a [`Arrived::Pong`]. A broker works off what comes over one line in its order.
@@ -148,8 +156,8 @@ impl Line {
     /// # Errors
     /// The line broke.
     pub async fn ping(&mut self) -> Result<(), LineError> {
-        self.send(v3_1_1::Pingreq::new().into()).await?;
-        within(async { Ok(self.stream.flush().await?) }).await
+        self.send(v3_1_1::Pingreq::new().into())?;
+        within(self.flush()).await
     }
 
     /// Ends the connection: the broker drops the will.
@@ -157,7 +165,8 @@ impl Line {
     /// # Errors
     /// The line broke before.
     pub async fn disconnect(mut self) -> Result<(), LineError> {
-        self.send(v3_1_1::Disconnect::new().into()).await?;
+        self.send(v3_1_1::Disconnect::new().into())?;
+        within(self.flush()).await?;
         within(async { Ok(self.stream.shutdown().await?) }).await
     }
 
@@ -170,16 +179,20 @@ impl Line {
             if let Some(arrived) = self.arrived.pop_front() {
                 return Ok(arrived);
             }
+            // An answer that the protocol gave to what came before.
+            self.flush().await?;
             let count = self.stream.read(&mut self.buffer).await?;
-            self.take(count).await?;
+            for event in self.read(count)? {
+                self.work_off(event)?;
+            }
         }
     }
 
     async fn receive_connack(&mut self) -> Result<bool, LineError> {
-        let count = within(async { Ok(self.stream.read(&mut self.buffer).await?) }).await?;
-        let events = self.read(count)?;
+        self.flush().await?;
+        let count = self.stream.read(&mut self.buffer).await?;
         let mut accepted = false;
-        for event in events {
+        for event in self.read(count)? {
             if let Event::NotifyPacketReceived(GenericPacket::V3_1_1Connack(connack)) = &event {
                 let code = connack.return_code();
                 if !code.is_success() {
@@ -187,16 +200,21 @@ impl Line {
                 }
                 accepted = true;
             }
-            self.work_off(event).await?;
+            self.work_off(event)?;
         }
         Ok(accepted)
     }
 
-    async fn take(&mut self, count: usize) -> Result<(), LineError> {
-        for event in self.read(count)? {
-            self.work_off(event).await?;
+    /// Sends what is to be sent. Dropped while it waits, it goes on where it was the next time.
+    async fn flush(&mut self) -> Result<(), LineError> {
+        while !self.out.is_empty() {
+            let count = self.stream.write(&self.out).await?;
+            if count == 0 {
+                return Err(LineError::Closed);
+            }
+            self.out.drain(..count);
         }
-        Ok(())
+        Ok(self.stream.flush().await?)
     }
 
     fn read(&mut self, count: usize) -> Result<Vec<Event>, LineError> {
@@ -215,18 +233,17 @@ impl Line {
         Ok(events)
     }
 
-    async fn send(&mut self, packet: GenericPacket<u16>) -> Result<(), LineError> {
-        for event in self.protocol.send(packet) {
-            self.work_off(event).await?;
-        }
-        Ok(())
+    fn send(&mut self, packet: GenericPacket<u16>) -> Result<(), LineError> {
+        let events = self.protocol.send(packet);
+        events
+            .into_iter()
+            .try_for_each(|event| self.work_off(event))
     }
 
-    async fn work_off(&mut self, event: Event) -> Result<(), LineError> {
+    fn work_off(&mut self, event: Event) -> Result<(), LineError> {
         match event {
             Event::RequestSendPacket { packet, .. } => {
-                let bytes = packet.to_continuous_buffer();
-                within(async { Ok(self.stream.write_all(&bytes).await?) }).await?;
+                self.out.extend(packet.to_continuous_buffer());
             }
             Event::NotifyPacketReceived(packet) => self.arrive(packet)?,
             Event::NotifyError(error) => return Err(error.into()),

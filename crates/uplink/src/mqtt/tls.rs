@@ -18,21 +18,21 @@ pub(super) trait Both: AsyncRead + AsyncWrite + Unpin + Send {}
 impl<T: AsyncRead + AsyncWrite + Unpin + Send> Both for T {}
 
 /// Bytes to and from a broker.
-pub(super) type Stream = tokio::io::BufWriter<Box<dyn Both>>;
+pub(super) type Stream = Box<dyn Both>;
 
 /// Opens the stream that the configuration names.
 pub(super) async fn open(config: &MqttConfig) -> Result<Stream, LineError> {
     let plain = TcpStream::connect((config.host.as_str(), config.port)).await?;
     plain.set_nodelay(true)?;
     let Some(tls) = &config.tls else {
-        return Ok(tokio::io::BufWriter::new(Box::new(plain)));
+        return Ok(Box::new(plain));
     };
     let name = ServerName::try_from(config.host.clone())
         .map_err(|_| LineError::Refused(format!("{} is no name for TLS", config.host)))?;
     let encrypted = TlsConnector::from(client(tls)?)
         .connect(name, plain)
         .await?;
-    Ok(tokio::io::BufWriter::new(Box::new(encrypted)))
+    Ok(Box::new(encrypted))
 }
 
 fn client(tls: &TlsConfig) -> Result<Arc<ClientConfig>, LineError> {
