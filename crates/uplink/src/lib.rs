@@ -1,4 +1,5 @@
 //! What a plant tells others: Sparkplug B over MQTT, metrics of Prometheus, registers of Modbus TCP.
 
+pub mod modbus;
 pub mod mqtt;
 pub mod sparkplug;
