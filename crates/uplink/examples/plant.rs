@@ -1,10 +1,12 @@
-//! A plant that a program made up, told to a broker: `plant FOLDER PORT MOTORS SECONDS [PRIMARY_HOST]`. `tools/check-sparkplug` runs
-//! it, kills it and runs it again.
+//! A plant that a program made up, for `tools/check-sparkplug`, `tools/check-modbus-map` and `tools/check-metrics`.
+//!
+//! `plant FOLDER MOTORS ROUNDS [mqtt=PORT] [host=PRIMARY_HOST] [modbus=PORT] [shared=1] [metrics=PORT]`
 //!
 //! What it has stored it writes to `truth.jsonl` too, a line an entry. It ends when everything is delivered, or
 //! after two minutes without.
 
-use std::io::Write as _;
+use std::collections::HashMap;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -12,7 +14,9 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use fleet::alarm::{Alarm, AlarmCause, AlarmChange, AlarmState, Change, Evidence, Severity, Who};
 use fleet::{BoardEvent, Entry, Limits, Link, MotorId, MotorInfo, Second, Store};
 use tokio::sync::watch;
-use uplink::mqtt::{MqttConfig, MqttStatus, run};
+use uplink::metrics::{MetricsConfig, Source, router};
+use uplink::modbus::{Layout, ModbusConfig, ModbusStatus};
+use uplink::mqtt::{MqttConfig, MqttStatus};
 use uplink::sparkplug::Names;
 
 type Failure = Box<dyn std::error::Error>;
@@ -22,10 +26,9 @@ const ROUND: Duration = Duration::from_millis(200);
 
 struct Arguments {
     folder: PathBuf,
-    port: u16,
     motors: u32,
     rounds: u32,
-    primary_host: Option<String>,
+    more: HashMap<String, String>,
 }
 
 fn arguments() -> Result<Arguments, Failure> {
@@ -33,14 +36,18 @@ fn arguments() -> Result<Arguments, Failure> {
     let mut next = || {
         words
             .next()
-            .ok_or("plant FOLDER PORT MOTORS SECONDS [PRIMARY_HOST]")
+            .ok_or("plant FOLDER MOTORS ROUNDS [KEY=VALUE]...")
+    };
+    let (folder, motors, rounds) = (next()?.into(), next()?.parse()?, next()?.parse()?);
+    let pair = |word: String| {
+        word.split_once('=')
+            .map(|(key, value)| (key.to_owned(), value.to_owned()))
     };
     Ok(Arguments {
-        folder: next()?.into(),
-        port: next()?.parse()?,
-        motors: next()?.parse()?,
-        rounds: next()?.parse()?,
-        primary_host: next().ok(),
+        folder,
+        motors,
+        rounds,
+        more: words.filter_map(pair).collect(),
     })
 }
 
@@ -203,27 +210,68 @@ async fn main() -> Result<(), Failure> {
     let (wake, woken) = watch::channel(0);
     let (stop, stopped) = watch::channel(false);
     let mut plant = Plant::open(&arguments.folder, arguments.motors, wake)?;
-    let mut config = MqttConfig::new(
-        "127.0.0.1",
-        arguments.port,
-        Names::new("Plant 1", "gateway")?,
-    );
-    config.primary_host = arguments.primary_host;
-    config.session_file = Some(arguments.folder.join("session"));
-    let status = MqttStatus::default();
-    let store = Arc::clone(&plant.store);
-    let output = tokio::spawn(run(config, store, status.clone(), woken, stopped));
+    let (mqtt, modbus) = (MqttStatus::default(), ModbusStatus::default());
+    let mut running = tokio::task::JoinSet::new();
+    if let Some(port) = arguments.more.get("mqtt") {
+        let mut config = MqttConfig::new(
+            "127.0.0.1",
+            port.parse()?,
+            Names::new("Plant 1", "gateway")?,
+        );
+        config.primary_host = arguments.more.get("host").cloned();
+        config.session_file = Some(arguments.folder.join("session"));
+        let output = uplink::mqtt::run(
+            config,
+            Arc::clone(&plant.store),
+            mqtt.clone(),
+            woken,
+            stopped.clone(),
+        );
+        running.spawn(async { output.await.map_err(|error| error.to_string()) });
+    }
+    if let Some(port) = arguments.more.get("modbus") {
+        let mut config = ModbusConfig::new(format!("127.0.0.1:{port}").parse()?);
+        if arguments.more.contains_key("shared") {
+            config.layout = Layout::Shared;
+        }
+        let output = uplink::modbus::run(
+            config,
+            Arc::clone(&plant.store),
+            modbus.clone(),
+            stopped.clone(),
+        );
+        running.spawn(async { output.await.map_err(|error| error.to_string()) });
+    }
+    if let Some(port) = arguments.more.get("metrics") {
+        let source = Source {
+            store: Arc::clone(&plant.store),
+            config: MetricsConfig::default(),
+            outputs: vec!["mqtt".to_owned()],
+            mqtt: Some(mqtt.clone()),
+            modbus: Some(modbus),
+        };
+        let listener = tokio::net::TcpListener::bind(format!("127.0.0.1:{port}")).await?;
+        tokio::spawn(async { axum::serve(listener, router(source)).await });
+    }
     for number in 1..=arguments.rounds {
         plant.round(number)?;
         tokio::time::sleep(ROUND).await;
     }
-    let mut patience = 1_200;
-    while patience > 0 && !plant.store.since(status.get().delivered, 1)?.is_empty() {
-        patience -= 1;
-        tokio::time::sleep(Duration::from_millis(100)).await;
+    if arguments.more.contains_key("mqtt") {
+        let mut patience = 1_200;
+        while patience > 0 && !plant.store.since(mqtt.get().delivered, 1)?.is_empty() {
+            patience -= 1;
+            tokio::time::sleep(Duration::from_millis(100)).await;
+        }
+    } else {
+        println!("ready");
+        // The program that started this one ends it by closing its input.
+        tokio::task::spawn_blocking(|| std::io::stdin().read_to_end(&mut Vec::new())).await??;
     }
     stop.send(true)?;
-    output.await??;
-    println!("{}", serde_json::to_string(&status.get())?);
+    while let Some(ended) = running.join_next().await {
+        ended??;
+    }
+    println!("{}", serde_json::to_string(&mqtt.get())?);
     Ok(())
 }

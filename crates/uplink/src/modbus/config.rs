@@ -4,11 +4,15 @@ use std::net::SocketAddr;
 
 use document::{Bounds, Section};
 
+use super::Layout;
+
 /// The Modbus server.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModbusConfig {
     /// Address and port to listen at.
     pub listen: SocketAddr,
+    /// Where each motor's registers are.
+    pub layout: Layout,
     /// Most masters at once.
     pub connections: u32,
     /// Silence after which a master's line is closed, s.
@@ -23,6 +27,7 @@ impl ModbusConfig {
     pub fn new(listen: SocketAddr) -> ModbusConfig {
         ModbusConfig {
             listen,
+            layout: Layout::Own,
             connections: 32,
             idle_s: 120,
         }
@@ -31,11 +36,14 @@ impl ModbusConfig {
     /// Reads `[modbus]`. `None` after a problem, which is reported.
     pub fn read(section: Section<'_>) -> Option<ModbusConfig> {
         let listen = listen(&section);
+        let layouts = [("own", Layout::Own), ("shared", Layout::Shared)];
+        let layout = section.choice_or("units", &layouts, Layout::Own);
         let connections = section.integer_or("connections", &CONNECTIONS, 32);
         let idle_s = section.integer_or("idle_s", &IDLE_S, 120);
         section.finish();
         Some(ModbusConfig {
             listen: listen?,
+            layout: layout?,
             connections: connections?,
             idle_s: idle_s?,
         })
@@ -80,8 +88,8 @@ mod tests {
 
     #[test]
     fn problems_have_line_and_remedy() {
-        let error = parse("[modbus]\nlisten = \"502\"\nidle_s = 0\n")
-            .expect_err("two slips")
+        let error = parse("[modbus]\nlisten = \"502\"\nidle_s = 0\nunits = \"all\"\n")
+            .expect_err("three slips")
             .to_string();
         for part in [
             "plant.toml:2",

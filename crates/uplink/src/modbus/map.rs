@@ -184,12 +184,32 @@ pub const WORDS: u16 = ADDRESSES[FIELDS - 1] + MAP[FIELDS - 1].kind.words();
 pub const BLOCK: u16 = 100;
 /// Motors that share a unit.
 pub const IN_A_UNIT: usize = 600;
-/// Last unit that is one motor's own: motor 1 is unit 1.
-pub const LAST_UNIT_OF_ONE: u8 = 247;
-/// First unit that many motors share.
-pub const FIRST_BLOCK_UNIT: u8 = 248;
-/// Motors that the map has room for.
-pub const MOST: usize = IN_A_UNIT * (u8::MAX - FIRST_BLOCK_UNIT + 1) as usize;
+/// Last unit; the first one is 1. Many masters can address no other ones.
+pub const LAST_UNIT: u8 = 247;
+
+/// Where each motor's registers are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// Motor N is unit N, from address 0.
+    #[default]
+    Own,
+    /// Motors share units, [`IN_A_UNIT`] each, in steps of [`BLOCK`] registers.
+    Shared,
+}
+
+impl Layout {
+    /// Motors that have registers.
+    pub const fn most(self) -> usize {
+        self.in_a_unit() * LAST_UNIT as usize
+    }
+
+    const fn in_a_unit(self) -> usize {
+        match self {
+            Layout::Own => 1,
+            Layout::Shared => IN_A_UNIT,
+        }
+    }
+}
 
 const fn addresses() -> [u16; FIELDS] {
     let mut addresses = [0; FIELDS];
@@ -209,6 +229,7 @@ pub const fn address(field: Field) -> u16 {
 /// All motors in the order of their numbers, as a master sees them.
 #[derive(Clone, Debug, Default)]
 pub struct Plant {
+    layout: Layout,
     motors: Vec<Image>,
 }
 
@@ -219,47 +240,41 @@ struct Image {
 }
 
 impl Plant {
-    /// The plant as the store knows it. Motors beyond [`MOST`] have no registers.
-    pub fn new(motors: &[MotorState]) -> Plant {
+    /// The plant as the store knows it. Motors beyond [`Layout::most`] have no registers.
+    pub fn new(motors: &[MotorState], layout: Layout) -> Plant {
+        let motors = motors.iter().take(layout.most());
         Plant {
-            motors: motors.iter().take(MOST).map(Image::new).collect(),
+            layout,
+            motors: motors.map(Image::new).collect(),
         }
     }
 
     /// Whether a unit has registers.
     pub fn has(&self, unit: u8) -> bool {
-        self.first(unit)
-            .is_some_and(|first| first < self.motors.len())
+        !self.unit(unit).is_empty()
     }
 
-    /// Number of the first motor of a unit, from 0.
-    fn first(&self, unit: u8) -> Option<usize> {
-        match unit {
-            0 => None,
-            1..=LAST_UNIT_OF_ONE => Some(usize::from(unit) - 1),
-            FIRST_BLOCK_UNIT.. => Some(usize::from(unit - FIRST_BLOCK_UNIT) * IN_A_UNIT),
+    /// The motors of a unit.
+    fn unit(&self, unit: u8) -> &[Image] {
+        if !(1..=LAST_UNIT).contains(&unit) {
+            return &[];
         }
+        let most = self.layout.in_a_unit();
+        let motors = self.motors.chunks(most).nth(usize::from(unit) - 1);
+        motors.unwrap_or_default()
     }
 
     /// Registers of a unit; `None` where one of them does not exist. Between two motors' registers there are zeros.
     pub fn range(&self, unit: u8, first: u16, count: u16, now_ms: i64) -> Option<Vec<u16>> {
-        let end = u32::from(first) + u32::from(count);
-        let motor = self.first(unit)?;
-        if unit <= LAST_UNIT_OF_ONE {
-            let image = self.motors.get(motor)?;
-            let addresses = first..u16::try_from(end).ok()?;
-            return addresses.map(|at| image.word(at, now_ms)).collect();
-        }
-        let here = self.motors.len().saturating_sub(motor).min(IN_A_UNIT) as u32;
-        if end > here * u32::from(BLOCK) {
-            return None;
-        }
-        let word = |at: u32| {
-            let block = u32::from(BLOCK);
-            let image = self.motors.get(motor + (at / block) as usize)?;
-            Some(image.word((at % block) as u16, now_ms).unwrap_or(0))
+        let motors = self.unit(unit);
+        let addresses = usize::from(first)..usize::from(first) + usize::from(count);
+        let word = |at: usize| {
+            let block = usize::from(BLOCK);
+            let word = motors.get(at / block)?.word(at % block, now_ms);
+            // Beyond the last motor's registers there is nothing.
+            word.or_else(|| (at / block + 1 < motors.len()).then_some(0))
         };
-        (u32::from(first)..end).map(word).collect()
+        addresses.map(word).collect()
     }
 }
 
@@ -344,11 +359,11 @@ impl Image {
         }
     }
 
-    fn word(&self, at: u16, now_ms: i64) -> Option<u16> {
-        match at.checked_sub(address(Field::Age)) {
+    fn word(&self, at: usize, now_ms: i64) -> Option<u16> {
+        match at.checked_sub(usize::from(address(Field::Age))) {
             Some(0) => Some((self.age_s(now_ms) >> 16) as u16),
             Some(1) => Some(self.age_s(now_ms) as u16),
-            _ => self.words.get(usize::from(at)).copied(),
+            _ => self.words.get(at).copied(),
         }
     }
 

@@ -8,7 +8,7 @@ mod server;
 pub use config::ModbusConfig;
 pub use frame::{Frame, LARGEST_FRAME, Request, answer, split};
 pub use map::{
-    BLOCK, Entry, FIRST_BLOCK_UNIT, Field, IN_A_UNIT, Kind, LAST_UNIT_OF_ONE, MAP, MAP_VERSION,
-    MOST, Plant, WORDS, address,
+    BLOCK, Entry, Field, IN_A_UNIT, Kind, LAST_UNIT, Layout, MAP, MAP_VERSION, Plant, WORDS,
+    address,
 };
 pub use server::{ModbusError, ModbusState, ModbusStatus, run};

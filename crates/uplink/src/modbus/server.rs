@@ -15,7 +15,7 @@ use tokio::time::{Instant, timeout};
 
 use super::ModbusConfig;
 use super::frame::{Frame, LARGEST_FRAME, answer, split};
-use super::map::Plant;
+use super::map::{Layout, Plant};
 
 /// How long a master may take to send the rest of a request, or to take an answer.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -111,7 +111,7 @@ async fn serve(
     mut stop: watch::Receiver<bool>,
 ) {
     let places = Arc::new(Semaphore::new(config.connections as usize));
-    let plant = Arc::new(Newest::new(store));
+    let plant = Arc::new(Newest::new(store, config.layout));
     let idle = Duration::from_secs(u64::from(config.idle_s));
     loop {
         let stream = tokio::select! {
@@ -184,13 +184,15 @@ async fn read(stream: &mut TcpStream, buffer: &mut Vec<u8>) -> bool {
 /// The plant as the store knew it a moment ago, shared by all masters.
 struct Newest {
     store: Arc<Store>,
+    layout: Layout,
     known: Mutex<Option<(Instant, Arc<Plant>)>>,
 }
 
 impl Newest {
-    fn new(store: Arc<Store>) -> Newest {
+    fn new(store: Arc<Store>, layout: Layout) -> Newest {
         Newest {
             store,
+            layout,
             known: Mutex::new(None),
         }
     }
@@ -209,7 +211,7 @@ impl Newest {
         let store = Arc::clone(&self.store);
         let motors = tokio::task::spawn_blocking(move || store.motors()).await;
         let plant = match motors {
-            Ok(motors) => Arc::new(Plant::new(&motors?)),
+            Ok(motors) => Arc::new(Plant::new(&motors?, self.layout)),
             // The program ends.
             Err(_) => Arc::default(),
         };

@@ -6,8 +6,8 @@ mod strangers;
 use fleet::{Link, MotorId, MotorInfo, MotorState, Second};
 use proptest::prelude::*;
 use uplink::modbus::{
-    BLOCK, FIRST_BLOCK_UNIT, Field, Frame, IN_A_UNIT, LARGEST_FRAME, Plant, Request, WORDS,
-    address, answer, split,
+    BLOCK, Field, Frame, IN_A_UNIT, LARGEST_FRAME, Layout, Plant, Request, WORDS, address, answer,
+    split,
 };
 
 fn state(name: &str, number: u32) -> MotorState {
@@ -50,7 +50,7 @@ fn read(plant: &Plant, unit: u8, first: u16, count: u16) -> Vec<u8> {
 /// Bytes of an answer as the standard draws them (MODBUS Messaging on TCP/IP V1.0b, 3.1.3).
 #[test]
 fn an_answer_is_what_the_standard_draws() {
-    let plant = Plant::new(&[state("pump-7", 9)]);
+    let plant = Plant::new(&[state("pump-7", 9)], Layout::Own);
     let number = read(&plant, 1, address(Field::Number), 2);
     assert_eq!(number, [0xAB, 0xCD, 0, 0, 0, 7, 1, 4, 4, 0, 0, 0, 9]);
     let age = read(&plant, 1, address(Field::Age), 2);
@@ -65,7 +65,7 @@ fn an_answer_is_what_the_standard_draws() {
 
 #[test]
 fn what_does_not_exist_is_an_exception() {
-    let plant = Plant::new(&[state("pump-7", 9)]);
+    let plant = Plant::new(&[state("pump-7", 9)], Layout::Own);
     let code = |answer: Vec<u8>| (answer[7], answer[8]);
     assert_eq!(code(read(&plant, 1, WORDS, 1)), (0x84, 2));
     assert_eq!(code(read(&plant, 1, u16::MAX, 2)), (0x84, 2));
@@ -83,25 +83,30 @@ fn what_does_not_exist_is_an_exception() {
     }
 }
 
-/// The 601st motor is the first of unit 249; both views of a motor are the same.
+/// The 601st motor is the first of unit 2 where units are shared, and unit 601 does not exist where they are not.
 #[test]
 fn every_motor_has_its_registers() {
     let motors: Vec<_> = (0..=IN_A_UNIT as u32)
         .map(|k| state(&format!("m{k}"), k + 1))
         .collect();
-    let plant = Plant::new(&motors);
+    let (own, shared) = (
+        Plant::new(&motors, Layout::Own),
+        Plant::new(&motors, Layout::Shared),
+    );
     let at = address(Field::Number);
     for k in [0u16, 1, 246, 599] {
-        let shared = read(&plant, FIRST_BLOCK_UNIT, k * BLOCK + at, 2);
-        assert_eq!(shared[9..], (u32::from(k) + 1).to_be_bytes());
+        let number = read(&shared, 1, k * BLOCK + at, 2);
+        assert_eq!(number[9..], (u32::from(k) + 1).to_be_bytes());
     }
-    assert_eq!(read(&plant, 247, at, 2)[9..], 247u32.to_be_bytes());
-    assert_eq!(read(&plant, 249, at, 2)[9..], 601u32.to_be_bytes());
-    assert_eq!(read(&plant, 249, BLOCK, 1)[7], 0x84);
-    assert_eq!(
-        read(&plant, FIRST_BLOCK_UNIT, WORDS, BLOCK - WORDS)[9..],
-        vec![0; usize::from(2 * (BLOCK - WORDS))]
-    );
+    assert_eq!(read(&shared, 2, at, 2)[9..], 601u32.to_be_bytes());
+    assert_eq!(read(&shared, 2, BLOCK, 1)[7], 0x84);
+    assert_eq!(read(&shared, 2, WORDS, 1)[7], 0x84);
+    assert_eq!(read(&shared, 1, 599 * BLOCK + WORDS, 1)[7], 0x84);
+    let between = vec![0; usize::from(2 * (BLOCK - WORDS))];
+    assert_eq!(read(&shared, 1, WORDS, BLOCK - WORDS)[9..], between);
+    assert_eq!(read(&own, 247, at, 2)[9..], 247u32.to_be_bytes());
+    assert_eq!(read(&own, 248, at, 2)[8], 10);
+    assert_eq!(read(&own, 1, BLOCK + at, 2)[8], 2);
 }
 
 proptest! {
@@ -133,8 +138,8 @@ proptest! {
 
     /// Whatever is asked: an answer with the request's numbers, of the length that it says, and no longer than allowed.
     #[test]
-    fn every_request_has_a_sound_answer(unit in any::<u8>(), data in prop::collection::vec(any::<u8>(), 0..253)) {
-        let plant = Plant::new(&[state("a", 1), state("b", 2)]);
+    fn every_request_has_a_sound_answer(shared in any::<bool>(), unit in any::<u8>(), data in prop::collection::vec(any::<u8>(), 0..253)) {
+        let plant = Plant::new(&[state("a", 1), state("b", 2)], if shared { Layout::Shared } else { Layout::Own });
         let answer = ask(&plant, unit, &data);
         prop_assert!(answer.len() <= LARGEST_FRAME);
         prop_assert_eq!(&answer[..4], &[0xAB, 0xCD, 0, 0]);
