@@ -36,7 +36,7 @@ const fn target(
 }
 
 /// Every target.
-pub const TARGETS: [Target; 16] = [
+pub const TARGETS: [Target; 18] = [
     target(
         "motor-file",
         targets::motor_file,
@@ -57,6 +57,13 @@ pub const TARGETS: [Target; 16] = [
     target("stream", targets::stream, seeds::streams, 5_000),
     target("telemetry", targets::telemetry, seeds::telemetry, 200_000),
     target("modbus", targets::modbus, seeds::modbus, 200_000),
+    target(
+        "modbus-tcp",
+        targets::modbus_tcp,
+        seeds::modbus_tcp,
+        100_000,
+    ),
+    target("sparkplug", targets::sparkplug, seeds::sparkplug, 50_000),
     target("monitor", targets::monitor, seeds::samples, 400),
 ];
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use board::{Frame, MAX_FRAME_BYTES, Shown};
 use flate2::{Compression, write::GzEncoder};
 use monitor::Report;
+use uplink::sparkplug::{Metric, Payload, REBIRTH, Wire};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -227,6 +228,45 @@ pub(crate) fn modbus() -> Vec<Vec<u8>> {
     let mut all: Vec<Vec<u8>> = bodies.iter().map(|body| one(body)).collect();
     all.push(bodies.iter().flat_map(|body| one(body)).collect());
     all
+}
+
+/// Frames of Modbus TCP, one and many.
+pub(crate) fn modbus_tcp() -> Vec<Vec<u8>> {
+    let bodies: [&[u8]; 5] = [
+        &[1, 4, 0, 0, 0, 68],
+        &[2, 3, 0, 67, 0, 1],
+        &[1, 4, 0, 100, 0, 125],
+        &[9, 4, 0, 0, 0, 1],
+        &[1, 16, 0, 0, 0, 1, 2, 0, 0],
+    ];
+    let one = |body: &&[u8]| [&[0, 1, 0, 0, 0, body.len() as u8], *body].concat();
+    let mut all: Vec<Vec<u8>> = bodies.iter().map(one).collect();
+    all.push(all.concat());
+    all
+}
+
+/// Messages as the target takes them: kind, length, body.
+pub(crate) fn sparkplug() -> Vec<Vec<u8>> {
+    let command = |name: &str, value| {
+        let metric = Metric {
+            name: Some(name.to_owned()),
+            value: Some(value),
+            ..Metric::default()
+        };
+        let payload = Payload {
+            timestamp: Some(1),
+            metrics: vec![metric],
+            ..Payload::default()
+        };
+        payload.to_bytes()
+    };
+    let of = |kind: u8, body: &[u8]| [&[kind, body.len() as u8], body].concat();
+    let here = of(2, br#"{"online":true,"timestamp":5}"#);
+    let away = of(2, br#"{"online":false,"timestamp":6}"#);
+    let rebirth = of(0, &command(REBIRTH, Wire::Boolean(true)));
+    let write = of(1, &command("Speed", Wire::Float(1.0)));
+    let all = [&here[..], &rebirth, &write, &away].concat();
+    vec![here, away, rebirth, write, all]
 }
 
 /// Steps of four bytes, as the target takes them.

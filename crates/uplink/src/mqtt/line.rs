@@ -165,7 +165,11 @@ impl Line {
     /// # Errors
     /// The line broke before.
     pub async fn disconnect(mut self) -> Result<(), LineError> {
-        self.send(v3_1_1::Disconnect::new().into())?;
+        // The protocol asks to close the line behind it; what it gave out before is sent.
+        match self.send(v3_1_1::Disconnect::new().into()) {
+            Ok(()) | Err(LineError::Closed) => {}
+            Err(error) => return Err(error),
+        }
         within(self.flush()).await?;
         within(async { Ok(self.stream.shutdown().await?) }).await
     }

@@ -1,5 +1,7 @@
 //! The edge node under any order of what can happen to it, seen by a host application that is not ours.
 
+mod broker;
+mod document;
 mod host;
 
 use std::collections::BTreeMap;
