@@ -74,11 +74,16 @@ fn second(k: u32, start: u32, number: u32) -> Second {
         judged: (number % 6) as u8,
         not_judged: (number % 3) as u8,
         fault: (k % 14) as u8,
-        residuals: (number % 7 != 0).then_some([0.012, -0.5, step as f32 * 0.001, f32::NAN]),
+        residuals: (!number.is_multiple_of(7)).then_some([
+            0.012,
+            -0.5,
+            step as f32 * 0.001,
+            f32::NAN,
+        ]),
         voltage_v: Some(230.0 + step as f32 * 0.25),
-        current_a: (k % 3 != 0).then_some(4.75),
+        current_a: (!k.is_multiple_of(3)).then_some(4.75),
         frequency_hz: Some(50.0),
-        speed_rpm: (number % 5 != 0).then_some(1450.0 + step as f32),
+        speed_rpm: (!number.is_multiple_of(5)).then_some(1450.0 + step as f32),
     }
 }
 
@@ -95,6 +100,7 @@ fn alarm(k: u32, number: u64, motor: MotorId, present: bool) -> AlarmChange {
         state,
         present,
         acknowledged: false,
+        suppressed: false,
         severity: Severity::High,
         fault: (k % 14) as u8,
         phase: None,

@@ -28,6 +28,7 @@ fn motor(name: &str, age_ms: i64) -> MotorState {
             why: String::new(),
         }),
         open_alarms: 2,
+        unacknowledged: 1,
         worst: Some(Severity::High),
     }
 }
@@ -56,8 +57,8 @@ fn values_have_their_names_and_units() {
         "drivemon_motor_voltage_volts{motor=\"pump-7\"} 230.5",
         "drivemon_motor_residual_ratio{motor=\"pump-7\",residual=\"r1\"} 0.25",
         "drivemon_motor_residual_ratio{motor=\"pump-7\",residual=\"r4\"} -0.5",
-        "drivemon_motor_lamp{motor=\"pump-7\",lamp=\"RUN\"} 1",
-        "drivemon_motor_lamp{motor=\"pump-7\",lamp=\"FAULT\"} 2",
+        "drivemon_motor_lamp{motor=\"pump-7\",lamp=\"run\"} 1",
+        "drivemon_motor_lamp{motor=\"pump-7\",lamp=\"fault\"} 2",
         "drivemon_motor_age_seconds{motor=\"pump-7\"} 1.5",
         "drivemon_motor_alarm_worst{motor=\"pump-7\"} 3",
         "drivemon_motors_with_fault 1",
@@ -98,7 +99,7 @@ fn series_are_bounded() {
         .collect();
     let series = |text: &str| text.lines().filter(|line| !line.starts_with('#')).count();
     assert_eq!(series(&text(&motors, 0)), 7 + 2 + 6 + 6);
-    assert_eq!(series(&text(&motors, 20)), 7 + 2 + 6 + 6 + 20 * 23);
+    assert_eq!(series(&text(&motors, 20)), 7 + 2 + 6 + 6 + 20 * 24);
     assert!(text(&motors, 20).contains("drivemon_motors_hidden 30\n"));
 }
 

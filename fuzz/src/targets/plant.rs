@@ -30,6 +30,7 @@ fn motor(k: u32) -> MotorState {
         last_event: k,
         link: None,
         open_alarms: 0,
+        unacknowledged: 0,
         worst: None,
     }
 }

@@ -218,6 +218,11 @@ fn motors(plant: &Plant<'_>, text: &mut Text) {
         each(plant, |m| Some(f64::from(m.open_alarms))),
     );
     gauge(
+        "drivemon_motor_alarms_unacknowledged",
+        "Those of them that nobody has acknowledged.",
+        each(plant, |m| Some(f64::from(m.unacknowledged))),
+    );
+    gauge(
         "drivemon_motor_alarm_worst",
         "The worst of them: 0 none, 1 low, 2 medium, 3 high.",
         each(plant, |m| Some(worst(m.worst))),

@@ -53,6 +53,7 @@ pub enum Field {
     LastEvent,
     OpenAlarms,
     WorstAlarm,
+    Unacknowledged,
     Name,
 }
 
@@ -173,6 +174,12 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "the worst of them: 0 none, 1 low, 2 medium, 3 high",
         ),
+        entry(
+            Field::Unacknowledged,
+            Word,
+            "",
+            "open alarms that nobody has acknowledged; 65535: as many or more",
+        ),
         entry(Field::Name, Text(32), "", "name of the motor, ASCII"),
     ]
 };
@@ -291,6 +298,10 @@ impl Image {
         image.long(
             Field::OpenAlarms,
             state.open_alarms.min(u32::from(u16::MAX)),
+        );
+        image.long(
+            Field::Unacknowledged,
+            state.unacknowledged.min(u32::from(u16::MAX)),
         );
         image.long(Field::WorstAlarm, state.worst.map_or(0, severity));
         image.name(state.info.id.as_str());

@@ -119,7 +119,7 @@ impl Line {
         let at_least_once = SubOpts::new().set_qos(Qos::AtLeastOnce);
         let entries: Result<Vec<SubEntry>, MqttError> = topics
             .iter()
-            .map(|topic| SubEntry::new(topic.as_str(), at_least_once.clone()))
+            .map(|topic| SubEntry::new(topic.as_str(), at_least_once))
             .collect();
         let packet = v3_1_1::Subscribe::builder()
             .packet_id(self.protocol.acquire_packet_id()?)

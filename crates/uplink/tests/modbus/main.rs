@@ -29,6 +29,7 @@ fn state(name: &str, number: u32) -> MotorState {
             why: String::new(),
         }),
         open_alarms: 2,
+        unacknowledged: 1,
         worst: None,
     }
 }
