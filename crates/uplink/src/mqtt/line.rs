@@ -1,8 +1,6 @@
 //! A connection to a broker (MQTT 3.1.1): bytes in and out; the protocol is `mqtt-protocol-core`'s.
 
 use std::collections::VecDeque;
-use std::io;
-use std::time::Duration;
 
 use mqtt_protocol_core::mqtt;
 use mqtt_protocol_core::mqtt::connection::{ConnectionOptions, Event};
@@ -11,11 +9,11 @@ use mqtt_protocol_core::mqtt::packet::{
 };
 use mqtt_protocol_core::mqtt::result_code::MqttError;
 use mqtt_protocol_core::mqtt::role::Client;
-use thiserror::Error;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::time::timeout;
 
 use super::MqttConfig;
+use super::error::{LineError, PATIENCE};
 use super::tls::{Stream, open};
 use crate::sparkplug::Message;
 
@@ -23,42 +21,6 @@ use crate::sparkplug::Message;
 const LARGEST: u32 = 128 * 1024;
 /// Bytes that are collected before they are sent.
 const MOST_AT_ONCE: usize = 64 * 1024;
-/// How long the broker may take for an answer, or to take what is sent.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-/// Why there is no connection to a broker, or no longer.
-#[derive(Debug, Error)]
-pub enum LineError {
-    /// It cannot be reached, or the line broke.
-    #[error("{0}")]
-    Io(#[from] io::Error),
-    /// It closed the line.
-    #[error("the broker closed the line")]
-    Closed,
-    /// It does not answer.
-    #[error("the broker did not answer within {} s", PATIENCE.as_secs())]
-    Silent,
-    /// It does not want this client.
-    #[error("the broker refused: {0}")]
-    Refused(String),
-    /// It does not keep to MQTT, or what should be sent cannot be.
-    #[error("MQTT: {0}")]
-    Protocol(String),
-    /// A file that the configuration names.
-    #[error("{path}: {error}")]
-    File {
-        /// The file.
-        path: String,
-        /// What is wrong.
-        error: String,
-    },
-}
-
-impl From<MqttError> for LineError {
-    fn from(error: MqttError) -> LineError {
-        LineError::Protocol(format!("{error:?}"))
-    }
-}
 
 /// What came from the broker.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! Sparkplug B over MQTT 3.1.1, from the store to a broker.
 
 mod config;
+mod error;
 mod line;
 mod present;
 mod run;
@@ -9,7 +10,7 @@ mod status;
 mod tls;
 
 pub use config::{MqttConfig, TlsConfig};
-pub use line::LineError;
+pub use error::LineError;
 pub use present::present;
 pub use run::{OutputError, run};
 pub use status::{MqttState, MqttStatus};

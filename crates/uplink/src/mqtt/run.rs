@@ -9,7 +9,8 @@ use thiserror::Error;
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until};
 
-use super::line::{Arrived, Line, LineError};
+use super::error::LineError;
+use super::line::{Arrived, Line};
 use super::present::present;
 use super::status::MqttStatus;
 use super::{MqttConfig, session_file};

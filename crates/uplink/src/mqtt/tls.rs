@@ -10,7 +10,7 @@ use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::TcpStream;
 use tokio_rustls::TlsConnector;
 
-use super::line::LineError;
+use super::error::LineError;
 use super::{MqttConfig, TlsConfig};
 
 /// What an encrypted and a plain line have in common.

@@ -152,18 +152,3 @@ impl Payload {
         Ok(Payload::decode(bytes)?)
     }
 }
-
-impl PropertySet {
-    /// A set of one text.
-    pub(super) fn of_text(key: &str, text: &str) -> PropertySet {
-        let value = PropertyValue {
-            datatype: Some(super::value::Datatype::Text as u32),
-            is_null: None,
-            text: Some(text.to_owned()),
-        };
-        PropertySet {
-            keys: vec![key.to_owned()],
-            values: vec![value],
-        }
-    }
-}

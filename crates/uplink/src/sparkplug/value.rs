@@ -1,6 +1,6 @@
 //! Values of metrics, and what a metric is.
 
-use super::payload::{Metric, PropertySet, Wire};
+use super::payload::{Metric, PropertySet, PropertyValue, Wire};
 
 /// Data types of Sparkplug B that are used here; the value is the number on the wire (Sparkplug 3.0, section 6.4.16).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +75,7 @@ impl Definition {
         Metric {
             name: Some(self.name.to_owned()),
             datatype: Some(self.datatype as u32),
-            properties: (!self.unit.is_empty()).then(|| PropertySet::of_text("engUnit", self.unit)),
+            properties: (!self.unit.is_empty()).then(|| unit(self.unit)),
             ..metric(alias, at_ms, value)
         }
     }
@@ -89,5 +89,18 @@ pub(super) fn metric(alias: Option<u64>, at_ms: u64, value: Option<&Value>) -> M
         is_null: value.is_none().then_some(true),
         value: value.map(Value::wire),
         ..Metric::default()
+    }
+}
+
+/// The property by which hosts know an engineering unit.
+fn unit(unit: &str) -> PropertySet {
+    let value = PropertyValue {
+        datatype: Some(Datatype::Text as u32),
+        is_null: None,
+        text: Some(unit.to_owned()),
+    };
+    PropertySet {
+        keys: vec!["engUnit".to_owned()],
+        values: vec![value],
     }
 }
