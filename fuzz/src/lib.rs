@@ -63,7 +63,7 @@ pub const TARGETS: [Target; 18] = [
         seeds::modbus_tcp,
         100_000,
     ),
-    target("sparkplug", targets::sparkplug, seeds::sparkplug, 50_000),
+    target("sparkplug", targets::sparkplug, seeds::sparkplug, 15_000),
     target("monitor", targets::monitor, seeds::samples, 400),
 ];
 
