@@ -71,6 +71,7 @@ fn exception(code: u8) -> String {
 pub struct ModbusLine {
     port: Box<dyn SerialPort>,
     settings: Line,
+    patience: Duration,
 }
 
 impl ModbusLine {
@@ -91,7 +92,21 @@ impl ModbusLine {
             .timeout(PATIENCE)
             .open();
         let port = opened.map_err(|error| port_error(name, error))?;
-        Ok(ModbusLine { port, settings })
+        Ok(ModbusLine {
+            port,
+            settings,
+            patience: PATIENCE,
+        })
+    }
+
+    /// Asks another board of the same line from now on.
+    pub fn set_unit(&mut self, unit: u8) {
+        self.settings.unit = unit;
+    }
+
+    /// How long the first byte of an answer may take; 0.6 s at first.
+    pub fn set_patience(&mut self, patience: Duration) {
+        self.patience = patience;
     }
 
     /// Reads input registers, as many requests as that takes.
@@ -176,14 +191,14 @@ impl ModbusLine {
         self.unwrap(function, &answer)
     }
 
-    /// Bytes until the line falls silent.
+    /// Bytes until the answer is whole or the line falls silent.
     fn collect(&mut self) -> std::io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut piece = [0; FRAME_BYTES];
         // A longest frame of a slow line takes longer than one gap.
-        let end = Instant::now() + PATIENCE + Duration::from_secs(2);
-        while Instant::now() < end && bytes.len() < FRAME_BYTES {
-            let patience = if bytes.is_empty() { PATIENCE } else { GAP };
+        let end = Instant::now() + self.patience + Duration::from_secs(2);
+        while Instant::now() < end && bytes.len() < FRAME_BYTES && !is_whole(&bytes) {
+            let patience = if bytes.is_empty() { self.patience } else { GAP };
             self.port.set_timeout(patience)?;
             match self.port.read(&mut piece) {
                 Ok(0) => break,
@@ -229,6 +244,17 @@ impl ModbusLine {
             unit: self.settings.unit,
         }
     }
+}
+
+/// Whether an answer is complete, of those that tell their length: nobody needs to wait for the silence behind it.
+fn is_whole(bytes: &[u8]) -> bool {
+    let length = match bytes {
+        [_, function, ..] if function & 0x80 != 0 => 5,
+        [_, 3 | 4 | 20, count, ..] => 5 + usize::from(*count),
+        [_, 6 | 16, ..] => 8,
+        _ => return false,
+    };
+    bytes.len() >= length
 }
 
 fn pairs(bytes: &[u8]) -> impl Iterator<Item = u16> {

@@ -1,0 +1,47 @@
+//! `drivemon fleet`.
+
+use std::future::Future;
+
+use clap::{Args, Subcommand};
+
+use super::error::CommandError;
+use super::simulate::Simulate;
+use super::terminal::Terminal;
+
+/// Try out what belongs to plants of many motors.
+#[derive(Debug, Args)]
+pub struct Fleet {
+    #[command(subcommand)]
+    command: FleetCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum FleetCommand {
+    /// Simulate boards on Modbus TCP, for trying a gateway and for training
+    ///
+    /// The protocol, the event log and the seconds are those of the board's own program. The motors are made up: they start,
+    /// carry changing load, warm up and rest, and some begin to fail. Nothing about detection can be concluded from them.
+    /// The boards have the addresses 1, 2, 3 ... of a line, as many as --per-port says; the next ones are behind the next port.
+    #[command(after_help = "\
+Examples:
+  drivemon fleet simulate 20 --config-out plant.toml              20 healthy motors
+  drivemon gateway plant.toml                                     in a second terminal
+  drivemon fleet simulate 300 --faulty 3 --faults-within 60       three of them fail within a minute
+Ctrl-C ends it.")]
+    Simulate(Simulate),
+}
+
+impl Fleet {
+    /// Runs the command until `end`.
+    ///
+    /// # Errors
+    /// As the command's.
+    pub fn run(
+        &self,
+        terminal: Terminal,
+        end: impl Future<Output = ()>,
+    ) -> Result<(), CommandError> {
+        let FleetCommand::Simulate(simulate) = &self.command;
+        simulate.run(terminal, end)
+    }
+}

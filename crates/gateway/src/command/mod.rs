@@ -1,0 +1,12 @@
+//! The commands: their arguments, what they do, and what they say. How a line is printed knows the program.
+
+mod error;
+mod fleet;
+mod gather;
+mod simulate;
+mod terminal;
+
+pub use error::CommandError;
+pub use fleet::Fleet;
+pub use gather::{Gather, Ran};
+pub use terminal::Terminal;

@@ -1,0 +1,17 @@
+//! From boards to entries of the store: one task for each link.
+
+mod asked;
+mod clock;
+mod context;
+mod frames;
+mod link;
+mod motor;
+mod tally;
+mod visit;
+
+pub(crate) use clock::now_ms;
+pub(crate) use context::Context;
+pub(crate) use link::follow;
+pub use tally::Snapshot;
+pub(crate) use tally::{Post, Tally};
+pub(crate) use visit::knock;

@@ -1,0 +1,14 @@
+//! Boards that are simulated: the motors are made up, the protocol, the log and the seconds are the real board's.
+
+mod board;
+mod flash;
+mod life;
+mod plant;
+mod serial;
+mod server;
+mod truth;
+
+pub use plant::{Plan, PlanError, Plant, Share};
+pub use serial::answer_line;
+pub use server::{listen, serve};
+pub use truth::Truth;
