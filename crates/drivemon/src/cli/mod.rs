@@ -39,6 +39,7 @@ First steps:
   drivemon calibrate healthy.csv.gz --motor motor.toml -o calibrated.toml
   drivemon batch DIR --motor-map map.toml -o out.parquet   many recordings, one row each
   drivemon panel                                       the lamps in a browser, on a simulated motor
+  drivemon gateway plant.toml                          many boards, one store
   drivemon flash --motor motor.toml                    build the firmware for this motor and write it to the board
   drivemon board read --serial PORT                    ask a board in the field
 
@@ -64,6 +65,10 @@ enum Command {
     Motor(commands::motor::Motor),
     #[cfg(feature = "panel")]
     Panel(commands::panel::Panel),
+    #[cfg(feature = "gateway")]
+    Gateway(commands::gateway::GatewayArgs),
+    #[cfg(feature = "gateway")]
+    Fleet(commands::gateway::Fleet),
     Flash(commands::flash::Flash),
     Board(commands::board::Board),
     Schema(commands::schema::SchemaArgs),
@@ -98,6 +103,10 @@ impl Cli {
             Command::Motor(motor) => motor.run(),
             #[cfg(feature = "panel")]
             Command::Panel(panel) => panel.run(),
+            #[cfg(feature = "gateway")]
+            Command::Gateway(gateway) => gateway.run(),
+            #[cfg(feature = "gateway")]
+            Command::Fleet(fleet) => commands::gateway::fleet(&fleet),
             Command::Flash(flash) => flash.run(),
             Command::Board(board) => board.run(),
             Command::Schema(schema) => schema.run(),

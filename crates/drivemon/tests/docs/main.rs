@@ -37,8 +37,10 @@ fn root() -> PathBuf {
 
 /// The README and the book, with their texts.
 fn documents() -> Vec<(PathBuf, String)> {
-    let entries = fs::read_dir(root().join("docs")).expect("part of the source tree");
-    let pages = entries.map(|entry| entry.expect("readable").path());
+    let folders = ["docs", "docs/fleet"].map(|folder| fs::read_dir(root().join(folder)));
+    let entries = folders.map(|entries| entries.expect("part of the source tree"));
+    let pages = entries.into_iter().flatten();
+    let pages = pages.map(|entry| entry.expect("readable").path());
     let mut paths: Vec<_> = pages
         .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
         .chain([root().join("README.md")])

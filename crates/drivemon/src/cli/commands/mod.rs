@@ -5,8 +5,12 @@ pub(crate) mod board;
 pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod completions;
+#[cfg(any(feature = "panel", feature = "gateway"))]
+mod ending;
 pub(crate) mod export;
 pub(crate) mod flash;
+#[cfg(feature = "gateway")]
+pub(crate) mod gateway;
 pub(crate) mod live;
 pub(crate) mod monitor;
 pub(crate) mod motor;

@@ -11,6 +11,7 @@ use recording::Source as Read;
 use tokio::sync::watch;
 
 use crate::cli::arguments::input::{InputArgs, read_motor};
+use crate::cli::commands::ending::told_to_end;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::say;
 use live::{open_probe, open_serial};
@@ -91,30 +92,6 @@ Ctrl-C ends it.";
 
 /// For a file that is being read when the panel ends.
 const LAST_WORK: std::time::Duration = std::time::Duration::from_secs(1);
-
-/// Until Ctrl-C is pressed or the system asks the process to end. Without such signals the server lives until the process
-/// is ended.
-async fn told_to_end() {
-    let pressed = async {
-        if tokio::signal::ctrl_c().await.is_err() {
-            std::future::pending::<()>().await;
-        }
-    };
-    #[cfg(unix)]
-    let asked = async {
-        use tokio::signal::unix::{SignalKind, signal};
-        match signal(SignalKind::terminate()) {
-            Ok(mut terminate) => drop(terminate.recv().await),
-            Err(_) => std::future::pending().await,
-        }
-    };
-    #[cfg(not(unix))]
-    let asked = std::future::pending::<()>();
-    tokio::select! {
-        () = pressed => {}
-        () = asked => {}
-    }
-}
 
 fn speed(text: &str) -> Result<f64, String> {
     let speed = text.parse::<f64>().map_err(|error| error.to_string())?;

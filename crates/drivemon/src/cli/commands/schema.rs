@@ -4,6 +4,8 @@ use clap::Args;
 use report::json::{self, Format};
 use serde_json::Value;
 
+#[cfg(feature = "gateway")]
+use crate::cli::commands::gateway;
 use crate::cli::commands::{board, calibrate, live, motor, simulated};
 use crate::cli::printing::answers::Refused;
 use crate::cli::printing::failure::{Failure, Finding};
@@ -56,6 +58,8 @@ pub fn formats() -> Vec<Format> {
     all.extend(motor::formats());
     all.extend(simulated::formats());
     all.push(Format::of::<live::Watched>());
+    #[cfg(feature = "gateway")]
+    all.push(Format::of::<gateway::Counted>());
     all.extend(board::formats());
     all.push(Format::of::<Refused>());
     all
