@@ -12,6 +12,9 @@ pub enum CommandError {
     /// Writing.
     #[error(transparent)]
     Write(#[from] crate::WriteError),
+    /// An output.
+    #[error("{0}")]
+    Output(String),
     /// A plan of simulated boards.
     #[error(transparent)]
     Plan(#[from] crate::simulate::PlanError),

@@ -1,14 +1,15 @@
 //! `drivemon gateway`.
 
 use std::future::Future;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
 use tokio::runtime::{Builder, Runtime};
-use tokio::time::{MissedTickBehavior, interval};
+use tokio::time::{MissedTickBehavior, interval, timeout};
 
 use super::error::CommandError;
+use super::outputs::{Handles, Outputs};
 use super::terminal::Terminal;
 use crate::config::{Config, advice};
 use crate::{Gateway, Snapshot, connect};
@@ -59,17 +60,18 @@ impl Gather {
     ///
     /// # Errors
     /// The configuration, or the store.
-    pub fn run(
+    pub fn run<O: Outputs>(
         &self,
         terminal: Terminal,
         end: impl Future<Output = ()>,
     ) -> Result<Ran, CommandError> {
-        let (config, ()) = Config::read(&self.config, Config::no_outputs)?;
+        let folder = self.config.parent().unwrap_or(Path::new(""));
+        let (config, outputs) = Config::read(&self.config, |root| O::read(root, folder))?;
         let runtime = Builder::new_current_thread().enable_all().build()?;
         if self.check {
-            return Ok(self.check(&config, &runtime, terminal));
+            return Ok(self.check(&config, &outputs, &runtime, terminal.say));
         }
-        let outcome = runtime.block_on(self.gather(&config, terminal, end));
+        let outcome = runtime.block_on(self.gather(&config, outputs, terminal, end));
         // A serial port that is being read must not hold the end up.
         runtime.shutdown_timeout(LAST_WORK);
         let counts = outcome?;
@@ -77,8 +79,13 @@ impl Gather {
         Ok(Ran::Gathered(counts))
     }
 
-    fn check(&self, config: &Config, runtime: &Runtime, terminal: Terminal) -> Ran {
-        let say = terminal.say;
+    fn check(
+        &self,
+        config: &Config,
+        outputs: &impl Outputs,
+        runtime: &Runtime,
+        say: fn(&str),
+    ) -> Ran {
         let (motors, links) = (config.motors.len(), config.links.len());
         say(&format!(
             "{}: {} on {}",
@@ -102,17 +109,30 @@ impl Gather {
             limits.minutes_days,
             limits.hours_days
         ));
+        outputs.described().iter().for_each(|line| say(line));
         if sound { Ran::Sound } else { Ran::ToChange }
     }
 
     async fn gather(
         &self,
         config: &Config,
+        outputs: impl Outputs,
         terminal: Terminal,
         end: impl Future<Output = ()>,
     ) -> Result<Snapshot, CommandError> {
         let complain = terminal.complain;
-        let mut gateway = Gateway::start(config, &[], move |line| complain(&line))?;
+        let names = outputs.names();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let mut gateway = Gateway::start(config, &names, move |line| complain(&line))?;
+        let handles = Handles {
+            store: gateway.store(),
+            alarms: gateway.alarms(),
+            stored: gateway.stored(),
+            ended: gateway.ended(),
+            terminal,
+        };
+        let handing_on = outputs.run(handles);
+        tokio::pin!(handing_on);
         complain(&format!(
             "{}, store {}   (Ctrl-C ends it)",
             count(config.motors.len(), "motor"),
@@ -125,10 +145,14 @@ impl Gather {
         loop {
             tokio::select! {
                 () = &mut end => break,
+                why = &mut handing_on => return Err(CommandError::Output(why)),
                 error = gateway.failed() => return Err(error.into()),
                 _ = turn.tick(), if self.every > 0 => complain(&told(&gateway.snapshot())),
             }
         }
+        gateway.begin_end();
+        // Outputs hear of the end, too, and keep their places.
+        let _ = timeout(LAST_WORK, &mut handing_on).await;
         Ok(gateway.end().await?)
     }
 }

@@ -3,10 +3,13 @@
 mod error;
 mod fleet;
 mod gather;
+mod outputs;
 mod simulate;
 mod terminal;
 
 pub use error::CommandError;
 pub use fleet::Fleet;
 pub use gather::{Gather, Ran};
+pub use outputs::{Handles, Outputs};
+pub use simulate::Simulate;
 pub use terminal::Terminal;

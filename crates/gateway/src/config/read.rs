@@ -14,14 +14,13 @@ const DAYS: Bounds = Bounds::between(1.0, 36_500.0, "days");
 const QUEUE_SECONDS: Bounds = Bounds::between(10_000.0, 4e9, "seconds of all motors");
 
 impl Config {
-    /// Reads a file. Section `outputs` is read by `outputs`, from nothing where the file has none: what a gateway hands on, and to
-    /// whom, is known to those who do it.
+    /// Reads a file. `outputs` reads from its top level what is handed on, and to whom: that is known to those who do it.
     ///
     /// # Errors
     /// Everything that is wrong with the file, with line, key and remedy.
     pub fn read<T>(
         path: &Path,
-        outputs: impl FnOnce(Option<Section<'_>>) -> Option<T>,
+        outputs: impl FnOnce(&Section<'_>) -> Option<T>,
     ) -> Result<(Config, T), FileError> {
         let text = read_text(path)?;
         Config::parse(&text, path, outputs)
@@ -34,21 +33,18 @@ impl Config {
     pub fn parse<T>(
         text: &str,
         path: &Path,
-        outputs: impl FnOnce(Option<Section<'_>>) -> Option<T>,
+        outputs: impl FnOnce(&Section<'_>) -> Option<T>,
     ) -> Result<(Config, T), FileError> {
         let document = Document::parse(text, &path.display().to_string())?;
         let root = document.root();
         let config = of_root(&root, path);
-        let outputs = root.optional_section("outputs").and_then(outputs);
+        let outputs = outputs(&root);
         root.finish();
         document.finish(config.zip(outputs))
     }
 
-    /// For a gateway that hands nothing on: refuses what stands in section `outputs`.
-    pub fn no_outputs(section: Option<Section<'_>>) -> Option<()> {
-        if let Some(section) = section {
-            section.finish();
-        }
+    /// For a gateway that hands nothing on.
+    pub fn no_outputs(_: &Section<'_>) -> Option<()> {
         Some(())
     }
 }

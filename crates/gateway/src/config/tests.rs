@@ -173,12 +173,7 @@ fn what_is_wrong_is_named_with_its_line_and_a_remedy() {
             "at least seconds_days",
         ),
         ("size_gb = 2", "size_gb = 0.001", 7, "out of range"),
-        (
-            "[gateway]",
-            "[outputs]",
-            3,
-            "outputs.lost_after_s: is not a known key",
-        ),
+        ("[gateway]", "[outputs]", 2, "outputs: is not a known key"),
         (
             "lost_after_s = 20",
             "lost_after_s = \"20\"",

@@ -160,12 +160,17 @@ impl Gateway {
         }
     }
 
+    /// Tells everybody that the gateway ends.
+    pub fn begin_end(&self) {
+        let _ = self.end.send(true);
+    }
+
     /// Ends: links stop, and everything that was received is written.
     ///
     /// # Errors
     /// What was received could not be written.
     pub async fn end(mut self) -> Result<Snapshot, WriteError> {
-        let _ = self.end.send(true);
+        self.begin_end();
         let links = async { while self.links.join_next().await.is_some() {} };
         if tokio::time::timeout(LINKS_END, links).await.is_err() {
             self.links.shutdown().await;

@@ -40,7 +40,8 @@ impl Answer for Counted {
 impl GatewayArgs {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        let ran = self.gather.run(TERMINAL, told_to_end()).map_err(failure)?;
+        let ran = self.gather.run::<()>(TERMINAL, told_to_end());
+        let ran = ran.map_err(failure)?;
         if let Ran::Gathered(counts) = ran {
             self.json.write(&Counted { counts })?;
         }
