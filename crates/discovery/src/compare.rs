@@ -7,6 +7,7 @@ use crate::report::types::{
 use crate::search::inconclusive;
 use estimation::data::case::Case;
 use estimation::data::channels::N_CHANNELS;
+use estimation::data::given::Sources;
 use estimation::data::question::{Error, Question};
 use estimation::data::study::Study;
 use estimation::fit::output_error::Effort;
@@ -15,7 +16,6 @@ use estimation::model::scale_report::SpeedScaleReport;
 use motor::MotorFile;
 use motor::dynamic::clarke;
 use num_complex::Complex64;
-use recording::Source;
 use std::ops::Range;
 
 /// A block with its number.
@@ -31,13 +31,22 @@ const BANDS: [f64; 8] = [0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 105.0, 1000.0];
 /// # Errors
 /// Wrong effects in the motor file or no source. A recording that cannot be judged gives a report with an
 /// audit and nothing else.
-pub fn compare(
-    sources: &[Source],
+pub fn compare<'a>(
+    sources: impl Into<Sources<'a>>,
+    motor: &MotorFile,
+    progress: &mut Progress<'_>,
+) -> Result<CompareReport, Error> {
+    compared(sources.into().first(), motor, progress)
+}
+
+fn compared(
+    first: Sources<'_>,
     motor: &MotorFile,
     progress: &mut Progress<'_>,
 ) -> Result<CompareReport, Error> {
     let empty = |audit| CompareReport {
         audit,
+        stretches: Vec::new(),
         signals: Vec::new(),
         regions: Vec::new(),
         bands: Vec::new(),
@@ -46,7 +55,7 @@ pub fn compare(
         speed_scale: None,
         cannot_be_concluded: Vec::new(),
     };
-    let question = match Question::new(&sources[..sources.len().min(1)], motor, progress) {
+    let question = match Question::new(first, motor, progress) {
         Ok(question) => question,
         Err(Error::Unsupported(audit, _)) => return Ok(empty(*audit)),
         Err(error) => return Err(error),
@@ -68,6 +77,7 @@ pub fn compare(
         }),
         speed_scale,
         cannot_be_concluded: cannot_be_concluded.unwrap_or_default(),
+        stretches: question.stretches,
         ..empty(question.audit)
     })
 }

@@ -3,14 +3,15 @@
 use audit::Audit;
 use motor::MotorFile;
 use motor::motor_file::{ParameterInterval, Uncertainty};
-use recording::Source;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::api::{Progress, as_believed, errors, updated};
 use crate::report::present::{effect_parameters, fit_report};
 use crate::report::types::ErrorReport;
+use estimation::data::given::Sources;
 use estimation::data::question::{Error, Question};
+use estimation::data::stretches::StretchReport;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
 use estimation::model::prior::{FRICTION, LEAKAGE, NOMINALS};
@@ -20,6 +21,9 @@ use estimation::model::prior::{FRICTION, LEAKAGE, NOMINALS};
 pub struct IdentifyReport {
     /// Audit of the fitted recording.
     pub audit: Audit,
+    /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stretches: Vec<StretchReport>,
     /// Errors of the motor file as it was.
     pub before: ErrorReport,
     /// Errors with the parameters found.
@@ -72,8 +76,8 @@ const WOULD_TELL: [&str; NOMINALS.len()] = [
 ///
 /// # Errors
 /// Wrong effects in the motor file, or sources that cannot be judged.
-pub fn identify(
-    sources: &[Source],
+pub fn identify<'a>(
+    sources: impl Into<Sources<'a>>,
     motor: &MotorFile,
     progress: &mut Progress<'_>,
 ) -> Result<(IdentifyReport, MotorFile), Error> {
@@ -87,6 +91,7 @@ pub fn identify(
     file.uncertainty = Some(intervals(motor, &file, &parameters));
     let report = IdentifyReport {
         audit: question.audit.clone(),
+        stretches: question.stretches.clone(),
         before: errors(study, &as_believed(study)),
         after: errors(study, &trial),
         parameters,

@@ -36,10 +36,13 @@ pub use design::limits::{Limits, NextRun};
 pub use design::report::{
     Certainty, DecidesReport, DesignGoal, DesignReport, LevelReport, RunReport,
 };
+pub use estimation::data::given::{Given, One, Sources};
 pub use estimation::data::instrument_class;
 pub use estimation::data::load_table::table_values;
 pub use estimation::data::question::Error;
-pub use estimation::data::stretches::told as told_stretches;
+pub use estimation::data::stretches::{
+    Budget, Choice, Excerpt, Gathering, Role, StretchReport, Survey, told as told_stretches,
+};
 pub use estimation::data::unsupported::Unsupported;
 pub use estimation::model::prediction::simulations;
 pub use estimation::model::scale_report::{AtRest, ErrorSource, SpeedScaleReport};

@@ -7,7 +7,7 @@ use crate::errors::{
 use crate::motor::Motor;
 use crate::source::Recording;
 use crate::work::{Told, run};
-use discovery::{LAW, Laws, Shapes};
+use discovery::{LAW, Laws, Shapes, Sources};
 use document::read_text;
 use pyo3::prelude::*;
 use recording::Source;
@@ -60,7 +60,7 @@ impl Asked {
     fn inputs(&self) -> Inputs<'_> {
         Inputs {
             names: &self.names,
-            sources: &self.sources,
+            sources: Sources::Whole(&self.sources),
             motor: &self.motor.known.motor,
             laws: Laws::default(),
             next_run: None,

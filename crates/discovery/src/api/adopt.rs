@@ -10,6 +10,7 @@ use crate::report::present::{effect_parameters, fit_report};
 use crate::report::types::{AdoptReport, ErrorReport};
 use crate::search::inconclusive::{self};
 use crate::search::refit::{best_of, only};
+use estimation::data::given::Sources;
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
@@ -19,7 +20,6 @@ use motor::MotorFile;
 use motor::effect::{EffectConfig, expression, to_entry};
 use motor::effects::{find, names};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
-use recording::Source;
 use signal::dot;
 
 use super::explain::{judged_frame, speed_scale_report};
@@ -31,9 +31,9 @@ use super::{LAW, PARAMETERS, Progress};
 ///
 /// # Errors
 /// An unknown or already present effect, wrong effects in the motor file, or sources that cannot be judged.
-pub fn adopt(
+pub fn adopt<'a>(
     effect: &str,
-    sources: &[Source],
+    sources: impl Into<Sources<'a>>,
     motor: &MotorFile,
     progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
@@ -44,9 +44,9 @@ pub fn adopt(
 ///
 /// # Errors
 /// As [`adopt`], and a formula of another effect or one that there is not.
-pub fn adopt_with(
+pub fn adopt_with<'a>(
     effect: &str,
-    sources: &[Source],
+    sources: impl Into<Sources<'a>>,
     motor: &MotorFile,
     laws: Laws,
     progress: &mut Progress<'_>,
@@ -81,6 +81,7 @@ pub fn adopt_with(
     let nominals = fit_report(study, &after).parameters;
     let report = AdoptReport {
         audit: question.audit.clone(),
+        stretches: question.stretches.clone(),
         effect: effect.to_owned(),
         before: errors(study, &before),
         after: errors(study, &after),
@@ -137,6 +138,7 @@ fn adopted_law(
     };
     let report = AdoptReport {
         audit: question.audit.clone(),
+        stretches: question.stretches.clone(),
         effect: LAW.to_owned(),
         before: errors(study, &found.baseline),
         after: errors(study, after),
@@ -185,6 +187,7 @@ fn adopted_frame(
     };
     let report = AdoptReport {
         audit: question.audit.clone(),
+        stretches: question.stretches.clone(),
         effect: frame::NAME.to_owned(),
         before: errors(frame.fitted_before, frame.held_out_before),
         after: errors(frame.fitted_after, frame.held_out_after),

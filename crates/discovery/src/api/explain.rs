@@ -13,13 +13,13 @@ use crate::report::types::{ExplainReport, RankReport, StepReport, Unexplained, V
 use crate::report::unexplained;
 use crate::search::inconclusive::{self, Uncertainty};
 use estimation::data::case::Case;
+use estimation::data::given::Sources;
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::model::scale_report::SpeedScaleReport;
 use estimation::proof::accept::explained;
 use motor::MotorFile;
 use motor::effect::Descriptor;
-use recording::Source;
 
 use super::Progress;
 
@@ -29,12 +29,12 @@ use super::Progress;
 /// # Errors
 /// Wrong effects in the motor file or no usable set of sources. A recording that cannot be judged is a report
 /// with the verdict `unsupported`, not an error.
-pub fn explain(
-    sources: &[Source],
+pub fn explain<'a>(
+    sources: impl Into<Sources<'a>>,
     motor: &MotorFile,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    explain_with(sources, motor, Asked::default(), progress)
+    explained_by(sources.into(), motor, &[], Asked::default(), progress)
 }
 
 /// What an explanation is asked for beside the missing effect.
@@ -50,13 +50,13 @@ pub struct Asked {
 ///
 /// # Errors
 /// As [`explain`].
-pub fn explain_with(
-    sources: &[Source],
+pub fn explain_with<'a>(
+    sources: impl Into<Sources<'a>>,
     motor: &MotorFile,
     asked: Asked,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    explained_by(sources, motor, &[], asked, progress)
+    explained_by(sources.into(), motor, &[], asked, progress)
 }
 
 /// As [`explain`], without asking about the effects in `excluded`: a way to see what a library that lacks the
@@ -64,17 +64,17 @@ pub fn explain_with(
 ///
 /// # Errors
 /// As [`explain`].
-pub fn explain_without(
-    sources: &[Source],
+pub fn explain_without<'a>(
+    sources: impl Into<Sources<'a>>,
     motor: &MotorFile,
     excluded: &[&str],
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    explained_by(sources, motor, excluded, Asked::default(), progress)
+    explained_by(sources.into(), motor, excluded, Asked::default(), progress)
 }
 
 fn explained_by(
-    sources: &[Source],
+    sources: Sources<'_>,
     motor: &MotorFile,
     excluded: &[&str],
     asked: Asked,
@@ -95,6 +95,7 @@ fn explained_by(
         }
         Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
             audit: *audit,
+            stretches: Vec::new(),
             verdict: Verdict::Unsupported,
             summary: format!("{}; {}", why.reason, why.remedy),
             baseline: None,
@@ -176,6 +177,7 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
     let unexplained = (!found.nameable).then(|| unexplained(study, found));
     let mut report = ExplainReport {
         audit: question.audit.clone(),
+        stretches: question.stretches.clone(),
         verdict,
         summary: String::new(),
         baseline: Some(baseline),

@@ -2,6 +2,7 @@
 
 use crate::design::report::DesignReport;
 use audit::Audit;
+use estimation::data::stretches::StretchReport;
 use estimation::model::scale_report::SpeedScaleReport;
 use motor::motor_file::EffectEntry;
 use schemars::JsonSchema;
@@ -278,6 +279,9 @@ pub struct Inconclusive {
 pub struct ExplainReport {
     /// Audit of the fitted recording.
     pub audit: Audit,
+    /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stretches: Vec<StretchReport>,
     /// The answer.
     pub verdict: Verdict,
     /// One sentence that says it.
@@ -405,6 +409,9 @@ pub struct FrameReport {
 pub struct CompareReport {
     /// Audit of the recording.
     pub audit: Audit,
+    /// Of a recording that was too long to be kept: what of it is compared.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stretches: Vec<StretchReport>,
     /// Per channel.
     pub signals: Vec<SignalReport>,
     /// Per part of the recording, in time.
@@ -437,6 +444,9 @@ pub struct ErrorReport {
 pub struct AdoptReport {
     /// Audit of the fitted recording.
     pub audit: Audit,
+    /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stretches: Vec<StretchReport>,
     /// The effect.
     pub effect: String,
     /// The refitted model without it.

@@ -53,7 +53,33 @@ impl Case {
     ///
     /// # Errors
     /// The other recording, if it cannot be fitted together with this one.
-    pub fn joined(mut self, other: Case) -> Result<Case, Box<(Case, Case)>> {
+    pub fn joined(self, other: Case) -> Result<Case, Box<(Case, Case)>> {
+        let begins = Cut {
+            sample: 0,
+            t: 0.0,
+            is_new: true,
+        };
+        self.joined_at(other, begins)
+    }
+
+    /// A stretch that begins at `at` in its recording.
+    #[must_use]
+    pub(super) fn beginning(mut self, at: Cut) -> Case {
+        if at.t > 0.0 {
+            let timeline = std::sync::Arc::make_mut(&mut self.timeline);
+            timeline.cuts.insert(0, at);
+            self.running_at_cuts.insert(0, self.running_at);
+        }
+        self
+    }
+
+    /// This stretch and a later one of the same recording; this one alone where the later one does not suit.
+    #[must_use]
+    pub(super) fn followed_by(self, later: Case, at: Cut) -> Case {
+        self.joined_at(later, at).unwrap_or_else(|apart| apart.0)
+    }
+
+    fn joined_at(mut self, other: Case, begins: Cut) -> Result<Case, Box<(Case, Case)>> {
         if !self.suits(&other) {
             return Err(Box::new((self, other)));
         }
@@ -65,8 +91,7 @@ impl Case {
         let mut cuts = self.timeline.cuts.clone();
         cuts.push(Cut {
             sample: from,
-            t: 0.0,
-            is_new: true,
+            ..begins
         });
         let later = other.timeline.cuts.iter();
         cuts.extend(later.map(|cut| Cut {

@@ -2,6 +2,7 @@
 
 pub mod case;
 pub mod channels;
+pub mod given;
 pub mod inputs;
 pub mod instrument_class;
 pub mod joined;

@@ -1,8 +1,9 @@
 //! From files to a study: audit, preparation, errors.
 
 use crate::data::case::Case;
+use crate::data::given::{One, Sources};
 use crate::data::joined::shared;
-use crate::data::stretches::{cut, stretches, told};
+use crate::data::stretches::{Excerpt, Role, StretchReport, cut, stretches, told};
 use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
 use crate::model::free_scale::FreeScale;
@@ -11,7 +12,7 @@ use crate::model::speed_gain::{is_scale, name};
 use audit::{Audit, Expectation, audit, with_sound_probes};
 use motor::MotorFile;
 use motor::effect::{Rated, from_motor_file};
-use recording::{LoadTorque, Recording, Source};
+use recording::{LoadTable, LoadTorque, Recording, Source};
 use std::fmt;
 
 /// Why nothing can be answered.
@@ -43,8 +44,17 @@ impl std::error::Error for Error {}
 pub struct Question {
     /// Audit of the fitted recording.
     pub audit: Audit,
+    /// Stretches of long recordings that are used, where only those were given.
+    pub stretches: Vec<StretchReport>,
     /// The study.
     pub study: Study,
+}
+
+/// One of the sources, with its sound probes.
+enum Ready<'a> {
+    Recording(Box<Recording>),
+    LoadTable(&'a LoadTable),
+    Excerpt(&'a Excerpt),
 }
 
 impl Question {
@@ -52,18 +62,26 @@ impl Question {
     ///
     /// # Errors
     /// Wrong effects in the motor file, no source, or sources that cannot be judged.
-    pub fn new(
-        sources: &[Source],
+    pub fn new<'a>(
+        sources: impl Into<Sources<'a>>,
         motor: &MotorFile,
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Self, Error> {
-        let Some(first) = sources.first() else {
+        Self::about(sources.into(), motor, progress)
+    }
+
+    fn about(
+        sources: Sources<'_>,
+        motor: &MotorFile,
+        progress: &mut dyn FnMut(&str, f64),
+    ) -> Result<Self, Error> {
+        let Some(first) = sources.iter().next() else {
             return Err(Error::Recordings("give at least one recording".to_owned()));
         };
         let effects = from_motor_file(motor, &motor.name).map_err(Error::MotorFile)?;
         progress("auditing the recordings", 0.0);
         let mut audited = audit_of(first, motor);
-        if let Source::Recording(recording) = first {
+        if let One::Source(Source::Recording(recording)) = first {
             audited.assumptions.extend(told(recording));
         }
         let mut prior = Prior::new(motor, effects);
@@ -73,18 +91,18 @@ impl Question {
         }
         let refuse = |why| Error::Unsupported(Box::new(audited.clone()), why);
         let mut ready = Vec::new();
-        for source in sources {
+        for source in sources.iter() {
             let audit = audit_of(source, motor);
             if let Some(reason) = refusal(&audit) {
                 return Err(Error::Unsupported(Box::new(audit), reason));
             }
-            ready.push(sound(source, &audit));
+            ready.push(Ready::of(source, &audit));
         }
         let scale = speed_scale_of(&ready, &prior)?.map(|start| start.map_err(refuse));
         let scale = scale.transpose()?;
         let rated = &prior.plant.rated;
         let prepared = |scale: Option<FreeScale>| {
-            let case = |source: &Source| case_of(source, scale, rated).map_err(refuse);
+            let case = |source: &Ready<'_>| source.case(scale, rated).map_err(refuse);
             ready.iter().map(case).collect::<Result<Vec<Case>, Error>>()
         };
         let mut cases = prepared(scale)?;
@@ -101,42 +119,62 @@ impl Question {
         }
         progress("propagating the noise", 0.05);
         let none = || Error::Recordings("give at least one recording".to_owned());
-        let (fitted, proofs) = shared(cases).ok_or_else(none)?;
+        let (fitted, mut proofs) = shared(cases).ok_or_else(none)?;
+        if let [Ready::Excerpt(excerpt)] = ready[..]
+            && excerpt.proves()
+        {
+            proofs.push(excerpt.case(Role::Proves, rated).map_err(refuse)?);
+        }
+        let stretches = sources.iter().flat_map(stretches_of).cloned().collect();
         Ok(Self {
             audit: audited,
+            stretches,
             study: Study::new(prior, fitted, proofs, scale),
         })
     }
 }
 
 /// Whether a recording holds the torque at the shaft.
-fn measures_torque(source: &Source) -> bool {
-    let Source::Recording(rec) = source else {
-        return false;
-    };
-    rec.torque().is_some() && rec.metadata.load_torque != LoadTorque::Friction
-}
-
-/// A source with its sound probes.
-fn sound(source: &Source, audit: &Audit) -> Source {
+fn measures_torque(source: One<'_>) -> bool {
     match source {
-        Source::Recording(recording) => Source::Recording(with_sound_probes(recording, audit)),
-        Source::LoadTable(table) => Source::LoadTable(table.clone()),
+        One::Source(Source::Recording(rec)) => {
+            rec.torque().is_some() && rec.metadata.load_torque != LoadTorque::Friction
+        }
+        One::Source(Source::LoadTable(_)) => false,
+        One::Excerpt(excerpt) => excerpt.measures_torque(),
     }
 }
 
-fn case_of(
-    source: &Source,
-    scale: Option<FreeScale>,
-    rated: &Rated<f64>,
-) -> Result<Case, Unsupported> {
-    match (source, scale) {
-        (Source::LoadTable(table), _) => Case::of_table(table, rated),
-        (Source::Recording(recording), None) => case_of_recording(recording, rated),
-        (Source::Recording(recording), Some(scale)) => Ok(Case {
-            speed_scale_is_free: true,
-            ..case_of_recording(&scale.applied(recording), rated)?
-        }),
+fn stretches_of(source: One<'_>) -> &[StretchReport] {
+    match source {
+        One::Excerpt(excerpt) => &excerpt.stretches,
+        One::Source(_) => &[],
+    }
+}
+
+impl<'a> Ready<'a> {
+    /// A source with its sound probes.
+    fn of(source: One<'a>, audit: &Audit) -> Self {
+        match source {
+            One::Source(Source::Recording(recording)) => {
+                Ready::Recording(Box::new(with_sound_probes(recording, audit)))
+            }
+            One::Source(Source::LoadTable(table)) => Ready::LoadTable(table),
+            One::Excerpt(excerpt) => Ready::Excerpt(excerpt),
+        }
+    }
+
+    /// What of it is fitted, or proves as a whole.
+    fn case(&self, scale: Option<FreeScale>, rated: &Rated<f64>) -> Result<Case, Unsupported> {
+        match (self, scale) {
+            (Ready::LoadTable(table), _) => Case::of_table(table, rated),
+            (Ready::Excerpt(excerpt), _) => excerpt.case(Role::Fitted, rated),
+            (Ready::Recording(recording), None) => case_of_recording(recording, rated),
+            (Ready::Recording(recording), Some(scale)) => Ok(Case {
+                speed_scale_is_free: true,
+                ..case_of_recording(&scale.applied(recording), rated)?
+            }),
+        }
     }
 }
 
@@ -154,20 +192,25 @@ fn case_of_recording(recording: &Recording, rated: &Rated<f64>) -> Result<Case, 
 /// # Errors
 /// Recordings with known and unknown scales, or a motor file that holds the effect which is to be fitted.
 fn speed_scale_of(
-    sources: &[Source],
+    sources: &[Ready<'_>],
     prior: &Prior,
 ) -> Result<Option<Result<FreeScale, Unsupported>>, Error> {
     let recordings: Vec<&Recording> = sources
         .iter()
         .filter_map(|source| match source {
-            Source::Recording(recording) => Some(recording),
-            Source::LoadTable(_) => None,
+            Ready::Recording(recording) => Some(&**recording),
+            // Its scale is known: a recording whose scale is not is never given in stretches.
+            Ready::Excerpt(_) | Ready::LoadTable(_) => None,
         })
         .collect();
+    let known_or_not = sources
+        .iter()
+        .filter(|one| !matches!(one, Ready::LoadTable(_)));
+    let known_or_not = known_or_not.count();
     let unknown = |rec: &&&Recording| rec.unknown_speed_scale.is_some() && rec.speed().is_some();
     match recordings.iter().filter(unknown).count() {
         0 => return Ok(None),
-        count if count < recordings.len() => {
+        count if count < known_or_not => {
             let message = "the scale of the speed is unknown in some recordings and known in others; declare one of both for all";
             return Err(Error::Recordings(message.to_owned()));
         }
@@ -185,10 +228,11 @@ fn speed_scale_of(
 }
 
 /// Audit of a source; a load table has nothing to audit beyond its reading.
-pub fn audit_of(source: &Source, motor: &MotorFile) -> Audit {
-    match source {
-        Source::Recording(recording) => audit(recording, &Expectation::from(motor)),
-        Source::LoadTable(table) => Audit {
+pub fn audit_of<'a>(source: impl Into<One<'a>>, motor: &MotorFile) -> Audit {
+    match source.into() {
+        One::Source(Source::Recording(recording)) => audit(recording, &Expectation::from(motor)),
+        One::Excerpt(excerpt) => excerpt.audit.clone(),
+        One::Source(Source::LoadTable(table)) => Audit {
             supported: true,
             findings: Vec::new(),
             assumptions: table.assumptions.clone(),

@@ -223,7 +223,7 @@ impl Work {
         };
         let inputs = Inputs {
             names: &self.names,
-            sources: &self.sources,
+            sources: discovery::Sources::Whole(&self.sources),
             motor: &self.motor.motor,
             laws: discovery::Laws::default(),
             next_run: None,

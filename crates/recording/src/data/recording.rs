@@ -285,6 +285,29 @@ impl Recording {
         cut.reading.clone_from(&self.reading);
         Ok(cut)
     }
+
+    /// Parts that follow one another as one recording, with what is known of the first.
+    ///
+    /// # Errors
+    /// No part, a clock that does not rise from one to the next, or channels that not every part has.
+    pub fn of_parts(parts: &[Recording]) -> Result<Recording, Error> {
+        let [first, ..] = parts else {
+            let message = "holds no samples";
+            return Err(Error::bad("the recording", message, "give it a part"));
+        };
+        let t: Vec<f64> = parts.iter().flat_map(|part| part.t()).copied().collect();
+        let mut all = Recording::new(&first.name, t, first.metadata.clone())?;
+        for (channel, _) in first.channels() {
+            let of_part = |part: &Recording| part.channel(channel).unwrap_or_default().to_vec();
+            all.set(channel, parts.iter().flat_map(of_part).collect())?;
+        }
+        all.made.clone_from(&first.made);
+        all.unknown_speed_scale
+            .clone_from(&first.unknown_speed_scale);
+        all.assumptions.clone_from(&first.assumptions);
+        all.reading.clone_from(&first.reading);
+        Ok(all)
+    }
 }
 
 /// Time between two samples, s: from a tenth of a nanosecond to a clock in nanoseconds that is taken for one in seconds.

@@ -5,7 +5,7 @@ use motor::MotorFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Inputs, in_fitted_scale};
+use super::{Inputs, shown};
 use crate::overlay::{Model, Overlay, TableOverlay};
 
 /// Everything that an adoption says.
@@ -49,9 +49,10 @@ impl Adopted {
             Model::new(format!("with {effect}"), &adopted),
         ];
         let scale = report.speed_scale.as_ref();
-        let last = sources.last().map(|source| in_fitted_scale(source, scale));
+        let last = sources.iter().next_back();
+        let last = last.and_then(|source| shown(source, scale, 0.0));
         let last = last.as_deref();
-        let shown = Adopted {
+        let result = Adopted {
             recordings: names.to_vec(),
             motor: motor.name.clone(),
             next_command: String::new(),
@@ -63,6 +64,6 @@ impl Adopted {
                 .map(|overlay| overlay.named(names.last())),
             report,
         };
-        Ok((shown, adopted))
+        Ok((result, adopted))
     }
 }

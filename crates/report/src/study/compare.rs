@@ -4,7 +4,8 @@ use discovery::{CompareReport, Error, Progress};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Inputs, in_fitted_scale};
+use super::places::{furthest_off, worst};
+use super::{Inputs, shown};
 use crate::overlay::{Model, Overlay, TableOverlay};
 
 /// Everything that a comparison says.
@@ -44,7 +45,9 @@ impl Compared {
         let report = discovery::compare(sources, motor, progress)?;
         let models = [Model::believed(motor)];
         let scale = report.speed_scale.as_ref();
-        let first = sources.first().map(|source| in_fitted_scale(source, scale));
+        let at_s = furthest_off(&worst(&report));
+        let first = sources.iter().next();
+        let first = first.and_then(|source| shown(source, scale, at_s));
         let first = first.as_deref();
         Ok(Compared {
             recording: names.first().cloned().unwrap_or_default(),

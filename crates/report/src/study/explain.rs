@@ -4,8 +4,8 @@ use discovery::{Asked, Error, ExplainReport, Progress, Verdict};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::places::{Place, worst};
-use super::{Inputs, PARAMETERS, in_fitted_scale};
+use super::places::{Place, furthest_off, worst};
+use super::{Inputs, PARAMETERS, shown};
 use crate::overlay::{Model, Overlay, TableOverlay};
 use discovery::LAW;
 
@@ -69,15 +69,17 @@ impl Explained {
         });
         let report = searched?;
         let scale = report.speed_scale.as_ref();
-        let last = sources.last().map(|source| in_fitted_scale(source, scale));
-        let judged = last.as_deref().filter(|_| report.baseline.is_some());
         let models = Model::of_explanation(motor, &report);
-        let where_it_fails = match judged {
-            Some(_) => worst(&discovery::compare(sources, motor, &mut |what, share| {
+        let is_judged = report.baseline.is_some();
+        let where_it_fails = match is_judged {
+            true => worst(&discovery::compare(sources, motor, &mut |what, share| {
                 progress(what, SEARCH + (1.0 - SEARCH) * share);
             })?),
-            None => Vec::new(),
+            false => Vec::new(),
         };
+        let last = sources.iter().next_back().filter(|_| is_judged);
+        let last = last.and_then(|source| shown(source, scale, furthest_off(&where_it_fails)));
+        let judged = last.as_deref();
         Ok(Explained {
             recordings: names.to_vec(),
             motor: motor.name.clone(),

@@ -26,7 +26,7 @@ pub use typed::Typed;
 use std::borrow::Cow;
 
 pub use discovery::PARAMETERS;
-use discovery::{Laws, NextRun, SpeedScaleReport};
+use discovery::{Laws, NextRun, One, Sources, SpeedScaleReport};
 use monitor::MonitorConfig;
 use motor::MotorFile;
 use recording::Source;
@@ -37,13 +37,29 @@ pub struct Inputs<'a> {
     /// The recordings' names as people know them, in the order of `sources`.
     pub names: &'a [String],
     /// The first is fitted, the second proves; of more, the first, third, ... are fitted together.
-    pub sources: &'a [Source],
+    pub sources: Sources<'a>,
     /// What is believed of the motor.
     pub motor: &'a MotorFile,
     /// What laws are held against, and which formula is taken over.
     pub laws: Laws,
     /// The next experiment, where an explanation is asked for one.
     pub next_run: Option<&'a NextRun>,
+}
+
+/// A source as figures show it: a speed of unknown scale in the scale that was fitted, of a long recording the stretch at
+/// `at_s` (s) or the first one.
+fn shown<'a>(
+    source: One<'a>,
+    scale: Option<&SpeedScaleReport>,
+    at_s: f64,
+) -> Option<Cow<'a, Source>> {
+    match source {
+        One::Source(source) => Some(in_fitted_scale(source, scale)),
+        One::Excerpt(excerpt) => {
+            let part = excerpt.around(at_s)?.clone();
+            Some(Cow::Owned(Source::Recording(part)))
+        }
+    }
 }
 
 /// A source as figures show it: a speed of unknown scale in the scale that was fitted.

@@ -37,6 +37,11 @@ pub fn worst(report: &CompareReport) -> Vec<Place> {
     found
 }
 
+/// Begin of the first of them, s.
+pub(super) fn furthest_off(places: &[Place]) -> f64 {
+    places.first().and_then(|place| place.from_s).unwrap_or(0.0)
+}
+
 impl Place {
     fn region(region: &RegionReport) -> Place {
         Place {

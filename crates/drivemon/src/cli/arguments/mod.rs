@@ -2,5 +2,6 @@
 
 pub(crate) mod files;
 pub(crate) mod input;
+pub(crate) mod long;
 pub(crate) mod next_run;
 pub(crate) mod study;

@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use audit::Audit;
 use clap::Args;
-use discovery::{Error, Laws, Progress, Shapes, told_stretches};
+use discovery::{Budget, Error, Given, Laws, Progress, Role, Shapes, Sources, StretchReport};
 use document::read_text;
 use motor::MotorFile;
-use recording::Source;
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};
+use crate::cli::arguments::long::given;
 use crate::cli::printing::failure::Failure;
 use crate::cli::printing::output::OutputArgs;
 use crate::cli::printing::shell::quoted;
-use crate::cli::printing::terminal::{complain, say};
+use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use report::study::{Inputs, Typed};
 use report::{Style, decimals, significant};
@@ -73,16 +73,6 @@ impl ShapesArgs {
     }
 }
 
-/// One line on standard error where a recording is too long to be fitted whole.
-fn tell_stretches(source: &Source) {
-    let Source::Recording(recording) = source else {
-        return;
-    };
-    if let Some(stretches) = told_stretches(recording) {
-        complain(format_args!("{}: {stretches}", recording.name()));
-    }
-}
-
 /// Steps of the progress bar.
 const STEPS: f64 = 1000.0;
 
@@ -95,16 +85,34 @@ impl StudyArgs {
             .writes_results(&self.output)
     }
 
-    /// All recordings in the order given.
+    /// All recordings in the order given, to be compared with the motor file.
     ///
     /// # Errors
     /// Whatever is wrong with flags, file or sidecar.
-    pub fn sources(&self) -> Result<Vec<Source>, Failure> {
+    pub fn compared(&self, motor: &MotorFile) -> Result<Vec<Given>, Failure> {
+        self.given(motor, Budget::COMPARED)
+    }
+
+    /// The same, to be fitted once.
+    ///
+    /// # Errors
+    /// As [`StudyArgs::compared`].
+    pub fn fitted(&self, motor: &MotorFile) -> Result<Vec<Given>, Failure> {
+        self.given(motor, Budget::fitted(self.recordings.len() == 1))
+    }
+
+    /// The same, to be searched for what is missing.
+    ///
+    /// # Errors
+    /// As [`StudyArgs::compared`].
+    pub fn searched(&self, motor: &MotorFile) -> Result<Vec<Given>, Failure> {
+        self.given(motor, Budget::searched(self.recordings.len() == 1))
+    }
+
+    fn given(&self, motor: &MotorFile, budget: Budget) -> Result<Vec<Given>, Failure> {
         let paths = self.recordings.iter();
-        let sources = paths.map(|path| self.input.read(path));
-        let sources = sources.collect::<Result<Vec<_>, _>>()?;
-        sources.iter().for_each(tell_stretches);
-        Ok(sources)
+        let given = paths.map(|path| given(path, &self.input, motor, budget));
+        given.collect()
     }
 
     /// The motor file.
@@ -130,12 +138,12 @@ impl StudyArgs {
     pub fn inputs<'a>(
         &self,
         names: &'a [String],
-        sources: &'a [Source],
+        sources: &'a [Given],
         motor: &'a MotorFile,
     ) -> Inputs<'a> {
         Inputs {
             names,
-            sources,
+            sources: Sources::Given(sources),
             motor,
             laws: Laws::default(),
             next_run: None,
@@ -193,6 +201,26 @@ pub fn with_progress<T>(
 pub fn print_audit(audit: &Audit) {
     for finding in &audit.findings {
         say!("  {} {}", paint::caution("audit:"), finding.detail);
+    }
+}
+
+/// Prints which stretches of long recordings are used, and why.
+pub fn print_stretches(stretches: &[StretchReport]) {
+    if stretches.is_empty() {
+        return;
+    }
+    say!("Of what is too long to be kept these stretches are used:");
+    for one in stretches {
+        let role = match one.role {
+            Role::Fitted => "",
+            Role::Proves => "proves  ",
+        };
+        say!(
+            "  {:>10.1} .. {:.1} s  {role}{}",
+            one.from_s,
+            one.to_s,
+            one.why
+        );
     }
 }
 

@@ -170,13 +170,14 @@ fn a_clipping_probe_is_replaced_by_its_second() {
     rec.metadata.sensors.current_full_scale_amp = Some(limit);
     let motor = specimen::motor("");
     let source = Source::Recording(rec);
-    let Source::Recording(sound) = sound(&source, &audit_of(&source, &motor)) else {
+    let audit = audit_of(&source, &motor);
+    let Ready::Recording(sound) = Ready::of(One::from(&source), &audit) else {
         panic!("a recording stays one");
     };
     assert_eq!(sound.channel(ia), Some(&whole[..]));
     let table = specimen::table_source(|_| ());
-    let kept = super::sound(&table, &audit_of(&table, &motor));
-    assert!(matches!(kept, Source::LoadTable(table) if table.len() == 12));
+    let kept = Ready::of(One::from(&table), &audit_of(&table, &motor));
+    assert!(matches!(kept, Ready::LoadTable(table) if table.len() == 12));
 }
 
 /// The channel shows 0.4 times the speed: the factor is what undoes that, fitted with everything at its prior.

@@ -6,15 +6,15 @@ use recording::Recording;
 use std::ops::Range;
 
 /// Longest recording that is taken whole, s.
-const LONGEST_WHOLE: f64 = 60.0;
+pub const LONGEST_WHOLE: f64 = 60.0;
 /// Length of a stretch, s.
-const LENGTH: f64 = 2.0;
+pub(super) const LENGTH: f64 = 2.0;
 /// Number of stretches.
-const COUNT: usize = 16;
+pub(super) const COUNT: usize = 16;
 /// Time before a stretch that is simulated and not judged, s: the fluxes settle.
-const SETTLES: f64 = 0.5;
+pub(super) const SETTLES: f64 = 0.5;
 /// Length of the means whose range tells what changes within a stretch, s: two periods of 50 Hz.
-const MEAN: f64 = 0.04;
+pub(super) const MEAN: f64 = 0.04;
 /// Share of the largest value below which a median is no scale: a torque that is zero most of the time.
 const SMALL: f64 = 0.05;
 
@@ -75,7 +75,7 @@ fn merged(cells: &[usize], length: usize, settles: usize) -> Vec<Stretch> {
 }
 
 /// The first cell, then always the one farthest from all that were taken (farthest-first traversal), sorted.
-fn least_alike(features: &[Vec<f64>], count: usize) -> Vec<usize> {
+pub(super) fn least_alike(features: &[Vec<f64>], count: usize) -> Vec<usize> {
     let distance = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
     let mut nearest = vec![f64::INFINITY; features.len()];
     let mut taken = Vec::new();
@@ -139,7 +139,7 @@ fn means(x: &[f64], cell: Range<usize>, piece: usize) -> Vec<f64> {
 }
 
 /// The median of the magnitudes, or the largest one where most are small.
-fn usual(x: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn usual(x: impl Iterator<Item = f64>) -> f64 {
     let mut x: Vec<f64> = x.map(f64::abs).collect();
     x.sort_by(f64::total_cmp);
     let largest = x.last().copied().unwrap_or(0.0);

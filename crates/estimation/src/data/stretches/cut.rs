@@ -28,6 +28,10 @@ pub fn cut(whole: &Case, rated: &Rated<f64>, stretches: &[Stretch]) -> Case {
         },
         timeline: timeline(whole, &samples).into(),
         speed: taken(&whole.speed, &samples),
+        running_at: match samples[0].start {
+            0 => whole.running_at,
+            first => Some(running_at(whole, rated, first)),
+        },
         running_at_cuts: samples[1..]
             .iter()
             .map(|part| Some(running_at(whole, rated, part.start)))
@@ -82,7 +86,7 @@ fn unchanged(whole: &Case) -> Case {
         timeline: whole.timeline.clone(),
         speed: Vec::new(),
         speed_is_input: whole.speed_is_input,
-        running_at: whole.running_at,
+        running_at: None,
         running_at_cuts: Vec::new(),
         settles: whole.settles,
         open: Vec::new(),

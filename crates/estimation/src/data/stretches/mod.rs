@@ -1,11 +1,16 @@
 //! Long recordings: a fit simulates its recording hundreds of times, so that of a long one some stretches are taken.
 
+mod cells;
 mod choice;
+mod chosen;
 mod cut;
+mod excerpt;
 
 pub use choice::told;
-pub use choice::{Stretch, stretches};
+pub use choice::{LONGEST_WHOLE, Stretch, stretches};
+pub use chosen::{Budget, Role, StretchReport};
 pub use cut::cut;
+pub use excerpt::{Choice, Excerpt, Gathering, Survey};
 
 #[cfg(test)]
 mod tests;

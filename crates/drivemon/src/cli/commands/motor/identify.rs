@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use discovery::{IdentifiedParameter, IdentifyReport};
+use discovery::{IdentifiedParameter, IdentifyReport, Sources};
 use motor::MotorFile;
 use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::cli::arguments::study::{StudyArgs, print_audit, quantity, with_progress};
+use crate::cli::arguments::study::{
+    StudyArgs, print_audit, print_stretches, quantity, with_progress,
+};
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::write_text;
 use crate::cli::printing::paint;
@@ -62,9 +64,10 @@ impl Identify {
     pub fn run(&self) -> Result<Finding, Failure> {
         self.study.files().writes("-o", &self.out).check()?;
         let motor = self.study.motor()?;
-        let sources = self.study.sources()?;
-        let (report, identified) =
-            with_progress(|progress| discovery::identify(&sources, &motor, progress))?;
+        let sources = self.study.fitted(&motor)?;
+        let (report, identified) = with_progress(|progress| {
+            discovery::identify(Sources::Given(&sources), &motor, progress)
+        })?;
         let fits = report.after.held_out_error_over_noise < MISFIT;
         let written = fits || self.anyway;
         if written {
@@ -92,6 +95,7 @@ impl Identify {
 
     fn print(&self, report: &IdentifyReport, fits: bool) {
         print_audit(&report.audit);
+        print_stretches(&report.stretches);
         print_table(&report.parameters);
         say!(
             "\n  error over noise on data that was not fitted: {:.2} before, {:.2} after",

@@ -6,7 +6,8 @@ use clap::Args;
 use discovery::{AdoptReport, LAW, Laws};
 
 use crate::cli::arguments::study::{
-    ShapesArgs, StudyArgs, percent, print_audit, print_next, quantity, uncertain, with_progress,
+    ShapesArgs, StudyArgs, percent, print_audit, print_next, print_stretches, quantity, uncertain,
+    with_progress,
 };
 use crate::cli::commands::study::explain::print_frame;
 use crate::cli::printing::failure::{Failure, Finding};
@@ -62,7 +63,7 @@ impl Adopt {
             formula: self.formula,
         };
         let motor = self.study.motor()?;
-        let sources = self.study.sources()?;
+        let sources = self.study.searched(&motor)?;
         let names = self.study.names();
         let inputs = Inputs {
             laws,
@@ -120,6 +121,7 @@ fn print(result: &Adopted) {
         result.recordings.join(" and ")
     );
     print_audit(&report.audit);
+    print_stretches(&report.stretches);
     let before = match report.effect.as_str() {
         PARAMETERS => "before, as the motor file has it",
         _ => "before, all parameters refitted",

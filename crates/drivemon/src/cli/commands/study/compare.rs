@@ -3,7 +3,9 @@
 use clap::Args;
 use discovery::{CompareReport, SignalReport};
 
-use crate::cli::arguments::study::{StudyArgs, bar, print_audit, print_next, with_progress};
+use crate::cli::arguments::study::{
+    StudyArgs, bar, print_audit, print_next, print_stretches, with_progress,
+};
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::findings::{places, scale};
 use crate::cli::printing::paint;
@@ -33,7 +35,7 @@ impl Compare {
     pub fn run(&self) -> Result<Finding, Failure> {
         self.study.files().check()?;
         let motor = self.study.motor()?;
-        let sources = self.study.sources()?;
+        let sources = self.study.compared(&motor)?;
         let names = self.study.names();
         let inputs = self.study.inputs(&names, &sources, &motor);
         let next = format!("drivemon explain {}", self.study.typed());
@@ -65,6 +67,7 @@ fn print(result: &Compared) {
         }
     );
     print_audit(&report.audit);
+    print_stretches(&report.stretches);
     let Some(overall) = report.overall else {
         say!("{}", paint::caution("not compared: the audit refused"));
         return;

@@ -7,8 +7,8 @@ use discovery::{
 
 use crate::cli::arguments::next_run::NextRunArgs;
 use crate::cli::arguments::study::{
-    ShapesArgs, StudyArgs, fall, percent, print_audit, print_next, quantity, uncertain,
-    with_progress, wrapped,
+    ShapesArgs, StudyArgs, fall, percent, print_audit, print_next, print_stretches, quantity,
+    uncertain, with_progress, wrapped,
 };
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::findings::{errors, laws, next_run, places, scale};
@@ -64,7 +64,7 @@ impl Explain {
             formula: None,
         };
         let motor = self.study.motor()?;
-        let sources = self.study.sources()?;
+        let sources = self.study.searched(&motor)?;
         let names = self.study.names();
         let next_run = self.next_run.asked(&motor, self.study.motor_path())?;
         let inputs = Inputs {
@@ -110,6 +110,7 @@ fn print(result: &Explained) {
         result.recordings.join(" and ")
     );
     print_audit(&report.audit);
+    print_stretches(&report.stretches);
     print_answer(report);
     if !result.where_it_fails.is_empty() {
         say!("\nThe model of the motor file is furthest off:");

@@ -1,0 +1,75 @@
+//! What a question is asked about.
+
+use crate::data::stretches::Excerpt;
+use recording::Source;
+
+/// What was read: all of it, or stretches of a recording that does not fit into memory.
+#[derive(Clone, Debug)]
+pub enum Given {
+    /// All of it.
+    Source(Source),
+    /// Stretches.
+    Excerpt(Excerpt),
+}
+
+/// One of several that a question is asked about.
+#[derive(Clone, Copy, Debug)]
+pub enum One<'a> {
+    /// All of it.
+    Source(&'a Source),
+    /// Stretches of a long recording.
+    Excerpt(&'a Excerpt),
+}
+
+/// All that a question is asked about.
+#[derive(Clone, Copy, Debug)]
+pub enum Sources<'a> {
+    /// In memory as a whole.
+    Whole(&'a [Source]),
+    /// As read.
+    Given(&'a [Given]),
+}
+
+impl<'a> Sources<'a> {
+    /// One after the other.
+    pub fn iter(self) -> impl DoubleEndedIterator<Item = One<'a>> + ExactSizeIterator + Clone {
+        let number = match self {
+            Sources::Whole(all) => all.len(),
+            Sources::Given(all) => all.len(),
+        };
+        (0..number).map(move |k| match self {
+            Sources::Whole(all) => One::Source(&all[k]),
+            Sources::Given(all) => One::from(&all[k]),
+        })
+    }
+
+    /// The first alone.
+    #[must_use]
+    pub fn first(self) -> Self {
+        match self {
+            Sources::Whole(all) => Sources::Whole(&all[..all.len().min(1)]),
+            Sources::Given(all) => Sources::Given(&all[..all.len().min(1)]),
+        }
+    }
+}
+
+impl<'a, T: AsRef<[Source]> + ?Sized> From<&'a T> for Sources<'a> {
+    fn from(all: &'a T) -> Self {
+        Sources::Whole(all.as_ref())
+    }
+}
+
+impl<'a> From<&'a Source> for One<'a> {
+    fn from(source: &'a Source) -> Self {
+        One::Source(source)
+    }
+}
+
+impl<'a> From<&'a Given> for One<'a> {
+    fn from(given: &'a Given) -> Self {
+        match given {
+            Given::Source(source) => One::Source(source),
+            Given::Excerpt(excerpt) => One::Excerpt(excerpt),
+        }
+    }
+}
