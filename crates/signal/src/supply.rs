@@ -174,22 +174,16 @@ impl Supply {
 
     /// This supply and another one behind it, which was denoised alike.
     #[must_use]
-    pub fn joined(&self, other: &Self) -> Self {
+    pub fn joined(mut self, other: Self) -> Self {
         let from = self.u_s.len();
         let behind = |r: &Range<usize>| r.start + from..r.end + from;
-        let both = |a: &[Range<usize>], b: &[Range<usize>]| {
-            let all = a.iter().cloned();
-            all.chain(b.iter().map(behind)).collect::<Vec<_>>()
-        };
-        Self {
-            u_s: [&self.u_s[..], &other.u_s].concat(),
-            omega_sync: [&self.omega_sync[..], &other.omega_sync].concat(),
-            theta: [&self.theta[..], &other.theta].concat(),
-            segments: both(&self.segments, &other.segments),
-            raw: both(&self.raw, &other.raw),
-            windows: [&self.windows[..], &other.windows].concat(),
-            ..self.clone()
-        }
+        self.u_s.extend(other.u_s);
+        self.omega_sync.extend(other.omega_sync);
+        self.theta.extend(other.theta);
+        self.segments.extend(other.segments.iter().map(behind));
+        self.raw.extend(other.raw.iter().map(behind));
+        self.windows.extend(other.windows);
+        self
     }
 
     /// `raw` without its harmonics.

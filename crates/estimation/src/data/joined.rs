@@ -1,8 +1,9 @@
 //! Several recordings as one case that is fitted: each begins anew.
 
 use crate::data::case::Case;
-use motor::effect::{Cut, Inputs, Timeline};
+use motor::effect::Cut;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Of several recordings those that are fitted together, and those that prove: every second one proves.
 pub fn shared(cases: Vec<Case>) -> Option<(Case, Vec<Case>)> {
@@ -66,20 +67,18 @@ impl Case {
     #[must_use]
     pub(super) fn beginning(mut self, at: Cut) -> Case {
         if at.t > 0.0 {
-            let timeline = std::sync::Arc::make_mut(&mut self.timeline);
+            let timeline = Arc::make_mut(&mut self.timeline);
             timeline.cuts.insert(0, at);
             self.running_at_cuts.insert(0, self.running_at);
         }
         self
     }
 
-    /// This stretch and a later one of the same recording; this one alone where the later one does not suit.
-    #[must_use]
-    pub(super) fn followed_by(self, later: Case, at: Cut) -> Case {
-        self.joined_at(later, at).unwrap_or_else(|apart| apart.0)
-    }
-
-    fn joined_at(mut self, other: Case, begins: Cut) -> Result<Case, Box<(Case, Case)>> {
+    /// This case and another one behind it that begins at the time of `begins`.
+    ///
+    /// # Errors
+    /// As [`Case::joined`].
+    pub(super) fn joined_at(mut self, other: Case, begins: Cut) -> Result<Case, Box<(Case, Case)>> {
         if !self.suits(&other) {
             return Err(Box::new((self, other)));
         }
@@ -88,49 +87,33 @@ impl Case {
         let rows = from / self.samples_per_row();
         debug_assert_eq!(rows, self.measured.len());
         let behind = |r: &Range<usize>| r.start + from..r.end + from;
-        let mut cuts = self.timeline.cuts.clone();
-        cuts.push(Cut {
+        let timeline = Arc::make_mut(&mut self.timeline);
+        timeline.cuts.push(Cut {
             sample: from,
             ..begins
         });
         let later = other.timeline.cuts.iter();
-        cuts.extend(later.map(|cut| Cut {
+        timeline.cuts.extend(later.map(|cut| Cut {
             sample: cut.sample + from,
             ..*cut
         }));
-        let coarse = self.coarse.as_ref().zip(other.coarse.as_ref());
+        timeline.omega_sync.extend(&other.timeline.omega_sync);
+        timeline.theta_mech.extend(&other.timeline.theta_mech);
+        // What is there grows in place: twice of it may be more than fits.
+        self.inputs.u_s.extend(other.inputs.u_s);
+        self.inputs.tau_load.extend(other.inputs.tau_load);
+        self.speed.extend(other.speed);
+        self.running_at_cuts.push(other.running_at);
+        self.running_at_cuts.extend(other.running_at_cuts);
+        self.open.extend(other.open.iter().map(behind));
+        self.measured.extend(other.measured);
+        self.weight.extend(other.weight);
+        let coarse = self.coarse.take().zip(other.coarse);
         Ok(Case {
-            timeline: Timeline {
-                t_sample: self.timeline.t_sample,
-                omega_sync: [&self.timeline.omega_sync[..], &other.timeline.omega_sync].concat(),
-                theta_mech: [&self.timeline.theta_mech[..], &other.timeline.theta_mech].concat(),
-                cuts,
-            }
-            .into(),
-            inputs: Inputs {
-                t_sample: self.inputs.t_sample,
-                u_s: [self.inputs.u_s, other.inputs.u_s].concat(),
-                tau_load: [self.inputs.tau_load, other.inputs.tau_load].concat(),
-            },
-            speed: [self.speed, other.speed].concat(),
-            running_at_cuts: [
-                self.running_at_cuts,
-                vec![other.running_at],
-                other.running_at_cuts,
-            ]
-            .concat(),
-            open: self
-                .open
-                .iter()
-                .cloned()
-                .chain(other.open.iter().map(behind))
-                .collect(),
-            measured: [self.measured, other.measured].concat(),
-            weight: [self.weight, other.weight].concat(),
             coarse: coarse.map(|(a, b)| a.joined(b)),
-            supply: self.supply.joined(&other.supply),
-            load_windows: self.load_windows.joined(&other.load_windows),
-            speed_windows: self.speed_windows.joined(&other.speed_windows),
+            supply: std::mem::take(&mut self.supply).joined(other.supply),
+            load_windows: std::mem::take(&mut self.load_windows).joined(&other.load_windows),
+            speed_windows: std::mem::take(&mut self.speed_windows).joined(&other.speed_windows),
             ..self
         })
     }
@@ -145,7 +128,7 @@ impl Case {
         self.inputs.u_s.truncate(samples);
         self.inputs.tau_load.truncate(samples);
         self.speed.truncate(samples);
-        let timeline = std::sync::Arc::make_mut(&mut self.timeline);
+        let timeline = Arc::make_mut(&mut self.timeline);
         timeline.omega_sync.truncate(samples);
         timeline.theta_mech.truncate(samples);
         let of_recording = 0..samples / self.finer;

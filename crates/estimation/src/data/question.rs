@@ -103,12 +103,13 @@ impl Question {
         let rated = &prior.plant.rated;
         let prepared = |scale: Option<FreeScale>| {
             let case = |source: &Ready<'_>| source.case(scale, rated).map_err(refuse);
-            ready.iter().map(case).collect::<Result<Vec<Case>, Error>>()
+            let all: Result<(Vec<Case>, Vec<_>), Error> = ready.iter().map(case).collect();
+            all.map(|(cases, used)| (cases, used.concat()))
         };
-        let mut cases = prepared(scale)?;
+        let (mut cases, mut used) = prepared(scale)?;
         let scale = scale.map(|start| start.fitted(&cases[0], &prior));
         if scale.is_some() {
-            cases = prepared(scale)?;
+            cases = prepared(scale)?.0;
         }
         if cases
             .iter()
@@ -123,12 +124,14 @@ impl Question {
         if let [Ready::Excerpt(excerpt)] = ready[..]
             && excerpt.proves()
         {
-            proofs.push(excerpt.case(Role::Proves, rated).map_err(refuse)?);
+            let (proof, proves) = excerpt.case(Role::Proves, rated).map_err(refuse)?;
+            proofs.push(proof);
+            used.extend(proves);
+            used.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
         }
-        let stretches = sources.iter().flat_map(stretches_of).cloned().collect();
         Ok(Self {
             audit: audited,
-            stretches,
+            stretches: used,
             study: Study::new(prior, fitted, proofs, scale),
         })
     }
@@ -145,13 +148,6 @@ fn measures_torque(source: One<'_>) -> bool {
     }
 }
 
-fn stretches_of(source: One<'_>) -> &[StretchReport] {
-    match source {
-        One::Excerpt(excerpt) => &excerpt.stretches,
-        One::Source(_) => &[],
-    }
-}
-
 impl<'a> Ready<'a> {
     /// A source with its sound probes.
     fn of(source: One<'a>, audit: &Audit) -> Self {
@@ -164,17 +160,22 @@ impl<'a> Ready<'a> {
         }
     }
 
-    /// What of it is fitted, or proves as a whole.
-    fn case(&self, scale: Option<FreeScale>, rated: &Rated<f64>) -> Result<Case, Unsupported> {
-        match (self, scale) {
+    /// What of it is fitted, or proves as a whole, and the stretches that it is made of where it was given in stretches.
+    fn case(
+        &self,
+        scale: Option<FreeScale>,
+        rated: &Rated<f64>,
+    ) -> Result<(Case, Vec<StretchReport>), Unsupported> {
+        let case = match (self, scale) {
+            (Ready::Excerpt(excerpt), _) => return excerpt.case(Role::Fitted, rated),
             (Ready::LoadTable(table), _) => Case::of_table(table, rated),
-            (Ready::Excerpt(excerpt), _) => excerpt.case(Role::Fitted, rated),
             (Ready::Recording(recording), None) => case_of_recording(recording, rated),
             (Ready::Recording(recording), Some(scale)) => Ok(Case {
                 speed_scale_is_free: true,
                 ..case_of_recording(&scale.applied(recording), rated)?
             }),
-        }
+        };
+        Ok((case?, Vec::new()))
     }
 }
 

@@ -8,11 +8,14 @@ use super::choice::{COUNT, LENGTH, SETTLES, least_alike, usual};
 use schemars::JsonSchema;
 
 /// Time on either side of a stretch with which its signals are smoothed, s: without it a window would end where the stretch does.
-const AROUND: f64 = 1.0;
+const AROUND: f64 = 0.5;
 /// Share of what is usual in the recording by which a quantity changes within a step ...
 const STEP: f64 = 0.1;
 /// ... and the speed within a start.
 const START: f64 = 0.3;
+
+/// Share of the highest voltage below which a motor is off its supply: nothing drives a model there.
+const OFF: f64 = 0.05;
 
 /// What a stretch is taken for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -91,7 +94,14 @@ impl Budget {
 
 /// The stretches that are taken, in the order of time.
 pub(super) fn chosen(cells: &Cells, budget: Budget) -> Vec<Wanted> {
-    let usable: Vec<&Cell> = cells.all.iter().filter(|cell| cell.is_usable).collect();
+    let greatest = |cell: &Cell| cell.bounds[VOLTAGE][1];
+    let highest = cells.all.iter().map(greatest).fold(0.0, f64::max);
+    let is_on = |cell: &Cell| greatest(cell) >= OFF * highest;
+    let usable = cells
+        .all
+        .iter()
+        .filter(|cell| cell.is_usable && is_on(cell));
+    let usable: Vec<&Cell> = usable.collect();
     if usable.is_empty() {
         return Vec::new();
     }

@@ -188,24 +188,32 @@ impl Excerpt {
         part.map(|part| &part.recording)
     }
 
-    /// Its stretches of a role as one case.
+    /// Its stretches of a role as one case, and which of them that are: one that is not made like the first is left out.
     ///
     /// # Errors
     /// No stretch that can be judged, and what [`Case::new`] refuses.
-    pub fn case(&self, role: Role, rated: &Rated<f64>) -> Result<Case, Unsupported> {
-        let parts = self.parts.iter().filter(|part| part.told.role == role);
+    pub fn case(
+        &self,
+        role: Role,
+        rated: &Rated<f64>,
+    ) -> Result<(Case, Vec<StretchReport>), Unsupported> {
+        let mut used: Vec<StretchReport> = Vec::new();
         let mut all: Option<Case> = None;
         let mut refused = None;
-        for part in parts {
-            match part.case(&self.audit, self.begin_s, rated) {
-                Ok((case, at)) => {
-                    all = Some(match all {
-                        None => case.beginning(at),
-                        Some(before) => before.followed_by(case, at),
-                    });
+        for part in self.parts.iter().filter(|part| part.told.role == role) {
+            let joined = match (part.case(&self.audit, self.begin_s, rated), all.take()) {
+                (Ok((case, at)), None) => Ok(case.beginning(at)),
+                (Ok((case, at)), Some(before)) => before.joined_at(case, at),
+                (Err(why), before) => {
+                    refused = refused.or(Some(why));
+                    all = before;
+                    continue;
                 }
-                Err(why) => refused = refused.or(Some(why)),
+            };
+            if joined.is_ok() {
+                used.push(part.told.clone());
             }
+            all = Some(joined.unwrap_or_else(|apart| apart.0));
         }
         let none = || {
             Unsupported::new(
@@ -213,7 +221,8 @@ impl Excerpt {
                 "see the audit; cut the recording where it is sound",
             )
         };
-        all.ok_or_else(|| refused.unwrap_or_else(none))
+        let all = all.ok_or_else(|| refused.unwrap_or_else(none))?;
+        Ok((all, used))
     }
 }
 
@@ -278,3 +287,6 @@ fn told(stretches: &[StretchReport], duration_s: f64) -> String {
         seconds(Role::Fitted)
     )
 }
+
+#[cfg(test)]
+mod tests;
