@@ -74,6 +74,40 @@ fn write_with_late_speed(source: &str, samples: usize, path: &str) {
     formats::write_recording(path.as_ref(), &late).expect("writable");
 }
 
+/// A minute in two pieces: a healthy motor agrees in every stretch, one whose rotor is another does not, and the page names
+/// the stretches.
+#[test]
+fn the_page_of_a_long_recording_names_its_stretches() {
+    let scenario = page::project("studies/scenarios/minute.toml");
+    let recording = page::scratch("minute.parquet");
+    let made = page::drivemon(&["simulate", &scenario, "-o", &recording]);
+    assert!(made.status.success(), "{made:?}");
+    let motor = page::project("motors/peer-2k2.toml");
+    let page = Page::of("long", &["compare", &recording, "--motor", &motor]);
+    page.check();
+    assert!(page.html.contains("What of the recording was used"));
+    assert!(page.number("/overall/error_over_noise") < 1.1);
+    let (mut judged, mut end) = (0.0, 0.0);
+    for k in 0..page.items("/stretches") {
+        let at = |key: &str| page.number(&format!("/stretches/{k}/{key}"));
+        let (from, to) = (at("from_s"), at("to_s"));
+        assert!(from >= end && to > from && to < 60.1, "{from} {to}");
+        (judged, end) = (judged + to - from, to);
+    }
+    assert!((judged - 32.0).abs() < 0.01, "{judged}");
+    // The scenario takes the load off at 57 s.
+    assert!(page.html.contains("torque 1.45 to 14.6"));
+    browser::check(&page);
+
+    let text = std::fs::read_to_string(&motor).expect("it ships");
+    let believed = "rotor_resistance_ohm = 2.296875";
+    assert!(text.contains(believed));
+    let other = page::scratch("other-rotor.toml");
+    std::fs::write(&other, text.replace(believed, "rotor_resistance_ohm = 3.0")).expect("writable");
+    let page = Page::of("long-other", &["compare", &recording, "--motor", &other]);
+    assert!(page.number("/overall/error_over_noise") > 2.0);
+}
+
 #[test]
 fn a_recording_without_voltages_gives_a_page_too() {
     let recording = page::project("tests/data/itsc_075hp/sc_a3_b0_c0_001.csv.gz");

@@ -150,6 +150,18 @@ impl Page {
             .collect()
     }
 
+    /// A number of the JSON.
+    pub fn number(&self, address: &str) -> f64 {
+        let there = self.json.pointer(address).and_then(Value::as_f64);
+        there.unwrap_or_else(|| panic!("no number at {address}"))
+    }
+
+    /// How many items a list of the JSON has; it has some.
+    pub fn items(&self, address: &str) -> usize {
+        let there = self.json.pointer(address).and_then(Value::as_array);
+        there.map_or_else(|| panic!("no list at {address}"), Vec::len)
+    }
+
     /// A text of the result; empty where there is none.
     pub fn text(&self, address: &str) -> String {
         let text = self.json.pointer(address).and_then(Value::as_str);

@@ -21,7 +21,7 @@ const OFF: f64 = 0.05;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
-    /// Parameters and effects are fitted to it.
+    /// Parameters and effects are fitted to it; `compare` compares it.
     Fitted,
     /// It was not fitted: errors there prove.
     Proves,

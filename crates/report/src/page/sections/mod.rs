@@ -10,4 +10,5 @@ pub mod overlay;
 pub mod parameters;
 pub mod plate;
 pub mod scale;
+pub mod stretches;
 pub mod table_overlay;
