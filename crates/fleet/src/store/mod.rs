@@ -132,6 +132,11 @@ impl Writer {
 }
 
 impl Store {
+    /// Its file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Opens a store, or makes a new one. From now on other programs may only read it: the last that opens is the writer.
     ///
     /// # Errors

@@ -7,4 +7,4 @@ mod text;
 
 pub use config::MetricsConfig;
 pub use render::{Output, Plant, STALE_MS, render};
-pub use router::{Source, router};
+pub use router::{Source, router, run};

@@ -1,5 +1,6 @@
 //! The route `/metrics`. Who may ask is decided by the server that takes it in.
 
+use std::io;
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -9,6 +10,8 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use fleet::{Store, StoreError};
+use tokio::net::TcpListener;
+use tokio::sync::watch;
 
 use super::MetricsConfig;
 use super::render::{Output, Plant, render};
@@ -28,6 +31,19 @@ pub struct Source {
     pub mqtt: Option<MqttStatus>,
     /// The Modbus server.
     pub modbus: Option<ModbusStatus>,
+}
+
+/// Answers at the address of the configuration until `stop` is true or its sender is gone.
+///
+/// # Errors
+/// The address is taken, or may not be used.
+pub async fn run(source: Source, mut stop: watch::Receiver<bool>) -> io::Result<()> {
+    let listener = TcpListener::bind(source.config.listen).await?;
+    let ended = async move {
+        let _ = stop.wait_for(|stop| *stop).await;
+    };
+    let server = axum::serve(listener, router(source));
+    server.with_graceful_shutdown(ended).await
 }
 
 /// `GET /metrics`.

@@ -101,6 +101,11 @@ impl Names {
         })
     }
 
+    /// The group.
+    pub fn group(&self) -> &str {
+        &self.group
+    }
+
     /// The edge node.
     pub fn node(&self) -> &str {
         &self.node

@@ -1,5 +1,7 @@
 //! `drivemon gateway` and `drivemon fleet`: many boards, one store.
 
+mod outputs;
+
 use clap::Args;
 use gateway::Snapshot;
 pub use gateway::command::Fleet;
@@ -8,7 +10,10 @@ use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use outputs::Uplinks;
+
 use super::ending::told_to_end;
+
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::JsonArgs;
 use crate::cli::printing::terminal::{complain, line};
@@ -40,7 +45,7 @@ impl Answer for Counted {
 impl GatewayArgs {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
-        let ran = self.gather.run::<()>(TERMINAL, told_to_end());
+        let ran = self.gather.run::<Uplinks>(TERMINAL, told_to_end());
         let ran = ran.map_err(failure)?;
         if let Ran::Gathered(counts) = ran {
             self.json.write(&Counted { counts })?;

@@ -1,0 +1,134 @@
+//! What a gateway hands on: Sparkplug B to a broker, registers for Modbus masters, metrics for Prometheus.
+
+use std::path::Path;
+
+use document::Section;
+use gateway::command::{Handles, Outputs};
+use tokio::sync::watch;
+use uplink::metrics::{self, MetricsConfig, Source};
+use uplink::modbus::{self, ModbusConfig, ModbusStatus};
+use uplink::mqtt::{self, MqttConfig, MqttStatus};
+
+/// The outputs of a configuration; each is there where its section is.
+#[derive(Debug)]
+pub struct Uplinks {
+    mqtt: Option<MqttConfig>,
+    modbus: Option<ModbusConfig>,
+    metrics: Option<MetricsConfig>,
+}
+
+/// A section that may be absent. `None` after a problem.
+fn optional<T>(
+    root: &Section<'_>,
+    key: &str,
+    read: impl FnOnce(Section<'_>) -> Option<T>,
+) -> Option<Option<T>> {
+    match root.optional_section(key)? {
+        Some(section) => read(section).map(Some),
+        None => Some(None),
+    }
+}
+
+impl Outputs for Uplinks {
+    fn read(root: &Section<'_>, folder: &Path) -> Option<Self> {
+        let mqtt = optional(root, "mqtt", |section| MqttConfig::read(section, folder));
+        let modbus = optional(root, "modbus", ModbusConfig::read);
+        let metrics = optional(root, "metrics", MetricsConfig::read);
+        Some(Uplinks {
+            mqtt: mqtt?,
+            modbus: modbus?,
+            metrics: metrics?,
+        })
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.mqtt.iter().map(|mqtt| mqtt.sink.clone()).collect()
+    }
+
+    fn described(&self) -> Vec<String> {
+        let mqtt = self.mqtt.as_ref().map(|mqtt| {
+            let tls = if mqtt.tls.is_some() { ", TLS" } else { "" };
+            let names = &mqtt.names;
+            let (group, node) = (names.group(), names.node());
+            format!(
+                "mqtt: Sparkplug B, group {group}, node {node}, to {}:{}{tls}",
+                mqtt.host, mqtt.port
+            )
+        });
+        let modbus = self
+            .modbus
+            .as_ref()
+            .map(|modbus| format!("modbus: every motor for masters at {}", modbus.listen));
+        let metrics = self
+            .metrics
+            .as_ref()
+            .map(|metrics| format!("metrics: http://{}/metrics", metrics.listen));
+        let all: Vec<String> = mqtt.into_iter().chain(modbus).chain(metrics).collect();
+        match all.is_empty() {
+            true => vec!["outputs: none".to_owned()],
+            false => all,
+        }
+    }
+
+    async fn run(self, handles: Handles) -> String {
+        let outputs = self.names();
+        let (mqtt, modbus) = (MqttStatus::default(), ModbusStatus::default());
+        let source = self.metrics.map(|config| Source {
+            store: handles.store.clone(),
+            config,
+            outputs,
+            mqtt: self.mqtt.is_some().then(|| mqtt.clone()),
+            modbus: self.modbus.is_some().then(|| modbus.clone()),
+        });
+        let ended = || handles.ended.clone();
+        let broker = async {
+            let Some(mut config) = self.mqtt else {
+                return at_the_end(ended()).await;
+            };
+            let store = handles.store.clone();
+            let beside = || store.path().with_extension("mqtt-session");
+            config.session_file.get_or_insert_with(beside);
+            let done = mqtt::run(config, store, mqtt, handles.stored.clone(), ended()).await;
+            done.err().map(|error| error.to_string())
+        };
+        let masters = async {
+            let Some(config) = self.modbus else {
+                return at_the_end(ended()).await;
+            };
+            let done = modbus::run(config, handles.store.clone(), modbus, ended()).await;
+            done.err().map(|error| error.to_string())
+        };
+        let scraped = async {
+            let Some(source) = source else {
+                return at_the_end(ended()).await;
+            };
+            let address = source.config.listen;
+            let done = metrics::run(source, ended()).await;
+            done.err()
+                .map(|error| format!("metrics at {address}: {error}"))
+        };
+        all_of(broker, masters, scraped).await
+    }
+}
+
+/// An output that is not configured ends with the gateway.
+async fn at_the_end(mut ended: watch::Receiver<bool>) -> Option<String> {
+    // A gateway that was dropped has ended, too.
+    let _ = ended.wait_for(|ended| *ended).await;
+    None
+}
+
+/// Ends with the first output that cannot go on, saying why, or when all have ended.
+async fn all_of(
+    broker: impl Future<Output = Option<String>>,
+    masters: impl Future<Output = Option<String>>,
+    scraped: impl Future<Output = Option<String>>,
+) -> String {
+    let or_error = |why: Option<String>| why.map_or(Ok(()), Err);
+    let done = tokio::try_join!(
+        async { or_error(broker.await) },
+        async { or_error(masters.await) },
+        async { or_error(scraped.await) },
+    );
+    done.err().unwrap_or_default()
+}
