@@ -217,6 +217,9 @@ fn months() -> Result<(), Failed> {
 }
 
 fn main() -> Result<(), Failed> {
+    if std::env::args().any(|arg| arg == "months") {
+        return months();
+    }
     println!(
         "| motors | s | seconds stored per s of processor | store, % of a core | alarms, % | history, % | slowest batch, ms | MB per motor and day | memory, MB | all states, ms | alarms, ms | trend of an hour, ms |"
     );
