@@ -19,6 +19,7 @@ pub mod alarm;
 pub mod answer;
 mod entry;
 mod motor;
+pub mod people;
 mod state;
 mod store;
 pub mod users;
@@ -28,4 +29,6 @@ pub use entry::{
 };
 pub use motor::{MotorId, MotorIdError, MotorInfo};
 pub use state::MotorState;
-pub use store::{Appended, Limits, Store, StoreError, Trend, TrendPoint, Values};
+pub use store::{
+    Appended, EntryFilter, Limits, Reader, Store, StoreError, Trend, TrendPoint, Values,
+};

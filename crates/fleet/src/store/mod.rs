@@ -10,6 +10,7 @@ mod limits;
 mod marks;
 mod parquet;
 mod read;
+mod reader;
 mod schema;
 mod seconds;
 mod timeline;
@@ -26,6 +27,7 @@ pub use append::Appended;
 pub use error::StoreError;
 pub use history::{Trend, TrendPoint, Values};
 pub use limits::Limits;
+pub use reader::{EntryFilter, Reader};
 
 use crate::alarm::change::{Alarm, AlarmChange, AlarmFilter};
 use crate::entry::{Entry, Numbered};

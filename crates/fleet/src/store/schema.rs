@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
+use rusqlite::{Connection, OpenFlags, TransactionBehavior};
 
 use super::StoreError;
 
@@ -64,8 +64,16 @@ fn migrate(connection: &mut Connection, path: &Path) -> Result<(), StoreError> {
     Ok(())
 }
 
+/// Refuses a file that is no store, or not one of this program's.
+pub(super) fn check(connection: &Connection, path: &Path) -> Result<(), StoreError> {
+    match schema_of(connection, path)? {
+        0 => Err(StoreError::Foreign(path.to_owned())),
+        _ => Ok(()),
+    }
+}
+
 /// Schema of the file, 0 of an empty one.
-fn schema_of(tx: &Transaction<'_>, path: &Path) -> Result<u32, StoreError> {
+fn schema_of(tx: &Connection, path: &Path) -> Result<u32, StoreError> {
     let tables: u32 = tx.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
     if tables == 0 {
         return Ok(0);
