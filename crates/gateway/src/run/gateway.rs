@@ -4,12 +4,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use fleet::alarm::Watch;
+use fleet::people::{People, PeopleError};
 use fleet::{MotorInfo, Store, StoreError};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinSet;
 
 use super::alarms::Alarms;
 use super::keeper::Keeper;
+use super::requests::Requests;
 use super::writer::{WriteError, Writer};
 use crate::bus::Bus;
 use crate::config::{Config, MotorConfig};
@@ -26,6 +28,9 @@ pub enum StartError {
     /// The store.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// Users, and what they ask for.
+    #[error(transparent)]
+    People(#[from] PeopleError),
     /// The system gives no thread.
     #[error("no thread for the writer: {0}")]
     Thread(#[from] std::io::Error),
@@ -92,9 +97,16 @@ impl Gateway {
             watch: Arc::new(Watch::new(config.alarms.clone())),
             stored: stored.clone(),
             say: context.say.clone(),
-            ended,
+            ended: ended.clone(),
         };
         let watch = alarms.watch.clone();
+        let requests = Requests {
+            store: store.clone(),
+            watch: watch.clone(),
+            people: People::open(&config.store)?,
+            say: context.say.clone(),
+            ended,
+        };
         let (done, writer_done) = oneshot::channel();
         let thread = std::thread::Builder::new().name("writer".into());
         thread.spawn(move || drop(done.send(writer.run())))?;
@@ -104,6 +116,9 @@ impl Gateway {
         std::thread::Builder::new()
             .name("alarms".into())
             .spawn(move || alarms.run())?;
+        std::thread::Builder::new()
+            .name("requests".into())
+            .spawn(move || requests.run())?;
         let mut links = JoinSet::new();
         for (k, link) in config.links.iter().enumerate() {
             let motors: Vec<MotorConfig> = config.motors_of(k).cloned().collect();

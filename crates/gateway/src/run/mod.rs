@@ -1,8 +1,9 @@
-//! The gateway as it runs: links, one writer, and whoever waits for what is new.
+//! The gateway as it runs: links, one writer, alarms, and those who wait for what is new.
 
 mod alarms;
 mod gateway;
 mod keeper;
+mod requests;
 mod writer;
 
 pub use gateway::{Connected, Gateway, StartError, connect};
