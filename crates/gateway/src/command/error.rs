@@ -15,6 +15,9 @@ pub enum CommandError {
     /// An output.
     #[error("{0}")]
     Output(String),
+    /// People of a plant.
+    #[error(transparent)]
+    People(#[from] fleet::people::PeopleError),
     /// A plan of simulated boards.
     #[error(transparent)]
     Plan(#[from] crate::simulate::PlanError),

@@ -7,8 +7,9 @@ use clap::{Args, Subcommand};
 use super::error::CommandError;
 use super::simulate::Simulate;
 use super::terminal::Terminal;
+use super::users::Users;
 
-/// Try out what belongs to plants of many motors.
+/// Plants of many motors: boards to try a gateway with, and people.
 #[derive(Debug, Args)]
 pub struct Fleet {
     #[command(subcommand)]
@@ -29,6 +30,14 @@ Examples:
   drivemon fleet simulate 300 --faulty 3 --faults-within 60       three of them fail within a minute
 Ctrl-C ends it.")]
     Simulate(Simulate),
+    /// The people of a plant: who may see its page, acknowledge alarms, configure
+    #[command(after_help = "\
+Examples:
+  drivemon fleet user add Anna --role acknowledge --fleet plant.toml   prints Anna's token, once
+  drivemon fleet user list --fleet plant.toml
+  drivemon fleet user remove Anna --fleet plant.toml                   the token is refused from now on
+docs/fleet/page.md says what each role may do.")]
+    User(Users),
 }
 
 impl Fleet {
@@ -41,7 +50,9 @@ impl Fleet {
         terminal: Terminal,
         end: impl Future<Output = ()>,
     ) -> Result<(), CommandError> {
-        let FleetCommand::Simulate(simulate) = &self.command;
-        simulate.run(terminal, end)
+        match &self.command {
+            FleetCommand::Simulate(simulate) => simulate.run(terminal, end),
+            FleetCommand::User(users) => users.run(terminal),
+        }
     }
 }

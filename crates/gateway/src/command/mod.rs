@@ -6,6 +6,7 @@ mod gather;
 mod outputs;
 mod simulate;
 mod terminal;
+mod users;
 
 pub use error::CommandError;
 pub use fleet::Fleet;

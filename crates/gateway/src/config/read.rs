@@ -43,6 +43,24 @@ impl Config {
         document.finish(config.zip(outputs))
     }
 
+    /// The store that a path means: the path itself, or the one of a configuration (a file `*.toml`). Nothing else of the
+    /// configuration is checked.
+    ///
+    /// # Errors
+    /// The configuration cannot be read, or names no store.
+    pub fn store_of(path: &Path) -> Result<PathBuf, FileError> {
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            return Ok(path.to_owned());
+        }
+        let document = Document::parse(&read_text(path)?, &path.display().to_string())?;
+        let section = document
+            .root()
+            .section("store", "which says where everything is kept");
+        let file = section.and_then(|s| s.text("path", "the file in which everything is kept"));
+        let folder = path.parent().unwrap_or(Path::new(""));
+        document.finish(file.map(|file| folder.join(file)))
+    }
+
     /// For a gateway that hands nothing on.
     pub fn no_outputs(_: &Section<'_>) -> Option<()> {
         Some(())

@@ -89,7 +89,9 @@ impl Requests {
             why,
             ..
         } = asked;
-        let done = self.watch.act(&self.store, *alarm, action, who, why, now_ms());
+        let done = self
+            .watch
+            .act(&self.store, *alarm, action, who, why, now_ms());
         let refused = match done {
             Ok(_) => None,
             Err(WatchError::Action(refused)) => Some(refused.to_string()),
@@ -185,7 +187,9 @@ mod tests {
             ];
             let done = work();
             end.send(true).expect("it runs");
-            threads.map(|thread| thread.join().expect("it ends"));
+            for thread in threads {
+                thread.join().expect("it ends");
+            }
             done
         }
 
