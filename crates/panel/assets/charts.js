@@ -1,7 +1,7 @@
 // Charts that follow the source: drag to zoom, double-click or "Follow" to go on, cursor read-out, keyboard, PNG.
 
 import { make, show } from "./dom.js";
-import { fixed, shown } from "./format.js";
+import { fixed, moment, shown } from "./format.js";
 
 /**
  * @typedef {object} Line
@@ -21,6 +21,8 @@ import { fixed, shown } from "./format.js";
  * @property {boolean} [asinh] small values linear, large ones logarithmic
  * @property {boolean} [zero] zero is always in sight
  * @property {number} [rows] height in rem
+ * @property {boolean} [time] x is the time of day, Unix seconds
+ * @property {boolean} [filled] between the first two lines
  */
 
 /** @typedef {[number[], ...(number | null)[][]]} Data */
@@ -86,6 +88,20 @@ export function decimals(step) {
   return digits;
 }
 
+/**
+ * An instant on a time axis whose ticks are so far apart: the time, or the date where a day begins.
+ * @param {Date} at
+ * @param {number} step seconds
+ */
+export function instant(at, step) {
+  const two = (/** @type {number} */ number) => String(number).padStart(2, "0");
+  const date = `${two(at.getMonth() + 1)}-${two(at.getDate())}`;
+  if (step >= 28 * 86_400) return `${at.getFullYear()}-${two(at.getMonth() + 1)}`;
+  if (step >= 86_400 || (at.getHours() === 0 && at.getMinutes() === 0 && at.getSeconds() === 0)) return date;
+  const time = `${two(at.getHours())}:${two(at.getMinutes())}`;
+  return step < 60 ? `${time}:${two(at.getSeconds())}` : time;
+}
+
 /** One chart in a box. */
 export class Chart {
   /**
@@ -98,6 +114,8 @@ export class Chart {
     this.data = [[], ...spec.lines.map(() => [])];
     this.held = false;
     this.span = 0;
+    /** @type {{ min: number, max: number } | null} */
+    this.fixed = null;
     this.plotBox = make("div", { class: "plot", tabindex: 0, role: "group", "aria-label": `${spec.title}: arrow keys read out, plus and minus zoom, Escape follows` });
     this.follow = make("button", { type: "button", class: "follow", hidden: true }, "Follow");
     const save = make("button", { type: "button", title: `save ${spec.title} as an image` }, "PNG");
@@ -137,14 +155,16 @@ export class Chart {
     /** @type {uPlot.Axis.DynamicValues} */
     const ticks = (_, values, _axis, _space, step) => values.map((value) => (value == null ? "" : fixed(value, decimals(step))));
     /** @type {uPlot.Axis.DynamicValues} */
+    const times = (_, values, _axis, _space, step) => values.map((value) => (value == null ? "" : instant(new Date(1000 * value), step)));
+    /** @type {uPlot.Axis.DynamicValues} */
     const powers = (_, values) => values.map((value) => (POWERS.includes(value) ? fixed(value, 0) : ""));
     /** @type {uPlot.Options} */
     const options = {
       ...this.size(),
-      scales: { x: { time: false, auto: false }, y: this.scale() },
-      series: [{ label: spec.x, value: (_, value) => shown(value, 5) }, ...this.lines()],
-      axes: [{ ...axis, size: 1.9 * rem(), space: 4.8 * rem(), values: ticks }, { ...axis, label: spec.unit, labelSize: 1.5 * rem(), size: 3.4 * rem(), values: spec.asinh ? powers : ticks, ...(spec.asinh ? { filter: (_, values) => values, splits: (u) => POWERS.filter((power) => power >= (u.scales.y.min ?? 0) && power <= (u.scales.y.max ?? 0)) } : {}) }],
-      bands: spec.limit ? [{ series: [spec.lines.length + 1, spec.lines.length + 2], fill: colour("inside") }] : [],
+      scales: { x: { time: spec.time ?? false, auto: false }, y: this.scale() },
+      series: [{ label: spec.x, value: (_, value) => (spec.time ? moment(value) : shown(value, 5)) }, ...this.lines()],
+      axes: [{ ...axis, size: 1.9 * rem(), space: 4.8 * rem(), values: spec.time ? times : ticks }, { ...axis, label: spec.unit, labelSize: 1.5 * rem(), size: 3.4 * rem(), values: spec.asinh ? powers : ticks, ...(spec.asinh ? { filter: (_, values) => values, splits: (u) => POWERS.filter((power) => power >= (u.scales.y.min ?? 0) && power <= (u.scales.y.max ?? 0)) } : {}) }],
+      bands: this.bands(),
       cursor: { drag: { x: true, y: false }, sync: { key: spec.x } },
       legend: { live: true },
       hooks: { setSelect: [(u) => u.select.width > 0 && this.hold()] },
@@ -154,6 +174,13 @@ export class Chart {
     plot.over.addEventListener("dblclick", () => this.release());
     this.range(plot);
     return plot;
+  }
+
+  /** @returns {uPlot.Band[]} */
+  bands() {
+    const { limit, lines, filled } = this.spec;
+    if (filled) return [{ series: [2, 1], fill: colour("rule") }];
+    return limit ? [{ series: [lines.length + 1, lines.length + 2], fill: colour("inside") }] : [];
   }
 
   /** @returns {uPlot.Scale} */
@@ -183,6 +210,7 @@ export class Chart {
   /** @param {uPlot} plot */
   range(plot) {
     const [t] = this.data;
+    if (this.fixed) return plot.setScale("x", this.fixed);
     if (t.length === 0) return;
     const [first, last] = [t[0], t[t.length - 1]];
     plot.setScale("x", this.span > 0 ? following(first, last, this.span) : { min: first, max: last });
@@ -192,10 +220,12 @@ export class Chart {
    * Shows other values.
    * @param {Data} data
    * @param {number} span seconds in sight; 0 for all
+   * @param {{ min: number, max: number } | null} [fixed] what is in sight, whatever the values
    */
-  update(data, span) {
+  update(data, span, fixed = null) {
     this.data = data;
     this.span = span;
+    this.fixed = fixed;
     this.plot.batch(() => {
       this.plot.setData(this.table(), false);
       if (!this.held) this.range(this.plot);

@@ -4,6 +4,7 @@
 //! never waits for a reader. The server is one thread: it turns the channel into server-sent events, and requests into
 //! commands for the source's thread.
 
+pub mod fleet;
 pub mod source;
 pub mod workbench;
 

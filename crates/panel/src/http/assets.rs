@@ -6,12 +6,13 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 
-const HTML: &str = "text/html; charset=utf-8";
-const SCRIPT: &str = "text/javascript; charset=utf-8";
-const STYLE: &str = "text/css; charset=utf-8";
+/// Kinds of files.
+pub(crate) const HTML: &str = "text/html; charset=utf-8";
+pub(crate) const SCRIPT: &str = "text/javascript; charset=utf-8";
+pub(crate) const STYLE: &str = "text/css; charset=utf-8";
 
 /// Path, kind and content.
-type Asset = (&'static str, &'static str, &'static str);
+pub(crate) type Asset = (&'static str, &'static str, &'static str);
 
 /// A file of the panel under `/panel/`.
 macro_rules! own {
@@ -85,6 +86,23 @@ const ASSETS: &[Asset] = &[
         include_str!("../../assets/favicon.svg"),
     ),
 ];
+
+/// Files that other pages of this server use too: styles, charts, what is general of the scripts.
+pub(crate) fn shared() -> impl Iterator<Item = &'static Asset> {
+    const NAMES: [&str; 10] = [
+        "/panel/panel.css",
+        "/panel/charts.js",
+        "/panel/dom.js",
+        "/panel/format.js",
+        "/report.js",
+        "/report.css",
+        "/uplot.css",
+        "/uplot.js",
+        "/uplot.LICENSE",
+        "/favicon.svg",
+    ];
+    ASSETS.iter().filter(|(path, ..)| NAMES.contains(path))
+}
 
 /// A route for each file.
 pub fn router() -> Router {

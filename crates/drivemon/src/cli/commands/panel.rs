@@ -1,5 +1,7 @@
 //! `drivemon panel`: the lamps in a browser.
 
+mod fleet;
+
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,6 +40,15 @@ pub struct Panel {
     /// Listen to a board through a debug probe (needs a build with the feature `probe`)
     #[arg(long, group = "source")]
     probe: bool,
+    /// Show a plant of many motors: the gateway's configuration (*.toml), or its store
+    ///
+    /// The page reads the store beside `drivemon gateway`. On this computer everybody may see it; who acknowledges alarms needs a
+    /// token from `drivemon fleet user add`. With --allow-network everybody needs one.
+    #[arg(long, value_name = "CONFIG_OR_STORE", group = "source")]
+    fleet: Option<PathBuf>,
+    /// With --fleet: a motor without data for so long is grey, s; more than the longest time between two visits of its link
+    #[arg(long, value_name = "S", default_value_t = 30, requires = "fleet", value_parser = clap::value_parser!(u32).range(2..=86_400))]
+    stale_after: u32,
     /// Speed of the serial port, bit/s
     #[arg(
         long,
@@ -88,6 +99,7 @@ Examples:
   drivemon panel --sim sim-host/scenarios/sensor-faults.toml       a scenario
   drivemon panel --replay rec.csv.gz --motor motors/peer-2k2.toml  a recording
   drivemon panel --serial /dev/ttyACM0 --motor m.toml              a running board
+  drivemon panel --fleet plant.toml                                a plant of many motors
 Ctrl-C ends it.";
 
 /// For a file that is being read when the panel ends.
@@ -104,6 +116,9 @@ fn speed(text: &str) -> Result<f64, String> {
 impl Panel {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
+        if let Some(plant) = &self.fleet {
+            return fleet::run(plant, self.stale_after, &self.options(), self.open);
+        }
         let (source, motor) = self.source()?;
         let name = self.motor_name();
         let session = panel::start(source, motor, self.speed);
