@@ -3,6 +3,8 @@
 mod browser;
 mod http;
 mod life;
+#[cfg(feature = "gateway")]
+mod plant;
 mod server;
 mod slow;
 mod strangers;

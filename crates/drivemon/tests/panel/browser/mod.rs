@@ -12,10 +12,10 @@ mod shots;
 mod stories;
 
 use driver::Driver;
-use page::Page;
+pub use page::Page;
 
 /// Runs a visit with one browser.
-fn visit<F: Future<Output = ()>>(story: impl FnOnce(Page) -> F) {
+pub fn visit<F: Future<Output = ()>>(story: impl FnOnce(Page) -> F) {
     let Some(driver) = Driver::start() else {
         eprintln!("skipped: chromium and chromedriver are not installed, the page was not opened");
         return;

@@ -91,7 +91,8 @@ impl Page {
                 let picture = self.picture().await;
                 let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/panel-failure.png");
                 std::fs::write(path, picture).expect("written");
-                let (lamps, said) = (self.lamps().await, self.text("#state").await);
+                let said = "return (document.querySelector('#state') ?? document.body).innerText.slice(0, 400)";
+                let (lamps, said) = (self.lamps().await, self.run(said).await);
                 panic!("{what} did not come about, see {path}; lamps {lamps}; {said}");
             }
             tokio::time::sleep(Duration::from_millis(40)).await;
@@ -226,8 +227,10 @@ impl Page {
             .expect("the log");
         let lines = said.as_array().cloned().unwrap_or_default().into_iter();
         let messages = lines.map(|line| line["message"].as_str().unwrap_or_default().to_owned());
-        let away =
-            |message: &String| message.contains("/api/stream") && message.contains("net::ERR_");
+        let is_stream = |message: &String| {
+            message.contains("/api/stream") || message.contains("/api/fleet/stream")
+        };
+        let away = |message: &String| is_stream(message) && message.contains("net::ERR_");
         // What the server refuses is answered by 422, which the browser notes.
         let refused = |message: &String| message.contains("status of 422");
         let complaints: Vec<String> = messages

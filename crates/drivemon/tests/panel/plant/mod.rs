@@ -1,0 +1,5 @@
+//! The page of a plant: simulated boards, a gateway and the page, each a program of its own.
+
+mod browser;
+mod processes;
+mod strangers;
