@@ -16,20 +16,24 @@ mod wall;
 mod words;
 
 use std::net::{IpAddr, SocketAddr};
+use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::extract::DefaultBodyLimit;
 use axum::{Router, middleware};
 use fleet::people::PeopleError;
 use tokio::net::TcpListener;
-use tokio::sync::watch;
+use tokio::runtime::Builder;
 
 use crate::http::assets::nowhere;
 use crate::http::connections::{self, Connections};
 use crate::http::guard::{self, Guard};
 use crate::http::server::Options;
 
-pub use plant::{Plant, PlantError, Settings};
+use plant::{Plant, Settings};
+
+pub use plant::PlantError;
 pub use routes::document;
 
 /// Largest body of a request: a reason is far smaller.
@@ -52,6 +56,12 @@ pub enum FleetError {
     /// The people cannot be read.
     #[error(transparent)]
     People(#[from] PeopleError),
+    /// The store or its people.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// The system gives no server.
+    #[error("no server can be started: {0}")]
+    System(#[from] std::io::Error),
     /// The system refuses.
     #[error("{address}: {error}; choose another --port, or --port 0 for any that is free")]
     Bind {
@@ -63,23 +73,45 @@ pub enum FleetError {
 }
 
 /// A server that listens and does not answer yet.
-pub struct Running {
+struct Running {
     listener: TcpListener,
     address: SocketAddr,
     plant: Arc<Plant>,
     router: Router,
 }
 
-/// Whether the page may be seen without a token: where nobody else can reach it.
-pub fn is_open(options: &Options) -> bool {
-    options.host.is_loopback()
+/// For a question that is being answered when the server ends.
+const LAST_WORK: Duration = Duration::from_secs(1);
+
+/// Shows a plant until `end`; `told` hears the address that a browser opens. A motor without data for `stale_ms` is grey.
+///
+/// # Errors
+/// The store cannot be read, the address cannot be bound, or others could reach it without a token.
+pub fn show(
+    store: &Path,
+    stale_ms: i64,
+    options: &Options,
+    told: impl FnOnce(&str),
+    end: impl Future<Output = ()>,
+) -> Result<(), FleetError> {
+    let open = options.host.is_loopback();
+    let plant = Plant::open(store, Settings { stale_ms, open })?;
+    let runtime = Builder::new_current_thread().enable_all().build()?;
+    let served = runtime.block_on(async {
+        let running = bind(options, plant).await?;
+        told(&running.url());
+        running.serve(end).await;
+        Ok(())
+    });
+    runtime.shutdown_timeout(LAST_WORK);
+    served
 }
 
 /// Binds the address and puts everything behind guard and roles. Needs a tokio runtime.
 ///
 /// # Errors
 /// An address that others can reach without `allow_network` or without users, or one that cannot be bound.
-pub async fn bind(options: &Options, plant: Arc<Plant>) -> Result<Running, FleetError> {
+async fn bind(options: &Options, plant: Arc<Plant>) -> Result<Running, FleetError> {
     if !options.host.is_loopback() && !options.allow_network {
         return Err(FleetError::Network(options.host));
     }
@@ -117,7 +149,7 @@ pub async fn bind(options: &Options, plant: Arc<Plant>) -> Result<Running, Fleet
 
 impl Running {
     /// The address that a browser opens.
-    pub fn url(&self) -> String {
+    fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
             address.set_ip(IpAddr::from([127, 0, 0, 1]));
@@ -125,12 +157,12 @@ impl Running {
         format!("http://{address}/")
     }
 
-    /// Answers until `end` turns true; connections that are open then are cut.
-    pub async fn serve(self, mut end: watch::Receiver<bool>) {
+    /// Answers until `end`; connections that are open then are cut.
+    async fn serve(self, end: impl Future<Output = ()>) {
         let connections = Connections::default();
         tokio::select! {
             () = connections::serve(&self.listener, &self.router, &connections) => {}
-            _ = end.wait_for(|end| *end) => {}
+            () = end => {}
         }
         self.plant.end();
     }

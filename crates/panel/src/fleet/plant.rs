@@ -180,10 +180,15 @@ impl Plant {
         let now = self.wall();
         if let Some(news) = news(&before, &now) {
             // Without a page nobody listens.
-            let _ = self.news.send(Arc::new(super::stream::json(&news)));
+            let _ = self.news.send(Arc::new(json(&news)));
         }
         Ok(())
     }
+}
+
+/// As text of JSON; what the API answers always can be.
+pub(super) fn json<T: Serialize>(message: &T) -> String {
+    serde_json::to_string(message).unwrap_or_default()
 }
 
 /// A lock whose holder panicked is as good as any: what it guards is replaced whole.

@@ -16,7 +16,7 @@ use tokio_stream::wrappers::{BroadcastStream, IntervalStream};
 use tokio_stream::{Stream, StreamExt};
 
 use super::access::{CookieName, token};
-use super::plant::{Plant, now_ms};
+use super::plant::{Plant, json, now_ms};
 
 /// Between two signs of life: a page that misses three takes what it shows for stale.
 const ALIVE: Duration = Duration::from_secs(1);
@@ -60,9 +60,4 @@ pub(super) async fn stream(
 
 fn named(event: &str, json: &str) -> Event {
     Event::default().event(event).data(json)
-}
-
-/// As text of JSON; what the API answers always can be.
-pub(super) fn json<T: Serialize>(message: &T) -> String {
-    serde_json::to_string(message).unwrap_or_default()
 }

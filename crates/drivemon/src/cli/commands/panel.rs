@@ -1,7 +1,5 @@
 //! `drivemon panel`: the lamps in a browser.
 
-mod fleet;
-
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -117,7 +115,7 @@ impl Panel {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         if let Some(plant) = &self.fleet {
-            return fleet::run(plant, self.stale_after, &self.options(), self.open);
+            return self.show(plant);
         }
         let (source, motor) = self.source()?;
         let name = self.motor_name();
@@ -137,17 +135,32 @@ impl Panel {
         Ok(Finding::Nothing)
     }
 
+    /// A plant of many motors, until the program is told to end.
+    fn show(&self, plant: &Path) -> Result<Finding, Failure> {
+        #[cfg(feature = "gateway")]
+        let plant = &gateway::config::Config::store_of(plant)?;
+        let stale_ms = 1_000 * i64::from(self.stale_after);
+        let told = |url: &str| self.tell(url);
+        panel::fleet::show(plant, stale_ms, &self.options(), told, told_to_end())
+            .map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(Finding::Nothing)
+    }
+
+    fn tell(&self, url: &str) {
+        say!("panel: {url}   (Ctrl-C ends it)");
+        if self.open {
+            open(url);
+        }
+    }
+
     async fn serve(&self, session: Arc<Session>) -> Result<(), PanelError> {
         let status = session.status();
         let running = panel::bind(&self.options(), session).await?;
         let url = running.url();
         say!("{}: {}", status.source.kind, status.source.name);
-        say!("panel: {url}   (Ctrl-C ends it)");
+        self.tell(&url);
         if running.is_on_all_addresses() {
             say!("from another computer: the same link with this computer's name or address");
-        }
-        if self.open {
-            open(&url);
         }
         let (end, ended) = watch::channel(false);
         tokio::spawn(async move {
