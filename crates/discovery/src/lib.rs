@@ -41,7 +41,8 @@ pub use estimation::data::instrument_class;
 pub use estimation::data::load_table::table_values;
 pub use estimation::data::question::Error;
 pub use estimation::data::stretches::{
-    Budget, Choice, Excerpt, Gathering, Role, StretchReport, Survey, told as told_stretches,
+    Budget, Choice, Excerpt, FirstLook, Gathering, Role, Seen, StretchReport,
+    told as told_stretches,
 };
 pub use estimation::data::unsupported::Unsupported;
 pub use estimation::model::prediction::simulations;

@@ -176,6 +176,14 @@ impl Recording {
         self.t_sample
     }
 
+    /// The same with the sampling time of the recording that it is a part of, s: its own differs by what a clock's numbers are
+    /// rounded to.
+    #[must_use]
+    pub fn with_t_sample(mut self, t_sample: f64) -> Recording {
+        self.t_sample = t_sample;
+        self
+    }
+
     /// Time from the first to the last sample, s.
     pub fn duration(&self) -> f64 {
         self.t[self.t.len() - 1] - self.t[0]

@@ -85,34 +85,20 @@ impl StudyArgs {
             .writes_results(&self.output)
     }
 
-    /// All recordings in the order given, to be compared with the motor file.
+    /// All recordings in the order given; `budget`: what is taken of long ones, with one recording and with several.
     ///
     /// # Errors
     /// Whatever is wrong with flags, file or sidecar.
-    pub fn compared(&self, motor: &MotorFile) -> Result<Vec<Given>, Failure> {
-        self.given(motor, Budget::COMPARED)
-    }
-
-    /// The same, to be fitted once.
-    ///
-    /// # Errors
-    /// As [`StudyArgs::compared`].
-    pub fn fitted(&self, motor: &MotorFile) -> Result<Vec<Given>, Failure> {
-        self.given(motor, Budget::fitted(self.recordings.len() == 1))
-    }
-
-    /// The same, to be searched for what is missing.
-    ///
-    /// # Errors
-    /// As [`StudyArgs::compared`].
-    pub fn searched(&self, motor: &MotorFile) -> Result<Vec<Given>, Failure> {
-        self.given(motor, Budget::searched(self.recordings.len() == 1))
-    }
-
-    fn given(&self, motor: &MotorFile, budget: Budget) -> Result<Vec<Given>, Failure> {
+    pub fn given(
+        &self,
+        motor: &MotorFile,
+        budget: fn(bool) -> Budget,
+    ) -> Result<Vec<Given>, Failure> {
+        let budget = budget(self.recordings.len() == 1);
         let paths = self.recordings.iter();
-        let given = paths.map(|path| given(path, &self.input, motor, budget));
-        given.collect()
+        paths
+            .map(|path| given(path, &self.input, motor, budget))
+            .collect()
     }
 
     /// The motor file.

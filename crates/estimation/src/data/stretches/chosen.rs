@@ -67,18 +67,20 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// For a comparison, which fits nothing.
-    pub const COMPARED: Self = Self {
-        stretch_s: LENGTH,
-        fitted: COUNT,
-        proving: 0,
-    };
+    /// For a comparison, which fits nothing and proves nothing.
+    pub const fn compared(_alone: bool) -> Self {
+        Self {
+            stretch_s: LENGTH,
+            fitted: COUNT,
+            proving: 0,
+        }
+    }
 
     /// For one fit; `alone`: no other recording proves.
     pub const fn fitted(alone: bool) -> Self {
         Self {
             proving: if alone { COUNT / 2 } else { 0 },
-            ..Self::COMPARED
+            ..Self::compared(alone)
         }
     }
 

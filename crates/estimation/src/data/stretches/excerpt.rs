@@ -50,6 +50,7 @@ pub struct Excerpt {
     /// What was taken, in the order of time.
     pub stretches: Vec<StretchReport>,
     begin_s: f64,
+    t_sample: f64,
     parts: Vec<Part>,
 }
 
@@ -102,6 +103,7 @@ impl Survey {
                 duration_s,
                 stretches,
                 begin_s: self.begin_s,
+                t_sample: self.cells.t_sample,
                 parts: Vec::new(),
             },
             wanted,
@@ -145,7 +147,7 @@ impl Gathering {
         let Choice { excerpt, wanted } = self.choice;
         let parts = wanted.into_iter().zip(self.found);
         let parts = parts.filter_map(|(wanted, mut found)| {
-            let recording = found.pop()?;
+            let recording = found.pop()?.with_t_sample(excerpt.t_sample);
             // Samples that were left out at a border are missing at the begin or at the end.
             let missing = wanted.rows.len().saturating_sub(recording.len());
             let stretch = Stretch {

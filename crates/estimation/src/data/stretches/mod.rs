@@ -5,12 +5,14 @@ mod choice;
 mod chosen;
 mod cut;
 mod excerpt;
+mod look;
 
 pub use choice::told;
 pub use choice::{LONGEST_WHOLE, Stretch, stretches};
 pub use chosen::{Budget, Role, StretchReport};
 pub use cut::cut;
-pub use excerpt::{Choice, Excerpt, Gathering, Survey};
+pub use excerpt::{Choice, Excerpt, Gathering};
+pub use look::{FirstLook, Seen};
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use crate::page::elements::number::{decimals, shown};
 use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, next, verdict};
 use crate::page::sections::parameters::{Bar, NOISE, bars, nominals, of_effect};
-use crate::page::sections::{audit, frame, laws, overlay, scale, stretches};
+use crate::page::sections::{audit, frame, laws, overlay, scale};
 use discovery::PARAMETERS;
 
 /// Everything between heading and footer.
@@ -23,7 +23,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (overlay::section(result))
         (values(result))
         (scale::section(result))
-        (stretches::section(result))
+        (audit::used(result))
         (audit::section(result))
     }
 }

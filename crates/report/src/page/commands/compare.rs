@@ -7,7 +7,7 @@ use crate::page::elements::number::{decimals, shown, significant};
 use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, next, verdict};
 use crate::page::sections::parameters::bar;
-use crate::page::sections::{audit, overlay, scale, stretches};
+use crate::page::sections::{audit, overlay, scale};
 
 /// From this error over noise on a model is called wrong.
 pub const AGREES: f64 = 1.1;
@@ -32,7 +32,7 @@ pub fn content(result: &Place<'_>) -> Markup {
             (signals(result))
             (scale::section(result))
         }
-        (stretches::section(result))
+        (audit::used(result))
         (audit::section(result))
         @if wrong { (next("Find out which physics is missing:", result.text("next_command"))) }
     }

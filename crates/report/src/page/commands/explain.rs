@@ -6,7 +6,7 @@ use crate::page::elements::number::{decimals, shown};
 use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, next, verdict};
 use crate::page::sections::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
-use crate::page::sections::{audit, frame, laws, next_run, overlay, scale, stretches};
+use crate::page::sections::{audit, frame, laws, next_run, overlay, scale};
 use discovery::Verdict;
 
 /// Key of the error on data that was not fitted.
@@ -30,7 +30,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (scale::section(result))
         (not_testable(result))
         (next_run::section(result))
-        (stretches::section(result))
+        (audit::used(result))
         (audit::section(result))
     }
 }

@@ -10,5 +10,4 @@ pub mod overlay;
 pub mod parameters;
 pub mod plate;
 pub mod scale;
-pub mod stretches;
 pub mod table_overlay;

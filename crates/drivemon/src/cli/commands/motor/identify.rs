@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use discovery::{IdentifiedParameter, IdentifyReport, Sources};
+use discovery::{Budget, IdentifiedParameter, IdentifyReport, Sources};
 use motor::MotorFile;
 use report::json::Answer;
 use schemars::JsonSchema;
@@ -64,7 +64,7 @@ impl Identify {
     pub fn run(&self) -> Result<Finding, Failure> {
         self.study.files().writes("-o", &self.out).check()?;
         let motor = self.study.motor()?;
-        let sources = self.study.fitted(&motor)?;
+        let sources = self.study.given(&motor, Budget::fitted)?;
         let (report, identified) = with_progress(|progress| {
             discovery::identify(Sources::Given(&sources), &motor, progress)
         })?;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use discovery::{AdoptReport, LAW, Laws};
+use discovery::{AdoptReport, Budget, LAW, Laws};
 
 use crate::cli::arguments::study::{
     ShapesArgs, StudyArgs, percent, print_audit, print_next, print_stretches, quantity, uncertain,
@@ -63,7 +63,7 @@ impl Adopt {
             formula: self.formula,
         };
         let motor = self.study.motor()?;
-        let sources = self.study.searched(&motor)?;
+        let sources = self.study.given(&motor, Budget::searched)?;
         let names = self.study.names();
         let inputs = Inputs {
             laws,

@@ -1,7 +1,7 @@
 //! `drivemon compare`: where the model of a motor file fails.
 
 use clap::Args;
-use discovery::{CompareReport, SignalReport};
+use discovery::{Budget, CompareReport, SignalReport};
 
 use crate::cli::arguments::study::{
     StudyArgs, bar, print_audit, print_next, print_stretches, with_progress,
@@ -35,7 +35,7 @@ impl Compare {
     pub fn run(&self) -> Result<Finding, Failure> {
         self.study.files().check()?;
         let motor = self.study.motor()?;
-        let sources = self.study.compared(&motor)?;
+        let sources = self.study.given(&motor, Budget::compared)?;
         let names = self.study.names();
         let inputs = self.study.inputs(&names, &sources, &motor);
         let next = format!("drivemon explain {}", self.study.typed());

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use discovery::{
-    ExplainReport, FitReport, FrameReport, LAW, Laws, RankReport, StepReport, Verdict,
+    Budget, ExplainReport, FitReport, FrameReport, LAW, Laws, RankReport, StepReport, Verdict,
 };
 
 use crate::cli::arguments::next_run::NextRunArgs;
@@ -64,7 +64,7 @@ impl Explain {
             formula: None,
         };
         let motor = self.study.motor()?;
-        let sources = self.study.searched(&motor)?;
+        let sources = self.study.given(&motor, Budget::searched)?;
         let names = self.study.names();
         let next_run = self.next_run.asked(&motor, self.study.motor_path())?;
         let inputs = Inputs {

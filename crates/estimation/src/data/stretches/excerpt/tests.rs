@@ -224,3 +224,21 @@ fn a_motor_at_rest_is_not_taken() {
     let (_, used) = excerpt.case(Role::Fitted, &rated).expect("judged");
     assert!(used.iter().all(|one| excerpt.stretches.contains(one)));
 }
+
+/// Far from the clock's zero its steps are rounded, by another amount in every stretch: they are one recording all the same.
+#[test]
+fn a_clock_that_is_rounded_leaves_no_stretch_out() {
+    let near = specimen::recording(20.0, |_| 1.0);
+    let t = near.t().iter().map(|t| t + 20_000.0).collect();
+    let empty = Recording::new("far", t, near.metadata.clone()).expect("a clock");
+    let far = near.channels().fold(empty, |far, (channel, values)| {
+        far.with_channel(channel, values.to_vec()).expect("as long")
+    });
+    let excerpt = excerpt(&pieces(&far, 7_001));
+    let rated = specimen::prior("").plant.rated;
+    for role in [Role::Fitted, Role::Proves] {
+        let (case, used) = excerpt.case(role, &rated).expect("judged");
+        assert_eq!(used.len(), spans(&excerpt, role).len());
+        assert!((case.time_of(0) - used[0].from_s).abs() < 0.51);
+    }
+}
