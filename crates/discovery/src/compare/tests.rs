@@ -1,5 +1,6 @@
 use super::*;
 use estimation::specimen;
+use recording::Source;
 
 /// A model that is exactly right, but for what `error` adds to a channel in units of its noise.
 fn residual_of(study: &Study, error: impl Fn(usize, usize) -> f64) -> Vec<f64> {

@@ -2,7 +2,7 @@
 
 use super::*;
 use estimation::specimen::{self, apparent_power, with};
-use recording::Recording;
+use recording::{Recording, Source};
 
 /// A typical core loss of the table's machine is adopted; the rest of the motor file stays as it is.
 #[test]

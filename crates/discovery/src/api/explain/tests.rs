@@ -6,6 +6,7 @@ use crate::search::screen::Screened;
 use estimation::model::prior::{FRICTION, MAGNETIZING};
 use estimation::specimen::{self, apparent_power, with};
 use motor::effects::names;
+use recording::Source;
 
 fn question(sources: &[Source]) -> Question {
     Question::new(sources, &specimen::motor(""), &mut |_, _| {}).expect("judged")

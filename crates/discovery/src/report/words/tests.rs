@@ -33,6 +33,7 @@ fn step(effect: &str, tied: &[&str], test: &str) -> StepReport {
 
 fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) -> String {
     summary(&ExplainReport {
+        stretches: Vec::new(),
         audit: Audit {
             supported: true,
             findings: Vec::new(),

@@ -41,6 +41,7 @@ fn report(law: LawReport) -> ExplainReport {
         parameters: Vec::new(),
     };
     ExplainReport {
+        stretches: Vec::new(),
         audit: Audit {
             supported: true,
             findings: Vec::new(),
