@@ -16,13 +16,11 @@
 //! ```
 
 pub mod alarm;
-pub mod answer;
 mod entry;
 mod motor;
 pub mod people;
 mod state;
 mod store;
-pub mod users;
 
 pub use entry::{
     BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, Second, Thinned, ThinnedTo,

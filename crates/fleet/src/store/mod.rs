@@ -13,8 +13,6 @@ mod read;
 mod reader;
 mod schema;
 mod seconds;
-mod timeline;
-mod users;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

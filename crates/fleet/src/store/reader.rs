@@ -5,10 +5,11 @@ use std::sync::Mutex;
 
 use rusqlite::{Connection, OptionalExtension, params};
 
-use super::{StoreError, Trend, alarms, lock, read, schema, trend};
+use super::{StoreError, Trend, alarms, history, lock, read, schema};
 use crate::alarm::change::{Alarm, AlarmFilter};
 use crate::entry::Numbered;
-use crate::motor::{MotorId, MotorState};
+use crate::motor::MotorId;
+use crate::state::MotorState;
 
 /// Readers that are kept open between two questions.
 const KEPT: usize = 4;
@@ -97,7 +98,7 @@ impl Reader {
             let key = statement.query_row([motor.as_str()], |row| row.get(0));
             let key = key.optional()?;
             let key = key.ok_or_else(|| StoreError::UnknownMotor(motor.clone()))?;
-            trend::trend(connection, key, from_ms, to_ms, points)
+            history::trend(connection, key, from_ms, to_ms, points)
         })
     }
 
