@@ -1,9 +1,12 @@
 //! What comes over wires: frames of the board, requests to it.
 
 use board::modbus::{
-    BoardStatus, Collector, Identity, Image, MAX_RESPONSE_BYTES, Memory, Slave, Status, UNLOCK_KEY,
+    BoardStatus, Collector, Files, Identity, Image, MAX_RESPONSE_BYTES, Memory, Slave, Status,
+    UNLOCK_KEY,
 };
-use board::{Desk, EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, Shown, crc32};
+use board::{
+    Desk, EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, SECOND_BYTES, SECONDS, Shown, crc32,
+};
 use live::Decoder;
 use monitor::Report;
 
@@ -76,11 +79,18 @@ pub(crate) fn modbus(bytes: &[u8]) {
 }
 
 const LOG_BYTES: usize = LOG_EVENTS as usize * EVENT_BYTES;
+const SECONDS_BYTES: usize = SECONDS as usize * SECOND_BYTES;
 const IDENTITY: Identity = Identity {
     version: "0.1.0",
     revision: "",
     serial: [1, 2, 3],
 };
+
+/// A file of this many bytes.
+fn within<const BYTES: usize>(at: usize, bytes: &mut [u8]) -> bool {
+    assert!(at + bytes.len() <= BYTES, "beyond the file: {at}");
+    true
+}
 
 /// Whether a request became a command; the answer must be sound.
 fn ask(slave: &mut Slave, now_ms: u32, request: &[u8], image: &Image, desk: &mut Desk) -> bool {
@@ -90,9 +100,9 @@ fn ask(slave: &mut Slave, now_ms: u32, request: &[u8], image: &Image, desk: &mut
     let mut memory = Memory {
         image,
         identity: &IDENTITY,
-        events: |at, bytes| {
-            assert!(at + bytes.len() <= LOG_BYTES, "beyond the log: {at}");
-            true
+        files: Files {
+            events: &within::<LOG_BYTES>,
+            seconds: &within::<SECONDS_BYTES>,
         },
         desk: &mut *desk,
     };

@@ -6,6 +6,7 @@ mod gather;
 mod outputs;
 mod simulate;
 mod terminal;
+mod uplinks;
 mod users;
 
 pub use error::CommandError;
@@ -14,3 +15,4 @@ pub use gather::{Gather, Ran};
 pub use outputs::{Handles, Outputs};
 pub use simulate::Simulate;
 pub use terminal::Terminal;
+pub use uplinks::Uplinks;

@@ -7,6 +7,7 @@ mod compare;
 mod explain;
 mod known;
 mod monitored;
+mod motor_map;
 mod places;
 mod typed;
 
@@ -20,6 +21,7 @@ pub use compare::Compared;
 pub use explain::{Explained, Next, anything_off};
 pub use known::{Known, ParameterRow, PlateRow};
 pub use monitored::{MonitorError, Monitored, Monitoring};
+pub use motor_map::{Job, MapError, MappedMotor, MotorMap};
 pub use places::{Place, worst};
 pub use typed::Typed;
 

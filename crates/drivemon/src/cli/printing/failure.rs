@@ -34,6 +34,9 @@ pub enum Failure {
     /// A motor file or scenario.
     #[error(transparent)]
     File(#[from] document::FileError),
+    /// A map of motors.
+    #[error(transparent)]
+    Map(#[from] report::study::MapError),
     /// The motor file's values do not fit the core.
     #[error("{file}: {error}; change the value in the motor file")]
     Config {

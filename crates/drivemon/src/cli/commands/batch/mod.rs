@@ -1,6 +1,5 @@
 //! `drivemon batch`: a folder of recordings, one row each.
 
-mod map;
 mod row;
 mod store;
 
@@ -10,13 +9,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Args;
 use rayon::prelude::*;
 use recording::{Mapping, companions, quoted};
+use report::study::{Job, MappedMotor, MotorMap};
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::InputArgs;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::{complain, say};
 use crate::cli::printing::{paint, progress};
-use map::{Job, Map, Motor};
 use row::Row;
 use store::Store;
 
@@ -56,7 +55,7 @@ impl Batch {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         let mapping = self.input.unwritten_mapping()?;
-        let map = Map::read(&self.motor_map)?;
+        let map = MotorMap::read(&self.motor_map)?;
         let jobs = map.jobs(&self.folder, &self.out)?;
         self.files(&map, &jobs).check()?;
         let store = Store::new(&self.out, &self.input.typed())?;
@@ -83,7 +82,7 @@ impl Batch {
         Ok(finding(&rows))
     }
 
-    fn files(&self, map: &Map, jobs: &[Job]) -> Files {
+    fn files(&self, map: &MotorMap, jobs: &[Job]) -> Files {
         let mut files = Files::default().reads("the motor map", &self.motor_map);
         for motor in &map.motors {
             files = files.reads("the motor file", &motor.path);
@@ -98,7 +97,7 @@ impl Batch {
 fn one(
     store: &Store,
     job: &Job,
-    motor: &Motor,
+    motor: &MappedMotor,
     mapping: &Mapping,
     kept: &AtomicUsize,
 ) -> Result<Row, Failure> {

@@ -4,10 +4,8 @@ use formats::{PIECE_ROWS, read_in_pieces};
 use parquet_derive::{ParquetRecordReader, ParquetRecordWriter};
 use recording::{Error, Mapping, Recording};
 use replay::{VerdictState, WindowOperation};
-use report::study::{MonitorError, Monitored, Monitoring};
+use report::study::{Job, MappedMotor, MonitorError, Monitored, Monitoring};
 use serde::Serialize;
-
-use super::map::{Job, Motor};
 
 /// FAULT lit.
 pub const FAULT: &str = "fault";
@@ -24,7 +22,7 @@ pub const NOT_READ: &str = "not-read";
 pub struct Row {
     /// Path seen from the folder.
     pub recording: String,
-    /// Motor file as the map names it.
+    /// MappedMotor file as the map names it.
     pub motor: String,
     /// `healthy`, `fault`, `not-judged` or `not-read`.
     pub state: String,
@@ -84,7 +82,7 @@ pub struct Row {
 
 impl Row {
     /// Reads and judges one recording.
-    pub fn judged(job: &Job, motor: &Motor, mapping: &Mapping, fingerprint: &str) -> Row {
+    pub fn judged(job: &Job, motor: &MappedMotor, mapping: &Mapping, fingerprint: &str) -> Row {
         let mut row = Row {
             recording: job.name.clone(),
             motor: motor.name.clone(),
@@ -143,7 +141,7 @@ impl Row {
         monitored: &Monitored,
         samples: u64,
         refused: Option<MonitorError>,
-        motor: &Motor,
+        motor: &MappedMotor,
     ) {
         self.samples = samples;
         self.duration_s = monitored.duration_s;

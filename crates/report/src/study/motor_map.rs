@@ -5,9 +5,19 @@ use std::path::{Path, PathBuf};
 use document::{Document, Section, read_text};
 use glob::{MatchOptions, Pattern};
 use motor::MotorFile;
-use report::study::effects_fit;
 
-use crate::cli::printing::failure::Failure;
+use super::effects_fit;
+
+/// Why a map cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum MapError {
+    /// The map or a motor file.
+    #[error(transparent)]
+    File(#[from] document::FileError),
+    /// A folder, an entry, or effects that do not go together.
+    #[error("{0}")]
+    Entry(String),
+}
 
 /// Names that recordings end with.
 const ENDS: [&str; 11] = [
@@ -21,14 +31,14 @@ const WITHIN: MatchOptions = MatchOptions {
 };
 
 /// A map, with its motor files.
-pub struct Map {
+pub struct MotorMap {
     label: String,
     /// In the order of the map.
-    pub motors: Vec<Motor>,
+    pub motors: Vec<MappedMotor>,
 }
 
 /// One entry.
-pub struct Motor {
+pub struct MappedMotor {
     pattern: Pattern,
     /// The motor file as the map names it.
     pub name: String,
@@ -50,12 +60,12 @@ pub struct Job {
     pub motor: usize,
 }
 
-impl Map {
+impl MotorMap {
     /// Reads a map and the motor files that it names.
     ///
     /// # Errors
     /// Everything that is wrong with the map, or with the first motor file that is wrong.
-    pub fn read(path: &Path) -> Result<Map, Failure> {
+    pub fn read(path: &Path) -> Result<MotorMap, MapError> {
         let label = path.display().to_string();
         let document = Document::parse(&read_text(path)?, &label)?;
         let entries = entries(&document);
@@ -66,8 +76,8 @@ impl Map {
             let text = read_text(&path)?;
             let label = path.display().to_string();
             let file = MotorFile::parse(&text, &label)?;
-            effects_fit(&label, &file).map_err(Failure::Usage)?;
-            Ok(Motor {
+            effects_fit(&label, &file).map_err(MapError::Entry)?;
+            Ok(MappedMotor {
                 pattern,
                 name,
                 path,
@@ -76,18 +86,18 @@ impl Map {
             })
         };
         let motors = entries.into_iter().map(motor);
-        let motors = motors.collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Map { label, motors })
+        let motors = motors.collect::<Result<Vec<_>, MapError>>()?;
+        Ok(MotorMap { label, motors })
     }
 
     /// The recordings of a folder that the map names, by name; `out` is none of them.
     ///
     /// # Errors
     /// A folder that cannot be read, or an entry that fits nothing.
-    pub fn jobs(&self, folder: &Path, out: &Path) -> Result<Vec<Job>, Failure> {
+    pub fn jobs(&self, folder: &Path, out: &Path) -> Result<Vec<Job>, MapError> {
         let mut files = Vec::new();
         collect(folder, "", &mut files).map_err(|(path, error)| {
-            Failure::Usage(format!(
+            MapError::Entry(format!(
                 "{}: cannot be read: {error}; name a folder with recordings",
                 path.display()
             ))
@@ -95,7 +105,7 @@ impl Map {
         files.retain(|(name, path)| path != out && is_recording(name));
         files.sort();
         let job = |(name, path): (String, PathBuf)| {
-            let fits = |motor: &Motor| motor.pattern.matches_with(&name, WITHIN);
+            let fits = |motor: &MappedMotor| motor.pattern.matches_with(&name, WITHIN);
             let motor = self.motors.iter().position(fits)?;
             Some(Job { name, path, motor })
         };
@@ -103,7 +113,7 @@ impl Map {
         let idle = |k: &usize| jobs.iter().all(|job| job.motor != *k);
         match (0..self.motors.len()).find(idle) {
             None => Ok(jobs),
-            Some(k) => Err(Failure::Usage(format!(
+            Some(k) => Err(MapError::Entry(format!(
                 "{}: motors[{}].recordings: \"{}\" fits no recording in {} that an earlier entry leaves; paths are seen from \
                  that folder, ** is any folders",
                 self.label,

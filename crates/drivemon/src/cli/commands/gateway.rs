@@ -1,16 +1,12 @@
 //! `drivemon gateway` and `drivemon fleet`: many boards, one store.
 
-mod outputs;
-
 use clap::Args;
 use gateway::Snapshot;
 pub use gateway::command::Fleet;
-use gateway::command::{CommandError, Gather, Ran, Terminal};
+use gateway::command::{CommandError, Gather, Ran, Terminal, Uplinks};
 use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
-
-use outputs::Uplinks;
 
 use super::ending::told_to_end;
 

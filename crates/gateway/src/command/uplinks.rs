@@ -1,13 +1,15 @@
 //! What a gateway hands on: Sparkplug B to a broker, registers for Modbus masters, metrics for Prometheus.
 
+use std::future::Future;
 use std::path::Path;
 
 use document::Section;
-use gateway::command::{Handles, Outputs};
 use tokio::sync::watch;
 use uplink::metrics::{self, MetricsConfig, Source};
 use uplink::modbus::{self, ModbusConfig, ModbusStatus};
 use uplink::mqtt::{self, MqttConfig, MqttStatus};
+
+use super::outputs::{Handles, Outputs};
 
 /// The outputs of a configuration; each is there where its section is.
 #[derive(Debug)]
