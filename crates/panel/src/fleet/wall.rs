@@ -179,6 +179,7 @@ mod tests {
             last_event: 0,
             link: None,
             open_alarms: 0,
+            unacknowledged: 0,
             worst: None,
         }
     }

@@ -169,6 +169,7 @@ mod tests {
             last_event: 0,
             link: None,
             open_alarms: 0,
+            unacknowledged: 0,
             worst: None,
         };
         assert_eq!(condition(&state, NOW, 10_000).0, Condition::Healthy);
