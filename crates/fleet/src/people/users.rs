@@ -14,7 +14,7 @@ impl People {
     /// Adds a user; the token, which nobody can ask for again.
     ///
     /// # Errors
-    /// A name that is none or taken, or writing failed.
+    /// An empty or a taken name, or writing failed.
     pub fn add_user(&self, user: &User, now_ms: i64) -> Result<String, PeopleError> {
         let User { name, role } = user;
         if !is_name(name) {

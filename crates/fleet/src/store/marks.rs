@@ -72,7 +72,7 @@ impl Marks {
                 return false;
             }
             GapOf::Seconds { start } => self.second = Some((start, gap.last)),
-            // Frames cannot be asked again: whoever counts them tells each gap once.
+            // Frames cannot be asked again: the reader that counts them tells each gap once.
             GapOf::Frames => {}
         }
         true

@@ -159,7 +159,7 @@ impl Node {
         Reaction::None
     }
 
-    /// The session ended, whoever ended it.
+    /// The session ended, by either side.
     pub fn end(&mut self) {
         self.phase = Phase::Offline;
         self.host.forget();
