@@ -134,3 +134,44 @@ async fn all_of(
     );
     done.err().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use document::{Document, FileError};
+
+    fn described(text: &str) -> Result<Vec<String>, FileError> {
+        let document = Document::parse(text, "plant.toml")?;
+        let root = document.root();
+        let uplinks = Uplinks::read(&root, Path::new("/etc/plant"));
+        root.finish();
+        let uplinks = document.finish(uplinks)?;
+        let mut told = uplinks.names();
+        told.extend(uplinks.described());
+        Ok(told)
+    }
+
+    #[test]
+    fn each_output_is_there_where_its_section_is() {
+        let alone = described("[metrics]\nlisten = \"[::1]:80\"\n").expect("sound");
+        assert_eq!(alone, ["metrics: http://[::1]:80/metrics"]);
+        let text = "[mqtt]\nhost = \"broker\"\ngroup = \"Hall\"\nnode = \"gw\"\ntls = true\n\
+                    [modbus]\nlisten = \"0.0.0.0:502\"\n[metrics]\n";
+        let expected = [
+            "mqtt",
+            "mqtt: Sparkplug B, group Hall, node gw, to broker:8883, TLS",
+            "modbus: every motor for masters at 0.0.0.0:502",
+            "metrics: http://127.0.0.1:9184/metrics",
+        ];
+        assert_eq!(described(text).expect("sound"), expected);
+    }
+
+    #[test]
+    fn what_is_wrong_in_several_outputs_is_told_at_once() {
+        let text = "[mqtt]\nhost = \"broker\"\ngroup = \"Hall\"\n[modbus]\nlisten = \"502\"\n[metrics]\nport = 9\n";
+        let told = described(text).expect_err("wrong").to_string();
+        for part in ["mqtt.node", "plant.toml:5: modbus.listen", "metrics.port"] {
+            assert!(told.contains(part), "{part}: {told}");
+        }
+    }
+}
