@@ -103,7 +103,6 @@ fn alarm(k: u32, number: u64, motor: MotorId, present: bool) -> AlarmChange {
         suppressed: false,
         severity: Severity::High,
         fault: (k % 14) as u8,
-        phase: None,
         size: Some(0.125),
         evidence: Evidence {
             words: "r1 and r4 beyond their thresholds".to_owned(),

@@ -130,7 +130,7 @@ fn scaled_inverse(information: DMatrix<f64>) -> Option<f64> {
     Some(scale[0] * cholesky.solve(&unit)[0].sqrt())
 }
 
-/// Of the standard normal distribution; Abramowitz and Stegun 7.1.26 is too coarse for 99 %, so the integral itself.
+/// Cumulative distribution of the standard normal.
 pub fn normal_cdf(x: f64) -> f64 {
     0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
 }

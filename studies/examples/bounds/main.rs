@@ -7,7 +7,7 @@ mod bound;
 mod found;
 mod plant;
 
-use campaign::{Plan, Run};
+use campaign::{Place, Plan, Run};
 use rayon::prelude::*;
 
 use bound::Bound;
@@ -61,13 +61,17 @@ fn line(plan: &Plan, title: &str, found: &Found) -> Option<String> {
     ))
 }
 
+/// As docs/detection.md heads its tables.
+fn title_of(place: &Place<'_>) -> String {
+    format!("{}, {}", place.motor.name, place.block.name)
+}
+
 /// Runs of the fault's first size: their conditions are those of every size.
 fn runs_of<'p>(plan: &'p Plan, title: &str, fault: &str) -> Vec<Run<'p>> {
     let all = (0..plan.runs()).filter_map(|index| Run::new(plan, index));
     let wanted = all.filter(|run| {
         let place = &run.place;
-        let here = format!("{}, {}", place.motor.name, place.block.name);
-        here == title && place.case.is_some_and(|case| case.kind.name == fault)
+        title_of(place) == title && place.case.is_some_and(|case| case.kind.name == fault)
     });
     wanted.take(DRAWS as usize).collect()
 }
@@ -75,7 +79,7 @@ fn runs_of<'p>(plan: &'p Plan, title: &str, fault: &str) -> Vec<Run<'p>> {
 /// The next smaller size of the same sign that was tried, percent; 0 where nothing smaller was.
 fn tried_below(plan: &Plan, title: &str, found: &Found, smallest: f64) -> f64 {
     let all = (0..plan.runs()).filter_map(|index| plan.place(index));
-    let tried = all.filter(|place| format!("{}, {}", place.motor.name, place.block.name) == title);
+    let tried = all.filter(|place| title_of(place) == title);
     let cases = tried
         .filter_map(|place| place.case)
         .filter(|case| case.kind.name == found.fault);

@@ -1,6 +1,6 @@
 //! The steady motor with its instrument, in symmetrical components: what is measured, as a function of everything unknown.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 use campaign::{LoadKnowledge, Run};
 use monitor::MonitorConfig;
@@ -192,13 +192,15 @@ impl Plant {
         let counts = 4.0 * f64::from(sensors.encoder_pulses_per_revolution);
         // The difference of two counts, each rounded down.
         sigma[12] = TAU / counts / 6_f64.sqrt() * frequency / CYCLES;
-        sigma[13] = BALANCE;
+        // What the noise of the speed makes of the torque that accelerates, from one window to the next.
+        let torque_scale = scenario.motor.nameplate.torque_nm;
+        sigma[13] = mechanics.inertia * SQRT_2 * sigma[12] * frequency / CYCLES / torque_scale;
         Some(Plant {
             params,
             pole_pairs,
             omega_sync,
             friction,
-            torque_scale: scenario.motor.nameplate.torque_nm,
+            torque_scale,
             state: [
                 amplitude,
                 0.0,
@@ -281,8 +283,6 @@ impl Plant {
 
 /// Supply cycles of a window.
 const CYCLES: f64 = 5.0;
-/// How well the balance of torques holds in a window, share of the rated torque: the speed changes by its noise.
-const BALANCE: f64 = 1e-4;
 
 /// Phases from positive, negative and zero sequence.
 fn phases([positive, negative, zero]: [Complex64; 3]) -> [Complex64; 3] {

@@ -59,18 +59,6 @@ pub enum AlarmCause {
     Flood,
 }
 
-/// Phase of a three-phase motor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Phase {
-    /// First.
-    U,
-    /// Second.
-    V,
-    /// Third.
-    W,
-}
-
 /// Who changed an alarm.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -119,8 +107,6 @@ pub struct Alarm {
     pub severity: Severity,
     /// The likely fault, number of `motor::FaultId`; 0: not known.
     pub fault: u8,
-    /// Phase, where one is known.
-    pub phase: Option<Phase>,
     /// Size: the largest residual, share of its scale; of a gap how many are missing; of a flood how many alarms.
     pub size: Option<f32>,
     /// What it rests on.
@@ -143,7 +129,7 @@ pub enum Change {
     Raised,
     /// The condition went.
     Returned,
-    /// Cause, phase, size or severity changed, the alarm is the same.
+    /// Cause, size or severity changed, the alarm is the same.
     Updated,
     /// A person took note.
     Acknowledged,

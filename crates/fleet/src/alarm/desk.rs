@@ -277,7 +277,6 @@ impl Desk {
         let Details {
             severity,
             fault,
-            phase,
             size,
             evidence,
             who,
@@ -293,7 +292,6 @@ impl Desk {
             suppressed,
             severity,
             fault,
-            phase,
             size,
             evidence,
             raised_ms: time_ms,
@@ -318,7 +316,6 @@ impl Desk {
         let details = Details {
             severity,
             fault: 0,
-            phase: None,
             size,
             evidence,
             who,

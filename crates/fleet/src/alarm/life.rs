@@ -70,7 +70,6 @@ pub(super) fn raised_again(alarm: &mut Alarm, details: Details, time_ms: i64) ->
     let Details {
         severity,
         fault,
-        phase,
         size,
         evidence,
         who,
@@ -80,14 +79,14 @@ pub(super) fn raised_again(alarm: &mut Alarm, details: Details, time_ms: i64) ->
         alarm.present = true;
         alarm.acknowledged = false;
         alarm.severity = severity;
-        (alarm.fault, alarm.phase, alarm.size) = (fault, phase, size);
+        (alarm.fault, alarm.size) = (fault, size);
         alarm.evidence = evidence;
         alarm.raised_ms = time_ms;
         alarm.times = alarm.times.saturating_add(1);
     })
 }
 
-/// Cause, phase or size of an alarm that is there changed: the same alarm, told at most once in `update_ms`. Size and residuals
+/// Cause or size of an alarm that is there changed: the same alarm, told at most once in `update_ms`. Size and residuals
 /// are the largest since it rose.
 pub(super) fn updated(
     alarm: &mut Alarm,
@@ -100,16 +99,14 @@ pub(super) fn updated(
         (before, now) => before.is_none() && now.is_some(),
     };
     let other = new.fault != 0 && new.fault != alarm.fault;
-    let other_phase = new.phase.is_some() && new.phase != alarm.phase;
     // Who must act sooner is told at once.
     let worse = new.severity > alarm.severity;
     let due = time_ms - alarm.changed_ms >= update_ms;
-    if !(worse || due && (grew || other || other_phase)) {
+    if !(worse || due && (grew || other)) {
         return None;
     }
     let (why, who) = (new.evidence.words.clone(), new.who.clone());
     Some(alarm.step(Change::Updated, who, &why, time_ms, |alarm| {
-        alarm.phase = new.phase.or(alarm.phase);
         alarm.severity = alarm.severity.max(new.severity);
         if new.fault != 0 {
             alarm.fault = new.fault;

@@ -17,7 +17,7 @@ mod watch;
 
 pub use action::{Action, ActionError};
 pub use change::{
-    Alarm, AlarmCause, AlarmChange, AlarmFilter, AlarmState, Change, Evidence, Phase, Severity, Who,
+    Alarm, AlarmCause, AlarmChange, AlarmFilter, AlarmState, Change, Evidence, Severity, Who,
 };
 pub use desk::Desk;
 pub use memory::Memory;

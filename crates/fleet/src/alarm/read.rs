@@ -1,6 +1,6 @@
 //! What an entry of the store says about the conditions of alarms.
 
-use super::change::{AlarmCause, Evidence, Phase, Severity, Who};
+use super::change::{AlarmCause, Evidence, Severity, Who};
 use crate::entry::{BoardEvent, Entry, Gap, GapOf, Link, Second};
 
 /// Place of SENSOR among the lamps.
@@ -23,7 +23,6 @@ mod cause {
 pub(super) struct Details {
     pub severity: Severity,
     pub fault: u8,
-    pub phase: Option<Phase>,
     pub size: Option<f32>,
     pub evidence: Evidence,
     pub who: Who,
@@ -53,7 +52,6 @@ impl Told {
         let details = Details {
             severity,
             fault: 0,
-            phase: None,
             size: None,
             evidence,
             who,

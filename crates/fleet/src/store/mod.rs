@@ -15,7 +15,7 @@ mod schema;
 mod seconds;
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -36,10 +36,9 @@ use marks::Marks;
 
 /// The store of a plant.
 pub struct Store {
-    path: PathBuf,
     limits: Limits,
     writer: Mutex<Writer>,
-    readers: Mutex<Vec<Connection>>,
+    reader: Reader,
 }
 
 /// The one connection that writes, and what it knows without asking.
@@ -134,7 +133,7 @@ impl Writer {
 impl Store {
     /// Its file.
     pub fn path(&self) -> &Path {
-        &self.path
+        self.reader.path()
     }
 
     /// Opens a store, or makes a new one. From now on other programs may only read it: the last that opens is the writer.
@@ -144,12 +143,10 @@ impl Store {
     pub fn open(path: &Path, limits: &Limits) -> Result<Self, StoreError> {
         limits.check()?;
         let writer = Mutex::new(Writer::open(path)?);
-        let (path, limits) = (path.to_owned(), limits.clone());
         Ok(Self {
-            path,
-            limits,
+            limits: limits.clone(),
             writer,
-            readers: Mutex::default(),
+            reader: Reader::open(path)?,
         })
     }
 
@@ -251,7 +248,7 @@ impl Store {
     /// # Errors
     /// Reading failed.
     pub fn motors(&self) -> Result<Vec<MotorState>, StoreError> {
-        self.reading(read::motors)
+        self.reader.motors()
     }
 
     /// Alarms: those that somebody has to look at first, of these the worst first, then the newest.
@@ -259,7 +256,7 @@ impl Store {
     /// # Errors
     /// Reading failed.
     pub fn alarms(&self, filter: &AlarmFilter) -> Result<Vec<Alarm>, StoreError> {
-        self.reading(|connection| alarms::get(connection, filter))
+        self.reader.alarms(filter)
     }
 
     /// A motor's history from `from_ms` to before `to_ms` (Unix ms) in at most `points` points.
@@ -273,8 +270,7 @@ impl Store {
         to_ms: i64,
         points: usize,
     ) -> Result<Trend, StoreError> {
-        let key = self.marks_of(motor)?.key;
-        self.reading(|connection| history::trend(connection, key, from_ms, to_ms, points))
+        self.reader.trend(motor, from_ms, to_ms, points)
     }
 
     /// Name of the place of the alarms among the outputs.
@@ -294,7 +290,7 @@ impl Store {
 
     /// Alarms that are not normal, all of them.
     pub(crate) fn alarms_not_normal(&self) -> Result<Vec<Alarm>, StoreError> {
-        self.reading(alarms::not_normal)
+        self.reader.alarms_not_normal()
     }
 
     /// Stores changes of alarms, how far they were looked for and the memory that belongs to it, in one transaction.
@@ -327,14 +323,7 @@ impl Store {
         &self,
         work: impl FnOnce(&Connection) -> Result<T, StoreError>,
     ) -> Result<T, StoreError> {
-        let free = lock(&self.readers).pop();
-        let connection = match free {
-            Some(connection) => connection,
-            None => schema::open_reader(&self.path)?,
-        };
-        let done = work(&connection);
-        lock(&self.readers).push(connection);
-        done
+        self.reader.reading(work)
     }
 }
 

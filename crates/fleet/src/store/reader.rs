@@ -48,6 +48,11 @@ impl Reader {
         })
     }
 
+    /// Its file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// A number that differs from that of the last call when somebody wrote in between.
     ///
     /// # Errors
@@ -129,7 +134,7 @@ impl Reader {
     }
 
     /// Lends a connection.
-    fn reading<T>(
+    pub(super) fn reading<T>(
         &self,
         work: impl FnOnce(&Connection) -> Result<T, StoreError>,
     ) -> Result<T, StoreError> {

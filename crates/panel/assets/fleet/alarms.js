@@ -75,7 +75,6 @@ function row(alarm, now_ms, named) {
   const times = alarm.times > 1 ? `, ${alarm.times} times` : "";
   const until = alarm.shelved_until_ms ? ` until ${moment(alarm.shelved_until_ms / 1000)}` : "";
   const size = alarm.size_percent === null ? "" : `, ${fixed(alarm.size_percent, 1)} % of scale`;
-  const phase = alarm.phase ? `, phase ${alarm.phase.toUpperCase()}` : "";
   const buttons = actions(alarm).map((action) => {
     const button = make("button", { type: "button", "data-action": action, class: action === "acknowledge" ? "main" : null, "aria-label": `${ACTIONS[action]} alarm ${alarm.number}` }, ACTIONS[action]);
     button.addEventListener("click", () => open(alarm, action));
@@ -84,7 +83,7 @@ function row(alarm, now_ms, named) {
   const head = named ? [make("th", { scope: "row" }, motor)] : [];
   return make("tr", { "data-number": alarm.number, "data-state": alarm.state, "data-severity": alarm.severity },
     make("td", { class: "word severity" }, SHAPES[alarm.severity]), ...head,
-    make("td", { class: "word" }, alarm.words + phase + size),
+    make("td", { class: "word" }, alarm.words + size),
     make("td", { class: "word" }, STATES[alarm.state] + until + (alarm.present || alarm.state === "normal" || alarm.state === "returned_unacknowledged" ? "" : ", condition gone")),
     make("td", { class: "word" }, `${moment(alarm.raised_ms / 1000)}, ${age(now_ms - alarm.raised_ms)} ago${times}`),
     make("td", { class: "word" }, alarm.evidence + (alarm.recording ? `; recording ${alarm.recording}` : "")),

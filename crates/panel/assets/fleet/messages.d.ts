@@ -53,7 +53,6 @@ export interface Alarm {
   state: AlarmState;
   severity: Severity;
   present: boolean;
-  phase: string | null;
   size_percent: Maybe;
   evidence: string;
   residuals_percent: Maybe[];

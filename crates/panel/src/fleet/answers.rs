@@ -135,8 +135,6 @@ pub struct Alarm {
     pub severity: &'static str,
     /// Whether the condition is there now.
     pub present: bool,
-    /// Phase, where one is known: `u`, `v` or `w`.
-    pub phase: Option<&'static str>,
     /// Of a fault the largest residual, percent of its scale.
     pub size_percent: Option<f32>,
     /// What it rests on, in words.

@@ -1,7 +1,7 @@
 //! From what is stored to what the API answers.
 
 use board::EventCause;
-use fleet::alarm::{AlarmCause, AlarmChange, AlarmState, Change, Phase, Severity, Who};
+use fleet::alarm::{AlarmCause, AlarmChange, AlarmState, Change, Severity, Who};
 use fleet::people::Trail;
 use fleet::{Entry, GapOf, Numbered, Second, ThinnedTo, Values};
 
@@ -85,11 +85,6 @@ pub(super) fn alarm(alarm: &fleet::alarm::Alarm) -> Alarm {
         state: state(alarm.state),
         severity: severity(alarm.severity),
         present: alarm.present,
-        phase: alarm.phase.map(|phase| match phase {
-            Phase::U => "u",
-            Phase::V => "v",
-            Phase::W => "w",
-        }),
         size_percent: size.map(|size| 100.0 * size),
         evidence: alarm.evidence.words.clone(),
         residuals_percent: percents(alarm.evidence.residuals),

@@ -195,7 +195,6 @@ mod tests {
             suppressed: state == AlarmState::Suppressed,
             severity,
             fault: 1,
-            phase: None,
             size: Some(0.1),
             evidence: Evidence::default(),
             raised_ms: NOW - number as i64,

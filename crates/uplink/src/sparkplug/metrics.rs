@@ -220,7 +220,7 @@ const GAP: [Definition; 4] = {
     ]
 };
 
-const ALARM: [Definition; 14] = {
+const ALARM: [Definition; 13] = {
     use Datatype::{Boolean, DateTime, Float, Text, UInt64};
     [
         metric(
@@ -240,7 +240,6 @@ const ALARM: [Definition; 14] = {
             "whether its condition is there",
         ),
         metric("Alarm/Fault", Text, "", "name of the likely fault"),
-        metric("Alarm/Phase", Text, "", "phase"),
         metric("Alarm/Size", Float, "", "size"),
         metric(
             "Alarm/Times",

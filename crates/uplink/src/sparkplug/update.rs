@@ -162,7 +162,6 @@ pub fn alarm_values(alarm: &Alarm) -> Vec<Option<Value>> {
         word(alarm.severity),
         Some(Value::Boolean(alarm.present)),
         fault.map(FaultId::name).and_then(text),
-        alarm.phase.and_then(word),
         number(alarm.size),
         large(alarm.times),
         time(alarm.raised_ms),
