@@ -12,7 +12,7 @@ use parquet::record::RecordWriter;
 use parquet_derive::ParquetRecordWriter;
 use rusqlite::Connection;
 
-use super::{Store, StoreError, history};
+use super::{Reader, StoreError, history};
 use crate::entry::Second;
 
 /// Rows that are written together: some tens of megabytes of memory.
@@ -69,14 +69,13 @@ impl SecondRow {
     }
 }
 
-impl Store {
+impl Reader {
     /// Writes the seconds that were stored from `from_ms` to before `to_ms` as `file`, by motor and time; how many. The file is
     /// there as a whole or not at all. Seconds that were thinned are not in it.
     ///
     /// # Errors
     /// Reading the store or writing the file failed.
     pub fn export_seconds(&self, from_ms: i64, to_ms: i64, file: &Path) -> Result<u64, StoreError> {
-        self.seal()?;
         let failed = |reason: String| StoreError::Export {
             path: file.to_owned(),
             reason,

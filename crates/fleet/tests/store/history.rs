@@ -1,6 +1,6 @@
 //! History: trends from each level, what is thinned when, files for other programs.
 
-use fleet::{Entry, Limits, Store, ThinnedTo};
+use fleet::{Entry, Limits, Reader, Store, ThinnedTo};
 
 use super::{DAY, HOUR, all, event, id, plant, second, seconds};
 
@@ -193,19 +193,22 @@ fn a_full_store_thins_its_oldest_seconds_and_keeps_every_event() {
 fn a_day_as_parquet_has_every_second_once() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::RowAccessor;
-    let (folder, _path, store) = plant(&Limits::default(), &["b", "a"]);
+    let (folder, path, store) = plant(&Limits::default(), &["b", "a"]);
     store.append(&seconds("a", 1..=1_000)).unwrap();
+    store.seal().unwrap();
+    // These wait in the queue.
     store.append(&seconds("b", 1..=500)).unwrap();
+    let reader = Reader::open(&path).unwrap();
     let file = folder.path().join("day.parquet");
     // From second 101 on.
     assert_eq!(
-        store
+        reader
             .export_seconds(DAY + 100_000, DAY + 24 * HOUR, &file)
             .unwrap(),
         1_300
     );
-    let reader = SerializedFileReader::new(std::fs::File::open(&file).unwrap()).unwrap();
-    let rows: Vec<_> = reader
+    let written = SerializedFileReader::new(std::fs::File::open(&file).unwrap()).unwrap();
+    let rows: Vec<_> = written
         .get_row_iter(None)
         .unwrap()
         .map(Result::unwrap)
@@ -233,7 +236,7 @@ fn a_day_as_parquet_has_every_second_once() {
     // Nothing is left of a file that cannot be written.
     let nowhere = folder.path().join("no/such/folder.parquet");
     assert!(
-        store
+        reader
             .export_seconds(DAY, DAY + HOUR, &nowhere)
             .unwrap_err()
             .to_string()

@@ -15,6 +15,9 @@ pub enum CommandError {
     /// An output.
     #[error("{0}")]
     Output(String),
+    /// Reading the store.
+    #[error(transparent)]
+    Read(#[from] fleet::StoreError),
     /// People of a plant.
     #[error(transparent)]
     People(#[from] fleet::people::PeopleError),

@@ -5,11 +5,12 @@ use std::future::Future;
 use clap::{Args, Subcommand};
 
 use super::error::CommandError;
+use super::export::Export;
 use super::simulate::Simulate;
 use super::terminal::Terminal;
 use super::users::Users;
 
-/// Plants of many motors: boards to try a gateway with, and people.
+/// Plants of many motors: boards to try a gateway with, people, what was kept.
 #[derive(Debug, Args)]
 pub struct Fleet {
     #[command(subcommand)]
@@ -38,6 +39,12 @@ Examples:
   drivemon fleet user remove Anna --fleet plant.toml                   the token is refused from now on
 docs/fleet/page.md says what each role may do.")]
     User(Users),
+    /// Write a day of seconds as Parquet, for DuckDB, Polars, pandas; also while the gateway runs
+    #[command(after_help = "\
+Examples:
+  drivemon fleet export --fleet plant.toml --day 2026-11-25 -o 2026-11-25.parquet
+docs/fleet/store.md names the columns. Seconds that were thinned to minutes are not in it.")]
+    Export(Export),
 }
 
 impl Fleet {
@@ -53,6 +60,7 @@ impl Fleet {
         match &self.command {
             FleetCommand::Simulate(simulate) => simulate.run(terminal, end),
             FleetCommand::User(users) => users.run(terminal),
+            FleetCommand::Export(export) => export.run(terminal),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The commands: their arguments, what they do, and what they say. How a line is printed knows the program.
 
 mod error;
+mod export;
 mod fleet;
 mod gather;
 mod outputs;

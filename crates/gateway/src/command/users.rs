@@ -43,8 +43,9 @@ enum UserCommand {
     },
 }
 
+/// Which plant a command is about.
 #[derive(Debug, Args)]
-struct OfPlant {
+pub(super) struct OfPlant {
     /// The plant: the gateway's configuration (*.toml), or its store
     #[arg(long, value_name = "CONFIG_OR_STORE")]
     fleet: PathBuf,
@@ -73,8 +74,13 @@ impl Users {
 }
 
 impl OfPlant {
+    /// Its store.
+    pub fn store(&self) -> Result<PathBuf, CommandError> {
+        Ok(Config::store_of(&self.fleet)?)
+    }
+
     fn people(&self) -> Result<People, CommandError> {
-        let store = Config::store_of(&self.fleet)?;
+        let store = self.store()?;
         if let Some(folder) = store.parent().filter(|folder| *folder != Path::new("")) {
             std::fs::create_dir_all(folder)?;
         }

@@ -212,7 +212,8 @@ fn blocks(
     Ok(())
 }
 
-/// Seconds of a motor that are in the history, from `from_ms` to before `to_ms`.
+/// Seconds of a motor from `from_ms` to before `to_ms` that were not thinned. As of one moment where `connection` is within a
+/// transaction: a second that becomes history meanwhile would come twice or not at all.
 pub(super) fn seconds_between(
     connection: &Connection,
     motor: i64,
@@ -220,11 +221,28 @@ pub(super) fn seconds_between(
     to_ms: i64,
     mut work: impl FnMut(&Second) -> Result<(), StoreError>,
 ) -> Result<(), StoreError> {
+    let mut within = |second: &Second| match (from_ms..to_ms).contains(&second.time_ms) {
+        true => work(second),
+        false => Ok(()),
+    };
     blocks(connection, motor, Level::Seconds, from_ms, to_ms, |block| {
-        let seconds = block::seconds_of(block)?;
-        let mut within = seconds
-            .iter()
-            .filter(|s| (from_ms..to_ms).contains(&s.time_ms));
-        within.try_for_each(&mut work)
-    })
+        block::seconds_of(block)?.iter().try_for_each(&mut within)
+    })?;
+    waiting_seconds(connection, motor, within)
+}
+
+/// Seconds of a motor that are not history yet.
+fn waiting_seconds(
+    connection: &Connection,
+    motor: i64,
+    mut work: impl FnMut(&Second) -> Result<(), StoreError>,
+) -> Result<(), StoreError> {
+    let columns = seconds::COLUMNS;
+    let text = format!("SELECT {columns} FROM queue WHERE id > ?1 AND motor = ?2 ORDER BY id");
+    let mut statement = connection.prepare_cached(&text)?;
+    let mut rows = statement.query([sealed(connection)? as i64, motor])?;
+    while let Some(row) = rows.next()? {
+        work(&seconds::second_of(row, 0)?)?;
+    }
+    Ok(())
 }

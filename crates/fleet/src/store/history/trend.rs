@@ -6,7 +6,7 @@ use super::block::{self, HOUR_MS, Level};
 use super::point::Trend;
 use super::tally::Tally;
 use crate::entry::Second;
-use crate::store::{StoreError, seconds};
+use crate::store::StoreError;
 
 /// From this length of a point on, ms, hours take the place of seconds and minutes: a million seconds would be read for it.
 const HOURS_FROM_MS: u64 = 900_000;
@@ -117,20 +117,6 @@ impl Points {
             Ok(())
         })
     }
-
-    /// Takes seconds that are not history yet.
-    fn waiting(&mut self, connection: &Connection, motor: i64) -> Result<(), StoreError> {
-        let text = format!(
-            "SELECT {} FROM queue WHERE id > ?1 AND motor = ?2",
-            seconds::COLUMNS
-        );
-        let mut statement = connection.prepare_cached(&text)?;
-        let mut rows = statement.query([super::sealed(connection)? as i64, motor])?;
-        while let Some(row) = rows.next()? {
-            self.second(&seconds::second_of(row, 0)?);
-        }
-        Ok(())
-    }
 }
 
 /// The trend of a motor from `from_ms` to before `to_ms`. Where seconds and minutes are gone, hours stand for them.
@@ -151,6 +137,9 @@ pub(in crate::store) fn trend(
         points.hours(&tx, motor, gone_ms)?;
         points.blocks(&tx, motor)?;
     }
-    points.waiting(&tx, motor)?;
+    super::waiting_seconds(&tx, motor, |second| {
+        points.second(second);
+        Ok(())
+    })?;
     Ok(points.trend())
 }
