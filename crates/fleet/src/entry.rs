@@ -54,11 +54,16 @@ mod with_gaps {
 }
 
 impl Second {
-    /// State of lamp `index` (RUN 0 ... FAULT 8): 0 off, 1 on, 2 blinking.
+    /// State of a lamp by its place ([`crate::lamp`]): 0 off, 1 on, 2 blinking.
     pub fn lamp(&self, index: u32) -> u8 {
         self.lamps
             .checked_shr(2 * index)
             .map_or(0, |bits| (bits & 3) as u8)
+    }
+
+    /// Whether a lamp is on. One that blinks waits for somebody: that is no finding about the motor.
+    pub fn is_on(&self, place: u32) -> bool {
+        self.lamp(place) == 1
     }
 }
 

@@ -16,12 +16,15 @@
 //! ```
 
 pub mod alarm;
+mod clock;
 mod entry;
+pub mod lamp;
 mod motor;
 pub mod people;
 mod state;
 mod store;
 
+pub use clock::now_ms;
 pub use entry::{
     BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, Second, Thinned, ThinnedTo,
 };

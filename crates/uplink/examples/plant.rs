@@ -9,10 +9,10 @@ use std::collections::HashMap;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 use fleet::alarm::{Alarm, AlarmCause, AlarmChange, AlarmState, Change, Evidence, Severity, Who};
-use fleet::{BoardEvent, Entry, Limits, Link, MotorId, MotorInfo, Second, Store};
+use fleet::{BoardEvent, Entry, Limits, Link, MotorId, MotorInfo, Second, Store, now_ms};
 use tokio::sync::watch;
 use uplink::metrics::{MetricsConfig, Source, router};
 use uplink::modbus::{Layout, ModbusConfig, ModbusStatus};
@@ -49,13 +49,6 @@ fn arguments() -> Result<Arguments, Failure> {
         rounds,
         more: words.filter_map(pair).collect(),
     })
-}
-
-fn now_ms() -> i64 {
-    let now = SystemTime::now()
-        .duration_since(UNIX_EPOCH)
-        .unwrap_or_default();
-    now.as_millis() as i64
 }
 
 fn name(k: u32) -> Result<MotorId, Failure> {

@@ -2,11 +2,7 @@
 
 use super::change::{AlarmCause, Evidence, Severity, Who};
 use crate::entry::{BoardEvent, Entry, Gap, GapOf, Link, Second};
-
-/// Place of SENSOR among the lamps.
-const SENSOR: u32 = 5;
-/// Place of FAULT among the lamps.
-const FAULT: u32 = 8;
+use crate::lamp;
 
 /// Causes of the board's events (`board::EventCause`).
 mod cause {
@@ -79,8 +75,8 @@ pub(super) fn conditions(entry: &Entry) -> Vec<Told> {
 fn of_second(second: &Second) -> Vec<Told> {
     let gap_over = Told::new(AlarmCause::Gap, false, Who::Gateway, "seconds come again");
     let lamps = [
-        (AlarmCause::Fault, FAULT, "FAULT"),
-        (AlarmCause::Sensor, SENSOR, "SENSOR"),
+        (AlarmCause::Fault, lamp::FAULT, "FAULT"),
+        (AlarmCause::Sensor, lamp::SENSOR, "SENSOR"),
     ];
     let told = lamps
         .into_iter()
@@ -89,7 +85,7 @@ fn of_second(second: &Second) -> Vec<Told> {
 }
 
 fn of_lamp(second: &Second, cause: AlarmCause, place: u32, name: &str) -> Option<Told> {
-    let on = second.lamp(place) == 1;
+    let on = second.is_on(place);
     // A dark lamp of a motor that is not judged says nothing: it may stand still with its fault.
     if !on && second.judged == 0 {
         return None;

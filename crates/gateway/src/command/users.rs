@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use fleet::now_ms;
 use fleet::people::{Outcome, People, Role, User};
 
 use super::error::CommandError;
 use super::terminal::Terminal;
 use crate::config::Config;
-use crate::poll::now_ms;
 
 /// Users of a plant's page.
 #[derive(Debug, Args)]

@@ -1,17 +1,9 @@
 //! When the seconds of a board were: boards have no clock, and answers come late by changing amounts.
 
-use std::time::{SystemTime, UNIX_EPOCH};
-
 /// A step of the gateway's clock, or a board that counted nothing for a while, ms.
 const STEP_MS: f64 = 5_000.0;
 /// How much slower than the gateway's clock a board's crystal may run: 200 ppm, ms of a second.
 const DRIFT_MS: f64 = 0.2;
-
-/// Unix time, ms.
-pub(crate) fn now_ms() -> i64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0, |since| since.as_millis() as i64)
-}
 
 /// When a run of a board's program began, by the gateway's clock.
 #[derive(Clone, Copy, Debug, Default)]

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use fleet::{Entry, Link, MotorId, Second, Store};
+use fleet::{Entry, Link, MotorId, Second, Store, now_ms};
 use tokio::sync::watch;
 
-use super::clock::{Clock, now_ms};
+use super::clock::Clock;
 use super::motor::Watched;
 use super::tally::{Post, Posts, Tally};
 use crate::config::Patience;

@@ -7,14 +7,14 @@ use std::time::Duration;
 
 use board::modbus::{Field, Image, SecondCollector};
 use board::{Frame, Message};
-use fleet::{Entry, GapOf};
+use fleet::{Entry, GapOf, now_ms};
 use live::{Decoder, Source, open_serial};
 use tokio::io::AsyncReadExt;
 use tokio::net::TcpStream;
 use tokio::sync::mpsc;
 use tokio::time::{sleep, timeout};
 
-use super::clock::{Clock, now_ms};
+use super::clock::Clock;
 use super::context::Context;
 use super::motor::{UNKNOWN, Watched, gap};
 use super::tally::{Post, Tally};

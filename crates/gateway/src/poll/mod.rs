@@ -9,7 +9,6 @@ mod motor;
 mod tally;
 mod visit;
 
-pub(crate) use clock::now_ms;
 pub(crate) use context::Context;
 pub(crate) use link::follow;
 pub use tally::Snapshot;

@@ -1,10 +1,10 @@
 //! One visit of a board: whatever it has that is not stored yet.
 
 use board::{Event, Second};
-use fleet::{BoardEvent, Entry, GapOf};
+use fleet::{BoardEvent, Entry, GapOf, now_ms};
 use tokio::sync::oneshot;
 
-use super::clock::{Clock, now_ms};
+use super::clock::Clock;
 use super::context::Context;
 use super::motor::{self, Wanted, Watched, gap};
 use super::tally::Post;

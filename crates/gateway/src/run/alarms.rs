@@ -4,11 +4,9 @@ use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use fleet::Store;
 use fleet::alarm::{AlarmChange, Change, Watch};
+use fleet::{Store, now_ms};
 use tokio::sync::watch;
-
-use crate::poll::now_ms;
 
 /// How soon behind a batch its alarms are there.
 const PAUSE: Duration = Duration::from_millis(50);

@@ -4,10 +4,8 @@ use std::sync::Arc;
 use std::thread::sleep;
 use std::time::Duration;
 
-use fleet::Store;
+use fleet::{Store, now_ms};
 use tokio::sync::watch;
-
-use crate::poll::now_ms;
 
 /// Between two looks at the store, in looks at the end: a gateway that ends does not wait for it.
 const PAUSE: Duration = Duration::from_millis(250);

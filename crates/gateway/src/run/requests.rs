@@ -6,10 +6,8 @@ use std::time::Duration;
 
 use fleet::alarm::{Watch, WatchError};
 use fleet::people::{Asked, Outcome, People, PeopleError};
-use fleet::{Store, StoreError};
+use fleet::{Store, StoreError, now_ms};
 use tokio::sync::watch;
-
-use crate::poll::now_ms;
 
 /// Between two looks at what people ask for.
 const PAUSE: Duration = Duration::from_millis(150);

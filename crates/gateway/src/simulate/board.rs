@@ -8,6 +8,7 @@ use board::{
     Situation,
 };
 use crc::{CRC_16_MODBUS, Crc};
+use fleet::lamp;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -20,10 +21,6 @@ const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_MODBUS);
 const WINDOWS: u32 = 50;
 /// Noise of a window's voltage, current and speed, share of the value, standard deviation.
 const SPREAD: f32 = 0.002;
-/// Places of the lamps in the register: RUN, r1, FAULT.
-const RUN: u32 = 0;
-const R1: u32 = 1;
-const FAULT: u32 = 8;
 /// Number of the reset cause "power".
 const POWER: u16 = 1;
 const RESIDUALS: [Field; 4] = [
@@ -198,11 +195,11 @@ impl SimulatedBoard {
     fn show(&mut self, moment: &Moment) {
         let lit = moment.lit.iter().enumerate();
         let r = lit.fold(0, |lamps, (k, lit)| {
-            lamps | u32::from(*lit) << (2 * (R1 + k as u32))
+            lamps | u32::from(*lit) << (2 * (lamp::RESIDUALS + k as u32))
         });
         let run = if moment.not_judged == 0 { 1 } else { 2 };
         let fault = u32::from(moment.fault.is_some());
-        let lamps = run << (2 * RUN) | r | fault << (2 * FAULT);
+        let lamps = run << (2 * lamp::RUN) | r | fault << (2 * lamp::FAULT);
         self.image.set_long(Field::Lamps, lamps);
         self.image.set_word(Field::NotJudged, moment.not_judged);
         self.image

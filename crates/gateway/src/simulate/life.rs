@@ -4,6 +4,7 @@
 //! Its numbers are plausible and no more: it feeds the way from a board to the store and to pages. Nothing about detection
 //! can be concluded from it; the physical simulation is in the crate `scenario`.
 
+use monitor::Reason;
 use motor::FaultId;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -25,10 +26,6 @@ const WARM_S: f32 = 1_200.0;
 const WARM: f32 = 0.012;
 /// Share of its current that a motor draws without load.
 const MAGNETISING: f32 = 0.4;
-/// Number of the reason "current or speed are changing".
-const TRANSIENT: u16 = 10;
-/// Number of the reason "no supply found".
-const NO_SUPPLY: u16 = 1;
 /// Seconds for which a residual must be beyond its threshold before FAULT lights.
 const PERSISTENCE_S: u32 = 3;
 
@@ -73,6 +70,10 @@ pub(super) struct Life {
     beyond_s: u32,
 }
 
+fn number(reason: Reason) -> u16 {
+    u16::from(reason.number())
+}
+
 impl Life {
     /// One that begins to fail after `fault_s`, where that is given.
     pub fn new(mut rng: Pcg32, fault_s: Option<u32>) -> Self {
@@ -111,8 +112,8 @@ impl Life {
             lit,
             fault: self.judge(lit, residuals.is_some()),
             not_judged: match (running, starting) {
-                (false, _) => NO_SUPPLY,
-                (true, true) => TRANSIENT,
+                (false, _) => number(Reason::NotLocked),
+                (true, true) => number(Reason::Transient),
                 (true, false) => 0,
             },
             ..self.measured(running, starting)
@@ -227,8 +228,8 @@ mod tests {
         for mut life in lives(None) {
             for _ in 0..20_000 {
                 let moment = life.step();
-                seen[0] |= moment.not_judged == TRANSIENT;
-                seen[1] |= moment.not_judged == NO_SUPPLY;
+                seen[0] |= moment.not_judged == number(Reason::Transient);
+                seen[1] |= moment.not_judged == number(Reason::NotLocked);
                 seen[2] |= moment.not_judged == 0;
                 assert_eq!((moment.lit, moment.fault), ([false; 4], None));
                 assert_eq!(moment.residuals.is_some(), moment.not_judged == 0);

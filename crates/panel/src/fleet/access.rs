@@ -9,12 +9,13 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
+use fleet::now_ms;
 use fleet::people::{Outcome, Role, User};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::answers::{Me, Problem};
-use super::plant::{Plant, now_ms};
+use super::plant::Plant;
 
 /// Who asks; `None`: nobody who is known.
 #[derive(Clone, Debug)]

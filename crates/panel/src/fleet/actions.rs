@@ -9,13 +9,14 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use fleet::alarm::Action;
+use fleet::now_ms;
 use fleet::people::{Outcome, PeopleError};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::access::{Visitor, refuse};
 use super::answers::Done;
-use super::plant::{Plant, now_ms};
+use super::plant::Plant;
 
 /// So long the page waits for the gateway; it does what is asked all the same, later.
 const PATIENCE: Duration = Duration::from_secs(3);

@@ -4,10 +4,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::sleep;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
 use fleet::people::{People, PeopleError, Role, User};
-use fleet::{Reader, StoreError};
+use fleet::{Reader, StoreError, now_ms};
 use serde::Serialize;
 use tokio::sync::broadcast;
 
@@ -84,12 +84,6 @@ impl Counters {
             foreign: self.foreign.load(Relaxed),
         }
     }
-}
-
-/// Unix time, ms.
-pub(super) fn now_ms() -> i64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0, |since| since.as_millis() as i64)
 }
 
 impl Plant {

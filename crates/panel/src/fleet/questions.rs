@@ -8,14 +8,14 @@ use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use fleet::alarm::{AlarmFilter, AlarmState};
-use fleet::{EntryFilter, MotorId, StoreError};
+use fleet::{EntryFilter, MotorId, StoreError, now_ms};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::access::{Refusal, refuse};
 use super::answers::{Alarms, Audit, Events, Motor};
 use super::convert;
-use super::plant::{Plant, now_ms};
+use super::plant::Plant;
 
 /// Points of a trend where nobody asks for another number: the columns of a usual screen.
 const POINTS: usize = 800;

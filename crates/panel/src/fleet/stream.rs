@@ -9,6 +9,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Sse;
 use axum::response::sse::Event;
+use fleet::now_ms;
 use fleet::people::Role;
 use serde::Serialize;
 use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
@@ -16,7 +17,7 @@ use tokio_stream::wrappers::{BroadcastStream, IntervalStream};
 use tokio_stream::{Stream, StreamExt};
 
 use super::access::{CookieName, token};
-use super::plant::{Plant, json, now_ms};
+use super::plant::{Plant, json};
 
 /// Between two signs of life: a page that misses three takes what it shows for stale.
 const ALIVE: Duration = Duration::from_secs(1);

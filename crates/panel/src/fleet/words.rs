@@ -1,6 +1,6 @@
 //! What a motor's newest second says, in the words of the panel door.
 
-use fleet::{MotorState, Second};
+use fleet::{MotorState, Second, lamp};
 use motor::FaultId;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -29,19 +29,6 @@ pub enum Condition {
     Healthy,
 }
 
-/// Places of the lamps.
-mod lamp {
-    pub const RUN: u32 = 0;
-    pub const RESIDUALS: u32 = 1;
-    pub const SENSOR: u32 = 5;
-    pub const LINE: u32 = 6;
-    pub const LOAD: u32 = 7;
-    pub const FAULT: u32 = 8;
-}
-
-/// Steady light; blinking is waiting, never a finding.
-const ON: u8 = 1;
-
 /// The condition of a motor at `now_ms`, and what it rests on in a few words.
 pub(super) fn condition(state: &MotorState, now_ms: i64, stale_ms: i64) -> (Condition, String) {
     let Some(last) = &state.last else {
@@ -60,7 +47,7 @@ pub(super) fn condition(state: &MotorState, now_ms: i64, stale_ms: i64) -> (Cond
 
 /// As the panel of one motor says it: docs/lamps.md.
 fn of_second(second: &Second) -> (Condition, String) {
-    let lit = |lamp| second.lamp(lamp) == ON;
+    let lit = |place| second.is_on(place);
     let not_judged = || replay::words::reason(second.not_judged).unwrap_or_default();
     if lit(lamp::FAULT) {
         return (Condition::Fault, likely(second.fault));

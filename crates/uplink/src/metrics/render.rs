@@ -2,7 +2,7 @@
 
 use board::LAMP_NAMES;
 use fleet::alarm::Severity;
-use fleet::{MotorState, Second};
+use fleet::{MotorState, Second, lamp};
 
 use super::text::{Kind, Text, labels};
 use crate::modbus::ModbusState;
@@ -73,7 +73,7 @@ fn fresh(state: &MotorState, now_ms: i64) -> Option<&Second> {
 fn sums(plant: &Plant<'_>, text: &mut Text) {
     let (motors, now_ms) = (plant.motors, plant.now_ms);
     let lit = |state: &MotorState, lamp: u32| {
-        fresh(state, now_ms).is_some_and(|second| second.lamp(lamp) > 0)
+        fresh(state, now_ms).is_some_and(|second| second.is_on(lamp))
     };
     let hidden = motors.len().saturating_sub(plant.shown) as f64;
     let open: u64 = motors
@@ -105,12 +105,12 @@ fn sums(plant: &Plant<'_>, text: &mut Text) {
     gauge(
         "drivemon_motors_with_fault",
         "Motors with FAULT on in their newest second.",
-        count(motors, |m| lit(m, 8)),
+        count(motors, |m| lit(m, lamp::FAULT)),
     );
     gauge(
         "drivemon_motors_with_sensor_fault",
         "Motors with SENSOR on in their newest second.",
-        count(motors, |m| lit(m, 5)),
+        count(motors, |m| lit(m, lamp::SENSOR)),
     );
     gauge(
         "drivemon_alarms_open",

@@ -2,14 +2,13 @@
 
 use std::io;
 use std::sync::Arc;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use axum::Router;
 use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use fleet::{Store, StoreError};
+use fleet::{Store, StoreError, now_ms};
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 
@@ -72,10 +71,7 @@ impl Source {
     /// # Errors
     /// The store cannot be read.
     pub fn text(&self) -> Result<String, StoreError> {
-        let now = SystemTime::now()
-            .duration_since(UNIX_EPOCH)
-            .unwrap_or_default();
-        let now_ms = i64::try_from(now.as_millis()).unwrap_or(i64::MAX);
+        let now_ms = now_ms();
         let motors = self.store.motors()?;
         let outputs = self.outputs.iter().map(|name| self.output(name, now_ms));
         let outputs = outputs.collect::<Result<Vec<_>, _>>()?;

@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
-use fleet::{Numbered, Store, StoreError};
+use fleet::{Numbered, Store, StoreError, now_ms};
 use thiserror::Error;
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until};
@@ -283,12 +283,6 @@ impl Output {
 fn told(entry: Numbered) -> (Option<String>, Update) {
     let motor = entry.motor.map(|motor| motor.to_string());
     (motor, of_entry(&entry.entry))
-}
-
-/// Unix time by this computer's clock, ms.
-fn now_ms() -> i64 {
-    let now = SystemTime::now().duration_since(UNIX_EPOCH);
-    now.map_or(0, |now| i64::try_from(now.as_millis()).unwrap_or(i64::MAX))
 }
 
 async fn stopped(stop: &mut watch::Receiver<bool>) {
