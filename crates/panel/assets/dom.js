@@ -95,3 +95,33 @@ export async function send(path, body) {
     return { message: "the panel does not answer: is it still running?", problems: [] };
   }
 }
+
+/**
+ * Gives a table these rows, told apart by `data-key`. What is the same stays the same element: a press on a button and the focus are
+ * not lost when a number beside them changes.
+ * @param {HTMLTableElement} table
+ * @param {HTMLTableRowElement[]} rows
+ */
+export function settle(table, rows) {
+  const body = table.tBodies[0];
+  const known = new Map([...body.rows].map((row) => [row.dataset.key, row]));
+  rows.forEach((row, k) => {
+    const kept = known.get(row.dataset.key);
+    if (kept) take(kept, row);
+    const next = kept ?? row;
+    if (body.rows[k] !== next) body.insertBefore(next, body.rows[k] ?? null);
+  });
+  while (body.rows.length > rows.length) body.rows[rows.length].remove();
+}
+
+/**
+ * What differs in a row of the same key.
+ * @param {HTMLTableRowElement} kept
+ * @param {HTMLTableRowElement} row
+ */
+function take(kept, row) {
+  for (const { name, value } of row.attributes) kept.setAttribute(name, value);
+  [...row.cells].forEach((cell, k) => {
+    if (!kept.cells[k].isEqualNode(cell)) kept.cells[k].replaceWith(cell);
+  });
+}

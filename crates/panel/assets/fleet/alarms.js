@@ -1,6 +1,6 @@
 // Alarms: what waits for a person, and what a person does about it.
 
-import { byId, make, of, say, show } from "../dom.js";
+import { byId, make, of, say, settle, show } from "../dom.js";
 import { fixed, moment } from "../format.js";
 import { mayAct, signIn } from "./account.js";
 import { ask, send } from "./server.js";
@@ -29,6 +29,8 @@ export function actions({ state }) {
 let changed = () => {};
 /** @type {{ alarm: Alarm, action: Action } | null} */
 let asked = null;
+/** Alarms as they were shown last, by number: a button outlives the answer that it was made from. @type {Map<number, Alarm>} */
+const known = new Map();
 
 /**
  * @param {Alarm} alarm
@@ -77,11 +79,12 @@ function row(alarm, now_ms, named) {
   const size = alarm.size_percent === null ? "" : `, ${fixed(alarm.size_percent, 1)} % of scale`;
   const buttons = actions(alarm).map((action) => {
     const button = make("button", { type: "button", "data-action": action, class: action === "acknowledge" ? "main" : null, "aria-label": `${ACTIONS[action]} alarm ${alarm.number}` }, ACTIONS[action]);
-    button.addEventListener("click", () => open(alarm, action));
+    button.addEventListener("click", () => open(known.get(alarm.number) ?? alarm, action));
     return button;
   });
   const head = named ? [make("th", { scope: "row" }, motor)] : [];
-  return make("tr", { "data-number": alarm.number, "data-state": alarm.state, "data-severity": alarm.severity },
+  known.set(alarm.number, alarm);
+  return make("tr", { "data-key": alarm.number, "data-number": alarm.number, "data-state": alarm.state, "data-severity": alarm.severity },
     make("td", { class: "word severity" }, SHAPES[alarm.severity]), ...head,
     make("td", { class: "word" }, alarm.words + size),
     make("td", { class: "word" }, STATES[alarm.state] + until + (alarm.present || alarm.state === "normal" || alarm.state === "returned_unacknowledged" ? "" : ", condition gone")),
@@ -92,7 +95,7 @@ function row(alarm, now_ms, named) {
 
 /**
  * A table of alarms.
- * @param {HTMLElement} table
+ * @param {HTMLTableElement} table
  * @param {Alarm[]} alarms
  * @param {number} now_ms
  * @param {boolean} named whether motors are named
@@ -101,7 +104,7 @@ export function draw(table, alarms, now_ms, named) {
   const heads = HEADS.filter((head) => named || head !== "Motor");
   const focus = document.activeElement?.getAttribute("aria-label");
   table.querySelector("thead")?.replaceChildren(make("tr", {}, ...heads.map((head) => make("th", { scope: "col", class: "word" }, head))));
-  table.querySelector("tbody")?.replaceChildren(...alarms.map((alarm) => row(alarm, now_ms, named)));
+  settle(table, alarms.map((alarm) => row(alarm, now_ms, named)));
   if (focus) for (const button of table.querySelectorAll("button")) if (button.getAttribute("aria-label") === focus) button.focus();
 }
 
@@ -112,7 +115,7 @@ export async function refresh() {
   const { alarms, now_ms } = /** @type {{ alarms: Alarm[], now_ms: number }} */ (answer);
   show(byId("alarms-none"), alarms.length === 0);
   show(byId("alarms"), alarms.length > 0);
-  draw(byId("alarms"), alarms, now_ms, true);
+  draw(of("alarms", HTMLTableElement), alarms, now_ms, true);
 }
 
 /**

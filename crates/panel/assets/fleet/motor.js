@@ -1,6 +1,6 @@
 // One motor: what is known of it now, its history, its alarms and events.
 
-import { byId, make, say, show } from "../dom.js";
+import { byId, make, of, say, show } from "../dom.js";
 import { fixed, moment, shown } from "../format.js";
 import * as alarms from "./alarms.js";
 import { ask } from "./server.js";
@@ -74,7 +74,7 @@ function now(motor) {
     figure("Voltage", fixed(last?.voltage_v, 1), "V RMS"), figure("Current", shown(last?.current_a), "A RMS"), figure("Frequency", fixed(last?.frequency_hz, 2), "Hz"), figure("Speed", fixed(last?.speed_rpm, 0), "1/min"),
     ...[0, 1, 2, 3].map((k) => figure(`r${k + 1} of its scale`, fixed(r[k], 2), "%")));
   show(byId("motor-quiet"), motor.alarms.length === 0);
-  alarms.draw(byId("motor-alarms"), motor.alarms, now_ms, false);
+  alarms.draw(of("motor-alarms", HTMLTableElement), motor.alarms, now_ms, false);
   show(byId("motor-alarms"), motor.alarms.length > 0);
   facts(motor);
 }

@@ -1,6 +1,6 @@
 // All motors in a table: filter, search, sort.
 
-import { byId, make, of, say } from "../dom.js";
+import { byId, make, of, say, settle } from "../dom.js";
 import { fixed, shown } from "../format.js";
 import { order } from "./plant.js";
 import { CONDITIONS, age, group, mark, news } from "./words.js";
@@ -80,7 +80,7 @@ function row(tile, now_ms) {
     if (k === 1) return make("th", { scope: "row" }, make("a", { href: `#motor/${encodeURIComponent(tile.id)}` }, text));
     return make("td", { class: column.word ? "word" : null }, text);
   });
-  return make("tr", { "data-condition": tile.condition }, ...cells);
+  return make("tr", { "data-key": tile.id, "data-condition": tile.condition }, ...cells);
 }
 
 /**
@@ -93,7 +93,7 @@ export function render(tiles, now_ms) {
   const found = tiles.filter((tile) => matches(tile, state, search));
   found.sort((a, b) => compared(column.value(a, now_ms), column.value(b, now_ms), down) || order(a, b));
   const focus = document.activeElement instanceof HTMLAnchorElement ? document.activeElement.hash : "";
-  byId("motors").querySelector("tbody")?.replaceChildren(...found.slice(0, MOST).map((tile) => row(tile, now_ms)));
+  settle(of("motors", HTMLTableElement), found.slice(0, MOST).map((tile) => row(tile, now_ms)));
   if (focus) for (const link of byId("motors").querySelectorAll("a")) if (link.hash === focus) link.focus();
   const more = found.length > MOST ? `, the first ${MOST} are shown` : "";
   say(byId("found"), `${found.length} of ${tiles.length} motors${more}`);

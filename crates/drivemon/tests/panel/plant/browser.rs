@@ -67,6 +67,22 @@ async fn fault_to_wall(page: &Page, plant: &Plant) -> Duration {
     lit.elapsed()
 }
 
+/// A press that lasts while new data come is a press.
+async fn a_button_outlives_new_data(page: &Page) {
+    page.run(
+        "window.aimed = document.querySelector('#alarms [data-action=acknowledge]');
+         window.ago = aimed.closest('tr').textContent",
+    )
+    .await;
+    page.until(
+        "new data",
+        "document.querySelector('#alarms tbody tr:first-child').textContent !== ago",
+    )
+    .await;
+    let same = page.run("return aimed.isConnected").await;
+    assert_eq!(same, true, "the button is another one");
+}
+
 async fn acknowledge(page: &Page, token: &str) {
     page.click("#tab-alarms").await;
     page.until(
@@ -74,6 +90,7 @@ async fn acknowledge(page: &Page, token: &str) {
         "document.querySelector('#alarms [data-action=acknowledge]')",
     )
     .await;
+    a_button_outlives_new_data(page).await;
     // Nobody has signed in: the page asks who it is.
     page.click("#alarms [data-action=acknowledge]").await;
     page.until("the question", "document.querySelector('#sign-in').open")
