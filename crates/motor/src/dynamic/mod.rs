@@ -15,11 +15,13 @@
 mod hooks;
 mod linear;
 mod model;
+mod settled;
 mod state;
 mod supply;
 
 pub use hooks::{Hooks, NoEffects, Terminal, Winding};
 pub use linear::Linear;
 pub use model::{Dynamic, Flow};
+pub use settled::{Rotating, cycle_components};
 pub use state::{DynamicState, Extra};
 pub use supply::{Harmonic, Interpolated, Sinusoidal, clarke, phases};

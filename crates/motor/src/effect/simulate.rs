@@ -1,6 +1,6 @@
 //! A motor with effects, driven by measured signals.
 
-use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, phases};
+use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, cycle_components, phases};
 use crate::effect::{
     Cut, EffectConfig, EffectStack, Hook, Inputs, MAX_FILE_STATES, Outputs, Rated, Timeline,
     extra_states,
@@ -74,30 +74,6 @@ pub struct Run<'a> {
     pub running_at_cuts: &'a [Option<f64>],
     /// Input samples at which the terminals are open: no current flows, the rotor flux decays alone.
     pub open: &'a [Range<usize>],
-}
-
-impl DynamicState {
-    /// Steady state of the linear motor on voltage `u` (V, at this instant), at `omega_mech` (rad/s).
-    pub fn running(
-        motor: &TParams<f64>,
-        n_p: f64,
-        u: Complex64,
-        omega_sync: f64,
-        omega_mech: f64,
-    ) -> Self {
-        let j_omega = Complex64::new(0.0, omega_sync);
-        let j_slip = Complex64::new(0.0, omega_sync - n_p * omega_mech);
-        // Rotor: 0 = R_r i_r + j w_slip (L_m i_s + L_r i_r).
-        let ratio = -(j_slip * motor.l_m) / (motor.r_r + j_slip * motor.l_r());
-        let l_seen = motor.l_s() + ratio * motor.l_m;
-        let i_s = u / (motor.r_s + j_omega * l_seen);
-        Self {
-            psi_s: l_seen * i_s,
-            psi_r: (motor.l_m + ratio * motor.l_r()) * i_s,
-            omega_mech,
-            ..Self::rest()
-        }
-    }
 }
 
 /// Simulates a plant and returns what the instruments would show, one row per integration step.
@@ -331,7 +307,7 @@ struct Restart {
     is_new: bool,
 }
 
-/// Steady state at sample `k` and this speed (rad/s).
+/// Periodic steady state at sample `k` and this speed (rad/s), on all that the supply repeats in a cycle.
 fn running(
     plant: &Plant,
     motor: &TParams<f64>,
@@ -341,8 +317,8 @@ fn running(
     omega_mech: f64,
 ) -> DynamicState {
     let omega_sync = run.timeline.omega_sync[k];
-    let n_p = plant.mechanics.n_p;
-    DynamicState::running(motor, n_p, inputs.u_s[k], omega_sync, omega_mech)
+    let voltages = cycle_components(&inputs.u_s[k..], omega_sync, inputs.t_sample);
+    DynamicState::settled(motor, plant.mechanics.n_p, omega_mech, &voltages)
 }
 
 /// The samples after the cuts of a recording, and the state of the motor there.

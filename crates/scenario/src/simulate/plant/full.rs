@@ -58,7 +58,7 @@ impl<H: Hooks> Full<H> {
         Ok(plant)
     }
 
-    /// Settled on the positive sequence at t = 0.
+    /// Settled on the supply at t = 0, at the speed to which the positive sequence drives the load.
     fn running(&self) -> Result<DynamicState<H::Extra>, SimulationError> {
         let (motor, mechanics) = self.now;
         let amplitude =
@@ -74,10 +74,12 @@ impl<H: Hooks> Full<H> {
             Load::None => steady.at_friction(friction),
             _ => steady.at_load(|w| friction * w + self.load.torque(0.0, w))?,
         };
+        let supply = self.waveform.rotating(0.0);
+        let settled = DynamicState::settled(&motor, mechanics.n_p, point.omega_mech, &supply);
         Ok(DynamicState {
-            psi_s: point.psi_s,
-            psi_r: point.psi_r,
-            omega_mech: point.omega_mech,
+            psi_s: settled.psi_s,
+            psi_r: settled.psi_r,
+            omega_mech: settled.omega_mech,
             theta_mech: 0.0,
             extra: H::Extra::ZERO,
         })

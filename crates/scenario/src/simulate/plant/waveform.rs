@@ -1,7 +1,7 @@
 //! The supply of a scenario as a voltage vector over time.
 
 use crate::SupplySpec;
-use motor::dynamic::Harmonic;
+use motor::dynamic::{Harmonic, Rotating};
 use num_complex::Complex64;
 use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -75,6 +75,22 @@ impl Waveform {
         u
     }
 
+    /// Everything that turns, at time `t`: the positive sequence first.
+    pub(super) fn rotating(&self, t: f64) -> Vec<Rotating> {
+        let (angle, omega_sync) = (self.angle(t), self.omega_sync(t));
+        let turned = |component: &Harmonic| Rotating {
+            omega: component.order * omega_sync,
+            u: component.amplitude
+                * Complex64::from_polar(self.amplitude(t), component.order * angle),
+        };
+        let first = Harmonic {
+            order: 1.0,
+            amplitude: Complex64::ONE,
+        };
+        let all = std::iter::once(&first).chain(&self.spec.components);
+        all.map(turned).collect()
+    }
+
     fn evaluate(&self, t: f64) -> Complex64 {
         let angle = self.angle(t);
         let first = Complex64::from_polar(1.0, angle);
@@ -124,6 +140,27 @@ fn powers(components: &[Whole], first: Complex64) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_parts_that_turn_are_the_voltage() {
+        let component = |order: f64| Harmonic {
+            order,
+            amplitude: Complex64::from_polar(0.1, order),
+        };
+        let spec = SupplySpec {
+            amplitude_volt: crate::Piecewise::constant(180.0),
+            frequency_hz: crate::Piecewise::constant(60.0),
+            phase_rad: 0.3,
+            switch_on_s: 0.0,
+            switch_off_s: None,
+            components: [-1.0, -5.0, 6.7].map(component).to_vec(),
+        };
+        let waveform = Waveform::new(&spec);
+        for t in [0.0, 0.013] {
+            let sum: Complex64 = waveform.rotating(t).iter().map(|part| part.u).sum();
+            assert!((sum - waveform.at(t)).norm() < 1e-9, "{t}");
+        }
+    }
 
     #[test]
     fn powers_are_the_turned_vectors() {
