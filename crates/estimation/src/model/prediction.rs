@@ -4,6 +4,7 @@ use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
 use crate::data::load_table::{self, Point};
 use crate::model::prior::{Hypothesis, Prior};
+use motor::dynamic::cycle_components;
 use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
 use motor::steady_state::SteadyState;
 use num_complex::Complex64;
@@ -91,8 +92,14 @@ pub fn driven<T>(
 
 /// Speed at which the motor carries what sample `k` asks of it, rad/s.
 fn settled(plant: &Plant, drive: &Drive<'_>, omega_sync: f64, k: usize) -> Option<f64> {
-    let (u_s, torque) = (drive.inputs.u_s.get(k)?, *drive.inputs.tau_load.get(k)?);
-    let amplitude = Complex64::new(u_s.norm(), 0.0);
+    let torque = *drive.inputs.tau_load.get(k)?;
+    let cycle = cycle_components(
+        drive.inputs.u_s.get(k..)?,
+        omega_sync,
+        drive.inputs.t_sample,
+    );
+    let positive = cycle.iter().find(|part| part.omega == omega_sync)?;
+    let amplitude = Complex64::new(positive.u.norm(), 0.0);
     let friction = plant.mechanics.total_friction();
     let curve = SteadyState::new(&plant.motor, plant.mechanics.n_p, amplitude, omega_sync);
     let point = curve.at_load(|omega| torque + friction * omega);

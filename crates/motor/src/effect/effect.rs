@@ -159,6 +159,12 @@ pub trait Effect: SteadyEffect {
         None
     }
 
+    /// The speed of the shaft, rad/s, where the instrument's reading `shown` drives the model: what [`Effect::outputs`] makes
+    /// of a speed, undone. `None`: the reading is the speed.
+    fn shaft_speed(&self, _p: &[f64], _t_sample: f64, _shown: &[f64]) -> Option<Vec<f64>> {
+        None
+    }
+
     /// The instrument whose gain this effect is: each parameter is one channel's relative error.
     fn gain_of(&self) -> Option<Instrument> {
         None

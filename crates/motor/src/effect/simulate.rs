@@ -102,6 +102,29 @@ pub(super) fn corrected<'a>(plant: &Plant, measured: &'a Inputs) -> Cow<'a, Inpu
     inputs
 }
 
+/// The shaft's speed, rad/s, where the reading that is imposed is not it: each stretch for itself.
+fn shaft_speed(plant: &Plant, run: &Run<'_>) -> Option<Vec<f64>> {
+    let SpeedSource::Imposed(shown) = run.speed else {
+        return None;
+    };
+    let cuts = run.timeline.cuts.iter().map(|cut| cut.sample);
+    let bounds: Vec<usize> = [0].into_iter().chain(cuts).chain([shown.len()]).collect();
+    let undone = |e: &EffectConfig, shown: &[f64]| {
+        let part = |r: &[usize]| {
+            let shown = &shown[r[0]..r[1]];
+            e.effect.shaft_speed(&e.values, run.inputs.t_sample, shown)
+        };
+        let parts: Option<Vec<Vec<f64>>> = bounds.windows(2).map(part).collect();
+        Some(parts?.concat())
+    };
+    // The last instrument in the chain is undone first.
+    let mut speed = None;
+    for e in plant.effects.iter().rev() {
+        speed = undone(e, speed.as_deref().unwrap_or(shown)).or(speed);
+    }
+    speed
+}
+
 /// The motor's constant parameters with its effects.
 pub(super) fn constant_motor(plant: &Plant) -> TParams<f64> {
     let mut motor = plant.motor;
@@ -153,6 +176,11 @@ pub(super) fn with_hooks<T: Task>(
     let inside = |e: &EffectConfig| {
         let outer = [Hook::Inputs, Hook::Motor, Hook::Outputs];
         e.effect.hooks().iter().any(|h| !outer.contains(h))
+    };
+    let speed = shaft_speed(plant, run);
+    let run = &Run {
+        speed: speed.as_deref().map_or(run.speed, SpeedSource::Imposed),
+        ..run.clone()
     };
     let start = start_state(plant, motor, run, inputs);
     if !plant.effects.iter().any(inside) {

@@ -34,5 +34,9 @@ mod dynamic {
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
             outputs.omega_mech = delayed(&outputs.omega_mech, p[0] / outputs.t_sample);
         }
+
+        fn shaft_speed(&self, p: &[f64], t_sample: f64, shown: &[f64]) -> Option<Vec<f64>> {
+            Some(delayed(shown, -p[0] / t_sample))
+        }
     }
 }

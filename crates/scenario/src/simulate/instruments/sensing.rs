@@ -248,15 +248,14 @@ impl Instruments {
         self.last_theta = Some(truth.theta_mech);
         let speed = probed(turned / self.t_sample, Probe::Speed, active);
         self.encoder_angle += speed * self.t_sample;
-        let pulses = f64::from(self.spec.instrument.encoder_pulses_per_revolution);
         // Far inside 64 bits: a day at 60000 rpm and a million pulses is 3e14 counts.
-        (self.encoder_angle / TAU * pulses * COUNTS_PER_PULSE).floor() as i64
+        (self.encoder_angle * self.counts_per_radian()).floor() as i64
     }
 
     fn speed(&mut self, truth: &Truth, count: i64, active: &[&Fault]) -> f64 {
         match self.spec.speed {
             SpeedSensor::None => 0.0,
-            SpeedSensor::Encoder => self.encoder_speed(count),
+            SpeedSensor::Encoder => self.encoder_speed(count, truth.omega_mech),
             SpeedSensor::Tachometer => {
                 let omega = probed(truth.omega_mech, Probe::Speed, active);
                 self.plain(omega, self.spec.instrument.speed_full_scale_rad_s)
@@ -264,19 +263,25 @@ impl Instruments {
         }
     }
 
-    fn encoder_speed(&mut self, count: i64) -> f64 {
-        self.counts.push_back(count);
+    /// Counts of the window in a second; before the first sample the shaft turned as it does there, `omega_mech`, rad/s.
+    fn encoder_speed(&mut self, count: i64, omega_mech: f64) -> f64 {
         let window = (ENCODER_WINDOW_S / self.t_sample).round().max(1.0);
+        if self.counts.is_empty() {
+            let per_sample = self.counts_per_radian() * omega_mech * self.t_sample;
+            let before = |k: i32| count - (f64::from(k) * per_sample).round() as i64;
+            self.counts.extend((1..=window as i32).rev().map(before));
+        }
+        self.counts.push_back(count);
         if self.counts.len() > window as usize + 1 {
             self.counts.pop_front();
         }
-        let intervals = self.counts.len() - 1;
-        if intervals == 0 {
-            return 0.0;
-        }
         let counts = (count - self.counts[0]) as f64;
+        counts / self.counts_per_radian() / (window * self.t_sample)
+    }
+
+    fn counts_per_radian(&self) -> f64 {
         let pulses = f64::from(self.spec.instrument.encoder_pulses_per_revolution);
-        counts * TAU / (COUNTS_PER_PULSE * pulses) / (intervals as f64 * self.t_sample)
+        COUNTS_PER_PULSE * pulses / TAU
     }
 }
 
