@@ -40,10 +40,34 @@ pub(crate) fn median_with_error(values: &[f64]) -> Option<(f64, f64)> {
 /// samples cancels.
 pub(crate) fn noise(x: &[f64]) -> f64 {
     // Sum of squares of 1, -3, 3, -1 is 20; the median of |z| is 0.6745 sigma.
-    let third = x
-        .windows(4)
-        .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs());
-    median(third).unwrap_or(0.0) / (20f64.sqrt() * 0.674_5)
+    let third = || {
+        x.windows(4)
+            .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs())
+    };
+    median_of_many(third).unwrap_or(0.0) / (20f64.sqrt() * 0.674_5)
+}
+
+/// Leading bits of a number by which values are counted: its exponent and what tells a sixteenth of an octave.
+const LEADING: u32 = 16;
+
+/// [`median`] of values from 0 on that come twice: only those near it are kept.
+fn median_of_many<I: Iterator<Item = f64>>(values: impl Fn() -> I) -> Option<f64> {
+    // From 0 on the bits of numbers are in the order of the numbers.
+    let class = |x: f64| (x.to_bits() >> (u64::BITS - LEADING)) as usize;
+    let mut counts = vec![0_usize; 1 << LEADING];
+    values().for_each(|x| counts[class(x)] += 1);
+    let last = counts.iter().sum::<usize>().checked_sub(1)?;
+    let mut at = (last as f64 * 0.5).round() as usize;
+    let holds = |count: &usize| match at.checked_sub(*count) {
+        Some(beyond) => {
+            at = beyond;
+            false
+        }
+        None => true,
+    };
+    let middle = counts.iter().position(holds)?;
+    let mut near: Vec<f64> = values().filter(|x| class(*x) == middle).collect();
+    Some(*near.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 #[cfg(test)]
@@ -60,6 +84,18 @@ mod tests {
             Complex64::i() * 1e6,
         ];
         assert_eq!(median_phasor(&phasors), Some(Complex64::new(1.0, -1.0)));
+    }
+
+    #[test]
+    fn the_median_of_many_is_the_median() {
+        let few = [0.0, 3.0, 1e-300, 7.0, 3.0, f64::INFINITY];
+        // Sizes that lie in many octaves, and in one; an even and an odd number.
+        let wide: Vec<f64> = (0..5_000).map(|k| f64::from(k % 977).exp2()).collect();
+        let narrow: Vec<f64> = (0..5_001).map(|k| 1.0 + f64::from(k % 13) * 1e-3).collect();
+        for values in [&few[..], &few[..3], &few[..1], &[], &wide, &narrow] {
+            let all = || values.iter().copied();
+            assert_eq!(median_of_many(all), median(all()));
+        }
     }
 
     #[test]

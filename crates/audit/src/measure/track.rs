@@ -20,6 +20,11 @@ const FEWEST_SAMPLES: f64 = 4.0;
 /// Largest change of the frequency from one block to the next that is followed without a new search.
 const FOLLOWED: f64 = 0.15;
 
+/// Newton steps on the frequency of a block, and the change, a share of it, from which on no more is taken: a millionth of what
+/// any check looks at.
+const STEPS: usize = 4;
+const EXACT: f64 = 1e-9;
+
 /// A stretch of the recording over which the fundamental was found.
 #[derive(Clone, Debug)]
 pub(crate) struct Span {
@@ -118,11 +123,15 @@ impl Tracked<'_> {
         self.refined(at, omega)
     }
 
-    /// Newton steps on the frequency; the block follows its period.
+    /// Newton steps on the frequency, until one no longer changes it; the block follows its period.
     fn refined(&self, at: usize, mut omega: f64) -> Option<Found> {
-        for _ in 0..4 {
-            let error = self.fitted(at, omega)?.error;
-            omega += error.clamp(-0.1 * omega, 0.1 * omega);
+        let mut fitted = self.fitted(at, omega)?;
+        for _ in 0..STEPS {
+            if fitted.error.abs() < EXACT * omega {
+                break;
+            }
+            omega += fitted.error.clamp(-0.1 * omega, 0.1 * omega);
+            fitted = self.fitted(at, omega)?;
         }
         let Fitted {
             share,
@@ -130,7 +139,7 @@ impl Tracked<'_> {
             basis,
             fits,
             ..
-        } = self.fitted(at, omega)?;
+        } = fitted;
         let needed = LOCKED_SHARE + SHORT_BLOCK / range.len() as f64;
         (share > needed).then_some(Found {
             span: Span { range, omega },

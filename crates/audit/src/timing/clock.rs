@@ -25,11 +25,11 @@ fn jitter(context: &Context<'_>) -> Option<Finding> {
         .t()
         .windows(2)
         .map(|pair| pair[1] - pair[0]);
-    let deviations: Vec<f64> = steps
+    let deviations = steps
         .filter(|step| *step < GAP * usual)
-        .map(|step| (step / usual - 1.0).powi(2))
-        .collect();
-    let percent = 100.0 * crate::measure::blocks::mean(&deviations).sqrt();
+        .map(|step| (step / usual - 1.0).powi(2));
+    let (sum, count) = deviations.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
+    let percent = 100.0 * f64::sqrt(sum / count);
     (percent > JITTER_PERCENT).then(|| {
         Finding::new(Code::Clock, "t", percent, "%").detail(format!(
             "The time between samples scatters by {percent:.1} % about {usual:.3e} s. If the instrument \
