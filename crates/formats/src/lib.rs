@@ -24,7 +24,7 @@ pub use read::{
     read_recording, read_stream, read_stream_in_pieces, read_table, with_most_numbers,
     workbook_text,
 };
-pub use rows::{read_rows, write_rows};
+pub use rows::{RowsWriter, read_rows, write_rows};
 pub use write::{
     reading_text, sidecar_text, write_csv, write_parquet, write_recording, write_whole,
 };

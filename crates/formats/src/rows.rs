@@ -14,6 +14,71 @@ use parquet::record::{RecordReader, RecordWriter};
 /// Rows in one group: any usual table has one.
 const GROUP: usize = 1 << 16;
 
+/// Rows of a file that are written as they come: at most one group of them is in memory.
+pub struct RowsWriter<R, W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    rows: Vec<R>,
+}
+
+impl<R, W: Write + Send> RowsWriter<R, W>
+where
+    for<'r> &'r [R]: RecordWriter<R>,
+{
+    /// Before the first row.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn new(file: W) -> Result<Self, ParquetError> {
+        let properties = properties(Vec::new());
+        let none: &[R] = &[];
+        Ok(Self {
+            writer: SerializedFileWriter::new(file, none.schema()?, properties)?,
+            rows: Vec::new(),
+        })
+    }
+
+    /// Takes the next row.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn push(&mut self, row: R) -> Result<(), ParquetError> {
+        self.rows.push(row);
+        match self.rows.len() {
+            GROUP => self.write_group(),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes what is left.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn finish(mut self) -> Result<(), ParquetError> {
+        if !self.rows.is_empty() {
+            self.write_group()?;
+        }
+        self.writer.close()?;
+        Ok(())
+    }
+
+    fn write_group(&mut self) -> Result<(), ParquetError> {
+        let mut group = self.writer.next_row_group()?;
+        self.rows.as_slice().write_to_row_group(&mut group)?;
+        group.close()?;
+        self.rows.clear();
+        Ok(())
+    }
+}
+
+fn properties(about: Vec<KeyValue>) -> Arc<WriterProperties> {
+    let about = Some(about).filter(|pairs| !pairs.is_empty());
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_key_value_metadata(about)
+        .build();
+    Arc::new(properties)
+}
+
 /// Writes rows with pairs of key and text that say what they are. The same rows give the same bytes.
 ///
 /// # Errors
@@ -26,12 +91,7 @@ pub fn write_rows<R>(
 where
     for<'r> &'r [R]: RecordWriter<R>,
 {
-    let about = Some(about).filter(|pairs| !pairs.is_empty());
-    let properties = WriterProperties::builder()
-        .set_compression(Compression::SNAPPY)
-        .set_key_value_metadata(about)
-        .build();
-    let mut writer = SerializedFileWriter::new(file, rows.schema()?, Arc::new(properties))?;
+    let mut writer = SerializedFileWriter::new(file, rows.schema()?, properties(about))?;
     for rows in rows.chunks(GROUP) {
         let mut group = writer.next_row_group()?;
         rows.write_to_row_group(&mut group)?;

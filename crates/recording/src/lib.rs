@@ -27,7 +27,7 @@ pub use data::column::{Column, Lent};
 pub use data::load_table::{LoadPoint, LoadTable, TableColumn};
 pub use data::metadata::{LoadTorque, Metadata, Sensors, StartsFrom, Supply, VoltageKind};
 pub use data::recording::{Bridged, Recording, UnknownScale};
-pub use data::source::Source;
+pub use data::source::{Follows, Source};
 pub use data::units::{Period, UNITS, Unit, is_unit};
 pub use error::{Class, Error, Problem};
 pub use mapping::sidecar::Sidecar;

@@ -1,6 +1,6 @@
 //! Samples through the core, at once or piece by piece.
 
-use monitor::{Monitor, MonitorState};
+use monitor::{Monitor, MonitorState, Report};
 
 use crate::moving::Follower;
 use crate::samples::{Before, Samples};
@@ -31,6 +31,11 @@ impl Replay {
     /// Takes the samples that follow; where time has passed since the last ones, as after a gap. `progress` gets the number
     /// of samples done.
     pub fn take(&mut self, samples: Samples<'_>, progress: &mut dyn FnMut(usize)) {
+        self.follow(samples, &mut |done, _, _| progress(done));
+    }
+
+    /// The same; `look` gets the number of samples done, the time, s, and the report of each window.
+    pub fn follow(&mut self, samples: Samples<'_>, look: &mut dyn FnMut(usize, f64, &Report)) {
         let samples = match self.before {
             Some(before) => samples.continuing(before),
             None => samples,
@@ -45,7 +50,7 @@ impl Replay {
             if let Some(report) = report {
                 self.follower.window(&report);
                 self.timeline.add(timed.t, &report);
-                progress(k + 1);
+                look(k + 1, timed.t, &report);
             }
         }
         self.before = samples.end();

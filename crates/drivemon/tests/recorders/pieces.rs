@@ -1,15 +1,20 @@
 //! A recording that is judged piece by piece has the alarms and numbers that it has as a whole.
 
+use discovery::Given;
 use formats::{read_in_pieces, read_recording, write_recording};
 use motor::MotorFile;
-use recording::{Error, Mapping, Recording};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::RowAccessor;
+use recording::{Error, Mapping, Recording, Source};
 use replay::calibrate::{Pieces, Refusal, Surroundings, calibrate, calibrate_pieces};
-use replay::check::{Checking, check};
-use report::study::{Monitored, Monitoring};
+use replay::check::{Checking, Reference, check};
+use report::study::{Checkup, Known, Monitored, Monitoring, Taken};
 use scenario::Scenario;
 use scenario::simulate::record;
 use serde_json::Value;
+use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::common::{PROJECT, scratch};
 
@@ -32,9 +37,9 @@ fn both(path: &Path, motor: &MotorFile, rows: usize) -> ([Monitored; 2], usize) 
     let recording = read_recording(path, &flags, &mut |_| {}).expect("readable");
     let whole = Monitored::new(&recording, Some(motor), &mut |_| {}).expect("a motor");
     let (mut monitoring, mut pieces) = (Monitoring::new(Some(motor)), 0);
-    read_in_pieces(path, &flags, rows, &mut |_| {}, &mut |piece| {
+    read_in_pieces(path, &flags, rows, &mut |_| {}, &mut |piece, _| {
         pieces += 1;
-        monitoring.take(&piece, &mut |_| {}).expect("a motor");
+        monitoring.take(piece, &mut |_| {}).expect("a motor");
         Ok::<(), Error>(())
     })
     .expect("readable");
@@ -90,6 +95,21 @@ impl Pieces for InPieces {
     }
 }
 
+impl Reference for InPieces {
+    fn head(&self) -> &Recording {
+        &self.0[0]
+    }
+
+    fn samples(&self) -> usize {
+        self.0.iter().map(Recording::len).sum()
+    }
+
+    fn given(&self, _motor: &MotorFile, _alone: bool) -> Result<Given, Error> {
+        let whole = Recording::of_parts(&self.0)?;
+        Ok(Given::Source(Source::Recording(whole)))
+    }
+}
+
 fn shipped(scenario: &str, motor: &str) -> (Recording, InPieces, MotorFile) {
     let path = project(&format!("sim-host/scenarios/{scenario}.toml"));
     let whole = record(&Scenario::read(&path).expect("it ships"), |_| {}).expect("it runs");
@@ -128,4 +148,81 @@ fn a_check_in_pieces_says_what_a_check_of_the_whole_says() {
     );
     assert_eq!(in_pieces.residuals, all.residuals);
     assert_eq!(all.verdict.state, replay::VerdictState::Fault);
+}
+
+#[test]
+fn a_reference_in_pieces_teaches_what_the_whole_teaches() {
+    let (whole, pieces, motor) = shipped("healthy-2k2", "peer-2k2");
+    let known = Known::of_file(motor.clone(), motor.to_toml());
+    let asked = |healthy: &dyn Reference, judged: &[Recording]| {
+        let mut read = |_: usize, take: &mut Taken<'_>| judged.iter().try_for_each(&mut *take);
+        let names = ["today".to_owned()];
+        let quiet = &mut |_: &'static str, _: f64| {};
+        Checkup::of_pieces::<String>(&known, &[healthy], &names, quiet, &mut read).expect("healthy")
+    };
+    let (by_whole, learnt) = asked(&whole, std::slice::from_ref(&whole));
+    let (by_pieces, again) = asked(&pieces, &pieces.0);
+    assert!(learnt.healthy.is_some(), "{:?}", by_whole.notes);
+    assert_eq!(again.to_toml(), learnt.to_toml());
+    assert!(by_whole.recordings[0].is_reference && by_pieces.recordings[0].is_reference);
+    let (other, _) = asked(&pieces, &pieces.0[..2]);
+    assert!(
+        !other.recordings[0].is_reference,
+        "half of it is another one"
+    );
+}
+
+/// The rows are the windows of the JSON, number by number; several recordings have no file together.
+#[test]
+fn a_trace_holds_every_window() {
+    let folder = scratch("trace");
+    let (whole, _, _) = shipped("direct-on-line-start", "peer-2k2");
+    let path = folder.join("start.parquet");
+    write_recording(&path, &whole).expect("written");
+    let (trace, json) = (folder.join("windows.parquet"), folder.join("answer.json"));
+    let asked = |recordings: &[&Path]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_drivemon"));
+        command.arg("monitor").args(recordings);
+        command.arg("--motor").arg(project("motors/peer-2k2.toml"));
+        command.arg("--trace").arg(&trace).arg("--json").arg(&json);
+        command.output().expect("the program runs")
+    };
+    let two = asked(&[&path, &path]);
+    assert_eq!(two.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&two.stderr).contains("--trace"));
+    assert!(!trace.exists());
+    asked(&[&path]);
+    let text = std::fs::read_to_string(&json).expect("an answer");
+    let answer: Value = serde_json::from_str(&text).expect("JSON");
+    let file = File::open(&trace).expect("a trace");
+    let reader = SerializedFileReader::new(file).expect("Parquet");
+    let rows = reader.get_row_iter(None).expect("rows");
+    let rows: Vec<_> = rows.map(|row| row.expect("a row")).collect();
+    assert_eq!(
+        rows.len() as u64,
+        answer["windows"].as_u64().expect("a number")
+    );
+    let judged = rows.iter().filter(|row| row.get_bool(1).expect("judged"));
+    assert_eq!(
+        judged.count() as u64,
+        answer["judged"].as_u64().expect("a number")
+    );
+    let with_residuals: Vec<[f64; 2]> = rows
+        .iter()
+        .map(|row| {
+            [
+                row.get_double(0).expect("t_s"),
+                row.get_double(4).expect("r1"),
+            ]
+        })
+        .filter(|[_, r1]| !r1.is_nan())
+        .collect();
+    let told: Vec<[f64; 2]> = answer["residuals"]
+        .as_array()
+        .expect("residuals")
+        .iter()
+        .map(|one| [&one["t"], &one["r_percent"][0]].map(|x| x.as_f64().expect("a number")))
+        .collect();
+    assert!(with_residuals.len() > 100);
+    assert_eq!(with_residuals, told);
 }

@@ -5,7 +5,7 @@ use super::convert::finish;
 use super::header::{Header, Unreadable};
 use super::opened::plan_is_sufficient;
 use super::plan::Plan;
-use super::samples::{Raw, Rows};
+use super::samples::{Kept, Raw, Rows};
 use super::sidecar_named;
 use super::table::{self, Kind};
 use super::table_file::{missing, not_finite};
@@ -108,12 +108,12 @@ fn kept(columns: &[Column], rows: usize, used: &[(Target, usize)]) -> Raw {
         let values: Vec<f64> = kept.iter().map(|row| columns[*k][*row]).collect();
         (*target, Column::from(values))
     };
+    let mut numbered = Kept::default();
+    kept.iter()
+        .for_each(|row| numbered.push(1, *row as u64 + 1, *row as u64));
     Raw {
         columns: used.iter().map(of).collect::<BTreeMap<_, _>>(),
-        rows: Rows::Kept {
-            lines: kept.iter().map(|row| *row as u64 + 1).collect(),
-            numbers: kept.iter().map(|row| *row as u64).collect(),
-        },
+        rows: Rows::Kept(numbered),
         skipped: (rows - kept.len()) as u64,
     }
 }

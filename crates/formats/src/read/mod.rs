@@ -24,7 +24,7 @@ pub use budget::with_most_numbers;
 pub use memory::{MemoryTable, read_table};
 use opened::Opened;
 pub use preview::{Preview, preview};
-use recording::{Error, LoadTable, Mapping, Recording, Sidecar, Source, names};
+use recording::{Error, Follows, LoadTable, Mapping, Recording, Sidecar, Source, names};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -100,9 +100,9 @@ pub fn read_stream(
 pub const PIECE_ROWS: usize = 500_000;
 
 /// Reads a recording of any length as consecutive pieces of `rows` rows, of which one is in memory at a time: text and
-/// Parquet; other formats are read as a whole first. `take` gets each piece when the one before is done; the last one is up to
-/// a thirtieth longer, so that what is little longer than a piece is one. The assumptions of the last piece are those of the file. A
-/// load table is no recording and comes back.
+/// Parquet; other formats are read as a whole first. `take` gets each piece when the one before is done, and what follows it; the last one is up to
+/// a thirtieth longer, so that what is little longer than a piece is one. The last piece comes back, with the assumptions of the
+/// file; so does a load table, which has no pieces.
 ///
 /// Encoder counts, delays and spikes at the ends of a piece are treated with the rows beside it, as they are in its middle.
 ///
@@ -113,8 +113,8 @@ pub fn read_in_pieces<E: From<Error>>(
     flags: &Mapping,
     rows: usize,
     progress: &mut dyn FnMut(Progress),
-    take: &mut dyn FnMut(Recording) -> Result<(), E>,
-) -> Result<Option<LoadTable>, E> {
+    take: &mut dyn FnMut(&Recording, Follows) -> Result<(), E>,
+) -> Result<Source, E> {
     open(path, flags)?.in_pieces(rows, progress, take)
 }
 
@@ -128,8 +128,8 @@ pub fn read_stream_in_pieces<E: From<Error>>(
     flags: &Mapping,
     rows: usize,
     progress: &mut dyn FnMut(Progress),
-    take: &mut dyn FnMut(Recording) -> Result<(), E>,
-) -> Result<Option<LoadTable>, E> {
+    take: &mut dyn FnMut(&Recording, Follows) -> Result<(), E>,
+) -> Result<Source, E> {
     open_stream(name, stream, flags)?.in_pieces(rows, progress, take)
 }
 

@@ -7,7 +7,7 @@ use super::samples::{Extent, Piece, gather};
 use super::table::{self, Kind};
 use super::table_file::TableFile;
 use super::text::source::Progress;
-use recording::{Error, LoadTable, Mapping, Metadata, Recording, Sidecar, Source, Target};
+use recording::{Error, Follows, Mapping, Metadata, Recording, Sidecar, Source, Target};
 
 /// An open file.
 pub(super) struct Opened {
@@ -38,32 +38,39 @@ impl Opened {
             return table::load_table(file, progress).map(Source::LoadTable);
         }
         let mut plan = planned(file, &self.mapping)?;
-        let all = gather(file, &plan, Extent::Whole, progress, &mut |_| Ok(()))?;
+        let all = gather(
+            file,
+            &plan,
+            Extent::Whole,
+            progress,
+            &mut |_| Ok(Vec::new()),
+        )?;
         plan.notes.extend(file.notes());
         finish::piece(&file.header().file, all, plan, self.metadata).map(Source::Recording)
     }
 
-    /// A recording in pieces, a load table as a whole.
+    /// A recording in pieces, of which the last one comes back; a load table as a whole.
     pub fn in_pieces<E: From<Error>>(
         mut self,
         rows: usize,
         progress: &mut dyn FnMut(Progress),
-        take: &mut dyn FnMut(Recording) -> Result<(), E>,
-    ) -> Result<Option<LoadTable>, E> {
+        take: &mut dyn FnMut(&Recording, Follows) -> Result<(), E>,
+    ) -> Result<Source, E> {
         let file = &mut *self.file;
         if table::kind(file.header(), &self.mapping)? == Kind::LoadTable {
-            return Ok(Some(table::load_table(file, progress)?));
+            return Ok(Source::LoadTable(table::load_table(file, progress)?));
         }
         let mut plan = planned(file, &self.mapping)?;
         let name = file.header().file.clone();
         let mut failed = None;
         let mut give = |piece: Piece| {
             let piece = finish::piece(&name, piece, plan.clone(), self.metadata.clone())?;
-            take(piece).map_err(|error| {
+            take(&piece, Follows::Piece).map_err(|error| {
                 failed = Some(error);
                 // Ends the reading; `failed` is what is told.
                 Error::bad(&name, "a piece was refused", "see above")
-            })
+            })?;
+            Ok(piece.into_buffers().collect())
         };
         let last = gather(file, &plan, Extent::Rows(rows), progress, &mut give);
         let last = match (failed, last) {
@@ -71,8 +78,9 @@ impl Opened {
             (None, last) => last?,
         };
         plan.notes.extend(file.notes());
-        take(finish::piece(&name, last, plan, self.metadata)?)?;
-        Ok(None)
+        let last = finish::piece(&name, last, plan, self.metadata)?;
+        take(&last, Follows::Nothing)?;
+        Ok(Source::Recording(last))
     }
 }
 

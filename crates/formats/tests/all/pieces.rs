@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, gzip, quiet};
 use formats::{read_in_pieces, read_recording, write_recording};
-use recording::{Error, Mapping, Recording};
+use recording::{Error, Follows, Mapping, Recording, Source};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -48,12 +48,14 @@ fn flags() -> Mapping {
 }
 
 fn pieces(path: &Path, flags: &Mapping) -> Vec<Recording> {
-    let mut pieces = Vec::new();
-    let table = read_in_pieces(path, flags, PIECE, &mut quiet(), &mut |piece| {
-        pieces.push(piece);
+    let (mut pieces, mut ends) = (Vec::new(), 0);
+    let table = read_in_pieces(path, flags, PIECE, &mut quiet(), &mut |piece, follows| {
+        pieces.push(piece.clone());
+        ends += u32::from(follows == Follows::Nothing);
         Ok::<(), Error>(())
     });
-    assert!(table.unwrap().is_none());
+    assert!(matches!(table.unwrap(), Source::Recording(last) if Some(&last) == pieces.last()));
+    assert_eq!(ends, 1, "the last piece alone says that nothing follows");
     pieces
 }
 
@@ -110,7 +112,7 @@ fn what_is_little_longer_than_a_piece_is_one_and_an_error_ends_the_reading() {
     assert_eq!(pieces(&path, &flags()).len(), 1);
     let path = folder.file("y.csv", text.as_bytes());
     let mut taken = 0;
-    let ended = read_in_pieces(&path, &flags(), PIECE, &mut quiet(), &mut |_| {
+    let ended = read_in_pieces(&path, &flags(), PIECE, &mut quiet(), &mut |_, _| {
         taken += 1;
         match taken {
             2 => Err(Error::bad("y.csv", "enough", "")),

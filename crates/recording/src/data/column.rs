@@ -33,6 +33,14 @@ impl Column {
         }
     }
 
+    /// The memory of numbers of its own.
+    pub(crate) fn into_buffer(self) -> Option<Vec<f64>> {
+        match self {
+            Column::Own(values) => Some(values),
+            Column::Lent(_) => None,
+        }
+    }
+
     /// Keeps the numbers of a range that lies inside; lent ones, and few of many, are copied.
     pub(crate) fn cut(&mut self, range: &Range<usize>) {
         match self {

@@ -155,6 +155,12 @@ impl Recording {
         self
     }
 
+    /// The memory of its own columns, to be filled again.
+    pub fn into_buffers(self) -> impl Iterator<Item = Vec<f64>> {
+        let columns = self.channels.into_values().chain([self.t]);
+        columns.filter_map(Column::into_buffer)
+    }
+
     /// The file, as the user named it.
     pub fn name(&self) -> &str {
         &self.name

@@ -125,7 +125,10 @@ impl<'r> Healthily<'r> {
             let audit = audit(piece, expectation);
             let is_usable = merger.add(piece, &audit);
             of_pieces.push(Some(audit).filter(|_| is_usable));
-            head = head.take().or_else(|| piece.clone().cut(0..2).ok());
+            head = head.take().or_else(|| {
+                let head = piece.slice(0..2).ok()?;
+                Some(head.with_t_sample(piece.t_sample()))
+            });
             Ok(())
         })?;
         let audit = merger.finish();

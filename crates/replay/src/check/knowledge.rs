@@ -1,13 +1,13 @@
 //! What recordings of a motor in good order teach before others are checked.
 
-use discovery::{Error, IdentifyReport};
+use discovery::{Given, IdentifyReport, Sources};
 use motor::MotorFile;
-use recording::{Recording, Source};
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::fmt::Display;
 
-use crate::calibrate::{Surroundings, calibrate};
-use crate::speed::with_estimated_speed;
+use super::reference::{Reference, WithSpeed};
+use crate::calibrate::{Pieces, Surroundings, calibrate_pieces};
 
 /// How well a motor is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -40,7 +40,7 @@ const FITS: f64 = 1.5;
 /// Identifies the parameters, then calibrates. A step that the recordings do not allow is told and left out.
 pub fn learn(
     motor: &MotorFile,
-    healthy: &[&Recording],
+    healthy: &[&dyn Reference],
     progress: &mut discovery::Progress<'_>,
 ) -> Learnt {
     let mut learnt = Learnt {
@@ -52,7 +52,7 @@ pub fn learn(
     if healthy.is_empty() {
         return learnt;
     }
-    if motor.uncertainty.is_some() && healthy.iter().all(|recording| recording.speed().is_some()) {
+    if motor.uncertainty.is_some() && healthy.iter().all(|one| one.head().speed().is_some()) {
         learnt.identify(healthy, progress);
     }
     learnt.calibrate(healthy);
@@ -60,10 +60,15 @@ pub fn learn(
 }
 
 impl Learnt {
-    fn identify(&mut self, healthy: &[&Recording], progress: &mut discovery::Progress<'_>) {
-        let owned = healthy.iter().copied().cloned();
-        let sources: Vec<Source> = owned.map(Source::Recording).collect();
-        match discovery::identify(&sources, &self.motor, progress) {
+    fn identify(&mut self, healthy: &[&dyn Reference], progress: &mut discovery::Progress<'_>) {
+        let given = healthy
+            .iter()
+            .map(|one| one.given(&self.motor, healthy.len() == 1));
+        let given: Vec<Given> = match given.collect() {
+            Ok(given) => given,
+            Err(error) => return self.note("parameters not learnt", &error),
+        };
+        match discovery::identify(Sources::Given(&given), &self.motor, progress) {
             Ok((report, motor)) => {
                 let error = report.after.held_out_error_over_noise;
                 if error > FITS {
@@ -81,18 +86,17 @@ impl Learnt {
         }
     }
 
-    fn note(&mut self, what: &str, error: &Error) {
+    fn note(&mut self, what: &str, error: &dyn Display) {
         self.notes.push(format!("{what}: {error}"));
     }
 
     /// Without an encoder the speed is estimated here as it will be when the motor is checked.
-    fn calibrate(&mut self, healthy: &[&Recording]) {
-        let with_speed = |recording: &&Recording| {
-            with_estimated_speed(recording, &self.motor)
-                .map_or_else(|| Recording::clone(recording), |(with_speed, _)| with_speed)
-        };
-        let healthy: Vec<Recording> = healthy.iter().map(with_speed).collect();
-        match calibrate(&self.motor, &healthy, &Surroundings::default()) {
+    fn calibrate(&mut self, healthy: &[&dyn Reference]) {
+        let believed = self.motor.clone();
+        let healthy = healthy.iter().map(|one| WithSpeed::new(*one, &believed));
+        let healthy: Vec<WithSpeed<'_>> = healthy.collect();
+        let healthy: Vec<&dyn Pieces> = healthy.iter().map(|one| one as _).collect();
+        match calibrate_pieces(&believed, &healthy, &Surroundings::default()) {
             Ok(calibrated) => {
                 (self.motor, self.knowledge) = (calibrated.motor, Knowledge::Calibrated);
             }

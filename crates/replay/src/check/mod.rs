@@ -5,6 +5,7 @@ mod checking;
 mod clamp;
 mod clamp_bars;
 mod knowledge;
+mod reference;
 mod severity;
 mod told;
 
@@ -13,6 +14,7 @@ pub use checking::Checking;
 pub use clamp::{ClampSignal, clamp_signals};
 pub use clamp_bars::{BesideSupply, SupplySideband};
 pub use knowledge::{Knowledge, Learnt, learn};
+pub use reference::{Reference, begins_like};
 pub use severity::Severity;
 pub use told::Told;
 

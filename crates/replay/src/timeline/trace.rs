@@ -49,15 +49,11 @@ pub struct Trace {
 impl Trace {
     /// Adds one report; `t` is the time of the window's end, s.
     pub fn add(&mut self, t: f64, report: &Report) {
-        if let Some(residuals) = report.residuals {
-            self.residuals.push(WindowResiduals {
-                t,
-                r_percent: residuals.r.map(|r| 100.0 * f64::from(r)),
-                judged: report.is_judged(),
-            });
+        if let Some(residuals) = WindowResiduals::of(t, report) {
+            self.residuals.push(residuals);
         }
-        if let Some(window) = &report.window {
-            self.operation.push(WindowOperation::new(t, window));
+        if let Some(operation) = WindowOperation::of(t, report) {
+            self.operation.push(operation);
         }
     }
 }
@@ -69,7 +65,25 @@ impl Trace {
     }
 }
 
+impl WindowResiduals {
+    /// Of one report, where residuals could be evaluated; `t` is the time of the window's end, s.
+    pub fn of(t: f64, report: &Report) -> Option<Self> {
+        let residuals = report.residuals?;
+        Some(WindowResiduals {
+            t,
+            r_percent: residuals.r.map(|r| 100.0 * f64::from(r)),
+            judged: report.is_judged(),
+        })
+    }
+}
+
 impl WindowOperation {
+    /// Of one report, where the window was complete; `t` is the time of the window's end, s.
+    pub fn of(t: f64, report: &Report) -> Option<Self> {
+        let window = report.window.as_ref()?;
+        Some(WindowOperation::new(t, window))
+    }
+
     fn new(t: f64, window: &Window) -> Self {
         let present = |amplitude: f32| (amplitude > 0.0).then_some(f64::from(amplitude));
         let voltage = present(window.u_s.positive.norm());

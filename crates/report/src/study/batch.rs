@@ -1,11 +1,12 @@
-//! One recording as one row of a table that other programs can read.
+//! One recording of many as one row of a table that other programs can read.
 
 use formats::{PIECE_ROWS, read_in_pieces};
 use parquet_derive::{ParquetRecordReader, ParquetRecordWriter};
-use recording::{Error, Mapping, Recording};
+use recording::{Error, Mapping, Recording, Source};
 use replay::{VerdictState, WindowOperation};
-use report::study::{Job, MappedMotor, MonitorError, Monitored, Monitoring};
 use serde::Serialize;
+
+use super::{Job, MappedMotor, MonitorError, Monitored, Monitoring};
 
 /// FAULT lit.
 pub const FAULT: &str = "fault";
@@ -81,7 +82,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Reads and judges one recording.
+    /// Reads and judges one recording; a file that cannot be read is a row that says why. `fingerprint` is kept in it.
     pub fn judged(job: &Job, motor: &MappedMotor, mapping: &Mapping, fingerprint: &str) -> Row {
         let mut row = Row {
             recording: job.name.clone(),
@@ -91,16 +92,16 @@ impl Row {
         };
         let mut monitoring = Monitoring::new(Some(&motor.file));
         let (mut samples, mut refused) = (0, None);
-        let mut take = |piece: Recording| {
+        let mut take = |piece: &Recording, _| {
             samples += piece.len() as u64;
             if refused.is_none() {
-                refused = monitoring.take(&piece, &mut |_| {}).err();
+                refused = monitoring.take(piece, &mut |_| {}).err();
             }
             Ok::<(), Error>(())
         };
         match read_in_pieces(&job.path, mapping, PIECE_ROWS, &mut |_| {}, &mut take) {
-            Ok(None) => row.judge(&monitoring.finish(), samples, refused, motor),
-            Ok(Some(table)) => {
+            Ok(Source::Recording(_)) => row.judge(&monitoring.finish(), samples, refused, motor),
+            Ok(Source::LoadTable(table)) => {
                 row.state = NOT_JUDGED.to_owned();
                 row.not_judged = "a load table has no waveforms".to_owned();
                 row.samples = table.len() as u64;

@@ -4,7 +4,7 @@ use discovery::Progress;
 use motor::MotorFile;
 use recording::Recording;
 use replay::VerdictState;
-use replay::check::{Checked, Checking, Knowledge, learn};
+use replay::check::{Checked, Checking, Knowledge, Reference, begins_like, learn};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -72,7 +72,8 @@ impl Checkup {
             Some((_, recording)) => take(recording),
             None => Ok(()),
         };
-        Checkup::of_pieces(known, healthy, &names, progress, &mut read)
+        let healthy: Vec<&dyn Reference> = healthy.iter().map(|one| *one as _).collect();
+        Checkup::of_pieces(known, &healthy, &names, progress, &mut read)
     }
 
     /// The same of recordings of any length: `read` gives the pieces of a recording by its number, one after the other.
@@ -81,7 +82,7 @@ impl Checkup {
     /// As [`Checkup::new`], and what `read` returns.
     pub fn of_pieces<E>(
         known: &Known,
-        healthy: &[&Recording],
+        healthy: &[&dyn Reference],
         names: &[String],
         progress: &mut Progress<'_>,
         read: &mut dyn FnMut(usize, &mut Taken<'_>) -> Result<(), E>,
@@ -134,27 +135,31 @@ pub type Taken<'t> = dyn FnMut(&Recording) -> Result<(), String> + 't;
 /// The pieces of one recording.
 struct Pieces<'l> {
     checking: Checking<'l>,
-    healthy: &'l [&'l Recording],
+    healthy: &'l [&'l dyn Reference],
     /// Begin and end so far, s.
     span: Option<[f64; 2]>,
-    pieces: u64,
-    is_reference: bool,
+    samples: usize,
+    /// Lengths of the references that begin as it does.
+    alike: Vec<usize>,
 }
 
 impl<'l> Pieces<'l> {
-    fn new(motor: &'l MotorFile, healthy: &'l [&'l Recording]) -> Pieces<'l> {
+    fn new(motor: &'l MotorFile, healthy: &'l [&'l dyn Reference]) -> Pieces<'l> {
         Pieces {
             checking: Checking::new(motor),
             healthy,
             span: None,
-            pieces: 0,
-            is_reference: false,
+            samples: 0,
+            alike: Vec::new(),
         }
     }
 
     fn take(&mut self, piece: &Recording, progress: &mut dyn FnMut(f64)) -> Result<(), String> {
-        self.pieces += 1;
-        self.is_reference = self.pieces == 1 && self.healthy.contains(&piece);
+        if self.samples == 0 {
+            let alike = self.healthy.iter().filter(|one| begins_like(**one, piece));
+            self.alike = alike.map(|one| one.samples()).collect();
+        }
+        self.samples += piece.len();
         let [begin, end] = [piece.t()[0], piece.t()[piece.len() - 1]];
         self.span = Some([self.span.map_or(begin, |[begin, _]| begin), end]);
         let all = piece.len().max(1) as f64;
@@ -166,7 +171,7 @@ impl<'l> Pieces<'l> {
         CheckedRecording {
             recording: name.to_owned(),
             duration_s: self.span.map_or(0.0, |[begin, end]| end - begin),
-            is_reference: self.is_reference,
+            is_reference: self.alike.contains(&self.samples),
             checked: self.checking.finish(),
         }
     }

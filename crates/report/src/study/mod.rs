@@ -1,6 +1,7 @@
 //! Monitor, check, calibrate, compare, explain and adopt with everything that is shown of them: terminal, reports, panel and Python hold the same.
 
 mod adopt;
+pub mod batch;
 mod calibration;
 mod check;
 mod compare;
@@ -9,6 +10,7 @@ mod known;
 mod monitored;
 mod motor_map;
 mod places;
+mod trace;
 mod typed;
 
 pub use adopt::Adopted;
@@ -23,6 +25,7 @@ pub use known::{Known, ParameterRow, PlateRow};
 pub use monitored::{MonitorError, Monitored, Monitoring};
 pub use motor_map::{Job, MapError, MappedMotor, MotorMap};
 pub use places::{Place, worst};
+pub use trace::{WindowRow, WindowTrace};
 pub use typed::Typed;
 
 use std::borrow::Cow;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use audit::{Audit, Expectation, Merger, audit};
-use monitor::{ConfigError, Monitor, MonitorConfig};
+use monitor::{ConfigError, Monitor, MonitorConfig, Report};
 use motor::{FileError, MotorFile};
 use recording::Recording;
 use replay::{
@@ -162,6 +162,18 @@ impl<'m> Monitoring<'m> {
         piece: &Recording,
         progress: &mut dyn FnMut(usize),
     ) -> Result<(), MonitorError> {
+        self.follow(piece, &mut |done, _, _| progress(done))
+    }
+
+    /// The same; `look` gets the number of the piece's samples that are done, the time, s, and the report of each window.
+    ///
+    /// # Errors
+    /// As [`Monitoring::take`].
+    pub fn follow(
+        &mut self,
+        piece: &Recording,
+        look: &mut dyn FnMut(usize, f64, &Report),
+    ) -> Result<(), MonitorError> {
         let audit = audit(piece, &self.expectation);
         let is_usable = self.merger.add(piece, &audit);
         self.first.get_or_insert_with(|| First {
@@ -189,7 +201,7 @@ impl<'m> Monitoring<'m> {
                 none.insert(Replay::new(monitor))
             }
         };
-        replay.take(samples, progress);
+        replay.follow(samples, look);
         Ok(())
     }
 

@@ -2,10 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use recording::{Mapping, Recording};
+use discovery::{Budget, Given};
+use motor::MotorFile;
+use recording::{Error, Follows, Mapping, Recording, Source};
 use replay::calibrate::{Pieces, Refusal};
+use replay::check::Reference;
 
 use crate::cli::arguments::input::InputArgs;
+use crate::cli::arguments::long::stretches;
 use crate::cli::printing::failure::Failure;
 use crate::cli::printing::output::DASH;
 
@@ -14,49 +18,52 @@ pub enum HealthyRecording {
     /// In memory, where it is no longer than a piece.
     Kept(Recording),
     /// On the disk.
-    Long {
-        /// The file.
-        path: PathBuf,
-        /// What messages call it.
-        name: String,
-        /// How it is read.
-        mapping: Mapping,
-    },
+    Long(LongRecording),
+}
+
+/// A recording that does not fit into a piece.
+pub struct LongRecording {
+    path: PathBuf,
+    mapping: Mapping,
+    /// Its first two samples.
+    head: Recording,
+    samples: usize,
 }
 
 impl HealthyRecording {
-    /// Reads it once, to its end.
+    /// Reads it once, to its end; `remedy` is told of a load table, which has no waveforms to learn from.
     ///
     /// # Errors
     /// Whatever is wrong with flags, file or sidecar; a load table; a long recording that cannot be read twice.
-    pub fn read(path: &Path, input: &InputArgs) -> Result<HealthyRecording, Failure> {
-        let (mut first, mut pieces) = (None, 0);
-        let table = input.read_in_pieces(path, "reading", &mut |piece| {
+    pub fn read(path: &Path, input: &InputArgs, remedy: &str) -> Result<HealthyRecording, Failure> {
+        let (mut head, mut pieces, mut samples) = (None, 0, 0);
+        let read = input.read_in_pieces(path, "reading", &mut |piece, follows| {
             pieces += 1;
+            samples += piece.len();
             // Of several the first tells the name.
-            first = match first.take() {
-                None => Some(piece),
-                Some(first) => Some(Recording::cut(first, 0..2)?),
-            };
+            if (pieces, follows) == (1, Follows::Piece) {
+                head = Some(piece.slice(0..2)?.with_t_sample(piece.t_sample()));
+            }
             Ok(())
         })?;
         let shown = path.display();
-        let Some(first) = first.filter(|_| table.is_none()) else {
-            return Err(Failure::Usage(format!(
-                "{shown}: a load table has no waveforms to calibrate from; its parameters come from `drivemon explain`"
-            )));
+        let Source::Recording(last) = read else {
+            return Err(Failure::Usage(format!("{shown}: a load table {remedy}")));
         };
-        match pieces {
-            1 => Ok(HealthyRecording::Kept(first)),
-            _ if path.as_os_str() == DASH || !path.is_file() => Err(Failure::Usage(format!(
+        let Some(head) = head else {
+            return Ok(HealthyRecording::Kept(last));
+        };
+        if path.as_os_str() == DASH || !path.is_file() {
+            return Err(Failure::Usage(format!(
                 "{shown}: a recording this long is read several times, and standard input comes once; name a file"
-            ))),
-            _ => Ok(HealthyRecording::Long {
-                path: path.to_owned(),
-                name: first.name().to_owned(),
-                mapping: input.mapping()?,
-            }),
+            )));
         }
+        Ok(HealthyRecording::Long(LongRecording {
+            path: path.to_owned(),
+            mapping: input.mapping()?,
+            head,
+            samples,
+        }))
     }
 }
 
@@ -64,30 +71,57 @@ impl Pieces for HealthyRecording {
     fn name(&self) -> &str {
         match self {
             HealthyRecording::Kept(recording) => recording.name(),
-            HealthyRecording::Long { name, .. } => name,
+            HealthyRecording::Long(long) => long.head.name(),
         }
     }
 
     fn each(&self, take: &mut dyn FnMut(&Recording) -> Result<(), Refusal>) -> Result<(), Refusal> {
-        let (path, name, mapping) = match self {
-            HealthyRecording::Kept(recording) => return take(recording),
-            HealthyRecording::Long {
-                path,
-                name,
-                mapping,
-            } => (path, name, mapping),
-        };
+        match self {
+            HealthyRecording::Kept(recording) => take(recording),
+            HealthyRecording::Long(long) => long.each(take),
+        }
+    }
+}
+
+impl Reference for HealthyRecording {
+    fn head(&self) -> &Recording {
+        match self {
+            HealthyRecording::Kept(recording) => recording,
+            HealthyRecording::Long(long) => &long.head,
+        }
+    }
+
+    fn samples(&self) -> usize {
+        match self {
+            HealthyRecording::Kept(recording) => recording.len(),
+            HealthyRecording::Long(long) => long.samples,
+        }
+    }
+
+    fn given(&self, motor: &MotorFile, alone: bool) -> Result<Given, Error> {
+        match self {
+            HealthyRecording::Kept(recording) => recording.given(motor, alone),
+            HealthyRecording::Long(long) => {
+                stretches(&long.path, &long.mapping, motor, Budget::fitted(alone))
+            }
+        }
+    }
+}
+
+impl LongRecording {
+    fn each(&self, take: &mut dyn FnMut(&Recording) -> Result<(), Refusal>) -> Result<(), Refusal> {
+        let name = self.head.name();
         let mut refused = Ok(());
-        let mut give = |piece: Recording| {
-            refused = take(&piece);
+        let mut give = |piece: &Recording, _| {
+            refused = take(piece);
             // Ends the reading; `refused` is what is told.
             match refused {
                 Ok(()) => Ok(()),
-                Err(_) => Err(recording::Error::bad(name, "was refused", "see above")),
+                Err(_) => Err(Error::bad(name, "was refused", "see above")),
             }
         };
         let rows = formats::PIECE_ROWS;
-        let read = formats::read_in_pieces(path, mapping, rows, &mut |_| {}, &mut give);
+        let read = formats::read_in_pieces(&self.path, &self.mapping, rows, &mut |_| {}, &mut give);
         refused?;
         read.map(drop)
             .map_err(|error| Refusal::new(name, error.to_string()))

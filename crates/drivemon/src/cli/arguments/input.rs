@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use motor::MotorFile;
-use recording::{Flags, LoadTable, Mapping, Recording, Source};
+use recording::{Flags, Follows, Mapping, Recording, Source};
 
 use crate::cli::printing::failure::Failure;
 use crate::cli::printing::output::DASH;
@@ -152,7 +152,7 @@ impl InputArgs {
     }
 
     /// Reads a recording piece by piece with a progress bar called `title`; `take` gets each piece when the one before is
-    /// done. A load table comes back as a whole.
+    /// done, and what follows it. The last piece comes back, and a load table as a whole.
     ///
     /// # Errors
     /// Whatever is wrong with flags, file or sidecar, and what `take` returns.
@@ -160,45 +160,25 @@ impl InputArgs {
         &self,
         path: &Path,
         title: &'static str,
-        take: &mut dyn FnMut(Recording) -> Result<(), Failure>,
-    ) -> Result<Option<LoadTable>, Failure> {
+        take: &mut dyn FnMut(&Recording, Follows) -> Result<(), Failure>,
+    ) -> Result<Source, Failure> {
         let mapping = self.mapping()?;
         let bar = progress::bar(title, 0);
         let mut progress = progress::reading(&bar);
-        // What had to be assumed is known with the last piece, of which its beginning tells as much as all of it.
-        let mut last = None;
-        let mut each = |piece: Recording| {
-            last = Some(piece.slice(0..2)?);
-            take(piece)
-        };
         let rows = formats::PIECE_ROWS;
-        let table = match path.as_os_str() == DASH {
+        let read = match path.as_os_str() == DASH {
             true => {
                 let stdin = std::io::stdin();
-                formats::read_stream_in_pieces(
-                    STDIN,
-                    stdin,
-                    &mapping,
-                    rows,
-                    &mut progress,
-                    &mut each,
-                )
+                formats::read_stream_in_pieces(STDIN, stdin, &mapping, rows, &mut progress, take)
             }
-            false => formats::read_in_pieces(path, &mapping, rows, &mut progress, &mut each),
+            false => formats::read_in_pieces(path, &mapping, rows, &mut progress, take),
         }?;
         bar.finish_and_clear();
-        let table = table.map(Source::LoadTable);
-        let read = table.or(last.map(Source::Recording));
-        if let Some(read) = &read {
-            tell_assumptions(read);
-            if self.write_sidecar {
-                write_sidecar(path, read)?;
-            }
+        tell_assumptions(&read);
+        if self.write_sidecar {
+            write_sidecar(path, &read)?;
         }
-        match read {
-            Some(Source::LoadTable(table)) => Ok(Some(table)),
-            _ => Ok(None),
-        }
+        Ok(read)
     }
 }
 

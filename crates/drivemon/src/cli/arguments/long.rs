@@ -4,7 +4,7 @@ use std::path::Path;
 
 use discovery::{Budget, FirstLook, Gathering, Given, Seen};
 use motor::MotorFile;
-use recording::{Recording, Source};
+use recording::{Error, Mapping, Recording, Source};
 
 use crate::cli::arguments::input::InputArgs;
 use crate::cli::printing::failure::Failure;
@@ -26,22 +26,48 @@ pub fn given(
         return Ok(Given::Source(input.read(path)?));
     }
     let mut look = FirstLook::new(motor, budget);
-    let table = input.read_in_pieces(path, "reading", &mut |piece| {
-        look.take(piece);
+    let read = input.read_in_pieces(path, "reading", &mut |piece, follows| {
+        look.take(piece, follows);
         Ok(())
     })?;
-    if let Some(table) = table {
-        return Ok(Given::Source(Source::LoadTable(table)));
+    match read {
+        Source::Recording(last) => Ok(again(path, &input.mapping()?, look.finish(last))?),
+        table @ Source::LoadTable(_) => Ok(Given::Source(table)),
     }
-    let mapping = input.mapping()?;
+}
+
+/// The same of a recording that was read before: nothing is told of it again.
+///
+/// # Errors
+/// A file that can be read no more.
+pub fn stretches(
+    path: &Path,
+    mapping: &Mapping,
+    motor: &MotorFile,
+    budget: Budget,
+) -> Result<Given, Error> {
+    let mut look = FirstLook::new(motor, budget);
+    let take = &mut |piece: &Recording, follows| {
+        look.take(piece, follows);
+        Ok::<(), Error>(())
+    };
+    let read = formats::read_in_pieces(path, mapping, formats::PIECE_ROWS, &mut |_| {}, take)?;
+    match read {
+        Source::Recording(last) => again(path, mapping, look.finish(last)),
+        table @ Source::LoadTable(_) => Ok(Given::Source(table)),
+    }
+}
+
+/// What the first reading left open.
+fn again(path: &Path, mapping: &Mapping, seen: Seen) -> Result<Given, Error> {
     let quiet = &mut |_| {};
-    Ok(match look.finish() {
+    Ok(match seen {
         Seen::Whole(recording) => Given::Source(Source::Recording(*recording)),
-        Seen::Pieces => Given::Source(formats::read_any(path, &mapping, quiet)?),
+        Seen::Pieces => Given::Source(formats::read_any(path, mapping, quiet)?),
         Seen::Long(choice) => {
             let mut gathering = Gathering::new(*choice);
-            let take = &mut |piece: Recording| gathering.take(&piece);
-            formats::read_in_pieces(path, &mapping, formats::PIECE_ROWS, quiet, take)?;
+            let take = &mut |piece: &Recording, _| gathering.take(piece);
+            formats::read_in_pieces(path, mapping, formats::PIECE_ROWS, quiet, take)?;
             Given::Excerpt(gathering.finish())
         }
     })

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use recording::{Recording, Source};
-use replay::check::Checked;
+use replay::check::{Checked, Reference};
 use replay::speed::{EstimatedSpeed, SpeedSource};
 use replay::{Verdict, VerdictState};
 use report::Subject;
 use report::study::{CheckedRecording, Checkup, Known, Taken};
 
 use crate::cli::arguments::files::Files;
+use crate::cli::arguments::healthy::HealthyRecording;
 use crate::cli::arguments::input::{InputArgs, read_motor};
 use crate::cli::arguments::study::{print_audit, quantity, with_progress};
 use crate::cli::commands::motor::identify::print_table;
@@ -61,10 +62,12 @@ impl Check {
     pub fn run(&self) -> Result<Finding, Failure> {
         self.files().check()?;
         let known = self.known()?;
-        let healthy = self.read(&self.healthy)?;
+        let healthy = self.healthy.iter();
+        let healthy = healthy.map(|path| HealthyRecording::read(path, &self.input, NO_WAVEFORMS));
+        let healthy = healthy.collect::<Result<Vec<_>, _>>()?;
         let names = self.recordings.iter();
         let names: Vec<String> = names.map(|path| path.display().to_string()).collect();
-        let healthy: Vec<&Recording> = healthy.iter().collect();
+        let healthy: Vec<&dyn Reference> = healthy.iter().map(|one| one as _).collect();
         let mut read = |k: usize, take: &mut Taken<'_>| self.give(k, take);
         let checked = with_progress(|progress| {
             Ok(Checkup::of_pieces(
@@ -117,27 +120,19 @@ impl Check {
         let Some(path) = self.recordings.get(k) else {
             return Ok(());
         };
-        let mut each = |piece: Recording| take(&piece).map_err(Failure::Usage);
+        let mut each = |piece: &Recording, _| take(piece).map_err(Failure::Usage);
         match self.input.read_in_pieces(path, "checking", &mut each)? {
-            None => Ok(()),
-            Some(_) => Err(no_waveforms(path)),
-        }
-    }
-
-    fn read(&self, paths: &[PathBuf]) -> Result<Vec<Recording>, Failure> {
-        let one = |path: &PathBuf| match self.input.read(path)? {
-            Source::Recording(recording) => Ok(recording),
+            Source::Recording(_) => Ok(()),
             Source::LoadTable(_) => Err(no_waveforms(path)),
-        };
-        paths.iter().map(one).collect()
+        }
     }
 }
 
+/// Why a load table is refused, and what takes it.
+const NO_WAVEFORMS: &str = "has no waveforms to judge; `drivemon explain` takes it";
+
 fn no_waveforms(path: &Path) -> Failure {
-    Failure::Usage(format!(
-        "{}: a load table has no waveforms to judge; `drivemon explain` takes it",
-        path.display()
-    ))
+    Failure::Usage(format!("{}: a load table {NO_WAVEFORMS}", path.display()))
 }
 
 fn print(checkup: &Checkup) {

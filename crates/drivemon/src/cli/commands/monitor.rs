@@ -1,11 +1,12 @@
 //! `drivemon monitor`: a recording through the board's core.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use monitor::NotJudged;
+use monitor::{NotJudged, Report};
 use motor::MotorFile;
-use recording::LoadTable;
+use recording::{LoadTable, Recording, Source};
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::{InputArgs, read_motor};
@@ -20,7 +21,7 @@ use replay::operating_points::OperatingPoints;
 use replay::words;
 use replay::{SequenceSummary, Timeline, Unjudged, Verdict, VerdictState};
 use report::Subject;
-use report::study::{MonitorError, Monitored, Monitoring};
+use report::study::{MonitorError, Monitored, Monitoring, WindowTrace};
 
 /// Replay a recording through the very core that the board runs: lamps, verdict, probabilities.
 ///
@@ -35,6 +36,9 @@ pub struct MonitorArgs {
     /// Motor file; without it only audit and sequence components are reported
     #[arg(long, value_name = "M")]
     motor: Option<PathBuf>,
+    /// Write every window as a row of a Parquet file: time, lamp, r1 to r4, operating point, unbalance; however long REC is
+    #[arg(long, value_name = "FILE.parquet", conflicts_with_all = ["serial", "probe"])]
+    trace: Option<PathBuf>,
     #[command(flatten)]
     live: LiveArgs,
     #[command(flatten)]
@@ -59,27 +63,73 @@ impl MonitorArgs {
             return self.watch();
         }
         self.files().check()?;
+        if self.trace.is_some() && self.recordings.len() > 1 {
+            return Err(Failure::Usage(ONE_TRACE.to_owned()));
+        }
         let motor = self.motor.as_deref().map(read_motor).transpose()?;
         let motor = motor.as_ref();
         answers::each(&self.recordings, &self.output, |path, answers| {
             let mut monitoring = Monitoring::new(motor);
-            let table = self
-                .input
-                .read_in_pieces(path, "monitoring", &mut |piece| {
-                    let taken = monitoring.take(&piece, &mut |_| {});
-                    taken.map_err(|error| self.failure(error))
-                })?;
-            match table {
-                None => told(&monitoring.finish(), answers),
-                Some(table) => show_table(&table, motor, answers),
+            let read = match &self.trace {
+                Some(trace) => self.read_traced(path, trace, &mut monitoring),
+                None => self.read(path, &mut monitoring, &mut |_, _| ()),
+            };
+            match read? {
+                Source::Recording(_) => told(&monitoring.finish(), answers),
+                Source::LoadTable(table) => show_table(&table, motor, answers),
             }
         })
+    }
+
+    fn read(
+        &self,
+        path: &Path,
+        monitoring: &mut Monitoring<'_>,
+        look: &mut dyn FnMut(f64, &Report),
+    ) -> Result<Source, Failure> {
+        let take = &mut |piece: &Recording, _| {
+            let taken = monitoring.follow(piece, &mut |_, t, report| look(t, report));
+            taken.map_err(|error| self.failure(error))
+        };
+        self.input.read_in_pieces(path, "monitoring", take)
+    }
+
+    /// The same with the windows in a file, which is there when all of them are.
+    fn read_traced(
+        &self,
+        path: &Path,
+        trace: &Path,
+        monitoring: &mut Monitoring<'_>,
+    ) -> Result<Source, Failure> {
+        let mut read = None;
+        let written = formats::write_whole(trace, |file| {
+            let mut windows = WindowTrace::new(file).map_err(io::Error::other)?;
+            let look = &mut |t: f64, report: &Report| windows.add(t, report);
+            let done = read.insert(self.read(path, monitoring, look));
+            match done {
+                Ok(Source::Recording(_)) => windows.finish().map_err(io::Error::other),
+                // Without windows there is no file.
+                _ => Err(io::Error::other("no windows")),
+            }
+        });
+        match (read, written) {
+            (Some(Ok(Source::Recording(last))), Ok(())) => Ok(Source::Recording(last)),
+            (Some(Ok(table @ Source::LoadTable(_))), _) => Ok(table),
+            (Some(Err(failure)), _) => Err(failure),
+            (_, written) => Err(Failure::Write {
+                path: trace.display().to_string(),
+                error: written
+                    .err()
+                    .unwrap_or_else(|| io::Error::other("no windows")),
+            }),
+        }
     }
 
     fn files(&self) -> Files {
         Files::default()
             .reads_recordings(&self.recordings, &self.input)
             .may_read("the motor file", self.motor.as_ref())
+            .may_write("--trace", self.trace.as_ref())
             .writes_results(&self.output)
     }
 
@@ -129,6 +179,9 @@ fn show_table(
     answers.give(Subject::LoadTable, &points, || say!("{points}"))?;
     Ok(Finding::Nothing)
 }
+
+/// A trace holds the windows of one recording.
+const ONE_TRACE: &str = "--trace writes the windows of one recording, and several are named: ask for the trace of each by itself";
 
 /// Frames hold lamps and residuals, not the samples that a page draws.
 const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board sends none: fetch its samples with \

@@ -1,7 +1,7 @@
 //! The first reading of a recording of unknown length.
 
 use motor::MotorFile;
-use recording::Recording;
+use recording::{Follows, Recording};
 
 use super::chosen::Budget;
 use super::excerpt::{Choice, Survey};
@@ -11,8 +11,6 @@ const LONGEST_S: f64 = 40.0;
 
 /// A recording that is being read for the first time, piece by piece.
 pub struct FirstLook {
-    /// The first piece, as long as it is the only one.
-    first: Option<Recording>,
     pieces: usize,
     span: [f64; 2],
     /// Its scale is fitted to all of the recording.
@@ -34,7 +32,6 @@ impl FirstLook {
     /// Before the first piece.
     pub fn new(motor: &MotorFile, budget: Budget) -> Self {
         Self {
-            first: None,
             pieces: 0,
             span: [0.0; 2],
             has_unknown_scale: false,
@@ -43,7 +40,7 @@ impl FirstLook {
     }
 
     /// Takes the next piece.
-    pub fn take(&mut self, piece: Recording) {
+    pub fn take(&mut self, piece: &Recording, follows: Follows) {
         let t = piece.t();
         self.span = match self.pieces {
             0 => [t[0], t[t.len() - 1]],
@@ -51,30 +48,24 @@ impl FirstLook {
         };
         self.pieces += 1;
         self.has_unknown_scale |= piece.unknown_speed_scale.is_some();
-        if self.pieces == 1 {
-            // Most recordings are short, and audited when they are asked about.
-            self.first = Some(piece);
-            return;
-        }
-        self.survey_first();
-        self.survey.take(&piece);
-    }
-
-    fn survey_first(&mut self) {
-        if let Some(first) = self.first.take() {
-            self.survey.take(&first);
+        // Most recordings are short, and audited when they are asked about.
+        if self.pieces > 1 || follows == Follows::Piece {
+            self.survey.take(piece);
         }
     }
 
-    /// What there is to do; pieces must have been taken.
-    pub fn finish(mut self) -> Seen {
+    /// What there is to do; `last` is the last piece that was taken.
+    pub fn finish(mut self, last: Recording) -> Seen {
+        let is_whole = self.pieces == 1;
         if self.span[1] - self.span[0] > LONGEST_S && !self.has_unknown_scale {
-            self.survey_first();
+            if is_whole {
+                self.survey.take(&last);
+            }
             return Seen::Long(Box::new(self.survey.choose()));
         }
-        match self.first {
-            Some(first) => Seen::Whole(Box::new(first)),
-            None => Seen::Pieces,
+        match is_whole {
+            true => Seen::Whole(Box::new(last)),
+            false => Seen::Pieces,
         }
     }
 }
@@ -87,8 +78,16 @@ mod tests {
     fn seen(pieces: Vec<Recording>) -> Seen {
         let motor = specimen::motor("");
         let mut look = FirstLook::new(&motor, Budget::compared(true));
-        pieces.into_iter().for_each(|piece| look.take(piece));
-        look.finish()
+        let last = pieces.len() - 1;
+        for (k, piece) in pieces.iter().enumerate() {
+            let follows = if k == last {
+                Follows::Nothing
+            } else {
+                Follows::Piece
+            };
+            look.take(piece, follows);
+        }
+        look.finish(pieces[last].clone())
     }
 
     fn halves(whole: &Recording) -> Vec<Recording> {

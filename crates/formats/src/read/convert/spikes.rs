@@ -83,6 +83,15 @@ fn note(
 }
 
 fn of_speed(x: &[f64]) -> Vec<usize> {
+    // What is below a share of the slowest speed is below that of the usual one, too.
+    let slowest = x
+        .iter()
+        .fold(f64::INFINITY, |slowest, x| x.abs().min(slowest));
+    if x.windows(2)
+        .all(|pair| (pair[1] - pair[0]).abs() <= OFF * slowest)
+    {
+        return Vec::new();
+    }
     let steps: Vec<f64> = x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let sigma = median(&steps) / (0.674_5 * std::f64::consts::SQRT_2);
     let sizes: Vec<f64> = x.iter().map(|x| x.abs()).collect();

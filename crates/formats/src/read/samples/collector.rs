@@ -1,6 +1,6 @@
 //! Gathers the columns of a file that are used, row by row or block by block.
 
-use super::raw::{Piece, Raw, Rows};
+use super::raw::{Kept, Piece, Raw, Rows};
 use crate::read::budget::{most_numbers, too_large};
 use crate::read::header::Header;
 use crate::read::plan::Plan;
@@ -20,8 +20,7 @@ pub(super) struct Collector {
     used: Vec<UsedColumn>,
     values: Vec<Vec<f64>>,
     row: Vec<f64>,
-    lines: Vec<u64>,
-    numbers: Vec<u64>,
+    rows: Kept,
     taken: u64,
     skipped: u64,
     skip_missing: bool,
@@ -46,8 +45,7 @@ impl Collector {
             values: used.iter().map(|_| Vec::with_capacity(room)).collect(),
             row: vec![0.0; used.len()],
             used,
-            lines: Vec::with_capacity(room),
-            numbers: Vec::with_capacity(room),
+            rows: Kept::default(),
             taken: 0,
             skipped: 0,
             skip_missing: plan.mapping.skip_missing.unwrap_or(false),
@@ -58,7 +56,7 @@ impl Collector {
 
     /// Rows that were in no piece yet.
     pub fn fresh(&self) -> usize {
-        self.lines.len() - self.before
+        self.rows.len() - self.before
     }
 
     /// Takes one row.
@@ -81,8 +79,7 @@ impl Collector {
         for (column, x) in self.values.iter_mut().zip(&self.row) {
             column.push(*x);
         }
-        self.numbers.push(self.taken - 1);
-        self.lines.push(cells.line());
+        self.rows.push(1, cells.line(), self.taken - 1);
         Ok(())
     }
 
@@ -100,10 +97,9 @@ impl Collector {
         for (values, column) in self.values.iter_mut().zip(&self.used) {
             values.extend_from_slice(block.column(column.index));
         }
-        self.numbers
-            .extend(self.taken - block.rows() as u64..self.taken);
-        let first = block.row(0).line();
-        self.lines.extend(first..first + block.rows() as u64);
+        let rows = block.rows();
+        self.rows
+            .push(rows, block.row(0).line(), self.taken - rows as u64);
         Ok(())
     }
 
@@ -115,41 +111,41 @@ impl Collector {
         }
     }
 
-    /// Makes room for `room` rows where the piece before had its own: growing step by step would leave holes in the memory.
-    pub fn reserve(&mut self, room: usize) {
-        let rows = room.saturating_sub(self.lines.len());
-        self.values
-            .iter_mut()
-            .for_each(|values| values.reserve_exact(rows));
-        self.lines.reserve_exact(rows);
-        self.numbers.reserve_exact(rows);
+    /// Goes on in the memory of the piece before, with room for `room` rows: growing step by step would leave holes in the
+    /// memory, and new memory has to be cleared.
+    pub fn go_on(&mut self, buffers: impl Iterator<Item = Vec<f64>>, room: usize) {
+        let buffers = buffers.chain(std::iter::repeat_with(Vec::new));
+        for (values, mut buffer) in self.values.iter_mut().zip(buffers) {
+            buffer.clear();
+            buffer.reserve_exact(room);
+            buffer.append(values);
+            *values = buffer;
+        }
     }
 
     /// Gives away the first `rows` fresh rows with `margin` rows on either side, as far as there are any.
     pub fn give(&mut self, rows: usize, margin: usize) -> Piece {
         let kept = self.before..self.before + rows;
-        let end = (kept.end + margin).min(self.lines.len());
+        let end = (kept.end + margin).min(self.rows.len());
         let again = kept.end.saturating_sub(margin);
         let targets = self.used.iter().map(|column| column.target);
         let columns = self.values.iter_mut().map(|x| front(x, end, again));
         let piece = Piece {
             raw: Raw {
                 columns: targets.zip(columns.map(Column::from)).collect(),
-                rows: Rows::Kept {
-                    lines: front(&mut self.lines, end, again),
-                    numbers: front(&mut self.numbers, end, again),
-                },
+                rows: Rows::Kept(self.rows.part(0..end)),
                 skipped: self.skipped,
             },
             kept: kept.clone(),
         };
+        self.rows = self.rows.part(again..self.rows.len());
         self.before = kept.end - again;
         piece
     }
 }
 
 /// The first `end` of `all`, which goes on with what follows from `again` on.
-fn front<T: Copy>(all: &mut Vec<T>, end: usize, again: usize) -> Vec<T> {
+fn front(all: &mut Vec<f64>, end: usize, again: usize) -> Vec<f64> {
     let rest = all[again..].to_vec();
     let mut front = std::mem::replace(all, rest);
     front.truncate(end);

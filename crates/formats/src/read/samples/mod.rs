@@ -5,4 +5,4 @@ mod pieces;
 mod raw;
 
 pub(super) use pieces::{Extent, gather};
-pub(super) use raw::{Piece, Raw, Rows};
+pub(super) use raw::{Kept, Piece, Raw, Rows};

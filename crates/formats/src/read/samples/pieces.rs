@@ -41,8 +41,8 @@ impl Extent {
     }
 }
 
-/// Reads the used columns of a file; `take` gets the pieces in their order, and the last one comes back when the file has
-/// been read.
+/// Reads the used columns of a file; `take` gets the pieces in their order and gives their memory back, and the last one comes
+/// back when the file has been read.
 ///
 /// # Errors
 /// Whatever is wrong with a row, and what `take` returns.
@@ -51,7 +51,7 @@ pub(in crate::read) fn gather(
     plan: &Plan,
     extent: Extent,
     progress: &mut dyn FnMut(Progress),
-    take: &mut dyn FnMut(Piece) -> Result<(), Error>,
+    take: &mut Take<'_>,
 ) -> Result<Piece, Error> {
     if extent == Extent::Whole {
         file.check_size()?;
@@ -75,18 +75,22 @@ pub(in crate::read) fn gather(
     Ok(collector.give(collector.fresh(), MARGIN))
 }
 
-struct Gathered<'t> {
+/// Takes a piece; what is left of it is memory to be filled again.
+pub(in crate::read) type Take<'t> = dyn FnMut(Piece) -> Result<Vec<Vec<f64>>, Error> + 't;
+
+struct Gathered<'t, 'u> {
     collector: Collector,
     extent: Extent,
-    take: &'t mut dyn FnMut(Piece) -> Result<(), Error>,
+    take: &'t mut Take<'u>,
 }
 
-impl Gathered<'_> {
+impl Gathered<'_, '_> {
     fn give_away(&mut self) -> Result<(), Error> {
         match self.extent {
             Extent::Rows(rows) if self.collector.fresh() > self.extent.most() => {
-                (self.take)(self.collector.give(rows, MARGIN))?;
-                self.collector.reserve(self.extent.room());
+                let buffers = (self.take)(self.collector.give(rows, MARGIN))?;
+                self.collector
+                    .go_on(buffers.into_iter(), self.extent.room());
                 Ok(())
             }
             _ => Ok(()),

@@ -1,6 +1,5 @@
 //! `drivemon batch`: a folder of recordings, one row each.
 
-mod row;
 mod store;
 
 use std::path::{Path, PathBuf};
@@ -9,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Args;
 use rayon::prelude::*;
 use recording::{Mapping, companions, quoted};
+use report::study::batch::{self, Row};
 use report::study::{Job, MappedMotor, MotorMap};
 
 use crate::cli::arguments::files::Files;
@@ -16,7 +16,6 @@ use crate::cli::arguments::input::InputArgs;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::{complain, say};
 use crate::cli::printing::{paint, progress};
-use row::Row;
 use store::Store;
 
 /// Judge a folder of recordings on all cores: one row each in a Parquet file.
@@ -120,9 +119,9 @@ fn one(
 fn finding(rows: &[Row]) -> Finding {
     let any = |state: &str| rows.iter().any(|row| row.state == state);
     match () {
-        () if any(row::NOT_READ) => Finding::NotRead,
-        () if any(row::FAULT) => Finding::Something,
-        () if any(row::NOT_JUDGED) => Finding::Unsupported,
+        () if any(batch::NOT_READ) => Finding::NotRead,
+        () if any(batch::FAULT) => Finding::Something,
+        () if any(batch::NOT_JUDGED) => Finding::Unsupported,
         () => Finding::Nothing,
     }
 }
@@ -149,21 +148,21 @@ fn print(rows: &[Row], out: &Path) {
             of.filter(|row| state.is_empty() || row.state == state)
                 .count()
         };
-        let faults = format!("{:>6}", count(row::FAULT));
+        let faults = format!("{:>6}", count(batch::FAULT));
         say!(
             "{motor:<widest$} {:>10} {:>8} {} {:>11} {:>9}",
             count(""),
-            count(row::HEALTHY),
-            if count(row::FAULT) > 0 {
+            count(batch::HEALTHY),
+            if count(batch::FAULT) > 0 {
                 paint::error(faults).to_string()
             } else {
                 faults
             },
-            count(row::NOT_JUDGED),
-            count(row::NOT_READ)
+            count(batch::NOT_JUDGED),
+            count(batch::NOT_READ)
         );
     }
-    for row in rows.iter().filter(|row| row.state == row::NOT_READ) {
+    for row in rows.iter().filter(|row| row.state == batch::NOT_READ) {
         complain(format_args!("{}", row.error));
     }
     say!("{} is written.", quoted(&out.display().to_string()));

@@ -9,8 +9,8 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::SerializedFileReader;
 use twox_hash::XxHash64;
 
-use super::row::Row;
 use crate::cli::printing::failure::Failure;
+use report::study::batch::Row;
 
 /// Where rows go.
 pub struct Store {

@@ -1,7 +1,6 @@
 //! `drivemon calibrate`: what a healthy motor looks like, and what the instrument's channels do.
 
 mod channels;
-mod healthy;
 
 use std::path::{Path, PathBuf};
 
@@ -11,13 +10,13 @@ use motor::MotorFile;
 use recording::{Recording, Source};
 
 use crate::cli::arguments::files::Files;
+use crate::cli::arguments::healthy::HealthyRecording;
 use crate::cli::arguments::input::{InputArgs, read_motor};
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::{JsonArgs, write_text};
 use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 use channels::ChannelArgs;
-use healthy::HealthyRecording;
 use replay::calibrate::{Pieces, Refusal, Surroundings};
 use report::json::Format;
 use report::motor_text;
@@ -57,6 +56,10 @@ pub struct Calibrate {
     input: InputArgs,
 }
 
+/// Why a load table is refused, and what takes it.
+const NO_WAVEFORMS: &str =
+    "has no waveforms to calibrate from; its parameters come from `drivemon explain`";
+
 const EXAMPLES: &str = "\
 Example:
   drivemon calibrate idle.csv.gz half.csv.gz full.csv.gz --motor m.toml -o m-calibrated.toml
@@ -84,7 +87,7 @@ impl Calibrate {
 
     fn learn(&self, path: &Path) -> Result<Finding, Failure> {
         let recordings = self.recordings.iter();
-        let read = recordings.map(|path| HealthyRecording::read(path, &self.input));
+        let read = recordings.map(|path| HealthyRecording::read(path, &self.input, NO_WAVEFORMS));
         let recordings = read.collect::<Result<Vec<_>, _>>()?;
         let motor = read_motor(path)?;
         let surroundings = Surroundings {
@@ -130,7 +133,7 @@ impl Calibrate {
         let one = |path: &PathBuf| match self.input.read(path)? {
             Source::Recording(recording) => Ok(recording),
             Source::LoadTable(_) => Err(Failure::Usage(format!(
-                "{}: a load table has no waveforms to calibrate from; its parameters come from `drivemon explain`",
+                "{}: a load table {NO_WAVEFORMS}",
                 path.display()
             ))),
         };
