@@ -26,5 +26,6 @@ pub use read::{
 };
 pub use rows::{RowsWriter, read_rows, write_rows};
 pub use write::{
-    reading_text, sidecar_text, write_csv, write_parquet, write_recording, write_whole,
+    reading_text, sidecar_text, write_csv, write_in_pieces, write_parquet, write_recording,
+    write_whole,
 };

@@ -10,7 +10,7 @@ use replay::calibrate::{Pieces, Refusal, Surroundings, calibrate, calibrate_piec
 use replay::check::{Checking, Reference, check};
 use report::study::{Checkup, Known, Monitored, Monitoring, Taken};
 use scenario::Scenario;
-use scenario::simulate::record;
+use scenario::simulate::{self, record};
 use serde_json::Value;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -225,4 +225,21 @@ fn a_trace_holds_every_window() {
         .collect();
     assert!(with_residuals.len() > 100);
     assert_eq!(with_residuals, told);
+}
+
+/// The samples of all pieces are those of the whole, and only the last piece is longer.
+#[test]
+fn a_scenario_in_pieces_is_the_scenario() {
+    let path = project("sim-host/scenarios/direct-on-line-start.toml");
+    let scenario = Scenario::read(&path).expect("it ships");
+    let whole = record(&scenario, |_| {}).expect("it runs");
+    let mut share = 0.0;
+    let pieces = simulate::Pieces::new(&scenario, 7_001, |done| share = done).expect("it runs");
+    let pieces: Vec<Recording> = pieces.collect::<Result<_, _>>().expect("it runs");
+    assert!(pieces.len() > 3 && share == 1.0);
+    let (last, others) = pieces.split_last().expect("pieces");
+    assert!(others.iter().all(|piece| piece.len() == 7_001) && last.len() <= 7_001 + 7_001 / 30);
+    let joined = Recording::of_parts(&pieces).expect("they follow one another");
+    assert_eq!(joined.t(), whole.t());
+    assert!(joined.channels().eq(whole.channels()));
 }

@@ -1,10 +1,10 @@
 //! What is written reads back to the same bits, and twice to the same bytes.
 
 use crate::common::{Folder, quiet};
-use formats::{read_recording, write_recording};
+use formats::{read_recording, write_in_pieces, write_recording};
 use proptest::prelude::*;
 use recording::{
-    Channel, LoadTorque, Mapping, Metadata, Recording, Sensors, Signal, StartsFrom, Supply,
+    Channel, Error, LoadTorque, Mapping, Metadata, Recording, Sensors, Signal, StartsFrom, Supply,
     VoltageKind,
 };
 
@@ -133,4 +133,40 @@ proptest! {
         };
         prop_assert_eq!(bits(&read), bits(&written));
     }
+}
+
+/// Text has the bytes of the whole; Parquet has a group of rows for each piece, and reads back to the same bits. A piece that fails
+/// leaves no file.
+#[test]
+fn what_comes_in_pieces_is_the_whole() {
+    let folder = Folder::new("writing-pieces");
+    let csv = "t,va,ia\n0,1.5,2\n0.001,-0.25,3\n0.002,1e-9,4\n0.003,7,5\n0.004,8,6\n";
+    let whole = read_recording(
+        &folder.file("x.csv", csv.as_bytes()),
+        &Mapping::default(),
+        &mut |_| {},
+    )
+    .unwrap();
+    let pieces = || [0..2, 2..5].map(|range| whole.slice(range));
+    for extension in ["csv", "csv.gz"] {
+        let [once, again] =
+            ["once", "again"].map(|name| folder.path(&format!("{name}.{extension}")));
+        write_recording(&once, &whole).unwrap();
+        write_in_pieces(&again, &mut pieces().into_iter()).unwrap();
+        assert_eq!(
+            std::fs::read(&once).unwrap(),
+            std::fs::read(&again).unwrap(),
+            "{extension}"
+        );
+    }
+    let path = folder.path("y.parquet");
+    write_in_pieces(&path, &mut pieces().into_iter()).unwrap();
+    let back = read_recording(&path, &Mapping::default(), &mut |_| {}).unwrap();
+    assert_eq!(back.t(), whole.t());
+    assert!(back.channels().eq(whole.channels()));
+    let path = folder.path("z.parquet");
+    let failing = [whole.slice(0..2), Err(Error::bad("z", "enough", ""))];
+    let failed = write_in_pieces(&path, &mut failing.into_iter());
+    assert!(failed.unwrap_err().to_string().contains("enough"));
+    assert!(!path.exists());
 }

@@ -11,7 +11,7 @@ mod tests;
 
 pub(crate) use plant::effects::check_entry;
 #[cfg(feature = "recording")]
-pub use record::{RecordError, record};
+pub use record::{Pieces, RecordError, record};
 pub use side_by_side::{DataPair, SideBySide};
 
 use crate::{Fault, Scenario};

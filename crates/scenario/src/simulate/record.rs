@@ -24,28 +24,78 @@ pub enum RecordError {
 ///
 /// # Errors
 /// A scenario that cannot be run, or that leaves fewer than two samples.
-pub fn record(
-    scenario: &Scenario,
-    mut progress: impl FnMut(f64),
-) -> Result<Recording, RecordError> {
-    let effects = effects::of_instruments(scenario)?;
-    let samples = Simulation::inside(scenario)?
-        .enumerate()
-        .map(|(k, sample)| {
-            if k % 10_000 == 0 {
-                progress(sample.t / scenario.duration_s);
-            }
-            sample
-        });
-    let mut columns = Columns::default();
-    if effects.is_empty() {
-        samples.for_each(|sample| columns.push(&sample));
-    } else {
-        let shown = shown(scenario, &effects, samples.collect())?;
-        shown.iter().for_each(|sample| columns.push(sample));
+pub fn record(scenario: &Scenario, progress: impl FnMut(f64)) -> Result<Recording, RecordError> {
+    Pieces::new(scenario, usize::MAX, progress)?.piece()
+}
+
+/// A scenario as consecutive pieces of a recording; the next one is simulated when it is asked for.
+pub struct Pieces<'s> {
+    scenario: &'s Scenario,
+    samples: Samples,
+    columns: Columns,
+    rows: usize,
+    is_done: bool,
+    progress: Box<dyn FnMut(f64) + 's>,
+}
+
+/// Samples as the instruments show them.
+type Samples = Box<dyn Iterator<Item = SimSample>>;
+
+impl<'s> Pieces<'s> {
+    /// Pieces of `rows` samples; the last is up to a thirtieth longer. Effects on the instruments need whole signals: where
+    /// there are any, all samples are in memory. `progress` is told the share done, 0..=1.
+    ///
+    /// # Errors
+    /// A scenario that cannot be run.
+    pub fn new(
+        scenario: &'s Scenario,
+        rows: usize,
+        progress: impl FnMut(f64) + 's,
+    ) -> Result<Pieces<'s>, SimulationError> {
+        let effects = effects::of_instruments(scenario)?;
+        let simulated = Simulation::inside(scenario)?;
+        let samples: Samples = match effects.is_empty() {
+            true => Box::new(simulated),
+            false => Box::new(shown(scenario, &effects, simulated.collect())?.into_iter()),
+        };
+        Ok(Pieces {
+            scenario,
+            samples,
+            columns: Columns::default(),
+            rows,
+            is_done: false,
+            progress: Box::new(progress),
+        })
     }
-    progress(1.0);
-    columns.into_recording(scenario)
+}
+
+impl Pieces<'_> {
+    /// The next piece, or all that is left.
+    fn piece(&mut self) -> Result<Recording, RecordError> {
+        let most = self.rows.saturating_add(self.rows / 30);
+        for sample in self.samples.by_ref() {
+            if self.columns.t.len().is_multiple_of(10_000) {
+                (self.progress)(sample.t / self.scenario.duration_s);
+            }
+            self.columns.push(&sample);
+            if self.columns.t.len() > most {
+                let rest = self.columns.split_off(self.rows);
+                let piece = std::mem::replace(&mut self.columns, rest);
+                return piece.into_recording(self.scenario);
+            }
+        }
+        self.is_done = true;
+        (self.progress)(1.0);
+        std::mem::take(&mut self.columns).into_recording(self.scenario)
+    }
+}
+
+impl Iterator for Pieces<'_> {
+    type Item = Result<Recording, RecordError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        (!self.is_done).then(|| self.piece())
+    }
 }
 
 #[derive(Default)]
@@ -58,6 +108,24 @@ struct Columns {
 }
 
 impl Columns {
+    /// What follows the first `rows` samples.
+    fn split_off(&mut self, rows: usize) -> Columns {
+        let mut columns = self.u.iter_mut().chain(&mut self.i);
+        let mut next = || {
+            columns
+                .next()
+                .map(|x| x.split_off(rows))
+                .unwrap_or_default()
+        };
+        Columns {
+            u: [next(), next(), next()],
+            i: [next(), next(), next()],
+            t: self.t.split_off(rows),
+            speed: self.speed.split_off(rows),
+            torque: self.torque.split_off(rows),
+        }
+    }
+
     fn push(&mut self, sample: &SimSample) {
         let shown = &sample.measured;
         self.t.push(sample.t);

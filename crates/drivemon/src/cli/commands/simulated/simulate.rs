@@ -49,20 +49,29 @@ impl Simulate {
         scenario.seed = self.seed.unwrap_or(scenario.seed);
         let bar = progress::bar("simulating", STEPS);
         let done = |share: f64| bar.set_position((share * STEPS as f64) as u64);
-        let recording = simulate::record(&scenario, done).map_err(|error| self.failure(error))?;
+        let pieces = simulate::Pieces::new(&scenario, formats::PIECE_ROWS, done);
+        let pieces = pieces.map_err(|error| self.failure(&error))?;
+        let (mut samples, mut span) = (0, None);
+        let mut told = pieces.map(|piece| {
+            let piece = piece.map_err(|error| self.failure(&error))?;
+            let [begin, end] = [piece.t()[0], piece.t()[piece.len() - 1]];
+            span = Some([span.map_or(begin, |[begin, _]: [f64; 2]| begin), end]);
+            samples += piece.len();
+            Ok::<_, Failure>(piece)
+        });
+        formats::write_in_pieces(&self.output, &mut told)?;
+        drop(told);
         bar.finish_and_clear();
-        formats::write_recording(&self.output, &recording)?;
         say!(
-            "{}: {} samples, {:.3} s of \"{}\"",
+            "{}: {samples} samples, {:.3} s of \"{}\"",
             self.output.display(),
-            recording.len(),
-            recording.duration(),
+            span.map_or(0.0, |[begin, end]| end - begin),
             scenario.name
         );
         Ok(Finding::Nothing)
     }
 
-    fn failure(&self, error: simulate::RecordError) -> Failure {
+    fn failure(&self, error: &dyn std::fmt::Display) -> Failure {
         Failure::Usage(format!("{}: {error}", self.scenario.display()))
     }
 }
