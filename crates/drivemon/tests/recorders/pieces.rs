@@ -157,8 +157,8 @@ fn a_reference_in_pieces_teaches_what_the_whole_teaches() {
     let asked = |healthy: &dyn Reference, judged: &[Recording]| {
         let mut read = |_: usize, take: &mut Taken<'_>| judged.iter().try_for_each(&mut *take);
         let names = ["today".to_owned()];
-        let quiet = &mut |_: &'static str, _: f64| {};
-        Checkup::of_pieces::<String>(&known, &[healthy], &names, quiet, &mut read).expect("healthy")
+        Checkup::of_pieces::<String>(&known, &[healthy], &names, &mut |_, _| {}, &mut read)
+            .expect("healthy")
     };
     let (by_whole, learnt) = asked(&whole, std::slice::from_ref(&whole));
     let (by_pieces, again) = asked(&pieces, &pieces.0);
