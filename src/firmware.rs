@@ -4,12 +4,11 @@ use core::hint::black_box;
 
 use board::modbus::Identity;
 use board::{
-    Button, Calibration, Capture, Compiled, Display, Doubt, Doubts, LAMPS, Relay, StuckChannels,
+    Button, Calibration, Compiled, Display, Doubt, Doubts, LAMPS, Relay, StuckChannels,
 };
 use embassy_executor::Spawner;
 use embassy_time::{Duration, Timer};
 use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};
-use static_cell::ConstStaticCell;
 
 use crate::commissioning::Commissioning;
 use crate::configuration::{Change, Settings};
@@ -37,9 +36,6 @@ const T_SAMPLE: f32 = 1e-4;
 const LAMP_TEST: Duration = Duration::from_millis(150);
 /// Blocks that are thrown away at first: the filters and sensors settle (0.1 s).
 const INHIBITED_BLOCKS: u32 = 31;
-
-/// 9 KiB that are never moved: the stack has not the room.
-static CAPTURE: ConstStaticCell<Capture> = ConstStaticCell::new(Capture::new());
 
 /// Starts up; nothing comes back from here.
 #[embassy_executor::main]
@@ -95,7 +91,6 @@ async fn main(spawner: Spawner) -> ! {
             &start,
             events.newest().wrapping_add(1),
             identity.serial,
-            CAPTURE.take(),
         ),
         commissioning: Commissioning::new(calibration),
         events,

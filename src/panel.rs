@@ -233,6 +233,7 @@ impl Panel {
         }
         match command {
             Some(Command::Acknowledge) => self.acknowledge(),
+            Some(Command::ReleaseCapture) => self.record.release(),
             Some(Command::Learn) => self.commissioning.begin(self.all_doubts()),
             Some(Command::Prepare) => {
                 self.events.note(EventCause::Prepared, 0);

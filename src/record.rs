@@ -1,7 +1,7 @@
 //! What is kept and told about every window: frames, registers, and the samples around an alarm.
 
 use board::modbus::{BoardStatus, Image, SecondCollector, Status};
-use board::{CAPTURE_EVERY, Capture, Doubts, Shown};
+use board::{CAPTURE_EVERY, Capture, CaptureAlarm, Doubts, Shown};
 use monitor::{Lamp, Monitor, RawSample, Report};
 
 use crate::commissioning::Commissioning;
@@ -15,7 +15,6 @@ pub struct Record {
     telemetry: Telemetry,
     status: Status,
     board: BoardStatus,
-    capture: &'static mut Capture,
     was_lit: bool,
     registers: Image,
     seconds: SecondCollector,
@@ -31,7 +30,6 @@ impl Record {
         start: &Start,
         start_number: u32,
         serial: [u32; 3],
-        capture: &'static mut Capture,
     ) -> Self {
         let board = BoardStatus {
             reset_cause: start.cause as u16,
@@ -50,7 +48,6 @@ impl Record {
             status,
             seconds: SecondCollector::new(start_number),
             board,
-            capture,
             was_lit: false,
             stale: false,
         }
@@ -106,19 +103,26 @@ impl Record {
 
     /// Takes a block's samples into the ring.
     pub fn keep(&mut self, samples: impl Iterator<Item = RawSample>) {
-        samples
-            .step_by(CAPTURE_EVERY)
-            .for_each(|raw| self.capture.push(&raw));
+        serial::with_capture(|capture| {
+            samples
+                .step_by(CAPTURE_EVERY)
+                .for_each(|raw| capture.push(&raw));
+        });
     }
 
     /// Samples are missing.
     pub fn interrupt(&mut self) {
-        self.capture.interrupt();
+        serial::with_capture(Capture::interrupt);
     }
 
     /// Waits for the next alarm.
     pub fn acknowledge(&mut self) {
-        self.capture.arm();
+        serial::with_capture(Capture::arm);
+    }
+
+    /// A master has fetched the samples around an alarm.
+    pub fn release(&mut self) {
+        serial::with_capture(Capture::release);
     }
 
     /// Tells one window's result, and what the door shows with it, everywhere.
@@ -131,20 +135,30 @@ impl Record {
         commissioning: &Commissioning,
     ) {
         let lit = report.lamps.fault == Lamp::On;
-        if lit && !self.was_lit {
-            self.capture.alarm();
-        }
+        let motor = commissioning.motor();
+        let alarm = (lit && !self.was_lit).then(|| CaptureAlarm {
+            start: self.board.start_number,
+            second: self.seconds.newest() + 1,
+            motor,
+        });
         self.was_lit = lit;
+        let (state, chunk) = serial::with_capture(|capture| {
+            if let Some(alarm) = alarm {
+                capture.alarm(alarm);
+            }
+            (capture.state(), capture.next_chunk(motor))
+        })
+        .unwrap_or_default();
         commissioning.describe(&mut self.board);
         self.board.thresholds = monitor.config().thresholds;
-        self.board.capture = self.capture.state() as u16;
+        self.board.capture = state as u16;
         self.shown = *shown;
         self.registers = self.status.take(report, shown, &self.board);
         self.seconds.take(&self.registers);
         serial::publish(self.registers);
         self.telemetry
             .send(report, shown, self.board.vdda_millivolt);
-        if let Some(chunk) = self.capture.next_chunk(commissioning.motor()) {
+        if let Some(chunk) = chunk {
             self.telemetry.send_chunk(&chunk);
         }
     }

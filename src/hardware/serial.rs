@@ -8,7 +8,7 @@ use core::cell::{Cell, RefCell};
 use board::modbus::{
     Collector, Command, Files, Identity, Image, MAX_RESPONSE_BYTES, Memory, Slave,
 };
-use board::{Configuration, Desk, Line, LineParity, MAX_FRAME_BYTES, Second, SecondRing};
+use board::{Capture, Configuration, Desk, Line, LineParity, MAX_FRAME_BYTES, Second, SecondRing};
 use embassy_executor::Spawner;
 use embassy_stm32::peripherals::{DMA1_CH3, LPUART1, PA2, PA9, PA10, PA12, USART1};
 use embassy_stm32::usart::{self, BufferedUart, Config, Parity, StopBits, UartTx};
@@ -76,6 +76,10 @@ static COMMAND: CriticalSectionMutex<Cell<Option<Command>>> =
 static SECONDS: CriticalSectionMutex<RefCell<SecondRing>> =
     CriticalSectionMutex::new(RefCell::new(SecondRing::new()));
 
+/// The samples around an alarm: 9 KiB that are never moved.
+static CAPTURE: CriticalSectionMutex<RefCell<Capture>> =
+    CriticalSectionMutex::new(RefCell::new(Capture::new()));
+
 /// What holds, and what a master is writing. Neither side ever keeps it across a wait.
 static DESK: CriticalSectionMutex<RefCell<Desk>> =
     CriticalSectionMutex::new(RefCell::new(Desk::blank()));
@@ -118,6 +122,15 @@ fn read_seconds(at: usize, bytes: &mut [u8]) -> bool {
         let seconds = seconds.try_borrow();
         seconds.is_ok_and(|seconds| seconds.read(at, bytes))
     })
+}
+
+/// Does something with the samples around an alarm; with interrupts off, for some microseconds at most.
+pub fn with_capture<T>(work: impl FnOnce(&mut Capture) -> T) -> Option<T> {
+    CAPTURE.lock(|capture| Some(work(&mut *capture.try_borrow_mut().ok()?)))
+}
+
+fn read_capture(at: usize, bytes: &mut [u8]) -> bool {
+    with_capture(|capture| capture.read(at, bytes)).unwrap_or(false)
 }
 
 /// This configuration holds from now on: read by masters, and the line follows it behind the answer that is being sent.
@@ -216,6 +229,7 @@ async fn serve_modbus(parts: ModbusLine, settings: Line, identity: Identity) {
                 files: Files {
                     events: &flash_store::read_events,
                     seconds: &read_seconds,
+                    capture: &read_capture,
                 },
                 desk: &mut desk,
             };

@@ -43,7 +43,10 @@ pub use events::{
     Appended, EVENT_BYTES, Event, EventCause, EventLog, Journal, LOG_EVENTS, LOG_PAGES, LogFlash,
     Situation, place_of,
 };
-pub use frames::capture::{CAPTURE_EVERY, CAPTURE_INSTANTS, Capture, CaptureChunk, CaptureState};
+pub use frames::capture::{
+    CAPTURE_BYTES, CAPTURE_EVERY, CAPTURE_HEAD_BYTES, CAPTURE_INSTANTS, Capture, CaptureAlarm,
+    CaptureChunk, CaptureHead, CaptureState, captured_samples,
+};
 pub use frames::frame::Frame;
 pub use frames::framing::{FrameError, MAX_FRAME_BYTES};
 pub use frames::message::Message;

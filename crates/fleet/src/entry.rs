@@ -121,21 +121,68 @@ pub struct Link {
     pub why: String,
 }
 
-/// A recording that was fetched from a board.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// The samples around an alarm, fetched from a board; or why there are none.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Recording {
     /// When it was fetched, Unix ms.
     pub time_ms: i64,
-    /// Begin of its samples, Unix ms.
+    /// Begin of its samples, Unix ms; known to the second.
     pub from_ms: i64,
     /// End of its samples, Unix ms.
     pub to_ms: i64,
-    /// File, relative to the folder of recordings.
+    /// Which of its board: the run and what counts in it. The same one is stored once.
+    #[serde(default)]
+    pub key: RecordingKey,
+    /// Its name in this store, by which it is read; given when it is stored.
     pub file: String,
-    /// Size of the file.
+    /// Size of the samples, bytes.
     pub bytes: u64,
-    /// The alarm it belongs to.
+    /// The alarm it belongs to; `None`: the one that rose at its time.
     pub alarm: Option<u64>,
+    /// Why there are no samples, in words.
+    #[serde(default)]
+    pub missing: Option<String>,
+    /// What the board calls its motor constants (`board::MotorImage::identification`).
+    #[serde(default)]
+    pub motor: u32,
+    /// The samples as the board has them (`board::captured_samples`); only on the way into the store, which gives them out
+    /// by name.
+    #[serde(skip)]
+    pub samples: Vec<u8>,
+}
+
+/// Which recording of a board.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordingKey {
+    /// Nothing counts it.
+    #[default]
+    None,
+    /// The run of the program and the second in which FAULT lit.
+    Second {
+        /// The run.
+        start: u32,
+        /// The second of it.
+        second: u32,
+    },
+    /// The run and the number of the capture: what a board tells with frames.
+    Capture {
+        /// The run.
+        start: u32,
+        /// The number.
+        number: u8,
+    },
+}
+
+impl RecordingKey {
+    /// The name of a motor's recording; `board` counts the boards that the motor had before.
+    pub(crate) fn name(self, motor: &MotorId, board: u32) -> String {
+        match self {
+            RecordingKey::None => format!("{motor}.{board}"),
+            RecordingKey::Second { start, second } => format!("{motor}.{board}.{start}.{second}"),
+            RecordingKey::Capture { start, number } => format!("{motor}.{board}.{start}.c{number}"),
+        }
+    }
 }
 
 /// History that was thinned because of its age or because the store was full. It concerns all motors.
@@ -163,6 +210,8 @@ pub enum ThinnedTo {
     Hours,
     /// Hours were dropped.
     HoursDropped,
+    /// Samples around alarms were dropped; that they were there stays known.
+    RecordingsDropped,
     /// Seconds that an output had not taken left its queue; they are in the history.
     QueueCut,
     /// Events, links, gaps and closed alarms were dropped.

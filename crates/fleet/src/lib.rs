@@ -26,10 +26,10 @@ mod store;
 
 pub use clock::now_ms;
 pub use entry::{
-    BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, Second, Thinned, ThinnedTo,
+    BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, RecordingKey, Second, Thinned, ThinnedTo,
 };
 pub use motor::{MotorId, MotorIdError, MotorInfo};
 pub use state::MotorState;
 pub use store::{
-    Appended, EntryFilter, Limits, Reader, Store, StoreError, Trend, TrendPoint, Values,
+    AlarmRecording, Appended, EntryFilter, Limits, NoRecording, Reader, Samples, Store, StoreError, Trend, TrendPoint, Values,
 };

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use board::{CAPTURE_EVERY, CaptureChunk, MotorImage};
+use board::{CAPTURE_EVERY, CaptureChunk, MotorImage, captured_samples};
 use monitor::{MonitorConfig, RawSample};
 use motor::motor_file::{LoadKind, MotorFile};
 use recording::{Channel, LoadTorque, Metadata, Recording, Sensors, StartsFrom, delay};
@@ -33,6 +33,9 @@ pub struct Fetched {
 /// Why a capture is no recording.
 #[derive(Debug, thiserror::Error)]
 pub enum CaptureError {
+    /// What was kept is no capture.
+    #[error("{0} bytes are no samples around an alarm; was the file changed by another program?")]
+    Damaged(usize),
     /// The motor file is another one.
     #[error(
         "the board was flashed with other motor constants than those in this motor file; name the file that it was flashed with"
@@ -67,6 +70,21 @@ impl Collector {
         Some(Fetched {
             motor: piece.motor,
             samples: whole.iter().flat_map(CaptureChunk::samples).collect(),
+        })
+    }
+}
+
+impl Fetched {
+    /// From the instants of a board's file ([`board::captured_samples`]).
+    ///
+    /// # Errors
+    /// Bytes of another length.
+    pub fn of_file(motor: u32, instants: &[u8]) -> Result<Self, CaptureError> {
+        let samples = captured_samples(instants);
+        let samples = samples.ok_or(CaptureError::Damaged(instants.len()))?;
+        Ok(Fetched {
+            motor,
+            samples: samples.collect(),
         })
     }
 }

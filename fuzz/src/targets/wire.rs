@@ -5,7 +5,7 @@ use board::modbus::{
     UNLOCK_KEY,
 };
 use board::{
-    Desk, EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, SECOND_BYTES, SECONDS, Shown, crc32,
+    CAPTURE_BYTES, Desk, EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, SECOND_BYTES, SECONDS, Shown, crc32,
 };
 use live::Decoder;
 use monitor::Report;
@@ -103,6 +103,7 @@ fn ask(slave: &mut Slave, now_ms: u32, request: &[u8], image: &Image, desk: &mut
         files: Files {
             events: &within::<LOG_BYTES>,
             seconds: &within::<SECONDS_BYTES>,
+            capture: &within::<CAPTURE_BYTES>,
         },
         desk: &mut *desk,
     };

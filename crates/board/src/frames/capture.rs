@@ -1,4 +1,4 @@
-//! The samples around the first alarm, kept until somebody has fetched them.
+//! The samples around the first alarm, kept until somebody has fetched them: in pieces with the frames, or as a file over Modbus.
 //!
 //! Every fourth instant, unfiltered: 2.5 kHz for a quarter of a second, which is what memory has room for and
 //! `drivemon compare` needs (twelve supply cycles).
@@ -19,6 +19,12 @@ const AFTER: u16 = CAPTURE_INSTANTS as u16 / 2;
 const CHUNK: usize = 4;
 const CHUNKS: u16 = (CAPTURE_INSTANTS / CHUNK) as u16;
 const _: () = assert!(CAPTURE_INSTANTS.is_multiple_of(CHUNK));
+/// Bytes before the instants in the file.
+pub const CAPTURE_HEAD_BYTES: usize = 24;
+/// Bytes of an instant there.
+pub const INSTANT_BYTES: usize = 14;
+/// Bytes of the file.
+pub const CAPTURE_BYTES: usize = CAPTURE_HEAD_BYTES + CAPTURE_INSTANTS * INSTANT_BYTES;
 /// What the fields mean; a reader refuses every other number.
 pub(crate) const SCHEMA: u8 = 0x81;
 
@@ -45,6 +51,29 @@ pub struct Capture {
     state: CaptureState,
     number: u8,
     chunk: u16,
+    alarm: CaptureAlarm,
+}
+
+/// When the alarm of a capture was, and on which motor constants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CaptureAlarm {
+    /// Run of the program, as in [`crate::Second`].
+    pub start: u32,
+    /// The second of that run in which the alarm was.
+    pub second: u32,
+    /// [`crate::MotorImage::identification`].
+    pub motor: u32,
+}
+
+/// What the file says before its instants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CaptureHead {
+    /// The alarm; of an armed ring the one before, or zeros.
+    pub alarm: CaptureAlarm,
+    /// Counts captures since the start, wrapping; 0: none yet.
+    pub number: u8,
+    /// How far it has come.
+    pub state: CaptureState,
 }
 
 /// Some instants of a capture, oldest first.
@@ -77,6 +106,11 @@ impl Capture {
             state: CaptureState::Armed,
             number: 0,
             chunk: 0,
+            alarm: CaptureAlarm {
+                start: 0,
+                second: 0,
+                motor: 0,
+            },
         }
     }
 
@@ -103,8 +137,9 @@ impl Capture {
     }
 
     /// An alarm; only the first one since it was armed counts.
-    pub fn alarm(&mut self) {
+    pub fn alarm(&mut self, alarm: CaptureAlarm) {
         if self.state == CaptureState::Armed {
+            self.alarm = alarm;
             self.state = CaptureState::Taking;
             self.after = 0;
             self.chunk = 0;
@@ -123,6 +158,53 @@ impl Capture {
     pub fn arm(&mut self) {
         self.state = CaptureState::Armed;
         self.interrupt();
+    }
+
+    /// Somebody has a complete capture: waits for the next alarm. What is being taken goes on.
+    pub fn release(&mut self) {
+        if self.state == CaptureState::Complete {
+            self.arm();
+        }
+    }
+
+    /// Copies bytes of the file from place `at` on; `false` beyond its end, and for instants while it is not complete.
+    #[inline(never)]
+    pub fn read(&self, at: usize, bytes: &mut [u8]) -> bool {
+        let head = self.head().to_bytes();
+        for (place, byte) in (at..).zip(bytes) {
+            let found = match place.checked_sub(CAPTURE_HEAD_BYTES) {
+                None => head.get(place).copied(),
+                Some(place) => self.byte(place),
+            };
+            let Some(found) = found else {
+                return false;
+            };
+            *byte = found;
+        }
+        true
+    }
+
+    fn head(&self) -> CaptureHead {
+        CaptureHead {
+            alarm: self.alarm,
+            number: self.number,
+            state: self.state,
+        }
+    }
+
+    /// A byte of the instants, oldest first.
+    fn byte(&self, place: usize) -> Option<u8> {
+        if self.state != CaptureState::Complete {
+            return None;
+        }
+        let (older, newer) = self.instants.as_slices();
+        let index = place / INSTANT_BYTES;
+        let instant = match index.checked_sub(older.len()) {
+            None => older.get(index),
+            Some(index) => newer.get(index),
+        }?;
+        let word = instant.get(place % INSTANT_BYTES / 2)?;
+        word.to_le_bytes().get(place % 2).copied()
     }
 
     /// The next piece of a complete capture, over and over.
@@ -156,6 +238,75 @@ fn instant_of(raw: &RawSample) -> Instant {
     [u_a, u_b, u_c, i_a, i_b, i_c, raw.encoder_count]
 }
 
+impl CaptureHead {
+    /// As it stands in the file.
+    pub fn to_bytes(&self) -> [u8; CAPTURE_HEAD_BYTES] {
+        let mut bytes = [0; CAPTURE_HEAD_BYTES];
+        let CaptureAlarm {
+            start,
+            second,
+            motor,
+        } = self.alarm;
+        let counts = [CAPTURE_INSTANTS as u16, CAPTURE_EVERY as u16, AFTER];
+        let longs = [start, second, motor].map(u32::to_le_bytes);
+        let words = counts.map(u16::to_le_bytes);
+        let kind = [self.number, self.state as u8];
+        let content = longs.as_flattened().iter().chain(&kind);
+        let content = content.chain(words.as_flattened());
+        for (byte, value) in bytes.iter_mut().zip(content) {
+            *byte = *value;
+        }
+        bytes
+    }
+
+    /// Reads it; `None` where lengths are others than this program's, or the state is none.
+    pub fn from_bytes(bytes: &[u8; CAPTURE_HEAD_BYTES]) -> Option<Self> {
+        let long = |at: usize| {
+            let four = bytes.get(at..at + 4)?;
+            Some(u32::from_le_bytes(four.try_into().ok()?))
+        };
+        let head = CaptureHead {
+            alarm: CaptureAlarm {
+                start: long(0)?,
+                second: long(4)?,
+                motor: long(8)?,
+            },
+            number: *bytes.get(12)?,
+            state: match bytes.get(13)? {
+                0 => CaptureState::Armed,
+                1 => CaptureState::Taking,
+                2 => CaptureState::Complete,
+                _ => return None,
+            },
+        };
+        (head.to_bytes() == *bytes).then_some(head)
+    }
+}
+
+/// The samples of a file's instants; `None` where their number is another one than this program's.
+pub fn captured_samples(instants: &[u8]) -> Option<impl Iterator<Item = RawSample>> {
+    let (instants, []) = instants.as_chunks::<INSTANT_BYTES>() else {
+        return None;
+    };
+    let whole = instants.len() == CAPTURE_INSTANTS;
+    whole.then(|| {
+        instants.iter().map(|bytes| {
+            let (words, _) = bytes.as_chunks::<2>();
+            let word = |k: usize| words.get(k).map_or(0, |two| u16::from_le_bytes(*two));
+            sample_of(&core::array::from_fn(word))
+        })
+    })
+}
+
+fn sample_of(&[u_a, u_b, u_c, i_a, i_b, i_c, encoder_count]: &Instant) -> RawSample {
+    RawSample {
+        voltage_codes: [u_a, u_b, u_c],
+        current_codes: [i_a, i_b, i_c],
+        encoder_count,
+        ..RawSample::default()
+    }
+}
+
 impl CaptureChunk {
     /// The bytes to send, zero byte included.
     #[inline(never)]
@@ -165,14 +316,7 @@ impl CaptureChunk {
 
     /// The instants.
     pub fn samples(&self) -> impl Iterator<Item = RawSample> {
-        self.instants
-            .iter()
-            .map(|&[u_a, u_b, u_c, i_a, i_b, i_c, encoder_count]| RawSample {
-                voltage_codes: [u_a, u_b, u_c],
-                current_codes: [i_a, i_b, i_c],
-                encoder_count,
-                ..RawSample::default()
-            })
+        self.instants.iter().map(sample_of)
     }
 }
 
@@ -189,6 +333,12 @@ mod tests {
             ..RawSample::default()
         }
     }
+
+    const ALARM: CaptureAlarm = CaptureAlarm {
+        start: 7,
+        second: 42,
+        motor: 0xDEAD_BEEF,
+    };
 
     fn filled(upto: u16) -> Capture {
         let mut capture = Capture::new();
@@ -207,7 +357,7 @@ mod tests {
     fn half_of_it_lies_before_the_alarm_and_half_behind() {
         let mut capture = filled(1_000);
         assert_eq!(capture.next_chunk(7), None);
-        capture.alarm();
+        capture.alarm(ALARM);
         (1_000..5_000).for_each(|k| capture.push(&raw(k)));
         assert_eq!(capture.state(), CaptureState::Complete);
         let expected: Vec<_> = (1_000 - 320..1_000 + 320).map(raw).collect();
@@ -219,10 +369,58 @@ mod tests {
         );
     }
 
+    fn bytes(capture: &Capture, at: usize, count: usize) -> Option<Vec<u8>> {
+        let mut bytes = vec![0; count];
+        capture.read(at, &mut bytes).then_some(bytes)
+    }
+
+    fn head(capture: &Capture) -> CaptureHead {
+        let bytes = bytes(capture, 0, CAPTURE_HEAD_BYTES).expect("always there");
+        CaptureHead::from_bytes(&bytes.try_into().expect("its length")).expect("a head")
+    }
+
+    #[test]
+    fn the_file_holds_what_the_pieces_hold() {
+        let mut capture = filled(1_000);
+        assert_eq!(head(&capture), CaptureHead::default());
+        assert_eq!(bytes(&capture, CAPTURE_HEAD_BYTES, 2), None);
+        capture.alarm(ALARM);
+        assert_eq!(head(&capture).state, CaptureState::Taking);
+        capture.release();
+        (1_000..5_000).for_each(|k| capture.push(&raw(k)));
+        let expected = CaptureHead {
+            alarm: ALARM,
+            number: 1,
+            state: CaptureState::Complete,
+        };
+        assert_eq!(head(&capture), expected);
+        let instants = CAPTURE_BYTES - CAPTURE_HEAD_BYTES;
+        let file = bytes(&capture, CAPTURE_HEAD_BYTES, instants).expect("complete");
+        let samples: Vec<_> = captured_samples(&file).expect("whole").collect();
+        assert_eq!(samples, fetched(&mut capture));
+        assert!(captured_samples(&file[1..]).is_none() && captured_samples(&file[14..]).is_none());
+        assert_eq!(bytes(&capture, CAPTURE_BYTES - 1, 2), None);
+        capture.release();
+        assert_eq!(bytes(&capture, CAPTURE_HEAD_BYTES, 1), None);
+        (0..640).for_each(|k| capture.push(&raw(k)));
+        capture.alarm(CaptureAlarm::default());
+        assert_eq!((head(&capture).number, head(&capture).alarm.second), (2, 0));
+    }
+
+    #[test]
+    fn a_head_of_another_program_is_none() {
+        let good = CaptureHead::default().to_bytes();
+        for at in 13..CAPTURE_HEAD_BYTES {
+            let mut other = good;
+            other[at] ^= 0x80;
+            assert_eq!(CaptureHead::from_bytes(&other), None, "{at}");
+        }
+    }
+
     #[test]
     fn an_early_alarm_waits_until_the_ring_is_full() {
         let mut capture = filled(10);
-        capture.alarm();
+        capture.alarm(ALARM);
         (10..639).for_each(|k| capture.push(&raw(k)));
         assert_eq!(capture.state(), CaptureState::Taking);
         capture.push(&raw(639));
@@ -232,9 +430,9 @@ mod tests {
     #[test]
     fn missing_samples_begin_it_anew_and_a_second_alarm_changes_nothing() {
         let mut capture = filled(1_000);
-        capture.alarm();
+        capture.alarm(ALARM);
         capture.interrupt();
-        capture.alarm();
+        capture.alarm(ALARM);
         (2_000..2_640).for_each(|k| capture.push(&raw(k)));
         assert_eq!(
             fetched(&mut capture),

@@ -1,19 +1,23 @@
-//! Function 20: event log and seconds as files of records, which the protocol counts in words of 16 bits.
+//! Function 20: event log, seconds and the samples around an alarm as files of records, which the protocol counts in words of 16 bits.
 
 use super::answer::Answer;
 use super::exception::Exception;
 use super::memory::{File, Files};
 use crate::events::{EVENT_BYTES, LOG_EVENTS};
+use crate::frames::capture::CAPTURE_BYTES;
 use crate::seconds::{SECOND_BYTES, SECONDS};
 
 /// Number of the file that is the event log. Its words are the bytes of flash, in their order.
 pub const EVENT_FILE: u16 = 1;
 /// Number of the file that is the ring of seconds.
 pub const SECONDS_FILE: u16 = 2;
+/// Number of the file that holds the samples around an alarm.
+pub const CAPTURE_FILE: u16 = 3;
 /// Words of one answer at most: six seconds, or seven events.
 pub const MOST_FILE_WORDS: u16 = 6 * SECOND_BYTES as u16 / 2;
 const EVENT_WORDS: u32 = LOG_EVENTS * EVENT_BYTES as u32 / 2;
 const SECOND_WORDS: u32 = SECONDS * SECOND_BYTES as u32 / 2;
+const CAPTURE_WORDS: u32 = CAPTURE_BYTES as u32 / 2;
 /// The only type of reference that the protocol knows.
 const REFERENCE: u8 = 6;
 /// Bytes of one reference in a request.
@@ -73,6 +77,7 @@ fn file_of(number: u16, files: Files<'_>) -> Option<(&dyn File, u32)> {
     match number {
         EVENT_FILE => Some((files.events, EVENT_WORDS)),
         SECONDS_FILE => Some((files.seconds, SECOND_WORDS)),
+        CAPTURE_FILE => Some((files.capture, CAPTURE_WORDS)),
         _ => None,
     }
 }

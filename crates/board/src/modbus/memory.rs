@@ -22,6 +22,8 @@ pub struct Files<'a> {
     pub events: &'a dyn File,
     /// The last seconds ([`crate::SecondRing`]).
     pub seconds: &'a dyn File,
+    /// The samples around an alarm ([`crate::Capture::read`]).
+    pub capture: &'a dyn File,
 }
 
 /// What was compiled into the program, and the chip's serial number. What else identifies a board is in its registers.
@@ -41,7 +43,7 @@ pub struct Memory<'a> {
     pub image: &'a Image,
     /// Who the board is.
     pub identity: &'a Identity,
-    /// Event log and seconds.
+    /// Event log, seconds, samples around an alarm.
     pub files: Files<'a>,
     /// Configurations.
     pub desk: &'a mut Desk,

@@ -17,7 +17,7 @@ mod table;
 
 pub use answer::MAX_RESPONSE_BYTES;
 pub use entry::{Entry, Field, Kind, Meaning};
-pub use file::{EVENT_FILE, MOST_FILE_WORDS, SECONDS_FILE};
+pub use file::{CAPTURE_FILE, EVENT_FILE, MOST_FILE_WORDS, SECONDS_FILE};
 pub use identity::Object;
 pub use map::{Image, MAP_VERSION, WORDS, address};
 pub use memory::{File, Files, Identity, Memory};

@@ -45,11 +45,13 @@ pub enum Command {
     Discard = 6,
     /// Put the motor constants that were compiled in on trial; the line stays.
     CommitCompiled = 7,
+    /// The samples around an alarm are fetched: wait for the next one.
+    ReleaseCapture = 8,
 }
 
 impl Command {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Command; 7] = [
+    pub const ALL: [Command; 8] = [
         Command::Acknowledge,
         Command::Learn,
         Command::Prepare,
@@ -57,6 +59,7 @@ impl Command {
         Command::Confirm,
         Command::Discard,
         Command::CommitCompiled,
+        Command::ReleaseCapture,
     ];
 
     fn by_number(number: u16) -> Option<Self> {

@@ -80,8 +80,11 @@ pub struct Evidence {
     pub event: Option<u32>,
     /// Residuals r1 to r4 of that second, shares of their scales; `None`: that one is not known.
     pub residuals: [Option<f32>; 4],
-    /// File of the recording around it.
+    /// Name of the recording around it, by which the store gives it out.
     pub recording: Option<String>,
+    /// Why there is none, where that is known.
+    #[serde(default)]
+    pub no_recording: Option<String>,
     /// In words.
     pub words: String,
 }
@@ -119,6 +122,21 @@ pub struct Alarm {
     pub times: u32,
     /// End of the shelf, Unix ms.
     pub shelved_until_ms: Option<i64>,
+}
+
+impl Alarm {
+    /// Why there is no recording around it, in words; `None`: there is one.
+    pub fn why_no_recording(&self) -> Option<String> {
+        if self.evidence.recording.is_some() {
+            return None;
+        }
+        let known = self.evidence.no_recording.clone();
+        let why = match self.cause {
+            AlarmCause::Fault => "it was not fetched yet: a board hands it over within a minute, where it can",
+            _ => "boards record when FAULT lights; this alarm has another cause",
+        };
+        Some(known.unwrap_or_else(|| why.to_owned()))
+    }
 }
 
 /// What happened to an alarm.

@@ -14,6 +14,9 @@ use crate::motor::MotorId;
 /// What an alarm is of: `None` is the plant.
 type Key = (Option<MotorId>, AlarmCause);
 
+/// How far the times of an alarm and of its recording may be apart, ms: an event is known to the second, and so is a recording.
+const RECORDING_MS: i64 = 3_000;
+
 /// All alarms that are not normal, and what is about to become one.
 #[derive(Clone, Debug)]
 pub struct Desk {
@@ -61,7 +64,7 @@ impl Desk {
         changes
     }
 
-    /// A recording belongs to the alarm that it names, else to the motor's fault or else sensor.
+    /// A recording belongs to the alarm that it names, else to the motor's fault or else sensor that rose at its time.
     fn recorded(&mut self, motor: &MotorId, recording: &Recording) -> Option<AlarmChange> {
         let causes = [AlarmCause::Fault, AlarmCause::Sensor];
         let named = recording.alarm.and_then(|number| {
@@ -72,7 +75,10 @@ impl Desk {
         });
         let own = || {
             let keys = causes.into_iter().map(|cause| (Some(motor.clone()), cause));
-            keys.into_iter().find(|key| self.alarms.contains_key(key))
+            keys.into_iter().find(|key| {
+                let alarm = self.alarms.get(key);
+                alarm.is_some_and(|alarm| self.rose_with(alarm, recording))
+            })
         };
         let key = if recording.alarm.is_some() {
             named
@@ -80,16 +86,30 @@ impl Desk {
             own()
         }?;
         let alarm = self.alarms.get_mut(&key)?;
-        let why = format!("recording {} was fetched", recording.file);
+        if recording.missing.is_some() && alarm.evidence.recording.is_some() {
+            return None;
+        }
+        let why = match &recording.missing {
+            Some(why) => format!("no recording: {why}"),
+            None => format!("recording {} was fetched", recording.file),
+        };
         Some(alarm.step(
             Change::Updated,
             Who::Gateway,
             &why,
             recording.time_ms,
             |alarm| {
-                alarm.evidence.recording = Some(recording.file.clone());
+                let file = recording.missing.is_none().then(|| recording.file.clone());
+                alarm.evidence.recording = file;
+                alarm.evidence.no_recording.clone_from(&recording.missing);
             },
         ))
+    }
+
+    /// Whether an alarm rose when a recording was taken, as far as seconds and delays tell.
+    fn rose_with(&self, alarm: &Alarm, recording: &Recording) -> bool {
+        let latest_ms = recording.to_ms + self.rules.on_delay_ms + RECORDING_MS;
+        (recording.from_ms - RECORDING_MS..=latest_ms).contains(&alarm.raised_ms)
     }
 
     /// Lets delays, shelves and floods end. Call it when every entry was taken: `now_ms` is later than all of them.

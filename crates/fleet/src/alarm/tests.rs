@@ -187,6 +187,7 @@ fn a_recording_goes_to_its_alarm() {
             file,
             bytes: 1,
             alarm,
+            ..Recording::default()
         })
     };
     let told = desk.take(&motor, &recording(None, "one.parquet"));

@@ -68,6 +68,14 @@ pub(super) fn get(connection: &Connection, filter: &AlarmFilter) -> Result<Vec<A
     collected(statement.query(params![motor, states, filter.from_ms, filter.to_ms, limit])?)
 }
 
+/// An alarm by its number.
+pub(super) fn one(connection: &Connection, number: u64) -> Result<Option<Alarm>, StoreError> {
+    let text = "SELECT number, body FROM alarm WHERE number = ?1";
+    let mut statement = connection.prepare_cached(text)?;
+    let mut found = collected(statement.query([number as i64])?)?;
+    Ok(found.pop())
+}
+
 /// Alarms that are not normal, by number.
 pub(super) fn not_normal(connection: &Connection) -> Result<Vec<Alarm>, StoreError> {
     let text = "SELECT number, body FROM alarm WHERE state <> 'normal' ORDER BY number";

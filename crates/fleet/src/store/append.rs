@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use rusqlite::{CachedStatement, Transaction, params};
 
 use super::marks::{Found, Marks};
-use super::{StoreError, alarms, seconds};
-use crate::entry::{BoardEvent, Entry, Gap, GapOf, Link, Second};
+use super::{StoreError, alarms, recordings, seconds};
+use crate::entry::{BoardEvent, Entry, Gap, GapOf, Link, Recording, Second};
 use crate::motor::MotorId;
 
 /// What became of a batch.
@@ -76,7 +76,11 @@ impl<'a> Batch<'a> {
                 alarms::put(self.tx, marks.key, &change.alarm)?;
                 self.plain(&marks, entry)?
             }
-            Entry::Recording(_) | Entry::Thinned(_) => self.plain(&marks, entry)?,
+            Entry::Recording(recording) => match motor {
+                Some(motor) => self.recording(&marks, motor, recording)?,
+                None => self.plain(&marks, entry)?,
+            },
+            Entry::Thinned(_) => self.plain(&marks, entry)?,
         };
         match new {
             true => self.done.stored += 1,
@@ -197,6 +201,23 @@ impl<'a> Batch<'a> {
             .tx
             .execute(text, params![marks.key, link.up, link.time_ms, link.why])?;
         Ok(changed > 0)
+    }
+
+    /// `false` where it is stored. Samples that come after all take the place of the reason why there were none.
+    fn recording(
+        &mut self,
+        marks: &Marks,
+        motor: &MotorId,
+        recording: &Recording,
+    ) -> Result<bool, StoreError> {
+        let named = Recording {
+            file: recording.key.name(motor, marks.board),
+            ..recording.clone()
+        };
+        if !recordings::put(self.tx, marks.key, &named)? {
+            return Ok(false);
+        }
+        self.plain(marks, &Entry::Recording(named))
     }
 
     /// Writes anything but a second.

@@ -16,18 +16,21 @@ pub struct Limits {
     pub minutes_days: u32,
     /// Days of hours, from `minutes_days` on.
     pub hours_days: u32,
+    /// Days of the samples around alarms, 9 kB each.
+    pub recordings_days: u32,
     /// Seconds of all motors that wait for an output, at most. What is cut stays in the history.
     pub queue_seconds: u64,
 }
 
 impl Default for Limits {
-    /// 20 GB; 14 days of seconds, 400 days of minutes, ten years of hours; a queue of a day of 1000 motors.
+    /// 20 GB; 14 days of seconds, 400 days of minutes, ten years of hours; 400 days of recordings; a queue of a day of 1000 motors.
     fn default() -> Self {
         Self {
             bytes: 20_000_000_000,
             seconds_days: 14,
             minutes_days: 400,
             hours_days: 3653,
+            recordings_days: 400,
             queue_seconds: 86_400_000,
         }
     }
@@ -57,6 +60,9 @@ impl Limits {
         if self.hours_days < self.minutes_days {
             let value = u64::from(self.hours_days);
             return refuse("hours_days", value, "at least minutes_days");
+        }
+        if self.recordings_days == 0 {
+            return refuse("recordings_days", 0, "one day at least");
         }
         if self.queue_seconds < 10_000 {
             return refuse("queue_seconds", self.queue_seconds, "10 000 at least");

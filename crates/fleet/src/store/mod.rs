@@ -11,6 +11,7 @@ mod marks;
 mod parquet;
 mod read;
 mod reader;
+mod recordings;
 mod schema;
 mod seconds;
 
@@ -26,6 +27,7 @@ pub use error::StoreError;
 pub use history::{Trend, TrendPoint, Values};
 pub use limits::Limits;
 pub use reader::{EntryFilter, Reader};
+pub use recordings::{AlarmRecording, NoRecording, Samples};
 
 use crate::alarm::change::{Alarm, AlarmChange, AlarmFilter};
 use crate::entry::{Entry, Numbered};

@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 use rusqlite::{Connection, OptionalExtension, params};
 
+use super::recordings::{self, Samples};
 use super::{StoreError, Trend, alarms, history, lock, read, schema};
 use crate::alarm::change::{Alarm, AlarmFilter};
 use crate::entry::Numbered;
@@ -84,6 +85,22 @@ impl Reader {
     /// Reading failed.
     pub fn alarms_not_normal(&self) -> Result<Vec<Alarm>, StoreError> {
         self.reading(alarms::not_normal)
+    }
+
+    /// As [`super::Store::recording`].
+    ///
+    /// # Errors
+    /// Reading failed.
+    pub fn recording(&self, name: &str) -> Result<Option<Samples>, StoreError> {
+        self.reading(|connection| recordings::get(connection, name))
+    }
+
+    /// An alarm by its number, as it is now; `None`: there is none, or it is long over.
+    ///
+    /// # Errors
+    /// Reading failed.
+    pub fn alarm(&self, number: u64) -> Result<Option<Alarm>, StoreError> {
+        self.reading(|connection| alarms::one(connection, number))
     }
 
     /// As [`super::Store::trend`].

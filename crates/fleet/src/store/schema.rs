@@ -11,7 +11,11 @@ use super::StoreError;
 const APPLICATION: i32 = 0x646d_464c;
 
 /// What leads from schema k to schema k + 1, in order. A published step never changes.
-const STEPS: [&str; 2] = [include_str!("schema_1.sql"), include_str!("schema_2.sql")];
+const STEPS: [&str; 3] = [
+    include_str!("schema_1.sql"),
+    include_str!("schema_2.sql"),
+    include_str!("schema_3.sql"),
+];
 
 /// Newest schema this program knows.
 const NEWEST: u32 = STEPS.len() as u32;

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 /// Exceptions of the protocol that a gateway acts on.
+const FUNCTION: u8 = 1;
 const ADDRESS: u8 = 2;
 const BUSY: u8 = 6;
 
@@ -51,6 +52,17 @@ impl BusError {
     /// Whether the board only asks to be asked again later.
     pub fn is_busy(&self) -> bool {
         matches!(self, BusError::Refused { code: BUSY, .. })
+    }
+
+    /// Whether the board does not know what it was asked for.
+    pub fn is_unknown(&self) -> bool {
+        matches!(
+            self,
+            BusError::Refused {
+                code: FUNCTION | ADDRESS,
+                ..
+            }
+        )
     }
 
     /// Whether nobody else on the link can be asked either.

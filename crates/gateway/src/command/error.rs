@@ -15,6 +15,15 @@ pub enum CommandError {
     /// An output.
     #[error("{0}")]
     Output(String),
+    /// An alarm without a recording.
+    #[error(transparent)]
+    NoRecording(#[from] fleet::NoRecording),
+    /// Samples that make no recording.
+    #[error(transparent)]
+    Capture(#[from] live::CaptureError),
+    /// A recording that cannot be written.
+    #[error(transparent)]
+    Recording(#[from] recording::Error),
     /// Reading the store.
     #[error(transparent)]
     Read(#[from] fleet::StoreError),

@@ -23,6 +23,7 @@ enum FleetCommand {
     ///
     /// The protocol, the event log and the seconds are those of the board's own program. The motors are made up: they start,
     /// carry changing load, warm up and rest, and some begin to fail. Nothing about detection can be concluded from them.
+    /// The samples around an alarm are those of a simulated 300 W motor with that fault.
     /// The boards have the addresses 1, 2, 3 ... of a line, as many as --per-port says; the next ones are behind the next port.
     #[command(after_help = "\
 Examples:
@@ -39,10 +40,11 @@ Examples:
   drivemon fleet user remove Anna --fleet plant.toml                   the token is refused from now on
 docs/fleet/page.md says what each role may do.")]
     User(Users),
-    /// Write a day of seconds as Parquet, for DuckDB, Polars, pandas; also while the gateway runs
+    /// Write a day of seconds, or the recording of an alarm; also while the gateway runs
     #[command(after_help = "\
 Examples:
-  drivemon fleet export --fleet plant.toml --day 2026-11-25 -o 2026-11-25.parquet
+  drivemon fleet export --fleet plant.toml --day 2026-11-25 -o 2026-11-25.parquet    for DuckDB, Polars, pandas
+  drivemon fleet export --fleet plant.toml --alarm 17 -o alarm-17.csv                for drivemon explain and compare
 docs/fleet/store.md names the columns. Seconds that were thinned to minutes are not in it.")]
     Export(Export),
 }

@@ -102,12 +102,13 @@ impl Gather {
         }
         let limits = &config.limits;
         say(&format!(
-            "store: {}, up to {} GB; seconds for {} days, minutes for {}, hours for {}",
+            "store: {}, up to {} GB; seconds for {} days, minutes for {}, hours for {}, recordings for {}",
             config.store.display(),
             limits.bytes as f64 / 1e9,
             limits.seconds_days,
             limits.minutes_days,
-            limits.hours_days
+            limits.hours_days,
+            limits.recordings_days
         ));
         outputs.described().iter().for_each(|line| say(line));
         if sound { Ran::Sound } else { Ran::ToChange }

@@ -9,7 +9,7 @@ use tokio::runtime::Builder;
 
 use super::error::CommandError;
 use super::terminal::Terminal;
-use crate::simulate::{Plan, Plant, Truth, serve};
+use crate::simulate::{MOTOR_FILE, MOTOR_FILE_NAME, Plan, Plant, Truth, serve};
 
 /// What is simulated.
 #[derive(Debug, Args)]
@@ -37,7 +37,7 @@ pub struct Simulate {
     /// Time passes for so many seconds; behind that boards only answer
     #[arg(long, value_name = "S")]
     seconds: Option<u64>,
-    /// Write a configuration for `drivemon gateway` that reads all of them
+    /// Write a configuration for `drivemon gateway` that reads all of them, and the motor file of their recordings beside it
     #[arg(long, value_name = "FILE")]
     config_out: Option<PathBuf>,
     /// Write down every second and event that a board produces
@@ -64,6 +64,9 @@ impl Simulate {
         if let Some(path) = &self.config_out {
             std::fs::write(path, plan.configuration("plant.db"))
                 .map_err(|error| file("--config-out", path, error))?;
+            let motor = path.with_file_name(MOTOR_FILE_NAME);
+            std::fs::write(&motor, MOTOR_FILE)
+                .map_err(|error| file("--config-out", &motor, error))?;
         }
         (terminal.complain)(&format!(
             "{} boards at {} ports from {} on, {} behind each   (Ctrl-C ends it)",

@@ -124,12 +124,14 @@ fn limits(section: &Section<'_>) -> Option<Limits> {
     let seconds = days("seconds_days", usual.seconds_days);
     let minutes = days("minutes_days", usual.minutes_days);
     let hours = days("hours_days", usual.hours_days);
+    let recordings = days("recordings_days", usual.recordings_days);
     let queue = section.number_or("queue_seconds", &QUEUE_SECONDS, usual.queue_seconds as f64);
     Some(Limits {
         bytes: (size? * 1e9) as u64,
         seconds_days: seconds?,
         minutes_days: minutes?,
         hours_days: hours?,
+        recordings_days: recordings?,
         queue_seconds: queue? as u64,
     })
 }

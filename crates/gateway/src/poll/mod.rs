@@ -6,6 +6,7 @@ mod context;
 mod frames;
 mod link;
 mod motor;
+mod recording;
 mod tally;
 mod visit;
 

@@ -6,6 +6,7 @@ use board::{Event, EventCause, LOG_EVENTS, SECONDS};
 use fleet::{Entry, Gap, GapOf, MotorId};
 
 use super::clock::Clock;
+use super::recording::Recordings;
 use crate::config::MotorConfig;
 use crate::wire::question::Head;
 
@@ -32,6 +33,7 @@ pub(super) struct Watched {
     pub clock: Clock,
     /// The run before, and when it was.
     pub before: Option<(u32, Clock)>,
+    pub recordings: Recordings,
     pub health: Health,
 }
 
@@ -49,6 +51,7 @@ impl Watched {
             run: None,
             clock: Clock::default(),
             before: None,
+            recordings: Recordings::default(),
             health: Health::new(),
         }
     }

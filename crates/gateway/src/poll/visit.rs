@@ -7,6 +7,7 @@ use tokio::sync::oneshot;
 use super::clock::Clock;
 use super::context::Context;
 use super::motor::{self, Wanted, Watched, gap};
+use super::recording::{Recordings, take_recording};
 use super::tally::Post;
 use crate::bus::{Bus, BusError};
 use crate::wire::question::{self, Head, Question};
@@ -49,7 +50,8 @@ pub(super) async fn visit(
     motor.enter(head.start);
     motor.clock.observe(now, head.last_second);
     take_events(bus, motor, &head, context).await?;
-    take_seconds(bus, motor, &head, context).await
+    take_seconds(bus, motor, &head, context).await?;
+    take_recording(bus, motor, &head, context).await
 }
 
 /// A board that is seen for the first time since the gateway began, or another one than before.
@@ -80,6 +82,7 @@ async fn meet(
         let told = format!("motor {}: another board, {identity}", motor.id);
         (context.say)(told);
     }
+    motor.recordings = Recordings::of_stored(context.last.get(&motor.id));
     motor.identity = Some(identity);
     Ok(())
 }
@@ -157,6 +160,11 @@ async fn take_seconds(
         motor.second = (wanted.to > 0)
             .then_some((head.start, wanted.to))
             .or_else(|| motor.second.map(|(start, _)| (start, motor::UNKNOWN)));
+    }
+    for entry in &entries {
+        if let Entry::Second(second) = entry {
+            motor.recordings.look(second);
+        }
     }
     send(motor, entries, context).await
 }

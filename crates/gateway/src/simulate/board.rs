@@ -1,10 +1,10 @@
 //! A board whose motor is made up: event log, seconds and Modbus are the real ones.
 
 use board::modbus::{
-    Field, Files, Identity, Image, MAP_VERSION, MAX_RESPONSE_BYTES, Memory, SecondCollector, Slave,
+    Command, Field, Files, Identity, Image, MAP_VERSION, MAX_RESPONSE_BYTES, Memory, SecondCollector, Slave,
 };
 use board::{
-    Appended, Configuration, Desk, Event, EventCause, EventLog, Journal, MotorImage, SecondRing,
+    Appended, CAPTURE_BYTES, Capture, CaptureState, Configuration, Desk, Event, EventCause, EventLog, Journal, MotorImage, SecondRing,
     Situation,
 };
 use crc::{CRC_16_MODBUS, Crc};
@@ -12,6 +12,7 @@ use fleet::lamp;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
+use super::capture;
 use super::flash::Flash;
 use super::life::{Life, Moment};
 use super::truth::Produced;
@@ -63,6 +64,8 @@ pub(crate) struct SimulatedBoard {
     journal: Journal,
     ring: SecondRing,
     collector: SecondCollector,
+    capture: Capture,
+    was_faulty: bool,
     uptime_s: u32,
     windows: u32,
     judged: u32,
@@ -97,6 +100,8 @@ impl SimulatedBoard {
             journal: Journal::default(),
             ring: SecondRing::new(),
             collector: SecondCollector::new(1),
+            capture: Capture::new(),
+            was_faulty: false,
             uptime_s: 0,
             windows: 0,
             judged: 0,
@@ -122,6 +127,8 @@ impl SimulatedBoard {
         self.collector = SecondCollector::new(self.log.newest() + 1);
         self.ring = SecondRing::new();
         self.journal = Journal::default();
+        self.capture = Capture::new();
+        self.was_faulty = false;
         (self.uptime_s, self.windows, self.judged) = (0, 0, 0);
         self.slave = Slave::new(self.recipe.unit);
         self.image = Image::default();
@@ -148,6 +155,7 @@ impl SimulatedBoard {
             self.window(&moment);
         }
         self.write_events(&moment, &mut produced);
+        self.record(&moment, &mut produced);
         let second = self.collector.close(&self.image);
         self.ring.push(&second);
         produced(Produced::Second(second.to_bytes()));
@@ -168,10 +176,11 @@ impl SimulatedBoard {
 
     /// Answers a frame of the serial line; empty where the protocol demands silence.
     pub fn respond(&mut self, now_ms: u32, request: &[u8]) -> Vec<u8> {
-        let (flash, ring) = (&self.flash, &self.ring);
+        let (flash, ring, capture) = (&self.flash, &self.ring, &self.capture);
         let files = Files {
             events: &|at: usize, bytes: &mut [u8]| flash.copy(at, bytes),
             seconds: &|at: usize, bytes: &mut [u8]| ring.read(at, bytes),
+            capture: &|at: usize, bytes: &mut [u8]| capture.read(at, bytes),
         };
         let mut memory = Memory {
             image: &self.image,
@@ -180,10 +189,15 @@ impl SimulatedBoard {
             desk: &mut self.desk,
         };
         let mut response = [0; MAX_RESPONSE_BYTES];
-        // Commands would change the board; nobody has made that up.
-        let (length, _) = self
+        let (length, command) = self
             .slave
             .respond(now_ms, request, &mut memory, &mut response);
+        // Other commands would change the board; nobody has made that up.
+        if command == Some(Command::ReleaseCapture) {
+            self.capture.release();
+            self.image
+                .set_word(Field::Capture, self.capture.state() as u16);
+        }
         response[..length].to_vec()
     }
 
@@ -257,6 +271,32 @@ impl SimulatedBoard {
                 }
             }
             self.journal.settle(event.cause, self.uptime_s);
+        }
+    }
+
+    /// The samples around the second in which FAULT lights.
+    fn record(&mut self, moment: &Moment, produced: &mut impl FnMut(Produced)) {
+        let fault = moment.fault.and_then(|number| {
+            let mut all = motor::FaultId::ALL.into_iter();
+            all.find(|fault| fault.number() == number)
+        });
+        let lights = fault.is_some() && !self.was_faulty;
+        self.was_faulty = fault.is_some();
+        let Some(fault) = fault.filter(|_| lights && self.capture.state() == CaptureState::Armed)
+        else {
+            return;
+        };
+        let alarm = (self.collector.start(), self.collector.newest() + 1);
+        let seed = self.recipe.seed ^ u64::from(alarm.1);
+        // What is simulated is fixed, and tested to be sound.
+        if capture::record(&mut self.capture, fault, seed, alarm).is_err() {
+            return;
+        }
+        self.image
+            .set_word(Field::Capture, self.capture.state() as u16);
+        let mut bytes = vec![0; CAPTURE_BYTES];
+        if self.capture.read(0, &mut bytes) {
+            produced(Produced::Recording(bytes));
         }
     }
 

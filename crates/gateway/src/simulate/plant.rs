@@ -9,6 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
 use super::board::{Recipe, SimulatedBoard};
+use super::capture::MOTOR_FILE_NAME;
 use super::truth::Truth;
 
 /// Addresses of a Modbus line.
@@ -83,7 +84,7 @@ impl Plan {
         (from..to).map(move |board| (board, (board - from + 1) as u8))
     }
 
-    /// The configuration of a gateway that reads all of them.
+    /// The configuration of a gateway that reads all of them; [`super::MOTOR_FILE`] belongs beside it.
     pub fn configuration(&self, store: &str) -> String {
         let mut text = format!(
             "# {} simulated boards\n[store]\npath = \"{store}\"\n",
@@ -101,7 +102,7 @@ impl Plan {
                 let (name, link) = (name(board), address.port());
                 let _ = write!(
                     text,
-                    "\n[[motor]]\nname = \"{name}\"\nlink = \"port-{link}\"\nunit = {unit}\n"
+                    "\n[[motor]]\nname = \"{name}\"\nlink = \"port-{link}\"\nunit = {unit}\nmotor_file = \"{MOTOR_FILE_NAME}\"\n"
                 );
             }
         }

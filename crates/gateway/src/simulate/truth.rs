@@ -8,15 +8,17 @@ use std::path::Path;
 use board::{EVENT_BYTES, SECOND_BYTES};
 
 /// A record as it lies in the board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Produced {
     /// A second.
     Second([u8; SECOND_BYTES]),
     /// An event.
     Event([u8; EVENT_BYTES]),
+    /// The file of the samples around an alarm.
+    Recording(Vec<u8>),
 }
 
-/// A text file with a line each: `second` or `event`, motor, the record's bytes as hexadecimal digits.
+/// A text file with a line each: `second`, `event` or `recording`, motor, the record's bytes as hexadecimal digits.
 #[derive(Debug)]
 pub struct Truth {
     file: BufWriter<File>,
@@ -43,6 +45,7 @@ impl Truth {
         let (kind, bytes): (_, &[u8]) = match produced {
             Produced::Second(bytes) => ("second", bytes),
             Produced::Event(bytes) => ("event", bytes),
+            Produced::Recording(bytes) => ("recording", bytes),
         };
         self.line.clear();
         self.line.extend([kind, " ", motor, " "]);

@@ -1,12 +1,16 @@
 //! The questions that a gateway asks a board, as function and data, and what the answers say.
 
-use board::modbus::{EVENT_FILE, Field, SECONDS_FILE, address};
+use board::modbus::{
+    CAPTURE_FILE, Command, EVENT_FILE, Field, MOST_FILE_WORDS, SECONDS_FILE, UNLOCK_KEY, address,
+};
 use board::{
+    CAPTURE_BYTES, CAPTURE_HEAD_BYTES,
     EVENT_BYTES, Event, LOG_EVENTS, SECOND_BYTES, SECONDS, Second, place_of, place_of_second,
 };
 
 const READ_INPUT: u8 = 4;
 const READ_FILE: u8 = 20;
+const WRITE_MANY: u8 = 16;
 /// The only type of reference that function 20 knows.
 const REFERENCE: u8 = 6;
 const GROUP_BYTES: u8 = 7;
@@ -113,6 +117,27 @@ pub(crate) fn seconds_of(answer: &[u8]) -> Option<Vec<Option<Second>>> {
     Some(records.iter().map(Second::from_bytes).collect())
 }
 
+/// Asks how far the samples around an alarm are ([`board::CaptureHead`]).
+pub(crate) fn capture_head() -> Question {
+    words_of_file(CAPTURE_FILE, 0, (CAPTURE_HEAD_BYTES / 2) as u16)
+}
+
+/// Asks for the samples around an alarm from byte `at` of the file on, as many as go into an answer.
+pub(crate) fn capture_piece(at: usize) -> Question {
+    let words = (CAPTURE_BYTES.saturating_sub(at) / 2).min(usize::from(MOST_FILE_WORDS));
+    words_of_file(CAPTURE_FILE, (at / 2) as u16, words as u16)
+}
+
+/// Says that the samples around an alarm are fetched: key and command in one request.
+pub(crate) fn release_capture() -> Question {
+    let [key, command] = [UNLOCK_KEY, Command::ReleaseCapture as u16].map(u16::to_be_bytes);
+    Question {
+        function: WRITE_MANY,
+        data: [&[0, 0, 0, 2, 4][..], &key, &command].concat(),
+        answer_bytes: 4,
+    }
+}
+
 /// How many records from `first` to `last` go into one answer.
 fn some(first: u32, last: u32) -> u32 {
     last.saturating_sub(first)
@@ -130,7 +155,10 @@ fn registers(first: u16, count: u16) -> Question {
 }
 
 fn records(file: u16, place: u16, count: u16, record_words: u16) -> Question {
-    let (first, words) = (place * record_words, count * record_words);
+    words_of_file(file, place * record_words, count * record_words)
+}
+
+fn words_of_file(file: u16, first: u16, words: u16) -> Question {
     let [[a, b], [c, d], [e, f]] = [file, first, words].map(u16::to_be_bytes);
     Question {
         function: READ_FILE,
@@ -145,7 +173,8 @@ fn words_of(answer: &[u8], count: u16) -> Option<Vec<u16>> {
     whole.then(|| pairs.iter().map(|pair| u16::from_be_bytes(*pair)).collect())
 }
 
-fn file_of(answer: &[u8]) -> Option<&[u8]> {
+/// What an answer holds of a file.
+pub(crate) fn file_of(answer: &[u8]) -> Option<&[u8]> {
     match answer {
         [_, _, REFERENCE, bytes @ ..] => Some(bytes),
         _ => None,

@@ -79,6 +79,7 @@ fn ask_of(
         files: Files {
             events,
             seconds: &seconds,
+            capture: &counting,
         },
         desk,
     };

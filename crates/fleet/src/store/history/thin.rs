@@ -8,7 +8,7 @@ use super::block::{self, DAY_MS, HOUR_MS, Level, MINUTE_MS, Minute};
 use super::tally::Tally;
 use super::{meta, set_meta};
 use crate::entry::{Entry, Thinned, ThinnedTo};
-use crate::store::{Limits, Store, StoreError, lock};
+use crate::store::{Limits, Store, StoreError, lock, recordings};
 
 /// Seconds wait at most so long before they become history.
 const SEAL_AFTER_MS: i64 = 600_000;
@@ -129,6 +129,7 @@ impl Store {
             seconds_days,
             minutes_days,
             hours_days,
+            recordings_days,
             ..
         } = self.limits;
         let before = |days: u32| (now_ms - i64::from(days) * DAY_MS).div_euclid(DAY_MS) * DAY_MS;
@@ -136,6 +137,11 @@ impl Store {
             (ThinnedTo::Minutes, seconds_days, "seconds_days"),
             (ThinnedTo::Hours, minutes_days, "minutes_days"),
             (ThinnedTo::HoursDropped, hours_days, "hours_days"),
+            (
+                ThinnedTo::RecordingsDropped,
+                recordings_days,
+                "recordings_days",
+            ),
         ];
         for (to, days, why) in steps {
             let step = Step {
@@ -246,6 +252,7 @@ fn done_key(to: ThinnedTo) -> &'static str {
         ThinnedTo::Minutes => "minutes_done",
         ThinnedTo::Hours => "hours_done",
         ThinnedTo::HoursDropped => "hours_dropped_done",
+        ThinnedTo::RecordingsDropped => "recordings_dropped_done",
         ThinnedTo::QueueCut => "queue_cut_done",
         ThinnedTo::EntriesDropped => "entries_dropped_done",
     }
@@ -257,6 +264,7 @@ fn count_key(to: ThinnedTo) -> &'static str {
         ThinnedTo::Minutes => "minutes_count",
         ThinnedTo::Hours => "hours_count",
         ThinnedTo::HoursDropped => "hours_dropped_count",
+        ThinnedTo::RecordingsDropped => "recordings_dropped_count",
         ThinnedTo::QueueCut => "queue_cut_count",
         ThinnedTo::EntriesDropped => "entries_dropped_count",
     }
@@ -295,6 +303,11 @@ fn next_step(connection: &Connection, now_ms: i64) -> Result<Option<Step>, Store
             oldest(hours)?.map(|hour| hour * HOUR_MS),
             30,
         ),
+        (
+            ThinnedTo::RecordingsDropped,
+            oldest("SELECT min(time_ms) FROM recording WHERE body IS NOT NULL")?,
+            30,
+        ),
     ];
     Ok(levels.into_iter().find_map(|(to, oldest_ms, days)| {
         let from_ms = oldest_ms?;
@@ -315,6 +328,7 @@ fn thin_motor(tx: &Transaction<'_>, motor: i64, step: Step) -> Result<u64, Store
                 [motor, hour],
             )?
         }
+        ThinnedTo::RecordingsDropped => recordings::drop_before(tx, motor, step.before_ms)?,
         ThinnedTo::QueueCut | ThinnedTo::EntriesDropped => 0,
     };
     Ok(count as u64)

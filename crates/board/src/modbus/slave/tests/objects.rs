@@ -3,7 +3,8 @@
 use super::super::super::identity::Object;
 use super::*;
 use crate::events::{EVENT_BYTES, LOG_EVENTS};
-use crate::modbus::{EVENT_FILE, MOST_FILE_WORDS, SECONDS_FILE};
+use crate::frames::capture::CAPTURE_BYTES;
+use crate::modbus::{CAPTURE_FILE, EVENT_FILE, MOST_FILE_WORDS, SECONDS_FILE};
 use crate::seconds::{SECOND_BYTES, SECONDS};
 
 /// All objects from `first` on, as a client of the specification collects them, and how many answers that took.
@@ -102,9 +103,18 @@ fn seconds_are_the_second_file_and_one_request_may_read_both() {
 }
 
 #[test]
+fn the_samples_around_an_alarm_are_the_third_file() {
+    let end = (CAPTURE_BYTES / 2) as u16;
+    let (_, last) = answered(&file_request(&[(CAPTURE_FILE, end - 1, 1)]));
+    let at = CAPTURE_BYTES - 2;
+    assert_eq!(last, [4, 3, 6, at as u8, (at + 1) as u8]);
+    assert_eq!(refused(&file_request(&[(CAPTURE_FILE, end - 1, 2)])), 2);
+}
+
+#[test]
 fn parts_of_files_that_do_not_exist_get_an_exception() {
     let end = (LOG_EVENTS * EVENT_BYTES as u32 / 2) as u16;
-    assert_eq!(refused(&file_request(&[(3, 0, 1)])), 2, "no such file");
+    assert_eq!(refused(&file_request(&[(4, 0, 1)])), 2, "no such file");
     assert_eq!(refused(&file_request(&[(EVENT_FILE, end, 1)])), 2);
     assert_eq!(refused(&file_request(&[(EVENT_FILE, end - 1, 2)])), 2);
     assert_eq!(refused(&file_request(&[(EVENT_FILE, 0, 0)])), 3);

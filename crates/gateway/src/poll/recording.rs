@@ -1,0 +1,396 @@
+//! The samples around an alarm: fetched from the board in pieces, stored, and released so that the next alarm has some too.
+
+use board::{CAPTURE_BYTES, CAPTURE_HEAD_BYTES, CaptureHead, CaptureState};
+use fleet::alarm::{Alarm, AlarmCause, AlarmFilter};
+use fleet::{Entry, Recording, RecordingKey, Second, lamp, now_ms};
+use tokio::sync::oneshot;
+
+use super::context::Context;
+use super::motor::Watched;
+use super::tally::Post;
+use super::visit::Trouble;
+use crate::bus::{Bus, BusError};
+use crate::wire::question::{self, Head};
+
+/// Pieces of one visit: others on the link wait meanwhile.
+const PIECES: usize = 8;
+/// A board is looked at so often after the gateway began: alarms that follow from what was stored last are a moment behind.
+const LOOKS: u32 = 3;
+/// Between the second in which FAULT lights and the one that shows it, at most.
+const APART_S: u32 = 2;
+/// Half a recording, ms.
+const HALF_MS: i64 = 128;
+
+const TOO_OLD: &str = "the program of its board gives out no recordings over Modbus; flash it with the program of this version";
+const OTHER_LAYOUT: &str = "its board gives out recordings of another layout; use the gateway of the version with which the board was flashed";
+const LOST_POWER: &str = "its board started again before the recording was fetched; it lies in memory";
+const GIVEN_UP: &str = "it was given up at the board before it was fetched: its button was pressed, or a master acknowledged";
+const HELD_ANOTHER: &str = "its board still held the recording of an earlier alarm, which nobody had fetched yet";
+
+/// An alarm that has neither a recording nor a reason why it has none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Wanted {
+    start: u32,
+    second: u32,
+    time_ms: i64,
+}
+
+impl Wanted {
+    fn is(&self, start: u32, second: u32) -> bool {
+        self.start == start && self.second.abs_diff(second) <= APART_S
+    }
+
+    fn key(&self) -> RecordingKey {
+        RecordingKey::Second {
+            start: self.start,
+            second: self.second,
+        }
+    }
+}
+
+/// A recording that is being fetched.
+#[derive(Debug)]
+struct UnderWay {
+    head: CaptureHead,
+    instants: Vec<u8>,
+}
+
+/// What a link knows of the recordings of a motor.
+#[derive(Debug, Default)]
+pub(super) struct Recordings {
+    /// How often the board was found with nothing to be fetched or released, since the gateway began.
+    settled: u32,
+    was_lit: bool,
+    wanted: Vec<Wanted>,
+    under_way: Option<UnderWay>,
+}
+
+impl Recordings {
+    /// Goes on behind the second that is stored.
+    pub fn of_stored(last: Option<&Second>) -> Self {
+        Recordings {
+            was_lit: last.is_some_and(|second| second.is_on(lamp::FAULT)),
+            ..Recordings::default()
+        }
+    }
+
+    /// Whether the board need not be asked until its next alarm.
+    fn is_settled(&self) -> bool {
+        self.settled >= LOOKS
+    }
+
+    /// Takes a second: where FAULT lights in it there is a recording to be fetched.
+    pub fn look(&mut self, second: &Second) {
+        let is_lit = second.is_on(lamp::FAULT);
+        if is_lit && !self.was_lit {
+            self.wanted.push(Wanted {
+                start: second.start,
+                second: second.number,
+                time_ms: second.time_ms,
+            });
+        }
+        self.was_lit = is_lit;
+    }
+
+    /// Alarms that the store has without a recording: those of before the gateway began.
+    fn recall(&mut self, alarms: &[Alarm], start: u32, second_at: impl Fn(i64) -> u32) {
+        let open = alarms.iter().filter(|alarm| {
+            let evidence = &alarm.evidence;
+            let none = evidence.recording.is_none() && evidence.no_recording.is_none();
+            alarm.cause == AlarmCause::Fault && none
+        });
+        for alarm in open {
+            let time_ms = alarm.raised_ms;
+            let this_run = alarm.evidence.event.is_some_and(|event| event >= start);
+            let (start, second) = match alarm.evidence.second {
+                Some(of_second) => of_second,
+                None if this_run => (start, second_at(time_ms)),
+                None => (0, 0),
+            };
+            if !self.wanted.iter().any(|wanted| wanted.is(start, second)) {
+                self.wanted.push(Wanted {
+                    start,
+                    second,
+                    time_ms,
+                });
+            }
+        }
+    }
+}
+
+/// Fetches what there is, a few pieces at a visit.
+pub(super) async fn take_recording(
+    bus: &mut Bus,
+    motor: &mut Watched,
+    head: &Head,
+    context: &Context,
+) -> Result<(), Trouble> {
+    if !motor.recordings.is_settled() && motor.recordings.under_way.is_none() {
+        recall(motor, head, context);
+    }
+    let idle = motor.recordings.wanted.is_empty() && motor.recordings.is_settled();
+    if idle && motor.recordings.under_way.is_none() {
+        return Ok(());
+    }
+    let answer = match bus.ask(motor.unit, &question::capture_head()).await {
+        Err(error) if error.is_busy() => return Ok(()),
+        Err(error) if error.is_unknown() => return give_up(motor, TOO_OLD, context).await,
+        answer => answer?,
+    };
+    let bytes = question::file_of(&answer).and_then(|bytes| bytes.try_into().ok());
+    let bytes: [u8; CAPTURE_HEAD_BYTES] = bytes.ok_or(BusError::Damaged(motor.unit))?;
+    let Some(capture) = CaptureHead::from_bytes(&bytes) else {
+        return give_up(motor, OTHER_LAYOUT, context).await;
+    };
+    match capture.state {
+        CaptureState::Taking => Ok(()),
+        CaptureState::Armed => nothing_there(motor, head, context).await,
+        CaptureState::Complete => take_complete(bus, motor, capture, context).await,
+    }
+}
+
+fn recall(motor: &mut Watched, head: &Head, context: &Context) {
+    let filter = AlarmFilter {
+        motor: Some(motor.id.clone()),
+        ..AlarmFilter::default()
+    };
+    // A store that cannot be read now is asked at the next visit.
+    let alarms = context.store.alarms(&filter).unwrap_or_default();
+    let clock = motor.clock;
+    let newest = head.last_second;
+    let second_at = |time_ms: i64| match clock.time_ms(newest) {
+        Some(end_ms) => newest.saturating_sub(((end_ms - time_ms).max(0) / 1_000) as u32),
+        None => newest,
+    };
+    motor.recordings.recall(&alarms, head.start, second_at);
+}
+
+/// A board without recordings: each alarm gets the reason.
+async fn give_up(motor: &mut Watched, why: &str, context: &Context) -> Result<(), Trouble> {
+    motor.recordings.under_way = None;
+    for wanted in std::mem::take(&mut motor.recordings.wanted) {
+        tell_missing(motor, wanted, why, context).await?;
+    }
+    motor.recordings.settled += 1;
+    Ok(())
+}
+
+/// The board waits for its next alarm: what was wanted is stored already, or will never come.
+async fn nothing_there(
+    motor: &mut Watched,
+    head: &Head,
+    context: &Context,
+) -> Result<(), Trouble> {
+    motor.recordings.under_way = None;
+    for wanted in std::mem::take(&mut motor.recordings.wanted) {
+        let why = match wanted.start == head.start {
+            true => GIVEN_UP,
+            false => LOST_POWER,
+        };
+        tell_missing(motor, wanted, why, context).await?;
+    }
+    motor.recordings.settled += 1;
+    Ok(())
+}
+
+async fn take_complete(
+    bus: &mut Bus,
+    motor: &mut Watched,
+    capture: CaptureHead,
+    context: &Context,
+) -> Result<(), Trouble> {
+    let key = key_of(&capture);
+    let knows = |key| context.store.knows_recording(&motor.id, key);
+    if !knows(key).map_err(|error| Trouble::Other(error.to_string()))? {
+        let Some(instants) = take_pieces(bus, motor, capture).await? else {
+            return Ok(());
+        };
+        store(motor, capture, instants, context).await?;
+    }
+    motor.recordings.under_way = None;
+    let alarm = capture.alarm;
+    for wanted in std::mem::take(&mut motor.recordings.wanted) {
+        let why = match wanted.start == alarm.start {
+            _ if wanted.is(alarm.start, alarm.second) => continue,
+            true => HELD_ANOTHER,
+            false => LOST_POWER,
+        };
+        tell_missing(motor, wanted, why, context).await?;
+    }
+    // Where this fails the board is asked again: what is stored is then released only.
+    motor.recordings.settled = 0;
+    bus.ask(motor.unit, &question::release_capture()).await?;
+    motor.recordings.settled += 1;
+    Ok(())
+}
+
+/// The instants, once all of them are there.
+async fn take_pieces(
+    bus: &mut Bus,
+    motor: &mut Watched,
+    capture: CaptureHead,
+) -> Result<Option<Vec<u8>>, BusError> {
+    let begun = motor.recordings.under_way.take();
+    let mut under_way = begun
+        .filter(|under_way| under_way.head == capture)
+        .unwrap_or_else(|| UnderWay {
+            head: capture,
+            instants: Vec::with_capacity(CAPTURE_BYTES),
+        });
+    const WHOLE: usize = CAPTURE_BYTES - CAPTURE_HEAD_BYTES;
+    for _ in 0..PIECES {
+        if under_way.instants.len() >= WHOLE {
+            break;
+        }
+        let question = question::capture_piece(CAPTURE_HEAD_BYTES + under_way.instants.len());
+        let answer = match bus.ask(motor.unit, &question).await {
+            // It was given up meanwhile: the next visit sees that.
+            Err(error) if error.is_busy() => return Ok(None),
+            answer => answer?,
+        };
+        let piece = question::file_of(&answer).ok_or(BusError::Damaged(motor.unit))?;
+        under_way.instants.extend_from_slice(piece);
+    }
+    if under_way.instants.len() < WHOLE {
+        motor.recordings.under_way = Some(under_way);
+        return Ok(None);
+    }
+    Ok(Some(under_way.instants))
+}
+
+fn key_of(capture: &CaptureHead) -> RecordingKey {
+    RecordingKey::Second {
+        start: capture.alarm.start,
+        second: capture.alarm.second,
+    }
+}
+
+async fn store(
+    motor: &Watched,
+    capture: CaptureHead,
+    samples: Vec<u8>,
+    context: &Context,
+) -> Result<(), Trouble> {
+    let this_run = motor.run == Some(capture.alarm.start);
+    let time_ms = match this_run {
+        true => motor.clock.time_ms(capture.alarm.second),
+        false => None,
+    }
+    .unwrap_or_else(now_ms);
+    let recording = Recording {
+        time_ms: now_ms(),
+        from_ms: time_ms - HALF_MS,
+        to_ms: time_ms + HALF_MS,
+        key: key_of(&capture),
+        bytes: samples.len() as u64,
+        motor: capture.alarm.motor,
+        samples,
+        ..Recording::default()
+    };
+    post(motor, recording, context).await
+}
+
+/// Tells why an alarm has no recording, unless it has one.
+async fn tell_missing(
+    motor: &Watched,
+    wanted: Wanted,
+    why: &str,
+    context: &Context,
+) -> Result<(), Trouble> {
+    let seconds = wanted.second.saturating_sub(APART_S)..=wanted.second.saturating_add(APART_S);
+    let start = wanted.start;
+    for second in seconds {
+        let key = RecordingKey::Second { start, second };
+        let known = context.store.knows_recording(&motor.id, key);
+        if known.map_err(|error| Trouble::Other(error.to_string()))? {
+            return Ok(());
+        }
+    }
+    let recording = Recording {
+        time_ms: now_ms(),
+        from_ms: wanted.time_ms,
+        to_ms: wanted.time_ms,
+        key: wanted.key(),
+        missing: Some(why.to_owned()),
+        ..Recording::default()
+    };
+    post(motor, recording, context).await
+}
+
+/// Stores a recording; on return it is on the disk.
+async fn post(motor: &Watched, recording: Recording, context: &Context) -> Result<(), Trouble> {
+    let (durable, is_durable) = oneshot::channel();
+    let post = Post {
+        motor: motor.id.clone(),
+        entries: vec![Entry::Recording(recording)],
+        durable: Some(durable),
+    };
+    context.posts.send(post).await.map_err(|_| Trouble::Ended)?;
+    is_durable.await.map_err(|_| Trouble::Ended)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn second(number: u32, is_lit: bool) -> Second {
+        Second {
+            start: 7,
+            number,
+            time_ms: 1_000 * i64::from(number),
+            lamps: u32::from(is_lit) << (2 * lamp::FAULT),
+            ..Second::default()
+        }
+    }
+
+    #[test]
+    fn a_recording_is_wanted_where_fault_lights() {
+        let mut recordings = Recordings::of_stored(Some(&second(1, true)));
+        for (number, is_lit) in [(2, true), (3, false), (4, true), (5, true)] {
+            recordings.look(&second(number, is_lit));
+        }
+        let wanted: Vec<u32> = recordings.wanted.iter().map(|w| w.second).collect();
+        assert_eq!(wanted, [4]);
+    }
+
+    #[test]
+    fn alarms_of_before_the_gateway_began_are_wanted_once() {
+        let alarm = |number, of_second, event, reason: Option<&str>| Alarm {
+            number,
+            motor: None,
+            cause: AlarmCause::Fault,
+            state: fleet::alarm::AlarmState::Unacknowledged,
+            present: true,
+            acknowledged: false,
+            suppressed: false,
+            severity: fleet::alarm::Severity::High,
+            fault: 0,
+            size: None,
+            evidence: fleet::alarm::Evidence {
+                second: of_second,
+                event,
+                no_recording: reason.map(str::to_owned),
+                ..fleet::alarm::Evidence::default()
+            },
+            raised_ms: 90_000,
+            changed_ms: 0,
+            times: 1,
+            shelved_until_ms: None,
+        };
+        let alarms = [
+            alarm(1, Some((7, 40)), None, None),
+            alarm(2, None, Some(9), None),
+            alarm(3, None, Some(3), None),
+            alarm(4, Some((7, 50)), None, Some("no")),
+        ];
+        let mut recordings = Recordings::default();
+        recordings.recall(&alarms, 7, |time_ms| (time_ms / 1_000) as u32);
+        recordings.recall(&alarms, 7, |time_ms| (time_ms / 1_000) as u32);
+        let wanted: Vec<_> = recordings
+            .wanted
+            .iter()
+            .map(|wanted| (wanted.start, wanted.second))
+            .collect();
+        assert_eq!(wanted, [(7, 40), (7, 90), (0, 0)]);
+    }
+}
