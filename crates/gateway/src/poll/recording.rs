@@ -31,20 +31,15 @@ const HELD_ANOTHER: &str = "its board still held the recording of an earlier ala
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Wanted {
     start: u32,
-    second: u32,
+    /// `None`: some second of that run, which an event told.
+    second: Option<u32>,
     time_ms: i64,
 }
 
 impl Wanted {
     fn is(&self, start: u32, second: u32) -> bool {
-        self.start == start && self.second.abs_diff(second) <= APART_S
-    }
-
-    fn key(&self) -> RecordingKey {
-        RecordingKey::Second {
-            start: self.start,
-            second: self.second,
-        }
+        let fits = |own: u32| own.abs_diff(second) <= APART_S;
+        self.start == start && self.second.is_none_or(fits)
     }
 }
 
@@ -85,7 +80,7 @@ impl Recordings {
         if is_lit && !self.was_lit {
             self.wanted.push(Wanted {
                 start: second.start,
-                second: second.number,
+                second: Some(second.number),
                 time_ms: second.time_ms,
             });
         }
@@ -93,7 +88,7 @@ impl Recordings {
     }
 
     /// Alarms that the store has without a recording: those of before the gateway began.
-    fn recall(&mut self, alarms: &[Alarm], start: u32, second_at: impl Fn(i64) -> u32) {
+    fn recall(&mut self, alarms: &[Alarm], start: u32) {
         let open = alarms.iter().filter(|alarm| {
             let evidence = &alarm.evidence;
             let none = evidence.recording.is_none() && evidence.no_recording.is_none();
@@ -103,16 +98,18 @@ impl Recordings {
             let time_ms = alarm.raised_ms;
             let this_run = alarm.evidence.event.is_some_and(|event| event >= start);
             let (start, second) = match alarm.evidence.second {
-                Some(of_second) => of_second,
-                None if this_run => (start, second_at(time_ms)),
-                None => (0, 0),
+                Some((start, second)) => (start, Some(second)),
+                None if this_run => (start, None),
+                None => (0, None),
             };
-            if !self.wanted.iter().any(|wanted| wanted.is(start, second)) {
-                self.wanted.push(Wanted {
-                    start,
-                    second,
-                    time_ms,
-                });
+            let new = Wanted {
+                start,
+                second,
+                time_ms,
+            };
+            // Of one motor one alarm of a fault is open.
+            if self.wanted.is_empty() {
+                self.wanted.push(new);
             }
         }
     }
@@ -125,7 +122,7 @@ pub(super) async fn take_recording(
     head: &Head,
     context: &Context,
 ) -> Result<(), Trouble> {
-    if !motor.recordings.is_settled() && motor.recordings.under_way.is_none() {
+    if (1..LOOKS).contains(&motor.recordings.settled) {
         recall(motor, head, context);
     }
     let idle = motor.recordings.wanted.is_empty() && motor.recordings.is_settled();
@@ -156,13 +153,7 @@ fn recall(motor: &mut Watched, head: &Head, context: &Context) {
     };
     // A store that cannot be read now is asked at the next visit.
     let alarms = context.store.alarms(&filter).unwrap_or_default();
-    let clock = motor.clock;
-    let newest = head.last_second;
-    let second_at = |time_ms: i64| match clock.time_ms(newest) {
-        Some(end_ms) => newest.saturating_sub(((end_ms - time_ms).max(0) / 1_000) as u32),
-        None => newest,
-    };
-    motor.recordings.recall(&alarms, head.start, second_at);
+    motor.recordings.recall(&alarms, head.start);
 }
 
 /// A board without recordings: each alarm gets the reason.
@@ -271,12 +262,16 @@ async fn store(
     samples: Vec<u8>,
     context: &Context,
 ) -> Result<(), Trouble> {
-    let this_run = motor.run == Some(capture.alarm.start);
-    let time_ms = match this_run {
-        true => motor.clock.time_ms(capture.alarm.second),
-        false => None,
-    }
-    .unwrap_or_else(now_ms);
+    let alarm = capture.alarm;
+    let mut wanted = motor.recordings.wanted.iter();
+    let wanted = wanted.find(|wanted| wanted.is(alarm.start, alarm.second));
+    let by_clock = || {
+        let this_run = motor.run == Some(alarm.start);
+        this_run.then(|| motor.clock.time_ms(alarm.second))?
+    };
+    // The time that the alarm has, also where the clock was set since.
+    let time_ms = wanted.map(|wanted| wanted.time_ms).or_else(by_clock);
+    let time_ms = time_ms.unwrap_or_else(now_ms);
     let recording = Recording {
         time_ms: now_ms(),
         from_ms: time_ms - HALF_MS,
@@ -297,9 +292,8 @@ async fn tell_missing(
     why: &str,
     context: &Context,
 ) -> Result<(), Trouble> {
-    let seconds = wanted.second.saturating_sub(APART_S)..=wanted.second.saturating_add(APART_S);
-    let start = wanted.start;
-    for second in seconds {
+    let (start, own) = (wanted.start, wanted.second.unwrap_or(0));
+    for second in own.saturating_sub(APART_S)..=own.saturating_add(APART_S) {
         let key = RecordingKey::Second { start, second };
         let known = context.store.knows_recording(&motor.id, key);
         if known.map_err(|error| Trouble::Other(error.to_string()))? {
@@ -310,7 +304,7 @@ async fn tell_missing(
         time_ms: now_ms(),
         from_ms: wanted.time_ms,
         to_ms: wanted.time_ms,
-        key: wanted.key(),
+        key: RecordingKey::Second { start, second: own },
         missing: Some(why.to_owned()),
         ..Recording::default()
     };
@@ -349,8 +343,8 @@ mod tests {
         for (number, is_lit) in [(2, true), (3, false), (4, true), (5, true)] {
             recordings.look(&second(number, is_lit));
         }
-        let wanted: Vec<u32> = recordings.wanted.iter().map(|w| w.second).collect();
-        assert_eq!(wanted, [4]);
+        let wanted: Vec<_> = recordings.wanted.iter().map(|w| w.second).collect();
+        assert_eq!(wanted, [Some(4)]);
     }
 
     #[test]
@@ -377,20 +371,18 @@ mod tests {
             times: 1,
             shelved_until_ms: None,
         };
-        let alarms = [
-            alarm(1, Some((7, 40)), None, None),
-            alarm(2, None, Some(9), None),
-            alarm(3, None, Some(3), None),
-            alarm(4, Some((7, 50)), None, Some("no")),
+        let cases = [
+            (alarm(1, Some((7, 40)), None, None), Some((7, Some(40)))),
+            (alarm(2, None, Some(9), None), Some((7, None))),
+            (alarm(3, None, Some(3), None), Some((0, None))),
+            (alarm(4, Some((7, 50)), None, Some("no")), None),
         ];
-        let mut recordings = Recordings::default();
-        recordings.recall(&alarms, 7, |time_ms| (time_ms / 1_000) as u32);
-        recordings.recall(&alarms, 7, |time_ms| (time_ms / 1_000) as u32);
-        let wanted: Vec<_> = recordings
-            .wanted
-            .iter()
-            .map(|wanted| (wanted.start, wanted.second))
-            .collect();
-        assert_eq!(wanted, [(7, 40), (7, 90), (0, 0)]);
+        for (alarm, expected) in cases {
+            let mut recordings = Recordings::default();
+            (0..2).for_each(|_| recordings.recall(std::slice::from_ref(&alarm), 7));
+            let mut wanted = recordings.wanted.iter();
+            let first = wanted.next().map(|wanted| (wanted.start, wanted.second));
+            assert_eq!((first, wanted.next()), (expected, None));
+        }
     }
 }

@@ -68,6 +68,16 @@ async function submit(event) {
 }
 
 /**
+ * The recording of an alarm as a file, or why there is none.
+ * @param {Alarm} alarm
+ * @returns {(Node | string)[]}
+ */
+function recording(alarm) {
+  if (alarm.recording) return ["; ", make("a", { href: `/api/fleet/alarms/${alarm.number}/recording`, download: `alarm-${alarm.number}.csv` }, "recording")];
+  return alarm.cause === "fault" && alarm.no_recording ? [`; no recording: ${alarm.no_recording}`] : [];
+}
+
+/**
  * @param {Alarm} alarm
  * @param {number} now_ms
  * @param {boolean} named whether the motor is named
@@ -89,7 +99,7 @@ function row(alarm, now_ms, named) {
     make("td", { class: "word" }, alarm.words + size),
     make("td", { class: "word" }, STATES[alarm.state] + until + (alarm.present || alarm.state === "normal" || alarm.state === "returned_unacknowledged" ? "" : ", condition gone")),
     make("td", { class: "word" }, `${moment(alarm.raised_ms / 1000)}, ${age(now_ms - alarm.raised_ms)} ago${times}`),
-    make("td", { class: "word" }, alarm.evidence + (alarm.recording ? `; recording ${alarm.recording}` : "")),
+    make("td", { class: "word" }, alarm.evidence, ...recording(alarm)),
     make("td", { class: "word acts" }, ...buttons));
 }
 

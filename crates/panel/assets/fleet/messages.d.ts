@@ -57,6 +57,7 @@ export interface Alarm {
   evidence: string;
   residuals_percent: Maybe[];
   recording: string | null;
+  no_recording: string | null;
   raised_ms: number;
   changed_ms: number;
   times: number;

@@ -141,8 +141,10 @@ pub struct Alarm {
     pub evidence: String,
     /// Residuals that showed it, percent of their scales.
     pub residuals_percent: [Option<f32>; 4],
-    /// File of the recording around it.
+    /// Name of the recording around it, which `/api/fleet/alarms/{number}/recording` gives out.
     pub recording: Option<String>,
+    /// Why there is no recording.
+    pub no_recording: Option<String>,
     /// When it last rose, Unix ms.
     pub raised_ms: i64,
     /// When it last changed, Unix ms.

@@ -89,6 +89,7 @@ pub(super) fn alarm(alarm: &fleet::alarm::Alarm) -> Alarm {
         evidence: alarm.evidence.words.clone(),
         residuals_percent: percents(alarm.evidence.residuals),
         recording: alarm.evidence.recording.clone(),
+        no_recording: alarm.why_no_recording(),
         raised_ms: alarm.raised_ms,
         changed_ms: alarm.changed_ms,
         times: alarm.times,
@@ -105,7 +106,7 @@ pub(super) fn event(stored: &Numbered) -> Option<Event> {
         Entry::Link(link) if link.up => ("link", "the board answers".to_owned()),
         Entry::Link(link) => ("link", format!("the board does not answer: {}", link.why)),
         Entry::Alarm(change) => ("alarm", of_change(change)),
-        Entry::Recording(recording) => ("recording", format!("recording {}", recording.file)),
+        Entry::Recording(recording) => ("recording", of_recording(recording)),
         Entry::Board { serial, .. } => ("exchange", format!("another board: {serial}")),
         Entry::Thinned(thinned) => ("history", of_thinned(thinned)),
     };
@@ -175,11 +176,19 @@ fn of_change(change: &AlarmChange) -> String {
     )
 }
 
+fn of_recording(recording: &fleet::Recording) -> String {
+    match &recording.missing {
+        Some(why) => format!("no recording: {why}"),
+        None => format!("recording {}", recording.file),
+    }
+}
+
 fn of_thinned(thinned: &fleet::Thinned) -> String {
     let what = match thinned.to {
         ThinnedTo::Minutes => "seconds became minutes",
         ThinnedTo::Hours => "minutes were dropped, hours are left",
         ThinnedTo::HoursDropped => "hours were dropped",
+        ThinnedTo::RecordingsDropped => "recordings of alarms were dropped",
         ThinnedTo::QueueCut => "seconds left the queue of an output",
         ThinnedTo::EntriesDropped => "old events were dropped",
     };

@@ -6,9 +6,12 @@ use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use fleet::alarm::{AlarmFilter, AlarmState};
-use fleet::{EntryFilter, MotorId, StoreError, now_ms};
+use fleet::{EntryFilter, MotorId, NoRecording, StoreError, now_ms};
+use live::Fetched;
+use motor::MotorFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -188,6 +191,49 @@ pub(super) async fn alarms(State(plant): State<Arc<Plant>>, asked: Asked<WhichAl
         })
     })
     .await
+}
+
+/// The recording of an alarm as CSV.
+pub(super) async fn recording(
+    State(plant): State<Arc<Plant>>,
+    Path(number): Path<u64>,
+) -> Response {
+    let work = move || {
+        let kept = plant.reader.recording_of_alarm(number)?;
+        let motor = MotorFile::read(&kept.motor_file).map_err(unusable)?;
+        let fetched = Fetched::of_file(kept.constants, &kept.instants).map_err(unusable)?;
+        let recording = live::recording(&fetched, &motor).map_err(unusable)?;
+        let mut text = Vec::new();
+        formats::write_csv(&recording, &mut text).map_err(unusable)?;
+        Ok::<_, Refusal>(text)
+    };
+    match tokio::task::spawn_blocking(work).await {
+        Ok(Ok(text)) => {
+            let kept_as = format!("attachment; filename=\"alarm-{number}.csv\"");
+            let headers = [(CONTENT_TYPE, "text/csv"), (CONTENT_DISPOSITION, &kept_as)];
+            (headers, text).into_response()
+        }
+        Ok(Err(Refusal(status, message))) => refuse(status, message),
+        Err(error) => refuse(StatusCode::INTERNAL_SERVER_ERROR, error.to_string()),
+    }
+}
+
+/// What was kept does not become a recording as the plant is configured.
+fn unusable(error: impl std::fmt::Display) -> Refusal {
+    Refusal(StatusCode::CONFLICT, error.to_string())
+}
+
+impl From<NoRecording> for Refusal {
+    fn from(error: NoRecording) -> Self {
+        let status = match error {
+            NoRecording::Store(error) => return failed(error),
+            NoRecording::NoMotorFile(_) => StatusCode::CONFLICT,
+            NoRecording::Unknown(_) | NoRecording::None { .. } | NoRecording::Dropped(_) => {
+                StatusCode::NOT_FOUND
+            }
+        };
+        Refusal(status, error.to_string())
+    }
 }
 
 /// Which events.

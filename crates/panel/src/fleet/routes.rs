@@ -31,8 +31,10 @@ struct Route {
     role: Option<Role>,
     query: Option<SchemaOf>,
     body: Option<SchemaOf>,
-    /// `None`: a stream of events.
+    /// `None`: text of `media`.
     answer: Option<SchemaOf>,
+    /// What an answer without a schema is.
+    media: &'static str,
     handler: MethodRouter<Arc<Plant>>,
 }
 
@@ -55,6 +57,7 @@ fn ask<T: JsonSchema>(
         query: None,
         body: None,
         answer: Some(of::<T>),
+        media: "text/event-stream",
         handler,
     }
 }
@@ -129,6 +132,16 @@ fn routes() -> Vec<Route> {
             get(questions::events),
         )
         .with::<WhichEvents>(),
+        Route {
+            answer: None,
+            media: "text/csv",
+            ..ask::<()>(
+                "/api/fleet/alarms/{number}/recording",
+                "The recording around an alarm, in V, A and rad/s",
+                Some(See),
+                get(questions::recording),
+            )
+        },
         act::<Why, Done>(
             "/api/fleet/alarms/{number}/acknowledge",
             "Take note of an alarm",
@@ -248,7 +261,7 @@ fn operation(route: &Route, generator: &mut SchemaGenerator) -> Value {
     let refused = |why: &str| json!({"description": why, "content": {"application/json": {"schema": problem}}});
     let answer = match route.answer {
         Some(answer) => json!({"application/json": {"schema": answer(generator)}}),
-        None => json!({"text/event-stream": {"schema": {"type": "string"}}}),
+        None => json!({route.media: {"schema": {"type": "string"}}}),
     };
     let mut answers = json!({"200": {"description": "Done", "content": answer}});
     let mut operation = json!({"summary": route.summary, "parameters": parameters});

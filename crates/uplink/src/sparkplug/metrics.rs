@@ -254,13 +254,14 @@ const ALARM: [Definition; 13] = {
     ]
 };
 
-const RECORDING: [Definition; 4] = {
+const RECORDING: [Definition; 5] = {
     use Datatype::{DateTime, Text, UInt64};
     [
-        metric("Recording/File", Text, "", "file of a recording"),
+        metric("Recording/File", Text, "", "name of a recording, the samples around an alarm"),
         metric("Recording/Size", UInt64, "byte", "its size"),
         metric("Recording/From", DateTime, "", "begin of its samples"),
         metric("Recording/To", DateTime, "", "their end"),
+        metric("Recording/Missing", Text, "", "why an alarm has none"),
     ]
 };
 

@@ -173,10 +173,11 @@ pub fn alarm_values(alarm: &Alarm) -> Vec<Option<Value>> {
 
 fn recording_values(recording: &Recording) -> Vec<Option<Value>> {
     vec![
-        text(&recording.file),
+        text(&recording.file).filter(|_| recording.missing.is_none()),
         large(recording.bytes),
         time(recording.from_ms),
         time(recording.to_ms),
+        recording.missing.as_deref().and_then(text),
     ]
 }
 
