@@ -8,7 +8,7 @@ use super::life::{overruled, raised_again, updated, with_event};
 use super::memory::{Memory, Pending};
 use super::read::{Details, Told, conditions};
 use super::rules::Rules;
-use crate::entry::{Entry, Recording};
+use crate::entry::{Entry, Recording, RecordingKey};
 use crate::motor::MotorId;
 
 /// What an alarm is of: `None` is the plant.
@@ -16,6 +16,8 @@ type Key = (Option<MotorId>, AlarmCause);
 
 /// How far the times of an alarm and of its recording may be apart, ms: an event is known to the second, and so is a recording.
 const RECORDING_MS: i64 = 3_000;
+/// The same where both name a second of the board.
+const RECORDING_S: u32 = 2;
 
 /// All alarms that are not normal, and what is about to become one.
 #[derive(Clone, Debug)]
@@ -108,6 +110,13 @@ impl Desk {
 
     /// Whether an alarm rose when a recording was taken, as far as seconds and delays tell.
     fn rose_with(&self, alarm: &Alarm, recording: &Recording) -> bool {
+        let (shown, taken) = (alarm.evidence.second, recording.key);
+        if let (Some((run, second)), RecordingKey::Second { start, second: at }) = (shown, taken)
+            && run == start
+            && second.abs_diff(at) <= RECORDING_S
+        {
+            return true;
+        }
         let latest_ms = recording.to_ms + self.rules.on_delay_ms + RECORDING_MS;
         (recording.from_ms - RECORDING_MS..=latest_ms).contains(&alarm.raised_ms)
     }

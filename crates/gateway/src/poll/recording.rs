@@ -41,6 +41,12 @@ impl Wanted {
         let fits = |own: u32| own.abs_diff(second) <= APART_S;
         self.start == start && self.second.is_none_or(fits)
     }
+
+    fn is_before(&self, moment: Option<(u32, u32)>) -> bool {
+        let own = self.second.map(|second| (self.start, second));
+        own.zip(moment)
+            .is_some_and(|((run, second), (start, end))| run == start && second <= end)
+    }
 }
 
 /// A recording that is being fetched.
@@ -58,6 +64,8 @@ pub(super) struct Recordings {
     was_lit: bool,
     wanted: Vec<Wanted>,
     under_way: Option<UnderWay>,
+    /// Run and second in which a recording was released last.
+    released: Option<(u32, u32)>,
 }
 
 impl Recordings {
@@ -122,7 +130,7 @@ pub(super) async fn take_recording(
     head: &Head,
     context: &Context,
 ) -> Result<(), Trouble> {
-    if (1..LOOKS).contains(&motor.recordings.settled) {
+    if !motor.recordings.is_settled() {
         recall(motor, head, context);
     }
     let idle = motor.recordings.wanted.is_empty() && motor.recordings.is_settled();
@@ -142,7 +150,7 @@ pub(super) async fn take_recording(
     match capture.state {
         CaptureState::Taking => Ok(()),
         CaptureState::Armed => nothing_there(motor, head, context).await,
-        CaptureState::Complete => take_complete(bus, motor, capture, context).await,
+        CaptureState::Complete => take_complete(bus, motor, head, capture, context).await,
     }
 }
 
@@ -172,21 +180,30 @@ async fn nothing_there(
     head: &Head,
     context: &Context,
 ) -> Result<(), Trouble> {
-    motor.recordings.under_way = None;
-    for wanted in std::mem::take(&mut motor.recordings.wanted) {
+    let recordings = &mut motor.recordings;
+    recordings.under_way = None;
+    recordings.settled += 1;
+    if recordings.settled == 1 {
+        // An alarm may be about to get what is stored already.
+        recordings.wanted.clear();
+        return Ok(());
+    }
+    let released = recordings.released;
+    for wanted in std::mem::take(&mut recordings.wanted) {
         let why = match wanted.start == head.start {
+            true if wanted.is_before(released) => HELD_ANOTHER,
             true => GIVEN_UP,
             false => LOST_POWER,
         };
         tell_missing(motor, wanted, why, context).await?;
     }
-    motor.recordings.settled += 1;
     Ok(())
 }
 
 async fn take_complete(
     bus: &mut Bus,
     motor: &mut Watched,
+    head: &Head,
     capture: CaptureHead,
     context: &Context,
 ) -> Result<(), Trouble> {
@@ -200,15 +217,12 @@ async fn take_complete(
     }
     motor.recordings.under_way = None;
     let alarm = capture.alarm;
-    for wanted in std::mem::take(&mut motor.recordings.wanted) {
-        let why = match wanted.start == alarm.start {
-            _ if wanted.is(alarm.start, alarm.second) => continue,
-            true => HELD_ANOTHER,
-            false => LOST_POWER,
-        };
-        tell_missing(motor, wanted, why, context).await?;
-    }
-    // Where this fails the board is asked again: what is stored is then released only.
+    let recordings = &mut motor.recordings;
+    recordings
+        .wanted
+        .retain(|wanted| !wanted.is(alarm.start, alarm.second));
+    recordings.released = Some((head.start, head.last_second));
+    // What else is wanted gets its reason when nothing is there any more. Where this fails the board is asked again: what is stored is then released only.
     motor.recordings.settled = 0;
     bus.ask(motor.unit, &question::release_capture()).await?;
     motor.recordings.settled += 1;

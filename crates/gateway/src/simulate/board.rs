@@ -129,6 +129,7 @@ impl SimulatedBoard {
         self.journal = Journal::default();
         self.capture = Capture::new();
         self.was_faulty = false;
+        self.life.forget();
         (self.uptime_s, self.windows, self.judged) = (0, 0, 0);
         self.slave = Slave::new(self.recipe.unit);
         self.image = Image::default();

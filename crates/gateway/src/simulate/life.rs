@@ -120,6 +120,11 @@ impl Life {
         }
     }
 
+    /// Its board started again: what that had seen of residuals is lost.
+    pub fn forget(&mut self) {
+        self.beyond_s = 0;
+    }
+
     /// A normal deviate of one window.
     pub fn deviate(&mut self) -> f32 {
         StandardNormal.sample(&mut self.rng)

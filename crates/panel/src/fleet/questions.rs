@@ -225,14 +225,10 @@ fn unusable(error: impl std::fmt::Display) -> Refusal {
 
 impl From<NoRecording> for Refusal {
     fn from(error: NoRecording) -> Self {
-        let status = match error {
-            NoRecording::Store(error) => return failed(error),
-            NoRecording::NoMotorFile(_) => StatusCode::CONFLICT,
-            NoRecording::Unknown(_) | NoRecording::None { .. } | NoRecording::Dropped(_) => {
-                StatusCode::NOT_FOUND
-            }
-        };
-        Refusal(status, error.to_string())
+        match error {
+            NoRecording::Store(error) => failed(error),
+            error => unusable(error),
+        }
     }
 }
 
