@@ -1,6 +1,6 @@
 //! A plant that a program made up, for `tools/check-sparkplug`, `tools/check-modbus-map` and `tools/check-metrics`.
 //!
-//! `plant FOLDER MOTORS ROUNDS [mqtt=PORT] [ca=FILE] [host=PRIMARY_HOST] [modbus=PORT] [shared=1] [metrics=PORT]`
+//! `plant FOLDER MOTORS ROUNDS [mqtt=PORT] [ca=FILE] [certificate=FILE key=FILE] [host=PRIMARY_HOST] [modbus=PORT] [shared=1] [metrics=PORT]`
 //!
 //! What it has stored it writes to `truth.jsonl` too, a line an entry. It ends when everything is delivered, or
 //! after two minutes without.
@@ -16,7 +16,7 @@ use fleet::{BoardEvent, Entry, Limits, Link, MotorId, MotorInfo, Second, Store, 
 use tokio::sync::watch;
 use uplink::metrics::{MetricsConfig, Source, router};
 use uplink::modbus::{Layout, ModbusConfig, ModbusStatus};
-use uplink::mqtt::{MqttConfig, MqttStatus, TlsConfig};
+use uplink::mqtt::{MqttConfig, MqttStatus, OwnCertificate, TlsConfig};
 use uplink::sparkplug::Names;
 
 type Failure = Box<dyn std::error::Error>;
@@ -220,7 +220,13 @@ async fn main() -> Result<(), Failure> {
         config.session_file = Some(arguments.folder.join("session"));
         if let Some(file) = arguments.more.get("ca") {
             let ca_file = Some(file.into());
-            config.tls = Some(TlsConfig { ca_file });
+            let file = |key: &str| arguments.more.get(key).map(PathBuf::from);
+            let own = file("certificate").zip(file("key"));
+            let own = own.map(|(certificate_file, key_file)| OwnCertificate {
+                certificate_file,
+                key_file,
+            });
+            config.tls = Some(TlsConfig { ca_file, own });
             config.user = Some(("gateway".to_owned(), arguments.folder.join("password")));
         }
         let output = uplink::mqtt::run(

@@ -44,6 +44,8 @@ pub(super) fn read(root: &Section<'_>, links: &[LinkConfig]) -> Option<Vec<Motor
 #[derive(Default)]
 struct Seen {
     names: HashMap<MotorId, usize>,
+    /// Names in lower case, each as it was written.
+    folded: HashMap<String, MotorId>,
     units: HashMap<(usize, u8), usize>,
 }
 
@@ -54,6 +56,15 @@ impl Seen {
         if let Some(before) = self.names.insert(motor.info.id.clone(), line) {
             let message = format!(
                 "\"{}\" is the motor of line {before}, too: give each motor a name of its own",
+                motor.info.id
+            );
+            section.report("name", message);
+        }
+        let folded = motor.info.id.as_str().to_ascii_lowercase();
+        let before = self.folded.insert(folded, motor.info.id.clone());
+        if let Some(before) = before.filter(|before| *before != motor.info.id) {
+            let message = format!(
+                "\"{}\" and \"{before}\" differ in case only: people and brokers take them for one motor; rename one of them",
                 motor.info.id
             );
             section.report("name", message);

@@ -165,6 +165,12 @@ fn what_is_wrong_is_named_with_its_line_and_a_remedy() {
             31,
             "24 hexadecimal digits",
         ),
+        (
+            "name = \"fan\"",
+            "name = \"Pump-7\"",
+            34,
+            "differ in case only",
+        ),
         ("path = \"kept/plant.db\"", "", 5, "store.path: is missing"),
         (
             "seconds_days = 7",

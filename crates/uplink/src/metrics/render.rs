@@ -300,6 +300,11 @@ fn mqtt(state: &MqttState, text: &mut Text) {
         "Commands that were refused.",
         state.refused_commands,
     );
+    counter(
+        "drivemon_mqtt_foreign_births_total",
+        "Births under this node's name that somebody else said.",
+        state.foreign_births,
+    );
 }
 
 fn modbus(state: &ModbusState, text: &mut Text) {

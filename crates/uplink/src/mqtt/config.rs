@@ -15,6 +15,8 @@ pub struct MqttConfig {
     pub host: String,
     /// Its port.
     pub port: u16,
+    /// A second broker of the plant, taken in turns with the first whenever a session ends.
+    pub second: Option<(String, u16)>,
     /// TLS; `None`: the line is not encrypted.
     pub tls: Option<TlsConfig>,
     /// Group and edge node of Sparkplug.
@@ -38,6 +40,17 @@ pub struct MqttConfig {
 pub struct TlsConfig {
     /// Certificates of the authorities that are believed, PEM; `None`: those of the system.
     pub ca_file: Option<PathBuf>,
+    /// What this client shows of itself; `None`: nothing.
+    pub own: Option<OwnCertificate>,
+}
+
+/// A certificate of this client with its key, PEM.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OwnCertificate {
+    /// The certificate, and behind it those that lead to the authority.
+    pub certificate_file: PathBuf,
+    /// Its private key.
+    pub key_file: PathBuf,
 }
 
 const PORT: Bounds = Bounds::between(1.0, 65_535.0, "");
@@ -51,6 +64,7 @@ impl MqttConfig {
             sink: "mqtt".to_owned(),
             host: host.to_owned(),
             port,
+            second: None,
             tls: None,
             client_id: format!("drivemon-{}", names.node()),
             names,
@@ -59,6 +73,14 @@ impl MqttConfig {
             keep_alive_s: 30,
             batch: 500,
             session_file: None,
+        }
+    }
+
+    /// Name and port of the broker whose turn it is.
+    pub(super) fn broker(&self, turn: usize) -> (&str, u16) {
+        match &self.second {
+            Some((host, port)) if turn % 2 == 1 => (host, *port),
+            _ => (&self.host, self.port),
         }
     }
 
@@ -79,6 +101,7 @@ fn read(section: &Section<'_>, folder: &Path) -> Option<MqttConfig> {
         1883
     };
     let port = section.integer_or("port", &PORT, usual);
+    let second = second(section, usual);
     let names = names(section);
     let client_id = section.optional_text("client_id");
     let user = user(section, folder);
@@ -88,6 +111,7 @@ fn read(section: &Section<'_>, folder: &Path) -> Option<MqttConfig> {
     let session_file = section.optional_text("session_file");
     let base = MqttConfig::new(&host?, u16::try_from(port?).ok()?, names?);
     Some(MqttConfig {
+        second: second?,
         tls: tls?,
         client_id: client_id?.unwrap_or_else(|| base.client_id.clone()),
         user: user?,
@@ -97,6 +121,13 @@ fn read(section: &Section<'_>, folder: &Path) -> Option<MqttConfig> {
         session_file: session_file?.map(|file| folder.join(file)),
         ..base
     })
+}
+
+fn second(section: &Section<'_>, usual: u32) -> Option<Option<(String, u16)>> {
+    let host = section.optional_text("second_host")?;
+    let port = section.integer_or("second_port", &PORT, usual)?;
+    let port = u16::try_from(port).ok()?;
+    Some(host.map(|host| (host, port)))
 }
 
 fn names(section: &Section<'_>) -> Option<Names> {
@@ -132,7 +163,38 @@ fn tls(section: &Section<'_>, folder: &Path) -> Option<Option<TlsConfig>> {
         return None;
     }
     let ca_file = ca_file.map(|file| folder.join(file));
-    Some(wanted?.then_some(TlsConfig { ca_file }))
+    let own = own_certificate(section, folder)?;
+    if own.is_some() && wanted == Some(false) {
+        section.report(
+            "certificate_file",
+            "is only used with TLS: write `tls = true` too",
+        );
+        return None;
+    }
+    Some(wanted?.then_some(TlsConfig { ca_file, own }))
+}
+
+fn own_certificate(section: &Section<'_>, folder: &Path) -> Option<Option<OwnCertificate>> {
+    let certificate = section.optional_text("certificate_file")?;
+    let key = section.optional_text("key_file")?;
+    match (certificate, key) {
+        (None, None) => Some(None),
+        (Some(certificate), Some(key)) => Some(Some(OwnCertificate {
+            certificate_file: folder.join(certificate),
+            key_file: folder.join(key),
+        })),
+        (Some(_), None) => {
+            section.report(
+                "certificate_file",
+                "needs `key_file` too, the private key that belongs to it",
+            );
+            None
+        }
+        (None, Some(_)) => {
+            section.report("key_file", "needs `certificate_file` too");
+            None
+        }
+    }
 }
 
 /// A password stands in a file of its own, which the configuration names: the configuration is shown and sent around.
@@ -184,8 +246,19 @@ mod tests {
         let text = "[mqtt]\nhost = \"broker\"\ngroup = \"p\"\nnode = \"n\"\ntls = true\nca_file = \"ca.pem\"\nuser = \"u\"\n\
                     password_file = \"/run/password\"\nprimary_host = \"scada\"\nkeep_alive_s = 60\nbatch = 7\nclient_id = \"c\"\n\
                     session_file = \"bdseq\"\n";
-        let config = parse(text).expect("it is right");
+        let text = format!(
+            "{text}certificate_file = \"own.pem\"\nkey_file = \"own.key\"\nsecond_host = \"broker-b\"\n"
+        );
+        let config = parse(&text).expect("it is right");
         assert_eq!(config.port, 8883);
+        let turns = [0, 1, 2].map(|turn| config.broker(turn));
+        assert_eq!(
+            turns,
+            [("broker", 8883), ("broker-b", 8883), ("broker", 8883)]
+        );
+        let own = config.tls.as_ref().and_then(|tls| tls.own.as_ref());
+        let key = own.map(|own| own.key_file.clone());
+        assert_eq!(key, Some(PathBuf::from("/etc/plant/own.key")));
         let ca = config.tls.and_then(|tls| tls.ca_file);
         assert_eq!(ca, Some(PathBuf::from("/etc/plant/ca.pem")));
         let user = ("u".to_owned(), PathBuf::from("/run/password"));
@@ -197,7 +270,8 @@ mod tests {
     #[test]
     fn every_problem_has_its_line_and_remedy() {
         let text = "[mqtt]\nhost = \"broker\"\ngroup = \"a/b\"\nnode = \"n+\"\nca_file = \"ca.pem\"\nuser = \"u\"\nkeepalive_s = 60\n";
-        let error = parse(text).expect_err("five slips").to_string();
+        let text = format!("{text}certificate_file = \"own.pem\"\n");
+        let error = parse(&text).expect_err("six slips").to_string();
         for part in [
             "plant.toml:3",
             "plant.toml:4",
@@ -208,6 +282,8 @@ mod tests {
             "password_file",
             "plant.toml:7",
             "did you mean `keep_alive_s`?",
+            "plant.toml:8",
+            "key_file",
         ] {
             assert!(error.contains(part), "{part}: {error}");
         }

@@ -55,10 +55,11 @@ impl Line {
     /// The broker cannot be reached, does not answer, or refuses.
     pub async fn open(
         config: &MqttConfig,
+        broker: (&str, u16),
         will: &Message,
         topics: &[String],
     ) -> Result<Line, LineError> {
-        let stream = within(open(config)).await?;
+        let stream = within(open(config, broker)).await?;
         let options = ConnectionOptions::new().maximum_packet_size_recv(LARGEST);
         let mut protocol = mqtt::Connection::with_options(mqtt::Version::V3_1_1, options);
         protocol.set_auto_pub_response(true);

@@ -9,7 +9,7 @@ mod session_file;
 mod status;
 mod tls;
 
-pub use config::{MqttConfig, TlsConfig};
+pub use config::{MqttConfig, OwnCertificate, TlsConfig};
 pub use error::LineError;
 pub use present::present;
 pub use run::{OutputError, run};

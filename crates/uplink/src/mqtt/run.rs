@@ -78,6 +78,7 @@ pub async fn run(
         node,
         pings: VecDeque::new(),
         read: 0,
+        turn: 0,
     };
     // From now on the store keeps what this output has not taken.
     let cursor = output.cursor().await?;
@@ -96,6 +97,8 @@ struct Output {
     pings: VecDeque<Option<u64>>,
     /// Newest entry that was read from the store.
     read: u64,
+    /// Counts sessions that ended: each next one is at the next broker.
+    turn: usize,
 }
 
 impl Output {
@@ -112,7 +115,7 @@ impl Output {
             match ended {
                 Ended::Stopped => return Ok(()),
                 Ended::Output(error) => return Err(error),
-                Ended::Line(_) | Ended::HostWent => {}
+                Ended::Line(_) | Ended::HostWent => self.turn += 1,
             }
             if self.status.get().births > births {
                 pause = PAUSES.0;
@@ -151,8 +154,9 @@ impl Output {
         self.pings.clear();
         self.read = self.cursor().await?;
         let topics = self.node.subscriptions();
+        let broker = self.config.broker(self.turn);
         let line = tokio::select! {
-            line = Line::open(&self.config, &will, &topics) => line?,
+            line = Line::open(&self.config, broker, &will, &topics) => line?,
             () = stopped(&mut self.stop) => return Err(Ended::Stopped),
         };
         self.status.change(|state| {
@@ -192,8 +196,10 @@ impl Output {
         match arrived {
             Arrived::Message { topic, payload } => {
                 let reaction = self.node.take(now_ms(), &topic, &payload);
-                let refused = self.node.refused();
-                self.status.change(|state| state.refused_commands = refused);
+                let (refused, foreign) = (self.node.refused(), self.node.foreign_births());
+                self.status.change(|state| {
+                    (state.refused_commands, state.foreign_births) = (refused, foreign);
+                });
                 self.react(line, reaction).await
             }
             Arrived::Pong => match self.pings.pop_front().flatten() {

@@ -19,6 +19,8 @@ pub struct MqttState {
     pub messages: u64,
     /// Commands that were refused.
     pub refused_commands: u64,
+    /// Births under this node's name that somebody else said.
+    pub foreign_births: u64,
     /// Newest entry that the broker has taken.
     pub delivered: u64,
     /// Why the last session ended; empty: none has.

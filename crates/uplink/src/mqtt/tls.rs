@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rustls::pki_types::pem::PemObject;
-use rustls::pki_types::{CertificateDer, ServerName};
+use rustls::pki_types::{CertificateDer, PrivateKeyDer, ServerName};
 use rustls::{ClientConfig, RootCertStore};
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::TcpStream;
@@ -20,15 +20,18 @@ impl<T: AsyncRead + AsyncWrite + Unpin + Send> Both for T {}
 /// Bytes to and from a broker.
 pub(super) type Stream = Box<dyn Both>;
 
-/// Opens the stream that the configuration names.
-pub(super) async fn open(config: &MqttConfig) -> Result<Stream, LineError> {
-    let plain = TcpStream::connect((config.host.as_str(), config.port)).await?;
+/// Opens the stream to a broker as the configuration says.
+pub(super) async fn open(
+    config: &MqttConfig,
+    (host, port): (&str, u16),
+) -> Result<Stream, LineError> {
+    let plain = TcpStream::connect((host, port)).await?;
     plain.set_nodelay(true)?;
     let Some(tls) = &config.tls else {
         return Ok(Box::new(plain));
     };
-    let name = ServerName::try_from(config.host.clone())
-        .map_err(|_| LineError::Refused(format!("{} is no name for TLS", config.host)))?;
+    let name = ServerName::try_from(host.to_owned())
+        .map_err(|_| LineError::Refused(format!("{host} is no name for TLS")))?;
     let encrypted = TlsConnector::from(client(tls)?)
         .connect(name, plain)
         .await?;
@@ -44,26 +47,43 @@ fn client(tls: &TlsConfig) -> Result<Arc<ClientConfig>, LineError> {
     let config = ClientConfig::builder_with_provider(provider)
         .with_safe_default_protocol_versions()
         .map_err(|error| LineError::Protocol(error.to_string()))?
-        .with_root_certificates(roots)
-        .with_no_client_auth();
+        .with_root_certificates(roots);
+    let config = match &tls.own {
+        None => config.with_no_client_auth(),
+        Some(own) => {
+            let (certificate, key) = (&own.certificate_file, &own.key_file);
+            let certificates = certificates(certificate)?;
+            let secret = PrivateKeyDer::from_pem_file(key).map_err(|e| wrong(key, &e))?;
+            let with_own = config.with_client_auth_cert(certificates, secret);
+            with_own.map_err(|error| wrong(certificate, &error))?
+        }
+    };
     Ok(Arc::new(config))
 }
 
-fn roots_of_file(file: &Path) -> Result<RootCertStore, LineError> {
-    let wrong = |error: String| LineError::File {
+fn wrong(file: &Path, error: &dyn std::fmt::Display) -> LineError {
+    LineError::File {
         path: file.display().to_string(),
-        error,
-    };
+        error: error.to_string(),
+    }
+}
+
+fn certificates(file: &Path) -> Result<Vec<CertificateDer<'static>>, LineError> {
+    let found = CertificateDer::pem_file_iter(file).map_err(|error| wrong(file, &error))?;
+    let found: Result<Vec<_>, _> = found.collect();
+    let found = found.map_err(|error| wrong(file, &error))?;
+    match found.is_empty() {
+        true => Err(wrong(file, &"holds no certificate in PEM")),
+        false => Ok(found),
+    }
+}
+
+fn roots_of_file(file: &Path) -> Result<RootCertStore, LineError> {
     let mut roots = RootCertStore::empty();
-    let found = CertificateDer::pem_file_iter(file).map_err(|error| wrong(error.to_string()))?;
-    for certificate in found {
-        let certificate = certificate.map_err(|error| wrong(error.to_string()))?;
+    for certificate in certificates(file)? {
         roots
             .add(certificate)
-            .map_err(|error| wrong(error.to_string()))?;
-    }
-    if roots.is_empty() {
-        return Err(wrong("holds no certificate in PEM".to_owned()));
+            .map_err(|error| wrong(file, &error))?;
     }
     Ok(roots)
 }

@@ -272,7 +272,7 @@ const BOARD: [Definition; 1] = [metric(
     "serial number of the board that watches the motor from now on",
 )];
 
-const GATEWAY: [Definition; 3] = [
+const GATEWAY: [Definition; 4] = [
     metric(
         "Gateway/Version",
         Datatype::Text,
@@ -290,6 +290,12 @@ const GATEWAY: [Definition; 3] = [
         Datatype::UInt64,
         "",
         "commands that were refused since the program started",
+    ),
+    metric(
+        "Gateway/ForeignBirths",
+        Datatype::UInt64,
+        "",
+        "births under this node's name that it has not said, since the program started: a second gateway of that name, or old births played again",
     ),
 ];
 

@@ -1,6 +1,6 @@
 //! The edge node: what it says, when, and what it does with what it is told. No input, no output, no clock.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use super::device::{Teller, stamp};
 use super::host::{Host, Turn};
@@ -27,8 +27,11 @@ const REBIRTH_METRIC: Definition = Definition {
     unit: "",
     meaning: "written true: all births again",
 };
-/// Place of `Gateway/RefusedCommands` in its group.
+/// Places of `Gateway/RefusedCommands` and `Gateway/ForeignBirths` in their group.
 const REFUSED: usize = 2;
+const FOREIGN: usize = 3;
+/// Most own births that are awaited back from the broker.
+const MOST_ECHOES: usize = 16;
 /// Most metrics of the past in one message: some 100 seconds of a motor, 40 kB.
 const MOST_PAST: usize = 2_400;
 
@@ -95,6 +98,9 @@ pub struct Node {
     gateway: Teller,
     version: String,
     refused: u64,
+    /// Own births of this session that the broker has not handed back yet.
+    echoes: VecDeque<Vec<u8>>,
+    foreign: u64,
     devices: BTreeMap<String, Device>,
     blocks: u64,
 }
@@ -113,6 +119,8 @@ impl Node {
             gateway: Teller::new(&OF_GATEWAY, 0),
             version: version.to_owned(),
             refused: 0,
+            echoes: VecDeque::new(),
+            foreign: 0,
             devices: BTreeMap::new(),
             blocks: 1,
         }
@@ -133,10 +141,16 @@ impl Node {
         self.refused
     }
 
+    /// Births under this node's name that it has not said: another gateway has the same name, or somebody plays old births again.
+    pub fn foreign_births(&self) -> u64 {
+        self.foreign
+    }
+
     /// A new session begins: the will that goes with its CONNECT.
     pub fn connect(&mut self, now_ms: i64) -> Message {
         self.end();
         self.bd_seq = self.bd_seq.wrapping_add(1);
+        self.echoes.clear();
         self.death(now_ms)
     }
 
@@ -145,6 +159,7 @@ impl Node {
         let mut topics = vec![
             self.names.of_node(Kind::NCommand),
             self.names.of_device(Kind::DCommand, "+"),
+            self.names.of_node(Kind::NBirth),
         ];
         topics.extend(self.primary_host.as_deref().map(state_topic));
         topics
@@ -199,9 +214,12 @@ impl Node {
                 Some(Value::Text(self.version.clone())),
                 Some(Value::Large(motors.len() as u64)),
                 Some(Value::Large(self.refused)),
+                Some(Value::Large(self.foreign)),
             ],
         });
-        let mut messages = vec![self.node_birth(now_ms)];
+        let birth = self.node_birth(now_ms);
+        self.await_echo(&birth);
+        let mut messages = vec![birth];
         for motor in motors {
             let device = self.device(&motor.device);
             device.up = motor.up;
@@ -355,13 +373,16 @@ impl Node {
         }
         let rebirth = if topic == self.names.of_node(Kind::NCommand) {
             self.take_command(payload)
+        } else if topic == self.names.of_node(Kind::NBirth) {
+            self.take_birth(payload);
+            false
         } else {
             self.refused += self.names.commanded(topic).map_or(0, |_| writes(payload));
             false
         };
         match (self.phase, rebirth) {
             (Phase::Online, true) => Reaction::Birth,
-            (Phase::Online, false) => self.told_refusals(now_ms),
+            (Phase::Online, false) => self.told_strangers(now_ms),
             _ => Reaction::None,
         }
     }
@@ -385,14 +406,37 @@ impl Node {
         !births.is_empty()
     }
 
-    fn told_refusals(&mut self, now_ms: i64) -> Reaction {
-        let value = Value::Large(self.refused);
-        if self.gateway.value(Group::Gateway, REFUSED) == Some(&value) {
+    /// The broker hands back what is said on the own topic.
+    fn await_echo(&mut self, birth: &Message) {
+        if self.echoes.len() == MOST_ECHOES {
+            self.echoes.pop_front();
+        }
+        self.echoes.push_back(birth.payload.clone());
+    }
+
+    /// A birth of this node: the own one once, or a stranger's.
+    fn take_birth(&mut self, payload: &[u8]) {
+        match self.echoes.iter().position(|own| own == payload) {
+            Some(place) => drop(self.echoes.remove(place)),
+            None => self.foreign += 1,
+        }
+    }
+
+    /// Tells the counts of what strangers did, where they changed.
+    fn told_strangers(&mut self, now_ms: i64) -> Reaction {
+        let counts = [(REFUSED, self.refused), (FOREIGN, self.foreign)];
+        let mut metrics = Vec::new();
+        for (place, count) in counts {
+            let value = Value::Large(count);
+            if self.gateway.value(Group::Gateway, place) != Some(&value) {
+                metrics.push(self.gateway.change(Group::Gateway, place, now_ms, value));
+            }
+        }
+        if metrics.is_empty() {
             return Reaction::None;
         }
-        let metric = self.gateway.change(Group::Gateway, REFUSED, now_ms, value);
         let topic = self.names.of_node(Kind::NData);
-        Reaction::Tell(self.message(topic, now_ms, vec![metric]))
+        Reaction::Tell(self.message(topic, now_ms, metrics))
     }
 }
 

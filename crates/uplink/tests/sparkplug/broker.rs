@@ -108,6 +108,10 @@ struct Gateway {
 
 impl Gateway {
     fn start(primary_host: Option<&str>) -> Gateway {
+        Gateway::start_with(primary_host, |_| {})
+    }
+
+    fn start_with(primary_host: Option<&str>, change: impl FnOnce(&mut MqttConfig)) -> Gateway {
         let folder = tempfile::tempdir().expect("a folder");
         let store =
             Store::open(&folder.path().join("plant.db"), &Limits::default()).expect("a store");
@@ -119,6 +123,7 @@ impl Gateway {
         let names = Names::new("plant", "gateway").expect("identifiers");
         let mut config = MqttConfig::new("127.0.0.1", port, names);
         config.primary_host = primary_host.map(str::to_owned);
+        change(&mut config);
         let (store, status) = (Arc::new(store), MqttStatus::default());
         let (wake, woken) = watch::channel(0);
         let (stop, stopped) = watch::channel(false);
@@ -188,9 +193,28 @@ fn the_connect_is_what_the_specification_asks_for() {
     let wanted = [
         one("spBv1.0/plant/NCMD/gateway"),
         one("spBv1.0/plant/DCMD/gateway/+"),
+        one("spBv1.0/plant/NBIRTH/gateway"),
         one("spBv1.0/STATE/scada"),
     ];
     assert_eq!(texts(&subscribe.body[2..], 1), wanted);
+    drop(client);
+    gateway.end();
+}
+
+/// Nobody listens where the first broker should be: the second one gets everything.
+#[test]
+fn a_second_broker_takes_over() {
+    let dead = TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let nowhere = dead.local_addr().expect("it is bound").port();
+    drop(dead);
+    let gateway = Gateway::start_with(None, |config| {
+        config.second = Some((config.host.clone(), config.port));
+        config.port = nowhere;
+    });
+    let mut client = gateway.client();
+    client.welcome();
+    let (topic, ..) = client.message(false);
+    assert_eq!(topic, "spBv1.0/plant/NBIRTH/gateway");
     drop(client);
     gateway.end();
 }

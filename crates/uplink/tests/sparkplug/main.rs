@@ -358,6 +358,35 @@ fn the_sequence_number_goes_round() {
     assert!(plant.host.devices["pump-0"].live.len() >= 299);
 }
 
+/// A birth that was overheard and is played again, and one of a second gateway with the same name, change nothing; they are counted
+/// and told. The own birth comes back from the broker once.
+#[test]
+fn births_of_strangers_are_counted() {
+    let mut plant = Plant::new(false);
+    plant.connect();
+    let topic = "spBv1.0/plant/NBIRTH/gateway";
+    let births = plant.node.birth(plant.now_ms, Vec::new(), Vec::new());
+    plant.take(&births);
+    let own = births[0].payload.clone();
+    let (seq, phase) = (births.len(), plant.node.phase());
+    assert_eq!(plant.node.take(1, topic, &own), Reaction::None);
+    assert_eq!(plant.node.foreign_births(), 0);
+    for (count, stranger) in [(1, &own[..]), (2, b"no birth at all")] {
+        let reaction = plant.node.take(1, topic, stranger);
+        plant.react(reaction);
+        assert_eq!(plant.node.foreign_births(), count);
+        let known = &plant.host.node.values["Gateway/ForeignBirths"];
+        assert_eq!(known.1, Some(Wire::Long(count)));
+    }
+    assert_eq!((plant.node.phase(), seq), (phase, 1));
+    plant.happen(Happening::Second {
+        motor: 0,
+        speed: 100,
+    });
+    plant.tell(10);
+    nothing_is_missing(&plant);
+}
+
 /// A command to a device, and one that is too long, are refused, counted and told.
 #[test]
 fn commands_are_refused_and_counted() {
