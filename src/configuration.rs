@@ -72,10 +72,9 @@ impl Settings {
                 let ended = self.configurator.discard(self.holds);
                 ended.then_some(Change::HoldsAgain)
             }
-            Command::Acknowledge
-            | Command::Learn
-            | Command::Prepare
-            | Command::ReleaseCapture => None,
+            Command::Acknowledge | Command::Learn | Command::Prepare | Command::ReleaseCapture => {
+                None
+            }
         }
     }
 

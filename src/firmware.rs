@@ -3,9 +3,7 @@
 use core::hint::black_box;
 
 use board::modbus::Identity;
-use board::{
-    Button, Calibration, Compiled, Display, Doubt, Doubts, LAMPS, Relay, StuckChannels,
-};
+use board::{Button, Calibration, Compiled, Display, Doubt, Doubts, LAMPS, Relay, StuckChannels};
 use embassy_executor::Spawner;
 use embassy_time::{Duration, Timer};
 use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};

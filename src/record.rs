@@ -25,12 +25,7 @@ pub struct Record {
 
 impl Record {
     /// Nothing recorded yet, in a run of the program whose first event gets the number `start_number`.
-    pub fn new(
-        telemetry: Telemetry,
-        start: &Start,
-        start_number: u32,
-        serial: [u32; 3],
-    ) -> Self {
+    pub fn new(telemetry: Telemetry, start: &Start, start_number: u32, serial: [u32; 3]) -> Self {
         let board = BoardStatus {
             reset_cause: start.cause as u16,
             crash: start.crash,

@@ -26,10 +26,12 @@ mod store;
 
 pub use clock::now_ms;
 pub use entry::{
-    BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, RecordingKey, Second, Thinned, ThinnedTo,
+    BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, RecordingKey, Second, Thinned,
+    ThinnedTo,
 };
 pub use motor::{MotorId, MotorIdError, MotorInfo};
 pub use state::MotorState;
 pub use store::{
-    AlarmRecording, Appended, EntryFilter, Limits, NoRecording, Reader, Samples, Store, StoreError, Trend, TrendPoint, Values,
+    AlarmRecording, Appended, EntryFilter, Limits, NoRecording, Reader, Samples, Store, StoreError,
+    Trend, TrendPoint, Values,
 };

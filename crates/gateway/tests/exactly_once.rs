@@ -161,6 +161,10 @@ fn read_truth(path: &Path) -> BTreeMap<Key, (u32, u32, Option<f32>)> {
         let [kind, motor, digits] = words[..] else {
             panic!("{line}");
         };
+        // Those have a test of their own.
+        if kind == "recording" {
+            continue;
+        }
         let bytes: Vec<u8> = (0..digits.len() / 2)
             .map(|k| u8::from_str_radix(&digits[2 * k..2 * k + 2], 16).expect("digits"))
             .collect();

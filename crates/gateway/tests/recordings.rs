@@ -59,7 +59,9 @@ impl Scene {
     /// Motor and instants of each recording that a board took.
     fn taken(&self) -> HashSet<(String, Vec<u8>)> {
         let truth = std::fs::read_to_string(self.folder.path().join("truth")).expect("a record");
-        let lines = truth.lines().filter_map(|line| line.strip_prefix("recording "));
+        let lines = truth
+            .lines()
+            .filter_map(|line| line.strip_prefix("recording "));
         lines
             .map(|line| {
                 let (motor, digits) = line.split_once(' ').expect("a motor");
@@ -73,7 +75,9 @@ impl Scene {
 
 fn faults(store: &Store) -> Vec<Alarm> {
     let all = store.alarms(&AlarmFilter::default()).expect("it is read");
-    let of_faults = all.into_iter().filter(|alarm| alarm.cause == AlarmCause::Fault);
+    let of_faults = all
+        .into_iter()
+        .filter(|alarm| alarm.cause == AlarmCause::Fault);
     of_faults.collect()
 }
 
@@ -131,7 +135,10 @@ async fn every_alarm_has_what_its_board_took_whenever_the_gateway_ends() {
     for alarm in &alarms {
         let name = alarm.evidence.recording.as_ref();
         let name = name.unwrap_or_else(|| panic!("no recording: {alarm:?}"));
-        let samples = store.recording(name).expect("it is read").expect("it is there");
+        let samples = store
+            .recording(name)
+            .expect("it is read")
+            .expect("it is there");
         let instants = samples.instants.expect("its samples");
         let key = (alarm.motor.as_ref().expect("a motor").to_string(), instants);
         assert!(taken.contains(&key), "{name} is not what the board took");
@@ -139,7 +146,9 @@ async fn every_alarm_has_what_its_board_took_whenever_the_gateway_ends() {
     assert_once(&store);
     let path = Path::new(&scene.folder.path().join("plant.db")).to_owned();
     let reader = fleet::Reader::open(&path).expect("a store");
-    let kept = reader.recording_of_alarm(alarms[0].number).expect("it is there");
+    let kept = reader
+        .recording_of_alarm(alarms[0].number)
+        .expect("it is there");
     assert!(kept.motor_file.ends_with("simulated-motor.toml"));
     let unknown = reader.recording_of_alarm(4_711).expect_err("no such alarm");
     assert!(unknown.to_string().contains("no alarm 4711"));
@@ -158,7 +167,10 @@ async fn a_recording_that_died_with_its_board_is_told() {
     let (alarms, store) = settle(scene.start(), 1).await;
     assert!(!alarms.is_empty());
     for alarm in &alarms {
-        assert!(!is_open(alarm), "neither a recording nor a reason: {alarm:?}");
+        assert!(
+            !is_open(alarm),
+            "neither a recording nor a reason: {alarm:?}"
+        );
         assert_eq!(
             alarm.why_no_recording().is_some(),
             alarm.evidence.recording.is_none()

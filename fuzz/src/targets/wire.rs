@@ -5,7 +5,8 @@ use board::modbus::{
     UNLOCK_KEY,
 };
 use board::{
-    CAPTURE_BYTES, Desk, EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, SECOND_BYTES, SECONDS, Shown, crc32,
+    CAPTURE_BYTES, Desk, EVENT_BYTES, LOG_EVENTS, MAX_FRAME_BYTES, Message, SECOND_BYTES, SECONDS,
+    Shown, crc32,
 };
 use live::Decoder;
 use monitor::Report;

@@ -132,7 +132,9 @@ impl Alarm {
         }
         let known = self.evidence.no_recording.clone();
         let why = match self.cause {
-            AlarmCause::Fault => "it was not fetched yet: a board hands it over within a minute, where it can",
+            AlarmCause::Fault => {
+                "it was not fetched yet: a board hands it over within a minute, where it can"
+            }
             _ => "boards record when FAULT lights; this alarm has another cause",
         };
         Some(known.unwrap_or_else(|| why.to_owned()))

@@ -50,10 +50,14 @@ pub enum NoRecording {
         why: String,
     },
     /// It had one.
-    #[error("the recording of alarm {0} was dropped: the store keeps recordings for `recordings_days`, and drops the oldest when it is full")]
+    #[error(
+        "the recording of alarm {0} was dropped: the store keeps recordings for `recordings_days`, and drops the oldest when it is full"
+    )]
     Dropped(u64),
     /// Codes of a converter are no volts.
-    #[error("motor {0} has no `motor_file` in the gateway's configuration: name the file with which its board was flashed, and start the gateway again; without it codes of the converter do not become volts and amperes")]
+    #[error(
+        "motor {0} has no `motor_file` in the gateway's configuration: name the file with which its board was flashed, and start the gateway again; without it codes of the converter do not become volts and amperes"
+    )]
     NoMotorFile(MotorId),
     /// The store failed.
     #[error(transparent)]
@@ -66,7 +70,8 @@ pub(super) fn put(
     motor: i64,
     recording: &Recording,
 ) -> Result<bool, StoreError> {
-    let text = "INSERT INTO recording(name, motor, time_ms, constants, body) VALUES (?1, ?2, ?3, ?4, ?5)
+    let text =
+        "INSERT INTO recording(name, motor, time_ms, constants, body) VALUES (?1, ?2, ?3, ?4, ?5)
          ON CONFLICT(name) DO UPDATE SET body = excluded.body, constants = excluded.constants
          WHERE recording.body IS NULL AND excluded.body IS NOT NULL";
     let samples = Some(&recording.samples).filter(|samples| !samples.is_empty());
@@ -101,7 +106,8 @@ pub(super) fn drop_before(
     motor: i64,
     before_ms: i64,
 ) -> rusqlite::Result<usize> {
-    let text = "UPDATE recording SET body = NULL WHERE motor = ?1 AND time_ms < ?2 AND body IS NOT NULL";
+    let text =
+        "UPDATE recording SET body = NULL WHERE motor = ?1 AND time_ms < ?2 AND body IS NOT NULL";
     tx.prepare_cached(text)?.execute([motor, before_ms])
 }
 
@@ -118,11 +124,7 @@ impl Store {
     ///
     /// # Errors
     /// The motor is not declared, or reading failed.
-    pub fn knows_recording(
-        &self,
-        motor: &MotorId,
-        key: RecordingKey,
-    ) -> Result<bool, StoreError> {
+    pub fn knows_recording(&self, motor: &MotorId, key: RecordingKey) -> Result<bool, StoreError> {
         let name = key.name(motor, self.marks_of(motor)?.board);
         Ok(self.recording(&name)?.is_some())
     }

@@ -23,9 +23,11 @@ const HALF_MS: i64 = 128;
 
 const TOO_OLD: &str = "the program of its board gives out no recordings over Modbus; flash it with the program of this version";
 const OTHER_LAYOUT: &str = "its board gives out recordings of another layout; use the gateway of the version with which the board was flashed";
-const LOST_POWER: &str = "its board started again before the recording was fetched; it lies in memory";
+const LOST_POWER: &str =
+    "its board started again before the recording was fetched; it lies in memory";
 const GIVEN_UP: &str = "it was given up at the board before it was fetched: its button was pressed, or a master acknowledged";
-const HELD_ANOTHER: &str = "its board still held the recording of an earlier alarm, which nobody had fetched yet";
+const HELD_ANOTHER: &str =
+    "its board still held the recording of an earlier alarm, which nobody had fetched yet";
 
 /// An alarm that has neither a recording nor a reason why it has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,11 +177,7 @@ async fn give_up(motor: &mut Watched, why: &str, context: &Context) -> Result<()
 }
 
 /// The board waits for its next alarm: what was wanted is stored already, or will never come.
-async fn nothing_there(
-    motor: &mut Watched,
-    head: &Head,
-    context: &Context,
-) -> Result<(), Trouble> {
+async fn nothing_there(motor: &mut Watched, head: &Head, context: &Context) -> Result<(), Trouble> {
     let recordings = &mut motor.recordings;
     recordings.under_way = None;
     recordings.settled += 1;

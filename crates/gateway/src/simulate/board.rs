@@ -1,11 +1,12 @@
 //! A board whose motor is made up: event log, seconds and Modbus are the real ones.
 
 use board::modbus::{
-    Command, Field, Files, Identity, Image, MAP_VERSION, MAX_RESPONSE_BYTES, Memory, SecondCollector, Slave,
+    Command, Field, Files, Identity, Image, MAP_VERSION, MAX_RESPONSE_BYTES, Memory,
+    SecondCollector, Slave,
 };
 use board::{
-    Appended, CAPTURE_BYTES, Capture, CaptureState, Configuration, Desk, Event, EventCause, EventLog, Journal, MotorImage, SecondRing,
-    Situation,
+    Appended, CAPTURE_BYTES, Capture, CaptureState, Configuration, Desk, Event, EventCause,
+    EventLog, Journal, MotorImage, SecondRing, Situation,
 };
 use crc::{CRC_16_MODBUS, Crc};
 use fleet::lamp;

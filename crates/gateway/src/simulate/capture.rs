@@ -62,7 +62,11 @@ pub(super) fn record(
     Ok(())
 }
 
-fn samples(mut motor: MotorFile, fault: FaultId, seed: u64) -> Result<Vec<RawSample>, CaptureError> {
+fn samples(
+    mut motor: MotorFile,
+    fault: FaultId,
+    seed: u64,
+) -> Result<Vec<RawSample>, CaptureError> {
     motor.sensors.noise_sigma_fraction_of_full_scale = NOISE;
     let length_s = (CAPTURE_INSTANTS * CAPTURE_EVERY) as f64 * T_SAMPLE;
     let mut scenario = Scenario::of(motor, SETTLING_S + length_s);
@@ -82,7 +86,11 @@ fn samples(mut motor: MotorFile, fault: FaultId, seed: u64) -> Result<Vec<RawSam
         })
         .collect();
     let settled = all.len().saturating_sub(CAPTURE_INSTANTS * CAPTURE_EVERY);
-    Ok(all.into_iter().skip(settled).step_by(CAPTURE_EVERY).collect())
+    Ok(all
+        .into_iter()
+        .skip(settled)
+        .step_by(CAPTURE_EVERY)
+        .collect())
 }
 
 /// What fails in the motor or its instruments. A sensor of the published bench is one behind the d-q transformation: here its three

@@ -4,8 +4,8 @@ use board::modbus::{
     CAPTURE_FILE, Command, EVENT_FILE, Field, MOST_FILE_WORDS, SECONDS_FILE, UNLOCK_KEY, address,
 };
 use board::{
-    CAPTURE_BYTES, CAPTURE_HEAD_BYTES,
-    EVENT_BYTES, Event, LOG_EVENTS, SECOND_BYTES, SECONDS, Second, place_of, place_of_second,
+    CAPTURE_BYTES, CAPTURE_HEAD_BYTES, EVENT_BYTES, Event, LOG_EVENTS, SECOND_BYTES, SECONDS,
+    Second, place_of, place_of_second,
 };
 
 const READ_INPUT: u8 = 4;

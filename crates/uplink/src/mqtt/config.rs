@@ -158,12 +158,13 @@ fn identifier(section: &Section<'_>, key: &str) -> Option<Option<String>> {
 fn tls(section: &Section<'_>, folder: &Path) -> Option<Option<TlsConfig>> {
     let wanted = section.flag_or("tls", false);
     let ca_file = section.optional_text("ca_file")?;
+    let own = own_certificate(section, folder);
     if ca_file.is_some() && wanted == Some(false) {
         section.report("ca_file", "is only used with TLS: write `tls = true` too");
         return None;
     }
     let ca_file = ca_file.map(|file| folder.join(file));
-    let own = own_certificate(section, folder)?;
+    let own = own?;
     if own.is_some() && wanted == Some(false) {
         section.report(
             "certificate_file",

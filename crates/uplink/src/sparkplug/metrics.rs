@@ -257,7 +257,12 @@ const ALARM: [Definition; 13] = {
 const RECORDING: [Definition; 5] = {
     use Datatype::{DateTime, Text, UInt64};
     [
-        metric("Recording/File", Text, "", "name of a recording, the samples around an alarm"),
+        metric(
+            "Recording/File",
+            Text,
+            "",
+            "name of a recording, the samples around an alarm",
+        ),
         metric("Recording/Size", UInt64, "byte", "its size"),
         metric("Recording/From", DateTime, "", "begin of its samples"),
         metric("Recording/To", DateTime, "", "their end"),

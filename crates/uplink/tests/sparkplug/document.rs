@@ -66,6 +66,7 @@ fn the_tests_of_the_assertions_exist() {
     let mut code = String::new();
     sources(&crates.join("uplink"), &mut code);
     sources(&crates.join("fleet/src"), &mut code);
+    sources(&crates.join("gateway/src"), &mut code);
     let (_, table) = text
         .split_once("| assertion | state | by what |")
         .expect("the table");
