@@ -104,8 +104,8 @@ fn series_are_bounded() {
         })
         .collect();
     let series = |text: &str| text.lines().filter(|line| !line.starts_with('#')).count();
-    assert_eq!(series(&text(&motors, 0)), 7 + 2 + 6 + 6);
-    assert_eq!(series(&text(&motors, 20)), 7 + 2 + 6 + 6 + 20 * 24);
+    assert_eq!(series(&text(&motors, 0)), 7 + 2 + 7 + 6);
+    assert_eq!(series(&text(&motors, 20)), 7 + 2 + 7 + 6 + 20 * 24);
     assert!(text(&motors, 20).contains("drivemon_motors_hidden 30\n"));
 }
 
