@@ -6,7 +6,8 @@ use tokio::time::{MissedTickBehavior, interval, sleep};
 
 use super::context::Context;
 use super::motor::Watched;
-use super::visit::{Trouble, visit};
+use super::trouble::Trouble;
+use super::visit::visit;
 use crate::bus::Bus;
 use crate::config::LinkConfig;
 

@@ -8,7 +8,9 @@ mod link;
 mod motor;
 mod recording;
 mod tally;
+mod trouble;
 mod visit;
+mod wanted;
 
 pub(crate) use context::Context;
 pub(crate) use link::follow;

@@ -6,7 +6,7 @@ use board::{Event, EventCause, LOG_EVENTS, SECONDS};
 use fleet::{Entry, Gap, GapOf, MotorId};
 
 use super::clock::Clock;
-use super::recording::Recordings;
+use super::wanted::Recordings;
 use crate::config::MotorConfig;
 use crate::wire::question::Head;
 

@@ -1,23 +1,20 @@
 //! The samples around an alarm: fetched from the board in pieces, stored, and released so that the next alarm has some too.
 
 use board::{CAPTURE_BYTES, CAPTURE_HEAD_BYTES, CaptureHead, CaptureState};
-use fleet::alarm::{Alarm, AlarmCause, AlarmFilter};
-use fleet::{Entry, Recording, RecordingKey, Second, lamp, now_ms};
+use fleet::alarm::AlarmFilter;
+use fleet::{Entry, Recording, RecordingKey, now_ms};
 use tokio::sync::oneshot;
 
 use super::context::Context;
 use super::motor::Watched;
 use super::tally::Post;
-use super::visit::Trouble;
+use super::trouble::Trouble;
+use super::wanted::{APART_S, UnderWay, Wanted};
 use crate::bus::{Bus, BusError};
 use crate::wire::question::{self, Head};
 
 /// Pieces of one visit: others on the link wait meanwhile.
 const PIECES: usize = 8;
-/// A board is looked at so often after the gateway began: alarms that follow from what was stored last are a moment behind.
-const LOOKS: u32 = 3;
-/// Between the second in which FAULT lights and the one that shows it, at most.
-const APART_S: u32 = 2;
 /// Half a recording, ms.
 const HALF_MS: i64 = 128;
 
@@ -28,102 +25,6 @@ const LOST_POWER: &str =
 const GIVEN_UP: &str = "it was given up at the board before it was fetched: its button was pressed, or a master acknowledged";
 const HELD_ANOTHER: &str =
     "its board still held the recording of an earlier alarm, which nobody had fetched yet";
-
-/// An alarm that has neither a recording nor a reason why it has none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Wanted {
-    start: u32,
-    /// `None`: some second of that run, which an event told.
-    second: Option<u32>,
-    time_ms: i64,
-}
-
-impl Wanted {
-    fn is(&self, start: u32, second: u32) -> bool {
-        let fits = |own: u32| own.abs_diff(second) <= APART_S;
-        self.start == start && self.second.is_none_or(fits)
-    }
-
-    fn is_before(&self, moment: Option<(u32, u32)>) -> bool {
-        let own = self.second.map(|second| (self.start, second));
-        own.zip(moment)
-            .is_some_and(|((run, second), (start, end))| run == start && second <= end)
-    }
-}
-
-/// A recording that is being fetched.
-#[derive(Debug)]
-struct UnderWay {
-    head: CaptureHead,
-    instants: Vec<u8>,
-}
-
-/// What a link knows of the recordings of a motor.
-#[derive(Debug, Default)]
-pub(super) struct Recordings {
-    /// How often the board was found with nothing to be fetched or released, since the gateway began.
-    settled: u32,
-    was_lit: bool,
-    wanted: Vec<Wanted>,
-    under_way: Option<UnderWay>,
-    /// Run and second in which a recording was released last.
-    released: Option<(u32, u32)>,
-}
-
-impl Recordings {
-    /// Goes on behind the second that is stored.
-    pub fn of_stored(last: Option<&Second>) -> Self {
-        Recordings {
-            was_lit: last.is_some_and(|second| second.is_on(lamp::FAULT)),
-            ..Recordings::default()
-        }
-    }
-
-    /// Whether the board need not be asked until its next alarm.
-    fn is_settled(&self) -> bool {
-        self.settled >= LOOKS
-    }
-
-    /// Takes a second: where FAULT lights in it there is a recording to be fetched.
-    pub fn look(&mut self, second: &Second) {
-        let is_lit = second.is_on(lamp::FAULT);
-        if is_lit && !self.was_lit {
-            self.wanted.push(Wanted {
-                start: second.start,
-                second: Some(second.number),
-                time_ms: second.time_ms,
-            });
-        }
-        self.was_lit = is_lit;
-    }
-
-    /// Alarms that the store has without a recording: those of before the gateway began.
-    fn recall(&mut self, alarms: &[Alarm], start: u32) {
-        let open = alarms.iter().filter(|alarm| {
-            let evidence = &alarm.evidence;
-            let none = evidence.recording.is_none() && evidence.no_recording.is_none();
-            alarm.cause == AlarmCause::Fault && none
-        });
-        for alarm in open {
-            let time_ms = alarm.raised_ms;
-            let this_run = alarm.evidence.event.is_some_and(|event| event >= start);
-            let (start, second) = match alarm.evidence.second {
-                Some((start, second)) => (start, Some(second)),
-                None if this_run => (start, None),
-                None => (0, None),
-            };
-            let new = Wanted {
-                start,
-                second,
-                time_ms,
-            };
-            // Of one motor one alarm of a fault is open.
-            if self.wanted.is_empty() {
-                self.wanted.push(new);
-            }
-        }
-    }
-}
 
 /// Fetches what there is, a few pieces at a visit.
 pub(super) async fn take_recording(
@@ -333,68 +234,4 @@ async fn post(motor: &Watched, recording: Recording, context: &Context) -> Resul
     };
     context.posts.send(post).await.map_err(|_| Trouble::Ended)?;
     is_durable.await.map_err(|_| Trouble::Ended)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn second(number: u32, is_lit: bool) -> Second {
-        Second {
-            start: 7,
-            number,
-            time_ms: 1_000 * i64::from(number),
-            lamps: u32::from(is_lit) << (2 * lamp::FAULT),
-            ..Second::default()
-        }
-    }
-
-    #[test]
-    fn a_recording_is_wanted_where_fault_lights() {
-        let mut recordings = Recordings::of_stored(Some(&second(1, true)));
-        for (number, is_lit) in [(2, true), (3, false), (4, true), (5, true)] {
-            recordings.look(&second(number, is_lit));
-        }
-        let wanted: Vec<_> = recordings.wanted.iter().map(|w| w.second).collect();
-        assert_eq!(wanted, [Some(4)]);
-    }
-
-    #[test]
-    fn alarms_of_before_the_gateway_began_are_wanted_once() {
-        let alarm = |number, of_second, event, reason: Option<&str>| Alarm {
-            number,
-            motor: None,
-            cause: AlarmCause::Fault,
-            state: fleet::alarm::AlarmState::Unacknowledged,
-            present: true,
-            acknowledged: false,
-            suppressed: false,
-            severity: fleet::alarm::Severity::High,
-            fault: 0,
-            size: None,
-            evidence: fleet::alarm::Evidence {
-                second: of_second,
-                event,
-                no_recording: reason.map(str::to_owned),
-                ..fleet::alarm::Evidence::default()
-            },
-            raised_ms: 90_000,
-            changed_ms: 0,
-            times: 1,
-            shelved_until_ms: None,
-        };
-        let cases = [
-            (alarm(1, Some((7, 40)), None, None), Some((7, Some(40)))),
-            (alarm(2, None, Some(9), None), Some((7, None))),
-            (alarm(3, None, Some(3), None), Some((0, None))),
-            (alarm(4, Some((7, 50)), None, Some("no")), None),
-        ];
-        for (alarm, expected) in cases {
-            let mut recordings = Recordings::default();
-            (0..2).for_each(|_| recordings.recall(std::slice::from_ref(&alarm), 7));
-            let mut wanted = recordings.wanted.iter();
-            let first = wanted.next().map(|wanted| (wanted.start, wanted.second));
-            assert_eq!((first, wanted.next()), (expected, None));
-        }
-    }
 }

@@ -7,24 +7,12 @@ use tokio::sync::oneshot;
 use super::clock::Clock;
 use super::context::Context;
 use super::motor::{self, Wanted, Watched, gap};
-use super::recording::{Recordings, take_recording};
+use super::recording::take_recording;
 use super::tally::Post;
+use super::trouble::Trouble;
+use super::wanted::Recordings;
 use crate::bus::{Bus, BusError};
 use crate::wire::question::{self, Head, Question};
-
-/// Why a visit brought nothing.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(super) enum Trouble {
-    /// No answer.
-    #[error(transparent)]
-    Bus(#[from] BusError),
-    /// An answer that must not be stored under this motor.
-    #[error("{0}")]
-    Other(String),
-    /// The gateway ends.
-    #[error("the gateway ends")]
-    Ended,
-}
 
 /// Asks a board who it is and what its newest numbers are.
 pub(crate) async fn knock(bus: &mut Bus, unit: u8) -> Result<Head, BusError> {
