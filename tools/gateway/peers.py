@@ -37,8 +37,13 @@ def mqtt(name, port):
     client = paho.Client(name, clean_session=False)
     client.reconnect_delay_set(1, 1)
     client.max_queued_messages_set(0)
-    client.connect("127.0.0.1", port, 10)
-    return client
+    while True:
+        try:
+            client.connect("127.0.0.1", port, 10)
+            return client
+        except OSError:
+            # It was just started.
+            time.sleep(0.2)
 
 
 def mqtt_send(port, rate, path):

@@ -2,4 +2,5 @@
 
 mod browser;
 mod processes;
+mod recording;
 mod strangers;
