@@ -59,7 +59,10 @@ async fn a_board_under_a_forged_address_is_refused() {
     let gateway = start(folder.path(), &text);
     let store = gateway.store();
     (0..20).for_each(|_| plant.tick(0, 1).expect("nothing is written"));
-    until("the other board's seconds", || seconds(&store, "m00002").len() == 20).await;
+    until("the other board's seconds", || {
+        seconds(&store, "m00002").len() == 20
+    })
+    .await;
     let states = store.motors().expect("they are read");
     let why = &states[0].link.as_ref().expect("it is told").why;
     assert!(why.contains("another board answers"), "{why}");

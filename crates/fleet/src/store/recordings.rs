@@ -120,13 +120,16 @@ impl Store {
         self.reading(|connection| get(connection, name))
     }
 
-    /// Whether something is stored of a recording: its samples, or why there are none.
+    /// What is stored of a motor's recording: its samples, or that there are none; `None`: nothing.
     ///
     /// # Errors
     /// The motor is not declared, or reading failed.
-    pub fn knows_recording(&self, motor: &MotorId, key: RecordingKey) -> Result<bool, StoreError> {
-        let name = key.name(motor, self.marks_of(motor)?.board);
-        Ok(self.recording(&name)?.is_some())
+    pub fn recording_of(
+        &self,
+        motor: &MotorId,
+        key: RecordingKey,
+    ) -> Result<Option<Samples>, StoreError> {
+        self.recording(&key.name(motor, self.marks_of(motor)?.board))
     }
 }
 

@@ -11,6 +11,8 @@ use tempfile::TempDir;
 
 /// 2026-09-21 00:00 UTC.
 const DAY: i64 = 1_789_948_800_000;
+/// A day, ms.
+const DAY_MS: i64 = 86_400_000;
 const HOUR: i64 = 3_600_000;
 
 fn id(name: &str) -> MotorId {
@@ -392,4 +394,47 @@ fn ids_are_never_given_twice_although_the_newest_rows_are_gone() {
     let store = Store::open(&path, &Limits::default()).unwrap();
     store.append(&seconds("a", 101..=101)).unwrap();
     assert_eq!(store.since(0, 10).unwrap()[0].id, 101);
+}
+
+fn recording(second: u32, samples: &[u8], missing: Option<&str>) -> Entry {
+    Entry::Recording(fleet::Recording {
+        time_ms: DAY,
+        from_ms: DAY,
+        to_ms: DAY,
+        key: fleet::RecordingKey::Second { start: 7, second },
+        missing: missing.map(str::to_owned),
+        samples: samples.to_vec(),
+        ..fleet::Recording::default()
+    })
+}
+
+/// Samples are stored once; they take the place of a reason, and nothing takes theirs.
+#[test]
+fn a_recording_is_stored_once_and_dropped_with_its_days() {
+    let (_folder, _path, store) = plant(&Limits::default(), &["a"]);
+    let put = |entry: Entry| store.append(&[(id("a"), entry)]).unwrap().stored;
+    assert_eq!(put(recording(5, &[], Some("no power"))), 1);
+    assert_eq!(put(recording(5, &[], Some("no power"))), 0);
+    assert_eq!(put(recording(5, &[1, 2], None)), 1);
+    assert_eq!(put(recording(5, &[3], None)), 0);
+    assert_eq!(put(recording(5, &[], Some("no power"))), 0);
+    let name = "a.0.7.5";
+    let instants = || store.recording(name).unwrap().unwrap().instants;
+    assert_eq!(instants(), Some(vec![1, 2]));
+    let names: Vec<_> = all(&store)
+        .into_iter()
+        .filter_map(|entry| match entry {
+            Entry::Recording(recording) => Some(recording.file),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(names, [name, name]);
+    store.maintain(DAY + 400 * DAY_MS).unwrap();
+    assert_eq!(instants(), Some(vec![1, 2]));
+    store.maintain(DAY + 401 * DAY_MS).unwrap();
+    assert_eq!(instants(), None);
+    let told = all(&store).into_iter().any(|entry| {
+        matches!(entry, Entry::Thinned(thinned) if thinned.to == fleet::ThinnedTo::RecordingsDropped && thinned.count == 1)
+    });
+    assert!(told);
 }

@@ -107,8 +107,9 @@ async fn take_complete(
     context: &Context,
 ) -> Result<(), Trouble> {
     let key = key_of(&capture);
-    let knows = |key| context.store.knows_recording(&motor.id, key);
-    if !knows(key).map_err(|error| Trouble::Other(error.to_string()))? {
+    let stored = context.store.recording_of(&motor.id, key);
+    let stored = stored.map_err(|error| Trouble::Other(error.to_string()))?;
+    if stored.is_none_or(|samples| samples.instants.is_none()) {
         let Some(instants) = take_pieces(bus, motor, capture).await? else {
             return Ok(());
         };
@@ -208,8 +209,9 @@ async fn tell_missing(
     let (start, own) = (wanted.start, wanted.second.unwrap_or(0));
     for second in own.saturating_sub(APART_S)..=own.saturating_add(APART_S) {
         let key = RecordingKey::Second { start, second };
-        let known = context.store.knows_recording(&motor.id, key);
-        if known.map_err(|error| Trouble::Other(error.to_string()))? {
+        let known = context.store.recording_of(&motor.id, key);
+        let known = known.map_err(|error| Trouble::Other(error.to_string()))?;
+        if known.is_some() {
             return Ok(());
         }
     }
