@@ -13,6 +13,7 @@
 //! assert!(outcome.windows > 0 && outcome.healthy_fault == 0);
 //! ```
 
+pub mod hours;
 mod planned;
 mod results;
 mod runs;
@@ -23,7 +24,7 @@ pub use planned::plan::{Block, Case, LoadKnowledge, MotorPair, Place, Plan, Targ
 pub use results::detection::{DETECTED, Detection, Direction, Size};
 pub use results::groups::Named;
 pub use results::markdown::page as markdown;
-pub use results::statistics::{RISK, Share};
+pub use results::statistics::{RISK, Share, poisson_at_most};
 pub use results::table::{Alarm, Healthy, Table, conditions};
 pub use runs::file::{About, Results, StoreError};
 pub use runs::outcome::{Answer, LampsSeen, Outcome};

@@ -39,6 +39,7 @@
 #[cfg(all(feature = "motor-file", not(test)))]
 extern crate std;
 
+mod by_cycle;
 mod checks;
 mod config;
 mod frames;
@@ -95,4 +96,4 @@ pub use sync::encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use sync::phasor::{ChannelCycle, CyclePhasors};
 pub use sync::pll::{Supply, SyncConfig, SyncState, SyncTick};
 pub use sync::rotation::{renormalise, small_rotation};
-pub use window::{CycleNoise, MAX_WINDOW_CYCLES, RateNoise, Rates, Window};
+pub use window::{Cycle, CycleNoise, MAX_WINDOW_CYCLES, RateNoise, Rates, Window};

@@ -242,7 +242,12 @@ impl Monitor {
             invalid_samples: tally.invalid,
         };
         let corrected = self.at_terminals(state, cycle);
-        state.window.push(corrected, self.config.window_cycles);
+        self.take_cycle(state, corrected)
+    }
+
+    /// What follows from one cycle at the terminals.
+    pub(crate) fn take_cycle(&self, state: &mut MonitorState, cycle: Cycle) -> Report {
+        state.window.push(cycle, self.config.window_cycles);
         let window = state
             .window
             .measure(self.config.window_cycles, self.config.t_sample)

@@ -2,10 +2,15 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use statrs::distribution::{Beta, ContinuousCDF};
+use statrs::distribution::{Beta, ContinuousCDF, Gamma};
 
 /// One minus this is the confidence of every one-sided bound.
 pub const RISK: f64 = 0.05;
+
+/// The mean behind a count is at most this, with 95 % confidence (exact Poisson bound: Garwood 1936).
+pub fn poisson_at_most(count: u64) -> f64 {
+    Gamma::new(count as f64 + 1.0, 1.0).map_or(f64::NAN, |gamma| gamma.inverse_cdf(1.0 - RISK))
+}
 
 /// So many out of so many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
