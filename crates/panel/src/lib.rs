@@ -13,6 +13,7 @@ mod running;
 
 pub use http::guard::{Guard, Token};
 pub use http::server::{Options, PanelError, Running, bind};
+pub use http::tls::{TlsError, TlsFiles};
 pub use running::bench::MotorError;
 pub use running::message::{LampsMessage, Operation, Plate, Vectors, WindowMessage};
 pub use running::session::{Session, start};

@@ -74,7 +74,7 @@ impl Server {
                 .read_to_string(&mut said);
             panic!("no address was printed: {said}");
         };
-        let host = url.strip_prefix("http://").expect("a link");
+        let (_, host) = url.split_once("://").expect("a link");
         let address = host.split('/').next().expect("an address").to_owned();
         Server {
             child,

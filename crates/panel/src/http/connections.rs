@@ -17,8 +17,10 @@ use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use socket2::SockRef;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Notify;
+use tokio_rustls::TlsAcceptor;
 use tokio_stream::StreamExt;
 
 use crate::running::shared::locked;
@@ -89,8 +91,13 @@ fn prepare(stream: &TcpStream) {
     let _ = socket.set_tcp_user_timeout(Some(UNHEARD));
 }
 
-/// Answers for ever.
-pub async fn serve(listener: &TcpListener, router: &Router, connections: &Connections) {
+/// Answers for ever, through TLS where there is an acceptor.
+pub async fn serve(
+    listener: &TcpListener,
+    tls: Option<&TlsAcceptor>,
+    router: &Router,
+    connections: &Connections,
+) {
     loop {
         let Ok((stream, _)) = listener.accept().await else {
             // Out of files, or the other end gave up already.
@@ -102,10 +109,10 @@ pub async fn serve(listener: &TcpListener, router: &Router, connections: &Connec
             continue;
         };
         prepare(&stream);
-        let (router, open) = (router.clone(), connections.0.clone());
+        let (router, open, tls) = (router.clone(), connections.0.clone(), tls.cloned());
         tokio::spawn(async move {
             tokio::select! {
-                () = answer(stream, router, connection.clone()) => {}
+                () = greet(stream, tls, router, connection.clone()) => {}
                 () = connection.cut.notified() => {}
             }
             Connections::closed(&open, &connection);
@@ -113,7 +120,25 @@ pub async fn serve(listener: &TcpListener, router: &Router, connections: &Connec
     }
 }
 
-async fn answer(stream: TcpStream, router: Router, connection: Connection) {
+/// A handshake that does not come to its end in the time of a head is given up.
+async fn greet(
+    stream: TcpStream,
+    tls: Option<TlsAcceptor>,
+    router: Router,
+    connection: Connection,
+) {
+    let Some(tls) = tls else {
+        return answer(stream, router, connection).await;
+    };
+    if let Ok(Ok(stream)) = tokio::time::timeout(HEAD, tls.accept(stream)).await {
+        answer(stream, router, connection).await;
+    }
+}
+
+async fn answer<S>(stream: S, router: Router, connection: Connection)
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
     let router = router.layer(Extension(connection));
     let served = http1::Builder::new()
         .timer(TokioTimer::new())

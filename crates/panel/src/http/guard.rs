@@ -65,6 +65,7 @@ pub struct Guard {
     bound: IpAddr,
     names: Vec<String>,
     token: Option<Token>,
+    encrypted: bool,
 }
 
 impl Guard {
@@ -75,7 +76,14 @@ impl Guard {
             port: address.port(),
             bound: address.ip(),
             names: names.iter().map(|name| name.to_ascii_lowercase()).collect(),
+            encrypted: false,
         }
+    }
+
+    /// The same for a server that speaks TLS itself, or does not.
+    #[must_use]
+    pub fn encrypted(self, encrypted: bool) -> Guard {
+        Guard { encrypted, ..self }
     }
 
     /// The part of the printed link behind the address.
@@ -119,8 +127,9 @@ impl Guard {
     fn cookie(&self) -> Option<HeaderValue> {
         let Token(token) = self.token.as_ref()?;
         let cookie = format!(
-            "{}={token}; Path=/; HttpOnly; SameSite=Strict",
-            self.cookie_name()
+            "{}={token}; Path=/; HttpOnly; SameSite=Strict{}",
+            self.cookie_name(),
+            secure(self.encrypted)
         );
         HeaderValue::from_str(&cookie).ok()
     }
@@ -144,15 +153,16 @@ impl Guard {
             .trim_end_matches(']')
             .parse::<IpAddr>();
         let by_address = address.is_ok_and(|address| self.is_bound_to(address));
-        uri.port_u16().unwrap_or(80) == self.port && (by_address || name == "localhost")
+        let usual_port = if self.encrypted { 443 } else { 80 };
+        uri.port_u16().unwrap_or(usual_port) == self.port && (by_address || name == "localhost")
     }
 
-    /// Whether an `Origin` is this server's page: plain, or behind a proxy with TLS under a further name.
+    /// Whether an `Origin` is this server's page: of its own scheme, or behind a proxy with TLS under a further name.
     fn is_origin(&self, origin: &str) -> bool {
-        let plain = origin.strip_prefix("http://");
+        let plain = origin.strip_prefix("http://").filter(|_| !self.encrypted);
         let secure = origin.strip_prefix("https://").filter(|host| {
             let name = host.split(':').next().unwrap_or_default();
-            self.names.contains(&name.to_ascii_lowercase())
+            self.encrypted || self.names.contains(&name.to_ascii_lowercase())
         });
         plain.or(secure).is_some_and(|host| self.knows(host))
     }
@@ -198,6 +208,11 @@ impl Guard {
             .is_none_or(is_plain);
         (changes && plain).then_some((StatusCode::UNSUPPORTED_MEDIA_TYPE, PLAIN_BODY))
     }
+}
+
+/// What a cookie says where it may travel encrypted alone.
+pub fn secure(encrypted: bool) -> &'static str {
+    if encrypted { "; Secure" } else { "" }
 }
 
 const FOREIGN_HOST: &str = "this panel is not called by that name: open the address that it printed, or start it with --allow-host NAME\n";
@@ -295,6 +310,14 @@ mod tests {
         assert!(one.is(&one.0) && !one.is(&another.0));
         assert!(!one.is("") && !one.is(&one.0[..31]) && !one.is(&format!("{}0", one.0)));
         assert!(!format!("{one:?}").contains(&one.0), "logs do not show it");
+    }
+
+    #[test]
+    fn with_tls_its_page_is_encrypted() {
+        let guard = guard("192.168.1.7:443", &[]).encrypted(true);
+        assert!(guard.knows("192.168.1.7") && guard.is_origin("https://192.168.1.7"));
+        assert!(!guard.is_origin("http://192.168.1.7") && !guard.knows("192.168.1.7:80"));
+        assert!(!guard.is_origin("https://other.example"));
     }
 
     #[test]

@@ -7,3 +7,4 @@ pub(crate) mod export;
 pub(crate) mod guard;
 pub(crate) mod server;
 pub(crate) mod stream;
+pub(crate) mod tls;

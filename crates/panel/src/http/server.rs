@@ -7,9 +7,11 @@ use axum::extract::DefaultBodyLimit;
 use axum::{Router, middleware};
 use tokio::net::TcpListener;
 use tokio::sync::watch;
+use tokio_rustls::TlsAcceptor;
 
 use crate::http::connections::{self, Connections};
 use crate::http::guard::{Guard, Token, check};
+use crate::http::tls::{TlsError, TlsFiles, acceptor};
 use crate::http::{api, assets};
 use crate::running::session::Session;
 use crate::workbench;
@@ -29,6 +31,28 @@ pub struct Options {
     pub allow_network: bool,
     /// Further names that the server may be called by.
     pub allow_hosts: Vec<String>,
+    /// Encrypts, where it is given.
+    pub tls: Option<TlsFiles>,
+    /// Whether others may reach the page of a plant without encryption.
+    pub allow_plain: bool,
+}
+
+impl Options {
+    /// What answers TLS.
+    ///
+    /// # Errors
+    /// Files that cannot be used.
+    pub(crate) fn acceptor(&self) -> Result<Option<TlsAcceptor>, TlsError> {
+        self.tls.as_ref().map(acceptor).transpose()
+    }
+
+    /// The scheme of its links.
+    pub(crate) fn scheme(&self) -> &'static str {
+        match self.tls {
+            Some(_) => "https",
+            None => "http",
+        }
+    }
 }
 
 /// Why there is no server.
@@ -43,6 +67,9 @@ pub enum PanelError {
     /// No token could be made.
     #[error("the system gives no random numbers for the token of --allow-network: {0}")]
     Random(getrandom::Error),
+    /// It cannot encrypt.
+    #[error(transparent)]
+    Tls(#[from] TlsError),
     /// The system refuses.
     #[error("{address}: {error}; choose another --port, or --port 0 for any that is free")]
     Bind {
@@ -54,10 +81,11 @@ pub enum PanelError {
 }
 
 /// A server that listens and does not answer yet.
-#[derive(Debug)]
 pub struct Running {
     listener: TcpListener,
     address: SocketAddr,
+    scheme: &'static str,
+    tls: Option<TlsAcceptor>,
     guard: Arc<Guard>,
     bench: Arc<Bench>,
     router: Router,
@@ -76,15 +104,19 @@ pub async fn bind(options: &Options, session: Arc<Session>) -> Result<Running, P
         address: wanted,
         error,
     };
+    let tls = options.acceptor()?;
     let token = options.allow_network.then(Token::random).transpose();
     let token = token.map_err(PanelError::Random)?;
     let listener = TcpListener::bind(wanted).await.map_err(refused)?;
     let address = listener.local_addr().map_err(refused)?;
-    let guard = Arc::new(Guard::new(address, &options.allow_hosts, token));
+    let guard = Guard::new(address, &options.allow_hosts, token).encrypted(tls.is_some());
+    let guard = Arc::new(guard);
     let bench = workbench::bench(session.clone());
     Ok(Running {
         listener,
         address,
+        scheme: options.scheme(),
+        tls,
         router: router(session, bench.clone(), guard.clone()),
         guard,
         bench,
@@ -109,7 +141,7 @@ impl Running {
         if address.ip().is_unspecified() {
             address.set_ip(IpAddr::from([127, 0, 0, 1]));
         }
-        format!("http://{address}/{}", self.guard.query())
+        format!("{}://{address}/{}", self.scheme, self.guard.query())
     }
 
     /// Whether other computers can reach it under their own name for this one.
@@ -121,7 +153,7 @@ impl Running {
     pub async fn serve(self, mut end: watch::Receiver<bool>) {
         let connections = Connections::default();
         tokio::select! {
-            () = connections::serve(&self.listener, &self.router, &connections) => {}
+            () = connections::serve(&self.listener, self.tls.as_ref(), &self.router, &connections) => {}
             _ = end.wait_for(|end| *end) => {}
         }
         self.bench.clear();
