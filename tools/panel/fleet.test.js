@@ -5,6 +5,7 @@ import test from "node:test";
 
 import { instant } from "../../crates/panel/assets/charts.js";
 import { actions } from "../../crates/panel/assets/fleet/alarms.js";
+import { wanted, when } from "../../crates/panel/assets/fleet/models.js";
 import { order } from "../../crates/panel/assets/fleet/plant.js";
 import { compared, matches } from "../../crates/panel/assets/fleet/table.js";
 import { reach, withGaps } from "../../crates/panel/assets/fleet/trends.js";
@@ -97,4 +98,21 @@ test("an axis of time has times, and dates where days begin", () => {
   const at = new Date(2026, 10, 26, 9, 5, 7);
   assert.deepEqual([10, 60, 86_400, 30 * 86_400].map((step) => instant(at, step)), ["09:05:07", "09:05", "11-26", "2026-11"]);
   assert.equal(instant(new Date(2026, 10, 26), 3600), "11-26");
+});
+
+/**
+ * @param {Partial<import("../../crates/panel/assets/fleet/messages").Model>} rest
+ * @returns {import("../../crates/panel/assets/fleet/messages").Model}
+ */
+const model = (rest) => ({ id: "pump-7", title: "Feed pump", place: "Hall 1", file: "pump.toml", name: "7.5 kW", effects: ["core-loss"], calibrated: true, file_constants: "1", board_constants: null, learnt: null, calibrated_ms: NOW, calibrated_on: "2026-09-21", calibrated_by: "file", due_ms: NOW + 86_400_000, drift_percent: null, due: false, why: "", ...rest });
+
+test("a filter shows what is due, a search looks at file and effects", () => {
+  assert.ok(wanted(model({}), false, "core PUMP.toml") && wanted(model({ due: true }), true, ""));
+  assert.ok(!wanted(model({}), true, "") && !wanted(model({}), false, "saturation"));
+});
+
+test("a due date is told, and what is not known is called so", () => {
+  assert.equal(when(model({}), NOW), "in 1 d");
+  assert.equal(when(model({ due: true }), NOW), "due");
+  assert.equal(when(model({ due_ms: null }), NOW), "not known");
 });

@@ -6,6 +6,7 @@ use clap::{Args, Subcommand};
 
 use super::error::CommandError;
 use super::export::Export;
+use super::report::{PageOfMonth, Report};
 use super::simulate::Simulate;
 use super::terminal::Terminal;
 use super::users::Users;
@@ -47,22 +48,30 @@ Examples:
   drivemon fleet export --fleet plant.toml --alarm 17 -o alarm-17.csv                for drivemon explain and compare
 docs/fleet/store.md names the columns. Seconds that were thinned to minutes are not in it.")]
     Export(Export),
+    /// Write a month as a page: availability, alarms, who acknowledged them, models in force, trends; also while the gateway runs
+    #[command(after_help = "\
+Examples:
+  drivemon fleet report --fleet plant.toml --month 2026-10 -o october.html
+docs/fleet/page.md says what it counts, and how people mark a false alarm.")]
+    Report(Report),
 }
 
 impl Fleet {
-    /// Runs the command until `end`.
+    /// Runs the command until `end`; `page` makes the page of a month.
     ///
     /// # Errors
     /// As the command's.
     pub fn run(
         &self,
         terminal: Terminal,
+        page: PageOfMonth,
         end: impl Future<Output = ()>,
     ) -> Result<(), CommandError> {
         match &self.command {
             FleetCommand::Simulate(simulate) => simulate.run(terminal, end),
             FleetCommand::User(users) => users.run(terminal),
             FleetCommand::Export(export) => export.run(terminal),
+            FleetCommand::Report(report) => report.run(page, terminal),
         }
     }
 }

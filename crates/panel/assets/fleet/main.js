@@ -4,6 +4,7 @@ import { byId, make, of, say, show } from "../dom.js";
 import { timeOfDay } from "../format.js";
 import * as account from "./account.js";
 import * as alarms from "./alarms.js";
+import * as models from "./models.js";
 import * as motor from "./motor.js";
 import { Plant } from "./plant.js";
 import { ask } from "./server.js";
@@ -11,9 +12,9 @@ import { listen } from "./stream.js";
 import * as table from "./table.js";
 import * as wall from "./wall.js";
 
-/** @typedef {"wall" | "table" | "alarms" | "motor"} View */
+/** @typedef {"wall" | "table" | "alarms" | "models" | "motor"} View */
 
-const VIEWS = /** @type {View[]} */ (["wall", "table", "alarms", "motor"]);
+const VIEWS = /** @type {View[]} */ (["wall", "table", "alarms", "models", "motor"]);
 /** Numbers in the table and on a motor's page are asked for this often, ms. */
 const NUMBERS_MS = 2000;
 /** What changes within this time is drawn and asked for once, ms. */
@@ -124,6 +125,7 @@ function route() {
   render();
   if (view === "table") numbers();
   if (view === "alarms") alarms.refresh();
+  if (view === "models") models.refresh();
   if (view === "motor") motor.open(decodeURIComponent(id));
 }
 
@@ -151,6 +153,7 @@ function start() {
     if (view === "motor") motor.refresh();
   });
   account.start();
+  models.start();
   addEventListener("hashchange", route);
   addEventListener("resize", soon);
   setInterval(numbers, NUMBERS_MS);

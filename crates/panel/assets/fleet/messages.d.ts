@@ -75,6 +75,28 @@ export interface Motor {
   alarms: Alarm[];
 }
 
+export interface Model {
+  id: string;
+  title: string;
+  place: string;
+  file: string | null;
+  name: string;
+  effects: string[];
+  calibrated: boolean | null;
+  file_constants: string | null;
+  board_constants: string | null;
+  learnt: string | null;
+  calibrated_ms: Maybe;
+  calibrated_on: string | null;
+  calibrated_by: "board" | "file" | "";
+  due_ms: Maybe;
+  drift_percent: Maybe;
+  due: boolean;
+  why: string;
+}
+
+export interface Models { now_ms: number; due_after_days: number; due_drift_percent: number; models: Model[] }
+
 export interface Event { id: number; motor: string | null; time_ms: number; kind: string; words: string; who: string | null; why: string | null }
 export interface Band { min: Maybe[]; mean: Maybe[]; max: Maybe[] }
 

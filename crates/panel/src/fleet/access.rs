@@ -16,6 +16,7 @@ use serde::Deserialize;
 
 use super::answers::{Me, Problem};
 use super::plant::Plant;
+use crate::http::guard::secure;
 
 /// Who asks; `None`: nobody who is known.
 #[derive(Clone, Debug)]
@@ -30,14 +31,18 @@ const COOKIE_S: u32 = 365 * 86_400;
 
 /// Cookies are shared by all ports of a computer: each server has its own.
 #[derive(Clone, Debug)]
-pub(super) struct CookieName(pub String);
+pub(super) struct Cookie {
+    pub name: String,
+    /// Whether it travels encrypted alone.
+    pub encrypted: bool,
+}
 
 /// What a route asks for.
 #[derive(Clone)]
 pub(super) struct Gate {
     pub plant: Arc<Plant>,
     pub role: Role,
-    pub cookie: CookieName,
+    pub cookie: Cookie,
 }
 
 /// Why a question is refused: status and words.
@@ -51,7 +56,7 @@ pub(super) fn refuse(status: StatusCode, message: impl Into<String>) -> Response
 }
 
 /// The token of a request: as a bearer, as programs send it, or in the page's cookie.
-pub(super) fn token<'a>(headers: &'a HeaderMap, cookie: &CookieName) -> Option<&'a str> {
+pub(super) fn token<'a>(headers: &'a HeaderMap, cookie: &Cookie) -> Option<&'a str> {
     let bearer = headers.get(AUTHORIZATION).and_then(|v| v.to_str().ok());
     if let Some(token) = bearer.and_then(|value| value.strip_prefix("Bearer ")) {
         return Some(token.trim());
@@ -61,7 +66,7 @@ pub(super) fn token<'a>(headers: &'a HeaderMap, cookie: &CookieName) -> Option<&
     let mut cookies = texts
         .flat_map(|text| text.split(';'))
         .filter_map(|one| one.trim().split_once('='));
-    let found = cookies.find(|(name, _)| *name == cookie.0);
+    let found = cookies.find(|(name, _)| *name == cookie.name);
     found.map(|(_, value)| value)
 }
 
@@ -131,7 +136,7 @@ pub(super) struct SignIn {
 /// Signs in: the browser keeps the token as a cookie that no script reads and no other site sends.
 pub(super) async fn sign_in(
     State(plant): State<Arc<Plant>>,
-    Extension(cookie): Extension<CookieName>,
+    Extension(cookie): Extension<Cookie>,
     Json(SignIn { token }): Json<SignIn>,
 ) -> Response {
     let token = token.trim();
@@ -153,7 +158,7 @@ pub(super) async fn sign_in(
 /// Signs out.
 pub(super) async fn sign_out(
     State(plant): State<Arc<Plant>>,
-    Extension(cookie): Extension<CookieName>,
+    Extension(cookie): Extension<Cookie>,
 ) -> Response {
     with_cookie(&cookie, "", 0, Me::of(None, plant.settings.open))
 }
@@ -161,7 +166,7 @@ pub(super) async fn sign_out(
 /// Who asks.
 pub(super) async fn me(
     State(plant): State<Arc<Plant>>,
-    Extension(cookie): Extension<CookieName>,
+    Extension(cookie): Extension<Cookie>,
     headers: HeaderMap,
 ) -> Response {
     match plant.visitor(token(&headers, &cookie)) {
@@ -170,10 +175,11 @@ pub(super) async fn me(
     }
 }
 
-fn with_cookie(cookie: &CookieName, token: &str, age_s: u32, me: Me) -> Response {
+fn with_cookie(cookie: &Cookie, token: &str, age_s: u32, me: Me) -> Response {
     let text = format!(
-        "{}={token}; Path=/; Max-Age={age_s}; HttpOnly; SameSite=Strict",
-        cookie.0
+        "{}={token}; Path=/; Max-Age={age_s}; HttpOnly; SameSite=Strict{}",
+        cookie.name,
+        secure(cookie.encrypted)
     );
     let mut response = Json(me).into_response();
     // A known token has hexadecimal digits alone.

@@ -29,6 +29,7 @@ const ASSETS: &[Asset] = &[
     own!("wall.js", SCRIPT),
     own!("table.js", SCRIPT),
     own!("alarms.js", SCRIPT),
+    own!("models.js", SCRIPT),
     own!("motor.js", SCRIPT),
     own!("trends.js", SCRIPT),
     own!("account.js", SCRIPT),

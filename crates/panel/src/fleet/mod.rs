@@ -8,6 +8,7 @@ mod actions;
 mod answers;
 mod assets;
 mod convert;
+mod overviews;
 mod plant;
 mod questions;
 mod routes;
@@ -25,15 +26,18 @@ use axum::{Router, middleware};
 use fleet::people::PeopleError;
 use tokio::net::TcpListener;
 use tokio::runtime::Builder;
+use tokio_rustls::TlsAcceptor;
 
 use crate::http::assets::nowhere;
 use crate::http::connections::{self, Connections};
 use crate::http::guard::{self, Guard};
 use crate::http::server::Options;
+use crate::http::tls::TlsError;
 
 use plant::{Plant, Settings};
 
-pub use plant::PlantError;
+pub use overviews::month::{CalendarMonth, Month, NoMonth, month_page};
+pub use plant::{DueRule, PlantError};
 pub use routes::document;
 
 /// Largest body of a request: a reason is far smaller.
@@ -56,6 +60,15 @@ pub enum FleetError {
     /// The people cannot be read.
     #[error(transparent)]
     People(#[from] PeopleError),
+    /// It cannot encrypt.
+    #[error(transparent)]
+    Tls(#[from] TlsError),
+    /// What is sent could be read.
+    #[error(
+        "--host {0}: tokens and data would cross the network without encryption; give --tls-cert and --tls-key, or add \
+         --allow-plain where something else encrypts or nobody else listens"
+    )]
+    Plain(IpAddr),
     /// The store or its people.
     #[error(transparent)]
     Plant(#[from] PlantError),
@@ -76,6 +89,8 @@ pub enum FleetError {
 struct Running {
     listener: TcpListener,
     address: SocketAddr,
+    scheme: &'static str,
+    tls: Option<TlsAcceptor>,
     plant: Arc<Plant>,
     router: Router,
 }
@@ -83,19 +98,34 @@ struct Running {
 /// For a question that is being answered when the server ends.
 const LAST_WORK: Duration = Duration::from_secs(1);
 
-/// Shows a plant until `end`; `told` hears the address that a browser opens. A motor without data for `stale_ms` is grey.
+/// What the page makes of what is stored.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// A motor without data for so long is grey, ms.
+    pub stale_ms: i64,
+    /// When a calibration is due.
+    pub due: DueRule,
+}
+
+/// Shows a plant until `end`; `told` hears the address that a browser opens.
 ///
 /// # Errors
 /// The store cannot be read, the address cannot be bound, or others could reach it without a token.
 pub fn show(
     store: &Path,
-    stale_ms: i64,
+    look: Look,
     options: &Options,
     told: impl FnOnce(&str),
     end: impl Future<Output = ()>,
 ) -> Result<(), FleetError> {
     let open = options.host.is_loopback();
-    let plant = Plant::open(store, Settings { stale_ms, open })?;
+    let Look { stale_ms, due } = look;
+    let settings = Settings {
+        stale_ms,
+        open,
+        due,
+    };
+    let plant = Plant::open(store, settings)?;
     let runtime = Builder::new_current_thread().enable_all().build()?;
     let served = runtime.block_on(async {
         let running = bind(options, plant).await?;
@@ -110,11 +140,15 @@ pub fn show(
 /// Binds the address and puts everything behind guard and roles. Needs a tokio runtime.
 ///
 /// # Errors
-/// An address that others can reach without `allow_network` or without users, or one that cannot be bound.
+/// An address that others can reach without `allow_network`, without encryption or without users, or one that cannot be bound.
 async fn bind(options: &Options, plant: Arc<Plant>) -> Result<Running, FleetError> {
     if !options.host.is_loopback() && !options.allow_network {
         return Err(FleetError::Network(options.host));
     }
+    if !options.host.is_loopback() && options.tls.is_none() && !options.allow_plain {
+        return Err(FleetError::Plain(options.host));
+    }
+    let tls = options.acceptor()?;
     if !plant.settings.open && plant.people.users()?.is_empty() {
         return Err(FleetError::NoUsers);
     }
@@ -126,8 +160,12 @@ async fn bind(options: &Options, plant: Arc<Plant>) -> Result<Running, FleetErro
     let listener = TcpListener::bind(wanted).await.map_err(refused)?;
     let address = listener.local_addr().map_err(refused)?;
     // Tokens belong to people here: the guard asks for none.
-    let guard = Arc::new(Guard::new(address, &options.allow_hosts, None));
-    let cookie = access::CookieName(format!("drivemon-fleet-{}", address.port()));
+    let guard = Guard::new(address, &options.allow_hosts, None).encrypted(tls.is_some());
+    let guard = Arc::new(guard);
+    let cookie = access::Cookie {
+        name: format!("drivemon-fleet-{}", address.port()),
+        encrypted: tls.is_some(),
+    };
     let router = Router::new()
         .merge(routes::router(&plant, &cookie))
         .layer(DefaultBodyLimit::max(MOST_BODY_BYTES))
@@ -142,6 +180,8 @@ async fn bind(options: &Options, plant: Arc<Plant>) -> Result<Running, FleetErro
     Ok(Running {
         listener,
         address,
+        scheme: options.scheme(),
+        tls,
         plant,
         router,
     })
@@ -154,14 +194,14 @@ impl Running {
         if address.ip().is_unspecified() {
             address.set_ip(IpAddr::from([127, 0, 0, 1]));
         }
-        format!("http://{address}/")
+        format!("{}://{address}/", self.scheme)
     }
 
     /// Answers until `end`; connections that are open then are cut.
     async fn serve(self, end: impl Future<Output = ()>) {
         let connections = Connections::default();
         tokio::select! {
-            () = connections::serve(&self.listener, &self.router, &connections) => {}
+            () = connections::serve(&self.listener, self.tls.as_ref(), &self.router, &connections) => {}
             () = end => {}
         }
         self.plant.end();

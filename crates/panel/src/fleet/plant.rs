@@ -1,6 +1,6 @@
 //! What the page is about: the store of a plant, its people, and the wall, kept up to date by a thread of its own.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::sleep;
@@ -34,13 +34,37 @@ pub enum PlantError {
     People(#[from] PeopleError),
 }
 
+/// When a calibration is due.
+#[derive(Clone, Debug)]
+pub struct DueRule {
+    /// Older than so many days.
+    pub after_days: u32,
+    /// r1 or r4 has moved by more than so much since the calibration, percent of its scale.
+    pub drift_percent: f32,
+    /// Where paths of motor files begin: the folder of the gateway's configuration.
+    pub folder: PathBuf,
+}
+
+impl DueRule {
+    /// A year, and one percent.
+    pub fn usual(folder: PathBuf) -> DueRule {
+        DueRule {
+            after_days: 365,
+            drift_percent: 1.0,
+            folder,
+        }
+    }
+}
+
 /// Settings of the page.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// A motor without data for so long is grey, ms.
     pub stale_ms: i64,
     /// Whether who has no token may see: on a computer that nobody else reaches.
     pub open: bool,
+    /// When a calibration is due.
+    pub due: DueRule,
 }
 
 /// What changed on the wall.

@@ -35,7 +35,7 @@ const DAY_MS: i64 = 86_400_000;
 type Asked<T> = Result<Query<T>, QueryRejection>;
 
 /// Does work that reads files on a thread that may wait.
-async fn answer<T: Serialize + Send + 'static>(
+pub(super) async fn answer<T: Serialize + Send + 'static>(
     work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
 ) -> Response {
     match tokio::task::spawn_blocking(work).await {
@@ -46,7 +46,7 @@ async fn answer<T: Serialize + Send + 'static>(
     }
 }
 
-fn failed(error: StoreError) -> Refusal {
+pub(super) fn failed(error: StoreError) -> Refusal {
     let status = match error {
         StoreError::UnknownMotor(_) => StatusCode::NOT_FOUND,
         _ => StatusCode::SERVICE_UNAVAILABLE,

@@ -9,15 +9,21 @@ use schemars::generate::{SchemaGenerator, SchemaSettings};
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value, json};
 
-use super::access::{CookieName, Gate, SignIn, check, me, sign_in, sign_out};
+use super::access::{Cookie, Gate, SignIn, check, me, sign_in, sign_out};
 use super::actions::{self, Shelf, Why};
 use super::answers::{Alarms, Audit, Done, Events, Me, Motor, Problem, Trend, Wall};
+use super::overviews::metrics;
+use super::overviews::models::{self, Models};
+use super::overviews::month::{self, Month, WhichMonth};
 use super::plant::Plant;
 use super::questions::{self, Span, WhichAlarms, WhichEvents, WhichLines};
 use super::stream::stream;
 
 /// Where the document is.
 const OPENAPI: &str = "/api/fleet/openapi.json";
+
+/// A month as a page to keep.
+const MONTH: &str = "/month.html";
 
 type SchemaOf = fn(&mut SchemaGenerator) -> Schema;
 
@@ -142,6 +148,19 @@ fn routes() -> Vec<Route> {
                 get(questions::recording),
             )
         },
+        ask::<Models>(
+            "/api/fleet/models",
+            "By which model each motor is judged, and whether a calibration is due",
+            Some(See),
+            get(models::models),
+        ),
+        ask::<Month>(
+            "/api/fleet/month",
+            "A month: availability, alarms, models in force, trends",
+            Some(See),
+            get(month::month),
+        )
+        .with::<WhichMonth>(),
         act::<Why, Done>(
             "/api/fleet/alarms/{number}/acknowledge",
             "Take note of an alarm",
@@ -196,7 +215,12 @@ fn routes() -> Vec<Route> {
 }
 
 /// The API behind its roles.
-pub(super) fn router(plant: &Arc<Plant>, cookie: &CookieName) -> Router {
+pub(super) fn router(plant: &Arc<Plant>, cookie: &Cookie) -> Router {
+    let gate = |role| Gate {
+        plant: plant.clone(),
+        role,
+        cookie: cookie.clone(),
+    };
     let mut router = Router::new();
     for Route {
         path,
@@ -205,18 +229,16 @@ pub(super) fn router(plant: &Arc<Plant>, cookie: &CookieName) -> Router {
         ..
     } in routes()
     {
-        let gate = |role| Gate {
-            plant: plant.clone(),
-            role,
-            cookie: cookie.clone(),
-        };
         let handler = match role {
             Some(role) => handler.layer(middleware::from_fn_with_state(gate(role), check)),
             None => handler,
         };
         router = router.route(path, handler);
     }
+    let may_see = middleware::from_fn_with_state(gate(Role::See), check);
     router
+        .route(metrics::PATH, get(metrics::metrics).layer(may_see.clone()))
+        .route(MONTH, get(month::page).layer(may_see))
         .route(OPENAPI, get(async || Json(document())))
         .layer(Extension(cookie.clone()))
         .with_state(plant.clone())

@@ -16,7 +16,7 @@ use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
 use tokio_stream::wrappers::{BroadcastStream, IntervalStream};
 use tokio_stream::{Stream, StreamExt};
 
-use super::access::{CookieName, token};
+use super::access::{Cookie, token};
 use super::plant::{Plant, json};
 
 /// Between two signs of life: a page that misses three takes what it shows for stale.
@@ -36,7 +36,7 @@ struct Alive {
 /// Events `wall` (all), `news` (what changed) and `alive`. It ends when the visitor's token is withdrawn.
 pub(super) async fn stream(
     State(plant): State<Arc<Plant>>,
-    Extension(cookie): Extension<CookieName>,
+    Extension(cookie): Extension<Cookie>,
     headers: HeaderMap,
 ) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
     let token = token(&headers, &cookie).map(str::to_owned);

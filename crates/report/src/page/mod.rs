@@ -13,7 +13,7 @@ pub use elements::number::{Style, decimals, significant};
 pub use elements::place::Place;
 
 use crate::json::{self, Answer};
-use commands::{adopt, campaign, check, compare, demo, explain, load_table, monitor};
+use commands::{adopt, campaign, check, compare, demo, explain, load_table, monitor, month};
 use elements::shell;
 use serde::Serialize;
 use serde_json::Value;
@@ -37,6 +37,8 @@ pub enum Subject {
     Campaign,
     /// `drivemon check`.
     Check,
+    /// `drivemon fleet report`.
+    FleetMonth,
 }
 
 /// The page for a result, complete.
@@ -99,5 +101,6 @@ fn content(subject: Subject, value: &Value) -> (&'static str, maud::Markup) {
             campaign::content(&place),
         ),
         Subject::Check => ("Is this motor in good order?", check::content(&place)),
+        Subject::FleetMonth => ("A month of a plant", month::content(&place)),
     }
 }

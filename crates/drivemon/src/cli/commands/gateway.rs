@@ -55,7 +55,11 @@ impl GatewayArgs {
 
 /// Runs a command about plants of many motors.
 pub fn fleet(fleet: &Fleet) -> Result<Finding, Failure> {
-    fleet.run(TERMINAL, told_to_end()).map_err(failure)?;
+    #[cfg(feature = "panel")]
+    let page = panel::fleet::month_page;
+    #[cfg(not(feature = "panel"))]
+    let page = |_: &_, _: &_, _: &_| Err("build drivemon with its feature panel".into());
+    fleet.run(TERMINAL, page, told_to_end()).map_err(failure)?;
     Ok(Finding::Nothing)
 }
 

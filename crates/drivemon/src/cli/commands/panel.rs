@@ -15,8 +15,9 @@ use crate::cli::commands::ending::told_to_end;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::say;
 use live::{open_probe, open_serial};
+use panel::fleet::{DueRule, Look};
 use panel::source::{BoardSource, ReplayedSource, SimulatedSource, Source, built_in_motor};
-use panel::{self, MotorError, Options, PanelError, Session};
+use panel::{self, MotorError, Options, PanelError, Session, TlsFiles};
 use scenario::Scenario;
 
 /// Show the panel in a browser: lamps, causes, residuals, signals, vectors; a simulated motor, a recording or a board.
@@ -47,6 +48,12 @@ pub struct Panel {
     /// With --fleet: a motor without data for so long is grey, s; more than the longest time between two visits of its link
     #[arg(long, value_name = "S", default_value_t = 30, requires = "fleet", value_parser = clap::value_parser!(u32).range(2..=86_400))]
     stale_after: u32,
+    /// With --fleet: a calibration older than so many days is due
+    #[arg(long, value_name = "DAYS", default_value_t = 365, requires = "fleet", value_parser = clap::value_parser!(u32).range(1..=36_500))]
+    recalibrate_after: u32,
+    /// With --fleet: a calibration is due once r1 or r4 has moved by more than this since, % of scale, means of seven days
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0, requires = "fleet", value_parser = drift)]
+    recalibrate_drift: f32,
     /// Speed of the serial port, bit/s
     #[arg(
         long,
@@ -74,12 +81,35 @@ pub struct Panel {
     host: IpAddr,
     /// Let others who reach --host and have the printed link watch and switch
     ///
-    /// The link holds a random token; the browser keeps it as a cookie, and without it nothing is shown. It protects
-    /// against others on the network who do not have the link. It does not protect what is sent: there is no encryption
-    /// (TLS), so anyone who can listen on the network can read the token too. On a network that is not yours put the panel
-    /// behind a proxy with TLS and a login, and leave --host out.
+    /// The link holds a random token; the browser keeps it as a cookie, and without it nothing is shown. With --fleet people
+    /// sign in with tokens of their own instead. A token does not protect what is sent: with --tls-cert and --tls-key it is
+    /// encrypted; without them anyone who can listen on the network can read it, the token too, and a plant is not shown.
     #[arg(long, help_heading = "The server")]
     allow_network: bool,
+    /// Encrypt (TLS) with the certificates of this file: PEM, the server's own first
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "tls_key",
+        help_heading = "The server"
+    )]
+    tls_cert: Option<PathBuf>,
+    /// The certificate's private key: PEM, without a password; read at the start
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "tls_cert",
+        help_heading = "The server"
+    )]
+    tls_key: Option<PathBuf>,
+    /// With --fleet: show a plant on a network without TLS, because something else encrypts or nobody else listens
+    #[arg(
+        long,
+        requires = "fleet",
+        conflicts_with = "tls_cert",
+        help_heading = "The server"
+    )]
+    allow_plain: bool,
     /// Answer to a further host name, e.g. that of a proxy
     #[arg(long, value_name = "NAME", help_heading = "The server")]
     allow_host: Vec<String>,
@@ -98,6 +128,7 @@ Examples:
   drivemon panel --replay rec.csv.gz --motor motors/peer-2k2.toml  a recording
   drivemon panel --serial /dev/ttyACM0 --motor m.toml              a running board
   drivemon panel --fleet plant.toml                                a plant of many motors
+  drivemon panel --fleet plant.toml --host 0.0.0.0 --allow-network --tls-cert plant.pem --tls-key plant.key
 Ctrl-C ends it.";
 
 /// For a file that is being read when the panel ends.
@@ -108,6 +139,14 @@ fn speed(text: &str) -> Result<f64, String> {
     match (0.01..=100.0).contains(&speed) {
         true => Ok(speed),
         false => Err("choose a factor from 0.01 to 100".into()),
+    }
+}
+
+fn drift(text: &str) -> Result<f32, String> {
+    let percent = text.parse::<f32>().map_err(|error| error.to_string())?;
+    match (0.01..=100.0).contains(&percent) {
+        true => Ok(percent),
+        false => Err("choose a share from 0.01 to 100 percent".into()),
     }
 }
 
@@ -137,11 +176,19 @@ impl Panel {
 
     /// A plant of many motors, until the program is told to end.
     fn show(&self, plant: &Path) -> Result<Finding, Failure> {
+        let folder = plant.parent().map_or_else(PathBuf::new, Path::to_path_buf);
         #[cfg(feature = "gateway")]
         let plant = &gateway::config::Config::store_of(plant)?;
-        let stale_ms = 1_000 * i64::from(self.stale_after);
+        let look = Look {
+            stale_ms: 1_000 * i64::from(self.stale_after),
+            due: DueRule {
+                after_days: self.recalibrate_after,
+                drift_percent: self.recalibrate_drift,
+                folder,
+            },
+        };
         let told = |url: &str| self.tell(url);
-        panel::fleet::show(plant, stale_ms, &self.options(), told, told_to_end())
+        panel::fleet::show(plant, look, &self.options(), told, told_to_end())
             .map_err(|error| Failure::Usage(error.to_string()))?;
         Ok(Finding::Nothing)
     }
@@ -177,6 +224,12 @@ impl Panel {
             port: self.port,
             allow_network: self.allow_network,
             allow_hosts: self.allow_host.clone(),
+            tls: self
+                .tls_cert
+                .clone()
+                .zip(self.tls_key.clone())
+                .map(|(certificates, key)| TlsFiles { certificates, key }),
+            allow_plain: self.allow_plain,
         }
     }
 

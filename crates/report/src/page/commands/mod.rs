@@ -8,3 +8,4 @@ pub mod demo;
 pub mod explain;
 pub mod load_table;
 pub mod monitor;
+pub mod month;
