@@ -4,6 +4,7 @@
 //! printer for each language.
 
 pub mod algebra;
+pub mod circuit_forms;
 pub mod effects;
 pub mod model;
 pub mod print;

@@ -37,4 +37,4 @@ pub use document::FileError;
 pub use fault::FaultId;
 #[cfg(feature = "file")]
 pub use motor_file::MotorFile;
-pub use params::{GammaParams, InvGammaParams, Mechanics, TParams};
+pub use params::{Mechanics, TParams};

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use std::time::Duration;
 
 use crate::common::{drivemon, stderr};
-use board::{CAPTURE_EVERY, Capture, Frame, MAX_FRAME_BYTES, MotorImage, Shown};
+use board::{CAPTURE_EVERY, Capture, CaptureAlarm, Frame, MAX_FRAME_BYTES, MotorImage, Shown};
 use monitor::{BOARD_CONVERSIONS, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
 use motor::motor_file::Frame as MotorFrame;
@@ -55,7 +55,11 @@ fn sent(seconds: f64) -> Vec<u8> {
         }
         if let Some(report) = monitor.update_raw(&mut state, &raw) {
             if report.lamps.fault == monitor::Lamp::On {
-                capture.alarm();
+                capture.alarm(CaptureAlarm {
+                    start: 0,
+                    second: 0,
+                    motor: image.identification(),
+                });
             }
             let frame = Frame::new(&report, &Shown::only(report.lamps), sequence, 3_300);
             sequence += 1;

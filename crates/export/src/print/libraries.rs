@@ -3,6 +3,7 @@
 use super::page::{filled, harmless};
 use super::{File, Job};
 use crate::ExportError;
+use crate::circuit_forms::{GammaParams, InvGammaParams};
 use crate::model::{check_without, label_of};
 use motor::effect::{EffectConfig, from_motor_file, rated};
 use motor::{MotorFile, TParams};
@@ -93,7 +94,7 @@ fn values(file: &MotorFile, held: &[&EffectConfig]) -> Vec<(&'static str, String
         l_ls: file.parameters.l_ls + size(held, "series-inductance"),
         ..file.parameters
     };
-    let (gamma, inverse) = (motor.to_gamma(), motor.to_inv_gamma());
+    let (gamma, inverse) = (GammaParams::from(&motor), InvGammaParams::from(&motor));
     let omega = rated.speed();
     let text = |x: f64| format!("{x:?}");
     let load_share = 1e-6;

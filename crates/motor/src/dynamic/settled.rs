@@ -50,26 +50,24 @@ fn flux_linkages(motor: &TParams<f64>, omega_el: f64, voltage: &Rotating) -> [Co
 /// What a sampled voltage vector (V) repeats in the cycle that begins with its first sample: fundamental, negative sequence and
 /// harmonics. A supply that ends or stands still within the cycle counts as its fundamental.
 ///
-/// `omega_sync`: rad/s; `t_sample`: s. Without a sample there is nothing.
+/// `omega_sync` in rad/s, `t_sample` in s.
 pub fn cycle_components(u_s: &[Complex64], omega_sync: f64, t_sample: f64) -> Vec<Rotating> {
     let cycle = TAU / omega_sync.abs() / t_sample;
     if !(cycle >= SAMPLES_PER_TURN && cycle + 1.0 < u_s.len() as f64) {
-        let first = u_s.first().map(|&u| Rotating {
+        let alone = |&u: &Complex64| Rotating {
             omega: omega_sync,
             u,
-        });
-        return first.into_iter().collect();
+        };
+        return u_s.first().map(alone).into_iter().collect();
     }
     let highest = HIGHEST_ORDER.min((cycle / SAMPLES_PER_TURN) as i32);
     let orders = (-highest..=highest).filter(|&order| order != 0);
-    let component = |order: i32| {
-        let omega = f64::from(order) * omega_sync;
-        Rotating {
-            omega,
-            u: mean_in_turn(u_s, omega * t_sample, cycle),
-        }
+    let speeds = orders.map(|order| f64::from(order) * omega_sync);
+    let component = |omega| Rotating {
+        omega,
+        u: mean_in_turn(u_s, omega * t_sample, cycle),
     };
-    orders.map(component).collect()
+    speeds.map(component).collect()
 }
 
 /// Mean of samples turned back by `angle` (rad) for each of them, over `n` samples, a fraction included.
@@ -80,15 +78,13 @@ fn mean_in_turn(u: &[Complex64], angle: f64, n: f64) -> Complex64 {
     let whole = n as usize;
     let rest = n - whole as f64;
     let back = Complex64::from_polar(1.0, -angle);
-    let mut turn = Complex64::ONE;
-    let mut inner = Complex64::ZERO;
+    let (mut turn, mut inner) = (Complex64::ONE, Complex64::ZERO);
     for u in &u[1..whole] {
         turn *= back;
         inner += u * turn;
     }
     let last = u[whole] * turn * back;
-    let next = u[whole + 1] * turn * back * back;
-    let end = last + (next - last) * rest;
+    let end = last + (u[whole + 1] * turn * back * back - last) * rest;
     (0.5 * (u[0] + last) + inner + 0.5 * rest * (last + end)) / n
 }
 

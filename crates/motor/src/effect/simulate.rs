@@ -82,7 +82,7 @@ pub struct Run<'a> {
 /// If the effects need more than eight extra states or the input signals differ in length.
 pub fn simulate(plant: &Plant, run: &Run<'_>) -> Outputs {
     let (motor, inputs) = (constant_motor(plant), corrected(plant, run.inputs));
-    let mut outputs = run_with_hooks(plant, &motor, run, &inputs);
+    let mut outputs = with_hooks(plant, &motor, run, &inputs, Integrate);
     outputs.u_zero = vec![0.0; outputs.omega_mech.len()];
     instruments(plant, &mut outputs);
     outputs
@@ -110,12 +110,13 @@ fn shaft_speed(plant: &Plant, run: &Run<'_>) -> Option<Vec<f64>> {
     let cuts = run.timeline.cuts.iter().map(|cut| cut.sample);
     let bounds: Vec<usize> = [0].into_iter().chain(cuts).chain([shown.len()]).collect();
     let undone = |e: &EffectConfig, shown: &[f64]| {
+        let t_sample = run.inputs.t_sample;
         let part = |r: &[usize]| {
-            let shown = &shown[r[0]..r[1]];
-            e.effect.shaft_speed(&e.values, run.inputs.t_sample, shown)
+            e.effect
+                .shaft_speed(&e.values, t_sample, &shown[r[0]..r[1]])
         };
         let parts: Option<Vec<Vec<f64>>> = bounds.windows(2).map(part).collect();
-        Some(parts?.concat())
+        parts.map(|parts| parts.concat())
     };
     // The last instrument in the chain is undone first.
     let mut speed = None;
@@ -140,10 +141,6 @@ pub(super) fn instruments(plant: &Plant, outputs: &mut Outputs) {
         let prepared = e.effect.prepared(&e.values, &plant.rated);
         e.effect.outputs(&prepared, &plant.rated, outputs);
     }
-}
-
-fn run_with_hooks(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &Inputs) -> Outputs {
-    with_hooks(plant, motor, run, inputs, Integrate)
 }
 
 /// What is done with a prepared model, whatever hooks it has.
@@ -182,7 +179,7 @@ pub(super) fn with_hooks<T: Task>(
         speed: speed.as_deref().map_or(run.speed, SpeedSource::Imposed),
         ..run.clone()
     };
-    let start = start_state(plant, motor, run, inputs);
+    let start = begins(plant, motor, run, inputs, 0, run.running_at);
     if !plant.effects.iter().any(inside) {
         let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
         return task.on(&Ready::new(model, start, plant, motor, run, inputs));
@@ -306,16 +303,7 @@ impl<'a, H: Hooks> Ready<'a, H> {
     }
 }
 
-fn start_state(
-    plant: &Plant,
-    motor: &TParams<f64>,
-    run: &Run<'_>,
-    inputs: &Inputs,
-) -> DynamicState {
-    begins(plant, motor, run, inputs, 0, run.running_at)
-}
-
-/// The state with which a motor begins at sample `k`: running, or at rest without current.
+/// The state with which a motor begins at sample `k`: settled at this speed (rad/s) on its supply, or at rest.
 fn begins(
     plant: &Plant,
     motor: &TParams<f64>,
@@ -324,8 +312,12 @@ fn begins(
     k: usize,
     running_at: Option<f64>,
 ) -> DynamicState {
-    let at_speed = |omega_mech| running(plant, motor, run, inputs, k, omega_mech);
-    running_at.map_or_else(DynamicState::rest, at_speed)
+    let Some(omega_mech) = running_at else {
+        return DynamicState::rest();
+    };
+    let omega_sync = run.timeline.omega_sync[k];
+    let voltages = cycle_components(&inputs.u_s[k..], omega_sync, inputs.t_sample);
+    DynamicState::settled(motor, plant.mechanics.n_p, omega_mech, &voltages)
 }
 
 /// The motor at the first sample after a cut.
@@ -333,20 +325,6 @@ struct Restart {
     sample: usize,
     state: DynamicState,
     is_new: bool,
-}
-
-/// Periodic steady state at sample `k` and this speed (rad/s), on all that the supply repeats in a cycle.
-fn running(
-    plant: &Plant,
-    motor: &TParams<f64>,
-    run: &Run<'_>,
-    inputs: &Inputs,
-    k: usize,
-    omega_mech: f64,
-) -> DynamicState {
-    let omega_sync = run.timeline.omega_sync[k];
-    let voltages = cycle_components(&inputs.u_s[k..], omega_sync, inputs.t_sample);
-    DynamicState::settled(motor, plant.mechanics.n_p, omega_mech, &voltages)
 }
 
 /// The samples after the cuts of a recording, and the state of the motor there.
