@@ -36,6 +36,7 @@ pub use design::limits::{Limits, NextRun};
 pub use design::report::{
     Certainty, DecidesReport, DesignGoal, DesignReport, LevelReport, RunReport,
 };
+pub use estimation::data::case::running_at;
 pub use estimation::data::given::{Given, One, Sources};
 pub use estimation::data::instrument_class;
 pub use estimation::data::load_table::table_values;
@@ -45,7 +46,7 @@ pub use estimation::data::stretches::{
     told as told_stretches,
 };
 pub use estimation::data::unsupported::Unsupported;
-pub use estimation::model::prediction::simulations;
+pub use estimation::model::prediction::{carried_speed, simulations};
 pub use estimation::model::scale_report::{AtRest, ErrorSource, SpeedScaleReport};
 pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use laws::formula::dictionary::{Laws, Shapes};

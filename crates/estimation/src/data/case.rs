@@ -145,7 +145,7 @@ impl Case {
         let between = between(rec, t_sample);
         let fine = |x: Vec<f64>| if finer == 1 { x } else { refined(&x, finer) };
         let theta_mech = fine(measured_angle(rec));
-        let running_at = running_at(rec, currents, rated);
+        let running_at = running_at(rec, rated);
         let mut case = Self {
             inputs: Inputs {
                 t_sample,
@@ -474,8 +474,9 @@ fn measured_angle(rec: &Recording) -> Vec<f64> {
         .collect()
 }
 
-/// Initial speed if the motor already runs.
-fn running_at(rec: &Recording, currents: [&[f64]; 3], rated: &Rated<f64>) -> Option<f64> {
+/// Speed at the first sample, rad/s, if the motor already runs: the mean of 20 ms, or rated speed where none was recorded.
+pub fn running_at(rec: &Recording, rated: &Rated<f64>) -> Option<f64> {
+    let currents = rec.currents()?;
     let n = (0.02 / rec.t_sample()) as usize;
     let head = |x: &[f64]| x[..n.clamp(1, x.len())].iter().sum::<f64>() / n.max(1) as f64;
     let initial = rec.speed().map_or(rated.speed(), head);

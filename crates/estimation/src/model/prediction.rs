@@ -72,7 +72,8 @@ pub fn driven<T>(
         _ => SpeedSource::Free,
     };
     let starts = |measured: f64, k: usize| match case.settles {
-        true => settled(plant, drive, speeds.timeline.omega_sync[k], k).unwrap_or(measured),
+        true => carried_speed(plant, &drive.inputs, speeds.timeline.omega_sync[k], k)
+            .unwrap_or(measured),
         false => measured,
     };
     let cuts = speeds.timeline.cuts.iter().zip(&speeds.running_at_cuts);
@@ -90,14 +91,10 @@ pub fn driven<T>(
     })
 }
 
-/// Speed at which the motor carries what sample `k` asks of it, rad/s.
-fn settled(plant: &Plant, drive: &Drive<'_>, omega_sync: f64, k: usize) -> Option<f64> {
-    let torque = *drive.inputs.tau_load.get(k)?;
-    let cycle = cycle_components(
-        drive.inputs.u_s.get(k..)?,
-        omega_sync,
-        drive.inputs.t_sample,
-    );
+/// Speed at which the motor carries what sample `k` asks of it, rad/s, on a supply of `omega_sync`, rad/s; `None` beyond breakdown.
+pub fn carried_speed(plant: &Plant, inputs: &Inputs, omega_sync: f64, k: usize) -> Option<f64> {
+    let torque = *inputs.tau_load.get(k)?;
+    let cycle = cycle_components(inputs.u_s.get(k..)?, omega_sync, inputs.t_sample);
     let positive = cycle.iter().find(|part| part.omega == omega_sync)?;
     let amplitude = Complex64::new(positive.u.norm(), 0.0);
     let friction = plant.mechanics.total_friction();

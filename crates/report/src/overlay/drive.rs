@@ -3,17 +3,16 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use discovery::{carried_speed, running_at};
 use motor::dynamic::clarke;
 use motor::effect::{Between, Inputs, Outputs, Plant, Rated, Run, SpeedSource, Timeline, simulate};
 use num_complex::Complex64;
-use recording::{LoadTorque, Recording, StartsFrom, VoltageKind};
+use recording::{LoadTorque, Recording, VoltageKind};
 
 /// Longest sampling time at which two samples make one integration step, s.
 const SMOOTH_BELOW_S: f64 = 2.6e-4;
 /// Half the time over which frequency and imposed speed are smoothed, s: half a period of 50 Hz.
 const SMOOTHING_S: f64 = 0.01;
-/// Share of the rated speed below which a machine stands still.
-const STANDSTILL: f64 = 0.05;
 
 /// What drives the models.
 pub struct Drive {
@@ -23,6 +22,8 @@ pub struct Drive {
     timeline: Arc<Timeline>,
     imposed_speed: Option<Vec<f64>>,
     running_at: Option<f64>,
+    /// Whether the speed at the start is not measured, but that at which a model carries the load.
+    settles: bool,
     /// Whether the recording holds the torque at the shaft.
     torque_measured: bool,
 }
@@ -59,6 +60,7 @@ impl Drive {
             }),
             imposed_speed: imposed_speed(recording, half),
             running_at: running_at(recording, rated),
+            settles: recording.speed().is_none(),
             torque_measured: recording.metadata.load_torque != LoadTorque::Friction
                 && recording.torque().is_some(),
             inputs: Inputs {
@@ -84,11 +86,19 @@ impl Drive {
                 between: self.between,
                 speed: imposed.map_or(SpeedSource::Free, SpeedSource::Imposed),
                 timeline: &self.timeline,
-                running_at: self.running_at,
+                running_at: self.begins_at(&plant),
                 running_at_cuts: &[],
                 open: &[],
             },
         )
+    }
+
+    /// Speed with which a model begins, rad/s; `None` from standstill.
+    fn begins_at(&self, plant: &Plant) -> Option<f64> {
+        let measured = self.running_at?;
+        let omega_sync = self.timeline.omega_sync[0];
+        let carried = || carried_speed(plant, &self.inputs, omega_sync, 0);
+        self.settles.then(carried).flatten().or(Some(measured))
     }
 
     /// Whether the measured speed is given to the models instead of compared with theirs.
@@ -206,21 +216,4 @@ fn imposed_speed(recording: &Recording, half: usize) -> Option<Vec<f64>> {
         (sums[k + reach + 1] - sums[k - reach]) / (2 * reach + 1) as f64
     };
     Some((0..speed.len()).map(mean).collect())
-}
-
-/// The speed at the start, if the motor already runs, rad/s.
-fn running_at(recording: &Recording, rated: &Rated<f64>) -> Option<f64> {
-    let first = recording.speed().map(|speed| speed[0]);
-    let initial = first.unwrap_or(rated.speed());
-    match recording.metadata.starts_from {
-        StartsFrom::Standstill => None,
-        StartsFrom::Running => Some(initial),
-        StartsFrom::Unknown => {
-            let current = recording
-                .currents()
-                .map_or(0.0, |i| i[0][0].abs().max(i[1][0].abs()));
-            let still = first.is_none_or(|speed| speed.abs() < STANDSTILL * rated.speed());
-            (!(still && current < 0.1 * rated.current)).then_some(initial)
-        }
-    }
 }
