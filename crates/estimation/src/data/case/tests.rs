@@ -364,8 +364,7 @@ fn a_motor_runs_at_the_start_if_it_is_declared_or_seen() {
             (speed || c != Channel::SPEED).then(|| x.iter().map(|x| gain * x).collect())
         });
         rec.metadata.starts_from = starts_from;
-        let currents = rec.currents().expect("three");
-        running_at(&rec, currents, &rated)
+        running_at(&rec, &rated)
     };
     assert_eq!(at(StartsFrom::Standstill, 1.0, true), None);
     let close = |got: Option<f64>, expected: f64| {
@@ -404,7 +403,7 @@ fn the_speed_at_the_start_is_a_mean_over_a_period() {
         Some(if c == Channel::SPEED { ramp } else { x })
     });
     rec.metadata.starts_from = StartsFrom::Running;
-    let start = running_at(&rec, rec.currents().expect("three"), &rated());
+    let start = running_at(&rec, &rated());
     // One sample more or less is rounding.
     assert!(
         (start.expect("running") - (100.0 + 49.5)).abs() < 0.6,
@@ -427,7 +426,7 @@ fn an_undeclared_start_runs_with_current_or_speed() {
         });
         let mut rec = rec;
         rec.metadata.starts_from = StartsFrom::Unknown;
-        running_at(&rec, rec.currents().expect("three"), &rated).is_some()
+        running_at(&rec, &rated).is_some()
     };
     assert!(!runs([0.09, -0.09], 0.04) && !runs([-0.09, 0.0], -0.04));
     assert!(runs([0.11, 0.0], 0.0) && runs([0.0, -0.11], 0.0));
