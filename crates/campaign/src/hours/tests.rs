@@ -22,7 +22,7 @@ const FEATURES: usize = 6;
 const NAMES: [&str; FEATURES] = ["r1", "r2", "r3", "r4", "significance", "I2/I1"];
 /// Means may differ by this beside four standard errors: r in shares of their scales, the others as they are.
 const MEANS: [f64; FEATURES] = [2e-4, 2e-4, 2e-4, 2e-4, 0.05, 2e-4];
-/// And by this share: an unbalance makes the speed ripple, which moves the negative sequence by half a percent; cycles know no ripple.
+/// And by this share: the negative sequence of cycles is off by half a percent, probably because an unbalance makes the speed ripple and cycles know no ripple.
 const SHARE_OF_MEAN: f64 = 0.01;
 /// Standard deviations may differ by these factors, where they are not both below a tenth of [`MEANS`]: at one speed the counts of an
 /// encoder beat with the cycles, which r2 and r3 see, and each cut of the cycles beats in its own way.
