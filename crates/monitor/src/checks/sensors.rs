@@ -117,7 +117,9 @@ impl HealthConfig {
             return None;
         }
         let dead = dead_channel(&amplitudes(window, 3)).map(SensorFinding::DeadCurrent);
-        dead.or(Some(SensorFinding::CurrentSum))
+        // Currents without their crests, as in an inrush, need not add up to zero.
+        let whole = !(0..3).any(|phase| window.clipped.current(phase));
+        dead.or(whole.then_some(SensorFinding::CurrentSum))
     }
 
     /// Checks the electrical speed against the one that voltages and currents imply, all in rad/s. `doubt` is the standard
@@ -227,6 +229,19 @@ mod tests {
             CONFIG.check_currents(&window),
             Some(SensorFinding::CurrentSum)
         );
+    }
+
+    /// An inrush beyond full scale: what is left of the currents adds up to anything. A dead channel stays one.
+    #[test]
+    fn clipped_currents_prove_no_sum() {
+        let clipped = |gains| {
+            let mut window = window([1.0; 3], gains);
+            window.clipped.mark_current(1);
+            CONFIG.check_currents(&window)
+        };
+        assert_eq!(clipped([0.5, 1.0, 1.0]), None);
+        let dead = SensorFinding::DeadCurrent(Phase::A);
+        assert_eq!(clipped([0.01, 1.0, 1.0]), Some(dead));
     }
 
     #[test]
