@@ -25,7 +25,6 @@ pub mod connection;
 pub mod dynamic;
 pub mod effect;
 pub mod effects;
-mod fault;
 #[cfg(feature = "file")]
 pub mod motor_file;
 mod params;
@@ -34,7 +33,7 @@ pub mod temperature;
 
 #[cfg(feature = "file")]
 pub use document::FileError;
-pub use fault::FaultId;
+pub use faults::FaultId;
 #[cfg(feature = "file")]
 pub use motor_file::MotorFile;
 pub use params::{Mechanics, TParams};

@@ -1,6 +1,6 @@
 //! The dynamic model against two independent simulators and against the closed-form steady state.
 
-use motor::dynamic::{Dynamic, DynamicState, Sinusoidal};
+use motor::dynamic::{Dynamic, DynamicState};
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
 use std::io::Read;
@@ -93,16 +93,15 @@ fn settles_on_the_closed_form_steady_state() {
     let (params, mechanics) = machine();
     let motor = Dynamic::new(&params, &mechanics);
     let omega_sync = 2.0 * std::f64::consts::PI * 50.0;
-    let supply = Sinusoidal::balanced(omega_sync, 326.6);
+    let supply = |t: f64| Complex64::from_polar(326.6, omega_sync * t);
     let mut state = DynamicState::rest();
     let (h, steps) = (2e-5, 150_000);
     for k in 0..steps {
-        motor.step(&mut state, h * k as f64, h, |t| supply.at(t), |_, _| 10.0);
+        motor.step(&mut state, h * k as f64, h, supply, |_, _| 10.0);
     }
     let t = h * steps as f64;
     let slip = 1.0 - state.omega_mech * mechanics.n_p / omega_sync;
-    let turned =
-        motor.current(t, &state, supply.at(t)) * Complex64::from_polar(1.0, -omega_sync * t);
+    let turned = motor.current(t, &state, supply(t)) * Complex64::from_polar(1.0, -omega_sync * t);
     let expected = circuit_current(&params, 326.6, omega_sync, slip);
     assert!((turned - expected).norm() < 1e-6 * expected.norm());
     assert!((motor.torque(t, &state) - 10.0).abs() < 1e-6 * 10.0);

@@ -1,6 +1,6 @@
 //! The steady state is where the dynamic model settles, for every shipped motor and kind of load.
 
-use motor::dynamic::{Dynamic, DynamicState, Sinusoidal};
+use motor::dynamic::{Dynamic, DynamicState};
 use motor::steady_state::{OperatingPoint, SteadyState};
 use motor::{Mechanics, MotorFile};
 use num_complex::Complex64;
@@ -15,23 +15,18 @@ const SETTLED_S: f64 = 8.0;
 /// Runs the motor up from rest: stator current in the supply's frame, and shaft speed.
 fn settle(motor: &MotorFile, mechanics: &Mechanics<f64>, load: &Load) -> (Complex64, f64) {
     let plate = &motor.nameplate;
-    let supply = Sinusoidal::balanced(plate.omega_sync(), plate.phase_voltage_amplitude());
+    let (omega, volt) = (plate.omega_sync(), plate.phase_voltage_amplitude());
+    let supply = |t: f64| Complex64::from_polar(volt, omega * t);
     let dynamic = Dynamic::new(&motor.parameters, mechanics);
     let mut state = DynamicState::<()>::rest();
     let steps = (SETTLED_S / STEP_S).round() as usize;
     for k in 0..steps {
         let t = k as f64 * STEP_S;
-        dynamic.step(
-            &mut state,
-            t,
-            STEP_S,
-            |t| supply.at(t),
-            |t, w| load.torque(t, w),
-        );
+        dynamic.step(&mut state, t, STEP_S, supply, |t, w| load.torque(t, w));
     }
     let t = steps as f64 * STEP_S;
     let back = Complex64::from_polar(1.0, -plate.omega_sync() * t);
-    let current = dynamic.current(t, &state, supply.at(t));
+    let current = dynamic.current(t, &state, supply(t));
     (current * back, state.omega_mech)
 }
 

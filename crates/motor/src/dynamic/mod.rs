@@ -24,4 +24,4 @@ pub use linear::Linear;
 pub use model::{Dynamic, Flow};
 pub use settled::{Rotating, cycle_components};
 pub use state::{DynamicState, Extra};
-pub use supply::{Harmonic, Interpolated, Sinusoidal, clarke, phases};
+pub use supply::{Harmonic, clarke, phases};

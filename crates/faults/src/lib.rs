@@ -3,6 +3,8 @@
 //! Code names a fault by its [`FaultId`]; text becomes one where it is read ([`FaultId::from_name`]). The texts are
 //! functions of their own: the firmware calls none of them, and they take no flash there.
 
+#![cfg_attr(not(test), no_std)]
+
 use core::fmt;
 
 /// What may be wrong with a motor or its instruments. The value is its number in frames and registers.
