@@ -224,7 +224,15 @@ fn a_trace_holds_every_window() {
         .map(|one| [&one["t"], &one["r_percent"][0]].map(|x| x.as_f64().expect("a number")))
         .collect();
     assert!(with_residuals.len() > 100);
-    assert_eq!(with_residuals, told);
+    assert_eq!(with_residuals.len(), told.len());
+    // JSON is read to the last digit but one.
+    let same = |(a, b): (f64, f64)| (a - b).abs() <= 2.0 * f64::EPSILON * a.abs();
+    let pairs = with_residuals.iter().zip(&told);
+    assert!(
+        pairs
+            .flat_map(|(a, b)| [(a[0], b[0]), (a[1], b[1])])
+            .all(same)
+    );
 }
 
 /// The samples of all pieces are those of the whole, and only the last piece is longer.
