@@ -59,10 +59,6 @@ impl<H: Hooks> Dynamic<H> {
         &self.hooks
     }
 
-    pub(super) fn pole_pairs(&self) -> f64 {
-        self.mechanics.n_p
-    }
-
     /// Everything that flows at one instant, for supply voltage `u` (V) and load torque `tau_load` (N m).
     #[inline(always)]
     pub fn flow(

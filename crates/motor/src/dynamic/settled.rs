@@ -1,6 +1,6 @@
 //! The state in which a motor has settled on a supply of several frequencies, at a constant speed.
 
-use super::{Dynamic, DynamicState, Hooks};
+use super::DynamicState;
 use crate::TParams;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -34,100 +34,6 @@ impl DynamicState {
         }
         state
     }
-}
-
-/// Cycles of the supply that a motor with effects is given to settle; each brings it nearer by what its nonlinearity lets.
-const CYCLES: usize = 4;
-/// Integration steps in a cycle.
-const STEPS: usize = 100;
-/// Share of the largest component, and of the flux in a cycle, below which nothing is worth a step.
-const NEGLIGIBLE: f64 = 1e-4;
-
-impl<H: Hooks> Dynamic<H> {
-    /// The state near `begin`, at `t` (s), that repeats itself in each cycle of `omega_sync` (rad/s) on the sum of `voltages`, at the speed of
-    /// `begin`, which is held: Newton's method with the linear motor's return to itself. `begin` where it does so already.
-    pub fn settled(
-        &self,
-        begin: DynamicState<H::Extra>,
-        t: f64,
-        motor: &TParams<f64>,
-        omega_sync: f64,
-        voltages: &[Rotating],
-    ) -> DynamicState<H::Extra> {
-        let cycle = TAU / omega_sync.abs();
-        let loudest = voltages.iter().fold(0.0f64, |u, part| u.max(part.u.norm()));
-        let heard = |part: &&Rotating| part.u.norm() > NEGLIGIBLE * loudest;
-        let supply: Vec<Rotating> = voltages.iter().filter(heard).copied().collect();
-        let back = newton(motor, self.pole_pairs() * begin.omega_mech, cycle);
-        let (mut state, mut settled, mut nearest) = (begin, begin, f64::INFINITY);
-        for _ in 0..CYCLES {
-            let end = self.cycle(&state, t, cycle, &supply);
-            let moved = [end.psi_s - state.psi_s, end.psi_r - state.psi_r];
-            let far = moved[0].norm() + moved[1].norm();
-            if !(far < nearest) {
-                break;
-            }
-            (settled, nearest) = (state, far);
-            if far < NEGLIGIBLE * state.psi_s.norm() {
-                break;
-            }
-            state.psi_s += back[0][0] * moved[0] + back[0][1] * moved[1];
-            state.psi_r += back[1][0] * moved[0] + back[1][1] * moved[1];
-            state.extra = end.extra;
-        }
-        settled
-    }
-
-    /// The state a cycle later, the speed held.
-    fn cycle(
-        &self,
-        begin: &DynamicState<H::Extra>,
-        t: f64,
-        cycle: f64,
-        supply: &[Rotating],
-    ) -> DynamicState<H::Extra> {
-        let h = cycle / STEPS as f64;
-        let at = |now: f64| {
-            let turned =
-                |part: &Rotating| part.u * Complex64::from_polar(1.0, part.omega * (now - t));
-            supply.iter().map(turned).sum()
-        };
-        let mut state = *begin;
-        for k in 0..STEPS {
-            self.step(&mut state, t + h * k as f64, h, at, |_, _| 0.0);
-            state.omega_mech = begin.omega_mech;
-        }
-        state
-    }
-}
-
-/// `(1 - exp(A T))^-1` of the linear winding equations `A` (theory (1) to (4)) over a time `T`, s, at an electrical speed, rad/s:
-/// from what the fluxes moved in that time to what they were away from where they would stay.
-fn newton(motor: &TParams<f64>, omega_el: f64, t: f64) -> [[Complex64; 2]; 2] {
-    let (l_s, l_r, l_m) = (motor.l_s(), motor.l_r(), motor.l_m);
-    let d = l_s * l_r - l_m * l_m;
-    let (a, b) = (-motor.r_s * l_r / d, motor.r_s * l_m / d);
-    let (c, e) = (
-        motor.r_r * l_m / d,
-        Complex64::new(-motor.r_r * l_s / d, omega_el),
-    );
-    let mean = 0.5 * (a + e);
-    let root = (mean * mean - (a * e - b * c)).sqrt();
-    let (grown, same) = ((mean * t).exp(), (root * t).cosh());
-    let turned = (root * t).sinh() / root;
-    // exp(A T), by Cayley and Hamilton.
-    let of =
-        |x: Complex64, diagonal: f64| grown * (same * diagonal + turned * (x - mean * diagonal));
-    let m = [
-        [1.0 - of(a.into(), 1.0), -of(b.into(), 0.0)],
-        [-of(c.into(), 0.0), 1.0 - of(e, 1.0)],
-    ];
-    let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    let over = |x: Complex64| x / determinant;
-    [
-        [over(m[1][1]), over(-m[0][1])],
-        [over(-m[1][0]), over(m[0][0])],
-    ]
 }
 
 /// Stator and rotor flux linkage (V s) that one frequency leaves at an electrical speed, rad/s.
@@ -186,7 +92,7 @@ fn mean_in_turn(u: &[Complex64], angle: f64, n: f64) -> Complex64 {
 mod tests {
     use super::*;
     use crate::Mechanics;
-    use crate::dynamic::NoEffects;
+    use crate::dynamic::{Dynamic, NoEffects};
 
     const OMEGA: f64 = TAU * 60.0;
 

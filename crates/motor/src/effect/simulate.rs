@@ -207,16 +207,8 @@ fn stacked<'a, const N: usize>(
     let timeline = run.timeline.clone();
     let stack = EffectStack::<N>::new(&plant.effects, motor, &plant.rated, timeline);
     let model = Dynamic::with_effects(motor, &plant.mechanics, stack);
-    let mut ready = Ready::new(
-        model,
-        DynamicState::with_extra(&start),
-        plant,
-        motor,
-        run,
-        inputs,
-    );
-    ready.settle(motor);
-    ready
+    let start = DynamicState::with_extra(&start);
+    Ready::new(model, start, plant, motor, run, inputs)
 }
 
 /// One pass through a step: what the instruments show at its beginning.
@@ -228,33 +220,6 @@ pub(super) struct Shown {
     pub omega_mech: f64,
     /// Shaft angle, rad.
     pub theta_mech: f64,
-}
-
-impl<const N: usize> Ready<'_, EffectStack<N>> {
-    /// A motor that runs has settled with its effects too.
-    fn settle(&mut self, motor: &TParams<f64>) {
-        let (run, inputs, model) = (self.run, self.inputs, &self.model);
-        let settled = |begin: DynamicState<[f64; N]>, k: usize| {
-            let omega_sync = run.timeline.omega_sync[k];
-            let voltages = cycle_components(&inputs.u_s[k..], omega_sync, inputs.t_sample);
-            model.settled(
-                begin,
-                inputs.t_sample * k as f64,
-                motor,
-                omega_sync,
-                &voltages,
-            )
-        };
-        if run.running_at.is_some() {
-            self.start = settled(self.start, 0);
-        }
-        for (restart, running_at) in self.restarts.iter_mut().zip(run.running_at_cuts) {
-            if running_at.is_some() {
-                let there = settled(DynamicState::with_extra(&restart.state), restart.sample);
-                (restart.state.psi_s, restart.state.psi_r) = (there.psi_s, there.psi_r);
-            }
-        }
-    }
 }
 
 impl<'a, H: Hooks> Ready<'a, H> {

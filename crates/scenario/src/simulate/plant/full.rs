@@ -76,15 +76,13 @@ impl<H: Hooks> Full<H> {
         };
         let supply = self.waveform.rotating(0.0);
         let settled = DynamicState::settled(&motor, mechanics.n_p, point.omega_mech, &supply);
-        let begin = DynamicState {
+        Ok(DynamicState {
             psi_s: settled.psi_s,
             psi_r: settled.psi_r,
             omega_mech: settled.omega_mech,
             theta_mech: 0.0,
             extra: H::Extra::ZERO,
-        };
-        let omega_sync = self.waveform.omega_sync(0.0);
-        Ok(self.model.settled(begin, 0.0, &motor, omega_sync, &supply))
+        })
     }
 
     pub(super) fn switch_faults(&mut self, faults: &[Fault], t: f64) {
