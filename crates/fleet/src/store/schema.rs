@@ -1,7 +1,7 @@
 //! Tables of the store, and how an older file becomes a newer one.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rusqlite::{Connection, OpenFlags, TransactionBehavior};
 
@@ -20,6 +20,8 @@ const STEPS: [&str; 3] = [
 /// Newest schema this program knows.
 const NEWEST: u32 = STEPS.len() as u32;
 
+/// Time between two looks at an empty file.
+const AGAIN: Duration = Duration::from_millis(20);
 /// How long a reader or the writer waits for a lock of another program.
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -68,12 +70,16 @@ fn migrate(connection: &mut Connection, path: &Path) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Refuses a file that is no store, or not one of this program's.
+/// Refuses a file that is no store, or not one of this program's. An empty one may be about to become a store: it is waited for.
 pub(super) fn check(connection: &Connection, path: &Path) -> Result<(), StoreError> {
-    match schema_of(connection, path)? {
-        0 => Err(StoreError::Foreign(path.to_owned())),
-        _ => Ok(()),
+    let end = Instant::now() + PATIENCE;
+    while schema_of(connection, path)? == 0 {
+        if Instant::now() > end {
+            return Err(StoreError::Foreign(path.to_owned()));
+        }
+        std::thread::sleep(AGAIN);
     }
+    Ok(())
 }
 
 /// Schema of the file, 0 of an empty one.

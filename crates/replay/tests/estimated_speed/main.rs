@@ -114,7 +114,7 @@ fn slot_harmonics_of_a_known_cage_give_the_speed() {
             bars_known: true,
             foreign: 0,
         };
-        let outcomes = outcomes(1, cases(8), wish);
+        let outcomes = outcomes(1, cases(16), wish);
         report(
             &format!("bars known, lines of {:.2} %", 100.0 * lines),
             &outcomes,
