@@ -104,7 +104,7 @@ pub struct MotorInfo {
     pub place: String,
     /// How it is reached ("modbus-tcp 10.0.0.7:502 unit 1").
     pub link: String,
-    /// Path of its motor file, where there is one.
+    /// Absolute path of its motor file, where there is one.
     pub motor_file: Option<String>,
 }
 

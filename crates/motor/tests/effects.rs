@@ -1,45 +1,18 @@
 //! Every effect of the library: consistent with itself, absent at zero, the same in dynamics and steady state.
 
+mod common;
+
+use common::{OMEGA, T_SAMPLE, plant};
+use motor::TParams;
 use motor::effect::{
     At, Between, EffectConfig, EffectError, Inputs, Instrument, MAX_FILE_STATES, MAX_PARAMETERS,
     Outputs, Plant, Rated, Role, Run, Side, SpeedSource, SteadyPoint, Timeline, extra_states,
     simulate,
 };
 use motor::effects::{ALL, asymmetry_of, gain_of};
-use motor::{Mechanics, TParams};
 use num_complex::Complex64;
 use std::collections::BTreeSet;
-use std::f64::consts::TAU;
 use std::sync::Arc;
-
-const OMEGA: f64 = TAU * 50.0;
-const T_SAMPLE: f64 = 1e-4;
-
-fn plant() -> Plant {
-    Plant {
-        motor: TParams {
-            r_s: 3.7,
-            r_r: 2.3,
-            l_ls: 0.0107,
-            l_lr: 0.0107,
-            l_m: 0.234,
-        },
-        mechanics: Mechanics {
-            n_p: 2.0,
-            inertia: 0.015,
-            friction: 0.001,
-            load_friction: 0.0,
-        },
-        rated: Rated {
-            voltage: 326.6,
-            current: 7.07,
-            omega_sync: OMEGA,
-            n_p: 2.0,
-            torque: 14.6,
-        },
-        effects: Vec::new(),
-    }
-}
 
 fn inputs(seconds: f64) -> Inputs {
     let n = (seconds / T_SAMPLE) as usize | 1;

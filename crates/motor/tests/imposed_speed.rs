@@ -1,48 +1,24 @@
 //! A measured speed that drives the model: an instrument's lateness is undone before it does.
 
+mod common;
+
+use common::{OMEGA, T_SAMPLE, plant};
 use motor::effect::{
-    Between, Cut, EffectConfig, Inputs, Outputs, Plant, Rated, Run, SpeedSource, Timeline, simulate,
+    Between, Cut, EffectConfig, Inputs, Outputs, Plant, Run, SpeedSource, Timeline, simulate,
 };
-use motor::{Mechanics, TParams};
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
-const OMEGA: f64 = TAU * 50.0;
-const T_SAMPLE: f64 = 1e-4;
 /// Lateness of the instrument, s: half the window of an encoder's counts.
 const DELAY: f64 = 0.005;
 
-fn plant(delay_s: Option<f64>) -> Plant {
-    let rated = Rated {
-        voltage: 326.6,
-        current: 7.07,
-        omega_sync: OMEGA,
-        n_p: 2.0,
-        torque: 14.6,
-    };
-    let late = |delay_s: f64| {
-        let effect = motor::effects::find("speed-delay", "").expect("in the library");
-        let mut config = EffectConfig::absent(effect, &rated);
-        config.values[0] = delay_s;
-        config
-    };
+fn late(delay_s: f64) -> Plant {
+    let effect = motor::effects::find("speed-delay", "").expect("in the library");
+    let mut config = EffectConfig::absent(effect, &plant().rated);
+    config.values[0] = delay_s;
     Plant {
-        motor: TParams {
-            r_s: 3.7,
-            r_r: 2.3,
-            l_ls: 0.0107,
-            l_lr: 0.0107,
-            l_m: 0.234,
-        },
-        mechanics: Mechanics {
-            n_p: 2.0,
-            inertia: 0.015,
-            friction: 0.001,
-            load_friction: 0.0,
-        },
-        effects: delay_s.map(late).into_iter().collect(),
-        rated,
+        effects: vec![config],
+        ..plant()
     }
 }
 
@@ -83,15 +59,15 @@ fn apart(a: &Outputs, b: &Outputs, from: usize) -> f64 {
 #[test]
 fn a_late_speed_drives_the_motor_as_the_true_one_does() {
     let steady = || Timeline::constant(OMEGA);
-    let free = run(&plant(None), SpeedSource::Free, steady());
+    let free = run(&plant(), SpeedSource::Free, steady());
     let samples = (DELAY / T_SAMPLE) as usize;
-    let late: Vec<f64> = std::iter::repeat_n(0.0, samples)
+    let reading: Vec<f64> = std::iter::repeat_n(0.0, samples)
         .chain(free.omega_mech.iter().copied())
         .take(free.omega_mech.len())
         .collect();
-    let believed = run(&plant(None), SpeedSource::Imposed(&late), steady());
-    let undone = run(&plant(Some(DELAY)), SpeedSource::Imposed(&late), steady());
-    // Currents of a start of 60 A: the last 5 ms are not known and held, and no start is there.
+    let believed = run(&plant(), SpeedSource::Imposed(&reading), steady());
+    let undone = run(&late(DELAY), SpeedSource::Imposed(&reading), steady());
+    // Of a start of 60 A. The last 5 ms of the speed are not known and held; it is steady there.
     assert!(apart(&free, &believed, 0) > 5.0);
     assert!(
         apart(&free, &undone, 0) < 0.05,
@@ -116,8 +92,5 @@ fn a_cut_is_not_looked_across() {
         .map(|k| if k < 4000 { 150.0 } else { 0.0 })
         .collect();
     let imposed = |plant: &Plant| run(plant, SpeedSource::Imposed(&speed), cut(4000));
-    assert_eq!(
-        imposed(&plant(Some(DELAY))).i_s_abc,
-        imposed(&plant(None)).i_s_abc
-    );
+    assert_eq!(imposed(&late(DELAY)).i_s_abc, imposed(&plant()).i_s_abc);
 }

@@ -24,9 +24,10 @@ const NAMES: [&str; FEATURES] = ["r1", "r2", "r3", "r4", "significance", "I2/I1"
 const MEANS: [f64; FEATURES] = [2e-4, 2e-4, 2e-4, 2e-4, 0.05, 2e-4];
 /// And by this share: the negative sequence of cycles is off by half a percent, probably because an unbalance makes the speed ripple and cycles know no ripple.
 const SHARE_OF_MEAN: f64 = 0.01;
-/// Standard deviations may differ by these factors, where they are not both below a tenth of [`MEANS`]: at one speed the counts of an
-/// encoder beat with the cycles, which r2 and r3 see, and each cut of the cycles beats in its own way.
-const DEVIATIONS: [f64; FEATURES] = [1.5, 3.0, 3.0, 1.5, 2.0, 2.5];
+/// Standard deviations may differ by these factors, where they are not both below a tenth of [`MEANS`]: 200 windows that share
+/// their cycles tell a deviation to some 15 %. The negative sequence of cycles scatters more than that of samples, by up to three at
+/// 1e-5 of the current: cycles are the harder ones there.
+const DEVIATIONS: [f64; FEATURES] = [1.5, 1.5, 1.5, 1.5, 1.5, 2.5];
 /// Shares of windows beyond half of the limit of FAULT may differ by this.
 const SHARES: f64 = 0.1;
 /// Windows of five cycles share four of them with their neighbours.
@@ -215,14 +216,15 @@ fn alike(samples: &Seen, cycles: &Seen, label: &str) {
         let differs = (mean - mean_c).abs();
         assert!(
             differs < MEANS[k] + SHARE_OF_MEAN * mean.abs() + 4.0 * error
-                || (mean.is_nan() && mean_c.is_nan()),
+                || [mean, mean_c].iter().all(|mean| mean.is_nan()),
             "{label}: mean of {} {mean} by samples, {mean_c} by cycles",
             NAMES[k]
         );
         let floor = 0.1 * MEANS[k];
         let ratio = (deviation_c + floor) / (deviation + floor);
         assert!(
-            (DEVIATIONS[k].recip()..DEVIATIONS[k]).contains(&ratio) || ratio.is_nan(),
+            (DEVIATIONS[k].recip()..DEVIATIONS[k]).contains(&ratio)
+                || [deviation, deviation_c].iter().all(|x| x.is_nan()),
             "{label}: deviation of {} {deviation} by samples, {deviation_c} by cycles",
             NAMES[k]
         );
@@ -235,7 +237,7 @@ fn alike(samples: &Seen, cycles: &Seen, label: &str) {
     assert_eq!(samples.lit > 0, cycles.lit > 0, "{label}: FAULT");
 }
 
-/// What is not right shows in cycles too: a resistance that is 40 % off lights FAULT.
+/// What is not right shows in cycles too: a magnetizing inductance that has lost 30 % lights FAULT.
 #[test]
 fn a_fault_lights_in_cycles() {
     let mut watched = watched(1);

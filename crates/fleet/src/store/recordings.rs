@@ -1,6 +1,6 @@
 //! The samples around alarms.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use thiserror::Error;
@@ -31,7 +31,7 @@ pub struct AlarmRecording {
     pub constants: u32,
     /// Instants, as the board has them (`board::captured_samples`).
     pub instants: Vec<u8>,
-    /// The motor's file, as the configuration names it; a relative path is one from the folder of the store.
+    /// The motor's file, an absolute path.
     pub motor_file: PathBuf,
 }
 
@@ -154,12 +154,11 @@ impl Reader {
             })?)
         })?;
         let file = file.ok_or(NoRecording::NoMotorFile(samples.motor))?;
-        let folder = self.path().parent().unwrap_or(Path::new(""));
         Ok(AlarmRecording {
             name,
             constants: samples.constants,
             instants,
-            motor_file: folder.join(file),
+            motor_file: file.into(),
         })
     }
 }

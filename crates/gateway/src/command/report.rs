@@ -8,8 +8,8 @@ use super::error::CommandError;
 use super::terminal::Terminal;
 use super::users::OfPlant;
 
-/// Makes the page of a month: of a store, with the folder in which paths of motor files begin, and the month as it was asked for.
-pub type PageOfMonth = fn(&Path, &Path, &str) -> Result<String, String>;
+/// Makes the page of a month: of a store, and the month as it was asked for.
+pub type PageOfMonth = fn(&Path, &str) -> Result<String, String>;
 
 /// A month of a plant as a page.
 #[derive(Debug, Args)]
@@ -27,7 +27,7 @@ pub(super) struct Report {
 impl Report {
     /// Runs the command.
     pub fn run(&self, page: PageOfMonth, terminal: Terminal) -> Result<(), CommandError> {
-        let page = page(&self.of.store()?, self.of.folder(), &self.month);
+        let page = page(&self.of.store()?, &self.month);
         let page = page.map_err(CommandError::Output)?;
         std::fs::write(&self.output, page).map_err(|error| CommandError::File {
             option: "-o",

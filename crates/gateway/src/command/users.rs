@@ -74,11 +74,6 @@ impl Users {
 }
 
 impl OfPlant {
-    /// The folder in which relative paths of its configuration begin.
-    pub fn folder(&self) -> &Path {
-        self.fleet.parent().unwrap_or(Path::new(""))
-    }
-
     /// Its store.
     pub fn store(&self) -> Result<PathBuf, CommandError> {
         Ok(Config::store_of(&self.fleet)?)

@@ -1,6 +1,7 @@
 //! The motors of a configuration.
 
 use std::collections::HashMap;
+use std::path::Path;
 
 use document::{Bounds, Section};
 use fleet::{MotorId, MotorInfo};
@@ -14,8 +15,13 @@ const SERIAL_DIGITS: usize = 24;
 /// Below this similarity (Jaro-Winkler, 0 to 1) two names are two names, not one misspelt.
 const SIMILAR: f64 = 0.85;
 
-/// Reads all of them. `links` is empty where no link could be read; a motor's link is not judged then.
-pub(super) fn read(root: &Section<'_>, links: &[LinkConfig]) -> Option<Vec<MotorConfig>> {
+/// Reads all of them. `links` is empty where no link could be read; a motor's link is not judged then. Relative paths begin in
+/// `folder`.
+pub(super) fn read(
+    root: &Section<'_>,
+    links: &[LinkConfig],
+    folder: &Path,
+) -> Option<Vec<MotorConfig>> {
     let sections = root.sections("motor")?;
     if sections.is_empty() {
         root.report(
@@ -30,7 +36,7 @@ pub(super) fn read(root: &Section<'_>, links: &[LinkConfig]) -> Option<Vec<Motor
     let mut seen = Seen::default();
     let mut motors = Vec::with_capacity(sections.len());
     for section in sections {
-        let motor = of_section(&section, links, &places);
+        let motor = of_section(&section, links, &places, folder);
         if let Some(motor) = &motor {
             seen.take(&section, motor, links);
         }
@@ -90,6 +96,7 @@ fn of_section(
     section: &Section<'_>,
     links: &[LinkConfig],
     places: &HashMap<&str, usize>,
+    folder: &Path,
 ) -> Option<MotorConfig> {
     let id = name(section);
     let link = section.text("link", "the name of its [[link]]");
@@ -117,7 +124,7 @@ fn of_section(
                 true => format!("{} unit {unit}", to.kind),
                 false => to.kind.to_string(),
             },
-            motor_file: motor_file?,
+            motor_file: motor_file?.map(|file| absolute(folder, &file)),
             id,
         },
         link,
@@ -125,6 +132,13 @@ fn of_section(
         serial: serial?,
         log: log?,
     })
+}
+
+/// Who reads the store knows nothing of the configuration's folder, nor of the folder in which the gateway was started.
+fn absolute(folder: &Path, file: &str) -> String {
+    let path = folder.join(file);
+    let path = std::path::absolute(&path).unwrap_or(path);
+    path.display().to_string()
 }
 
 fn name(section: &Section<'_>) -> Option<MotorId> {

@@ -57,7 +57,7 @@ impl Config {
             .root()
             .section("store", "which says where everything is kept");
         let file = section.and_then(|s| s.text("path", "the file in which everything is kept"));
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let folder = folder_of(path);
         document.finish(file.map(|file| folder.join(file)))
     }
 
@@ -72,7 +72,7 @@ fn of_root(root: &Section<'_>, path: &Path) -> Option<Config> {
     let store = store(root, path);
     let alarms = alarms::read(root);
     let links = links::read(root);
-    let motors = motors::read(root, links.as_deref().unwrap_or_default());
+    let motors = motors::read(root, links.as_deref().unwrap_or_default(), folder_of(path));
     let (store, limits) = store?;
     Some(Config {
         patience: patience?,
@@ -113,8 +113,13 @@ fn store(root: &Section<'_>, path: &Path) -> Option<(PathBuf, Limits)> {
         }
     });
     section.finish();
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let folder = folder_of(path);
     Some((folder.join(file?), checked?))
+}
+
+/// Where relative paths begin.
+fn folder_of(config: &Path) -> &Path {
+    config.parent().unwrap_or(Path::new(""))
 }
 
 fn limits(section: &Section<'_>) -> Option<Limits> {

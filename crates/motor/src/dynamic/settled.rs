@@ -2,6 +2,7 @@
 
 use super::DynamicState;
 use crate::TParams;
+use crate::steady_state::SteadyState;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -14,7 +15,7 @@ pub struct Rotating {
     pub u: Complex64,
 }
 
-/// Highest order of a cycle that is looked for: that of the supplies' standards (IEC 61000-4-7), and nine more.
+/// Highest order of a cycle that is looked for; a simulated supply has no higher one.
 const HIGHEST_ORDER: i32 = 49;
 /// Samples that the fastest turn of a component takes at least: fewer do not tell it from others.
 const SAMPLES_PER_TURN: f64 = 4.0;
@@ -27,24 +28,13 @@ impl DynamicState {
             omega_mech,
             ..Self::rest()
         };
-        for voltage in voltages {
-            let [psi_s, psi_r] = flux_linkages(motor, n_p * omega_mech, voltage);
-            state.psi_s += psi_s;
-            state.psi_r += psi_r;
+        for &Rotating { omega, u } in voltages {
+            let point = SteadyState::new(motor, n_p, u, omega).at_speed(omega_mech);
+            state.psi_s += point.psi_s;
+            state.psi_r += point.psi_r;
         }
         state
     }
-}
-
-/// Stator and rotor flux linkage (V s) that one frequency leaves at an electrical speed, rad/s.
-fn flux_linkages(motor: &TParams<f64>, omega_el: f64, voltage: &Rotating) -> [Complex64; 2] {
-    let j_omega = Complex64::new(0.0, voltage.omega);
-    let j_slip = Complex64::new(0.0, voltage.omega - omega_el);
-    // Rotor: 0 = R_r i_r + j w_slip (L_m i_s + L_r i_r).
-    let ratio = -(j_slip * motor.l_m) / (motor.r_r + j_slip * motor.l_r());
-    let l_seen = motor.l_s() + ratio * motor.l_m;
-    let i_s = voltage.u / (motor.r_s + j_omega * l_seen);
-    [l_seen * i_s, (motor.l_m + ratio * motor.l_r()) * i_s]
 }
 
 /// What a sampled voltage vector (V) repeats in the cycle that begins with its first sample: fundamental, negative sequence and

@@ -1,6 +1,6 @@
 //! What the page is about: the store of a plant, its people, and the wall, kept up to date by a thread of its own.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::sleep;
@@ -35,23 +35,20 @@ pub enum PlantError {
 }
 
 /// When a calibration is due.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct DueRule {
     /// Older than so many days.
     pub after_days: u32,
     /// r1 or r4 has moved by more than so much since the calibration, percent of its scale.
     pub drift_percent: f32,
-    /// Where paths of motor files begin: the folder of the gateway's configuration.
-    pub folder: PathBuf,
 }
 
-impl DueRule {
+impl Default for DueRule {
     /// A year, and one percent.
-    pub fn usual(folder: PathBuf) -> DueRule {
+    fn default() -> Self {
         DueRule {
             after_days: 365,
             drift_percent: 1.0,
-            folder,
         }
     }
 }

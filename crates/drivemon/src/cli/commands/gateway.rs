@@ -58,7 +58,7 @@ pub fn fleet(fleet: &Fleet) -> Result<Finding, Failure> {
     #[cfg(feature = "panel")]
     let page = panel::fleet::month_page;
     #[cfg(not(feature = "panel"))]
-    let page = |_: &_, _: &_, _: &_| Err("build drivemon with its feature panel".into());
+    let page = |_: &_, _: &_| Err("build drivemon with its feature panel".into());
     fleet.run(TERMINAL, page, told_to_end()).map_err(failure)?;
     Ok(Finding::Nothing)
 }

@@ -176,7 +176,6 @@ impl Panel {
 
     /// A plant of many motors, until the program is told to end.
     fn show(&self, plant: &Path) -> Result<Finding, Failure> {
-        let folder = plant.parent().map_or_else(PathBuf::new, Path::to_path_buf);
         #[cfg(feature = "gateway")]
         let plant = &gateway::config::Config::store_of(plant)?;
         let look = Look {
@@ -184,7 +183,6 @@ impl Panel {
             due: DueRule {
                 after_days: self.recalibrate_after,
                 drift_percent: self.recalibrate_drift,
-                folder,
             },
         };
         let told = |url: &str| self.tell(url);

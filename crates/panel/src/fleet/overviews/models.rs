@@ -124,11 +124,8 @@ fn model(
     now_ms: i64,
 ) -> Result<Model, StoreError> {
     let info = &state.info;
-    let file = info
-        .motor_file
-        .as_deref()
-        .map(|path| rule.folder.join(path));
-    let of_file = file.as_deref().map_or_else(FileModel::default, read);
+    let file = info.motor_file.as_deref().map(Path::new);
+    let of_file = file.map_or_else(FileModel::default, read);
     let filter = EntryFilter {
         motor: Some(info.id.clone()),
         ..EntryFilter::default()

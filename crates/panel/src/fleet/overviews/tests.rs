@@ -25,7 +25,7 @@ fn store(folder: &Path, entries: &[(MotorId, Entry)]) -> Reader {
     let path = folder.join("plant.db");
     let store = Store::open(&path, &Limits::default()).expect("a store");
     let info = |name: &str, file: Option<&str>| MotorInfo {
-        motor_file: file.map(str::to_owned),
+        motor_file: file.map(|file| format!("{}/{file}", motors())),
         ..MotorInfo::new(motor(name))
     };
     let infos = [
@@ -50,8 +50,7 @@ fn event(number: u32, time_ms: i64, cause: u16, value: u32) -> Entry {
 }
 
 fn models(reader: &Reader, now_ms: i64) -> Models {
-    let rule = DueRule::usual(motors().into());
-    all(reader, &rule, now_ms).expect("read")
+    all(reader, &DueRule::default(), now_ms).expect("read")
 }
 
 #[test]
@@ -160,7 +159,7 @@ fn a_month_counts_its_alarms_their_people_and_what_is_stored() {
     );
     let reader = store(folder.path(), &entries);
     let now_ms = MONDAY_MS + 5 * DAY_MS;
-    let page = page_at(reader.path(), Path::new(&motors()), "2026-10", now_ms).expect("a page");
+    let page = page_at(reader.path(), "2026-10", now_ms).expect("a page");
     let json = page
         .split("id=\"result\">")
         .nth(1)
@@ -195,6 +194,6 @@ fn a_month_counts_its_alarms_their_people_and_what_is_stored() {
         "{stored}"
     );
     assert_eq!(month["causes"][0]["marked_false"], 1);
-    let refused = page_at(reader.path(), Path::new(""), "October", now_ms);
+    let refused = page_at(reader.path(), "October", now_ms);
     assert!(refused.is_err_and(|why| why.contains("write one as 2026-10")));
 }

@@ -253,21 +253,21 @@ impl Instruments {
     }
 
     fn speed(&mut self, truth: &Truth, count: i64, active: &[&Fault]) -> f64 {
+        let omega = probed(truth.omega_mech, Probe::Speed, active);
         match self.spec.speed {
             SpeedSensor::None => 0.0,
-            SpeedSensor::Encoder => self.encoder_speed(count, truth.omega_mech),
+            SpeedSensor::Encoder => self.encoder_speed(count, omega),
             SpeedSensor::Tachometer => {
-                let omega = probed(truth.omega_mech, Probe::Speed, active);
                 self.plain(omega, self.spec.instrument.speed_full_scale_rad_s)
             }
         }
     }
 
-    /// Counts of the window in a second; before the first sample the shaft turned as it does there, `omega_mech`, rad/s.
-    fn encoder_speed(&mut self, count: i64, omega_mech: f64) -> f64 {
+    /// Counts of the window in a second; before the first sample the encoder turned as it does there, `omega`, rad/s.
+    fn encoder_speed(&mut self, count: i64, omega: f64) -> f64 {
         let window = (ENCODER_WINDOW_S / self.t_sample).round().max(1.0);
         if self.counts.is_empty() {
-            let per_sample = self.counts_per_radian() * omega_mech * self.t_sample;
+            let per_sample = self.counts_per_radian() * omega * self.t_sample;
             let before = |k: i32| count - (f64::from(k) * per_sample).round() as i64;
             self.counts.extend((1..=window as i32).rev().map(before));
         }

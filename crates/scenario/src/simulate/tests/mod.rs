@@ -387,3 +387,28 @@ fn a_recording_reads_back_as_it_was_written() {
     std::fs::remove_file(&path).expect("removed");
     std::fs::remove_file(recording::sidecar_path(&path)).expect("removed");
 }
+
+/// Counts are a difference over 10 ms: of a motor that runs there is one from the first sample on, also behind a fault of the speed.
+#[test]
+fn an_encoder_shows_the_speed_of_a_running_motor_at_once() {
+    let motor = Scenario::read(folder().join("unbalanced-supply.toml"))
+        .expect("shipped")
+        .motor;
+    let mut scenario = Scenario::of(motor, 0.02);
+    scenario.sensors.speed = crate::SpeedSensor::Encoder;
+    let pulses = f64::from(scenario.sensors.instrument.encoder_pulses_per_revolution);
+    // Two ends of 10 ms, a count at each.
+    let resolved = 2.0 * TAU / (4.0 * pulses) / 0.01;
+    let half = faulty(&scenario, "wr", -50.0, Frame::Voltage);
+    for (scenario, gain) in [(&scenario, 1.0), (&half, 0.5)] {
+        for sample in run(scenario) {
+            let expected = gain * sample.truth.omega_mech;
+            let shown = sample.measured.omega_mech;
+            assert!(
+                (shown - expected).abs() <= resolved,
+                "{}: {shown} {expected}",
+                sample.t
+            );
+        }
+    }
+}

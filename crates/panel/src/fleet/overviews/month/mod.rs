@@ -93,24 +93,19 @@ impl Answer for Month {
     const FORMAT: &'static str = "fleet-month/1";
 }
 
-/// The page of a month of a store, by the usual rule; `folder` is where paths of motor files begin.
+/// The page of a month of a store, by the usual rule.
 ///
 /// # Errors
 /// What is no month, or a store that cannot be read, in words.
-pub fn month_page(store: &Path, folder: &Path, month: &str) -> Result<String, String> {
-    page_at(store, folder, month, now_ms())
+pub fn month_page(store: &Path, month: &str) -> Result<String, String> {
+    page_at(store, month, now_ms())
 }
 
-pub(super) fn page_at(
-    store: &Path,
-    folder: &Path,
-    month: &str,
-    now_ms: i64,
-) -> Result<String, String> {
+pub(super) fn page_at(store: &Path, month: &str, now_ms: i64) -> Result<String, String> {
     let month: CalendarMonth = month.parse().map_err(|error: NoMonth| error.to_string())?;
     let reader = Reader::open(store).map_err(|error| error.to_string())?;
-    let rule = DueRule::usual(folder.to_owned());
-    let month = count(&reader, &rule, month, now_ms).map_err(|error| error.to_string())?;
+    let month =
+        count(&reader, &DueRule::default(), month, now_ms).map_err(|error| error.to_string())?;
     report::page(Subject::FleetMonth, &month).map_err(|error| error.to_string())
 }
 
