@@ -10,6 +10,9 @@ import { age } from "./words.js";
 
 const HEADS = ["Motor", "Motor file", "Effects", "Constants", "Calibrated", "Drift, %", "Due", "Why, or what is not known"];
 
+/** The cell of numbers, behind the motor's name. */
+const DRIFT = 4;
+
 /** @type {Models | null} */
 let known = null;
 
@@ -54,9 +57,9 @@ function constants({ file_constants, board_constants }) {
  */
 function row(model, now_ms) {
   const link = make("a", { href: `#motor/${encodeURIComponent(model.id)}` }, model.title);
-  const file = model.file === null ? "none named" : [model.name, model.file].filter(Boolean).join(", ");
+  const file = model.file === null ? "none named" : [model.name, model.file.split(/[/\\]/).pop()].filter(Boolean).join(", ");
   const texts = [file, model.effects.join(", ") || "–", constants(model), calibrated(model), fixed(model.drift_percent, 2), when(model, now_ms), model.why];
-  const cells = texts.map((text, k) => make("td", { class: k === 4 ? null : "word" }, text));
+  const cells = texts.map((text, k) => make("td", { class: k === DRIFT ? null : "word", title: k === 0 ? model.file : null }, text));
   return make("tr", { "data-key": model.id, "data-due": String(model.due) }, make("th", { scope: "row" }, link), ...cells);
 }
 
@@ -80,7 +83,7 @@ export async function refresh() {
 }
 
 export function start() {
-  of("models", HTMLTableElement).tHead?.append(make("tr", {}, ...HEADS.map((head) => make("th", { scope: "col" }, head))));
+  of("models", HTMLTableElement).tHead?.append(make("tr", {}, ...HEADS.map((head, k) => make("th", { scope: "col", class: k === DRIFT + 1 ? null : "word" }, head))));
   byId("filter-models").addEventListener("submit", (event) => event.preventDefault());
   byId("due").addEventListener("change", render);
   const month = of("month", HTMLInputElement);

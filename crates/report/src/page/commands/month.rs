@@ -68,8 +68,19 @@ fn figures(result: &Place<'_>, alarms: &[Place<'_>]) -> Vec<(Markup, Markup)> {
     ]
 }
 
-fn heads(heads: &[&str]) -> Markup {
-    html! { thead { tr { @for head in heads { th scope="col" { (head) } } } } }
+/// Head of a column, and whether words stand in it.
+type Head = (&'static str, bool);
+
+const fn word(head: &'static str) -> Head {
+    (head, true)
+}
+
+const fn number(head: &'static str) -> Head {
+    (head, false)
+}
+
+fn heads(heads: &[Head]) -> Markup {
+    html! { thead { tr { @for (head, is_word) in heads { th.word[*is_word] scope="col" { (head) } } } } }
 }
 
 fn causes(result: &Place<'_>) -> Markup {
@@ -79,7 +90,7 @@ fn causes(result: &Place<'_>) -> Markup {
             h2 { "Alarms by cause" }
             @if causes.is_empty() { p { "None." } } @else {
                 div.wide tabindex="0" { table {
-                    (heads(&["cause", "alarms", "motors", "lasted, h", "marked as false"]))
+                    (heads(&[word("cause"), number("alarms"), number("motors"), number("lasted, h"), number("marked as false")]))
                     tbody { @for row in &causes { tr {
                         th scope="row" { (row.text("words")) } td { (shown(row, "alarms", decimals(0))) } td { (shown(row, "motors", decimals(0))) }
                         td { (shown(row, "hours", decimals(1))) } td { (shown(row, "marked_false", decimals(0))) }
@@ -99,11 +110,11 @@ fn listed(alarms: &[Place<'_>]) -> Markup {
             h2 { "Alarms" }
             @if alarms.len() > MOST_ALARMS { p.subtle { "The first " (MOST_ALARMS) " of them; the embedded result has all." } }
             div.wide tabindex="0" { table {
-                (heads(&["number", "motor", "what", "severity", "rose", "lasted, h", "acknowledged by", "after, h", "comment", "false"]))
+                (heads(&[number("number"), word("motor"), word("what"), word("severity"), word("rose"), number("lasted, h"), word("acknowledged by"), number("after, h"), word("comment"), word("false")]))
                 tbody { @for row in alarms.iter().take(MOST_ALARMS) { tr {
-                    th scope="row" { (shown(row, "number", decimals(0))) } td { (row.text("motor")) } td { (row.text("words")) } td { (row.text("severity")) }
-                    td { (row.text("raised")) } td { (shown(row, "hours", decimals(1))) } td { (row.text("acknowledged_by")) }
-                    td { (shown(row, "acknowledged_after_hours", decimals(1))) } td { (row.text("comment")) } td { (if row.is_true("marked_false") { "yes" } else { "" }) }
+                    th scope="row" { (shown(row, "number", decimals(0))) } td.word { (row.text("motor")) } td.word { (row.text("words")) } td.word { (row.text("severity")) }
+                    td.word { (row.text("raised")) } td { (shown(row, "hours", decimals(1))) } td.word { (row.text("acknowledged_by")) }
+                    td { (shown(row, "acknowledged_after_hours", decimals(1))) } td.word { (row.text("comment")) } td.word { (if row.is_true("marked_false") { "yes" } else { "" }) }
                 } } }
             } }
         }
@@ -116,9 +127,9 @@ fn trends(result: &Place<'_>) -> Markup {
             h2 { "Motors, those whose residuals moved most first" }
             p.subtle { "Means of the first and of the last seven days, percent of scale. A load that changed moves r2 and r3 where it is not declared." }
             div.wide tabindex="0" { table {
-                (heads(&["motor", "place", "moved, %", "r1, first", "r1, last", "r2, first", "r2, last", "r3, first", "r3, last", "r4, first", "r4, last", "data, %", "judged, %", "alarms", "in alarm, h"]))
+                (heads(&[word("motor"), word("place"), number("moved, %"), number("r1, first"), number("r1, last"), number("r2, first"), number("r2, last"), number("r3, first"), number("r3, last"), number("r4, first"), number("r4, last"), number("data, %"), number("judged, %"), number("alarms"), number("in alarm, h")]))
                 tbody { @for row in result.items("motors") { tr {
-                    th scope="row" { (row.text("title")) } td { (row.text("place")) } td { (shown(&row, "moved_percent", decimals(2))) }
+                    th scope="row" { (row.text("title")) } td.word { (row.text("place")) } td { (shown(&row, "moved_percent", decimals(2))) }
                     @for k in 0..4 {
                         td { (shown(&row, &format!("first_percent/{k}"), decimals(2))) } td { (shown(&row, &format!("last_percent/{k}"), decimals(2))) }
                     }
@@ -135,12 +146,12 @@ fn models(result: &Place<'_>) -> Markup {
         section {
             h2 { "Models in force" }
             div.wide tabindex="0" { table {
-                (heads(&["motor", "motor file", "effects", "constants of the file", "of the board", "calibrated", "by", "drift, %", "due", "why, or what is not known"]))
+                (heads(&[word("motor"), word("motor file"), word("effects"), word("constants of the file"), word("of the board"), word("calibrated"), word("by"), number("drift, %"), word("due"), word("why, or what is not known")]))
                 tbody { @for row in result.items("models") { tr {
-                    th scope="row" { (row.text("title")) } td { (row.text("file")) }
-                    td { @for (k, effect) in row.items("effects").iter().enumerate() { @if k > 0 { ", " } (effect.as_text()) } }
-                    td { (row.text("file_constants")) } td { (row.text("board_constants")) } td { (row.text("calibrated_on")) } td { (row.text("calibrated_by")) }
-                    td { (shown(&row, "drift_percent", decimals(2))) } td { (if row.is_true("due") { "due" } else { "" }) } td { (row.text("why")) }
+                    th scope="row" { (row.text("title")) } td.word { (row.text("file")) }
+                    td.word { @for (k, effect) in row.items("effects").iter().enumerate() { @if k > 0 { ", " } (effect.as_text()) } }
+                    td.word { (row.text("file_constants")) } td.word { (row.text("board_constants")) } td.word { (row.text("calibrated_on")) } td.word { (row.text("calibrated_by")) }
+                    td { (shown(&row, "drift_percent", decimals(2))) } td.word { (if row.is_true("due") { "due" } else { "" }) } td.word { (row.text("why")) }
                 } } }
             } }
         }
