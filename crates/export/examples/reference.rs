@@ -73,6 +73,7 @@ fn shown(plant: &Plant, inputs: &Inputs, between: Between) -> Result<String, std
         timeline: &timeline,
         running_at: None,
         running_at_cuts: &[],
+        offsets: &[],
         open: &[],
     };
     let shown = simulate(plant, &run);

@@ -32,6 +32,7 @@ fn outputs(plant: &Plant, inputs: &Inputs, between: Between) -> Outputs {
         timeline: &Arc::new(Timeline::constant(OMEGA)),
         running_at: None,
         running_at_cuts: &[],
+        offsets: &[],
         open: &[],
     };
     simulate(plant, &run)

@@ -45,6 +45,7 @@ fn run(plant: &Plant, speed: SpeedSource<'_>, timeline: Timeline) -> Outputs {
             timeline: &Arc::new(timeline),
             running_at: None,
             running_at_cuts: &cuts,
+            offsets: &[],
             open: &[],
         },
     )

@@ -3,6 +3,7 @@
 use super::plan::Plan;
 use estimation::data::case::{Case, RELATIVE_CURRENT};
 use estimation::data::channels::N_CHANNELS;
+use estimation::fit::nuisance::Nuisance;
 use estimation::model::prediction::{Drive, SpeedObserver, run};
 use motor::effect::{Inputs, Plant, Timeline};
 use num_complex::Complex64;
@@ -60,6 +61,7 @@ pub(super) fn virtual_case(plan: &Plan, like: &Case, plant: &Plant) -> Case {
         inverter: plan.drive,
         speed_scale_is_free: like.speed_scale_is_free,
         table: None,
+        nuisance: Nuisance::default(),
     };
     see(&mut case, like, plant, rows);
     case

@@ -125,6 +125,7 @@ impl<'a> Sensitivities<'a> {
         for ([a, b, c, omega], w) in response.iter().zip(&self.case.weight) {
             column.extend([a * w[0], b * w[1], c * w[2], omega * w[3], 0.0]);
         }
+        self.case.nuisance.project_out(&mut column);
         column
     }
 

@@ -130,6 +130,7 @@ fn start(folder: &Path) -> Vec<[f64; 5]> {
         timeline: &timeline,
         running_at: None,
         running_at_cuts: &[],
+        offsets: &[],
         open: &[],
     };
     let shown = simulate(&plant, &run);

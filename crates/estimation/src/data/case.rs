@@ -1,9 +1,12 @@
 //! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
 
+mod switched_off;
+
 use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::data::inputs::{InputNoise, Load, measured_speed};
 use crate::data::load_table::{self, Point};
 use crate::data::unsupported::{Unsupported, check_clock, check_size};
+use crate::fit::nuisance::Nuisance;
 use crate::model::speed_gain::gain_of;
 use motor::dynamic::clarke;
 use motor::effect::{Between, Inputs, Plant, Rated, Timeline};
@@ -13,6 +16,7 @@ use signal::{Supply, Windows, denoise, refined, sigma};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
+use switched_off::switched_off;
 
 /// Output channels of a recording in the order of a residual row, and their units.
 const OF_RECORDING: [(&str, &str); N_CHANNELS] = [
@@ -36,10 +40,6 @@ pub const RELATIVE_CURRENT: f64 = 0.005;
 const BLOCK: f64 = 0.04;
 /// Time after an interruption of the current during which it is not judged, s.
 const AFTER_SWITCH: f64 = 0.03;
-/// Mean square of a current, in units of its noise, from which it is more than noise ...
-const CARRIES: f64 = 20.0;
-/// ... and up to which it is only noise: three standard deviations over a period of 200 samples are 1.3.
-const NOISE_ONLY: f64 = 1.6;
 /// Longest sampling time at which two samples make one step of integration, s ...
 const LONGEST_SMOOTH: f64 = 2.6e-4;
 /// ... and that of finer inputs of a slower recording.
@@ -106,6 +106,8 @@ pub struct Case {
     pub speed_scale_is_free: bool,
     /// Operating points instead of samples.
     pub table: Option<Vec<Point>>,
+    /// What nothing is judged by: the state in which the motor was when a recording began.
+    pub nuisance: Nuisance,
 }
 
 impl Case {
@@ -182,6 +184,7 @@ impl Case {
             inverter: rec.metadata.supply == SupplyKind::Inverter,
             speed_scale_is_free: false,
             table: None,
+            nuisance: Nuisance::default(),
         };
         case.fill_rows(rec, voltages, currents, sigma_u);
         if case.blocks().len() < 5 {
@@ -222,6 +225,7 @@ impl Case {
             inverter: false,
             speed_scale_is_free: false,
             table: Some(points),
+            nuisance: Nuisance::default(),
         })
     }
 
@@ -353,67 +357,6 @@ impl Case {
         }
         let times = |r: &Range<usize>| r.start * self.finer..r.end * self.finer;
         self.open = open.iter().map(times).collect();
-    }
-}
-
-/// Samples during which the motor is off its supply: the phases carried current, now they carry noise.
-///
-/// The voltage impulse that forces the current to zero falls between two samples: no model driven by the sampled
-/// voltage can follow it. An arc or a snubber that still conducts is no open switch.
-fn switched_off(currents: [&[f64]; 3], sigma: [f64; 3], t_sample: f64) -> Vec<Range<usize>> {
-    let window = ((0.02 / t_sample) as usize).max(8);
-    let n = currents[0].len();
-    let running: Vec<Running> = (0..3)
-        .map(|p| Running::new(currents[p], sigma[p]))
-        .collect();
-    let loudest = |of: &dyn Fn(&Running) -> f64| running.iter().map(of).fold(0.0, f64::max);
-    let carried = |k: usize| loudest(&|r| r.power(k - window..k)) > CARRIES;
-    let silent = |k: usize| loudest(&|r| r.variance(k..k + window)) < NOISE_ONLY;
-    let back = |k: usize| loudest(&|r| r.variance(k..k + 4)) > CARRIES;
-    let mut open = Vec::new();
-    let mut k = window;
-    while k + window < n {
-        if silent(k) && carried(k) {
-            let end = (k..n - 4).find(|&j| back(j)).unwrap_or(n);
-            open.push(k..end);
-            k = end;
-        }
-        k += 1;
-    }
-    open
-}
-
-/// Running sums of a current in units of its noise.
-struct Running {
-    sum: Vec<f64>,
-    square: Vec<f64>,
-}
-
-impl Running {
-    fn new(x: &[f64], sigma: f64) -> Self {
-        let total = |f: &dyn Fn(f64) -> f64| {
-            let mut sum = 0.0;
-            let next = |x: &f64| {
-                sum += f(x / sigma);
-                sum
-            };
-            std::iter::once(0.0).chain(x.iter().map(next)).collect()
-        };
-        Self {
-            sum: total(&|x| x),
-            square: total(&|x| x * x),
-        }
-    }
-
-    /// Mean square.
-    fn power(&self, r: Range<usize>) -> f64 {
-        (self.square[r.end] - self.square[r.start]) / r.len() as f64
-    }
-
-    /// Mean square about the mean: an offset carries no current.
-    fn variance(&self, r: Range<usize>) -> f64 {
-        let mean = (self.sum[r.end] - self.sum[r.start]) / r.len() as f64;
-        self.power(r) - mean * mean
     }
 }
 

@@ -7,6 +7,7 @@ use crate::fit::output_error::{Effort, Fit, fit};
 use crate::model::free_scale::{self, FreeScale};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, Prior};
+use crate::model::unknown_state::unknown_state;
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
 
@@ -57,7 +58,8 @@ pub struct Trial {
 }
 
 impl Subject {
-    fn new(case: Case, prior: &Prior) -> Self {
+    fn new(mut case: Case, prior: &Prior) -> Self {
+        case.nuisance = unknown_state(&case, &prior.plant);
         let floor = floor(&case, &prior.plant, SEED);
         Self { case, floor }
     }

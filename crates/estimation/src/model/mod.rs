@@ -5,3 +5,4 @@ pub mod prediction;
 pub mod prior;
 pub mod scale_report;
 pub mod speed_gain;
+pub mod unknown_state;

@@ -5,7 +5,7 @@ use crate::data::channels::N_CHANNELS;
 use crate::data::load_table::{self, Point};
 use crate::model::prior::{Hypothesis, Prior};
 use motor::dynamic::cycle_components;
-use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, simulate};
+use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, StateOffset, simulate};
 use motor::steady_state::SteadyState;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -36,6 +36,8 @@ pub struct Drive<'a> {
     pub inputs: Cow<'a, Inputs>,
     /// Smoothed speed, rad/s; empty without a speed channel.
     pub speed: Cow<'a, [f64]>,
+    /// Offsets of the state.
+    pub offsets: &'a [StateOffset],
 }
 
 impl<'a> Drive<'a> {
@@ -44,6 +46,7 @@ impl<'a> Drive<'a> {
         Self {
             inputs: Cow::Borrowed(&case.inputs),
             speed: Cow::Borrowed(&case.speed),
+            offsets: &[],
         }
     }
 }
@@ -88,6 +91,7 @@ pub fn driven<T>(
         running_at: speeds.running_at.map(|measured| starts(measured, 0)),
         running_at_cuts: &running_at_cuts,
         open: &case.open,
+        offsets: drive.offsets,
     })
 }
 
@@ -103,8 +107,16 @@ pub fn carried_speed(plant: &Plant, inputs: &Inputs, omega_sync: f64, k: usize) 
     point.ok().map(|point| point.omega_mech)
 }
 
-/// Weighted model outputs, row after row. A model that left the finite numbers counts as infinitely wrong.
+/// Weighted model outputs, row after row, without what the unknown state of the motor moves in them. A model that left the
+/// finite numbers counts as infinitely wrong.
 pub fn weighted(case: &Case, outputs: &Outputs) -> Vec<f64> {
+    let mut rows = as_shown(case, outputs);
+    case.nuisance.project_out(&mut rows);
+    rows
+}
+
+/// Weighted model outputs, row after row.
+pub(crate) fn as_shown(case: &Case, outputs: &Outputs) -> Vec<f64> {
     let mut out = Vec::with_capacity(case.measured.len() * N_CHANNELS);
     for (row, w) in case.weight.iter().enumerate() {
         let k = row * case.decimation;
@@ -139,11 +151,13 @@ pub fn outputs_on(case: &Case, plant: &Plant, drive: &Drive<'_>) -> Vec<f64> {
     weighted(case, &run(case, plant, drive, SpeedObserver::Off))
 }
 
-/// Residual: weighted measurement minus weighted model.
+/// Residual: weighted measurement minus weighted model, without what the unknown state of the motor moves in them.
 pub fn residual(case: &Case, model: &[f64]) -> Vec<f64> {
     let measured = case.measured.iter().zip(&case.weight);
     let rows = measured.flat_map(|(y, w)| (0..N_CHANNELS).map(move |k| y[k] * w[k]));
-    rows.zip(model).map(|(y, m)| y - m).collect()
+    let mut rows: Vec<f64> = rows.zip(model).map(|(y, m)| y - m).collect();
+    case.nuisance.project_out(&mut rows);
+    rows
 }
 
 /// Derivatives of the weighted outputs with respect to the free coordinates, in their order.

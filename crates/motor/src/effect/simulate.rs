@@ -57,6 +57,19 @@ pub enum SpeedSource<'a> {
     Imposed(&'a [f64]),
 }
 
+/// What is added to the state of the motor at an input sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StateOffset {
+    /// Input sample; the integration step that holds it.
+    pub sample: usize,
+    /// Stator flux linkage, V s, stationary frame.
+    pub psi_s: Complex64,
+    /// Rotor flux linkage, V s, stationary frame.
+    pub psi_r: Complex64,
+    /// Speed, rad/s.
+    pub omega_mech: f64,
+}
+
 /// A run of a plant: inputs and how to treat them.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
@@ -74,6 +87,8 @@ pub struct Run<'a> {
     pub running_at_cuts: &'a [Option<f64>],
     /// Input samples at which the terminals are open: no current flows, the rotor flux decays alone.
     pub open: &'a [Range<usize>],
+    /// Offsets of the state, none where nobody asks what one would do.
+    pub offsets: &'a [StateOffset],
 }
 
 /// Simulates a plant and returns what the instruments would show, one row per integration step.
@@ -263,6 +278,12 @@ impl<'a, H: Hooks> Ready<'a, H> {
             let there = &restart.state;
             (state.psi_s, state.psi_r) = (there.psi_s, there.psi_r);
             state.omega_mech = there.omega_mech;
+        }
+        let step = k..k + self.run.between.stride();
+        for offset in self.run.offsets.iter().filter(|x| step.contains(&x.sample)) {
+            state.psi_s += offset.psi_s;
+            state.psi_r += offset.psi_r;
+            state.omega_mech += offset.omega_mech;
         }
         steer(state, self.run.speed, k, self.t_step());
         if self.run.open.iter().any(|open| open.contains(&k)) {

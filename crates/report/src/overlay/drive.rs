@@ -88,6 +88,7 @@ impl Drive {
                 timeline: &self.timeline,
                 running_at: self.begins_at(&plant),
                 running_at_cuts: &[],
+                offsets: &[],
                 open: &[],
             },
         )

@@ -1,3 +1,4 @@
+use super::switched_off::Running;
 use super::*;
 use crate::specimen::{self, SIGMA, T_SAMPLE};
 use recording::{LoadTorque, Metadata};

@@ -6,6 +6,7 @@
 use super::Stretch;
 use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
+use crate::fit::nuisance::Nuisance;
 use motor::effect::{Cut, Inputs, Rated, Timeline};
 use std::ops::Range;
 
@@ -103,6 +104,7 @@ fn unchanged(whole: &Case) -> Case {
         inverter: whole.inverter,
         speed_scale_is_free: whole.speed_scale_is_free,
         table: None,
+        nuisance: Nuisance::default(),
     }
 }
 

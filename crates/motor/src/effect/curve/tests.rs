@@ -62,6 +62,7 @@ fn run(plant: &Plant) -> Outputs {
             timeline: &Arc::new(Timeline::constant(RATED.omega_sync)),
             running_at: None,
             running_at_cuts: &[],
+            offsets: &[],
             open: &[],
         },
     )
