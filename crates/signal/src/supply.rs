@@ -4,8 +4,14 @@ use super::adaptive::{Noisy, Windows};
 use num_complex::Complex64;
 use std::ops::Range;
 
-/// Orders that a supply may carry beside its fundamental; 0 is a constant.
-const ORDERS: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
+/// Orders that a supply commonly carries beside its fundamental; 0 is a constant.
+const COMMON: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
+/// Highest order that is looked for where the common ones do not describe a supply ...
+const HIGHEST: i32 = 49;
+/// ... up to this share of half the sampling rate: beyond it the sampling itself makes others of them ...
+const BELOW_NYQUIST: f64 = 0.97;
+/// ... and its least size in standard deviations of what noise shows.
+const SEEN: f64 = 6.0;
 /// Share of the largest voltage below which the supply counts as off.
 const OFF: f64 = 0.03;
 /// Samples on each side over which the denoised voltage is held against the raw one.
@@ -39,39 +45,103 @@ pub struct Supply {
 }
 
 /// Denoises `raw` (V) with noise `sigma` (V, per axis); `omega_rated` (rad/s) sets the windows.
+///
+/// Where the common harmonics do not describe it, all orders are looked for; where they do not either, the raw voltage is used.
 pub fn denoise(raw: &[Complex64], t_sample: f64, sigma: f64, omega_rated: f64) -> Supply {
     let period = std::f64::consts::TAU / omega_rated / t_sample;
-    let window = (period as usize).max(16);
-    // An unbalance makes the amplitude ripple: steps are looked for once the harmonics are known and removed.
-    let whole = 0..raw.len();
-    let first = Supply::described(raw, raw, vec![whole], t_sample, sigma, window, 1);
-    let clean = first.cleaned(raw);
-    let segments = segments(&clean, window / 2, sigma);
-    let mut supply = Supply::described(raw, &clean, segments, t_sample, sigma, window, 4);
-    supply.restore(raw, sigma);
-    let restored: usize = supply.raw.iter().map(Range::len).sum();
-    let rest = raw.iter().zip(&supply.u_s).map(|(a, b)| (a - b).norm_sqr());
-    let described = (raw.len() - restored).max(1);
-    let rms = (0.5 * rest.sum::<f64>() / described as f64).sqrt();
-    if rms > WHITE_LIMIT * sigma || 2 * restored > raw.len() {
-        supply.u_s = raw.to_vec();
-        supply.raw.clear();
-        supply.denoised = false;
+    let signal = Signal {
+        raw,
+        t_sample,
+        sigma,
+        window: (period as usize).max(16),
+    };
+    let supply = signal.between_steps(&COMMON);
+    if supply.denoised {
+        return supply;
     }
-    supply
+    let orders = signal.strong_orders();
+    let more = (orders.len() > COMMON.len()).then(|| signal.between_steps(&orders));
+    more.filter(|more| more.denoised).unwrap_or(supply)
+}
+
+/// A sampled voltage vector and what is known of it.
+struct Signal<'a> {
+    raw: &'a [Complex64],
+    t_sample: f64,
+    sigma: f64,
+    window: usize,
+}
+
+impl Signal<'_> {
+    /// The supply between the steps of its amplitude, of these harmonics.
+    fn between_steps(&self, orders: &[f64]) -> Supply {
+        let (raw, sigma) = (self.raw, self.sigma);
+        // An unbalance makes the amplitude ripple: steps are looked for once the harmonics are known and removed.
+        let clean = self.whole(orders).cleaned(raw);
+        let segments = segments(&clean, self.window / 2, sigma);
+        let mut supply = Supply::described(self, &clean, segments, orders, 4);
+        supply.restore(raw, sigma);
+        let restored: usize = supply.raw.iter().map(Range::len).sum();
+        let rest = raw.iter().zip(&supply.u_s).map(|(a, b)| (a - b).norm_sqr());
+        let described = (raw.len() - restored).max(1);
+        let rms = (0.5 * rest.sum::<f64>() / described as f64).sqrt();
+        if rms > WHITE_LIMIT * sigma || 2 * restored > raw.len() {
+            supply.u_s = raw.to_vec();
+            supply.raw.clear();
+            supply.denoised = false;
+        }
+        supply
+    }
+
+    /// The supply as if its amplitude had no steps.
+    fn whole(&self, orders: &[f64]) -> Supply {
+        let whole = 0..self.raw.len();
+        Supply::described(self, self.raw, vec![whole], orders, 1)
+    }
+
+    /// The common orders, and all that stand out of the noise.
+    fn strong_orders(&self) -> Vec<f64> {
+        // Strong harmonics turn the angle, in which they show others: once more in the angle of the fundamental alone.
+        let coarse = self.strong_in(&self.whole(&COMMON));
+        let clean = self.whole(&coarse).cleaned(self.raw);
+        let whole = 0..self.raw.len();
+        self.strong_in(&Supply::described(self, &clean, vec![whole], &coarse, 1))
+    }
+
+    fn strong_in(&self, supply: &Supply) -> Vec<f64> {
+        let turned = supply.theta.last().zip(supply.theta.first());
+        let turned = turned.map_or(0.0, |(last, first)| (last - first).abs());
+        let per_sample = turned / self.raw.len() as f64;
+        let below = |order: &f64| order.abs() * per_sample < BELOW_NYQUIST * std::f64::consts::PI;
+        let others = (-HIGHEST..=HIGHEST).map(f64::from);
+        let others = others.filter(|order| *order != 1.0 && !COMMON.contains(order));
+        let others: Vec<f64> = others.filter(below).collect();
+        let fundamental = supply.fundamental(&supply.cleaned(self.raw));
+        let size = fundamental.iter().map(|u| u.norm_sqr()).sum::<f64>().sqrt();
+        let found = supply.fit_harmonics(self.raw, &fundamental, &others);
+        let strong = found
+            .iter()
+            .filter(|(_, ratio)| ratio.norm() * size > SEEN * self.sigma);
+        let strong = strong.map(|(order, _)| *order);
+        COMMON.into_iter().chain(strong).collect()
+    }
 }
 
 impl Supply {
-    /// Fundamental and harmonics of `raw` between known steps; the angle comes from `clean`.
+    /// Fundamental and harmonics of a signal between known steps; the angle comes from `clean`.
     fn described(
-        raw: &[Complex64],
+        signal: &Signal<'_>,
         clean: &[Complex64],
         segments: Vec<Range<usize>>,
-        t_sample: f64,
-        sigma: f64,
-        window: usize,
+        orders: &[f64],
         rounds: usize,
     ) -> Self {
+        let &Signal {
+            raw,
+            t_sample,
+            sigma,
+            window,
+        } = signal;
         let (theta, slope) = angle(clean, &segments, sigma, window);
         let mut supply = Self {
             u_s: Vec::new(),
@@ -89,7 +159,7 @@ impl Supply {
         // clean and repeat.
         let mut fundamental = supply.fundamental(clean);
         for _ in 0..rounds {
-            supply.harmonics = supply.fit_harmonics(raw, &fundamental);
+            supply.harmonics = supply.fit_harmonics(raw, &fundamental, orders);
             supply.u_s = supply.with_harmonics(&fundamental);
             let clean = supply.cleaned(raw);
             supply.choose_windows(&clean, sigma);
@@ -281,8 +351,13 @@ impl Supply {
     }
 
     /// Ratio of each harmonic to the fundamental, constant over the recording.
-    fn fit_harmonics(&self, raw: &[Complex64], fundamental: &[Complex64]) -> Vec<(f64, Complex64)> {
-        let one = |order: f64| {
+    fn fit_harmonics(
+        &self,
+        raw: &[Complex64],
+        fundamental: &[Complex64],
+        orders: &[f64],
+    ) -> Vec<(f64, Complex64)> {
+        let one = |&order: &f64| {
             let (mut num, mut den) = (Complex64::ZERO, 0.0);
             for (k, (u, f)) in raw.iter().zip(fundamental).enumerate() {
                 let weight = if order == 0.0 { 1.0 } else { f.norm() };
@@ -291,7 +366,7 @@ impl Supply {
             }
             (order, num / den.max(f64::MIN_POSITIVE))
         };
-        ORDERS.into_iter().map(one).collect()
+        orders.iter().map(one).collect()
     }
 
     fn with_harmonics(&self, fundamental: &[Complex64]) -> Vec<Complex64> {

@@ -1,8 +1,9 @@
-//! What nobody knows of the state in which a motor is when a recording of it begins.
+//! What nobody knows of the state of a motor: where a recording of it begins while it runs, and where its voltage jumps.
 //!
 //! A recording that begins while the motor runs shows no fluxes. The model begins settled on its supply; a motor whose iron
-//! saturates, or whose load has just changed, was elsewhere. Such a difference fades, but in the first tenths of a second
-//! it is larger than the noise. To first order it is a sum of five known responses with unknown amounts.
+//! saturates, or whose load has just changed, was elsewhere. Where the voltage jumps nobody knows when between two samples it
+//! did: a part of a sampling interval times the jump is missing in the stator flux. Such differences fade, but at first they
+//! are larger than the noise. To first order they are sums of known responses with unknown amounts.
 
 use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
@@ -16,11 +17,17 @@ use std::ops::Range;
 /// Offset that shows a response, in the size of rated flux and speed: small against the curvature, large against rounding.
 const OFFSET: f64 = 1e-3;
 
-/// What the states at the running starts of a case do to the outputs of a plant: fluxes, and the speed unless it is given.
+/// Jumps of the voltage in a stretch whose instants are unknown; a supply with more of them does not jump now and then.
+const MOST_JUMPS: usize = 6;
+
+/// What unknown states of a motor do to the outputs of a case: fluxes and speed (unless that is given) at running starts, the
+/// stator flux at jumps of the voltage.
 pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
-    let starts = running_starts(case);
-    if starts.is_empty() {
-        return Nuisance::default();
+    let stretches = stretches(case);
+    let all = unknowns(&stretches, plant);
+    let mut nuisance = Nuisance::default();
+    if all.is_empty() {
+        return nuisance;
     }
     let shown = |offsets: &[StateOffset]| {
         let drive = Drive {
@@ -30,58 +37,101 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
         as_shown(case, &run(case, plant, &drive, SpeedObserver::Off))
     };
     let base = shown(&[]);
-    let response = |offset: &StateOffset| {
-        let offsets: Vec<StateOffset> = starts.iter().map(|s| at(offset, s.sample)).collect();
-        let mut there = shown(&offsets);
+    let response = |unknown: &Unknown| {
+        let mut there = shown(&unknown.offsets);
         there.iter_mut().zip(&base).for_each(|(x, b)| *x -= b);
         there
     };
-    let responses: Vec<Vec<f64>> = units(plant).par_iter().map(response).collect();
-    let mut unknown = Nuisance::default();
-    for start in &starts {
-        for response in &responses {
-            unknown.add(start.values.start, response[start.values.clone()].to_vec());
+    let responses: Vec<Vec<f64>> = all.par_iter().map(response).collect();
+    for (unknown, response) in all.iter().zip(&responses) {
+        for values in unknown.stretches.iter().map(|&k| &stretches[k].values) {
+            nuisance.add(values.start, response[values.clone()].to_vec());
         }
     }
-    unknown
+    nuisance
 }
 
-/// The first sample of a stretch that begins with a running motor, and the values of its rows.
-struct Start {
+/// A stretch that nothing interrupts.
+struct Stretch {
     sample: usize,
+    /// Values of its rows.
     values: Range<usize>,
+    /// Whether the motor runs where it begins.
+    running: bool,
+    /// Samples at which the voltage has jumped.
+    jumps: Vec<usize>,
 }
 
-fn running_starts(case: &Case) -> Vec<Start> {
+fn stretches(case: &Case) -> Vec<Stretch> {
     if case.table.is_some() {
         return Vec::new();
     }
     let cuts = case.timeline.cuts.iter().map(|cut| cut.sample);
     let later = cuts.zip(case.running_at_cuts.iter().copied());
-    let all: Vec<(usize, Option<f64>)> = [(0, case.running_at)].into_iter().chain(later).collect();
-    let value = |sample: usize| {
-        sample
-            .div_ceil(case.samples_per_row())
-            .min(case.measured.len())
-            * N_CHANNELS
-    };
-    let ends = all
+    let starts: Vec<(usize, Option<f64>)> =
+        [(0, case.running_at)].into_iter().chain(later).collect();
+    let ends = starts
         .iter()
         .skip(1)
         .map(|(sample, _)| *sample)
         .chain([usize::MAX]);
-    let running = all
-        .iter()
-        .zip(ends)
-        .filter(|((_, omega), _)| omega.is_some());
-    let starts = running.map(|(&(sample, _), end)| Start {
+    let rows = case.measured.len();
+    let value = |sample: usize| sample.div_ceil(case.samples_per_row()).min(rows) * N_CHANNELS;
+    let one = |(&(sample, running_at), end): (&(usize, Option<f64>), usize)| Stretch {
         sample,
         values: value(sample)..value(end),
-    });
-    starts.filter(|start| !start.values.is_empty()).collect()
+        running: running_at.is_some(),
+        jumps: jumps(case, sample + 1..end),
+    };
+    let all = starts.iter().zip(ends).map(one);
+    all.filter(|stretch| !stretch.values.is_empty()).collect()
 }
 
-/// One offset of each state.
+/// Samples in a range at which the amplitude of the voltage has jumped: the first of an integration step.
+fn jumps(case: &Case, within: Range<usize>) -> Vec<usize> {
+    let stride = case.between.stride();
+    let segments = case.supply.segments.iter().filter(|_| case.supply.denoised);
+    let starts = segments
+        .map(|segment| segment.start)
+        .filter(|k| within.contains(k));
+    let jumps: Vec<usize> = starts.map(|k| k.next_multiple_of(stride)).collect();
+    if jumps.len() > MOST_JUMPS {
+        Vec::new()
+    } else {
+        jumps
+    }
+}
+
+/// An unknown of some stretches: the same offset, once in each of them.
+struct Unknown {
+    offsets: Vec<StateOffset>,
+    /// Their numbers.
+    stretches: Vec<usize>,
+}
+
+fn unknowns(stretches: &[Stretch], plant: &Plant) -> Vec<Unknown> {
+    let units = units(plant);
+    let of = |unit: &StateOffset, sample: &dyn Fn(&Stretch) -> Option<usize>| {
+        let there = stretches.iter().enumerate();
+        let there = there.filter_map(|(k, stretch)| Some((k, sample(stretch)?)));
+        let (stretches, offsets) = there
+            .map(|(k, sample)| (k, StateOffset { sample, ..*unit }))
+            .unzip();
+        Unknown { offsets, stretches }
+    };
+    let begun = units
+        .iter()
+        .map(|unit| of(unit, &|s| s.running.then_some(s.sample)));
+    let stator = &units[..2];
+    let jumped = (0..MOST_JUMPS).flat_map(|n| stator.iter().map(move |unit| (n, unit)));
+    let jumped = jumped.map(|(n, unit)| of(unit, &|s| s.jumps.get(n).copied()));
+    begun
+        .chain(jumped)
+        .filter(|unknown| !unknown.stretches.is_empty())
+        .collect()
+}
+
+/// One offset of each state, those of the stator flux first.
 fn units(plant: &Plant) -> [StateOffset; 5] {
     let (flux, speed) = (OFFSET * plant.rated.flux(), OFFSET * plant.rated.speed());
     let none = StateOffset {
@@ -98,8 +148,4 @@ fn units(plant: &Plant) -> [StateOffset; 5] {
         ..none
     };
     [s_re, s_im, r_re, r_im, faster]
-}
-
-fn at(offset: &StateOffset, sample: usize) -> StateOffset {
-    StateOffset { sample, ..*offset }
 }

@@ -117,6 +117,31 @@ fn every_harmonic_is_found_with_its_size_and_phase() {
     assert!(worst < 1.0, "{worst}");
 }
 
+/// A slow recorder on a supply with orders that are not the common ones, one of them near half the sampling rate.
+#[test]
+fn orders_that_stand_out_are_found_and_no_others() {
+    let step = 0.025 * std::f64::consts::TAU;
+    let parts = [(13.0, 0.03), (19.0, 0.034), (-17.0, 0.016), (3.0, 0.01)];
+    let clean = |k: usize| {
+        let theta = step * k as f64 + 0.4;
+        let part = |(order, ratio): (f64, f64)| {
+            Complex64::from_polar(320.0 * ratio, order * theta + order)
+        };
+        Complex64::from_polar(320.0, theta) + parts.into_iter().map(part).sum::<Complex64>()
+    };
+    let raw = noisy(8000, 0.5, clean);
+    let supply = denoise(&raw, 5e-4, 0.5, 314.159);
+    assert!(supply.denoised);
+    let mut found: Vec<f64> = supply.harmonics.iter().map(|(order, _)| *order).collect();
+    found.sort_by(f64::total_cmp);
+    assert_eq!(found, [-17.0, -5.0, -1.0, 0.0, 3.0, 7.0, 13.0, 19.0]);
+    let worst = (0..8000)
+        .map(|k| (supply.u_s[k] - clean(k)).norm())
+        .fold(0.0, f64::max);
+    // Ends of segments hold three times the noise of windows of one period, here 40 samples.
+    assert!(worst < 1.2, "{worst}");
+}
+
 /// What the denoising makes of noise is told by `filter`: the difference of two denoised voltages.
 #[test]
 fn the_filter_is_the_denoising_of_a_difference() {
