@@ -1,8 +1,11 @@
 //! Denoises measured or commanded voltages: a smooth amplitude and angle between amplitude steps, plus harmonics.
 
+mod steps;
+
 use super::adaptive::{Noisy, Windows};
 use num_complex::Complex64;
 use std::ops::Range;
+use steps::{largest, segments};
 
 /// Orders that a supply commonly carries beside its fundamental; 0 is a constant.
 const COMMON: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
@@ -79,6 +82,11 @@ impl Signal<'_> {
         // An unbalance makes the amplitude ripple: steps are looked for once the harmonics are known and removed.
         let clean = self.whole(orders).cleaned(raw);
         let segments = segments(&clean, self.window / 2, sigma);
+        // Steps spoil the harmonics, and those the angle: once more between them.
+        let clean = match segments.len() {
+            1 => clean,
+            _ => Supply::described(self, raw, segments.clone(), orders, 1).cleaned(raw),
+        };
         let mut supply = Supply::described(self, &clean, segments, orders, 4);
         supply.restore(raw, sigma);
         let restored: usize = supply.raw.iter().map(Range::len).sum();
@@ -199,7 +207,7 @@ impl Supply {
 
     /// Where the supply is off its angle is noise: the last frequency stays.
     fn hold_frequency(&mut self, fundamental: &[Complex64]) {
-        let largest = fundamental.iter().fold(0.0f64, |a, u| a.max(u.norm()));
+        let largest = largest(fundamental);
         let mut last = None;
         for (omega, u) in self.omega_sync.iter_mut().zip(fundamental) {
             if u.norm() > OFF * largest {
@@ -357,9 +365,12 @@ impl Supply {
         fundamental: &[Complex64],
         orders: &[f64],
     ) -> Vec<(f64, Complex64)> {
+        // Where the supply is off its angle is noise, and so is what turns with it.
+        let off = OFF * largest(fundamental);
         let one = |&order: &f64| {
             let (mut num, mut den) = (Complex64::ZERO, 0.0);
-            for (k, (u, f)) in raw.iter().zip(fundamental).enumerate() {
+            let on = raw.iter().zip(fundamental).enumerate();
+            for (k, (u, f)) in on.filter(|(_, (_, f))| f.norm() > off) {
                 let weight = if order == 0.0 { 1.0 } else { f.norm() };
                 num += (u - f) * Complex64::from_polar(weight, -order * self.theta[k]);
                 den += weight * weight;
@@ -424,61 +435,6 @@ fn angle(
         slope.extend(smoothed.slope.iter().map(|x| x.re));
     }
     (value, slope)
-}
-
-/// Cuts a recording where the voltage's amplitude jumps.
-fn segments(raw: &[Complex64], window: usize, sigma: f64) -> Vec<Range<usize>> {
-    let amplitude: Vec<f64> = raw.iter().map(|u| u.norm()).collect();
-    let jumps = jumps(&amplitude, window);
-    let noise = sigma * (8.0 / window as f64).sqrt();
-    let largest = amplitude.iter().fold(0.0f64, |a, &b| a.max(b));
-    let limit = (8.0 * noise).max(0.02 * largest);
-    let mut cuts = Vec::new();
-    let mut k = 0;
-    while k < jumps.len() {
-        if jumps[k].abs() < limit {
-            k += 1;
-            continue;
-        }
-        let end = (k + window).min(jumps.len());
-        cuts.push(sharpest(&amplitude, &jumps, k, end));
-        // The detector sees a step one window before and after it.
-        k = end + window;
-    }
-    let starts = std::iter::once(0).chain(cuts.iter().copied());
-    let ends = cuts.iter().copied().chain(std::iter::once(raw.len()));
-    starts
-        .zip(ends)
-        .filter(|(a, b)| a < b)
-        .map(|(a, b)| a..b)
-        .collect()
-}
-
-/// Difference at each sample between straight lines fitted to the `window` samples after and before it.
-fn jumps(x: &[f64], window: usize) -> Vec<f64> {
-    let n = window as f64;
-    // Value at the near end of a line fitted to n points: weights (4n - 2 - 6k)/(n (n + 1)), k from the near end.
-    let weight: Vec<f64> = (0..window)
-        .map(|k| (4.0 * n - 2.0 - 6.0 * k as f64) / (n * (n + 1.0)))
-        .collect();
-    let at = |k: usize| {
-        if k < window || k + window > x.len() {
-            return 0.0;
-        }
-        let sum = |j: usize| weight[j] * (x[k + j] - x[k - 1 - j]);
-        (0..window).map(sum).sum()
-    };
-    (0..x.len()).map(at).collect()
-}
-
-/// The sample at which the step happens: the largest difference between neighbours near the largest jump.
-fn sharpest(amplitude: &[f64], jumps: &[f64], from: usize, to: usize) -> usize {
-    let by = |f: &dyn Fn(usize) -> f64, range: Range<usize>| {
-        range.max_by(|&a, &b| f(a).total_cmp(&f(b))).unwrap_or(from)
-    };
-    let centre = by(&|k| jumps[k].abs(), from..to);
-    let near = centre.saturating_sub(4).max(1)..(centre + 5).min(amplitude.len());
-    by(&|k| (amplitude[k] - amplitude[k - 1]).abs(), near)
 }
 
 #[cfg(test)]

@@ -52,6 +52,30 @@ pub(crate) fn delayed(x: &[f64], samples: f64) -> Vec<f64> {
         .collect()
 }
 
+/// The mean of the signal over the last `samples` (may be fractional), which was constant before it began.
+///
+/// The signal is taken as straight lines between samples.
+pub(crate) fn averaged(x: &[f64], samples: f64) -> Vec<f64> {
+    let Some(&first) = x.first().filter(|_| samples > 0.0) else {
+        return x.to_vec();
+    };
+    let lines = x.windows(2).scan(0.0, |sum, pair| {
+        *sum += 0.5 * (pair[0] + pair[1]);
+        Some(*sum)
+    });
+    let integral: Vec<f64> = std::iter::once(0.0).chain(lines).collect();
+    let until = |at: f64| {
+        if at <= 0.0 {
+            return first * at;
+        }
+        let (k, part) = (at as usize, at.fract());
+        let slope = x.get(k + 1).map_or(0.0, |next| next - x[k]);
+        integral[k] + part * (x[k] + 0.5 * part * slope)
+    };
+    let mean = |k: usize| (integral[k] - until(k as f64 - samples)) / samples;
+    (0..x.len()).map(mean).collect()
+}
+
 /// The signal behind a first-order low-pass of time constant `tau` (s), started in equilibrium.
 ///
 /// The input is taken as straight lines between samples, for which the recursion is exact. A negative `tau`
@@ -85,5 +109,45 @@ impl Outputs {
                 i[phase] = x;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_2_PI, TAU};
+
+    /// Half a turn of a sinusoid: its amplitude falls to `sin(pi/2) / (pi/2)`, and it is late by a quarter of a turn.
+    #[test]
+    fn a_mean_over_half_a_turn_is_late_and_flat() {
+        let turn = 400.0;
+        let at = |k: f64| 150.0 + (TAU * k / turn).sin();
+        let x: Vec<f64> = (0..2000).map(|k| at(f64::from(k))).collect();
+        let shown = averaged(&x, 0.5 * turn);
+        for k in 400..2000 {
+            let late = at(f64::from(k) - 0.25 * turn) - 150.0;
+            // Straight lines between samples of a 400th of a turn cut (TAU/400)^2/12 of the amplitude off.
+            let error = shown[k as usize] - 150.0 - FRAC_2_PI * late;
+            assert!(error.abs() < 3e-5, "{k}: {error}");
+        }
+    }
+
+    /// A ramp is only late, by any fraction of a sample; before it began it was constant.
+    #[test]
+    fn a_mean_of_a_ramp_is_a_late_ramp() {
+        let x: Vec<f64> = (0..50).map(|k| 3.0 + f64::from(k)).collect();
+        for samples in [1e-3, 0.4, 1.0, 2.7, 9.3] {
+            let shown = averaged(&x, samples);
+            assert!((shown[0] - 3.0).abs() < 1e-12);
+            for k in 10..50 {
+                let expected = x[k] - 0.5 * samples;
+                assert!(
+                    (shown[k] - expected).abs() < 1e-9,
+                    "{samples}, {k}: {}",
+                    shown[k]
+                );
+            }
+        }
+        assert_eq!(averaged(&x, 0.0), x);
     }
 }

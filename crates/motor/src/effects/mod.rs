@@ -55,6 +55,7 @@ effects! {
     speed_scale: SpeedScale,
     speed_ripple: SpeedRipple,
     speed_delay: SpeedDelay,
+    speed_mean: SpeedMean,
 }
 
 /// The effect of this name and form; an empty form means the effect's first.
