@@ -59,3 +59,44 @@ impl Nuisance {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Least squares with two more columns, by hand: what they explain is gone, what is at right angles to them stays.
+    #[test]
+    fn what_the_responses_span_is_taken_out() {
+        let mut nuisance = Nuisance::default();
+        nuisance.add(1, vec![1.0, 1.0, 0.0]);
+        nuisance.add(1, vec![1.0, 0.0, 1.0]);
+        // Outside the stretch, a combination of both responses, and (1, -1, -1), which neither of them holds.
+        let mut rows = [7.0, 2.0 + 3.0 + 1.0, 2.0 - 1.0, 3.0 - 1.0, -4.0];
+        nuisance.project_out(&mut rows);
+        for (x, expected) in rows.iter().zip([7.0, 1.0, -1.0, -1.0, -4.0]) {
+            assert!((x - expected).abs() < 1e-12, "{rows:?}");
+        }
+    }
+
+    /// A response that the others hold already, or none at all, is no direction.
+    #[test]
+    fn what_is_nothing_new_adds_nothing() {
+        let mut nuisance = Nuisance::default();
+        nuisance.add(0, vec![3.0, 4.0]);
+        nuisance.add(0, vec![-6.0, -8.0 + 1e-6]);
+        nuisance.add(0, vec![0.0, 0.0]);
+        nuisance.add(0, vec![f64::NAN, 1.0]);
+        assert_eq!(nuisance.directions.len(), 1);
+    }
+
+    /// Stretches know nothing of each other.
+    #[test]
+    fn stretches_are_apart() {
+        let mut nuisance = Nuisance::default();
+        nuisance.add(0, vec![1.0, 1.0]);
+        nuisance.add(2, vec![1.0, 1.0]);
+        let mut rows = [1.0, 3.0, 10.0, 20.0];
+        nuisance.project_out(&mut rows);
+        assert_eq!(rows.map(f64::round), [-1.0, 1.0, -5.0, 5.0]);
+    }
+}

@@ -149,3 +149,91 @@ fn units(plant: &Plant) -> [StateOffset; 5] {
     };
     [s_re, s_im, r_re, r_im, faster]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::prediction::residual;
+    use crate::specimen;
+
+    /// What is left of a recording of a motor that was elsewhere, as a share of what was there before anything was taken out.
+    fn left(case: &mut Case, plant: &Plant, elsewhere: StateOffset) -> f64 {
+        let shown = |offsets: &[StateOffset]| {
+            let drive = Drive {
+                offsets,
+                ..Drive::of(case)
+            };
+            run(case, plant, &drive, SpeedObserver::Off)
+        };
+        let (there, model) = (shown(&[elsewhere]), shown(&[]));
+        let rows = (0..case.measured.len()).map(|row| row * case.decimation);
+        case.measured = rows
+            .map(|k| {
+                let [a, b, c] = there.i_s_abc[k];
+                [a, b, c, there.omega_mech[k], there.u_zero[k]]
+            })
+            .collect();
+        let model = as_shown(case, &model);
+        let error =
+            |case: &Case| signal::dot(&residual(case, &model), &residual(case, &model)).sqrt();
+        let before = error(case);
+        case.nuisance = unknown_state(case, plant);
+        error(case) / before
+    }
+
+    fn running() -> (Case, Plant) {
+        let study = specimen::study(1.0, |_| 1.0);
+        let case = Case {
+            nuisance: Nuisance::default(),
+            ..study.fitted.case
+        };
+        (case, study.prior.plant)
+    }
+
+    /// The motor's equations are linear but for products of speed, flux and current: what is left is of second order, ten times
+    /// as little of what began ten times as near.
+    #[test]
+    fn a_motor_that_began_elsewhere_is_explained() {
+        let begun = |share: f64| {
+            let (mut case, plant) = running();
+            let flux = share * plant.rated.flux();
+            let elsewhere = StateOffset {
+                sample: 0,
+                psi_s: Complex64::from_polar(flux, 0.3),
+                psi_r: Complex64::from_polar(flux, -2.0),
+                omega_mech: 0.1 * share * plant.rated.speed(),
+            };
+            left(&mut case, &plant, elsewhere)
+        };
+        let (far, near) = (begun(0.1), begun(0.01));
+        assert!(far < 0.05, "{far}");
+        assert!(near < 0.15 * far, "{near} {far}");
+    }
+
+    /// A voltage that jumps between two samples leaves a part of a sampling interval in the stator flux.
+    #[test]
+    fn the_instant_of_a_jump_is_unknown() {
+        let (mut case, plant) = running();
+        let n = case.inputs.u_s.len();
+        let elsewhere = StateOffset {
+            sample: n / 2,
+            psi_s: Complex64::new(0.0, 0.02 * plant.rated.flux()),
+            psi_r: Complex64::ZERO,
+            omega_mech: 0.0,
+        };
+        case.running_at = None;
+        let smooth = left(&mut case.clone(), &plant, elsewhere);
+        assert_eq!(smooth, 1.0, "nothing jumps there");
+        case.supply.segments = vec![0..n / 2, n / 2..n];
+        let left = left(&mut case, &plant, elsewhere);
+        assert!(left < 0.01, "{left}");
+    }
+
+    /// Of a motor that starts from rest on a smooth supply everything is known.
+    #[test]
+    fn a_start_from_rest_leaves_nothing_open() {
+        let (mut case, plant) = running();
+        case.running_at = None;
+        assert!(unknowns(&stretches(&case), &plant).is_empty());
+    }
+}
