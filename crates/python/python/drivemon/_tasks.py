@@ -57,14 +57,18 @@ def cluster(address: Optional[str]) -> Iterator[Any]:
     ray = module()
     started = not ray.is_initialized()
     if started:
-        # One thread per task: Ray gives each core one.
-        threads = {"env_vars": {"RAYON_NUM_THREADS": "1"}}
-        ray.init(address=address, runtime_env=threads, include_dashboard=False if address is None else None, log_to_driver=False)
+        ray.init(address=address, include_dashboard=False if address is None else None, log_to_driver=False)
     try:
         yield ray
     finally:
         if started:
             ray.shutdown()
+
+
+def on_one_core() -> None:
+    """On a worker: one thread, because Ray gives each core a task."""
+    # Not as an environment of Ray's: for it, the workers that are there already would be ended and others started.
+    os.environ["RAYON_NUM_THREADS"] = "1"
 
 
 def spread(ray: Any, work: Work, gaps: list[range], task_seconds: float, tell: Optional[ProgressCallback]) -> None:

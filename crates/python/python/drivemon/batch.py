@@ -107,6 +107,7 @@ def _run(
 
 def _share(home: str, asked: tuple[Any, ...], fingerprint: str, begin: int, end: int) -> tuple[bytes, float]:
     """On a worker: the part of these recordings, and the time that each took, s."""
+    _tasks.on_one_core()
     # Rows name files as they were given: seen from where the question was asked.
     with contextlib.suppress(OSError):
         os.chdir(home)

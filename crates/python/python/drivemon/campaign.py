@@ -95,6 +95,7 @@ def run(
 
 def _share(path: Path, fingerprint: str, begin: int, end: int) -> tuple[bytes, float]:
     """On a worker: the file of these runs, and the time that each took, s."""
+    _tasks.on_one_core()
     plan = _drivemon.Plan(path)
     if plan.fingerprint != fingerprint:
         raise InputError(f"{path}: this machine has another plan, other motor files or another version of drivemon", [])

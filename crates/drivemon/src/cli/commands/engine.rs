@@ -58,8 +58,11 @@ impl EngineArgs {
     /// Python or one of the packages is missing, or the work could not be done.
     pub fn ray<W: AsRef<OsStr>>(&self, module: &str, words: &[W]) -> Result<i32, Failure> {
         let python = std::env::var_os("DRIVEMON_PYTHON").unwrap_or_else(|| "python3".into());
-        let imports = format!("import {module}, ray");
-        let has = Command::new(&python).args(["-c", &imports]).output();
+        // Whether Ray is there; its import takes more than half a second.
+        let asks = format!(
+            "import {module}, importlib.util, sys; sys.exit(importlib.util.find_spec('ray') is None)"
+        );
+        let has = Command::new(&python).args(["-c", &asks]).output();
         if !has.as_ref().is_ok_and(|has| has.status.success()) {
             return Err(Failure::Usage(format!(
                 "--engine ray: {} does not have the packages drivemon and ray: install them (docs/python.md), or name another \
