@@ -11,7 +11,9 @@ pub(crate) struct Turns {
     centre: f64,
     /// Angle of an even step with its sine and cosine.
     step: (f64, f64, f64),
-    angle: f64,
+    /// Angle of the last exact sine.
+    exact: f64,
+    /// Sine and cosine of the last sample's even place.
     sin: f64,
     cos: f64,
     left: u32,
@@ -31,7 +33,7 @@ impl Turns {
             omega,
             centre,
             step: (angle, sin, cos),
-            angle: 0.0,
+            exact: 0.0,
             sin: 0.0,
             cos: 1.0,
             left: 0,
@@ -43,20 +45,19 @@ impl Turns {
     pub fn at(&mut self, t: f64) -> (f64, f64) {
         let angle = self.omega * (t - self.centre);
         let (step, step_sin, step_cos) = self.step;
-        let off = angle - self.angle - step;
+        let turned = f64::from(LONGEST - self.left + 1) * step;
+        let off = (angle - self.exact) - turned;
         if self.left == 0 || off.is_nan() || off.abs() > UNEVEN {
             (self.sin, self.cos) = angle.sin_cos();
-            self.left = LONGEST;
-        } else {
-            let sin = self.sin * step_cos + self.cos * step_sin;
-            let cos = self.cos * step_cos - self.sin * step_sin;
-            let lost = 0.5 * off * off;
-            self.sin = sin + off * cos - lost * sin;
-            self.cos = cos - off * sin - lost * cos;
-            self.left -= 1;
+            (self.exact, self.left) = (angle, LONGEST);
+            return (self.sin, self.cos);
         }
-        self.angle = angle;
-        (self.sin, self.cos)
+        let sin = self.sin * step_cos + self.cos * step_sin;
+        let cos = self.cos * step_cos - self.sin * step_sin;
+        // The next turn begins at the even place: it need not wait for what follows.
+        (self.sin, self.cos, self.left) = (sin, cos, self.left - 1);
+        let lost = 0.5 * off * off;
+        (sin + off * cos - lost * sin, cos - off * sin - lost * cos)
     }
 }
 
