@@ -217,8 +217,9 @@ mod tests {
         let told = |id: u32| {
             let ran = Command::new("bash")
                 .args(["-c", task])
-                .env("SLURM_ARRAY_TASK_ID", id.to_string());
-            String::from_utf8(ran.output().expect("bash").stdout).expect("text")
+                .env("SLURM_ARRAY_TASK_ID", id.to_string())
+                .output();
+            String::from_utf8(ran.expect("bash").stdout).expect("text")
         };
         assert_eq!([0, 1, 2].map(told), ["5 21\n", "21 37\n", "37 50\n"]);
     }
