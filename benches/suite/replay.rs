@@ -1,7 +1,7 @@
 //! What `drivemon monitor` costs: samples per second of reading, audit and replay of one recording, and how many times real time.
 
 use audit::{Audit, Expectation, audit};
-use benches::interleaved::shortest;
+use benches::interleaved::shortest_on_processor;
 use criterion::{Criterion, Throughput};
 use formats::{PIECE_ROWS, read_in_pieces, read_recording, write_recording};
 use monitor::Monitor;
@@ -101,21 +101,21 @@ fn bench(criterion: &mut Criterion) {
     group.finish();
 
     let samples = recording.len() as f64;
-    println!("replay of 4 s at 10 kHz, eight channels: fastest of {RUNS}");
+    println!("replay of 4 s at 10 kHz, eight channels, processor time: fastest of {RUNS}");
     let before =
         |rate: f64, before: f64| format!("{:.1} x the {before:.0} of before", rate / before);
     for (name, path) in [("read .csv.gz", packed), ("read .csv", plain)] {
-        let rate = samples / shortest(RUNS, || read(path));
+        let rate = samples / shortest_on_processor(RUNS, || read(path));
         show(name, rate, before(rate, READ_BEFORE));
     }
-    let rate = samples / shortest(RUNS, || read(columnar));
+    let rate = samples / shortest_on_processor(RUNS, || read(columnar));
     show("read .parquet", rate, String::new());
-    let rate = samples / shortest(RUNS, || audit(&recording, &expectation));
+    let rate = samples / shortest_on_processor(RUNS, || audit(&recording, &expectation));
     show("audit", rate, before(rate, AUDIT_BEFORE));
-    let rate = samples / shortest(RUNS, || run(&monitor, &recording, &findings));
+    let rate = samples / shortest_on_processor(RUNS, || run(&monitor, &recording, &findings));
     show("core", rate, String::new());
     for (name, path) in [("monitor .csv.gz", packed), ("monitor .parquet", columnar)] {
-        let rate = samples / shortest(RUNS, || monitored(path, &motor));
+        let rate = samples / shortest_on_processor(RUNS, || monitored(path, &motor));
         let times = rate * recording.t_sample();
         show(name, rate, format!("{times:.0} x real time"));
     }

@@ -5,6 +5,7 @@
 //! of its own without Python's lock (`work`); numbers of other libraries are lent, not copied (`lend`).
 
 mod answer;
+mod batch;
 mod campaign;
 mod errors;
 mod lend;
@@ -23,6 +24,7 @@ fn _drivemon(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<source::Recording>()?;
     module.add_class::<answer::Answer>()?;
     module.add_class::<table::Table>()?;
+    module.add_class::<batch::Batch>()?;
     module.add_class::<campaign::Plan>()?;
     module.add_function(wrap_pyfunction!(campaign::merge, module)?)?;
     questions::add(module)

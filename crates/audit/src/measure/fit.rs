@@ -4,6 +4,7 @@
 //! block. Unlike a discrete Fourier sum it needs neither whole periods nor even sampling, and its
 //! slope gives the frequency error and the change of the amplitude.
 
+use crate::measure::turn::Turns;
 use num_complex::Complex64;
 
 /// One sinusoid in one channel.
@@ -38,10 +39,11 @@ impl Basis {
     pub fn new(t: &[f64], omega: f64) -> Option<Basis> {
         let (first, last) = (*t.first()?, *t.last()?);
         let (centre, half) = (0.5 * (first + last), 0.5 * (last - first));
+        let mut turns = Turns::new(t, omega, centre);
         let rows: Vec<Row> = t
             .iter()
             .map(|t| {
-                let (sin, cos) = (omega * (t - centre)).sin_cos();
+                let (sin, cos) = turns.at(*t);
                 let tau = (t - centre) / half;
                 [1.0, cos, sin, tau * cos, tau * sin]
             })

@@ -1,6 +1,7 @@
 //! The harmonics of three channels over a block, all in one pass.
 
 use crate::measure::fit::Fit;
+use crate::measure::turn::Turns;
 use num_complex::Complex64;
 
 /// Highest harmonic that is looked at.
@@ -58,9 +59,11 @@ pub(crate) fn harmonics(t: &[f64], x: [&[f64]; 3], omega: f64, fits: &[Fit; 3]) 
     let (first, last) = (t[0], t[t.len() - 1]);
     let centre = 0.5 * (first + last);
     let (mut powers, mut sums) = (Parts::ZERO, [Parts::ZERO; 3]);
+    let mut turns = Turns::new(t, omega, centre);
     let [a, b, c] = x;
     for (((t, a), b), c) in t.iter().zip(a).zip(b).zip(c) {
-        let turn = Complex64::cis(omega * (t - centre));
+        let (sin, cos) = turns.at(*t);
+        let turn = Complex64::new(cos, sin);
         powers.powers(turn.conj());
         for ((sum, fit), x) in sums.iter_mut().zip(fits).zip([a, b, c]) {
             sum.add(x - fit.mean - (fit.phasor * turn).re, &powers);

@@ -7,3 +7,4 @@ pub(crate) mod refresh;
 pub(crate) mod sequence;
 pub(crate) mod statistics;
 pub(crate) mod track;
+pub(crate) mod turn;

@@ -128,18 +128,9 @@ fn killed_ten_times_it_gives_the_bytes_of_a_run_that_was_not() {
 
 #[test]
 fn a_row_says_what_monitor_says_and_only_what_is_new_is_judged_again() {
-    let folder = plant("batch-rows");
+    let folder = small_plant("batch-rows");
     let out = folder.join("out.parquet");
-    // Six are enough here.
-    let pump = folder.join("recordings/pump");
-    for entry in std::fs::read_dir(&pump).expect("made").flatten() {
-        let name = entry.file_name().into_string().expect("UTF-8");
-        if !name.starts_with("sc_hlt") {
-            std::fs::remove_file(entry.path()).expect("removed");
-        }
-    }
     let broken = folder.join("recordings/pump/x.csv");
-    std::fs::write(&broken, "t,ia,ib\n0,1,2\n0.1,x,2\n").expect("written");
     let done = batch(&folder, &out);
     assert_eq!(done.status.code(), Some(2), "{}", stderr(&done));
     assert!(stderr(&done).contains("x.csv:3: ia"), "{}", stderr(&done));
@@ -194,6 +185,129 @@ fn a_row_says_what_monitor_says_and_only_what_is_new_is_judged_again() {
         stderr(&done)
     );
     assert!(stdout(&done).contains("is written"));
+}
+
+/// A recording of the plant that cannot be read, in a folder of few.
+fn small_plant(name: &str) -> PathBuf {
+    let folder = plant(name);
+    let pump = folder.join("recordings/pump");
+    for entry in std::fs::read_dir(&pump).expect("made").flatten() {
+        let name = entry.file_name().into_string().expect("UTF-8");
+        if !name.starts_with("sc_hlt") {
+            std::fs::remove_file(entry.path()).expect("removed");
+        }
+    }
+    std::fs::write(pump.join("x.csv"), "t,ia,ib\n0,1,2\n0.1,x,2\n").expect("written");
+    folder
+}
+
+#[test]
+fn parts_made_in_any_order_and_twice_give_the_bytes_of_one_machine() {
+    let folder = small_plant("batch-parts");
+    let [whole, out] = ["whole", "parts"].map(|name| folder.join(format!("{name}.parquet")));
+    batch(&folder, &whole);
+    let part = |words: &[&str]| {
+        let arguments = arguments(&folder, &out);
+        let mut all = arguments.each_ref().map(String::as_str).to_vec();
+        all.extend(words);
+        drivemon(&all)
+    };
+    for bounds in [["--from", "5"], ["--to", "3"], ["--to", "3"]] {
+        let done = part(&bounds);
+        assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+        assert!(!out.exists());
+    }
+    assert_eq!(parts(&out), 2, "rows of a part have no files of their own");
+    // What was begun and not finished: a row by itself, and what is no part.
+    let rest = part(&["--from", "3", "--to", "4"]);
+    assert!(
+        stdout(&rest).contains("Recordings 3..4 of 7"),
+        "{}",
+        stdout(&rest)
+    );
+    for (words, told) in [
+        (["--from", "7"].as_slice(), "recordings 0..7"),
+        (&["--from", "2", "--to", "2"], "recordings 0..7"),
+        (&["--from", "2", "--engine", "ray"], "leave them out"),
+    ] {
+        let refused = part(words);
+        assert_eq!(refused.status.code(), Some(2), "{told}");
+        assert!(stderr(&refused).contains(told), "{}", stderr(&refused));
+    }
+    let done = part(&[]);
+    assert_eq!(done.status.code(), Some(2), "{}", stderr(&done));
+    assert!(
+        stderr(&done).contains("6 of 7 rows were there already"),
+        "{}",
+        stderr(&done)
+    );
+    let bytes = |path: &Path| std::fs::read(path).expect("written");
+    assert!(bytes(&whole) == bytes(&out));
+    assert_eq!(parts(&out), 0);
+}
+
+#[test]
+fn a_part_whose_recording_changed_is_made_again() {
+    let folder = small_plant("batch-part-changed");
+    let [whole, out] = ["whole", "parts"].map(|name| folder.join(format!("{name}.parquet")));
+    let arguments = arguments(&folder, &out);
+    let mut words = arguments.each_ref().map(String::as_str).to_vec();
+    words.extend(["--to", "2"]);
+    drivemon(&words);
+    let sidecar = folder.join("recordings/fan.toml");
+    let changed = std::fs::read_to_string(&sidecar).expect("copied") + "# looked at again\n";
+    std::fs::write(&sidecar, changed).expect("written");
+    let again = drivemon(&words);
+    assert!(
+        stderr(&again).contains("1 of 2 rows were there already"),
+        "{}",
+        stderr(&again)
+    );
+    let third = drivemon(&words);
+    assert!(
+        stderr(&third).contains("2 of 2 rows were there already"),
+        "{}",
+        stderr(&third)
+    );
+    batch(&folder, &whole);
+    batch(&folder, &out);
+    let bytes = |path: &Path| std::fs::read(path).expect("written");
+    assert!(bytes(&whole) == bytes(&out));
+}
+
+#[test]
+fn slurm_gets_a_script_whose_tasks_make_the_table() {
+    let folder = small_plant("batch-slurm");
+    let [whole, out] = ["whole", "it's one"].map(|name| folder.join(format!("{name}.parquet")));
+    batch(&folder, &whole);
+    let arguments = arguments(&folder, &out);
+    let mut words = arguments.each_ref().map(String::as_str).to_vec();
+    words.extend(["--engine", "slurm", "--task-seconds", "10"]);
+    let script = stdout(&drivemon(&words));
+    // A Slurm of one machine: what is handed in runs at once.
+    let sbatch = folder.join("sbatch");
+    let lines = "#!/usr/bin/env bash\nexport SLURM_ARRAY_TASK_ID=0\nbash >&2 || [ $? -eq 2 ] || exit\necho 17\n";
+    std::fs::write(&sbatch, lines).expect("written");
+    let path = format!("{}:{}", text(&folder), std::env::var("PATH").expect("set"));
+    let ran = Command::new("bash")
+        .args([
+            "-c",
+            "chmod +x \"$1/sbatch\" && bash -c \"$2\"",
+            "x",
+            text(&folder),
+            &script,
+        ])
+        .env("PATH", path)
+        .output()
+        .expect("bash");
+    assert!(ran.status.success(), "{script}\n{}", stderr(&ran));
+    assert!(
+        stderr(&ran).contains("7 of 7 rows were there already"),
+        "{}",
+        stderr(&ran)
+    );
+    let bytes = |path: &Path| std::fs::read(path).expect("written");
+    assert!(bytes(&whole) == bytes(&out));
 }
 
 #[test]

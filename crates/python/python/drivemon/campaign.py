@@ -15,7 +15,6 @@ the same call goes on where a killed one was. The result has the bytes of one ma
 from __future__ import annotations
 
 import argparse
-import math
 import os
 import shutil
 import sys
@@ -23,10 +22,10 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Iterator, Optional, Union
+from typing import Iterator, Optional, Union
 
-from . import _drivemon
-from ._errors import Error, InputError
+from . import _drivemon, _tasks
+from ._errors import InputError
 from ._progress import Progress, told
 
 __all__ = ["Done", "run"]
@@ -35,12 +34,6 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 _FIRST_RUNS = 16
 """Runs of the first tasks, which tell how long one takes."""
-_MOST_RUNS = 100_000
-"""A task is lost with its worker: it stays small enough to be made again."""
-_IN_FLIGHT = 2
-"""Tasks handed out for each core, so that no worker waits."""
-_RETRIES = 100
-"""How often a task whose worker died is given to another one."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +66,7 @@ def run(
 
     Raises InputError for a plan or a result that does not fit, ImportError without Ray.
     """
-    ray = _ray()
+    _tasks.module()
     path, output = Path(plan).resolve(), Path(output)
     about = _drivemon.Plan(path)
     last = about.runs if end is None else end
@@ -84,33 +77,25 @@ def run(
         return Done(output, *finished)
     shares = output.with_name(output.name + ".shares")
     shares.mkdir(parents=True, exist_ok=True)
-    started = not ray.is_initialized()
-    if started:
-        # One thread per task: Ray gives each core one.
-        threads = {"env_vars": {"RAYON_NUM_THREADS": "1"}}
-        ray.init(address=address, runtime_env=threads, include_dashboard=False if address is None else None, log_to_driver=False)
-    try:
-        with told(progress) as tell:
-            _make(ray, path, about.fingerprint, _missing(shares, about.fingerprint, begin, last), shares, task_seconds, tell)
-    finally:
-        if started:
-            ray.shutdown()
+    work = _tasks.Work(
+        share=_share,
+        arguments=(path, about.fingerprint),
+        keep=lambda runs, content: _tasks.write_whole(shares / _tasks.name(about.fingerprint, runs), content),
+        first=_FIRST_RUNS,
+        said="making runs",
+    )
+    missing = _missing(shares, about.fingerprint, begin, last)
+    with _tasks.cluster(address) as ray, told(progress) as tell:
+        _tasks.spread(ray, work, missing, task_seconds, tell)
     parts = [share for share, _, _ in _there(shares, about.fingerprint)]
     rows, lit = _drivemon.merge(parts, output)
     shutil.rmtree(shares)
     return Done(output, rows, lit)
 
 
-def _ray() -> Any:
-    try:
-        import ray
-    except ImportError as error:
-        raise ImportError("this engine is Ray, which is not installed: pip install ray") from error
-    return ray
-
-
 def _share(path: Path, fingerprint: str, begin: int, end: int) -> tuple[bytes, float]:
     """On a worker: the file of these runs, and the time that each took, s."""
+    _tasks.on_one_core()
     plan = _drivemon.Plan(path)
     if plan.fingerprint != fingerprint:
         raise InputError(f"{path}: this machine has another plan, other motor files or another version of drivemon", [])
@@ -119,46 +104,6 @@ def _share(path: Path, fingerprint: str, begin: int, end: int) -> tuple[bytes, f
         part = Path(folder) / "share.parquet"
         plan.share(begin, end, part, None)
         return part.read_bytes(), (time.process_time() - before) / (end - begin)
-
-
-def _make(
-    ray: Any, path: Path, fingerprint: str, gaps: list[range], shares: Path, task_seconds: float, tell: Any
-) -> None:
-    """Hands out the missing runs, and keeps what comes back."""
-    task = ray.remote(num_cpus=1, max_retries=_RETRIES)(_share)
-    wanted, made = sum(map(len, gaps)), 0
-    at_once = _IN_FLIGHT * max(1, int(ray.cluster_resources().get("CPU", 1)))
-    size = _FIRST_RUNS
-    pending: dict[Any, range] = {}
-    while gaps or pending:
-        while gaps and len(pending) < at_once:
-            runs, rest = gaps[0][:size], gaps[0][size:]
-            gaps[:1] = [rest] if rest else []
-            pending[task.remote(path, fingerprint, runs.start, runs.stop)] = runs
-        ready, _ = ray.wait(list(pending), num_returns=1)
-        for one in ready:
-            runs = pending.pop(one)
-            content, seconds = ray.get(one)
-            _keep(shares, fingerprint, runs, content)
-            made += len(runs)
-            # What is left ends at the same time on all cores.
-            left = sum(map(len, gaps))
-            fair = math.ceil(left / at_once) if left else _FIRST_RUNS
-            size = max(_FIRST_RUNS, min(math.ceil(task_seconds / max(seconds, 1e-6)), _MOST_RUNS, fair))
-            if tell is not None:
-                tell("making runs", made / wanted)
-
-
-def _name(fingerprint: str, runs: range) -> str:
-    return f"{fingerprint}-{runs.start:09}-{runs.stop:09}.parquet"
-
-
-def _keep(shares: Path, fingerprint: str, runs: range, content: bytes) -> None:
-    """A share is whole or absent."""
-    share = shares / _name(fingerprint, runs)
-    unfinished = share.with_suffix(".unfinished")
-    unfinished.write_bytes(content)
-    os.replace(unfinished, share)
 
 
 def _there(shares: Path, fingerprint: str) -> Iterator[tuple[Path, int, int]]:
@@ -195,11 +140,10 @@ def _main() -> int:
     parser.add_argument("-o", "--output", metavar="RESULT", required=True, help="results to write (.parquet)")
     parser.add_argument("--from", dest="begin", metavar="INDEX", type=int, default=0, help="first run")
     parser.add_argument("--to", dest="end", metavar="INDEX", type=int, help="run after the last")
-    parser.add_argument("--address", help="address of a Ray cluster, or auto; without it Ray starts on this machine")
-    parser.add_argument("--task-seconds", metavar="S", type=float, default=10.0, help="time that a task takes, s")
+    _tasks.add_arguments(parser)
     given = parser.parse_args()
-    progress: Progress = _line if sys.stderr.isatty() else None
-    try:
+
+    def ask(progress: Progress) -> int:
         done = run(
             given.plan,
             given.output,
@@ -209,16 +153,10 @@ def _main() -> int:
             task_seconds=given.task_seconds,
             progress=progress,
         )
-    except (Error, ImportError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    print(f"{done.output}: {done.rows} runs, FAULT on a healthy motor in {done.fault_on_healthy} of them")
-    return 1 if done.fault_on_healthy else 0
+        print(f"{done.output}: {done.rows} runs, FAULT on a healthy motor in {done.fault_on_healthy} of them")
+        return 1 if done.fault_on_healthy else 0
 
-
-def _line(what: str, share: float) -> None:
-    end = "\n" if share >= 1.0 else ""
-    print(f"\r{what} {share:4.0%}", end=end, file=sys.stderr, flush=True)
+    return _tasks.answered(ask)
 
 
 if __name__ == "__main__":

@@ -88,12 +88,19 @@ impl Flags {
 
     /// The flags as they are typed, each with a blank before it: a command that reads the same file needs them too.
     pub fn typed(&self) -> String {
-        let mut typed = String::new();
+        let words = self.words();
+        words
+            .iter()
+            .map(|word| format!(" {}", quoted(word)))
+            .collect()
+    }
+
+    /// The flags as words of a command line.
+    pub fn words(&self) -> Vec<String> {
+        let mut words = Vec::new();
         let mut add = |flag: &str, value: &str| {
-            typed += &format!(" {flag}");
-            if !value.is_empty() {
-                typed += &format!(" {}", quoted(value));
-            }
+            let both = [flag, value].into_iter().filter(|word| !word.is_empty());
+            words.extend(both.map(str::to_owned));
         };
         let lists = [
             ("--column", &self.column),
@@ -130,7 +137,7 @@ impl Flags {
         for (flag, _) in switches.into_iter().filter(|(_, on)| *on) {
             add(flag, "");
         }
-        typed
+        words
     }
 }
 

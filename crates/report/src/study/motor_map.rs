@@ -90,11 +90,11 @@ impl MotorMap {
         Ok(MotorMap { label, motors })
     }
 
-    /// The recordings of a folder that the map names, by name; `out` is none of them.
+    /// The recordings of a folder that the map names, by name; what is `written` there, files and folders, is none of them.
     ///
     /// # Errors
     /// A folder that cannot be read, or an entry that fits nothing.
-    pub fn jobs(&self, folder: &Path, out: &Path) -> Result<Vec<Job>, MapError> {
+    pub fn jobs(&self, folder: &Path, written: &[&Path]) -> Result<Vec<Job>, MapError> {
         let mut files = Vec::new();
         collect(folder, "", &mut files).map_err(|(path, error)| {
             MapError::Entry(format!(
@@ -102,7 +102,8 @@ impl MotorMap {
                 path.display()
             ))
         })?;
-        files.retain(|(name, path)| path != out && is_recording(name));
+        let is_written = |path: &Path| written.iter().any(|out| path.starts_with(out));
+        files.retain(|(name, path)| !is_written(path) && is_recording(name));
         files.sort();
         let job = |(name, path): (String, PathBuf)| {
             let fits = |motor: &MappedMotor| motor.pattern.matches_with(&name, WITHIN);

@@ -92,20 +92,21 @@ impl InputArgs {
         Ok(self.flags().mapping()?)
     }
 
-    /// The same for a command that reads many files.
+    /// The flags of a command that reads many files.
     ///
     /// # Errors
-    /// A flag that cannot be understood, and `--write-sidecar`.
-    pub fn unwritten_mapping(&self) -> Result<Mapping, Failure> {
+    /// `--write-sidecar`.
+    pub fn unwritten(&self) -> Result<Flags, Failure> {
         match self.write_sidecar {
-            false => self.mapping(),
+            false => Ok(self.flags()),
             true => Err(Failure::Usage(
                 "--write-sidecar: this command writes no sidecars; leave it out".to_owned(),
             )),
         }
     }
 
-    fn flags(&self) -> Flags {
+    /// The flags by themselves.
+    pub fn flags(&self) -> Flags {
         Flags {
             column: self.column.clone(),
             columns: self.columns.clone(),

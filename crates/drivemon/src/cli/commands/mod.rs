@@ -7,6 +7,7 @@ pub(crate) mod check;
 pub(crate) mod completions;
 #[cfg(any(feature = "panel", feature = "gateway"))]
 mod ending;
+mod engine;
 pub(crate) mod export;
 pub(crate) mod flash;
 #[cfg(feature = "gateway")]

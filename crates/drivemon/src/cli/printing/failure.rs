@@ -1,5 +1,7 @@
 //! How a command ends.
 
+use report::study::batch::BatchError;
+
 /// The outcome of a command that did its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finding {
@@ -37,6 +39,9 @@ pub enum Failure {
     /// A map of motors.
     #[error(transparent)]
     Map(#[from] report::study::MapError),
+    /// Rows of a batch.
+    #[error(transparent)]
+    Rows(#[from] report::study::batch::StoreError),
     /// The motor file's values do not fit the core.
     #[error("{file}: {error}; change the value in the motor file")]
     Config {
@@ -70,6 +75,16 @@ pub enum Failure {
     /// Anything else that is wrong with what the user asked.
     #[error("{0}")]
     Usage(String),
+}
+
+impl From<BatchError> for Failure {
+    fn from(error: BatchError) -> Failure {
+        match error {
+            BatchError::Flags(error) => Failure::Recording(error),
+            BatchError::Map(error) => Failure::Map(error),
+            BatchError::Store(error) => Failure::Rows(error),
+        }
+    }
 }
 
 impl Failure {

@@ -1,5 +1,6 @@
 //! `drivemon campaign`: what the lamps can be trusted with.
 
+use std::ffi::OsStr;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -8,8 +9,8 @@ use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::engine::{Engine, EngineArgs};
 use crate::cli::arguments::files::{Files, spare_what_is_no_sidecar};
+use crate::cli::commands::engine::{Array, Engine, EngineArgs, absolute, in_shell, program};
 use crate::cli::commands::monitor;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::{OutputArgs, write_text};
@@ -138,8 +139,8 @@ impl RunArgs {
         let range = self.range(plan.runs())?;
         match self.engine.engine {
             Engine::Here => {}
-            Engine::Ray => return self.engine.ray(&self.plan, &range, &self.output),
-            Engine::Slurm => return self.engine.slurm(&plan, &self.plan, &range, &self.output),
+            Engine::Ray => return self.ray(&range),
+            Engine::Slurm => return self.slurm(&plan, &range),
         }
         let bar = progress::bar("campaign", range.end - range.start);
         let done = campaign::run_range(&plan, range, &self.output, &|runs| bar.inc(runs))?;
@@ -148,6 +149,41 @@ impl RunArgs {
             say!("{} runs were there already", done.there_already);
         }
         Ok(tell(&done.results, &self.output))
+    }
+
+    fn ray(&self, range: &Range<u64>) -> Result<Finding, Failure> {
+        let bounds = [range.start, range.end].map(|index| index.to_string());
+        let [plan, output] = [&self.plan, &self.output].map(|path| path.as_os_str());
+        let [o, from, to] = ["-o", "--from", "--to"].map(OsStr::new);
+        let [start, end] = bounds.each_ref().map(OsStr::new);
+        let words = [plan, o, output, from, start, to, end];
+        match self.engine.ray("drivemon.campaign", &words)? {
+            0 => Ok(Finding::Nothing),
+            _ => Ok(Finding::Something),
+        }
+    }
+
+    fn slurm(&self, plan: &Plan, range: &Range<u64>) -> Result<Finding, Failure> {
+        let trial = |index| drop(campaign::share(plan, index..index + 1, &mut || ()));
+        let program = program()?;
+        let path = in_shell(absolute(&self.plan)?);
+        let output = in_shell(absolute(&self.output)?);
+        let array = Array {
+            title: format!("Runs {}..{} of a campaign", range.start, range.end),
+            range: range.clone(),
+            items: self.engine.items_a_task(range, trial),
+            folder: format!("{output}.shares"),
+            task: format!(
+                "share=$(printf '%09d.parquet' $from)\n\
+                 # 1 says that FAULT was lit on a healthy motor: a finding, no failure.\n\
+                 {program} campaign run {path} --from $from --to $to -o {output}.shares/$share || [ $? -eq 1 ]"
+            ),
+            merge: format!(
+                "{program} campaign merge {output}.shares/*.parquet -o {output} || [ $? -eq 1 ]"
+            ),
+        };
+        say!("{}", array.script());
+        Ok(Finding::Nothing)
     }
 
     fn range(&self, runs: u64) -> Result<Range<u64>, Failure> {

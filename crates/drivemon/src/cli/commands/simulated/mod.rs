@@ -2,7 +2,6 @@
 
 pub(crate) mod campaign;
 pub(crate) mod demo;
-mod engine;
 pub(crate) mod simulate;
 
 use report::json::Format;

@@ -6,7 +6,7 @@ use recording::{Error, Mapping, Recording, Source};
 use replay::{VerdictState, WindowOperation};
 use serde::Serialize;
 
-use super::{Job, MappedMotor, MonitorError, Monitored, Monitoring};
+use crate::study::{Job, MappedMotor, MonitorError, Monitored, Monitoring};
 
 /// FAULT lit.
 pub const FAULT: &str = "fault";
@@ -23,7 +23,7 @@ pub const NOT_READ: &str = "not-read";
 pub struct Row {
     /// Path seen from the folder.
     pub recording: String,
-    /// MappedMotor file as the map names it.
+    /// Motor file as the map names it.
     pub motor: String,
     /// `healthy`, `fault`, `not-judged` or `not-read`.
     pub state: String,
