@@ -278,9 +278,15 @@ impl<'w> Life<'w> {
             unbalance: machine.unbalance + self.unbalance_step + Complex64::new(re, im),
             torque: torque * plate.torque_nm,
             friction,
-            degc: self.bodies.map(|body| body.degc),
+            degc: self.degc(),
             cabinet_degc: self.hall_degc() + machine.heat.cabinet_k,
         }
+    }
+
+    /// Temperatures of winding and cage now, degC.
+    fn degc(&self) -> [f64; 2] {
+        let own = self.bodies.map(|body| body.degc);
+        self.watched.machine.heat.shared(own)
     }
 
     /// The afternoon is warmest.
@@ -399,7 +405,7 @@ impl<'w> Life<'w> {
         (began_s, lived_s): (f64, f64),
         begun: f64,
     ) -> f64 {
-        let degc = self.bodies.map(|body| body.degc);
+        let degc = self.degc();
         let mut share = begun;
         while share < 1.0 {
             let length = 1.0 / (from.hertz * KNOT_S);
@@ -438,7 +444,7 @@ impl<'w> Life<'w> {
         self.doing = Doing::Event(event);
         self.state.resume_after_gap();
         let began_s = self.t_s;
-        let degc = self.bodies.map(|body| body.degc);
+        let degc = self.degc();
         let mut last = 0.0;
         for (simulated, sample) in Shown::new(
             simulation,
