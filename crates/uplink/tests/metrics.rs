@@ -2,7 +2,7 @@
 
 use fleet::alarm::Severity;
 use fleet::{Link, MotorInfo, MotorState, Second};
-use uplink::metrics::{Output, Plant, STALE_MS, render};
+use uplink::metrics::{Output, PageState, Plant, STALE_MS, render};
 use uplink::modbus::ModbusState;
 use uplink::mqtt::MqttState;
 
@@ -45,6 +45,10 @@ fn text(motors: &[MotorState], shown: usize) -> String {
         outputs: &outputs,
         mqtt: Some(&MqttState::default()),
         modbus: Some(&ModbusState::default()),
+        page: Some(&PageState {
+            cut: 3,
+            ..PageState::default()
+        }),
         now_ms: NOW_MS,
     };
     render(&plant)
@@ -64,6 +68,8 @@ fn values_have_their_names_and_units() {
         // It blinks: somebody is waited for, no fault was found.
         "drivemon_motors_with_fault 0",
         "drivemon_output_lag_seconds{output=\"mqtt\"} 1.5",
+        "drivemon_page_refused_total{why=\"wrong_role\"} 0",
+        "drivemon_page_cut_total 3",
     ] {
         assert!(text.lines().any(|found| found == line), "{line}\n{text}");
     }
@@ -104,8 +110,8 @@ fn series_are_bounded() {
         })
         .collect();
     let series = |text: &str| text.lines().filter(|line| !line.starts_with('#')).count();
-    assert_eq!(series(&text(&motors, 0)), 7 + 2 + 7 + 6);
-    assert_eq!(series(&text(&motors, 20)), 7 + 2 + 7 + 6 + 20 * 24);
+    assert_eq!(series(&text(&motors, 0)), 7 + 2 + 7 + 6 + 6);
+    assert_eq!(series(&text(&motors, 20)), 7 + 2 + 7 + 6 + 6 + 20 * 24);
     assert!(text(&motors, 20).contains("drivemon_motors_hidden 30\n"));
 }
 

@@ -8,8 +8,12 @@ use replay::calibrate::Surroundings;
 
 use crate::tally::{Listener, Tally};
 
-pub fn tally(seed: u64, motors: &[MotorFile], days: f64, lapse: f64) -> Tally {
+pub fn tally(seed: u64, motors: &[MotorFile], (days, lapse): (f64, f64), alike: bool) -> Tally {
     let machine = Machine::draw(seed, motors);
+    let machine = match alike {
+        true => machine.with_one_temperature(),
+        false => machine,
+    };
     let mut random = Pcg64::seed_from_u64(seed ^ 0x5eed);
     let mut tally = Tally {
         words: format!("seed {seed}: {}", machine.words),

@@ -1,8 +1,8 @@
 //! False alarms per 1000 motor-days of healthy motors: `docs/fleet/false-alarms.md`.
 //!
-//! `cargo run --release -p studies --example false-alarms -- --motor-days N --seed S [--week-days D] [--lapse K] [--minutes M] [--list]`
+//! `cargo run --release -p studies --example false-alarms -- --motor-days N --seed S [--week-days D] [--lapse K] [--minutes M] [--machine N] [--alike] [--list]`
 //!
-//! `--minutes M` begins no machine after M minutes. Every machine is drawn from its seed, calibrated as a user would do it, and lives for D days (7). Steady hours are made cycle
+//! `--minutes M` begins no machine after M minutes; `--machine N` lives the N-th alone, from 1; `--alike` gives the cage the winding's temperature. Every machine is drawn from its seed, calibrated as a user would do it, and lives for D days (7). Steady hours are made cycle
 //! by cycle, events sample by sample (`campaign::hours`); the lamps go through the alarm desk of the gateway.
 
 mod machine;
@@ -34,6 +34,8 @@ struct Asked {
     days: f64,
     lapse: f64,
     minutes: f64,
+    machine: Option<u64>,
+    alike: bool,
     list: bool,
 }
 
@@ -44,10 +46,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let begin = std::time::Instant::now();
     let tallies: Vec<Tally> = (0..machines)
         .into_par_iter()
+        .filter(|k| asked.machine.is_none_or(|only| only == k + 1))
         .filter(|_| begin.elapsed().as_secs_f64() < 60.0 * asked.minutes)
         .map(|k| {
             let seed = asked.seed.wrapping_mul(1_000_003).wrapping_add(k);
-            machine::tally(seed, &motors, asked.days, asked.lapse)
+            machine::tally(seed, &motors, (asked.days, asked.lapse), asked.alike)
         })
         .collect();
     let seconds = begin.elapsed().as_secs_f64();
@@ -69,6 +72,8 @@ fn asked() -> Result<Asked, Box<dyn Error>> {
         days: 7.0,
         lapse: 1.0,
         minutes: f64::INFINITY,
+        machine: None,
+        alike: false,
         list: false,
     };
     let mut words = std::env::args().skip(1);
@@ -84,10 +89,12 @@ fn asked() -> Result<Asked, Box<dyn Error>> {
             "--week-days" => asked.days = value()?.parse()?,
             "--lapse" => asked.lapse = value()?.parse()?,
             "--minutes" => asked.minutes = value()?.parse()?,
+            "--machine" => asked.machine = Some(value()?.parse()?),
+            "--alike" => asked.alike = true,
             "--list" => asked.list = true,
             _ => {
                 return Err(format!(
-                    "{word} is not known: use --motor-days N, --seed S, --week-days D, --lapse K, --minutes M or --list"
+                    "{word} is not known: use --motor-days N, --seed S, --week-days D, --lapse K, --minutes M, --machine N, --alike or --list"
                 )
                 .into());
             }

@@ -213,13 +213,23 @@ fn measured(report: &Report) -> String {
     let Some(window) = &report.window else {
         return format!("no window, {:?}", report.not_judged);
     };
+    let residuals = report
+        .residuals
+        .map_or([f32::NAN; 4], |residuals| residuals.r);
     format!(
-        "{:.1} V, {:.2} A, {:.2} Hz, {:.1} rad/s, unbalance {:.1} %, {}",
+        "{:.1} V, {:.2} A, {:.2} Hz, {:.1} rad/s, unbalance {:.1} %, r {:.2?} %, warmer by {:.3}, {:.1} at any temperature, {}",
         window.u_s.positive.norm(),
         window.i_s.positive.norm(),
         window.omega_sync / std::f32::consts::TAU,
         window.shaft_speed().unwrap_or(f32::NAN),
         100.0 * window.i_s.negative.norm() / window.i_s.positive.norm(),
+        residuals.map(|r| 100.0 * r),
+        report
+            .isolation
+            .map_or(f32::NAN, |isolation| isolation.heating.rise),
+        report
+            .isolation
+            .map_or(f32::NAN, |isolation| isolation.at_any_temperature),
         report
             .not_judged
             .map_or("judged".to_owned(), |why| format!("{why:?}"))

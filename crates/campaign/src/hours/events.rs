@@ -158,7 +158,8 @@ impl Staged<'_> {
 
     fn load(&self, at_s: f64, random: &mut Pcg64) -> LoadSpec {
         let (first, second) = (self.from.torque, self.to.torque);
-        let active = self.event != Event::Start;
+        // What these machines drive brakes: it does not turn a motor that a dip has stalled.
+        let active = false;
         let constant = Load::Constant {
             torque: first,
             active,

@@ -56,10 +56,10 @@ impl Watched {
             machine: machine.words.clone(),
             why,
         };
-        let degc = [
+        let degc = machine.heat.shared([
             random.random_range(30.0..75.0),
             random.random_range(35.0..85.0),
-        ];
+        ]);
         let mut recordings = Vec::new();
         for (load, voltage) in RECORDED {
             let at = conditions(&machine, load, voltage, degc);

@@ -1,6 +1,6 @@
 //! Days of a machine: runs, changes and events in their order, through one monitor.
 
-use monitor::{MonitorState, Report};
+use monitor::{Abc, MonitorState, Report, Sample, SpeedSample};
 use motor::motor_file::LoadKind;
 use num_complex::Complex64;
 use rand::{Rng, SeedableRng};
@@ -13,6 +13,7 @@ use super::instrument::Shown;
 use super::learn::Watched;
 use super::operating::{Conditions, Shows, shows};
 use super::weather::{Body, Wander, signed};
+use crate::runs::run::T_SAMPLE_S;
 
 /// What a machine was doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -73,6 +74,9 @@ const FRICTION_WANDERS: (f64, f64) = (0.005, 600.0);
 const LAPSED_RATE: f64 = 1e-3;
 /// Change of a copper resistance with its temperature, share a kelvin.
 const PER_KELVIN: f64 = 3.9e-3;
+
+/// Of a rest the board sees so much, s: by then a winding may have any temperature.
+const DARK_SEEN_S: f64 = 200.0;
 
 /// How long a machine ran, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -182,11 +186,25 @@ impl<'w> Life<'w> {
     }
 
     fn rest_until(&mut self, until_s: f64) {
+        self.see_darkness(until_s - self.t_s);
         while self.t_s < until_s {
             let seconds = (until_s - self.t_s).min(60.0);
             self.warm(seconds, false);
             self.wander(seconds);
             self.lived_s += seconds;
+        }
+    }
+
+    /// The board goes on while its motor rests: what it knew of the temperature gets old.
+    fn see_darkness(&mut self, seconds: f64) {
+        let dark = Sample {
+            u_s_abc: Some(Abc::default()),
+            i_s_abc: Some(Abc::default()),
+            speed: SpeedSample::RadPerSecond(0.0),
+            ..Sample::default()
+        };
+        for _ in 0..(seconds.min(DARK_SEEN_S) / T_SAMPLE_S) as usize {
+            let _ = self.watched.monitor.update(&mut self.state, &dark);
         }
     }
 
@@ -278,9 +296,15 @@ impl<'w> Life<'w> {
             unbalance: machine.unbalance + self.unbalance_step + Complex64::new(re, im),
             torque: torque * plate.torque_nm,
             friction,
-            degc: self.bodies.map(|body| body.degc),
+            degc: self.degc(),
             cabinet_degc: self.hall_degc() + machine.heat.cabinet_k,
         }
+    }
+
+    /// Temperatures of winding and cage now, degC.
+    fn degc(&self) -> [f64; 2] {
+        let own = self.bodies.map(|body| body.degc);
+        self.watched.machine.heat.shared(own)
     }
 
     /// The afternoon is warmest.
@@ -399,7 +423,7 @@ impl<'w> Life<'w> {
         (began_s, lived_s): (f64, f64),
         begun: f64,
     ) -> f64 {
-        let degc = self.bodies.map(|body| body.degc);
+        let degc = self.degc();
         let mut share = begun;
         while share < 1.0 {
             let length = 1.0 / (from.hertz * KNOT_S);
@@ -438,7 +462,7 @@ impl<'w> Life<'w> {
         self.doing = Doing::Event(event);
         self.state.resume_after_gap();
         let began_s = self.t_s;
-        let degc = self.bodies.map(|body| body.degc);
+        let degc = self.degc();
         let mut last = 0.0;
         for (simulated, sample) in Shown::new(
             simulation,

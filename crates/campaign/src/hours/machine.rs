@@ -50,6 +50,8 @@ pub(super) struct Heat {
     pub hall_degc: [f64; 2],
     /// How much warmer the cabinet is than the hall, K.
     pub cabinet_k: f64,
+    /// The cage has the winding's temperature at any time.
+    pub alike: bool,
 }
 
 impl Machine {
@@ -95,6 +97,13 @@ impl Machine {
         }
     }
 
+    /// The same machine with a cage as warm as its winding, as the monitor believes it to be: what it lights less was the difference.
+    #[must_use]
+    pub fn with_one_temperature(mut self) -> Machine {
+        self.heat.alike = true;
+        self
+    }
+
     /// Whether the load of the motor file is a friction.
     pub fn declares_friction(&self) -> bool {
         self.truth.load == LoadKind::Friction
@@ -102,6 +111,11 @@ impl Machine {
 }
 
 impl Heat {
+    /// Temperatures of winding and cage where these would be theirs, degC.
+    pub fn shared(&self, [winding, cage]: [f64; 2]) -> [f64; 2] {
+        [winding, if self.alike { winding } else { cage }]
+    }
+
     fn draw(random: &mut Pcg64) -> Heat {
         Heat {
             rise_k: [
@@ -118,6 +132,7 @@ impl Heat {
                 random.random_range(1.0..9.0),
             ],
             cabinet_k: random.random_range(3.0..18.0),
+            alike: false,
         }
     }
 }

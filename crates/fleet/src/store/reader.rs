@@ -103,6 +103,14 @@ impl Reader {
         self.reading(|connection| alarms::one(connection, number))
     }
 
+    /// When the oldest second that the history still tells of a motor was, Unix ms; `None`: it has none.
+    ///
+    /// # Errors
+    /// There is no such motor, or reading failed.
+    pub fn first_ms(&self, motor: &MotorId) -> Result<Option<i64>, StoreError> {
+        self.reading(|connection| history::first_ms(connection, key_of(connection, motor)?))
+    }
+
     /// As [`super::Store::trend`].
     ///
     /// # Errors
@@ -115,11 +123,7 @@ impl Reader {
         points: usize,
     ) -> Result<Trend, StoreError> {
         self.reading(|connection| {
-            let text = "SELECT key FROM motor WHERE id = ?1";
-            let mut statement = connection.prepare_cached(text)?;
-            let key = statement.query_row([motor.as_str()], |row| row.get(0));
-            let key = key.optional()?;
-            let key = key.ok_or_else(|| StoreError::UnknownMotor(motor.clone()))?;
+            let key = key_of(connection, motor)?;
             history::trend(connection, key, from_ms, to_ms, points)
         })
     }
@@ -167,6 +171,16 @@ impl Reader {
         }
         done
     }
+}
+
+/// The store's own number of a motor.
+fn key_of(connection: &Connection, motor: &MotorId) -> Result<i64, StoreError> {
+    let text = "SELECT key FROM motor WHERE id = ?1";
+    let mut statement = connection.prepare_cached(text)?;
+    let key = statement
+        .query_row([motor.as_str()], |row| row.get(0))
+        .optional()?;
+    key.ok_or_else(|| StoreError::UnknownMotor(motor.clone()))
 }
 
 #[cfg(test)]
@@ -241,6 +255,8 @@ mod tests {
                 .len(),
             1
         );
+        let firsts = ["a", "b"].map(|name| reader.first_ms(&motor(name)).expect("read"));
+        assert_eq!(firsts, [Some(1_000), None]);
         let unknown = reader.trend(&motor("c"), 0, 2_000, 2);
         assert!(matches!(unknown, Err(StoreError::UnknownMotor(_))));
     }

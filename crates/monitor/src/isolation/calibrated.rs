@@ -51,7 +51,8 @@ impl Monitor {
         let Some(evidence) = evidence else {
             return 0.0;
         };
-        let isolation = Isolation::of(&evidence, healthy, temperature.expected(healthy));
+        let expected = [temperature.expected(healthy), temperature.expected_apart()];
+        let isolation = Isolation::of_two(&evidence, healthy, expected);
         report.isolation = Some(isolation);
         temperature.follow(&isolation, healthy, state.panel.is_isolated());
         isolation.heating.rise

@@ -247,6 +247,15 @@ impl Evidence {
         rows
     }
 
+    /// A cage that warms more than its winding: what its resistance has risen by beyond the winding's, half up and half down.
+    pub(crate) fn parting(&self) -> Rows {
+        let mut half = self.direction(Cause::RotorResistance);
+        for (x, y) in half.iter_mut().zip(self.direction(Cause::StatorResistance)) {
+            *x = 0.5 * (*x - y);
+        }
+        half
+    }
+
     /// Departure from the healthy motor whose resistances have risen by this share.
     pub(crate) fn departure_at(&self, rise: f32) -> Rows {
         let mut departure = self.departure;

@@ -25,6 +25,7 @@ pub(crate) use directions::Bench;
 pub use evidence::Evidence;
 pub(crate) use evidence::{PositiveEvidence, rows_of, rows_of_currents};
 use gauss::dot;
+use temperature::MOST_APART;
 pub(crate) use temperature::Temperature;
 
 /// What one window says about the causes.
@@ -42,16 +43,35 @@ pub struct Isolation {
     pub at_any_temperature: f32,
     /// Rise of the resistances that explains the window best, and how surely this window alone tells it: winding temperature.
     pub heating: Heating,
+    /// How much more the cage's resistance has risen than the winding's, told in the same way.
+    pub apart: Heating,
 }
 
 impl Isolation {
-    /// Weighs all causes, given what is known of the winding's temperature.
-    #[inline(never)]
+    /// Weighs all causes, given what is known of the winding's temperature; the cage is as much warmer as in the calibration.
     pub fn of(evidence: &Evidence, healthy: &Healthy, expected: Heating) -> Self {
-        let cholesky = evidence.covariance(healthy, expected.deviation).factorise();
-        let white = cholesky.whiten(&evidence.departure_at(expected.rise));
+        Isolation::of_two(evidence, healthy, [expected, Heating::default()])
+    }
+
+    /// Weighs all causes, given what is known of the winding's temperature and of how much more the cage has warmed.
+    #[inline(never)]
+    pub(crate) fn of_two(
+        evidence: &Evidence,
+        healthy: &Healthy,
+        [expected, apart]: [Heating; 2],
+    ) -> Self {
+        let (heating, parting) = (evidence.heating(), evidence.parting());
+        let mut covariance = evidence.covariance(healthy, expected.deviation);
+        covariance.add(&parting, apart.deviation);
+        let cholesky = covariance.factorise();
+        let mut departure = evidence.departure_at(expected.rise);
+        for (x, per_share) in departure.iter_mut().zip(&parting) {
+            *x -= apart.rise * per_share;
+        }
+        let white = cholesky.whiten(&departure);
         let known = evidence.known_rows();
-        let along = Warmth::new(&cholesky.whiten(&evidence.heating()), &white);
+        let along = Warmth::new(&cholesky.whiten(&heating), &white);
+        let parting = Warmth::new(&cholesky.whiten(&parting), &white);
         let square = dot(&white, &white);
         let mut isolation = Isolation {
             scores: [0.0; CAUSES],
@@ -62,7 +82,8 @@ impl Isolation {
                 along.square_at_any(square, healthy, expected),
                 known,
             ),
-            heating: along.implied(healthy, expected),
+            heating: along.implied(Heating::any(healthy).deviation, expected),
+            apart: parting.implied(MOST_APART, apart),
         };
         let mut longest = 0.0_f32;
         let places = isolation.scores.iter_mut().zip(&mut isolation.sizes);
@@ -194,11 +215,10 @@ impl Warmth {
     }
 
     /// Mean of the rise given the window and what was known; the deviation that the window alone would leave of any.
-    fn implied(&self, healthy: &Healthy, expected: Heating) -> Heating {
+    fn implied(&self, any: f32, expected: Heating) -> Heating {
         let variance = expected.deviation * expected.deviation;
         // Sherman and Morrison: what the direction tells without heating's own share of the covariance.
         let own = self.information / (1.0 - variance * self.information).max(LEAST_INFORMATION);
-        let any = Heating::any(healthy).deviation;
         Heating {
             rise: expected.rise + variance * self.along,
             deviation: any / libm::sqrtf(1.0 + any * any * own),

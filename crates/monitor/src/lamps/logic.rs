@@ -363,6 +363,7 @@ mod tests {
             significance,
             at_any_temperature: significance,
             heating: crate::Heating::default(),
+            apart: Default::default(),
         }
     }
 

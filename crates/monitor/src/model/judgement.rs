@@ -38,7 +38,8 @@ impl Monitor {
             report.not_judged = report.not_judged.or(Some(NotJudged::Transient));
         } else if noisy {
             report.not_judged = report.not_judged.or(Some(NotJudged::Noise));
-        } else if window.invalid_samples == 0 {
+        } else if window.invalid_samples == 0 && !window.clipped.any() {
+            // Clipped currents imply no speed: those of a start or a stall are cut where they are largest.
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
         }
     }

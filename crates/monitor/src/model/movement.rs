@@ -14,6 +14,9 @@ use crate::window::{CycleNoise, RateNoise, Rates, Window};
 const LEAST_RUNNING: f32 = 0.5;
 /// A window counts as steady when what is left of the derivative terms stays below this share of the threshold.
 const STEADY_SHARE: f32 = 0.25;
+/// Thresholds of r1 and r2 beyond which a window's steadiness is judged no more leniently: a constant field current or the
+/// voltage frame makes them tens of per cent wide, and the evidence of a calibrated motor, which knows neither, stays as sharp.
+const WIDEST: [f32; 2] = [0.02, 0.05];
 /// Share of the derivative terms that stays in doubt: parameters and inertia are only roughly known.
 pub(crate) const DERIVATIVE_DOUBT: f32 = 0.25;
 /// A step in the middle of five cycles lies 0.4 to 0.5 of itself off the straight line.
@@ -53,10 +56,7 @@ impl Monitor {
         let doubt = self.doubt(rehearsal, window, &window.rates)?;
         let beyond = window.rates.beyond(&self.noise_of_rates(window, &noise));
         let [doubt_1, doubt_2, ..] = self.doubt(rehearsal, window, &beyond)?;
-        let [r1, r2, ..] = self
-            .config
-            .thresholds
-            .map(|threshold| STEADY_SHARE * threshold);
+        let [r1, r2] = self.steady_within();
         let [bend_1, bend_2] = self.bend(window, &noise, &point);
         let is_steady = doubt_1 < r1 && doubt_2 < r2 && bend_1 < r1 && bend_2 < r2;
         Some(Movement {
@@ -64,6 +64,13 @@ impl Monitor {
             is_steady,
             is_plugged: self.is_plugged(rehearsal, window),
         })
+    }
+
+    /// What may be left of the derivative terms in r1 and r2 of a steady window.
+    fn steady_within(&self) -> [f32; 2] {
+        let [widest_1, widest_2] = WIDEST;
+        let [r1, r2, ..] = self.config.thresholds;
+        [r1.min(widest_1), r2.min(widest_2)].map(|threshold| STEADY_SHARE * threshold)
     }
 
     /// Standard deviation of a cycle's speed by the encoder's counts: one of them more or less in a cycle, evenly spread,

@@ -175,6 +175,17 @@ fn a_dead_channel_and_a_false_speed_are_sensors() {
     assert_eq!(report.sensor, Some(SensorFinding::VoltagesMissing));
 }
 
+/// A motor that runs up from a stall draws currents beyond full scale: what is left of them implies any speed.
+#[test]
+fn clipped_currents_contradict_no_speed() {
+    let report = changed(|_, s| {
+        s.speed = SpeedSample::RadPerSecond(0.0);
+        s.clipped.mark_current(1);
+    });
+    assert_eq!(report.not_judged, Some(NotJudged::Clipped));
+    assert_eq!((report.sensor, report.lamps.fault), (None, Lamp::Off));
+}
+
 /// (36) row 2: with 0.015 kg m2 on a scale of 0.065 N m s * 314/2 rad/s the threshold of 5 % is 34 rad/s2. A quarter of
 /// what is carried along stays in doubt, and a quarter of the threshold may.
 #[test]

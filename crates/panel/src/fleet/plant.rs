@@ -82,6 +82,7 @@ pub struct Plant {
     pub(super) people: People,
     pub(super) settings: Settings,
     pub(super) refused: Counters,
+    pub(super) slow: Slow,
     wall: Mutex<Arc<Wall>>,
     /// Why the store cannot be read now; empty: it can.
     trouble: Mutex<String>,
@@ -95,6 +96,17 @@ pub(super) struct Counters {
     pub no_token: AtomicU64,
     pub wrong_role: AtomicU64,
     pub foreign: AtomicU64,
+}
+
+/// Counters of pages that do not read what they are sent.
+#[derive(Debug, Default)]
+pub(super) struct Slow {
+    /// Times that a page which had fallen behind got the whole wall in the place of what it missed.
+    pub behind: AtomicU64,
+    /// Changes that it was not sent because of that.
+    pub skipped: AtomicU64,
+    /// Streams that ended while their page had not read for some seconds.
+    pub cut: AtomicU64,
 }
 
 impl Counters {
@@ -120,6 +132,7 @@ impl Plant {
             people,
             settings,
             refused: Counters::default(),
+            slow: Slow::default(),
             wall: Mutex::default(),
             trouble: Mutex::default(),
             news: broadcast::Sender::new(BEHIND),
@@ -187,7 +200,7 @@ impl Plant {
     }
 
     /// Reads the store, keeps the wall and tells what is different.
-    fn look(&self) -> Result<(), StoreError> {
+    pub(super) fn look(&self) -> Result<(), StoreError> {
         let motors = self.reader.motors()?;
         let alarms = self.reader.alarms_not_normal()?;
         let now = wall(&motors, &alarms, now_ms(), self.settings.stale_ms);

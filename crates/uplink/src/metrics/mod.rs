@@ -6,5 +6,5 @@ mod router;
 mod text;
 
 pub use config::MetricsConfig;
-pub use render::{Output, Plant, STALE_MS, render};
+pub use render::{Output, PageState, Plant, STALE_MS, render};
 pub use router::{Source, router, run};

@@ -22,6 +22,23 @@ pub struct Output {
     pub lag_s: f64,
 }
 
+/// What the page of a plant counts since it was started.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PageState {
+    /// Requests without a token, or with one that is not known.
+    pub no_token: u64,
+    /// Requests of a role that may not.
+    pub wrong_role: u64,
+    /// Requests of another site through a visitor's browser, or under a foreign name.
+    pub foreign: u64,
+    /// Times that a page which had fallen behind got the whole wall in the place of what it missed.
+    pub behind: u64,
+    /// Changes that such pages were not sent.
+    pub skipped: u64,
+    /// Streams that ended while their page had not read for some seconds.
+    pub cut: u64,
+}
+
 /// What is rendered.
 #[derive(Clone, Debug, Default)]
 pub struct Plant<'p> {
@@ -35,6 +52,8 @@ pub struct Plant<'p> {
     pub mqtt: Option<&'p MqttState>,
     /// The Modbus server.
     pub modbus: Option<&'p ModbusState>,
+    /// The page, on its own listener.
+    pub page: Option<&'p PageState>,
     /// Now, Unix ms.
     pub now_ms: i64,
 }
@@ -50,6 +69,9 @@ pub fn render(plant: &Plant<'_>) -> String {
     }
     if let Some(state) = plant.modbus {
         modbus(state, &mut text);
+    }
+    if let Some(state) = plant.page {
+        page(state, &mut text);
     }
     text.finish()
 }
@@ -339,5 +361,37 @@ fn modbus(state: &ModbusState, text: &mut Text) {
         "drivemon_modbus_slow_total",
         "Lines closed because a master was too slow.",
         state.slow,
+    );
+}
+
+fn page(state: &PageState, text: &mut Text) {
+    let refused = [
+        ("no_token", state.no_token),
+        ("wrong_role", state.wrong_role),
+        ("foreign", state.foreign),
+    ];
+    let refused = refused.map(|(why, count)| (labels(&[("why", why)]), count as f64));
+    text.family(
+        "drivemon_page_refused_total",
+        Kind::Counter,
+        "Requests that the page refused.",
+        refused.to_vec(),
+    );
+    let mut counter =
+        |name, help, value: u64| text.family(name, Kind::Counter, help, one(value as f64));
+    counter(
+        "drivemon_page_behind_total",
+        "Times that a page which reads too slowly got the whole wall in the place of what it missed.",
+        state.behind,
+    );
+    counter(
+        "drivemon_page_skipped_total",
+        "Changes that such pages were not sent; the store has them.",
+        state.skipped,
+    );
+    counter(
+        "drivemon_page_cut_total",
+        "Streams that ended while their page had not read for 5 s.",
+        state.cut,
     );
 }

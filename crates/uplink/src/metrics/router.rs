@@ -83,6 +83,7 @@ impl Source {
             outputs: &outputs,
             mqtt: mqtt.as_ref(),
             modbus: modbus.as_ref(),
+            page: None,
             now_ms,
         }))
     }

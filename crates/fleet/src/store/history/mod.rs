@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 use rusqlite::{Connection, OptionalExtension, Row, Transaction, params};
 
 pub use point::{Trend, TrendPoint, Values};
-pub(super) use trend::trend;
+pub(super) use trend::{first_ms, trend};
 
 use super::{StoreError, seconds};
 use crate::entry::Second;

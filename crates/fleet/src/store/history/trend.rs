@@ -143,3 +143,28 @@ pub(in crate::store) fn trend(
     })?;
     Ok(points.trend())
 }
+
+/// When the oldest second that is still told of a motor was, Unix ms: to the second where seconds are kept, to the minute or the hour
+/// where they have been thinned.
+pub(in crate::store) fn first_ms(
+    connection: &Connection,
+    motor: i64,
+) -> Result<Option<i64>, StoreError> {
+    let tx = connection.unchecked_transaction()?;
+    let one = |text: &str| -> rusqlite::Result<Option<i64>> {
+        tx.prepare_cached(text)?
+            .query_row([motor], |row| row.get(0))
+    };
+    let hour = one("SELECT min(hour) FROM hour WHERE motor = ?1")?.map(|hour| hour * HOUR_MS);
+    let seconds = one("SELECT min(from_ms) FROM block WHERE motor = ?1 AND level = 0")?;
+    let minutes = one("SELECT min(from_ms) FROM block WHERE motor = ?1 AND level = 1")?;
+    let sharper = seconds.into_iter().chain(minutes).min();
+    // What is sharper stands within the oldest hour, or the oldest hour is all that is left of its time.
+    let within = |from_ms: &i64| hour.is_none_or(|hour| *from_ms < hour + HOUR_MS);
+    let mut first = sharper.filter(within).or(hour);
+    super::waiting_seconds(&tx, motor, |second| {
+        first = Some(first.map_or(second.time_ms, |first| first.min(second.time_ms)));
+        Ok(())
+    })?;
+    Ok(first)
+}

@@ -26,8 +26,11 @@ impl Watch {
     fn look(&mut self, plant: &Plant) -> Isolation {
         let healthy = statistics();
         self.temperature.pass(CYCLE_S, 1.0);
-        let expected = self.temperature.expected(&healthy);
-        let isolation = Isolation::of(&evidence(plant), &healthy, expected);
+        let expected = [
+            self.temperature.expected(&healthy),
+            self.temperature.expected_apart(),
+        ];
+        let isolation = Isolation::of_two(&evidence(plant), &healthy, expected);
         self.temperature.follow(&isolation, &healthy, self.fault);
         self.fault = isolation.significance > healthy.significance;
         isolation
@@ -53,6 +56,40 @@ fn a_rotor_resistance_that_jumps_is_a_fault_and_one_that_was_there_may_be_heat()
     let mut watch = Watch::default();
     watch.look_for(1.0, &Plant::healthy());
     assert!(watch.look(&changed).significance > limit);
+}
+
+/// The cage cools by 70 K in five minutes while the winding stays as it is: a full load that goes. What then jumps is a fault.
+#[test]
+fn a_cage_that_cools_beside_a_warm_winding_lights_nothing_and_hides_no_jump() {
+    let mut watch = Watch::default();
+    watch.look_for(1.0, &Plant::healthy());
+    let limit = statistics().significance;
+    for second in 1..=300 {
+        let cooled = resistances(0.0, -0.28 * f64::from(second) / 300.0);
+        let longest = watch.look_for(1.0, &cooled).significance;
+        assert!(longest < limit, "{longest} after {second} s");
+    }
+    let apart = watch.temperature.expected_apart();
+    assert!((apart.rise + 0.28).abs() < 0.12, "{apart:?}");
+    let (end, healthy) = (evidence(&resistances(0.0, -0.28)), statistics());
+    let alike = Isolation::of(&end, &healthy, watch.temperature.expected(&healthy));
+    assert!(alike.significance > limit, "{alike:?}");
+    for jumped in [resistances(0.3, -0.28), resistances(0.0, 0.0)] {
+        let mut watch = Watch {
+            temperature: watch.temperature,
+            fault: false,
+        };
+        let jump = watch.look(&jumped).significance;
+        assert!(jump > limit, "{jump}");
+    }
+}
+
+/// Without the time that it takes a cage to cool, the same is a fault.
+#[test]
+fn a_cage_cooler_than_its_winding_from_one_window_to_the_next_is_a_fault() {
+    let mut watch = Watch::default();
+    watch.look_for(1.0, &Plant::healthy());
+    assert!(watch.look(&resistances(0.0, -0.2)).significance > statistics().significance);
 }
 
 /// An hour at full load does not turn a fault into heat.
@@ -136,6 +173,7 @@ fn judged(rise: f32, deviation: f32, significance: f32, at_any_temperature: f32)
         significance,
         at_any_temperature,
         heating: Heating { rise, deviation },
+        apart: Heating::default(),
     }
 }
 

@@ -213,7 +213,7 @@ fn the_implied_rise_is_the_mean_of_what_was_known_and_what_is_seen() {
         );
         let (before, seen) = (deviation.powi(-2), row.d * row.d);
         let mean = (before * rise + seen * row.x / row.d) / (before + seen);
-        let implied = row.warmth().implied(&healthy, row.expected);
+        let implied = row.warmth().implied(any as f32, row.expected);
         assert!(
             (f64::from(implied.rise) - mean).abs() < 1e-5,
             "{implied:?} {mean}"

@@ -187,12 +187,17 @@ fn a_month_counts_its_alarms_their_people_and_what_is_stored() {
         (&plain["alarms"], &plain["judged_percent"]),
         (&1.into(), &80.0.into())
     );
-    // Of the nine days of the month that had passed.
+    // Of the five days that had passed since its first second.
     let stored = plain["availability_percent"].as_f64().expect("a number");
     assert!(
-        (stored - 100.0 * 600.0 / (9.0 * 86_400.0)).abs() < 1e-6,
+        (stored - 100.0 * 600.0 / (5.0 * 86_400.0 - 1.0)).abs() < 1e-6,
         "{stored}"
     );
+    // The others never had a second: they take nothing from the mean.
+    assert_eq!(month["availability_percent"].as_f64(), Some(stored));
+    let before = month["motors"].as_array().expect("a list").iter();
+    let unseen = before.filter(|one| one["availability_percent"].is_null());
+    assert_eq!(unseen.count(), 3);
     assert_eq!(month["causes"][0]["marked_false"], 1);
     let refused = page_at(reader.path(), "October", now_ms);
     assert!(refused.is_err_and(|why| why.contains("write one as 2026-10")));

@@ -35,7 +35,7 @@ pub struct Month {
     pub from_ms: i64,
     /// End of what is counted, Unix ms.
     pub to_ms: i64,
-    /// Seconds that are stored of all that passed, percent, mean of the motors.
+    /// Seconds that are stored of all that passed, percent, mean of the motors that were there.
     pub availability_percent: Option<f64>,
     /// Motors, those whose residuals moved most first.
     pub motors: Vec<OfMotor>,
@@ -56,8 +56,8 @@ pub struct OfMotor {
     pub title: String,
     /// Where it is.
     pub place: String,
-    /// Seconds that are stored of all that passed, percent.
-    pub availability_percent: f64,
+    /// Seconds that are stored of all that passed in the month since the motor's first one, percent; `null`: it had none yet.
+    pub availability_percent: Option<f64>,
     /// Windows that were judged, percent of all; `null`: no window.
     pub judged_percent: Option<f64>,
     /// Alarms that rose.
@@ -129,16 +129,17 @@ fn count(
         let moved = |motor: &OfMotor| motor.moved_percent.unwrap_or(-1.0);
         moved(b).total_cmp(&moved(a)).then(a.id.cmp(&b.id))
     });
-    let mean = motors
+    let there: Vec<f64> = motors
         .iter()
-        .map(|motor| motor.availability_percent)
-        .sum::<f64>();
+        .filter_map(|motor| motor.availability_percent)
+        .collect();
+    let mean = there.iter().sum::<f64>() / there.len() as f64;
     Ok(Month {
         month: month.to_string(),
         now_ms,
         from_ms,
         to_ms,
-        availability_percent: (!motors.is_empty()).then(|| mean / motors.len() as f64),
+        availability_percent: (!there.is_empty()).then_some(mean),
         causes: alarms::by_cause(&happened),
         alarms: happened,
         motors,
@@ -161,7 +162,10 @@ fn of_motor(
             .map(|point| u64::from(of(point)))
             .sum::<u64>() as f64
     };
-    let passed = (to_ms - from_ms) as f64 / 1e3;
+    // Nobody has lost what was before a motor's first second.
+    let since_ms = reader.first_ms(&info.id)?.map(|first| first.max(from_ms));
+    let passed = since_ms.map(|since| (to_ms - since) as f64 / 1e3);
+    let stored = |passed: f64| 100.0 * (sum(&|point| point.seconds) / passed.max(1.0)).min(1.0);
     let windows = sum(&|point| point.windows);
     let id = info.id.to_string();
     let own = || {
@@ -182,7 +186,7 @@ fn of_motor(
     Ok(OfMotor {
         title: info.title.clone(),
         place: info.place.clone(),
-        availability_percent: 100.0 * (sum(&|point| point.seconds) / passed.max(1.0)).min(1.0),
+        availability_percent: passed.filter(|passed| *passed > 0.0).map(stored),
         judged_percent: (windows > 0.0).then(|| 100.0 * sum(&|point| point.judged) / windows),
         alarms: own().count() as u32,
         marked_false: own().filter(|alarm| alarm.marked_false).count() as u32,
