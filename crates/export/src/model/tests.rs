@@ -367,7 +367,11 @@ fn an_effect_of_whole_signals_is_refused_unless_it_is_left_out() {
         .iter()
         .filter(|e| OF_WHOLE_SIGNALS.contains(&e.descriptor().name))
     {
-        let name = effect.descriptor().name;
+        let (name, form) = (effect.descriptor().name, effect.descriptor().form);
+        let told = match form {
+            "" => name.to_owned(),
+            form => format!("{name} ({form})"),
+        };
         let mut file = motor_file();
         file.effects = vec![to_entry(&EffectConfig::typical(*effect, &rated))];
         let refused = model_of(&file, "test", &[]).expect_err(name).to_string();
@@ -375,7 +379,7 @@ fn an_effect_of_whole_signals_is_refused_unless_it_is_left_out() {
         let model = model_of(&file, "test", &[name.to_owned()]).expect("a model");
         assert_eq!(
             model.remarks,
-            [format!("In the motor file, but left out: {name}")]
+            [format!("In the motor file, but left out: {told}")]
         );
         let wrong = model_of(&file, "test", &["windage".to_owned()]).expect_err("not there");
         assert!(
