@@ -204,15 +204,6 @@ impl Evidence {
         }
     }
 
-    /// Heating moves both resistances by the same ratio.
-    pub fn heating(&self) -> Rows {
-        let mut sum = self.direction(Cause::StatorResistance);
-        for (x, y) in sum.iter_mut().zip(self.direction(Cause::RotorResistance)) {
-            *x += y;
-        }
-        sum
-    }
-
     #[inline(never)]
     fn all(&self, positive: &Positive) -> Rows {
         let no = Complex32::ZERO;
@@ -247,27 +238,34 @@ impl Evidence {
         rows
     }
 
-    /// A cage that warms more than its winding: what its resistance has risen by beyond the winding's, half up and half down.
-    pub(crate) fn parting(&self) -> Rows {
-        let mut half = self.direction(Cause::RotorResistance);
-        for (x, y) in half.iter_mut().zip(self.direction(Cause::StatorResistance)) {
-            *x = 0.5 * (*x - y);
+    /// Where the two resistances move the evidence.
+    pub(crate) fn resistances(&self) -> Resistances {
+        Resistances {
+            stator: self.direction(Cause::StatorResistance),
+            rotor: self.direction(Cause::RotorResistance),
         }
-        half
     }
 
-    /// Departure from the healthy motor whose resistances have risen by this share.
-    pub(crate) fn departure_at(&self, rise: f32) -> Rows {
+    /// Departure from the healthy motor whose resistances have risen by the first share, the cage's by the second beyond the
+    /// winding's.
+    pub(crate) fn departure_at(&self, along: &Resistances, [rise, apart]: [f32; 2]) -> Rows {
         let mut departure = self.departure;
-        for (x, per_rise) in departure.iter_mut().zip(self.heating()) {
-            *x -= (rise - self.rise) * per_rise;
+        let moved = along.heating().into_iter().zip(along.parting());
+        for (x, (per_rise, per_share)) in departure.iter_mut().zip(moved) {
+            *x -= (rise - self.rise) * per_rise + apart * per_share;
         }
         departure
     }
 
-    /// Covariance of the healthy motor's departures, its temperature known up to `heating`.
+    /// Covariance of the healthy motor's departures. The rise of its resistances is known up to the first deviation, how far they
+    /// are apart up to the second.
     #[inline(never)]
-    pub(crate) fn covariance(&self, healthy: &Healthy, heating: f32) -> Covariance<ROWS> {
+    pub(crate) fn covariance(
+        &self,
+        healthy: &Healthy,
+        along: &Resistances,
+        [heating, parting]: [f32; 2],
+    ) -> Covariance<ROWS> {
         let mut own = self.scatter;
         for (scatter, known) in own.iter_mut().zip(&self.known) {
             *scatter = if *known { *scatter } else { 1.0 };
@@ -275,17 +273,18 @@ impl Evidence {
         let mut covariance = Covariance::of_independent(&own);
         let u = &healthy.uncertainty;
         let of_all = [
-            (Cause::StatorResistance, u.stator_resistance),
-            (Cause::RotorResistance, u.rotor_resistance),
             (Cause::MagnetizingInductance, u.magnetizing_inductance),
             (Cause::Leakage, u.leakage),
             (Cause::Friction, u.friction),
             (Cause::SpeedGain, u.speed),
         ];
+        covariance.add(&along.stator, u.stator_resistance);
+        covariance.add(&along.rotor, u.rotor_resistance);
         for (cause, deviation) in of_all {
             covariance.add(&self.direction(cause), deviation);
         }
-        covariance.add(&self.heating(), heating);
+        covariance.add(&along.heating(), heating);
+        covariance.add(&along.parting(), parting);
         for phase in Phase::ALL {
             covariance.add(
                 &self.direction(Cause::CurrentChannel(phase)),
@@ -306,6 +305,39 @@ impl Evidence {
         for turn in [Complex32::ONE, Complex32::I] {
             let rows = assemble(&[0.0; 3], self.negative.drop * turn, [no, no]);
             covariance.add(&self.masked(rows), deviation);
+        }
+    }
+}
+
+/// Where the two resistances move the evidence, per relative change; rows as they are or whitened.
+pub(crate) struct Resistances {
+    /// Direction of the stator resistance.
+    pub stator: Rows,
+    /// Direction of the rotor resistance.
+    pub rotor: Rows,
+}
+
+impl Resistances {
+    /// Heating moves both by the same ratio.
+    pub fn heating(&self) -> Rows {
+        let mut sum = self.stator;
+        sum.iter_mut().zip(&self.rotor).for_each(|(x, y)| *x += y);
+        sum
+    }
+
+    /// A cage that warms more than its winding: what its resistance has risen by beyond the winding's, half up and half down.
+    pub fn parting(&self) -> Rows {
+        let mut half = self.rotor;
+        let stator = half.iter_mut().zip(&self.stator);
+        stator.for_each(|(x, y)| *x = 0.5 * (*x - y));
+        half
+    }
+
+    /// The same rows, each direction passed through `f`.
+    pub fn map(&self, f: impl Fn(&Rows) -> Rows) -> Self {
+        Resistances {
+            stator: f(&self.stator),
+            rotor: f(&self.rotor),
         }
     }
 }

@@ -60,18 +60,16 @@ impl Isolation {
         healthy: &Healthy,
         [expected, apart]: [Heating; 2],
     ) -> Self {
-        let (heating, parting) = (evidence.heating(), evidence.parting());
-        let mut covariance = evidence.covariance(healthy, expected.deviation);
-        covariance.add(&parting, apart.deviation);
+        let resistances = evidence.resistances();
+        let deviations = [expected.deviation, apart.deviation];
+        let covariance = evidence.covariance(healthy, &resistances, deviations);
         let cholesky = covariance.factorise();
-        let mut departure = evidence.departure_at(expected.rise);
-        for (x, per_share) in departure.iter_mut().zip(&parting) {
-            *x -= apart.rise * per_share;
-        }
+        let departure = evidence.departure_at(&resistances, [expected.rise, apart.rise]);
         let white = cholesky.whiten(&departure);
         let known = evidence.known_rows();
-        let along = Warmth::new(&cholesky.whiten(&heating), &white);
-        let parting = Warmth::new(&cholesky.whiten(&parting), &white);
+        let resistances = resistances.map(|direction| cholesky.whiten(direction));
+        let along = Warmth::new(&resistances.heating(), &white);
+        let parting = Warmth::new(&resistances.parting(), &white);
         let square = dot(&white, &white);
         let mut isolation = Isolation {
             scores: [0.0; CAUSES],
@@ -88,7 +86,12 @@ impl Isolation {
         let mut longest = 0.0_f32;
         let places = isolation.scores.iter_mut().zip(&mut isolation.sizes);
         for ((score, size), cause) in places.zip(ALL_CAUSES) {
-            let fit = Fit::along(&cholesky.whiten(&evidence.direction(cause)), &white);
+            let direction = match cause {
+                Cause::StatorResistance => resistances.stator,
+                Cause::RotorResistance => resistances.rotor,
+                other => cholesky.whiten(&evidence.direction(other)),
+            };
+            let fit = Fit::along(&direction, &white);
             *size = fit.size;
             *score = fit.score(cause, square, known);
             if !fit.is_impossible(cause) {

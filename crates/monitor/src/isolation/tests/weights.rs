@@ -252,7 +252,11 @@ fn significance_is_the_longer_of_both() {
     let evidence = evidence(&plant);
     let isolation = Isolation::of(&evidence, &statistics(), Heating::any(&statistics()));
     let white = evidence
-        .covariance(&statistics(), statistics().uncertainty.heating)
+        .covariance(
+            &statistics(),
+            &evidence.resistances(),
+            [statistics().uncertainty.heating, 0.0],
+        )
         .factorise()
         .whiten(&evidence.departure);
     let length = libm::sqrtf(dot(&white, &white));
