@@ -96,11 +96,10 @@ fn a_mean_of_the_speed_drives_the_motor_nearly_as_the_true_one_does() {
     let reading: Vec<f64> = (0..free.omega_mech.len()).map(mean).collect();
     let imposed = |plant: &Plant| run(plant, SpeedSource::Imposed(&reading), steady());
     let (late, undone) = (imposed(&of("", DELAY)), imposed(&of("mean", DELAY)));
-    // Of a start of 60 A. What is turned back holds 1.39 of the 1.57 that a mean of half a turn takes off the ripple at the
-    // supply's frequency.
+    // A mean of half a turn takes the ripple at the supply's frequency down to 1/1.57; turned back it is 1.39 times that, so
+    // 0.11 of the ripple is missing and not 0.36: a third, with a tenth more for what is not of that frequency.
     let (late, undone) = (apart(&free, &late, 0), apart(&free, &undone, 0));
-    println!("{late} {undone}");
-    assert!(undone < 0.5 * late, "{undone} {late}");
+    assert!(undone < 0.4 * late, "{undone} {late}");
 }
 
 /// The end of a stretch does not see the beginning of the next one.

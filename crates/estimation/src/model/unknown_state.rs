@@ -206,6 +206,7 @@ mod tests {
             left(&mut case, &plant, elsewhere)
         };
         let (far, near) = (begun(0.1), begun(0.01));
+        // A tenth of the flux and a hundredth of the speed: products of both, some of them.
         assert!(far < 0.05, "{far}");
         assert!(near < 0.15 * far, "{near} {far}");
     }

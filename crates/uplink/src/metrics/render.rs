@@ -300,29 +300,27 @@ fn mqtt(state: &MqttState, text: &mut Text) {
         "Whether data flow to the broker; 0 while connected: the primary host is away.",
         flag(state.online),
     );
-    let mut counter =
-        |name, help, value: u64| text.family(name, Kind::Counter, help, one(value as f64));
-    counter(
+    text.counter(
         "drivemon_mqtt_sessions_total",
         "Sessions with the broker.",
         state.sessions,
     );
-    counter(
+    text.counter(
         "drivemon_mqtt_births_total",
         "Times that all births were told.",
         state.births,
     );
-    counter(
+    text.counter(
         "drivemon_mqtt_messages_total",
         "Messages to the broker.",
         state.messages,
     );
-    counter(
+    text.counter(
         "drivemon_mqtt_refused_commands_total",
         "Commands that were refused.",
         state.refused_commands,
     );
-    counter(
+    text.counter(
         "drivemon_mqtt_foreign_births_total",
         "Births under this node's name that somebody else said.",
         state.foreign_births,
@@ -330,34 +328,32 @@ fn mqtt(state: &MqttState, text: &mut Text) {
 }
 
 fn modbus(state: &ModbusState, text: &mut Text) {
-    let mut counter =
-        |name, help, value: u64| text.family(name, Kind::Counter, help, one(value as f64));
-    counter(
+    text.counter(
         "drivemon_modbus_connections_total",
         "Masters that connected.",
         state.connections,
     );
-    counter(
+    text.counter(
         "drivemon_modbus_refused_connections_total",
         "Masters that were turned away.",
         state.refused_connections,
     );
-    counter(
+    text.counter(
         "drivemon_modbus_answers_total",
         "Requests that were answered with registers.",
         state.answered,
     );
-    counter(
+    text.counter(
         "drivemon_modbus_exceptions_total",
         "Requests that were answered with an exception.",
         state.exceptions,
     );
-    counter(
+    text.counter(
         "drivemon_modbus_broken_total",
         "Lines closed because what came was no Modbus TCP.",
         state.broken,
     );
-    counter(
+    text.counter(
         "drivemon_modbus_slow_total",
         "Lines closed because a master was too slow.",
         state.slow,
@@ -377,19 +373,17 @@ fn page(state: &PageState, text: &mut Text) {
         "Requests that the page refused.",
         refused.to_vec(),
     );
-    let mut counter =
-        |name, help, value: u64| text.family(name, Kind::Counter, help, one(value as f64));
-    counter(
+    text.counter(
         "drivemon_page_behind_total",
         "Times that a page which reads too slowly got the whole wall in the place of what it missed.",
         state.behind,
     );
-    counter(
+    text.counter(
         "drivemon_page_skipped_total",
         "Changes that such pages were not sent; the store has them.",
         state.skipped,
     );
-    counter(
+    text.counter(
         "drivemon_page_cut_total",
         "Streams that ended while their page had not read for 5 s.",
         state.cut,

@@ -14,6 +14,11 @@ pub(super) enum Kind {
 pub(super) struct Text(String);
 
 impl Text {
+    /// Writes a counter without labels.
+    pub fn counter(&mut self, name: &str, help: &str, value: u64) {
+        self.family(name, Kind::Counter, help, [(String::new(), value as f64)]);
+    }
+
     /// Writes a family; without samples nothing. A sample is its labels and its value; values that are no numbers are left out.
     pub fn family(
         &mut self,

@@ -70,7 +70,8 @@ fn a_cage_that_cools_beside_a_warm_winding_lights_nothing_and_hides_no_jump() {
         assert!(longest < limit, "{longest} after {second} s");
     }
     let apart = watch.temperature.expected_apart();
-    assert!((apart.rise + 0.28).abs() < 0.12, "{apart:?}");
+    // 70 K are more than twice the 25 K by which the two are believed to part: followed to there and no farther.
+    assert!((apart.rise + 0.2).abs() < 1e-6, "{apart:?}");
     let (end, healthy) = (evidence(&resistances(0.0, -0.28)), statistics());
     let alike = Isolation::of(&end, &healthy, watch.temperature.expected(&healthy));
     assert!(alike.significance > limit, "{alike:?}");
