@@ -81,6 +81,49 @@ fn a_late_speed_drives_the_motor_as_the_true_one_does() {
     );
 }
 
+/// The equivalent circuit at a constant slip, whatever the inertia: torques move no shaft whose speed is given.
+#[test]
+fn at_an_imposed_speed_the_current_is_that_of_the_circuit() {
+    let mut light = plant();
+    light.mechanics.inertia = 1e-3;
+    let omega_mech = 0.95 * OMEGA / light.mechanics.n_p;
+    let speed = vec![omega_mech; 8001];
+    let shown = run(
+        &light,
+        SpeedSource::Imposed(&speed),
+        Timeline::constant(OMEGA),
+    );
+    let p = &light.motor;
+    let j = |l: f64| Complex64::new(0.0, OMEGA * l);
+    let rotor = p.r_r / 0.05 + j(p.l_lr);
+    let circuit = p.r_s + j(p.l_ls) + 1.0 / (1.0 / rotor + 1.0 / j(p.l_m));
+    // The supply is held between samples: on the average it is half a sample late.
+    let held = Complex64::from_polar(1.0, -0.5 * OMEGA * T_SAMPLE);
+    for k in [5000, 6543, 8000] {
+        let u = Complex64::from_polar(326.6, OMEGA * T_SAMPLE * k as f64) * held;
+        let (expected, got) = ((u / circuit).re, shown.i_s_abc[k][0]);
+        let size = 326.6 / circuit.norm();
+        // The held voltage is off by half a step's turn, 0.016 of it, at the sampling rate, where the leakage has 200 times
+        // its reactance at the supply's frequency: less than 1e-3 of the current.
+        assert!((got - expected).abs() < 1e-3 * size, "{got} {expected}");
+        assert_eq!(shown.omega_mech[k], omega_mech);
+    }
+}
+
+/// The speed of a free run, given to the same motor, makes the currents of that run, in the start too.
+#[test]
+fn the_speed_of_a_run_makes_the_currents_of_that_run() {
+    let steady = || Timeline::constant(OMEGA);
+    let free = run(&plant(), SpeedSource::Free, steady());
+    let given = run(&plant(), SpeedSource::Imposed(&free.omega_mech), steady());
+    // Of a start of 60 A.
+    assert!(
+        apart(&free, &given, 0) < 1e-3,
+        "{}",
+        apart(&free, &given, 0)
+    );
+}
+
 /// Counts of an encoder are a mean: late, and with little of the ripple of a start.
 #[test]
 fn a_mean_of_the_speed_drives_the_motor_nearly_as_the_true_one_does() {

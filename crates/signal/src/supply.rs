@@ -11,8 +11,9 @@ use steps::{largest, segments};
 const COMMON: [f64; 4] = [-1.0, 0.0, -5.0, 7.0];
 /// Highest order that is looked for where the common ones do not describe a supply ...
 const HIGHEST: i32 = 49;
-/// ... up to this share of half the sampling rate: beyond it the sampling itself makes others of them ...
-const BELOW_NYQUIST: f64 = 0.97;
+/// ... if it turns through a sampled recording this many times more or less often than all lower orders do: an order
+/// above half the sampling rate that looks like no lower one is still told by its samples ...
+const RESOLVED: f64 = 4.0;
 /// ... and its least size in standard deviations of what noise shows.
 const SEEN: f64 = 6.0;
 /// Share of the largest voltage below which the supply counts as off.
@@ -117,13 +118,7 @@ impl Signal<'_> {
     }
 
     fn strong_in(&self, supply: &Supply) -> Vec<f64> {
-        let turned = supply.theta.last().zip(supply.theta.first());
-        let turned = turned.map_or(0.0, |(last, first)| (last - first).abs());
-        let per_sample = turned / self.raw.len() as f64;
-        let below = |order: &f64| order.abs() * per_sample < BELOW_NYQUIST * std::f64::consts::PI;
-        let others = (-HIGHEST..=HIGHEST).map(f64::from);
-        let others = others.filter(|order| *order != 1.0 && !COMMON.contains(order));
-        let others: Vec<f64> = others.filter(below).collect();
+        let others = other_orders(&supply.theta);
         let fundamental = supply.fundamental(&supply.cleaned(self.raw));
         let size = fundamental.iter().map(|u| u.norm_sqr()).sum::<f64>().sqrt();
         let found = supply.fit_harmonics(self.raw, &fundamental, &others);
@@ -384,6 +379,25 @@ impl Supply {
         let at = |(k, f): (usize, &Complex64)| f + self.harmonic_sum(k, f.norm());
         fundamental.iter().enumerate().map(at).collect()
     }
+}
+
+/// Orders beside the common ones that samples at these angles of the fundamental (rad) tell from every lower order.
+fn other_orders(theta: &[f64]) -> Vec<f64> {
+    let turned = theta.last().zip(theta.first());
+    let turned = turned.map_or(0.0, |(last, first)| (last - first).abs()) / std::f64::consts::TAU;
+    // Turns that samples show: whole turns between two samples are not seen.
+    let apart = |a: f64, b: f64| {
+        let (turns, samples) = ((a - b) * turned, theta.len() as f64);
+        (turns - samples * (turns / samples).round()).abs()
+    };
+    let mut told: Vec<f64> = COMMON.into_iter().chain([1.0]).collect();
+    let known = told.len();
+    for order in (2..=HIGHEST).flat_map(|k| [-k, k]).map(f64::from) {
+        if told.iter().all(|&lower| apart(order, lower) > RESOLVED) {
+            told.push(order);
+        }
+    }
+    told.split_off(known)
 }
 
 /// A series at `factor` times the rate, on straight lines between its samples.

@@ -136,6 +136,7 @@ impl Case {
         // Clarke's transform of three independent noises: sqrt(2/3) of one phase in each axis.
         let axis_noise = sigma_u * (2.0f64 / 3.0).sqrt();
         let supply = denoise(&raw, t_sample, axis_noise, rated.omega_sync);
+        check_between_samples(rec, &supply)?;
         let load = Load::new(rec)?;
         let speed = measured_speed(rec, t_sample);
         let finer = finer(rec, &supply);
@@ -391,6 +392,18 @@ fn finer(rec: &Recording, supply: &Supply) -> usize {
         // An even number: a step spans two input samples.
         false => 2 * (rec.t_sample() / (2.0 * FINE)).ceil() as usize,
     }
+}
+
+/// A slow recording needs a voltage that is known between its samples.
+fn check_between_samples(rec: &Recording, supply: &Supply) -> Result<(), Unsupported> {
+    let known = rec.metadata.voltage == VoltageKind::Hold || supply.denoised;
+    if known || rec.t_sample() <= LONGEST_SMOOTH {
+        return Ok(());
+    }
+    Err(Unsupported::new(
+        "fundamental and harmonics do not describe the voltage, so it is unknown between samples this far apart",
+        "record at 4 kHz or faster; where an inverter holds the voltage between samples, declare voltage = \"hold\"",
+    ))
 }
 
 /// Double steps while they stay below a quarter of a millisecond.

@@ -21,7 +21,7 @@ mod supply;
 
 pub use hooks::{Hooks, NoEffects, Terminal, Winding};
 pub use linear::Linear;
-pub use model::{Dynamic, Flow};
+pub use model::{Dynamic, Flow, Shaft};
 pub use settled::{Rotating, cycle_components};
 pub use state::{DynamicState, Extra};
 pub use supply::{Harmonic, clarke, phases};

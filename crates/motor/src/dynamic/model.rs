@@ -32,7 +32,17 @@ pub struct Dynamic<H = NoEffects> {
     mechanics: Mechanics<f64>,
     friction: f64,
     inv_inertia: f64,
+    shaft: Shaft,
     hooks: H,
+}
+
+/// What moves the shaft.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shaft {
+    /// The torques on it.
+    Free,
+    /// Whatever turns it at the speed of the state: torques do not accelerate it.
+    Imposed,
 }
 
 impl Dynamic<NoEffects> {
@@ -50,8 +60,15 @@ impl<H: Hooks> Dynamic<H> {
             mechanics: *mechanics,
             friction: mechanics.total_friction(),
             inv_inertia: 1.0 / mechanics.inertia,
+            shaft: Shaft::Free,
             hooks,
         }
+    }
+
+    /// The same motor with a shaft that something else moves.
+    #[must_use]
+    pub fn with_shaft(self, shaft: Shaft) -> Self {
+        Self { shaft, ..self }
     }
 
     /// The effects in force.
@@ -129,6 +146,9 @@ impl<H: Hooks> Dynamic<H> {
             extra: super::Extra::ZERO,
         };
         self.hooks.finish(moment, flow, state, &mut rate);
+        if self.shaft == Shaft::Imposed {
+            rate.omega_mech = 0.0;
+        }
         rate
     }
 

@@ -1,6 +1,6 @@
 //! A motor with effects, driven by measured signals.
 
-use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, cycle_components, phases};
+use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, Shaft, cycle_components, phases};
 use crate::effect::{
     Cut, EffectConfig, EffectStack, Hook, Inputs, MAX_FILE_STATES, Outputs, Rated, Timeline,
     extra_states,
@@ -246,8 +246,12 @@ impl<'a, H: Hooks> Ready<'a, H> {
         run: &'a Run<'a>,
         inputs: &'a Inputs,
     ) -> Self {
+        let shaft = match run.speed {
+            SpeedSource::Imposed(_) => Shaft::Imposed,
+            SpeedSource::Free | SpeedSource::Observed(..) => Shaft::Free,
+        };
         Self {
-            model,
+            model: model.with_shaft(shaft),
             start,
             restarts: restarts(plant, motor, run, inputs),
             run,
@@ -305,13 +309,24 @@ impl<'a, H: Hooks> Ready<'a, H> {
         let t = self.inputs.t_sample * k as f64;
         let (omega_mech, theta_mech) = (state.omega_mech, state.theta_mech);
         let i = match step < self.steps() {
-            true => advance(&self.model, state, self.run.between, self.inputs, k),
+            true => {
+                self.turn(state, k);
+                advance(&self.model, state, self.run.between, self.inputs, k)
+            }
             false => self.model.current(t, state, self.inputs.u_s[k]),
         };
         Shown {
             i_s_abc: phases(i),
             omega_mech,
             theta_mech: self.run.timeline.theta_at(t, theta_mech),
+        }
+    }
+
+    /// An imposed speed during the step from sample `k`: the mean of its ends, off by the square of the step.
+    #[inline(always)]
+    fn turn(&self, state: &mut DynamicState<H::Extra>, k: usize) {
+        if let SpeedSource::Imposed(omega) = self.run.speed {
+            state.omega_mech = 0.5 * (omega[k] + omega[k + self.run.between.stride()]);
         }
     }
 
