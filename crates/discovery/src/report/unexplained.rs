@@ -26,7 +26,10 @@ pub(crate) fn describe(
     let (channel, error) = worst_channel(case, &trial.fit.residual);
     let at = worst_place(study, trial);
     let lead = best_lead.as_ref().map_or_else(String::new, |name| {
-        format!(" The best lead, {name}, explains {share:.0} % of it.")
+        format!(
+            " The best lead, {name}, explains {:.0} % of it.",
+            share.min(100.0)
+        )
     });
     Unexplained {
         description: format!(

@@ -1,6 +1,6 @@
 //! Reports in a sentence.
 
-use crate::report::types::{BurstsReport, ExplainReport, LawReport, Verdict};
+use crate::report::types::{BurstsReport, ExplainReport, LawReport, Unexplained, Verdict};
 
 /// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
 const FAR_BELOW: f64 = 0.3;
@@ -47,21 +47,37 @@ fn finding(report: &ExplainReport) -> String {
         Verdict::Implausible => {
             format!("Only parameters that no such motor has explain the recording.{moved}")
         }
-        Verdict::Unknown => report.unexplained.as_ref().map_or_else(String::new, |u| {
-            let lead = report.laws.first().map_or_else(String::new, |law| {
-                format!(
-                    " Best lead: {} explains {:.0} % of the excess; a second recording with other loads and speeds can prove it.",
-                    law.name(),
-                    law.explained_percent.min(100.0)
-                )
-            });
-            format!(
-                "Something is missing that the library does not hold. {}{lead}",
-                u.description
-            )
-        }),
+        Verdict::Unknown => report
+            .unexplained
+            .as_ref()
+            .map_or_else(String::new, |rest| unknown(report, rest)),
         Verdict::Unsupported => "The recording cannot be judged.".to_owned(),
     }
+}
+
+/// Share of the excess, percent, from which an effect that is not proven leaves nothing to look for outside the library.
+const SUFFICES_PERCENT: f64 = 85.0;
+
+/// What is said of an error that nothing was proven to explain.
+fn unknown(report: &ExplainReport, rest: &Unexplained) -> String {
+    let lead = rest.best_lead.as_ref();
+    if let Some(lead) = lead.filter(|_| rest.best_lead_explains_percent > SUFFICES_PERCENT) {
+        return format!(
+            "Something is missing, but too few moments of the recording show it to prove what: {lead} would explain it. Record more starts and more steps of load and voltage. {}",
+            rest.description
+        );
+    }
+    let law = report.laws.first().map_or_else(String::new, |law| {
+        format!(
+            " Best lead: {} explains {:.0} % of the excess; a second recording with other loads and speeds can prove it.",
+            law.name(),
+            law.explained_percent.min(100.0)
+        )
+    });
+    format!(
+        "Something is missing that the library does not hold. {}{law}",
+        rest.description
+    )
 }
 
 /// Effects and laws that are missing.

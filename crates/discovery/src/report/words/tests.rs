@@ -32,7 +32,11 @@ fn step(effect: &str, tied: &[&str], test: &str) -> StepReport {
 }
 
 fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) -> String {
-    summary(&ExplainReport {
+    summary(&report(verdict, parameters, steps))
+}
+
+fn report(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) -> ExplainReport {
+    ExplainReport {
         stretches: Vec::new(),
         audit: Audit {
             supported: true,
@@ -61,7 +65,7 @@ fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) ->
         speed_scale: None,
         cannot_be_concluded: Vec::new(),
         next_run: None,
-    })
+    }
 }
 
 const OFF: &str = " Parameters that are off: r +12.3 %, l -7.0 %.";
@@ -126,4 +130,22 @@ fn the_other_verdicts_have_a_sentence_each() {
         said(Verdict::Unsupported, &[], &[]),
         "The recording cannot be judged."
     );
+}
+
+/// An effect that leaves nothing, shown by too little of a recording to be proven: there is nothing to look for outside the library.
+#[test]
+fn what_few_moments_show_is_asked_for_once_more() {
+    let with_lead = |percent: f64| {
+        let mut report = report(Verdict::Unknown, &[], &[]);
+        let rest = report.unexplained.as_mut().expect("unknown");
+        rest.best_lead = Some("speed-delay".to_owned());
+        rest.best_lead_explains_percent = percent;
+        summary(&report)
+    };
+    assert_eq!(
+        with_lead(96.0),
+        "Something is missing, but too few moments of the recording show it to prove what: speed-delay would explain it. \
+         Record more starts and more steps of load and voltage. It is loud."
+    );
+    assert_eq!(with_lead(60.0), said(Verdict::Unknown, &[], &[]));
 }
