@@ -58,6 +58,13 @@ impl Operation {
         let speed = pick(&mut rng, &["tachometer", "tachometer", "encoder", "none"]);
         // Without a speed what the motor carries must be recorded.
         let torque = speed == "none" || rng.random_bool(0.5);
+        if !torque {
+            // Nothing but the motor file tells a load of friction: it must be right.
+            for other in ["50", "150"] {
+                let of = |percent: &str| format!("friction_percent = {percent}\n");
+                text = text.replace(&of(other), &of("100"));
+            }
+        }
         let noise = pick(&mut rng, &[0.0003, 0.001, 0.002, 0.005]);
         let bits = pick(&mut rng, &[12, 12, 14, 16]);
         let _ = write!(

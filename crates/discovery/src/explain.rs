@@ -10,6 +10,7 @@ mod rebuilt;
 use crate::laws::formula::dictionary::Shapes;
 use crate::laws::formula::prove::formulas;
 use crate::laws::search::LawStep;
+use crate::report::present::implausible;
 use crate::search::refit::{Candidate, Round, begin, combined};
 use answered::Answered;
 use complete::{complete, put_on_top};
@@ -20,7 +21,7 @@ use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
 use estimation::model::prior::{N_NOMINAL, NOMINALS};
 use estimation::proof::accept::{adequate, beats, even, explained, proven, surpasses};
-use estimation::proof::off::{SIGNIFICANT, strains};
+use estimation::proof::off::{SIGNIFICANT, held, strains};
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
@@ -103,6 +104,7 @@ pub(crate) fn explain(
     {
         put_on_top(study, &mut explanation, law);
     }
+    prefer_plausible(study, &mut explanation);
     if laws_are_asked(study, &explanation) {
         complete(&mut answered, &mut explanation, excluded, progress);
     }
@@ -116,6 +118,20 @@ pub(crate) fn explain(
         explanation.contests = contests(study, &explanation, excluded);
     }
     explanation
+}
+
+/// Where nothing is missing: the motor without parameters that no such motor has, as long as it explains the recording too.
+fn prefer_plausible(study: &Study, found: &mut Explanation) {
+    if !found.steps.is_empty() || !found.laws.is_empty() || !adequate(study, &found.baseline) {
+        return;
+    }
+    let names = implausible(study, &found.baseline);
+    for k in (0..N_NOMINAL).filter(|&k| names.contains(&nominal_name(k))) {
+        let held = held(study, &found.baseline, k);
+        if adequate(study, &held) {
+            found.baseline = held;
+        }
+    }
 }
 
 /// One effect of the library after the other, each proven, until the model is adequate; a law that makes it adequate

@@ -234,7 +234,10 @@ fn verdict(study: &Study, found: &Explanation, steps: &[StepReport]) -> Verdict 
     if found.laws.iter().any(|law| law.proven) {
         return Verdict::Law;
     }
-    if !implausible(study, found.last()).is_empty() {
+    let stands_for_an_effect =
+        |name: &&str| steps.iter().any(|s| s.tied_with.iter().any(|t| t == name));
+    let impossible = implausible(study, found.last());
+    if !impossible.iter().all(stands_for_an_effect) {
         return Verdict::Implausible;
     }
     if steps.iter().any(|s| !s.tied_with.is_empty()) {

@@ -1,9 +1,10 @@
 //! Parameters that moved against effects that they may stand for.
 
-use super::{Explanation, WORTH_A_CABLE};
+use super::{Explanation, WORTH_A_CABLE, nominal_name};
+use crate::report::present::implausible;
 use crate::search::refit::{Candidate, likely};
 use estimation::data::study::{Study, Trial};
-use estimation::model::prior::{FRICTION, LEAKAGE};
+use estimation::model::prior::{FRICTION, INERTIA, LEAKAGE};
 use estimation::proof::accept::{beats, proven};
 use estimation::proof::off;
 use motor::effect::Nominal;
@@ -16,7 +17,13 @@ pub(super) fn contests(
 ) -> Vec<(usize, Vec<Candidate>)> {
     let last = explanation.last();
     let moved = |k: usize| last.fit.hypothesis.z[k];
-    let doubtful = |&k: &usize| k == FRICTION || k == LEAKAGE && moved(k) > WORTH_A_CABLE;
+    let impossible = implausible(study, last);
+    let doubtful = |&k: &usize| match k {
+        FRICTION => true,
+        LEAKAGE => moved(k) > WORTH_A_CABLE,
+        INERTIA => impossible.contains(&nominal_name(k)),
+        _ => false,
+    };
     let contest = |k: usize| (k, contest(study, last, k, excluded));
     let off = study.off(last).iter().copied();
     off.filter(doubtful).map(contest).collect()
@@ -30,12 +37,13 @@ pub(super) fn contest(study: &Study, last: &Trial, k: usize, excluded: &[&str]) 
 }
 
 /// Whether a candidate is the physics that a moved parameter may stand for: friction for every loss torque, leakage
-/// for a cable or filter in series.
+/// for a cable or filter in series, inertia for a reading that moves less than the shaft.
 pub(crate) fn stands_for(k: usize, candidate: &Candidate) -> bool {
     let effects = &candidate.trial.fit.hypothesis.effects;
     let nominal = match k {
         FRICTION => Nominal::Friction,
         LEAKAGE => Nominal::Leakage,
+        INERTIA => Nominal::Inertia,
         _ => return false,
     };
     effects

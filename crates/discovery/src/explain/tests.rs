@@ -1,6 +1,6 @@
 use super::contests::contest;
 use super::*;
-use estimation::model::prior::{FRICTION, LEAKAGE};
+use estimation::model::prior::{FRICTION, INERTIA, LEAKAGE};
 use estimation::specimen;
 use motor::effect::Plant;
 use motor::effects::names;
@@ -220,6 +220,7 @@ fn friction_stands_for_physics_and_leakage_for_an_inductance_in_series() {
     assert!(stands(FRICTION, "windage") && stands(FRICTION, "core-loss"));
     assert!(!stands(FRICTION, "current-gain"));
     assert!(stands(LEAKAGE, "series-inductance") && !stands(LEAKAGE, "windage"));
+    assert!(stands(INERTIA, "speed-delay") && !stands(INERTIA, "windage"));
     assert!(!stands(0, "windage") && !stands(0, "series-inductance"));
     let mut nothing = candidate(&study, "windage", 1.0, 1.0);
     nothing.trial = bare(&study, 1.0);

@@ -22,6 +22,8 @@ pub const N_NOMINAL: usize = NOMINALS.len();
 pub const LEAKAGE: usize = 2;
 /// Index of the magnetizing inductance.
 pub const MAGNETIZING: usize = 3;
+/// Index of the moment of inertia.
+pub const INERTIA: usize = 4;
 /// Index of the viscous friction, the only nominal that is added instead of multiplied.
 pub const FRICTION: usize = 5;
 /// Effects keep a plain wide prior: so many typical sizes.

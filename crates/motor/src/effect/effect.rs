@@ -116,6 +116,8 @@ pub enum Nominal {
     Leakage,
     /// Magnetizing inductance.
     Magnetizing,
+    /// Moment of inertia.
+    Inertia,
     /// Viscous friction.
     Friction,
 }
@@ -181,9 +183,13 @@ pub trait Effect: SteadyEffect {
     }
 
     /// Whether a fit without this effect may move a parameter of the motor file in its place. Friction stands for every
-    /// physics that takes power.
+    /// physics that takes power, inertia for what keeps a speed or its reading from moving.
     fn is_taken_for(&self, nominal: Nominal) -> bool {
-        nominal == Nominal::Friction && self.descriptor().kind == Kind::Physics
+        match nominal {
+            Nominal::Friction => self.descriptor().kind == Kind::Physics,
+            Nominal::Inertia => self.descriptor().look_alikes.contains(&"inertia_kg_m2"),
+            Nominal::Leakage | Nominal::Magnetizing => false,
+        }
     }
 
     /// The parameter that means something else with this effect than without it.

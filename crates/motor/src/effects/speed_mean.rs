@@ -8,7 +8,15 @@ static DESCRIPTOR: Descriptor = Descriptor {
     form: "mean",
     kind: Kind::Sensor,
     applies: Applies::Always,
-    parameters: &[Parameter::positive("delay_s", "s", Scale::Own, 2e-3)],
+    // The ripple that a mean hides grows with the square of a short window: no slope at zero shows the effect.
+    parameters: &[Parameter::shape(
+        "delay_s",
+        "s",
+        Scale::Own,
+        [1e-4, 0.1],
+        5e-3,
+        &[1e-3, 2.5e-3, 5e-3, 1e-2, 2.5e-2],
+    )],
     symptom: "the speed lags in ramps, and shows little of the ripple of a start",
     look_alikes: &["inertia_kg_m2"],
     separating_test: "a direct-on-line start with the current as reference: its torque ripples at the supply's frequency",
