@@ -81,7 +81,14 @@ impl Signal<'_> {
     fn between_steps(&self, orders: &[f64]) -> Supply {
         let (raw, sigma) = (self.raw, self.sigma);
         // An unbalance makes the amplitude ripple: steps are looked for once the harmonics are known and removed.
-        let clean = self.whole(orders).cleaned(raw);
+        let mut clean = self.whole(orders).cleaned(raw);
+        if orders.len() > COMMON.len() {
+            // Many harmonics turn the angle in which they are found, most at the ends: once more in that of what they leave.
+            for _ in 0..2 {
+                let whole = vec![0..raw.len()];
+                clean = Supply::described(self, &clean, whole, orders, 1).cleaned(raw);
+            }
+        }
         let segments = segments(&clean, self.window / 2, sigma);
         // Steps spoil the harmonics, and those the angle: once more between them.
         let clean = match segments.len() {
@@ -259,22 +266,26 @@ impl Supply {
         self
     }
 
-    /// `raw` without its harmonics.
+    /// `raw` without its harmonics: the fundamental, on which their size depends, is what they leave.
     fn cleaned(&self, raw: &[Complex64]) -> Vec<Complex64> {
-        let harmonic = |(k, u): (usize, &Complex64)| {
-            let amplitude = u.norm();
-            u - self.harmonic_sum(k, amplitude)
+        let left = |(k, u): (usize, &Complex64)| {
+            let harmonics = self.harmonics_at(k);
+            // Each time the error falls by the harmonics' share of the fundamental.
+            (0..CLEANINGS).fold(*u, |fundamental, _| u - harmonics.beside(fundamental))
         };
-        raw.iter().enumerate().map(harmonic).collect()
+        raw.iter().enumerate().map(left).collect()
     }
 
-    /// Sum of the harmonics at sample `k` for a fundamental of this amplitude (V).
-    fn harmonic_sum(&self, k: usize, amplitude: f64) -> Complex64 {
-        let part = |&(order, ratio): &(f64, Complex64)| {
-            let size = if order == 0.0 { 1.0 } else { amplitude };
-            ratio * Complex64::from_polar(size, order * self.theta[k])
-        };
-        self.harmonics.iter().map(part).sum()
+    /// The harmonics at sample `k`.
+    fn harmonics_at(&self, k: usize) -> Harmonics {
+        let mut at = Harmonics::default();
+        for &(order, ratio) in &self.harmonics {
+            match order == 0.0 {
+                true => at.constant += ratio,
+                false => at.relative += ratio * Complex64::from_polar(1.0, order * self.theta[k]),
+            }
+        }
+        at
     }
 
     /// What the denoising makes of a disturbance of the raw voltage (the operation is linear).
@@ -322,10 +333,7 @@ impl Supply {
             window: self.window * factor,
             ..Self::default()
         };
-        let harmonics = |k: usize| self.harmonic_sum(k, self.u_s[k].norm());
-        let fundamental: Vec<_> = (0..self.u_s.len())
-            .map(|k| self.u_s[k] - harmonics(k))
-            .collect();
+        let fundamental = self.cleaned(&self.u_s);
         finer.u_s = finer.with_harmonics(&self.refined_vector(&fundamental, &finer.theta, factor));
         finer
     }
@@ -376,7 +384,7 @@ impl Supply {
     }
 
     fn with_harmonics(&self, fundamental: &[Complex64]) -> Vec<Complex64> {
-        let at = |(k, f): (usize, &Complex64)| f + self.harmonic_sum(k, f.norm());
+        let at = |(k, f): (usize, &Complex64)| f + self.harmonics_at(k).beside(*f);
         fundamental.iter().enumerate().map(at).collect()
     }
 }
@@ -398,6 +406,25 @@ fn other_orders(theta: &[f64]) -> Vec<f64> {
         }
     }
     told.split_off(known)
+}
+
+/// Times that harmonics are taken from a voltage: supplies carry a tenth of harmonics at most, a ten thousandth is left.
+const CLEANINGS: usize = 4;
+
+/// Sum of the harmonics at one sample.
+#[derive(Clone, Copy, Debug, Default)]
+struct Harmonics {
+    /// Order 0, V.
+    constant: Complex64,
+    /// The others, relative to the fundamental.
+    relative: Complex64,
+}
+
+impl Harmonics {
+    /// The harmonics beside this fundamental, V.
+    fn beside(self, fundamental: Complex64) -> Complex64 {
+        self.constant + self.relative * fundamental.norm()
+    }
 }
 
 /// A series at `factor` times the rate, on straight lines between its samples.

@@ -6,12 +6,13 @@
 //! are larger than the noise. To first order they are sums of known responses with unknown amounts.
 
 use crate::data::case::Case;
-use crate::data::channels::N_CHANNELS;
+use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::fit::nuisance::Nuisance;
 use crate::model::prediction::{Drive, SpeedObserver, as_shown, run};
-use motor::effect::{Plant, StateOffset};
+use motor::effect::{EffectConfig, Outputs, Plant, StateOffset};
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Offset that shows a response, in the size of rated flux and speed: small against the curvature, large against rounding.
@@ -29,26 +30,65 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
     if all.is_empty() {
         return nuisance;
     }
+    let meters = speedometers(case, plant);
     let shown = |offsets: &[StateOffset]| {
         let drive = Drive {
             offsets,
             ..Drive::of(case)
         };
-        as_shown(case, &run(case, plant, &drive, SpeedObserver::Off))
+        let outputs = run(case, plant, &drive, SpeedObserver::Off);
+        let read = |meter: &Option<EffectConfig>| as_shown(case, &read_by(meter, plant, &outputs));
+        meters.iter().map(read).collect::<Vec<_>>()
     };
     let base = shown(&[]);
     let response = |unknown: &Unknown| {
         let mut there = shown(&unknown.offsets);
-        there.iter_mut().zip(&base).for_each(|(x, b)| *x -= b);
+        let values = there.iter_mut().zip(&base);
+        values
+            .flat_map(|(there, base)| there.iter_mut().zip(base))
+            .for_each(|(x, b)| *x -= b);
         there
     };
-    let responses: Vec<Vec<f64>> = all.par_iter().map(response).collect();
-    for (unknown, response) in all.iter().zip(&responses) {
-        for values in unknown.stretches.iter().map(|&k| &stretches[k].values) {
-            nuisance.add(values.start, response[values.clone()].to_vec());
+    let responses: Vec<Vec<Vec<f64>>> = all.par_iter().map(response).collect();
+    for meter in 0..meters.len() {
+        for (unknown, response) in all.iter().zip(&responses) {
+            for values in unknown.stretches.iter().map(|&k| &stretches[k].values) {
+                nuisance.add(values.start, response[meter][values.clone()].to_vec());
+            }
         }
     }
     nuisance
+}
+
+/// Lateness of encoders, s: half the window in which they count.
+const LATENESS: [f64; 3] = [2e-3, 5e-3, 1e-2];
+
+/// Instruments through which a speed may have been read: as it is, and by the counts of an encoder. Whether that is so is asked
+/// later; until then a start that is unknown looks different through each of them.
+fn speedometers(case: &Case, plant: &Plant) -> Vec<Option<EffectConfig>> {
+    let is_judged = case.weight.iter().any(|w| w[SPEED] > 0.0);
+    let encoder = motor::effects::find("speed-delay", "mean").filter(|_| is_judged);
+    let late = encoder.into_iter().flat_map(|encoder| {
+        LATENESS.map(|delay_s| {
+            let mut config = EffectConfig::absent(encoder, &plant.rated);
+            config.values[0] = delay_s;
+            Some(config)
+        })
+    });
+    std::iter::once(None).chain(late).collect()
+}
+
+fn read_by<'a>(
+    meter: &Option<EffectConfig>,
+    plant: &Plant,
+    outputs: &'a Outputs,
+) -> Cow<'a, Outputs> {
+    let mut read = Cow::Borrowed(outputs);
+    if let Some(config) = meter {
+        let values = config.effect.prepared(&config.values, &plant.rated);
+        config.effect.outputs(&values, &plant.rated, read.to_mut());
+    }
+    read
 }
 
 /// A stretch that nothing interrupts.

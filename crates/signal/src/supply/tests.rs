@@ -149,6 +149,33 @@ fn orders_that_stand_out_are_found_and_no_others() {
     assert!(error < AT_THE_ENDS, "{error}");
 }
 
+/// A tenth of harmonics on a quiet recorder: their size follows the fundamental's, not that of their sum.
+#[test]
+fn many_harmonics_are_described_to_the_noise() {
+    let (step, sigma) = (50.0 / 10_000.0 * std::f64::consts::TAU, 0.18);
+    let parts = [
+        (-1.0, 0.0172),
+        (19.0, 0.0347),
+        (3.0, 0.0132),
+        (-11.0, 0.027),
+        (-5.0, 0.0236),
+    ];
+    let clean = |k: usize| {
+        let theta = step * k as f64 + 0.4;
+        let part = |&(order, ratio): &(f64, f64)| {
+            Complex64::from_polar(326.0 * ratio, order * theta + order)
+        };
+        Complex64::from_polar(326.0, theta) + parts.iter().map(part).sum::<Complex64>()
+    };
+    let raw = noisy(40_000, sigma, clean);
+    let supply = denoise(&raw, 1e-4, sigma, 50.0 * std::f64::consts::TAU);
+    assert!(supply.denoised && supply.segments.len() == 1);
+    let error = (0..40_000).map(|k| (supply.u_s[k] - clean(k)).norm());
+    // Ends of segments hold three times the noise of windows of one period, 200 samples: sigma times sqrt(9/200) in each axis.
+    let worst = error.fold(0.0, f64::max);
+    assert!(worst < 3.0 * sigma * (9.0f64 / 200.0).sqrt(), "{worst}");
+}
+
 /// At 60 Hz the 17th and the 19th turn more than half a turn between two samples, unlike any lower order: -16.3 and -14.3.
 #[test]
 fn orders_above_half_the_sampling_rate_are_told_where_no_lower_one_looks_alike() {
