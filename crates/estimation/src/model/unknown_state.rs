@@ -198,12 +198,23 @@ mod tests {
 
     /// What is left of a recording of a motor that was elsewhere, as a share of what was there before anything was taken out.
     fn left(case: &mut Case, plant: &Plant, elsewhere: StateOffset) -> f64 {
+        left_through(None, case, plant, elsewhere)
+    }
+
+    /// The same where an instrument shows the speed, of the recording and of the model that is held against it.
+    fn left_through(
+        meter: Option<EffectConfig>,
+        case: &mut Case,
+        plant: &Plant,
+        elsewhere: StateOffset,
+    ) -> f64 {
         let shown = |offsets: &[StateOffset]| {
             let drive = Drive {
                 offsets,
                 ..Drive::of(case)
             };
-            run(case, plant, &drive, SpeedObserver::Off)
+            let outputs = run(case, plant, &drive, SpeedObserver::Off);
+            read_by(&meter, plant, &outputs).into_owned()
         };
         let (there, model) = (shown(&[elsewhere]), shown(&[]));
         let rows = (0..case.measured.len()).map(|row| row * case.decimation);
@@ -249,6 +260,27 @@ mod tests {
         // A tenth of the flux and a hundredth of the speed: products of both, some of them.
         assert!(far < 0.05, "{far}");
         assert!(near < 0.15 * far, "{near} {far}");
+    }
+
+    /// The counts of an encoder show a start that is unknown as another one.
+    #[test]
+    fn a_motor_that_began_elsewhere_is_explained_through_an_encoder_too() {
+        let through = |delay_s: f64| {
+            let (mut case, plant) = running();
+            let encoder = motor::effects::find("speed-delay", "mean").expect("in the library");
+            let mut meter = EffectConfig::absent(encoder, &plant.rated);
+            meter.values[0] = delay_s;
+            let elsewhere = StateOffset {
+                sample: 0,
+                psi_s: Complex64::ZERO,
+                psi_r: Complex64::ZERO,
+                omega_mech: 0.01 * plant.rated.speed(),
+            };
+            left_through(Some(meter), &mut case, &plant, elsewhere)
+        };
+        // One of those that are looked through, and one between two of them.
+        assert!(through(5e-3) < 0.02, "{}", through(5e-3));
+        assert!(through(3.5e-3) < 0.05, "{}", through(3.5e-3));
     }
 
     /// A voltage that jumps between two samples leaves a part of a sampling interval in the stator flux.
