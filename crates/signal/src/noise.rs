@@ -71,10 +71,14 @@ fn by_differences(x: &[f64]) -> f64 {
     median / (0.6745 * 20f64.sqrt())
 }
 
-/// Declared noise of a channel, or an estimate, never zero.
+/// Declared noise of a channel, or an estimate, never zero. A converter whose noise is not declared has that of its rounding at least.
 pub fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
-    let declared = rec.metadata.sensors.sigma(channel);
-    let sigma = declared.unwrap_or_else(|| estimated_sigma(x));
+    let sensors = &rec.metadata.sensors;
+    let declared = sensors.sigma(channel);
+    let sigma = match sensors.noise_sigma_fraction_of_full_scale {
+        Some(_) => declared.unwrap_or_else(|| estimated_sigma(x)),
+        None => estimated_sigma(x).max(declared.unwrap_or(0.0)),
+    };
     let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
     sigma.max(1e-6 * top).max(1e-9)
 }

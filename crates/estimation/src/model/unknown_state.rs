@@ -60,18 +60,16 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
     nuisance
 }
 
-/// Lateness of encoders, s: half the window in which they count.
-const LATENESS: [f64; 3] = [2e-3, 5e-3, 1e-2];
-
 /// Instruments through which a speed may have been read: as it is, and by the counts of an encoder. Whether that is so is asked
 /// later; until then a start that is unknown looks different through each of them.
 fn speedometers(case: &Case, plant: &Plant) -> Vec<Option<EffectConfig>> {
     let is_judged = case.weight.iter().any(|w| w[SPEED] > 0.0);
-    let encoder = motor::effects::find("speed-delay", "mean").filter(|_| is_judged);
-    let late = encoder.into_iter().flat_map(|encoder| {
-        LATENESS.map(|delay_s| {
-            let mut config = EffectConfig::absent(encoder, &plant.rated);
-            config.values[0] = delay_s;
+    let encoders = motor::effects::ALL.iter().filter(|e| e.averages_speed());
+    let late = encoders.filter(|_| is_judged).flat_map(|encoder| {
+        let window = &encoder.descriptor().parameters[0];
+        window.grid.iter().map(|late| {
+            let mut config = EffectConfig::absent(*encoder, &plant.rated);
+            config.values[0] = late * window.scale.of(&plant.rated);
             Some(config)
         })
     });

@@ -192,6 +192,11 @@ pub trait Effect: SteadyEffect {
         }
     }
 
+    /// Whether it shows the speed as a mean over a window that its first parameter sets, as counts of an encoder do.
+    fn averages_speed(&self) -> bool {
+        false
+    }
+
     /// The parameter that means something else with this effect than without it.
     fn redefines(&self) -> Option<Nominal> {
         None

@@ -15,7 +15,7 @@ static DESCRIPTOR: Descriptor = Descriptor {
         Scale::Own,
         [1e-4, 0.1],
         5e-3,
-        &[1e-3, 2.5e-3, 5e-3, 1e-2, 2.5e-2],
+        &[2e-3, 5e-3, 1e-2, 2.5e-2],
     )],
     symptom: "the speed lags in ramps, and shows little of the ripple of a start",
     look_alikes: &["inertia_kg_m2"],
@@ -41,6 +41,10 @@ mod dynamic {
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {
             outputs.omega_mech = averaged(&outputs.omega_mech, 2.0 * p[0] / outputs.t_sample);
+        }
+
+        fn averages_speed(&self) -> bool {
+            true
         }
 
         /// The mean over `t - 2d .. t` is `w + w'' d^2/6 + ..` of the middle: turned back up to the second derivative, which

@@ -6,6 +6,7 @@ use base64::Engine;
 use serde_json::{Value, json};
 
 use super::processes::Plant;
+use super::recording::opens_in_explain;
 use crate::browser::{Page, visit};
 use crate::server::root;
 
@@ -14,7 +15,8 @@ const ON_THE_WALL: Duration = Duration::from_secs(2);
 const BOARDS: u32 = 200;
 
 #[test]
-fn a_fault_on_one_of_200_boards_is_on_the_wall_acknowledged_by_name_and_still_so_after_a_restart() {
+fn a_fault_on_one_of_200_boards_is_on_the_wall_acknowledged_by_name_still_so_after_a_restart_and_explained()
+ {
     visit(|page| async move {
         let mut plant = Plant::start(BOARDS, 1, 45);
         let token = plant.token("Anna", "acknowledge");
@@ -39,6 +41,7 @@ fn a_fault_on_one_of_200_boards_is_on_the_wall_acknowledged_by_name_and_still_so
         page.go(&again.url()).await;
         page.until("the acknowledged alarm", "document.querySelector('#wall li:first-child .tile')?.dataset.alarm === 'acknowledged'").await;
         named_in_the_events(&page).await;
+        opens_in_explain(&plant, &again);
         drop(again);
         page.until("what is old is called so", "document.body.classList.contains('stale') && document.querySelector('#connection').textContent.startsWith('no connection')").await;
     });

@@ -31,31 +31,46 @@ fn the_recording_of_an_alarm_opens_in_explain_though_the_gateway_was_killed_befo
         assert!(why.contains("not fetched yet"), "{why}");
     }
     plant.start_gateway();
-    plant.until("a recording", || {
-        fault(&server).is_some_and(|alarm| alarm["recording"].is_string())
-    });
-    let number = alarm["number"].to_string();
-    let folder = plant.file("");
-    let export = [
-        "fleet",
-        "export",
-        "--fleet",
-        "plant.toml",
-        "--alarm",
-        &number,
-        "-o",
-        "alarm.csv",
-    ];
-    printed(&folder, &export);
+    opens_in_explain(&plant, &server);
     let over_http = get(
         &server.address,
-        &format!("/api/fleet/alarms/{number}/recording"),
+        &format!("/api/fleet/alarms/{}/recording", alarm["number"]),
     );
     assert_eq!(over_http.status, 200);
     let file = std::fs::read(plant.file("alarm.csv")).expect("it was written");
     assert!(over_http.body == file, "the page and the command differ");
     let rows = over_http.text().lines().count();
     assert_eq!(rows, 641, "a header and 640 instants");
+    let refused = Command::new(env!("CARGO_BIN_EXE_drivemon"))
+        .args(export("99", "x.csv"))
+        .current_dir(plant.file(""))
+        .output()
+        .expect("it runs");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("there is no alarm 99"));
+}
+
+fn export<'a>(number: &'a str, file: &'a str) -> [&'a str; 8] {
+    [
+        "fleet",
+        "export",
+        "--fleet",
+        "plant.toml",
+        "--alarm",
+        number,
+        "-o",
+        file,
+    ]
+}
+
+/// Waits for the recording of a fault's alarm, writes it into `alarm.csv` and asks what its motor's model misses.
+pub fn opens_in_explain(plant: &Plant, server: &Server) {
+    plant.until("a recording", || {
+        fault(server).is_some_and(|alarm| alarm["recording"].is_string())
+    });
+    let number = fault(server).expect("it is in the store")["number"].to_string();
+    let folder = plant.file("");
+    printed(&folder, &export(&number, "alarm.csv"));
     let explained = Command::new(env!("CARGO_BIN_EXE_drivemon"))
         .args(["explain", "alarm.csv", "--motor", "simulated-motor.toml"])
         .args(["--json", "answer.json"])
@@ -65,21 +80,4 @@ fn the_recording_of_an_alarm_opens_in_explain_though_the_gateway_was_killed_befo
     // 1: a finding. The motor of this recording differs from its file by half of a parameter, or by a tenth of a sensor.
     let said = String::from_utf8_lossy(&explained.stderr);
     assert_eq!(explained.status.code(), Some(1), "{said}");
-    let missing = [
-        "fleet",
-        "export",
-        "--fleet",
-        "plant.toml",
-        "--alarm",
-        "99",
-        "-o",
-        "x.csv",
-    ];
-    let refused = Command::new(env!("CARGO_BIN_EXE_drivemon"))
-        .args(missing)
-        .current_dir(&folder)
-        .output()
-        .expect("it runs");
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("there is no alarm 99"));
 }

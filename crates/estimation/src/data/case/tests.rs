@@ -150,6 +150,13 @@ fn noise_is_declared_or_estimated_and_never_zero() {
         estimated_sigma(&noisy)
     );
     assert_eq!(sigma(&bare, Channel::SPEED, &[3.0; 100]), 3e-6);
+    // Whose resolution alone is declared is at least as noisy as its rounding.
+    let mut converted = bare.clone();
+    converted.metadata.sensors.speed_full_scale_rad_s = Some(2048.0);
+    converted.metadata.sensors.adc_bits = Some(12);
+    let of_speed = |x: &[f64]| sigma(&converted, Channel::SPEED, x);
+    assert_eq!(of_speed(&noisy), estimated_sigma(&noisy));
+    assert_eq!(of_speed(&[3.0; 100]), 1.0 / 12f64.sqrt());
     assert_eq!(sigma(&bare, Channel::SPEED, &[0.0; 100]), 1e-9);
 }
 

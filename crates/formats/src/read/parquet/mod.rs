@@ -16,7 +16,9 @@ use column::Kind;
 use content::Content;
 use paged_file::PagedFile;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::metadata::{
+    ParquetMetaData, ParquetMetaDataOptions, ParquetMetaDataReader, ParquetStatisticsPolicy,
+};
 use parquet::file::reader::Length;
 use recording::Error;
 use std::fs::File;
@@ -49,7 +51,9 @@ fn of_content(name: &str, content: Content) -> Result<Box<dyn TableFile>, Error>
 
 fn read(name: &str, content: Content) -> Result<Box<dyn TableFile>, Error> {
     let bytes = content.len();
-    let metadata = ParquetMetaDataReader::new().parse_and_finish(&content);
+    let metadata = ParquetMetaDataReader::new()
+        .with_metadata_options(Some(without_statistics()))
+        .parse_and_finish(&content);
     let metadata = metadata.map_err(|error| damaged(name, &error))?;
     let (used, header) = header(name, &metadata)?;
     let rows = metadata.file_metadata().num_rows();
@@ -64,6 +68,14 @@ fn read(name: &str, content: Content) -> Result<Box<dyn TableFile>, Error> {
     Ok(Box::new(ParquetFile::new(
         header, &metadata, &file, &used, seal,
     )))
+}
+
+/// Eight hours have thousands of groups of rows with minima and maxima of each column; nobody asks for them.
+fn without_statistics() -> ParquetMetaDataOptions {
+    ParquetMetaDataOptions::default()
+        .with_column_stats_policy(ParquetStatisticsPolicy::SkipAll)
+        .with_encoding_stats_policy(ParquetStatisticsPolicy::SkipAll)
+        .with_size_stats_policy(ParquetStatisticsPolicy::SkipAll)
 }
 
 /// What a file of ours says of all its numbers.
