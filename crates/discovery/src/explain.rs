@@ -10,7 +10,6 @@ mod rebuilt;
 use crate::laws::formula::dictionary::Shapes;
 use crate::laws::formula::prove::formulas;
 use crate::laws::search::LawStep;
-use crate::report::present::implausible;
 use crate::search::refit::{Candidate, Round, begin, combined};
 use answered::Answered;
 use complete::{complete, put_on_top};
@@ -21,7 +20,7 @@ use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
 use estimation::model::prior::{N_NOMINAL, NOMINALS};
 use estimation::proof::accept::{adequate, beats, even, explained, proven, surpasses};
-use estimation::proof::off::{SIGNIFICANT, held, strains};
+use estimation::proof::off::{SIGNIFICANT, held, implausible, strains};
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;

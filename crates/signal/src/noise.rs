@@ -20,7 +20,22 @@ const CLEARLY_LESS: f64 = 0.8;
 pub fn estimated_sigma(x: &[f64]) -> f64 {
     let differences = by_differences(x);
     let spectrum = by_spectrum(x).filter(|sigma| *sigma < CLEARLY_LESS * differences);
-    spectrum.unwrap_or(differences)
+    spectrum.unwrap_or(differences).max(by_steps(x))
+}
+
+/// Fewest steps between readings that show a resolution: a load that is switched now and then makes a few, too.
+const STEPS: usize = 8;
+
+/// Rounding of readings that stand on steps, as counts of an encoder do: of those most equal the one before, and their third
+/// differences are zero.
+fn by_steps(x: &[f64]) -> f64 {
+    let steps = x.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    if steps.len() < STEPS || 2 * steps.len() > x.len() {
+        return 0.0;
+    }
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1 / 12f64.sqrt()
 }
 
 /// What lies between the lines of the spectrum: the lower quartile of its upper half, which for white noise is the share
@@ -115,6 +130,25 @@ mod tests {
         // The quartile of 250 lines in each of seven pieces scatters by 3 %; lines leak into some of them.
         let sigma = estimated_sigma(&x);
         assert!((sigma / 0.002 - 1.0).abs() < 0.15, "{sigma}");
+    }
+
+    /// Counts of an encoder that turns evenly: now and then one more. The step is a third of a radian per second; rounding to it
+    /// is uniform.
+    #[test]
+    fn readings_on_steps_have_the_noise_of_their_rounding() {
+        let step = 1.0 / 3.0;
+        let x: Vec<f64> = (0..640)
+            .map(|k| step * (550.0 + 0.4 * (0.2 * f64::from(k)).sin()).round())
+            .collect();
+        assert_eq!(estimated_sigma(&x), 0.0, "it never changes");
+        let x: Vec<f64> = (0..640)
+            .map(|k| step * (550.4 + 0.2 * (0.2 * f64::from(k)).sin()).round())
+            .collect();
+        assert!(by_differences(&x) == 0.0);
+        assert!((estimated_sigma(&x) / (step / 12f64.sqrt()) - 1.0).abs() < 1e-9);
+        // Three steps of a load are no resolution.
+        let load: Vec<f64> = (0..640).map(|k| f64::from(k / 200)).collect();
+        assert_eq!(estimated_sigma(&load), 0.0);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
 use crate::report::frame;
-use crate::report::present::{effect_parameters, fit_report, implausible, kind_word, loss_watt};
+use crate::report::present::{effect_parameters, fit_report, kind_word, loss_watt};
 use crate::report::types::FrameReport;
 use crate::report::types::{ExplainReport, RankReport, StepReport, Unexplained, Verdict};
 use crate::report::unexplained;
@@ -18,6 +18,7 @@ use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::model::scale_report::SpeedScaleReport;
 use estimation::proof::accept::explained;
+use estimation::proof::off::implausible;
 use motor::MotorFile;
 use motor::effect::Descriptor;
 

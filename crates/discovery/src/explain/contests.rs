@@ -1,7 +1,6 @@
 //! Parameters that moved against effects that they may stand for.
 
 use super::{Explanation, WORTH_A_CABLE, nominal_name};
-use crate::report::present::implausible;
 use crate::search::refit::{Candidate, likely};
 use estimation::data::study::{Study, Trial};
 use estimation::model::prior::{FRICTION, INERTIA, LEAKAGE};
@@ -17,7 +16,7 @@ pub(super) fn contests(
 ) -> Vec<(usize, Vec<Candidate>)> {
     let last = explanation.last();
     let moved = |k: usize| last.fit.hypothesis.z[k];
-    let impossible = implausible(study, last);
+    let impossible = off::implausible(study, last);
     let doubtful = |&k: &usize| match k {
         FRICTION => true,
         LEAKAGE => moved(k) > WORTH_A_CABLE,

@@ -6,27 +6,6 @@ use estimation::fit::uncertainty::coordinate_error;
 use estimation::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
 use motor::effect::{Kind, Role};
 
-/// A move beyond so many prior standard deviations is implausible, ...
-const IMPLAUSIBLE: f64 = 3.0;
-/// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.
-const HOT_COPPER: f64 = 0.41;
-
-/// Names of the nominals that are off so far that no such motor has them.
-pub(crate) fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
-    let z = &study.polished(trial).fit.hypothesis.z;
-    let far = |&k: &usize| {
-        let limit = IMPLAUSIBLE * study.prior.deviations[k];
-        let warm = if NOMINALS[k].unit == "ohm" {
-            HOT_COPPER
-        } else {
-            0.0
-        };
-        k != FRICTION && !(-limit..limit + warm).contains(&z[k])
-    };
-    let off = study.off(trial).iter().copied();
-    off.filter(far).map(|k| NOMINALS[k].name).collect()
-}
-
 /// Errors and nominal parameters of a trial.
 pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
     let polished = study.polished(trial);

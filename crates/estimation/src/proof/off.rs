@@ -16,6 +16,11 @@ pub const RELEVANT_FRICTION: f64 = 2.0;
 /// ... where the recording leaves at most this share of the variance of the prior, ...
 const LEFT_OPEN: f64 = 0.1;
 
+/// A move beyond so many prior standard deviations is implausible, ...
+const IMPLAUSIBLE: f64 = 3.0;
+/// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.
+const HOT_COPPER: f64 = 0.41;
+
 /// 95 % of a normal distribution lie within so many standard deviations.
 const TWO_SIDED_95: f64 = 1.96;
 
@@ -42,6 +47,22 @@ pub fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
 pub fn strains(trial: &Trial, deviations: &[f64; N_NOMINAL]) -> f64 {
     let nominals = trial.fit.hypothesis.z.iter().zip(deviations);
     nominals.map(|(z, deviation)| (z / deviation).powi(2)).sum()
+}
+
+/// Names of the nominals that are off so far that no such motor has them.
+pub fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
+    let z = &study.polished(trial).fit.hypothesis.z;
+    let far = |&k: &usize| {
+        let limit = IMPLAUSIBLE * study.prior.deviations[k];
+        let warm = if NOMINALS[k].unit == "ohm" {
+            HOT_COPPER
+        } else {
+            0.0
+        };
+        k != FRICTION && !(-limit..limit + warm).contains(&z[k])
+    };
+    let off = study.off(trial).iter().copied();
+    off.filter(far).map(|k| NOMINALS[k].name).collect()
 }
 
 /// The trial with one nominal held at its prior and everything else refitted.

@@ -26,26 +26,6 @@ fn what_was_not_fitted_has_no_standard_error() {
     assert_eq!((error(INERTIA), error(FRICTION)), (0.0, 0.0));
 }
 
-/// Three prior deviations: 30 % for windings and iron, 60 % for the inertia; copper may be hotter, ln 1.51 more.
-#[test]
-fn no_motor_is_three_prior_deviations_away() {
-    let study = specimen::table_study(|_| ());
-    let far = |k: usize, z: f64| implausible(&study, &moved(&study, &[], &[(k, z)], 0.01));
-    for (k, low, high) in [
-        (R_S, -0.3, 0.71),
-        (R_R, -0.3, 0.71),
-        (LEAKAGE, -0.3, 0.3),
-        (MAGNETIZING, -0.3, 0.3),
-        (INERTIA, -0.6, 0.6),
-    ] {
-        let name = [NOMINALS[k].name];
-        assert_eq!(far(k, low - 0.01), name);
-        assert_eq!(far(k, high + 0.01), name);
-        assert!(far(k, low + 0.01).is_empty() && far(k, high - 0.01).is_empty());
-    }
-    assert!(far(FRICTION, 500.0).is_empty(), "friction may be anything");
-}
-
 #[test]
 fn a_fit_is_reported_in_the_units_of_the_motor_file() {
     let study = specimen::proven_table_study(|_| ());

@@ -1,6 +1,7 @@
 use super::*;
-use crate::model::prior::LEAKAGE;
+use crate::model::prior::{INERTIA, LEAKAGE};
 use crate::specimen;
+use std::sync::OnceLock;
 
 const R_S: usize = 0;
 const R_R: usize = 1;
@@ -103,4 +104,29 @@ fn strain_is_counted_in_prior_deviations() {
         0.01,
     );
     assert!((strains(&trial, &study.prior.deviations) - (9.0 + 4.0 + 1.0)).abs() < 1e-12);
+}
+
+/// Three prior deviations: 30 % for windings and iron, 60 % for the inertia; copper may be hotter, ln 1.51 more.
+#[test]
+fn no_motor_is_three_prior_deviations_away() {
+    let study = specimen::table_study(|_| ());
+    let far = |k: usize, z: f64| {
+        let mut moved = specimen::moved(&study, &[], &[(k, z)], 0.01);
+        // Which of them are off is a question of its own.
+        moved.off = OnceLock::from(vec![k]);
+        implausible(&study, &moved)
+    };
+    for (k, low, high) in [
+        (R_S, -0.3, 0.71),
+        (R_R, -0.3, 0.71),
+        (LEAKAGE, -0.3, 0.3),
+        (MAGNETIZING, -0.3, 0.3),
+        (INERTIA, -0.6, 0.6),
+    ] {
+        let name = [NOMINALS[k].name];
+        assert_eq!(far(k, low - 0.01), name);
+        assert_eq!(far(k, high + 0.01), name);
+        assert!(far(k, low + 0.01).is_empty() && far(k, high - 0.01).is_empty());
+    }
+    assert!(far(FRICTION, 500.0).is_empty(), "friction may be anything");
 }
