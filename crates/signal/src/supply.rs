@@ -85,8 +85,8 @@ impl Signal<'_> {
         if orders.len() > COMMON.len() {
             // Many harmonics turn the angle in which they are found, most at the ends: once more in that of what they leave.
             for _ in 0..2 {
-                let whole = vec![0..raw.len()];
-                clean = Supply::described(self, &clean, whole, orders, 1).cleaned(raw);
+                let whole = 0..raw.len();
+                clean = Supply::described(self, &clean, vec![whole], orders, 1).cleaned(raw);
             }
         }
         let segments = segments(&clean, self.window / 2, sigma);

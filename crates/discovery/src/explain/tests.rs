@@ -5,6 +5,7 @@ use estimation::specimen;
 use motor::effect::Plant;
 use motor::effects::names;
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 fn candidate(study: &Study, name: &'static str, size: f64, error: f64) -> Candidate {
     let trial = specimen::trial_with(study, &[(name, size)]);
@@ -54,6 +55,34 @@ fn the_last_model_is_that_of_the_last_step() {
     found.steps = steps(&study, &[3.0, 2.0, 1.0]);
     assert!((error(&found) - 1.0).abs() < 1e-9);
     assert!(found.first.screened.is_empty() && found.first.candidates.is_empty());
+}
+
+/// A resistance e times the believed one is taken back where the believed motor explains the table too, and nowhere else.
+#[test]
+fn a_motor_that_may_exist_is_preferred_where_it_explains_the_recording_too() {
+    const R_S: usize = 0;
+    let study = specimen::table_study(|_| ());
+    let left = |error: f64, steps: Vec<Step>| {
+        let mut far = specimen::moved(&study, &[], &[(R_S, 1.0)], 0.01);
+        far.off = OnceLock::from(vec![R_S]);
+        let mut found = Explanation {
+            baseline: specimen::with_errors(&study, &far, error, error),
+            first: Round::empty(),
+            steps,
+            laws: Vec::new(),
+            contests: Vec::new(),
+            nameable: true,
+        };
+        prefer_plausible(&study, &mut found);
+        found.baseline.fit.hypothesis.z[R_S]
+    };
+    assert_eq!(left(1.0, Vec::new()), 0.0);
+    assert_eq!(left(1.5, Vec::new()), 1.0, "something is left");
+    assert_eq!(
+        left(1.0, steps(&study, &[3.0, 1.0])),
+        1.0,
+        "an effect was found"
+    );
 }
 
 /// Of an excess of 9 - 1 at first, 1.4 instead of 1.5 explains 3.6 % more, 1.48 only 0.7 %.

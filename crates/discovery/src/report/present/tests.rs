@@ -1,10 +1,9 @@
 use super::*;
-use estimation::model::prior::{INERTIA, LEAKAGE, MAGNETIZING};
+use estimation::model::prior::{INERTIA, MAGNETIZING};
 use estimation::specimen;
 use std::sync::OnceLock;
 
 const R_S: usize = 0;
-const R_R: usize = 1;
 
 /// The priors with nominals moved, each of the fitted ones known to `error`.
 fn moved(study: &Study, effects: &[(&str, f64)], z: &[(usize, f64)], error: f64) -> Trial {
