@@ -25,9 +25,6 @@ const MOTORS: [&str; 6] = [
 /// Harmonic orders of a supply.
 const ORDERS: [i32; 8] = [-5, 7, -11, 13, -17, 19, 3, -3];
 
-/// Share of the excess, percent, that an effect explains which is named as what would explain it.
-const SUFFICES_PERCENT: f64 = 85.0;
-
 /// A scenario as its file says it.
 struct Operation {
     text: String,
@@ -172,10 +169,11 @@ fn judged(operation: &Operation) -> (String, bool) {
             let right = match report.verdict {
                 Verdict::Adequate | Verdict::Unsupported => true,
                 // One change of the speed proves nothing; what would explain it is named.
-                Verdict::Unknown => report.unexplained.as_ref().is_some_and(|rest| {
-                    rest.best_lead_explains_percent > SUFFICES_PERCENT
-                        && rest.best_lead.as_deref().is_some_and(late)
-                }),
+                Verdict::Unknown => {
+                    let rest = report.unexplained.as_ref();
+                    rest.and_then(|rest| rest.sufficient_lead())
+                        .is_some_and(late)
+                }
                 _ => !report.steps.is_empty() && report.steps.iter().all(|step| late(&step.effect)),
             };
             (report.summary, right)

@@ -124,8 +124,7 @@ fn prefer_plausible(study: &Study, found: &mut Explanation) {
     if !found.steps.is_empty() || !found.laws.is_empty() || !adequate(study, &found.baseline) {
         return;
     }
-    let names = implausible(study, &found.baseline);
-    for k in (0..N_NOMINAL).filter(|&k| names.contains(&nominal_name(k))) {
+    for k in implausible(study, &found.baseline) {
         let held = held(study, &found.baseline, k);
         if adequate(study, &held) {
             found.baseline = held;

@@ -116,7 +116,7 @@ fn the_speed_of_a_run_makes_the_currents_of_that_run() {
     let steady = || Timeline::constant(OMEGA);
     let free = run(&plant(), SpeedSource::Free, steady());
     let given = run(&plant(), SpeedSource::Imposed(&free.omega_mech), steady());
-    // Of a start of 60 A.
+    // A step whose torque moved the shaft was off by 0.056 A of a start of 60 A: a fiftieth of that is no such error.
     assert!(
         apart(&free, &given, 0) < 1e-3,
         "{}",

@@ -235,8 +235,10 @@ fn verdict(study: &Study, found: &Explanation, steps: &[StepReport]) -> Verdict 
     if found.laws.iter().any(|law| law.proven) {
         return Verdict::Law;
     }
-    let stands_for_an_effect =
-        |name: &&str| steps.iter().any(|s| s.tied_with.iter().any(|t| t == name));
+    let stands_for_an_effect = |k: &usize| {
+        let mut tied = steps.iter().flat_map(|step| &step.tied_with);
+        tied.any(|name| name == nominal_name(*k))
+    };
     let impossible = implausible(study, found.last());
     if !impossible.iter().all(stands_for_an_effect) {
         return Verdict::Implausible;

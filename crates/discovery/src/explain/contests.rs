@@ -1,6 +1,6 @@
 //! Parameters that moved against effects that they may stand for.
 
-use super::{Explanation, WORTH_A_CABLE, nominal_name};
+use super::{Explanation, WORTH_A_CABLE};
 use crate::search::refit::{Candidate, likely};
 use estimation::data::study::{Study, Trial};
 use estimation::model::prior::{FRICTION, INERTIA, LEAKAGE};
@@ -20,7 +20,7 @@ pub(super) fn contests(
     let doubtful = |&k: &usize| match k {
         FRICTION => true,
         LEAKAGE => moved(k) > WORTH_A_CABLE,
-        INERTIA => impossible.contains(&nominal_name(k)),
+        INERTIA => impossible.contains(&k),
         _ => false,
     };
     let contest = |k: usize| (k, contest(study, last, k, excluded));

@@ -254,6 +254,17 @@ pub struct Unexplained {
     pub best_lead_explains_percent: f64,
 }
 
+/// Share of the excess, percent, from which an effect that is not proven leaves nothing to look for outside the library.
+const SUFFICES_PERCENT: f64 = 85.0;
+
+impl Unexplained {
+    /// The best lead, if it would explain what is missing; too few moments of the recording show it to prove it.
+    pub fn sufficient_lead(&self) -> Option<&str> {
+        let lead = self.best_lead.as_deref();
+        lead.filter(|_| self.best_lead_explains_percent > SUFFICES_PERCENT)
+    }
+}
+
 /// Something that cannot be concluded while the scale of the speed is free.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Inconclusive {

@@ -55,13 +55,9 @@ fn finding(report: &ExplainReport) -> String {
     }
 }
 
-/// Share of the excess, percent, from which an effect that is not proven leaves nothing to look for outside the library.
-const SUFFICES_PERCENT: f64 = 85.0;
-
 /// What is said of an error that nothing was proven to explain.
 fn unknown(report: &ExplainReport, rest: &Unexplained) -> String {
-    let lead = rest.best_lead.as_ref();
-    if let Some(lead) = lead.filter(|_| rest.best_lead_explains_percent > SUFFICES_PERCENT) {
+    if let Some(lead) = rest.sufficient_lead() {
         return format!(
             "Something is missing, but too few moments of the recording show it to prove what: {lead} would explain it. Record more starts and more steps of load and voltage. {}",
             rest.description

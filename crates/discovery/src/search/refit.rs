@@ -27,8 +27,8 @@ const OBSERVER: f64 = 200.0;
 /// Screened gain of error below which nothing can pass the proofs.
 const LEAST_GAIN: f64 = 0.005;
 
-/// Share of the excess that the linearised candidate may leave to be likely: a secant understates what is curved.
-const LIKELY: f64 = 0.75;
+/// Share of the excess that the linearised candidate may leave to be likely.
+const LIKELY: f64 = 0.6;
 /// Error below which no further candidates are looked for.
 const SOLVED: f64 = 1.05;
 

@@ -276,9 +276,10 @@ mod tests {
             };
             left_through(Some(meter), &mut case, &plant, elsewhere)
         };
-        // One of those that are looked through, and one between two of them.
+        // One of those that are looked through leaves what is of second order, a hundredth of the speed; between two of them half
+        // of what is left without any (0.076) must be gone at least.
         assert!(through(5e-3) < 0.02, "{}", through(5e-3));
-        assert!(through(3.5e-3) < 0.05, "{}", through(3.5e-3));
+        assert!(through(3.5e-3) < 0.038, "{}", through(3.5e-3));
     }
 
     /// A voltage that jumps between two samples leaves a part of a sampling interval in the stator flux.

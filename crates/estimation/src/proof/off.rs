@@ -49,8 +49,8 @@ pub fn strains(trial: &Trial, deviations: &[f64; N_NOMINAL]) -> f64 {
     nominals.map(|(z, deviation)| (z / deviation).powi(2)).sum()
 }
 
-/// Names of the nominals that are off so far that no such motor has them.
-pub fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
+/// Indices of the nominals that are off so far that no such motor has them.
+pub fn implausible(study: &Study, trial: &Trial) -> Vec<usize> {
     let z = &study.polished(trial).fit.hypothesis.z;
     let far = |&k: &usize| {
         let limit = IMPLAUSIBLE * study.prior.deviations[k];
@@ -62,7 +62,7 @@ pub fn implausible(study: &Study, trial: &Trial) -> Vec<&'static str> {
         k != FRICTION && !(-limit..limit + warm).contains(&z[k])
     };
     let off = study.off(trial).iter().copied();
-    off.filter(far).map(|k| NOMINALS[k].name).collect()
+    off.filter(far).collect()
 }
 
 /// The trial with one nominal held at its prior and everything else refitted.

@@ -123,9 +123,8 @@ fn no_motor_is_three_prior_deviations_away() {
         (MAGNETIZING, -0.3, 0.3),
         (INERTIA, -0.6, 0.6),
     ] {
-        let name = [NOMINALS[k].name];
-        assert_eq!(far(k, low - 0.01), name);
-        assert_eq!(far(k, high + 0.01), name);
+        assert_eq!(far(k, low - 0.01), [k]);
+        assert_eq!(far(k, high + 0.01), [k]);
         assert!(far(k, low + 0.01).is_empty() && far(k, high - 0.01).is_empty());
     }
     assert!(far(FRICTION, 500.0).is_empty(), "friction may be anything");
