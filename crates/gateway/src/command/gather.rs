@@ -111,6 +111,10 @@ impl Gather {
             limits.recordings_days
         ));
         outputs.described().iter().for_each(|line| say(line));
+        for wrong in outputs.to_change() {
+            sound = false;
+            say(&format!("  to change: {wrong}"));
+        }
         if sound { Ran::Sound } else { Ran::ToChange }
     }
 

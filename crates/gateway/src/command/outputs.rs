@@ -36,6 +36,11 @@ pub trait Outputs: Sized {
     /// What a check says of them, a line each.
     fn described(&self) -> Vec<String>;
 
+    /// What would keep them from working, a line each: a check says it.
+    fn to_change(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Works until the gateway ends; why it cannot go on, where it ends before.
     fn run(self, handles: Handles) -> impl Future<Output = String>;
 }

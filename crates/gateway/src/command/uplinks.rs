@@ -1,7 +1,9 @@
 //! What a gateway hands on: Sparkplug B to a broker, registers for Modbus masters, metrics for Prometheus.
 
+use std::convert::Infallible;
 use std::future::Future;
 use std::path::Path;
+use std::time::Duration;
 
 use document::Section;
 use tokio::sync::watch;
@@ -10,6 +12,10 @@ use uplink::modbus::{self, ModbusConfig, ModbusStatus};
 use uplink::mqtt::{self, MqttConfig, MqttStatus};
 
 use super::outputs::{Handles, Outputs};
+use super::terminal::Terminal;
+
+/// How often the line to a broker is looked at: its changes are for people.
+const LOOK: Duration = Duration::from_secs(1);
 
 /// The outputs of a configuration; each is there where its section is.
 #[derive(Debug)]
@@ -72,6 +78,15 @@ impl Outputs for Uplinks {
         }
     }
 
+    fn to_change(&self) -> Vec<String> {
+        let checked = self.mqtt.as_ref().map(mqtt::check_files);
+        let wrong = checked.and_then(Result::err);
+        wrong
+            .map(|error| format!("mqtt: {error}"))
+            .into_iter()
+            .collect()
+    }
+
     async fn run(self, handles: Handles) -> String {
         let outputs = self.names();
         let (mqtt, modbus) = (MqttStatus::default(), ModbusStatus::default());
@@ -90,8 +105,12 @@ impl Outputs for Uplinks {
             let store = handles.store.clone();
             let beside = || store.path().with_extension("mqtt-session");
             config.session_file.get_or_insert_with(beside);
-            let done = mqtt::run(config, store, mqtt, handles.stored.clone(), ended()).await;
-            done.err().map(|error| error.to_string())
+            let told = tell_line(mqtt.clone(), handles.terminal);
+            let done = mqtt::run(config, store, mqtt, handles.stored.clone(), ended());
+            tokio::select! {
+                done = done => done.err().map(|error| error.to_string()),
+                never = told => match never {},
+            }
         };
         let masters = async {
             let Some(config) = self.modbus else {
@@ -110,6 +129,27 @@ impl Outputs for Uplinks {
                 .map(|error| format!("metrics at {address}: {error}"))
         };
         all_of(broker, masters, scraped).await
+    }
+}
+
+/// Says when the line to a broker comes, and why there is none.
+async fn tell_line(status: MqttStatus, terminal: Terminal) -> Infallible {
+    let mut told = None;
+    loop {
+        let state = status.get();
+        let line = match (state.connected, state.last_error.as_str()) {
+            (true, _) => Some("mqtt: connected".to_owned()),
+            // The first attempt is still on its way.
+            (false, "") => None,
+            (false, why) => Some(format!(
+                "mqtt: no line to the broker, the store keeps what it has not taken: {why}"
+            )),
+        };
+        if line.is_some() && line != told {
+            line.iter().for_each(|line| (terminal.complain)(line));
+            told = line;
+        }
+        tokio::time::sleep(LOOK).await;
     }
 }
 
@@ -164,6 +204,21 @@ mod tests {
             "metrics: http://127.0.0.1:9184/metrics",
         ];
         assert_eq!(described(text).expect("sound"), expected);
+    }
+
+    #[test]
+    fn a_certificate_that_is_not_there_is_to_change() {
+        let text = "[mqtt]\nhost = \"broker\"\ngroup = \"Hall\"\nnode = \"gw\"\ntls = true\nca_file = \"none.pem\"\n";
+        let document = Document::parse(text, "plant.toml").expect("TOML");
+        let uplinks = Uplinks::read(&document.root(), Path::new("/etc/plant")).expect("sound");
+        let wrong = uplinks.to_change();
+        assert!(
+            wrong.len() == 1
+                && wrong
+                    .iter()
+                    .all(|line| line.starts_with("mqtt: /etc/plant/none.pem: ")),
+            "{wrong:?}"
+        );
     }
 
     #[test]

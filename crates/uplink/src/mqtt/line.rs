@@ -266,7 +266,8 @@ fn connect(config: &MqttConfig, will: &Message) -> Result<v3_1_1::Connect, LineE
     Ok(builder.build()?)
 }
 
-fn password(file: &std::path::Path) -> Result<String, LineError> {
+/// First line of a file.
+pub(super) fn password(file: &std::path::Path) -> Result<String, LineError> {
     let text = std::fs::read_to_string(file).map_err(|error| LineError::File {
         path: file.display().to_string(),
         error: error.to_string(),

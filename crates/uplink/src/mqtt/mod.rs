@@ -1,5 +1,6 @@
 //! Sparkplug B over MQTT 3.1.1, from the store to a broker.
 
+mod check;
 mod config;
 mod error;
 mod line;
@@ -9,6 +10,7 @@ mod session_file;
 mod status;
 mod tls;
 
+pub use check::check_files;
 pub use config::{MqttConfig, OwnCertificate, TlsConfig};
 pub use error::LineError;
 pub use present::present;

@@ -38,6 +38,14 @@ pub(super) async fn open(
     Ok(Box::new(encrypted))
 }
 
+/// Whether the files of the configuration can be used.
+///
+/// # Errors
+/// The file, and what is wrong with it.
+pub(super) fn check_files(tls: &TlsConfig) -> Result<(), LineError> {
+    client(tls).map(|_| ())
+}
+
 fn client(tls: &TlsConfig) -> Result<Arc<ClientConfig>, LineError> {
     let provider = Arc::new(rustls::crypto::ring::default_provider());
     let roots = match &tls.ca_file {
@@ -55,10 +63,22 @@ fn client(tls: &TlsConfig) -> Result<Arc<ClientConfig>, LineError> {
             let certificates = certificates(certificate)?;
             let secret = PrivateKeyDer::from_pem_file(key).map_err(|e| wrong(key, &e))?;
             let with_own = config.with_client_auth_cert(certificates, secret);
-            with_own.map_err(|error| wrong(certificate, &error))?
+            with_own.map_err(|error| wrong(certificate, &in_words(&error)))?
         }
     };
     Ok(Arc::new(config))
+}
+
+/// rustls names an old certificate by the variant of its type alone.
+fn in_words(error: &rustls::Error) -> String {
+    match error.to_string() {
+        told if told.contains("UnsupportedCertVersion") => {
+            "is a certificate of X.509 version 1, and TLS takes version 3: sign it with extensions (openssl x509 -req ... -extfile FILE, \
+             where FILE has basicConstraints=CA:FALSE)"
+                .to_owned()
+        }
+        told => told,
+    }
 }
 
 fn wrong(file: &Path, error: &dyn std::fmt::Display) -> LineError {
