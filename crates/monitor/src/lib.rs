@@ -64,6 +64,7 @@ mod window;
 pub use checks::cage::{Cage, CageLimits, HealthySidebands, RotorReading};
 pub use checks::rotor_bars::{RotorState, Sidebands};
 pub use checks::sensors::{HealthConfig, Phase, SensorFinding, dead_channel};
+pub use checks::speed_swing::Driven;
 pub use checks::supply::{SupplyConfig, SupplyFinding};
 pub use config::{ConfigError, LoadKind, MonitorConfig};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};

@@ -7,6 +7,7 @@ use num_complex::Complex32;
 use crate::checks::cage::CageLimits;
 use crate::checks::rotor_bars::{RotorState, Sidebands};
 use crate::checks::sensors::{HealthConfig, SensorFinding};
+use crate::checks::speed_swing::Driven;
 use crate::checks::supply::{SupplyConfig, SupplyFinding};
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
 use crate::input::chain::ConverterSupply;
@@ -361,9 +362,9 @@ impl Monitor {
             return None;
         };
         let slip = window.omega_sync - self.config.mechanics.n_p * omega_mech;
-        state
-            .rotor
-            .follow(i, 2.0 * slip * samples * self.config.t_sample)
+        let driven = Driven::of(&self.config.params, window);
+        let step = 2.0 * slip * samples * self.config.t_sample;
+        state.rotor.follow(i, step, &driven)
     }
 
     fn check_channels(

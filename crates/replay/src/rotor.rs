@@ -30,6 +30,8 @@ pub struct RotorSummary {
     /// Blocks that were measured, each four turns of twice the slip angle, without those that a load step or something else
     /// shook more; 0: not testable.
     pub blocks: u64,
+    /// Blocks in which the load swung at twice the slip frequency, as broken bars make the speed swing: they say nothing about the cage.
+    pub swinging_blocks: u64,
     /// Mean amplitude at (1 - 2 s) times the supply's frequency, percent of the active current.
     pub lower_sideband_percent: Option<f64>,
     /// Mean amplitude at (1 + 2 s) times the supply's frequency, percent of the active current.
@@ -62,6 +64,7 @@ const LEAST_BEFORE: f64 = 0.02;
 pub struct RotorHistory {
     blocks: u64,
     doubtful_blocks: u64,
+    swinging_blocks: u64,
     lower: f64,
     upper: f64,
     beside: f64,
@@ -78,7 +81,9 @@ impl RotorHistory {
         let (Some(sidebands), Some(limits)) = (&reading.sidebands, &reading.limits) else {
             return;
         };
-        if !limits.normalised(sidebands).is_nan() {
+        if limits.is_hidden(sidebands) {
+            self.swinging_blocks += 1;
+        } else if !limits.normalised(sidebands).is_nan() {
             self.add_block(sidebands, limits);
         }
     }
@@ -117,6 +122,7 @@ impl RotorHistory {
         RotorSummary {
             state: self.state(),
             blocks: self.blocks,
+            swinging_blocks: self.swinging_blocks,
             lower_sideband_percent: mean(self.lower),
             upper_sideband_percent: mean(self.upper),
             beside_percent: mean(self.beside),
@@ -138,6 +144,8 @@ mod tests {
             let sidebands = Sidebands {
                 lower: 0.01 * lower,
                 upper: 0.002,
+                from_speed: 0.002,
+                from_cage: 0.01 * lower,
                 beside: 0.0005,
                 active: 3.0,
             };
@@ -162,6 +170,34 @@ mod tests {
             ..RotorReading::default()
         });
         assert_eq!(broken.summary().state, RotorCage::Broken);
+    }
+
+    #[test]
+    fn a_swinging_load_says_nothing_about_the_cage() {
+        let mut history = history(&Cage::UNKNOWN, &[]);
+        let sidebands = Sidebands {
+            lower: 0.02,
+            upper: 0.018,
+            from_speed: 0.019,
+            from_cage: 0.002,
+            beside: 0.0005,
+            active: 3.0,
+        };
+        history.add(&RotorReading {
+            sidebands: Some(sidebands),
+            limits: Some(Cage::UNKNOWN.limits(0.75, 2.0)),
+            is_broken: false,
+        });
+        let summary = history.summary();
+        assert_eq!(
+            (summary.state, summary.swinging_blocks),
+            (RotorCage::NotTested, 1)
+        );
+        let told = crate::words::rotor(&summary);
+        assert!(
+            told.contains("in 1 block the load swings at twice the slip frequency"),
+            "{told}"
+        );
     }
 
     #[test]

@@ -90,7 +90,7 @@ pub fn sensor(finding: SensorFinding) -> String {
 /// What the sidebands of the current say about the rotor's bars.
 pub fn rotor(summary: &RotorSummary) -> String {
     let answer = match summary.state {
-        RotorCage::NotTested => return rotor_not_tested(),
+        RotorCage::NotTested => return rotor_not_tested(summary.swinging_blocks),
         RotorCage::Whole => "whole",
         RotorCage::Doubtful => "doubtful",
         RotorCage::Broken => "broken",
@@ -101,10 +101,7 @@ pub fn rotor(summary: &RotorSummary) -> String {
     ) else {
         return format!("rotor bars {answer}");
     };
-    let blocks = match summary.blocks {
-        1 => "1 block".to_owned(),
-        n => format!("{n} blocks"),
-    };
+    let blocks = blocks(summary.blocks);
     format!(
         "rotor bars {answer}: sidebands at twice the slip frequency {lower:.2} and {upper:.2} % of the active current in {blocks}{} \
          (doubtful from {:.2} %, broken from {:.2} %){}",
@@ -115,7 +112,20 @@ pub fn rotor(summary: &RotorSummary) -> String {
     )
 }
 
-fn rotor_not_tested() -> String {
+fn blocks(count: u64) -> String {
+    match count {
+        1 => "1 block".to_owned(),
+        n => format!("{n} blocks"),
+    }
+}
+
+fn rotor_not_tested(swinging: u64) -> String {
+    if swinging > 0 {
+        return format!(
+            "rotor bars not tested: in {} the load swings at twice the slip frequency, as broken bars would make it; record at another load",
+            blocks(swinging)
+        );
+    }
     format!(
         "rotor bars not tested: that takes speed, a fifth of the rated current as active current, a slip below {:.0} %, and \
          two turns of the slip without a load step",

@@ -156,6 +156,11 @@ impl CageLimits {
         }
     }
 
+    /// Whether a swing of the load hides what would be doubtful or broken.
+    pub fn is_hidden(&self, sidebands: &Sidebands) -> bool {
+        sidebands.is_swing() && sidebands.lower >= self.doubtful
+    }
+
     /// Whether a line that stands clear lies from where the cage is doubtful on.
     pub fn raises_doubt(&self, sidebands: &Sidebands) -> bool {
         sidebands.may_be_bars() && sidebands.lower >= self.doubtful
@@ -174,6 +179,8 @@ mod tests {
         Sidebands {
             lower: percent(lower_percent),
             upper: 0.0,
+            from_speed: 0.0,
+            from_cage: percent(lower_percent),
             beside: 0.0,
             active: 1.0,
         }

@@ -3,4 +3,5 @@
 pub(crate) mod cage;
 pub(crate) mod rotor_bars;
 pub(crate) mod sensors;
+pub(crate) mod speed_swing;
 pub(crate) mod supply;

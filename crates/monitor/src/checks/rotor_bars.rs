@@ -11,6 +11,7 @@ use core::f32::consts::TAU;
 
 use num_complex::Complex32;
 
+use crate::checks::speed_swing::Driven;
 use crate::sync::rotation::{renormalise, small_rotation};
 
 /// Turns of twice the slip angle in one block: load steps and other pulsations cancel the better, the more there are.
@@ -31,6 +32,11 @@ const CLEAR: f32 = 3.0;
 /// strokes come at twice the slip frequency leaves more.
 const LARGEST: f32 = 0.2;
 
+/// Times what a swing of the speed explains at the lower sideband that the cage's own share must be. A swinging load alone leaves nothing of its
+/// own there, and a quarter where the circuit is 20 % wrong; broken bars at least twice: of a shaft without inertia, whose speed they swing the
+/// most, the torques of both lines cancel, so that the speed takes half of what the cage leaves. Between them nothing is said.
+const OWN: f32 = 1.0;
+
 /// What one block of whole turns says about the cage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sidebands {
@@ -38,6 +44,10 @@ pub struct Sidebands {
     pub lower: f32,
     /// Amplitude at `(1 + 2 s)` times the supply's frequency, as a share of the active current.
     pub upper: f32,
+    /// What the swing of the speed that the upper one shows leaves at the lower one, as a share of the active current.
+    pub from_speed: f32,
+    /// The lower one without that, as a share of the active current: the cage's own.
+    pub from_cage: f32,
     /// Root mean square of the lines beside the lower sideband, as a share of the active current: the motor's own unrest.
     pub beside: f32,
     /// Active current, A; negative in a generator.
@@ -50,10 +60,24 @@ impl Sidebands {
     /// Slip beyond which nothing is tested: the motor is starting, and the sidebands lie too far from the supply's frequency.
     pub const LARGEST_SLIP: f32 = 0.13;
 
-    /// Whether the lower sideband stands clear of the lines beside it, so that what it shows is at twice the slip frequency, and
-    /// is no larger than a cage can leave.
+    /// Whether the lower sideband stands clear of the lines beside it, so that what it shows is at twice the slip frequency, is no
+    /// larger than a cage can leave, and no swing of the speed explains it.
     pub fn may_be_bars(&self) -> bool {
-        self.lower > CLEAR * self.beside && self.lower < LARGEST
+        self.is_clear() && self.lower < LARGEST && !self.is_of_the_speed()
+    }
+
+    /// Whether the lower sideband stands clear and is that of a speed that swings, as a load makes it: what the cage leaves beside it cannot
+    /// be told.
+    pub fn is_swing(&self) -> bool {
+        self.is_clear() && self.is_of_the_speed()
+    }
+
+    fn is_clear(&self) -> bool {
+        self.lower > CLEAR * self.beside
+    }
+
+    fn is_of_the_speed(&self) -> bool {
+        self.from_cage <= OWN * self.from_speed
     }
 }
 
@@ -87,9 +111,9 @@ impl Default for RotorState {
 
 impl RotorState {
     /// Takes one cycle: the current `i` of it and the one before seen from the voltage, A, and the `step` of twice the slip angle since the cycle
-    /// before, rad. The last cycle of a block gives its sidebands.
+    /// before, rad. The last cycle of a block gives its sidebands, of a motor that is `driven` so.
     #[inline(never)]
-    pub fn follow(&mut self, i: Complex32, step: f32) -> Option<Sidebands> {
+    pub fn follow(&mut self, i: Complex32, step: f32, driven: &Driven<'_>) -> Option<Sidebands> {
         if step.is_nan() || step.abs() >= LARGEST_STEP {
             *self = RotorState::default();
             return None;
@@ -101,7 +125,7 @@ impl RotorState {
         if self.turned.abs() < TURNS * TAU {
             return None;
         }
-        let sidebands = self.sidebands();
+        let sidebands = self.sidebands(driven);
         *self = RotorState::default();
         Some(sidebands)
     }
@@ -120,22 +144,28 @@ impl RotorState {
     }
 
     /// Covariances of the current with the turns: the mean of the current falls out, however the last turn ended.
-    fn sidebands(&self) -> Sidebands {
+    fn sidebands(&self, driven: &Driven<'_>) -> Sidebands {
         let share = 1.0 / self.cycles;
         let mean = self.current * share;
-        let mut squares = [0.0; LINES];
-        for ((square, lower), axes) in squares.iter_mut().zip(self.lower).zip(self.axes) {
-            *square = ((lower - mean * axes) * share).norm_sqr();
+        let mut lines = [Complex32::ZERO; LINES];
+        for ((line, lower), axes) in lines.iter_mut().zip(self.lower).zip(self.axes) {
+            *line = (lower - mean * axes) * share;
         }
+        let lower = lines[SIDEBAND];
         let upper = (self.upper - mean * self.axes[SIDEBAND].conj()) * share;
-        let beside: f32 = squares.iter().sum::<f32>() - squares[SIDEBAND];
-        // The mean of two cycles of a turn is short by `sin(x)/x cos(x)`, `x` half a step: to second order.
+        let all: f32 = lines.iter().map(Complex32::norm_sqr).sum();
+        let beside = all - lower.norm_sqr();
         let step = self.turned * share;
+        // A cycle turns the supply once, and the axis by twice the slip.
+        let from_speed = driven.mirrored(upper, mean, step / (2.0 * TAU));
+        // The mean of two cycles of a turn is short by `sin(x)/x cos(x)`, `x` half a step: to second order.
         let per_active = (1.0 + step * step / 6.0) / mean.re.abs();
         let amplitude = |square: f32| libm::sqrtf(square.max(0.0)) * per_active;
         Sidebands {
-            lower: amplitude(squares[SIDEBAND]),
+            lower: amplitude(lower.norm_sqr()),
             upper: amplitude(upper.norm_sqr()),
+            from_speed: amplitude(from_speed.norm_sqr()),
+            from_cage: amplitude((lower - from_speed).norm_sqr()),
             beside: amplitude(beside / (LINES - 1) as f32),
             active: mean.re,
         }
@@ -144,8 +174,23 @@ impl RotorState {
 
 #[cfg(test)]
 mod tests {
+    use motor::TParams;
+
     use super::*;
     use crate::checks::cage::Cage;
+
+    /// At a slip of 2 % some motor that takes 5 - 3j A.
+    const MOTOR: Driven<'_> = Driven {
+        params: &TParams {
+            r_s: 2.0,
+            r_r: 1.2,
+            l_ls: 0.011,
+            l_lr: 0.011,
+            l_m: 0.3,
+        },
+        voltage: 325.0,
+        omega_sync: 50.0 * TAU,
+    };
 
     fn normalised(block: &Sidebands) -> f32 {
         Cage::UNKNOWN.limits(1.0, 2.0).normalised(block)
@@ -165,7 +210,9 @@ mod tests {
             angles.map(&shape).sum::<Complex32>() / 8.0
         };
         let currents = (0..cycles).map(|k| Complex32::new(5.0, -3.0) + mean(k));
-        currents.filter_map(|i| state.follow(i, STEP)).collect()
+        currents
+            .filter_map(|i| state.follow(i, STEP, &MOTOR))
+            .collect()
     }
 
     /// Blocks end up to a step late, where lower and upper are no longer quite orthogonal: one part in a hundred.
@@ -202,17 +249,34 @@ mod tests {
 
     /// A press of the same rhythm swings the current by tens of per cent; a cage with a third of its bars broken does not.
     #[test]
-    fn a_swing_that_no_cage_leaves_is_not_taken_for_bars() {
-        let swings = |share: f32| {
+    fn a_line_that_no_cage_leaves_is_not_taken_for_bars() {
+        let of_a_cage = |share: f32| {
             blocks(1000, move |angle| {
-                Complex32::new(10.0 * share * angle.cos(), 0.0)
+                Complex32::from_polar(5.0 * share, 0.3 - angle)
             })
         };
-        for block in swings(0.3) {
+        for block in of_a_cage(0.3) {
             assert!(block.lower > 0.25 && !counts(&block), "{block:?}");
         }
-        for block in swings(0.15) {
+        for block in of_a_cage(0.15) {
             assert!(counts(&block), "{block:?}");
+        }
+    }
+
+    /// A line above that stands at the mirror image of the one below, as far as ends of blocks between cycles let tell.
+    #[test]
+    fn a_swing_of_the_speed_is_not_taken_for_bars() {
+        let (mean, slip) = (Complex32::new(5.0, -3.0), 0.25 / (2.0 * TAU));
+        for phase in [0.0, 1.0, 2.0, 4.0] {
+            let upper = Complex32::from_polar(0.3, phase);
+            let lower = MOTOR.mirrored(upper, mean, slip);
+            for block in blocks(1000, |angle| {
+                let turned = Complex32::from_polar(1.0, angle);
+                upper * turned + lower * turned.conj()
+            }) {
+                assert!(block.lower > 0.05 && !counts(&block), "{block:?}");
+                assert!(block.from_cage < 0.1 * block.from_speed, "{block:?}");
+            }
         }
     }
 
@@ -231,13 +295,13 @@ mod tests {
     fn a_start_begins_anew_and_no_slip_never_ends() {
         let mut state = RotorState::default();
         for _ in 0..90 {
-            assert_eq!(state.follow(Complex32::ONE, 0.25), None);
+            assert_eq!(state.follow(Complex32::ONE, 0.25, &MOTOR), None);
         }
         for step in [2.0, -2.0, f32::NAN] {
-            assert_eq!(state.follow(Complex32::ONE, step), None);
+            assert_eq!(state.follow(Complex32::ONE, step, &MOTOR), None);
             assert_eq!(state, RotorState::default());
         }
-        assert!((0..100_000).all(|_| state.follow(Complex32::ONE, 0.0).is_none()));
+        assert!((0..100_000).all(|_| state.follow(Complex32::ONE, 0.0, &MOTOR).is_none()));
     }
 
     #[test]
@@ -246,7 +310,7 @@ mod tests {
         let angle = |k: u32| -0.25 * k as f32;
         let current = |k| Complex32::new(-5.0, -3.0) + Complex32::from_polar(0.25, -angle(k));
         let found = (0..200)
-            .find_map(|k| state.follow(current(k), -0.25))
+            .find_map(|k| state.follow(current(k), -0.25, &MOTOR))
             .expect("a block");
         assert!((found.lower - 0.05).abs() < 1e-3, "{found:?}");
     }

@@ -38,7 +38,7 @@ pub fn healthy(
             else {
                 return Ok(());
             };
-            if !limits.normalised(sidebands).is_nan() {
+            if !limits.normalised(sidebands).is_nan() && !limits.is_hidden(sidebands) {
                 blocks.push(block(sidebands, rated));
             }
             Ok(())

@@ -1,5 +1,6 @@
 //! One column of a Parquet file as numbers.
 
+use super::chunk::{Chunk, of_column};
 use super::paged_file::PagedFile;
 use super::pages::Pages;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
@@ -7,7 +8,7 @@ use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader}
 use parquet::data_type::{DataType, Int96};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
-use parquet::schema::types::ColumnDescriptor;
+use parquet::schema::types::{ColumnDescPtr, ColumnDescriptor};
 use std::sync::Arc;
 
 /// How the stored values of a column become numbers.
@@ -112,11 +113,13 @@ fn nanoseconds(instant: Int96) -> i64 {
 /// One column of all groups of rows, read from its beginning to its end; NaN where a row has no number.
 pub(super) struct Column {
     file: Arc<PagedFile>,
-    metadata: Arc<ParquetMetaData>,
+    descriptor: ColumnDescPtr,
     index: usize,
     kind: Kind,
-    /// The group of rows after the one that `reader` reads.
-    next_group: usize,
+    /// Rows of the whole file.
+    rows: u64,
+    /// What follows the group of rows that `reader` reads.
+    chunks: std::vec::IntoIter<Chunk>,
     reader: Option<ColumnReader>,
     /// Definition level of a value that is there; 0 when all are.
     level: i16,
@@ -128,25 +131,22 @@ impl Column {
     /// Before its first value.
     pub fn new(
         file: &Arc<PagedFile>,
-        metadata: &Arc<ParquetMetaData>,
+        metadata: &ParquetMetaData,
         index: usize,
         kind: Kind,
     ) -> Column {
         Column {
             file: Arc::clone(file),
-            metadata: Arc::clone(metadata),
+            descriptor: metadata.file_metadata().schema_descr().column(index),
             index,
             kind,
-            next_group: 0,
+            rows: metadata.file_metadata().num_rows().unsigned_abs(),
+            chunks: of_column(metadata, index).into_iter(),
             reader: None,
             level: 0,
             first: None,
             held: 0,
         }
-    }
-
-    fn rows(&self) -> u64 {
-        self.metadata.file_metadata().num_rows().unsigned_abs()
     }
 
     /// Appends the next `rows` values.
@@ -164,7 +164,7 @@ impl Column {
                 .map_or_else(|| self.next_reader(), |it| Ok(Some(it)))?
             else {
                 let (index, held) = (self.index, self.held + (values.len() - before) as u64);
-                let declared = self.rows();
+                let declared = self.rows;
                 return Err(ParquetError::General(format!(
                     "column {index} holds {held} values, the file declares {declared}"
                 )));
@@ -197,14 +197,13 @@ impl Column {
     }
 
     fn next_reader(&mut self) -> Result<Option<ColumnReader>, ParquetError> {
-        let Some(group) = self.metadata.row_groups().get(self.next_group) else {
+        let Some(chunk) = self.chunks.next() else {
             return Ok(None);
         };
-        self.next_group += 1;
-        let column = group.column(self.index);
-        self.level = column.column_descr().max_def_level();
-        let pages = Pages::new(&self.file, column, self.rows())?;
-        let descriptor = column.column_descr_ptr();
+        self.level = self.descriptor.max_def_level();
+        let column = chunk.metadata(&self.descriptor)?;
+        let pages = Pages::new(&self.file, &column, self.rows)?;
+        let descriptor = self.descriptor.clone();
         Ok(Some(get_column_reader(descriptor, Box::new(pages))))
     }
 

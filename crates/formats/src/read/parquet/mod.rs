@@ -1,6 +1,7 @@
 //! Parquet files: flat columns of numbers, in every encoding and compression of the format but brotli.
 
 mod arrow_schema;
+mod chunk;
 mod column;
 mod content;
 mod extent;
@@ -64,7 +65,6 @@ fn read(name: &str, content: Content) -> Result<Box<dyn TableFile>, Error> {
     extent::check(&metadata, bytes).map_err(|error| damaged(name, &error))?;
     let file = Arc::new(PagedFile::new(content, rows));
     let seal = seal_of(&metadata);
-    let metadata = Arc::new(metadata);
     Ok(Box::new(ParquetFile::new(
         header, &metadata, &file, &used, seal,
     )))

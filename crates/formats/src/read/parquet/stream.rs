@@ -31,7 +31,7 @@ impl ParquetFile {
     /// `used`: index and kind of the columns that the header names; `seal`: what the file says of its numbers.
     pub fn new(
         header: Header,
-        metadata: &Arc<ParquetMetaData>,
+        metadata: &ParquetMetaData,
         file: &Arc<PagedFile>,
         used: &[(usize, Kind)],
         seal: Option<String>,
