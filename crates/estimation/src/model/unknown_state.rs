@@ -7,7 +7,7 @@
 
 use crate::data::case::Case;
 use crate::data::channels::{N_CHANNELS, SPEED};
-use crate::fit::nuisance::Nuisance;
+use crate::fit::nuisance::{Nuisance, unfaded};
 use crate::model::prediction::{Drive, SpeedObserver, as_shown, run};
 use motor::effect::{EffectConfig, Outputs, Plant, StateOffset};
 use num_complex::Complex64;
@@ -31,33 +31,49 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
         return nuisance;
     }
     let meters = speedometers(case, plant);
-    let shown = |offsets: &[StateOffset]| {
+    let outputs = |offsets: &[StateOffset]| {
         let drive = Drive {
             offsets,
             ..Drive::of(case)
         };
-        let outputs = run(case, plant, &drive, SpeedObserver::Off);
-        let read = |meter: &Option<EffectConfig>| as_shown(case, &read_by(meter, plant, &outputs));
-        meters.iter().map(read).collect::<Vec<_>>()
+        run(case, plant, &drive, SpeedObserver::Off)
     };
-    let base = shown(&[]);
+    let read = |meter, outputs: &Outputs| as_shown(case, &read_by(meter, plant, outputs));
+    let without = outputs(&[]);
+    let base: Vec<Vec<f64>> = meters.iter().map(|meter| read(meter, &without)).collect();
     let response = |unknown: &Unknown| {
-        let mut there = shown(&unknown.offsets);
-        let values = there.iter_mut().zip(&base);
-        values
-            .flat_map(|(there, base)| there.iter_mut().zip(base))
-            .for_each(|(x, b)| *x -= b);
-        there
+        let with = outputs(&unknown.offsets);
+        let by_meter = meters.iter().zip(&base);
+        by_meter
+            .map(|(meter, base)| Responses::of(unknown, &stretches, read(meter, &with), base))
+            .collect()
     };
-    let responses: Vec<Vec<Vec<f64>>> = all.par_iter().map(response).collect();
+    let responses: Vec<Vec<Responses>> = all.par_iter().map(response).collect();
     for meter in 0..meters.len() {
-        for (unknown, response) in all.iter().zip(&responses) {
-            for values in unknown.stretches.iter().map(|&k| &stretches[k].values) {
-                nuisance.add(values.start, response[meter][values.clone()].to_vec());
+        for response in responses.iter().flat_map(|by_meter| by_meter.get(meter)) {
+            for (first, values) in &response.0 {
+                nuisance.add(*first, values);
             }
         }
     }
     nuisance
+}
+
+/// What one unknown does to each of its stretches: the row value with which that begins, and the values until it has faded.
+struct Responses(Vec<(usize, Vec<f64>)>);
+
+impl Responses {
+    /// Of weighted rows `there` with the unknown and `base` without it.
+    fn of(unknown: &Unknown, stretches: &[Stretch], mut there: Vec<f64>, base: &[f64]) -> Self {
+        there.iter_mut().zip(base).for_each(|(x, b)| *x -= b);
+        let values = unknown.stretches.iter().map(|&k| &stretches[k].values);
+        let one = |values: &Range<usize>| {
+            let stretch = &there[values.clone()];
+            let kept = unfaded(stretch);
+            (values.start + kept.start, stretch[kept].to_vec())
+        };
+        Responses(values.map(one).collect())
+    }
 }
 
 /// Instruments through which a speed may have been read: as it is, and by the counts of an encoder. Whether that is so is asked
