@@ -3,6 +3,7 @@
 //! They are taken out of measurement, model and derivatives alike, by projection (Frisch and Waugh, 1933, doi:10.2307/1907330):
 //! a fit has no more coordinates, and its result is as if they had been fitted too.
 
+use crate::data::channels::N_CHANNELS;
 use std::ops::Range;
 
 /// Share of a response that must be left beside the others to be a direction of its own.
@@ -18,40 +19,67 @@ pub struct Nuisance {
     directions: Vec<Direction>,
 }
 
-/// A direction; zero outside its stretch. In single precision, which leaves as little of what is taken out as [`FADED`] does: a
-/// long recording has hundreds of them.
+/// A direction; zero outside its stretch, and between its values where they are those of one channel. In single precision, which
+/// leaves as little of what is taken out as [`FADED`] does: a long recording has hundreds of them.
 #[derive(Clone, Debug)]
 struct Direction {
     first: usize,
+    /// From one value to the next: a row, or 1.
+    stride: usize,
     values: Vec<f32>,
 }
 
 impl Direction {
+    /// Of `values`, which begin with the row value `first`, to the length of one.
+    fn of(first: usize, values: &[f64], length: f64) -> Self {
+        let is_of_one_channel = values
+            .iter()
+            .enumerate()
+            .all(|(k, x)| k % N_CHANNELS == 0 || *x == 0.0);
+        let stride = if is_of_one_channel { N_CHANNELS } else { 1 };
+        let values = values.iter().step_by(stride);
+        Direction {
+            first,
+            stride,
+            values: values.map(|x| (x / length) as f32).collect(),
+        }
+    }
+
     fn end(&self) -> usize {
-        self.first + self.values.len()
+        self.first + self.stride * self.values.len().saturating_sub(1) + 1
     }
 
     fn overlaps(&self, there: &Range<usize>) -> bool {
         self.first < there.end && there.start < self.end()
     }
 
-    /// In eight sums, so that it vectorises.
     fn share(&self, there: &[f64]) -> f64 {
-        let mut sums = [0.0; 8];
-        for (d, x) in self.values.chunks(8).zip(there.chunks(8)) {
-            let both = sums.iter_mut().zip(d).zip(x);
-            both.for_each(|((sum, d), x)| *sum += f64::from(*d) * x);
+        match self.stride {
+            1 => mixed_dot(&self.values, there),
+            stride => {
+                let both = self.values.iter().zip(there.iter().step_by(stride));
+                both.map(|(d, x)| f64::from(*d) * x).sum()
+            }
         }
-        sums.iter().sum()
     }
 
     /// Of rows that begin with the row value `begin`.
     fn take_from(&self, rows: &mut [f64], begin: usize) {
-        let there = &mut rows[self.first - begin..][..self.values.len()];
+        let there = &mut rows[self.first - begin..self.end() - begin];
         let share = self.share(there);
-        let both = there.iter_mut().zip(&self.values);
+        let both = there.iter_mut().step_by(self.stride).zip(&self.values);
         both.for_each(|(x, d)| *x -= share * f64::from(*d));
     }
+}
+
+/// In eight sums, so that it vectorises.
+fn mixed_dot(a: &[f32], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    for (a, b) in a.chunks(8).zip(b.chunks(8)) {
+        let both = sums.iter_mut().zip(a).zip(b);
+        both.for_each(|((sum, a), b)| *sum += f64::from(*a) * b);
+    }
+    sums.iter().sum()
 }
 
 impl Nuisance {
@@ -60,10 +88,9 @@ impl Nuisance {
         self.directions.iter().for_each(|d| d.take_from(rows, 0));
     }
 
-    /// Adds what a response has beside those that are there, unless that is nothing. It is zero but for `values`, which begin with the row
-    /// value `first`.
-    pub fn add(&mut self, first: usize, values: &[f64]) {
-        let before = length(values);
+    /// Adds what a response, or a part of it, has beside those that are there, unless that is nothing beside the `whole` response's length. It is
+    /// zero but for `values`, which begin with the row value `first`.
+    pub fn add(&mut self, first: usize, values: &[f64], whole: f64) {
         let there = first..first + values.len();
         let overlapping = self.directions.iter().filter(|d| d.overlaps(&there));
         let begin = overlapping.clone().map(|d| d.first).fold(first, usize::min);
@@ -77,17 +104,16 @@ impl Nuisance {
                 .for_each(|d| d.take_from(&mut left, begin));
         }
         let size = length(&left);
-        if size.is_finite() && size > INDEPENDENT * before {
+        if size.is_finite() && size > INDEPENDENT * whole {
             let kept = unfaded(&left);
-            self.directions.push(Direction {
-                first: begin + kept.start,
-                values: left[kept].iter().map(|x| (x / size) as f32).collect(),
-            });
+            let direction = Direction::of(begin + kept.start, &left[kept], size);
+            self.directions.push(direction);
         }
     }
 }
 
-fn length(values: &[f64]) -> f64 {
+/// Square root of the sum of squares.
+pub fn length(values: &[f64]) -> f64 {
     signal::dot(values, values).sqrt()
 }
 
@@ -113,12 +139,16 @@ mod tests {
     /// Rounding of directions to single precision, times values below ten.
     const SINGLE: f64 = 1e-6;
 
+    fn add(nuisance: &mut Nuisance, first: usize, values: &[f64]) {
+        nuisance.add(first, values, length(values));
+    }
+
     /// Least squares with two more columns, by hand: what they explain is gone, what is at right angles to them stays.
     #[test]
     fn what_the_responses_span_is_taken_out() {
         let mut nuisance = Nuisance::default();
-        nuisance.add(1, &[1.0, 1.0, 0.0]);
-        nuisance.add(1, &[1.0, 0.0, 1.0]);
+        add(&mut nuisance, 1, &[1.0, 1.0, 0.0]);
+        add(&mut nuisance, 1, &[1.0, 0.0, 1.0]);
         // Outside the stretch, a combination of both responses, and (1, -1, -1), which neither of them holds.
         let mut rows = [7.0, 2.0 + 3.0 + 1.0, 2.0 - 1.0, 3.0 - 1.0, -4.0];
         nuisance.project_out(&mut rows);
@@ -131,19 +161,40 @@ mod tests {
     #[test]
     fn what_is_nothing_new_adds_nothing() {
         let mut nuisance = Nuisance::default();
-        nuisance.add(0, &[3.0, 4.0]);
-        nuisance.add(0, &[-6.0, -8.0 + 1e-6]);
-        nuisance.add(0, &[0.0, 0.0]);
-        nuisance.add(0, &[f64::NAN, 1.0]);
+        add(&mut nuisance, 0, &[3.0, 4.0]);
+        add(&mut nuisance, 0, &[-6.0, -8.0 + 1e-6]);
+        add(&mut nuisance, 0, &[0.0, 0.0]);
+        add(&mut nuisance, 0, &[f64::NAN, 1.0]);
         assert_eq!(nuisance.directions.len(), 1);
+    }
+
+    /// One channel alone takes a place a row; it is taken out as well as what all of them share.
+    #[test]
+    fn what_is_in_one_channel_is_kept_in_one() {
+        let mut nuisance = Nuisance::default();
+        let speed = |x: [f64; 3]| x.map(|x| [0.0, 0.0, 0.0, x, 0.0]).concat();
+        add(&mut nuisance, 0, &speed([2.0, 1.0, 0.0]));
+        add(&mut nuisance, 0, &speed([2.0, 1.0, 5.0]));
+        let all = [[1.0, 0.0, 0.0, 7.0, 1.0], [0.0; 5], [0.0; 5]].concat();
+        add(&mut nuisance, 0, &all);
+        let places = nuisance.directions.iter().map(|d| d.values.len());
+        assert_eq!(places.collect::<Vec<_>>(), [2, 1, 9]);
+        // Once each of the three, and what is at right angles to all of them.
+        let left = [[-6.0, 0.0, 0.0, 1.0, -1.0], [0.0, 0.0, 0.0, -2.0, 0.0]].concat();
+        let mut rows = [[-5.0, 0.0, 0.0, 10.0, 0.0], [0.0, 0.0, 0.0, -1.0, 0.0]].concat();
+        rows.extend([0.0, 0.0, 0.0, 4.0, 0.0]);
+        nuisance.project_out(&mut rows);
+        for (x, expected) in rows.iter().zip(left.iter().chain(&[0.0; 5])) {
+            assert!((x - expected).abs() < SINGLE, "{rows:?}");
+        }
     }
 
     /// A response that ends sooner is at right angles to longer ones all the same.
     #[test]
     fn responses_of_other_lengths_are_taken_out_together() {
         let mut nuisance = Nuisance::default();
-        nuisance.add(0, &[1.0, 1.0, 1.0]);
-        nuisance.add(0, &[1.0, 2.0]);
+        add(&mut nuisance, 0, &[1.0, 1.0, 1.0]);
+        add(&mut nuisance, 0, &[1.0, 2.0]);
         let mut rows = [3.0 + 5.0, 3.0 + 10.0, 3.0, 9.0];
         nuisance.project_out(&mut rows);
         for (x, expected) in rows.iter().zip([0.0, 0.0, 0.0, 9.0]) {
@@ -169,8 +220,8 @@ mod tests {
     #[test]
     fn stretches_are_apart() {
         let mut nuisance = Nuisance::default();
-        nuisance.add(0, &[1.0, 1.0]);
-        nuisance.add(2, &[1.0, 1.0]);
+        add(&mut nuisance, 0, &[1.0, 1.0]);
+        add(&mut nuisance, 2, &[1.0, 1.0]);
         let mut rows = [1.0, 3.0, 10.0, 20.0];
         nuisance.project_out(&mut rows);
         assert_eq!(rows.map(f64::round), [-1.0, 1.0, -5.0, 5.0]);

@@ -7,7 +7,7 @@
 
 use crate::data::case::Case;
 use crate::data::channels::{N_CHANNELS, SPEED};
-use crate::fit::nuisance::{Nuisance, unfaded};
+use crate::fit::nuisance::{Nuisance, length, unfaded};
 use crate::model::prediction::{Drive, SpeedObserver, as_shown, run};
 use motor::effect::{EffectConfig, Outputs, Plant, StateOffset};
 use num_complex::Complex64;
@@ -40,43 +40,70 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
     };
     let read = |meter, outputs: &Outputs| as_shown(case, &read_by(meter, plant, outputs));
     let without = outputs(&[]);
-    let base: Vec<Vec<f64>> = meters.iter().map(|meter| read(meter, &without)).collect();
     let response = |unknown: &Unknown| {
         let with = outputs(&unknown.offsets);
-        let by_meter = meters.iter().zip(&base);
-        by_meter
-            .map(|(meter, base)| Responses::of(unknown, &stretches, read(meter, &with), base))
-            .collect()
+        let of = |meter| {
+            let mut there: Vec<f64> = read(meter, &with);
+            let base = read(meter, &without);
+            there.iter_mut().zip(&base).for_each(|(x, b)| *x -= b);
+            there
+        };
+        let plain = of(&None);
+        let others = meters.iter().map(|meter| {
+            let mut other = of(meter);
+            other.iter_mut().zip(&plain).for_each(|(x, p)| *x -= p);
+            Responses::of(unknown, &stretches, &other, &plain)
+        });
+        let mut all: Vec<Responses> = others.collect();
+        all.push(Responses::of(unknown, &stretches, &plain, &plain));
+        all
     };
     let responses: Vec<Vec<Responses>> = all.par_iter().map(response).collect();
-    for meter in 0..meters.len() {
+    // What instruments make of a response is in the speed alone, and stays there as long as nothing else was added.
+    for meter in 0..=meters.len() {
         for response in responses.iter().flat_map(|by_meter| by_meter.get(meter)) {
-            for (first, values) in &response.0 {
-                nuisance.add(*first, values);
-            }
+            response.add_to(&mut nuisance);
         }
     }
     nuisance
 }
 
-/// What one unknown does to each of its stretches: the row value with which that begins, and the values until it has faded.
-struct Responses(Vec<(usize, Vec<f64>)>);
+/// What one unknown does to each of its stretches.
+struct Responses(Vec<Response>);
+
+struct Response {
+    /// Row value with which it begins.
+    first: usize,
+    /// Until it has faded.
+    values: Vec<f64>,
+    /// Length of the response of which they are a part.
+    whole: f64,
+}
 
 impl Responses {
-    /// Of weighted rows `there` with the unknown and `base` without it.
-    fn of(unknown: &Unknown, stretches: &[Stretch], mut there: Vec<f64>, base: &[f64]) -> Self {
-        there.iter_mut().zip(base).for_each(|(x, b)| *x -= b);
-        let values = unknown.stretches.iter().map(|&k| &stretches[k].values);
-        let one = |values: &Range<usize>| {
-            let stretch = &there[values.clone()];
-            let kept = unfaded(stretch);
-            (values.start + kept.start, stretch[kept].to_vec())
+    /// Of weighted rows: a part of a response, and all of it.
+    fn of(unknown: &Unknown, stretches: &[Stretch], part: &[f64], whole: &[f64]) -> Self {
+        let ranges = unknown.stretches.iter().map(|&k| &stretches[k].values);
+        let one = |range: &Range<usize>| {
+            let part = &part[range.clone()];
+            let kept = unfaded(part);
+            Response {
+                first: range.start + kept.start,
+                values: part[kept].to_vec(),
+                whole: length(&whole[range.clone()]),
+            }
         };
-        Responses(values.map(one).collect())
+        Responses(ranges.map(one).collect())
+    }
+
+    fn add_to(&self, nuisance: &mut Nuisance) {
+        for response in &self.0 {
+            nuisance.add(response.first, &response.values, response.whole);
+        }
     }
 }
 
-/// Instruments through which a speed may have been read: as it is, and by the counts of an encoder. Whether that is so is asked
+/// Instruments through which a speed may have been read: the counts of an encoder. Whether that is so is asked
 /// later; until then a start that is unknown looks different through each of them.
 fn speedometers(case: &Case, plant: &Plant) -> Vec<Option<EffectConfig>> {
     let is_judged = case.weight.iter().any(|w| w[SPEED] > 0.0);
@@ -89,7 +116,7 @@ fn speedometers(case: &Case, plant: &Plant) -> Vec<Option<EffectConfig>> {
             Some(config)
         })
     });
-    std::iter::once(None).chain(late).collect()
+    late.collect()
 }
 
 fn read_by<'a>(
