@@ -38,30 +38,32 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
         };
         run(case, plant, &drive, SpeedObserver::Off)
     };
-    let read = |meter, outputs: &Outputs| as_shown(case, &read_by(meter, plant, outputs));
+    let read = |meter: Option<&EffectConfig>, outputs: &Outputs| {
+        as_shown(case, &read_by(meter, plant, outputs))
+    };
     let without = outputs(&[]);
     let response = |unknown: &Unknown| {
         let with = outputs(&unknown.offsets);
         let of = |meter| {
-            let mut there: Vec<f64> = read(meter, &with);
+            let mut there = read(meter, &with);
             let base = read(meter, &without);
             there.iter_mut().zip(&base).for_each(|(x, b)| *x -= b);
             there
         };
-        let plain = of(&None);
+        let plain = of(None);
         let others = meters.iter().map(|meter| {
-            let mut other = of(meter);
+            let mut other = of(Some(meter));
             other.iter_mut().zip(&plain).for_each(|(x, p)| *x -= p);
             Responses::of(unknown, &stretches, &other, &plain)
         });
-        let mut all: Vec<Responses> = others.collect();
-        all.push(Responses::of(unknown, &stretches, &plain, &plain));
-        all
+        let mut parts: Vec<Responses> = others.collect();
+        parts.push(Responses::of(unknown, &stretches, &plain, &plain));
+        parts
     };
     let responses: Vec<Vec<Responses>> = all.par_iter().map(response).collect();
     // What instruments make of a response is in the speed alone, and stays there as long as nothing else was added.
-    for meter in 0..=meters.len() {
-        for response in responses.iter().flat_map(|by_meter| by_meter.get(meter)) {
+    for part in 0..=meters.len() {
+        for response in responses.iter().flat_map(|parts| parts.get(part)) {
             response.add_to(&mut nuisance);
         }
     }
@@ -105,7 +107,7 @@ impl Responses {
 
 /// Instruments through which a speed may have been read: the counts of an encoder. Whether that is so is asked
 /// later; until then a start that is unknown looks different through each of them.
-fn speedometers(case: &Case, plant: &Plant) -> Vec<Option<EffectConfig>> {
+fn speedometers(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
     let is_judged = case.weight.iter().any(|w| w[SPEED] > 0.0);
     let encoders = motor::effects::ALL.iter().filter(|e| e.averages_speed());
     let late = encoders.filter(|_| is_judged).flat_map(|encoder| {
@@ -113,14 +115,14 @@ fn speedometers(case: &Case, plant: &Plant) -> Vec<Option<EffectConfig>> {
         window.grid.iter().map(|late| {
             let mut config = EffectConfig::absent(*encoder, &plant.rated);
             config.values[0] = late * window.scale.of(&plant.rated);
-            Some(config)
+            config
         })
     });
     late.collect()
 }
 
 fn read_by<'a>(
-    meter: &Option<EffectConfig>,
+    meter: Option<&EffectConfig>,
     plant: &Plant,
     outputs: &'a Outputs,
 ) -> Cow<'a, Outputs> {
@@ -255,7 +257,7 @@ mod tests {
                 ..Drive::of(case)
             };
             let outputs = run(case, plant, &drive, SpeedObserver::Off);
-            read_by(&meter, plant, &outputs).into_owned()
+            read_by(meter.as_ref(), plant, &outputs).into_owned()
         };
         let (there, model) = (shown(&[elsewhere]), shown(&[]));
         let rows = (0..case.measured.len()).map(|row| row * case.decimation);
