@@ -9,8 +9,8 @@ use std::ops::Range;
 /// Share of a response that must be left beside the others to be a direction of its own.
 const INDEPENDENT: f64 = 1e-4;
 
-/// Length of what has faded at an end of a response, as a share of all of it: of fluxes wrong by their rated size, which may be 1e5 times the
-/// noise in a recording, a hundredth of the noise is left there.
+/// Length of what has faded at an end of a response, as a share of all of it. Of a response that is 1e5 times as long as the noise of one value,
+/// a hundredth of that noise is left there.
 const FADED: f64 = 1e-7;
 
 /// Directions of unit length, at right angles to each other.
@@ -19,14 +19,14 @@ pub struct Nuisance {
     directions: Vec<Direction>,
 }
 
-/// A direction; zero outside its stretch, and between its values where they are those of one channel. In single precision, which
-/// leaves as little of what is taken out as [`FADED`] does: a long recording has hundreds of them.
+/// A direction; zero outside its stretch, and between its values where they are those of one channel: a long recording has
+/// hundreds of them.
 #[derive(Clone, Debug)]
 struct Direction {
     first: usize,
     /// From one value to the next: a row, or 1.
     stride: usize,
-    values: Vec<f32>,
+    values: Vec<f64>,
 }
 
 impl Direction {
@@ -41,7 +41,7 @@ impl Direction {
         Direction {
             first,
             stride,
-            values: values.map(|x| (x / length) as f32).collect(),
+            values: values.map(|x| x / length).collect(),
         }
     }
 
@@ -55,10 +55,10 @@ impl Direction {
 
     fn share(&self, there: &[f64]) -> f64 {
         match self.stride {
-            1 => mixed_dot(&self.values, there),
+            1 => signal::dot(&self.values, there),
             stride => {
                 let both = self.values.iter().zip(there.iter().step_by(stride));
-                both.map(|(d, x)| f64::from(*d) * x).sum()
+                both.map(|(d, x)| d * x).sum()
             }
         }
     }
@@ -68,18 +68,8 @@ impl Direction {
         let there = &mut rows[self.first - begin..self.end() - begin];
         let share = self.share(there);
         let both = there.iter_mut().step_by(self.stride).zip(&self.values);
-        both.for_each(|(x, d)| *x -= share * f64::from(*d));
+        both.for_each(|(x, d)| *x -= share * d);
     }
-}
-
-/// In eight sums, so that it vectorises.
-fn mixed_dot(a: &[f32], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    for (a, b) in a.chunks(8).zip(b.chunks(8)) {
-        let both = sums.iter_mut().zip(a).zip(b);
-        both.for_each(|((sum, a), b)| *sum += f64::from(*a) * b);
-    }
-    sums.iter().sum()
 }
 
 impl Nuisance {
@@ -136,9 +126,6 @@ pub fn unfaded(values: &[f64]) -> Range<usize> {
 mod tests {
     use super::*;
 
-    /// Rounding of directions to single precision, times values below ten.
-    const SINGLE: f64 = 1e-6;
-
     fn add(nuisance: &mut Nuisance, first: usize, values: &[f64]) {
         nuisance.add(first, values, length(values));
     }
@@ -153,7 +140,7 @@ mod tests {
         let mut rows = [7.0, 2.0 + 3.0 + 1.0, 2.0 - 1.0, 3.0 - 1.0, -4.0];
         nuisance.project_out(&mut rows);
         for (x, expected) in rows.iter().zip([7.0, 1.0, -1.0, -1.0, -4.0]) {
-            assert!((x - expected).abs() < SINGLE, "{rows:?}");
+            assert!((x - expected).abs() < 1e-12, "{rows:?}");
         }
     }
 
@@ -185,7 +172,7 @@ mod tests {
         rows.extend([0.0, 0.0, 0.0, 4.0, 0.0]);
         nuisance.project_out(&mut rows);
         for (x, expected) in rows.iter().zip(left.iter().chain(&[0.0; 5])) {
-            assert!((x - expected).abs() < SINGLE, "{rows:?}");
+            assert!((x - expected).abs() < 1e-12, "{rows:?}");
         }
     }
 
@@ -198,7 +185,7 @@ mod tests {
         let mut rows = [3.0 + 5.0, 3.0 + 10.0, 3.0, 9.0];
         nuisance.project_out(&mut rows);
         for (x, expected) in rows.iter().zip([0.0, 0.0, 0.0, 9.0]) {
-            assert!((x - expected).abs() < SINGLE, "{rows:?}");
+            assert!((x - expected).abs() < 1e-12, "{rows:?}");
         }
     }
 

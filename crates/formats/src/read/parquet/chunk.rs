@@ -1,4 +1,4 @@
-//! Where one column of a group of rows stands: what the library keeps of it takes ten times as much, and eight hours have
+//! Where one column of a group of rows stands: the library keeps much more of it, and eight hours have
 //! thousands of them.
 
 use parquet::basic::Compression;
@@ -28,7 +28,7 @@ impl Chunk {
     /// As the library reads pages by it.
     ///
     /// # Errors
-    /// None of those that the library knows: values of a footer that it has read.
+    /// What the library refuses to build.
     pub fn metadata(&self, column: &ColumnDescPtr) -> Result<ColumnChunkMetaData> {
         ColumnChunkMetaData::builder(column.clone())
             .set_compression(self.compression)
