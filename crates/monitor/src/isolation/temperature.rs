@@ -6,6 +6,10 @@
 //!
 //! Winding and cage seldom warm alike: a motor at light load has a warm winding and a cold cage. How far they are apart is followed
 //! in the same way, but begins as it was in the calibration, and does not move while FAULT is lit.
+//!
+//! What a window leaves open is mostly what the calibration left open, and thousands of windows at the same load leave it open
+//! in the same way. So they are not averaged: a window that tells less than what is known teaches nothing, and time widens what
+//! was known until it tells as much. An hour at light load says little of the winding, which cools meanwhile.
 
 use super::Isolation;
 use super::healthy::Healthy;
@@ -29,20 +33,25 @@ impl Heating {
     }
 }
 
+/// A rise that is followed from window to window.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Followed {
+    known: Heating,
+    /// How far it may have moved since.
+    slack: f32,
+}
+
 /// What is remembered of the temperature.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Temperature {
-    known: Option<Heating>,
-    /// How far the rise may have moved since.
-    slack: f32,
+    /// Rise of both; `None` before the first window.
+    both: Option<Followed>,
     /// Rise that the latest window implied.
     latest: f32,
     /// A fault that heating could be taken for is lit: time does not excuse it.
     is_frozen: bool,
     /// How much more the cage's resistance has risen than the winding's.
-    apart: Heating,
-    /// How far that may have moved since.
-    apart_slack: f32,
+    apart: Followed,
     /// FAULT is lit.
     is_lit: bool,
 }
@@ -58,42 +67,64 @@ pub(super) const MOST_APART: f32 = 0.1;
 const LEARNABLE: f32 = 0.5;
 /// A window that tells the temperature so much better than what was known replaces it.
 const BETTER: f32 = 0.67;
+/// One that tells it so much worse teaches nothing.
+const WORSE: f32 = 1.6;
 /// Beyond so many standard deviations of its range nothing is taken for heating.
 const FARTHEST: f32 = 2.0;
+
+impl Followed {
+    /// What is known by now; no more is open than `most`.
+    fn expected(&self, most: f32) -> Heating {
+        let Heating { rise, deviation } = self.known;
+        let wider = libm::sqrtf(deviation * deviation + self.slack * self.slack);
+        Heating {
+            rise,
+            deviation: wider.min(most),
+        }
+    }
+
+    /// Takes in what a window told: at once where that is much more than what is known, else as far as it can have moved.
+    fn follow(&mut self, seen: Heating, most: f32) {
+        let Heating { rise, deviation } = self.known;
+        let is_as_good = seen.deviation <= WORSE * deviation;
+        if !is_as_good && seen.deviation > self.expected(most).deviation {
+            return;
+        }
+        let is_better = seen.deviation <= BETTER * deviation;
+        let moved = if is_better {
+            seen.rise - rise
+        } else {
+            within(seen.rise - rise, self.slack)
+        };
+        self.known.rise = within(rise + moved, FARTHEST * most);
+        if is_better || !is_as_good {
+            self.known.deviation = seen.deviation;
+        }
+        self.slack = 0.0;
+    }
+}
 
 impl Temperature {
     /// Lets `seconds` pass at a current that is this share of rated.
     pub fn pass(&mut self, seconds: f32, current: f32) {
         let heat = seconds * (current * current).max(1.0);
-        if !self.is_frozen {
-            self.slack += RATE * heat;
+        if let Some(both) = self.both.as_mut().filter(|_| !self.is_frozen) {
+            both.slack += RATE * heat;
         }
         if !self.is_lit {
-            self.apart_slack += APART_RATE * heat;
+            self.apart.slack += APART_RATE * heat;
         }
     }
 
     /// What is known before the next window.
     pub fn expected(&self, healthy: &Healthy) -> Heating {
         let any = Heating::any(healthy);
-        let Some(known) = self.known else {
-            return any;
-        };
-        let deviation = libm::sqrtf(known.deviation * known.deviation + self.slack * self.slack);
-        Heating {
-            rise: known.rise,
-            deviation: deviation.min(any.deviation),
-        }
+        self.both.map_or(any, |both| both.expected(any.deviation))
     }
 
     /// What is known before the next window of how much more the cage's resistance has risen than the winding's.
     pub fn expected_apart(&self) -> Heating {
-        let Heating { rise, deviation } = self.apart;
-        let wider = libm::sqrtf(deviation * deviation + self.apart_slack * self.apart_slack);
-        Heating {
-            rise,
-            deviation: wider.min(MOST_APART),
-        }
+        self.apart.expected(MOST_APART)
     }
 
     /// The rise near which the next window's residuals are best taken for straight lines: what the latest implied.
@@ -103,36 +134,26 @@ impl Temperature {
 
     /// Follows a window that was judged; `fault`: FAULT was lit when it came.
     pub fn follow(&mut self, isolation: &Isolation, healthy: &Healthy, fault: bool) {
-        let farthest = FARTHEST * healthy.uncertainty.heating;
-        self.latest = within(isolation.heating.rise, farthest);
+        let most = healthy.uncertainty.heating;
+        self.latest = within(isolation.heating.rise, FARTHEST * most);
         self.is_frozen = fault && isolation.at_any_temperature < healthy.significance;
         self.is_lit = fault;
         if self.is_frozen || isolation.significance > LEARNABLE * healthy.significance {
             return;
         }
-        let seen = isolation.heating;
-        let old = self
-            .known
-            .filter(|known| seen.deviation > BETTER * known.deviation);
-        let mut new = old.unwrap_or(seen);
-        if old.is_some() {
-            new.rise += within(seen.rise - new.rise, self.slack);
+        match &mut self.both {
+            Some(both) => both.follow(isolation.heating, most),
+            None => {
+                let known = Heating {
+                    rise: self.latest,
+                    ..isolation.heating
+                };
+                self.both = Some(Followed { known, slack: 0.0 });
+            }
         }
-        new.rise = within(new.rise, farthest);
-        self.known = Some(new);
-        self.slack = 0.0;
         if !fault {
-            self.part(isolation.apart);
+            self.apart.follow(isolation.apart, MOST_APART);
         }
-    }
-
-    fn part(&mut self, seen: Heating) {
-        let moved = within(seen.rise - self.apart.rise, self.apart_slack);
-        self.apart = Heating {
-            rise: within(self.apart.rise + moved, FARTHEST * MOST_APART),
-            deviation: self.expected_apart().deviation.min(seen.deviation),
-        };
-        self.apart_slack = 0.0;
     }
 
     /// Lets `seconds` pass without a running motor: what it comes back with is anybody's guess after some minutes.
