@@ -5,32 +5,29 @@
 //! can tell. On a constant load the noise of an input is the only thing that moves a model; what is left of it biases
 //! the parameters that damp it (leakage, inertia).
 
-use super::polynomial::{Smoothed, reach, smooth_where};
-use crate::dot::{dot, dots};
-use num_complex::Complex64;
-use std::ops::Range;
+use super::polynomial::{reach, smooth_where};
+use crate::dot::dot;
+use crate::sample::{Sample, Smoothed};
+use std::borrow::Cow;
+use std::ops::{Add, Mul, Range};
 
 /// Orders of the polynomials that a quadratic leaves over and that are looked for in a window: kinks, steps and up to
 /// three swings.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=6;
-/// Sum of squares of their four coefficients, in variances, above which the window is too long: chance exceeds it in
-/// one window of a hundred (chi-square).
-const LIMIT: f64 = 13.3;
-/// The same for the eight coefficients of a signal of two axes.
-const LIMIT_TWO_AXES: f64 = 20.1;
+/// Sum of squares of their four coefficients, or of the eight of a signal of two axes, in variances, above which the window
+/// is too long: chance exceeds it in one window of a hundred (chi-square).
+const LIMITS: [f64; 2] = [13.3, 20.1];
 
 /// So many limits are no chance, however few windows exceed them: one in a million.
 const FAR: f64 = 2.5;
 
 /// A series of samples and its white noise.
 #[derive(Clone, Copy, Debug)]
-pub struct Noisy<'a> {
-    /// Samples; a signal of one axis has no imaginary part.
-    pub x: &'a [Complex64],
+pub struct Noisy<'a, T> {
+    /// Samples.
+    pub x: &'a [T],
     /// Variance of the noise of each sample, per axis.
     pub variance: &'a [f64],
-    /// Whether both axes carry noise.
-    pub two_axes: bool,
 }
 
 /// The window of each sample.
@@ -45,11 +42,8 @@ pub struct Windows {
 impl Windows {
     /// The longest windows over which a series is a quadratic as far as its noise can tell; none is shorter than
     /// `shortest` samples, except that a sample is left as it is where not even that holds and `may_be_raw`.
-    pub fn longest(series: Noisy<'_>, shortest: usize, may_be_raw: bool) -> Self {
-        let limit = match series.two_axes {
-            true => LIMIT_TWO_AXES,
-            false => LIMIT,
-        };
+    pub fn longest<T: Sample>(series: Noisy<'_, T>, shortest: usize, may_be_raw: bool) -> Self {
+        let limit = LIMITS[T::AXES - 1];
         let mut level = vec![u8::from(!may_be_raw); series.x.len()];
         let mut means = series.x.to_vec();
         let mut variance = series.variance.to_vec();
@@ -75,24 +69,21 @@ impl Windows {
         Self { level, shortest }
     }
 
-    /// Smooths a series with these windows; the operation is linear.
-    pub fn smooth(&self, x: &[Complex64]) -> Smoothed {
-        let mut out = Smoothed {
-            value: x.to_vec(),
-            slope: vec![Complex64::ZERO; x.len()],
-        };
-        let mut means = x.to_vec();
+    /// Smooths a series with these windows: its values, or its [`Line`](crate::Line)s; the operation is linear.
+    pub fn smooth<S: Smoothed>(&self, x: &[S::Of]) -> Vec<S> {
+        let mut out: Vec<S> = x.iter().map(|x| S::raw(*x)).collect();
+        let mut means = Cow::Borrowed(x);
         for number in 1..=self.level.iter().copied().max().unwrap_or(0) {
             let mine = || (0..self.level.len()).filter(|&k| self.level[k] == number);
             let mut needed = vec![false; means.len()];
             for Blocks { first, next, .. } in mine().map(|k| blocks(means.len(), k, number - 1)) {
                 (needed[first], needed[next]) = (true, true);
             }
-            let smoothed = smooth_where(&means, self.shortest, |k| needed[k]);
+            let smoothed: Vec<S> = smooth_where(&means, self.shortest, |k| needed[k]);
             for k in mine() {
-                (out.value[k], out.slope[k]) = between_blocks(&smoothed, k, number - 1);
+                out[k] = between_blocks(&smoothed, k, number - 1);
             }
-            means = halved(&means);
+            means = Cow::Owned(halved(&means));
         }
         out
     }
@@ -117,23 +108,12 @@ impl Windows {
             shortest: self.shortest,
         }
     }
-
-    /// The same for a signal of one axis.
-    pub fn smooth_real(&self, x: &[f64]) -> Vec<f64> {
-        let x: Vec<_> = x.iter().map(|&x| Complex64::new(x, 0.0)).collect();
-        self.smooth(&x).value.iter().map(|x| x.re).collect()
-    }
 }
 
 /// The longest windows of a signal of one axis with noise of the standard deviation `sigma`.
 pub fn longest_real(x: &[f64], sigma: f64, shortest: usize, may_be_raw: bool) -> Windows {
-    let complex: Vec<_> = x.iter().map(|&x| Complex64::new(x, 0.0)).collect();
-    let series = Noisy {
-        x: &complex,
-        variance: &vec![sigma * sigma; x.len()],
-        two_axes: false,
-    };
-    Windows::longest(series, shortest, may_be_raw)
+    let variance = &vec![sigma * sigma; x.len()];
+    Windows::longest(Noisy { x, variance }, shortest, may_be_raw)
 }
 
 /// Level of the longest window that a series of `samples` can hold.
@@ -145,7 +125,7 @@ fn longest_of(samples: usize, shortest: usize) -> u8 {
 /// Means of neighbouring pairs; an odd last one is left out.
 fn halved<T>(x: &[T]) -> Vec<T>
 where
-    T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+    T: Copy + Add<Output = T> + Mul<f64, Output = T>,
 {
     let mean = |pair: &[T]| (pair[0] + pair[1]) * 0.5;
     x.chunks_exact(2).map(mean).collect()
@@ -176,33 +156,29 @@ fn blocks(count: usize, k: usize, halvings: u8) -> Blocks {
     }
 }
 
-/// Value and slope (per sample) at sample `k` of a series whose points are means of `2^halvings` samples.
-fn between_blocks(smoothed: &Smoothed, k: usize, halvings: u8) -> (Complex64, Complex64) {
+/// At sample `k` of a series whose points are means of `2^halvings` samples.
+fn between_blocks<S: Smoothed>(smoothed: &[S], k: usize, halvings: u8) -> S {
     let Blocks {
         first,
         next,
         share,
         length,
-    } = blocks(smoothed.value.len(), k, halvings);
-    let line = |x: &[Complex64]| x[first] + (x[next] - x[first]) * share;
-    (line(&smoothed.value), line(&smoothed.slope) / length)
+    } = blocks(smoothed.len(), k, halvings);
+    let there = smoothed[first].towards(smoothed[next], share);
+    there.of_means(length)
 }
 
 /// How much more than a quadratic the window around each point holds, in variances of the noise.
-fn misfits(x: &[Complex64], variance: &[f64], window: usize) -> Vec<f64> {
+fn misfits<T: Sample>(x: &[T], variance: &[f64], window: usize) -> Vec<f64> {
     let Some(reach) = reach(x.len(), window) else {
         return vec![0.0; x.len()];
     };
     let polynomials = left_over(reach.window);
-    let (re, im): (Vec<f64>, Vec<f64>) = x.iter().map(|x| (x.re, x.im)).unzip();
     let of_window = |first: usize| {
         let part = first..first + reach.window;
         let noise = variance[part.clone()].iter().sum::<f64>() / reach.window as f64;
-        let (re, im) = (&re[part.clone()], &im[part]);
-        let squares = polynomials.iter().map(|p| {
-            let [re, im] = dots(p, [re, im]);
-            re.powi(2) + im.powi(2)
-        });
+        let coefficients = polynomials.iter().map(|p| T::weighted(p, &x[part.clone()]));
+        let squares = coefficients.map(T::square);
         squares.sum::<f64>() / noise.max(f64::MIN_POSITIVE)
     };
     let last = x.len() - reach.window;

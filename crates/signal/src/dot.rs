@@ -1,5 +1,7 @@
 //! Sums of products of long series.
 
+use num_complex::Complex64;
+
 /// Dot product in eight independent sums, so that it vectorises; the shorter series counts.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
@@ -18,24 +20,22 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + tail
 }
 
-/// Dot products of one series with two others of its length, each summed as [`dot`] sums.
-pub fn dots(a: &[f64], [b, c]: [&[f64]; 2]) -> [f64; 2] {
-    let mut sums = [[0.0; 8]; 2];
-    let heads = [a, b, c].map(|x| x.chunks_exact(8));
-    let [tail, tail_b, tail_c] = [&heads[0], &heads[1], &heads[2]].map(|head| head.remainder());
-    let tails = [tail_b, tail_c].map(|other| tail.iter().zip(other).map(|(x, y)| x * y).sum());
-    let [head, head_b, head_c] = heads;
-    for ((x, y), z) in head.zip(head_b).zip(head_c) {
+/// Sum of vectors times weights, each axis summed as [`dot`] sums; the shorter series counts.
+pub fn dot_vectors(weights: &[f64], x: &[Complex64]) -> Complex64 {
+    let mut sums = [Complex64::ZERO; 8];
+    let (head, vectors) = (weights.chunks_exact(8), x.chunks_exact(8));
+    let tail: Complex64 = head
+        .remainder()
+        .iter()
+        .zip(vectors.remainder())
+        .map(|(w, x)| x * w)
+        .sum();
+    for (w, x) in head.zip(vectors) {
         for k in 0..8 {
-            sums[0][k] += x[k] * y[k];
-            sums[1][k] += x[k] * z[k];
+            sums[k] += x[k] * w[k];
         }
     }
-    let [with_b, with_c]: [f64; 2] = tails;
-    [
-        sums[0].iter().sum::<f64>() + with_b,
-        sums[1].iter().sum::<f64>() + with_c,
-    ]
+    sums.iter().sum::<Complex64>() + tail
 }
 
 #[cfg(test)]
@@ -44,12 +44,15 @@ mod tests {
 
     /// To the last bit: what was smoothed before stays as it was.
     #[test]
-    fn two_sums_at_once_are_those_of_one_by_one() {
+    fn vectors_are_summed_as_their_axes_one_by_one() {
         let series = |f: f64| -> Vec<f64> { (0..83).map(|k| (f * f64::from(k)).sin()).collect() };
         let (a, b, c) = (series(0.3), series(1.7), series(2.9));
+        let both = b.iter().zip(&c).map(|(&b, &c)| Complex64::new(b, c));
+        let vectors: Vec<_> = both.collect();
         for n in [0, 5, 8, 83] {
-            let (a, b, c) = (&a[..n], &b[..n], &c[..n]);
-            assert_eq!(dots(a, [b, c]), [dot(a, b), dot(a, c)]);
+            let sum = dot_vectors(&a[..n], &vectors[..n]);
+            assert_eq!(sum.re, dot(&a[..n], &b[..n]));
+            assert_eq!(sum.im, dot(&a[..n], &c[..n]));
         }
     }
 }

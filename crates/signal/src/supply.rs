@@ -3,6 +3,7 @@
 mod steps;
 
 use super::adaptive::{Noisy, Windows};
+use super::sample::{Line, append};
 use num_complex::Complex64;
 use std::ops::Range;
 use steps::{largest, segments};
@@ -257,9 +258,9 @@ impl Supply {
     pub fn joined(mut self, other: Self) -> Self {
         let from = self.u_s.len();
         let behind = |r: &Range<usize>| r.start + from..r.end + from;
-        self.u_s.extend(other.u_s);
-        self.omega_sync.extend(other.omega_sync);
-        self.theta.extend(other.theta);
+        append(&mut self.u_s, &other.u_s);
+        append(&mut self.omega_sync, &other.omega_sync);
+        append(&mut self.theta, &other.theta);
         self.segments.extend(other.segments.iter().map(behind));
         self.raw.extend(other.raw.iter().map(behind));
         self.windows.extend(other.windows);
@@ -312,7 +313,6 @@ impl Supply {
             let series = Noisy {
                 x: &self.envelope(clean, segment),
                 variance: &vec![sigma * sigma; segment.len()],
-                two_axes: true,
             };
             Windows::longest(series, self.window, false)
         };
@@ -354,7 +354,7 @@ impl Supply {
     fn fundamental(&self, raw: &[Complex64]) -> Vec<Complex64> {
         let mut out = Vec::with_capacity(raw.len());
         for (segment, windows) in self.segments.iter().zip(&self.windows) {
-            let smoothed = windows.smooth(&self.envelope(raw, segment)).value;
+            let smoothed: Vec<Complex64> = windows.smooth(&self.envelope(raw, segment));
             let back = |(k, e): (usize, Complex64)| e * Complex64::from_polar(1.0, self.theta[k]);
             out.extend(segment.clone().zip(smoothed).map(back));
         }
@@ -459,9 +459,9 @@ fn angle(
             theta += (u * last.conj()).arg();
             last = *u;
         }
-        Complex64::new(theta, 0.0)
+        theta
     };
-    let all: Vec<_> = raw.iter().map(&mut unwrapped).collect();
+    let all: Vec<f64> = raw.iter().map(&mut unwrapped).collect();
     let (mut value, mut slope) = (Vec::new(), Vec::new());
     for segment in segments {
         // Noise across a vector turns it by its share of the length.
@@ -469,11 +469,10 @@ fn angle(
         let series = Noisy {
             x: &all[segment.clone()],
             variance: &segment.clone().map(noise).collect::<Vec<_>>(),
-            two_axes: false,
         };
-        let smoothed = Windows::longest(series, 2 * window, false).smooth(series.x);
-        value.extend(smoothed.value.iter().map(|x| x.re));
-        slope.extend(smoothed.slope.iter().map(|x| x.re));
+        let smoothed: Vec<Line> = Windows::longest(series, 2 * window, false).smooth(series.x);
+        value.extend(smoothed.iter().map(|line| line.value));
+        slope.extend(smoothed.iter().map(|line| line.slope));
     }
     (value, slope)
 }

@@ -42,7 +42,7 @@ impl Driver {
         let noise = sigma(rec, channel, x);
         let windows = longest_real(x, noise, shortest, may_be_raw);
         Self {
-            value: windows.smooth_real(x),
+            value: windows.smooth(x),
             windows,
             noise,
         }

@@ -2,6 +2,7 @@
 
 use crate::data::case::Case;
 use motor::effect::Cut;
+use signal::append;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -97,17 +98,16 @@ impl Case {
             sample: cut.sample + from,
             ..*cut
         }));
-        timeline.omega_sync.extend(&other.timeline.omega_sync);
-        timeline.theta_mech.extend(&other.timeline.theta_mech);
-        // What is there grows in place: twice of it may be more than fits.
-        self.inputs.u_s.extend(other.inputs.u_s);
-        self.inputs.tau_load.extend(other.inputs.tau_load);
-        self.speed.extend(other.speed);
+        append(&mut timeline.omega_sync, &other.timeline.omega_sync);
+        append(&mut timeline.theta_mech, &other.timeline.theta_mech);
+        append(&mut self.inputs.u_s, &other.inputs.u_s);
+        append(&mut self.inputs.tau_load, &other.inputs.tau_load);
+        append(&mut self.speed, &other.speed);
         self.running_at_cuts.push(other.running_at);
         self.running_at_cuts.extend(other.running_at_cuts);
         self.open.extend(other.open.iter().map(behind));
-        self.measured.extend(other.measured);
-        self.weight.extend(other.weight);
+        append(&mut self.measured, &other.measured);
+        append(&mut self.weight, &other.weight);
         let coarse = self.coarse.take().zip(other.coarse);
         Ok(Case {
             coarse: coarse.map(|(a, b)| a.joined(b)),

@@ -9,8 +9,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
-use signal::dot;
-use signal::refined;
+use signal::{Windows, dot, refined};
 use std::ops::Range;
 
 /// Monte-Carlo draws of the input noise.
@@ -137,25 +136,48 @@ fn disturbed(case: &Case, seed: u64) -> Drive<'_> {
         let normal: f64 = StandardNormal.sample(&mut rng);
         sigma * normal
     };
-    let inputs = drive.inputs.to_mut();
     let coarse = case.coarse.as_ref().unwrap_or(&case.supply);
     let samples = 0..coarse.theta.len();
-    let mut pair = || Complex64::new(draw(noise.voltage), draw(noise.voltage));
-    let voltage: Vec<_> = samples.clone().map(|_| pair()).collect();
-    let voltage = coarse.filter(&voltage);
+    let inputs = drive.inputs.to_mut();
+    let voltage = || Complex64::new(draw(noise.voltage), draw(noise.voltage));
+    add(&mut inputs.u_s, supplied(case, drawn(&samples, voltage)));
+    let torque = drawn(&samples, || draw(noise.torque));
     add(
-        &mut inputs.u_s,
-        coarse.refined_vector(&voltage, &case.supply.theta, case.finer),
+        &mut inputs.tau_load,
+        smoothed(case, &case.load_windows, torque),
     );
-    let torque: Vec<f64> = samples.clone().map(|_| draw(noise.torque)).collect();
-    let torque = case.load_windows.smooth_real(&torque);
-    add(&mut inputs.tau_load, refined(&torque, case.finer));
     if noise.speed > 0.0 {
-        let speed: Vec<f64> = samples.map(|_| draw(noise.speed)).collect();
-        let speed = case.speed_windows.smooth_real(&speed);
-        add(drive.speed.to_mut(), refined(&speed, case.finer));
+        let speed = drawn(&samples, || draw(noise.speed));
+        add(
+            drive.speed.to_mut(),
+            smoothed(case, &case.speed_windows, speed),
+        );
     }
     drive
+}
+
+fn drawn<T>(samples: &Range<usize>, mut one: impl FnMut() -> T) -> Vec<T> {
+    samples.clone().map(|_| one()).collect()
+}
+
+/// What is left of noise of the measured voltage in that which drives the model. A draw is as long as the recording: each step
+/// gives its memory back.
+fn supplied(case: &Case, voltage: Vec<Complex64>) -> Vec<Complex64> {
+    let Some(coarse) = &case.coarse else {
+        return case.supply.filter(&voltage);
+    };
+    let filtered = coarse.filter(&voltage);
+    drop(voltage);
+    coarse.refined_vector(&filtered, &case.supply.theta, case.finer)
+}
+
+/// The same of a signal of one axis that was smoothed with these windows.
+fn smoothed(case: &Case, windows: &Windows, noise: Vec<f64>) -> Vec<f64> {
+    let smooth: Vec<f64> = windows.smooth(&noise);
+    match case.finer {
+        1 => smooth,
+        finer => refined(&smooth, finer),
+    }
 }
 
 fn add<T: std::ops::AddAssign>(to: &mut [T], what: Vec<T>) {

@@ -16,41 +16,64 @@ const FADED: f64 = 1e-7;
 /// Directions of unit length, at right angles to each other.
 #[derive(Clone, Debug, Default)]
 pub struct Nuisance {
-    directions: Vec<Direction>,
+    directions: Vec<Strip>,
 }
 
-/// A direction; zero outside its stretch, and between its values where they are those of one channel: a long recording has
-/// hundreds of them.
+/// Weighted rows that are zero outside a stretch, and between its values where they are those of one channel: a long recording
+/// has hundreds of responses.
 #[derive(Clone, Debug)]
-struct Direction {
+pub struct Strip {
     first: usize,
     /// From one value to the next: a row, or 1.
     stride: usize,
     values: Vec<f64>,
 }
 
-impl Direction {
+impl Strip {
+    /// All channels: `values` begin with the row value `first`.
+    pub fn new(first: usize, values: Vec<f64>) -> Self {
+        Strip {
+            first,
+            stride: 1,
+            values,
+        }
+    }
+
+    /// One channel, from a row on.
+    pub fn of_channel(channel: usize, row: usize, values: Vec<f64>) -> Self {
+        Strip {
+            first: row * N_CHANNELS + channel,
+            stride: N_CHANNELS,
+            values,
+        }
+    }
+
     /// Of `values`, which begin with the row value `first`, to the length of one.
-    fn of(first: usize, values: &[f64], length: f64) -> Self {
+    fn direction(first: usize, values: &[f64], length: f64) -> Self {
         let is_of_one_channel = values
             .iter()
             .enumerate()
             .all(|(k, x)| k % N_CHANNELS == 0 || *x == 0.0);
         let stride = if is_of_one_channel { N_CHANNELS } else { 1 };
         let values = values.iter().step_by(stride);
-        Direction {
+        Strip {
             first,
             stride,
             values: values.map(|x| x / length).collect(),
         }
     }
 
-    fn end(&self) -> usize {
-        self.first + self.stride * self.values.len().saturating_sub(1) + 1
+    /// The row values from its first to its last.
+    fn range(&self) -> Range<usize> {
+        match self.values.len() {
+            0 => self.first..self.first,
+            count => self.first..self.first + self.stride * (count - 1) + 1,
+        }
     }
 
     fn overlaps(&self, there: &Range<usize>) -> bool {
-        self.first < there.end && there.start < self.end()
+        let mine = self.range();
+        mine.start < there.end && there.start < mine.end
     }
 
     fn share(&self, there: &[f64]) -> f64 {
@@ -63,9 +86,10 @@ impl Direction {
         }
     }
 
-    /// Of rows that begin with the row value `begin`.
+    /// Takes it, a direction, from rows that begin with the row value `begin`.
     fn take_from(&self, rows: &mut [f64], begin: usize) {
-        let there = &mut rows[self.first - begin..self.end() - begin];
+        let mine = self.range();
+        let there = &mut rows[mine.start - begin..mine.end - begin];
         let share = self.share(there);
         let both = there.iter_mut().step_by(self.stride).zip(&self.values);
         both.for_each(|(x, d)| *x -= share * d);
@@ -78,15 +102,17 @@ impl Nuisance {
         self.directions.iter().for_each(|d| d.take_from(rows, 0));
     }
 
-    /// Adds what a response, or a part of it, has beside those that are there, unless that is nothing beside the `whole` response's length. It is
-    /// zero but for `values`, which begin with the row value `first`.
-    pub fn add(&mut self, first: usize, values: &[f64], whole: f64) {
-        let there = first..first + values.len();
+    /// Adds what a response, or a part of it, has beside those that are there, unless that is nothing beside the `whole` response's length.
+    pub fn add(&mut self, response: &Strip, whole: f64) {
+        let there = response.range();
         let overlapping = self.directions.iter().filter(|d| d.overlaps(&there));
-        let begin = overlapping.clone().map(|d| d.first).fold(first, usize::min);
-        let end = overlapping.clone().map(Direction::end);
-        let mut left = vec![0.0; end.fold(there.end, usize::max) - begin];
-        left[first - begin..][..values.len()].copy_from_slice(values);
+        let ranges = overlapping.clone().map(Strip::range);
+        let all = ranges.fold(there.clone(), |a, b| a.start.min(b.start)..a.end.max(b.end));
+        let begin = all.start;
+        let mut left = vec![0.0; all.len()];
+        let mine = left[there.start - begin..].iter_mut();
+        let both = mine.step_by(response.stride).zip(&response.values);
+        both.for_each(|(left, x)| *left = *x);
         // Twice: rounding leaves something of the others after the first time.
         for _ in 0..2 {
             overlapping
@@ -96,7 +122,7 @@ impl Nuisance {
         let size = length(&left);
         if size.is_finite() && size > INDEPENDENT * whole {
             let kept = unfaded(&left);
-            let direction = Direction::of(begin + kept.start, &left[kept], size);
+            let direction = Strip::direction(begin + kept.start, &left[kept], size);
             self.directions.push(direction);
         }
     }
@@ -125,9 +151,10 @@ pub fn unfaded(values: &[f64]) -> Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::channels::SPEED;
 
     fn add(nuisance: &mut Nuisance, first: usize, values: &[f64]) {
-        nuisance.add(first, values, length(values));
+        nuisance.add(&Strip::new(first, values.to_vec()), length(values));
     }
 
     /// Least squares with two more columns, by hand: what they explain is gone, what is at right angles to them stays.
@@ -159,9 +186,11 @@ mod tests {
     #[test]
     fn what_is_in_one_channel_is_kept_in_one() {
         let mut nuisance = Nuisance::default();
-        let speed = |x: [f64; 3]| x.map(|x| [0.0, 0.0, 0.0, x, 0.0]).concat();
-        add(&mut nuisance, 0, &speed([2.0, 1.0, 0.0]));
-        add(&mut nuisance, 0, &speed([2.0, 1.0, 5.0]));
+        let mut speed = |x: [f64; 3]| {
+            nuisance.add(&Strip::of_channel(SPEED, 0, x.to_vec()), length(&x));
+        };
+        speed([2.0, 1.0, 0.0]);
+        speed([2.0, 1.0, 5.0]);
         let all = [[1.0, 0.0, 0.0, 7.0, 1.0], [0.0; 5], [0.0; 5]].concat();
         add(&mut nuisance, 0, &all);
         let places = nuisance.directions.iter().map(|d| d.values.len());

@@ -1,7 +1,7 @@
 //! Weighted residuals of a hypothesis, and their derivatives.
 
 use crate::data::case::Case;
-use crate::data::channels::N_CHANNELS;
+use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::data::load_table::{self, Point};
 use crate::model::prior::{Hypothesis, Prior};
 use motor::dynamic::cycle_components;
@@ -125,6 +125,13 @@ pub(crate) fn as_shown(case: &Case, outputs: &Outputs) -> Vec<f64> {
         out.extend(values.iter().zip(w).map(|(x, w)| x * w));
     }
     out
+}
+
+/// The weighted speed of each row, of a speed that an instrument shows, rad/s.
+pub(crate) fn speed_shown(case: &Case, omega_mech: &[f64]) -> Vec<f64> {
+    let speeds = omega_mech.iter().step_by(case.decimation);
+    let both = case.weight.iter().zip(speeds);
+    both.map(|(w, omega)| omega * w[SPEED]).collect()
 }
 
 /// Weighted outputs of a load table.

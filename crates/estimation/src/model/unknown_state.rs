@@ -7,12 +7,11 @@
 
 use crate::data::case::Case;
 use crate::data::channels::{N_CHANNELS, SPEED};
-use crate::fit::nuisance::{Nuisance, length, unfaded};
-use crate::model::prediction::{Drive, SpeedObserver, as_shown, run};
+use crate::fit::nuisance::{Nuisance, Strip, length, unfaded};
+use crate::model::prediction::{Drive, SpeedObserver, as_shown, run, speed_shown};
 use motor::effect::{EffectConfig, Outputs, Plant, StateOffset};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// Offset that shows a response, in the size of rated flux and speed: small against the curvature, large against rounding.
@@ -38,71 +37,47 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
         };
         run(case, plant, &drive, SpeedObserver::Off)
     };
-    let read = |meter: Option<&EffectConfig>, outputs: &Outputs| {
-        as_shown(case, &read_by(meter, plant, outputs))
-    };
     let without = outputs(&[]);
+    let rows_without = as_shown(case, &without);
     let response = |unknown: &Unknown| {
         let with = outputs(&unknown.offsets);
-        let of = |meter| {
-            let mut there = read(meter, &with);
-            let base = read(meter, &without);
-            there.iter_mut().zip(&base).for_each(|(x, b)| *x -= b);
-            there
-        };
-        let plain = of(None);
+        let mut rows = as_shown(case, &with);
+        take(&mut rows, &rows_without);
+        let rows = &rows;
+        let lengths = unknown.lengths(&stretches, rows);
         let others = meters.iter().map(|meter| {
-            let mut other = of(Some(meter));
-            other.iter_mut().zip(&plain).for_each(|(x, p)| *x -= p);
-            Responses::of(unknown, &stretches, &other, &plain)
+            let read = |outputs| speed_shown(case, &read_by(meter, plant, outputs));
+            let mut speed = read(&with);
+            take(&mut speed, &read(&without));
+            let shaft = rows.iter().skip(SPEED).step_by(N_CHANNELS);
+            speed.iter_mut().zip(shaft).for_each(|(x, r)| *x -= r);
+            unknown.in_speed(&stretches, &speed)
         });
-        let mut parts: Vec<Responses> = others.collect();
-        parts.push(Responses::of(unknown, &stretches, &plain, &plain));
-        parts
+        let mut parts: Vec<Vec<Strip>> = others.collect();
+        parts.push(unknown.in_all(&stretches, rows));
+        Responses { lengths, parts }
     };
-    let responses: Vec<Vec<Responses>> = all.par_iter().map(response).collect();
+    let responses: Vec<Responses> = all.par_iter().map(response).collect();
     // What instruments make of a response is in the speed alone, and stays there as long as nothing else was added.
     for part in 0..=meters.len() {
-        for response in responses.iter().flat_map(|parts| parts.get(part)) {
-            response.add_to(&mut nuisance);
+        for response in &responses {
+            let strips = response.parts[part].iter().zip(&response.lengths);
+            strips.for_each(|(strip, length)| nuisance.add(strip, *length));
         }
     }
     nuisance
 }
 
-/// What one unknown does to each of its stretches.
-struct Responses(Vec<Response>);
-
-struct Response {
-    /// Row value with which it begins.
-    first: usize,
-    /// Until it has faded.
-    values: Vec<f64>,
-    /// Length of the response of which they are a part.
-    whole: f64,
+/// What one unknown does to each of its stretches, until it has faded.
+struct Responses {
+    /// Length of the response of each stretch.
+    lengths: Vec<f64>,
+    /// What each instrument makes of it beside that, and the response itself.
+    parts: Vec<Vec<Strip>>,
 }
 
-impl Responses {
-    /// Of weighted rows: a part of a response, and all of it.
-    fn of(unknown: &Unknown, stretches: &[Stretch], part: &[f64], whole: &[f64]) -> Self {
-        let ranges = unknown.stretches.iter().map(|&k| &stretches[k].values);
-        let one = |range: &Range<usize>| {
-            let part = &part[range.clone()];
-            let kept = unfaded(part);
-            Response {
-                first: range.start + kept.start,
-                values: part[kept].to_vec(),
-                whole: length(&whole[range.clone()]),
-            }
-        };
-        Responses(ranges.map(one).collect())
-    }
-
-    fn add_to(&self, nuisance: &mut Nuisance) {
-        for response in &self.0 {
-            nuisance.add(response.first, &response.values, response.whole);
-        }
-    }
+fn take(from: &mut [f64], what: &[f64]) {
+    from.iter_mut().zip(what).for_each(|(x, w)| *x -= w);
 }
 
 /// Instruments through which a speed may have been read: the counts of an encoder. Whether that is so is asked
@@ -121,17 +96,17 @@ fn speedometers(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
     late.collect()
 }
 
-fn read_by<'a>(
-    meter: Option<&EffectConfig>,
-    plant: &Plant,
-    outputs: &'a Outputs,
-) -> Cow<'a, Outputs> {
-    let mut read = Cow::Borrowed(outputs);
-    if let Some(config) = meter {
-        let values = config.effect.prepared(&config.values, &plant.rated);
-        config.effect.outputs(&values, &plant.rated, read.to_mut());
-    }
-    read
+/// The speed that an instrument shows, rad/s.
+fn read_by(meter: &EffectConfig, plant: &Plant, outputs: &Outputs) -> Vec<f64> {
+    let mut read = Outputs {
+        t_start: outputs.t_start,
+        t_sample: outputs.t_sample,
+        omega_mech: outputs.omega_mech.clone(),
+        ..Outputs::default()
+    };
+    let values = meter.effect.prepared(&meter.values, &plant.rated);
+    meter.effect.outputs(&values, &plant.rated, &mut read);
+    read.omega_mech
 }
 
 /// A stretch that nothing interrupts.
@@ -190,6 +165,39 @@ struct Unknown {
     offsets: Vec<StateOffset>,
     /// Their numbers.
     stretches: Vec<usize>,
+}
+
+impl Unknown {
+    fn ranges<'a>(&'a self, stretches: &'a [Stretch]) -> impl Iterator<Item = &'a Range<usize>> {
+        self.stretches.iter().map(|&k| &stretches[k].values)
+    }
+
+    /// Length of what it does to each of its stretches.
+    fn lengths(&self, stretches: &[Stretch], rows: &[f64]) -> Vec<f64> {
+        let ranges = self.ranges(stretches);
+        ranges.map(|range| length(&rows[range.clone()])).collect()
+    }
+
+    /// Of weighted rows, what is there of it in each of its stretches.
+    fn in_all(&self, stretches: &[Stretch], rows: &[f64]) -> Vec<Strip> {
+        let one = |range: &Range<usize>| {
+            let part = &rows[range.clone()];
+            let kept = unfaded(part);
+            Strip::new(range.start + kept.start, part[kept].to_vec())
+        };
+        self.ranges(stretches).map(one).collect()
+    }
+
+    /// The same of the weighted speed of each row.
+    fn in_speed(&self, stretches: &[Stretch], speed: &[f64]) -> Vec<Strip> {
+        let one = |range: &Range<usize>| {
+            let first = range.start / N_CHANNELS;
+            let part = &speed[first..range.end / N_CHANNELS];
+            let kept = unfaded(part);
+            Strip::of_channel(SPEED, first + kept.start, part[kept].to_vec())
+        };
+        self.ranges(stretches).map(one).collect()
+    }
 }
 
 fn unknowns(stretches: &[Stretch], plant: &Plant) -> Vec<Unknown> {
@@ -256,8 +264,12 @@ mod tests {
                 offsets,
                 ..Drive::of(case)
             };
-            let outputs = run(case, plant, &drive, SpeedObserver::Off);
-            read_by(meter.as_ref(), plant, &outputs).into_owned()
+            let mut outputs = run(case, plant, &drive, SpeedObserver::Off);
+            if let Some(config) = &meter {
+                let values = config.effect.prepared(&config.values, &plant.rated);
+                config.effect.outputs(&values, &plant.rated, &mut outputs);
+            }
+            outputs
         };
         let (there, model) = (shown(&[elsewhere]), shown(&[]));
         let rows = (0..case.measured.len()).map(|row| row * case.decimation);

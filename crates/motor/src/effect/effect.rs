@@ -192,7 +192,8 @@ pub trait Effect: SteadyEffect {
         }
     }
 
-    /// Whether it shows the speed as a mean over a window that its first parameter sets, as counts of an encoder do.
+    /// Whether it shows the speed as a mean over a window that its first parameter sets, as counts of an encoder do. Of the
+    /// outputs it changes the speed alone, and asks for nothing else.
     fn averages_speed(&self) -> bool {
         false
     }

@@ -1,4 +1,6 @@
 use super::*;
+use crate::sample::Line;
+use num_complex::Complex64;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -22,7 +24,7 @@ fn rms(x: impl Iterator<Item = f64>) -> f64 {
 fn a_constant_loses_its_noise() {
     let x: Vec<f64> = noise(60_000, 1.0, 1).iter().map(|e| 20.0 + e).collect();
     let windows = longest_real(&x, 1.0, 25, true);
-    let smooth = windows.smooth_real(&x);
+    let smooth: Vec<f64> = windows.smooth(&x);
     let left = rms(smooth.iter().map(|y| y - 20.0));
     assert!(left < 0.05, "{left}");
     let longest = *windows.level.iter().max().expect("samples");
@@ -38,7 +40,7 @@ fn a_step_stays_a_step() {
         .enumerate()
         .map(|(k, e)| clean(k) + e)
         .collect();
-    let smooth = longest_real(&x, 1.0, 25, true).smooth_real(&x);
+    let smooth: Vec<f64> = longest_real(&x, 1.0, 25, true).smooth(&x);
     let worst = smooth
         .iter()
         .enumerate()
@@ -64,7 +66,7 @@ fn a_kink_is_not_rounded_by_more_than_noise() {
             .enumerate()
             .map(|(k, e)| clean(k) + e)
             .collect();
-        let smooth = longest_real(&x, 1.0, 25, false).smooth_real(&x);
+        let smooth: Vec<f64> = longest_real(&x, 1.0, 25, false).smooth(&x);
         smooth[9_000..11_000]
             .iter()
             .zip(9_000..)
@@ -83,8 +85,8 @@ fn what_is_faster_than_any_window_stays() {
     let x: Vec<f64> = (0..2000)
         .map(|k| 10.0 * (2.0 * f64::from(k)).sin())
         .collect();
-    assert_eq!(longest_real(&x, 0.1, 25, true).smooth_real(&x), x);
-    let smoothed = longest_real(&x, 0.1, 25, false).smooth_real(&x);
+    assert_eq!(longest_real(&x, 0.1, 25, true).smooth::<f64>(&x), x);
+    let smoothed: Vec<f64> = longest_real(&x, 0.1, 25, false).smooth(&x);
     assert!(rms(smoothed[50..1950].iter().copied()) < 3.0);
 }
 
@@ -93,24 +95,23 @@ fn what_is_faster_than_any_window_stays() {
 fn a_swing_keeps_its_value_and_slope() {
     let omega = std::f64::consts::TAU / 4000.0;
     let clean = |k: usize| 30.0 * (omega * k as f64).sin();
-    let x: Vec<Complex64> = noise(20_000, 0.5, 4)
+    let x: Vec<f64> = noise(20_000, 0.5, 4)
         .iter()
         .enumerate()
-        .map(|(k, e)| Complex64::new(clean(k) + e, 0.0))
+        .map(|(k, e)| clean(k) + e)
         .collect();
     let variance = vec![0.25; x.len()];
     let series = Noisy {
         x: &x,
         variance: &variance,
-        two_axes: false,
     };
-    let smoothed = Windows::longest(series, 25, false).smooth(&x);
+    let smoothed: Vec<Line> = Windows::longest(series, 25, false).smooth(&x);
     let inside = 500..19_500;
-    let off = rms(inside.clone().map(|k| smoothed.value[k].re - clean(k)));
+    let off = rms(inside.clone().map(|k| smoothed[k].value - clean(k)));
     // Less than windows of 100 samples would leave: 0.5 x 1.5/10.
     assert!(off < 0.075, "{off}");
     let slope = |k: usize| 30.0 * omega * (omega * k as f64).cos();
-    let off = rms(inside.map(|k| smoothed.slope[k].re - slope(k)));
+    let off = rms(inside.map(|k| smoothed[k].slope - slope(k)));
     assert!(off < 0.1 * 30.0 * omega, "{off}");
 }
 
@@ -134,13 +135,12 @@ fn smoothing_is_linear_in_what_is_smoothed() {
         Noisy {
             x: &one,
             variance: &variance,
-            two_axes: true,
         },
         50,
         true,
     );
     let sum: Vec<_> = one.iter().zip(&two).map(|(a, b)| a + b).collect();
-    let [one, two, sum] = [one, two, sum].map(|x| windows.smooth(&x).value);
+    let [one, two, sum] = [one, two, sum].map(|x| windows.smooth::<Complex64>(&x));
     for ((one, two), sum) in one.iter().zip(&two).zip(&sum) {
         assert!((one + two - sum).norm() < 1e-9);
     }
@@ -166,22 +166,16 @@ fn what_is_left_over_is_no_quadratic() {
 /// Chance exceeds the limits in one window of a hundred.
 #[test]
 fn the_limits_are_those_of_chi_square() {
-    let exceeds = |two_axes: bool, limit: f64| {
-        let [re, im] = [21, 22].map(|seed| noise(2_000_000, 1.0, seed));
-        let x: Vec<_> = re
-            .iter()
-            .zip(&im)
-            .map(|(&re, &im)| Complex64::new(re, if two_axes { im } else { 0.0 }))
-            .collect();
-        let variance = vec![1.0; 50];
+    fn exceed<T: Sample>(x: &[T]) -> usize {
         let windows = x
             .chunks_exact(49)
-            .map(|part| misfits(part, &variance[..49], 49)[20]);
-        windows.filter(|&m| m > limit).count()
-    };
+            .map(|part| misfits(part, &[1.0; 49], 49)[20]);
+        windows.filter(|&m| m > LIMITS[T::AXES - 1]).count()
+    }
+    let [re, im] = [21, 22].map(|seed| noise(2_000_000, 1.0, seed));
+    let both = re.iter().zip(&im).map(|(&re, &im)| Complex64::new(re, im));
     // 40816 windows: 408 expected, four deviations of a count.
-    for (two_axes, limit) in [(false, LIMIT), (true, LIMIT_TWO_AXES)] {
-        let count = exceeds(two_axes, limit);
+    for count in [exceed(&re), exceed(&both.collect::<Vec<_>>())] {
         assert!((327..=489).contains(&count), "{count}");
     }
 }
@@ -215,7 +209,7 @@ fn parts_of_a_series_have_windows_that_fit() {
     let windows = longest_real(&noise, 1.0, 16, false);
     for length in [3, 20, 40, 700] {
         let part = windows.taken(std::slice::from_ref(&(100..100 + length)));
-        let smoothed = part.smooth_real(&noise[100..100 + length]);
+        let smoothed: Vec<f64> = part.smooth(&noise[100..100 + length]);
         assert_eq!(smoothed.len(), length);
         assert!(smoothed.iter().all(|x| x.is_finite()));
     }

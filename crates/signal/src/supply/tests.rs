@@ -220,7 +220,6 @@ fn where_the_raw_voltage_is_used_its_noise_is_too() {
             Noisy {
                 x: &[Complex64::ZERO; 300],
                 variance: &[1.0; 300],
-                two_axes: true,
             },
             41,
             false,
