@@ -30,23 +30,29 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
         return nuisance;
     }
     let meters = speedometers(case, plant);
-    let outputs = |offsets: &[StateOffset]| {
+    // As shown, and the shaft's speed: of a long recording no more is kept.
+    let shown = |offsets: &[StateOffset]| {
         let drive = Drive {
             offsets,
             ..Drive::of(case)
         };
-        run(case, plant, &drive, SpeedObserver::Off)
+        let outputs = run(case, plant, &drive, SpeedObserver::Off);
+        let speed = Outputs {
+            t_start: outputs.t_start,
+            t_sample: outputs.t_sample,
+            omega_mech: outputs.omega_mech.clone(),
+            ..Outputs::default()
+        };
+        (as_shown(case, &outputs), speed)
     };
-    let without = outputs(&[]);
-    let rows_without = as_shown(case, &without);
+    let (rows_without, without) = shown(&[]);
     let response = |unknown: &Unknown| {
-        let with = outputs(&unknown.offsets);
-        let mut rows = as_shown(case, &with);
+        let (mut rows, with) = shown(&unknown.offsets);
         take(&mut rows, &rows_without);
         let rows = &rows;
         let lengths = unknown.lengths(&stretches, rows);
         let others = meters.iter().map(|meter| {
-            let read = |outputs| speed_shown(case, &read_by(meter, plant, outputs));
+            let read = |speed| speed_shown(case, &read_by(meter, plant, speed));
             let mut speed = read(&with);
             take(&mut speed, &read(&without));
             let shaft = rows.iter().skip(SPEED).step_by(N_CHANNELS);
@@ -96,14 +102,9 @@ fn speedometers(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
     late.collect()
 }
 
-/// The speed that an instrument shows, rad/s.
-fn read_by(meter: &EffectConfig, plant: &Plant, outputs: &Outputs) -> Vec<f64> {
-    let mut read = Outputs {
-        t_start: outputs.t_start,
-        t_sample: outputs.t_sample,
-        omega_mech: outputs.omega_mech.clone(),
-        ..Outputs::default()
-    };
+/// The speed that an instrument shows, rad/s, of outputs that hold the shaft's alone.
+fn read_by(meter: &EffectConfig, plant: &Plant, speed: &Outputs) -> Vec<f64> {
+    let mut read = speed.clone();
     let values = meter.effect.prepared(&meter.values, &plant.rated);
     meter.effect.outputs(&values, &plant.rated, &mut read);
     read.omega_mech

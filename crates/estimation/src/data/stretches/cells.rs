@@ -164,6 +164,11 @@ impl Cells {
         self.rows += 1;
     }
 
+    /// Samples of a time, s.
+    pub fn samples(&self, seconds: f64) -> usize {
+        (seconds / self.t_sample).round() as usize
+    }
+
     /// Rows so far.
     pub fn rows(&self) -> usize {
         self.rows

@@ -60,7 +60,8 @@ pub(super) struct Wanted {
 pub struct Budget {
     /// Length of a stretch, s.
     pub stretch_s: f64,
-    /// Stretches that are fitted, or compared.
+    /// Stretches that are fitted, or compared, where each stands alone. One that goes on where another ends needs no time to
+    /// settle: more of those take as long.
     pub fitted: usize,
     /// Stretches that are not fitted and prove.
     pub proving: usize,
@@ -109,7 +110,7 @@ pub(super) fn chosen(cells: &Cells, budget: Budget) -> Vec<Wanted> {
     }
     let scales = scales(&usable);
     let features = features(&usable, &scales, cells.rows());
-    let fitted = least_alike(&features, budget.fitted);
+    let fitted = fitted(&features, &usable, cells, budget.fitted);
     let proving = like(&features, &fitted, budget.proving);
     let mut all: Vec<(usize, Role)> = fitted.iter().map(|k| (*k, Role::Fitted)).collect();
     all.extend(proving.iter().map(|k| (*k, Role::Proves)));
@@ -128,7 +129,7 @@ pub(super) fn chosen(cells: &Cells, budget: Budget) -> Vec<Wanted> {
 
 impl Wanted {
     fn of(cell: &Cell, role: Role, cells: &Cells, run: &Run, why: String) -> Self {
-        let samples = |seconds: f64| (seconds / cells.t_sample).round() as usize;
+        let samples = |seconds: f64| cells.samples(seconds);
         let settles = samples(SETTLES).min(cell.first - run.start);
         let begin = cell.first - settles;
         let end = cell.first + cells.length;
@@ -166,6 +167,24 @@ impl Wanted {
             self.told.why += &format!("; then {}", next.told.why);
         }
     }
+}
+
+/// Those that differ most, as many as take no longer than `alone` stretches that stand alone.
+fn fitted(features: &[Vec<f64>], usable: &[&Cell], cells: &Cells, alone: usize) -> Vec<usize> {
+    let settles = cells.samples(SETTLES);
+    let longest = alone * (cells.length + settles);
+    let most = (longest / cells.length.max(1)).min(features.len());
+    let simulated = |taken: &Vec<usize>| {
+        let goes_on = |pair: &&[usize]| {
+            let [before, cell] = [usable[pair[0]], usable[pair[1]]];
+            before.run == cell.run && before.first + cells.length == cell.first
+        };
+        let going_on = taken.windows(2).filter(goes_on).count();
+        taken.len() * cells.length + (taken.len() - going_on) * settles
+    };
+    let all = (alone..=most).map(|count| least_alike(features, count));
+    let fitting = all.take_while(|taken| simulated(taken) <= longest).last();
+    fitting.unwrap_or_else(|| least_alike(features, alone))
 }
 
 /// What is usual of each quantity; the recording's own, so that a small motor's step is one too.

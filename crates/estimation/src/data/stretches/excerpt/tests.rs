@@ -242,3 +242,20 @@ fn a_clock_that_is_rounded_leaves_no_stretch_out() {
         assert!((case.time_of(0) - used[0].from_s).abs() < 0.51);
     }
 }
+
+/// What is simulated has a limit: four seconds that stand alone take half a second each before they are judged, as long as five
+/// in a row with one such half.
+#[test]
+fn stretches_in_a_row_are_more_than_those_that_stand_alone() {
+    for (seconds, taken) in [(5.0, 5), (60.0, 4)] {
+        let excerpt = excerpt(&pieces(&specimen::recording(seconds, |_| 1.0), 7_001));
+        let fitted: f64 = spans(&excerpt, Role::Fitted)
+            .iter()
+            .map(|(from, to)| to - from)
+            .sum();
+        assert!((fitted - f64::from(taken)).abs() < 1e-6, "{fitted}");
+        let case = case(&excerpt, Role::Fitted);
+        let simulated = case.measured.len() as f64 * case.t_row();
+        assert!(simulated < 4.0 * 1.5 + 1e-6, "{simulated}");
+    }
+}
