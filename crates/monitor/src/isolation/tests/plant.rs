@@ -5,7 +5,7 @@ use motor::steady_state::{OperatingPoint, SteadyState};
 use num_complex::{Complex32, Complex64};
 
 use crate::checks::sensors::Phase;
-use crate::config::MonitorConfig;
+use crate::config::{LoadKind, MonitorConfig};
 use crate::frames::Sequence;
 use crate::input::sample::CHANNELS;
 use crate::isolation::{Healthy, ROWS, Uncertainty};
@@ -153,6 +153,17 @@ pub fn evidence(plant: &Plant) -> Evidence {
     monitor()
         .evidence(&statistics(), &window)
         .expect("voltages, currents and speed are there")
+}
+
+/// What a monitor that knows no load makes of it.
+pub fn evidence_of_any_load(plant: &Plant) -> Evidence {
+    let free = MonitorConfig {
+        load: LoadKind::Free,
+        ..config()
+    };
+    let monitor = Monitor::new(free).expect("a valid motor");
+    let evidence = monitor.evidence(&statistics(), &plant.window());
+    evidence.expect("voltages, currents and speed are there")
 }
 
 /// Index of a phase in arrays over a, b, c.
