@@ -84,9 +84,8 @@ fn join<S: Smoothed>(
         let mut end = None;
         if (k..next).any(&needed) {
             let (here, there) = (known.unwrap_or_else(|| at(k)), at(next));
-            for j in k..next {
-                let share = (j - k) as f64 / (next - k) as f64;
-                out[j] = here.towards(there, share);
+            for (j, out) in out[k..next].iter_mut().enumerate() {
+                *out = here.towards(there, j as f64 / (next - k) as f64);
             }
             end = Some(there);
         }
