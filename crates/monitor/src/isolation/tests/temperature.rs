@@ -74,7 +74,9 @@ fn a_motor_that_cooled_at_light_load_is_cold_when_the_load_comes() {
         };
         let mut watch = Watch::default();
         let warm = evidence_of_any_load(&at(0.2, 1.0));
-        (0..50).for_each(|_| drop(watch.look_at(&warm)));
+        for _ in 0..50 {
+            watch.look_at(&warm);
+        }
         let known = watch.temperature.expected(&statistics());
         assert!(known.deviation < 0.04, "{known:?}");
         for second in 0..1800 {
