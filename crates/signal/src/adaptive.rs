@@ -177,7 +177,7 @@ fn misfits<T: Sample>(x: &[T], variance: &[f64], window: usize) -> Vec<f64> {
     let of_window = |first: usize| {
         let part = first..first + reach.window;
         let noise = variance[part.clone()].iter().sum::<f64>() / reach.window as f64;
-        let coefficients = polynomials.iter().map(|p| T::weighted(p, &x[part.clone()]));
+        let coefficients = polynomials.iter().map(|p| dot(p, &x[part.clone()]));
         let squares = coefficients.map(T::square);
         squares.sum::<f64>() / noise.max(f64::MIN_POSITIVE)
     };

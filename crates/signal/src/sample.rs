@@ -1,6 +1,6 @@
 //! Samples of one axis or of two, and what a smoothed series tells at each of them.
 
-use crate::dot::{dot, dot_vectors};
+use crate::dot::dot;
 use num_complex::Complex64;
 use std::fmt::Debug;
 use std::ops::{Add, Mul, Sub};
@@ -11,9 +11,8 @@ pub trait Sample:
 {
     /// Axes, each with noise of its own.
     const AXES: usize;
-
-    /// Sum of as many samples as there are weights, each times its weight.
-    fn weighted(weights: &[f64], x: &[Self]) -> Self;
+    /// The sample without a value.
+    const ZERO: Self;
 
     /// Sum of the squares of its axes.
     fn square(self) -> f64;
@@ -21,10 +20,7 @@ pub trait Sample:
 
 impl Sample for f64 {
     const AXES: usize = 1;
-
-    fn weighted(weights: &[f64], x: &[Self]) -> Self {
-        dot(weights, x)
-    }
+    const ZERO: Self = 0.0;
 
     fn square(self) -> f64 {
         self * self
@@ -33,10 +29,7 @@ impl Sample for f64 {
 
 impl Sample for Complex64 {
     const AXES: usize = 2;
-
-    fn weighted(weights: &[f64], x: &[Self]) -> Self {
-        dot_vectors(weights, x)
-    }
+    const ZERO: Self = Complex64::ZERO;
 
     fn square(self) -> f64 {
         self.norm_sqr()
@@ -82,7 +75,7 @@ impl<T: Sample> Smoothed for T {
     }
 
     fn of(weights: &Weights, window: &[T]) -> T {
-        T::weighted(&weights.value, window)
+        dot(&weights.value, window)
     }
 
     fn towards(self, other: T, share: f64) -> T {

@@ -324,8 +324,8 @@ impl Supply {
     pub fn finer(&self, factor: usize) -> Self {
         let times = |r: &Range<usize>| r.start * factor..r.end * factor;
         let mut finer = Self {
-            theta: refined(&self.theta, factor),
-            omega_sync: refined(&self.omega_sync, factor),
+            theta: refined(self.theta.clone(), factor),
+            omega_sync: refined(self.omega_sync.clone(), factor),
             segments: self.segments.iter().map(times).collect(),
             raw: self.raw.iter().map(times).collect(),
             harmonics: self.harmonics.clone(),
@@ -343,7 +343,7 @@ impl Supply {
         let envelope = |(x, theta): (&Complex64, &f64)| x * Complex64::from_polar(1.0, -theta);
         let envelope: Vec<_> = x.iter().zip(&self.theta).map(envelope).collect();
         let back = |(e, theta): (Complex64, &f64)| e * Complex64::from_polar(1.0, *theta);
-        refined(&envelope, factor)
+        refined(envelope, factor)
             .into_iter()
             .zip(theta)
             .map(back)
@@ -427,14 +427,17 @@ impl Harmonics {
     }
 }
 
-/// A series at `factor` times the rate, on straight lines between its samples.
-pub fn refined<T>(x: &[T], factor: usize) -> Vec<T>
+/// A series at `factor` times the rate, 1 or more, on straight lines between its samples.
+pub fn refined<T>(x: Vec<T>, factor: usize) -> Vec<T>
 where
     T: Copy
         + std::ops::Add<Output = T>
         + std::ops::Sub<Output = T>
         + std::ops::Mul<f64, Output = T>,
 {
+    if factor == 1 {
+        return x;
+    }
     let line = |pair: &[T]| {
         let (first, step) = (pair[0], (pair[1] - pair[0]) * (1.0 / factor as f64));
         (0..factor).map(move |k| first + step * k as f64)

@@ -146,7 +146,7 @@ impl Case {
         };
         let t_sample = t_sample / finer as f64;
         let between = between(rec, t_sample);
-        let fine = |x: Vec<f64>| if finer == 1 { x } else { refined(&x, finer) };
+        let fine = |x: Vec<f64>| refined(x, finer);
         let theta_mech = fine(measured_angle(rec));
         let running_at = running_at(rec, rated);
         let mut case = Self {

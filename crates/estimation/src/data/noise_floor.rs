@@ -173,11 +173,7 @@ fn supplied(case: &Case, voltage: Vec<Complex64>) -> Vec<Complex64> {
 
 /// The same of a signal of one axis that was smoothed with these windows.
 fn smoothed(case: &Case, windows: &Windows, noise: Vec<f64>) -> Vec<f64> {
-    let smooth: Vec<f64> = windows.smooth(&noise);
-    match case.finer {
-        1 => smooth,
-        finer => refined(&smooth, finer),
-    }
+    refined(windows.smooth(&noise), case.finer)
 }
 
 fn add<T: std::ops::AddAssign>(to: &mut [T], what: Vec<T>) {

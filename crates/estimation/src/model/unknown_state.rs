@@ -37,13 +37,7 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
             ..Drive::of(case)
         };
         let outputs = run(case, plant, &drive, SpeedObserver::Off);
-        let speed = Outputs {
-            t_start: outputs.t_start,
-            t_sample: outputs.t_sample,
-            omega_mech: outputs.omega_mech.clone(),
-            ..Outputs::default()
-        };
-        (as_shown(case, &outputs), speed)
+        (as_shown(case, &outputs), speed_of(&outputs))
     };
     let (rows_without, without) = shown(&[]);
     let response = |unknown: &Unknown| {
@@ -100,6 +94,16 @@ fn speedometers(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
         })
     });
     late.collect()
+}
+
+/// The shaft's speed alone.
+fn speed_of(outputs: &Outputs) -> Outputs {
+    Outputs {
+        t_start: outputs.t_start,
+        t_sample: outputs.t_sample,
+        omega_mech: outputs.omega_mech.clone(),
+        ..Outputs::default()
+    }
 }
 
 /// The speed that an instrument shows, rad/s, of outputs that hold the shaft's alone.
@@ -357,6 +361,27 @@ mod tests {
         case.supply.segments = vec![0..n / 2, n / 2..n];
         let left = left(&mut case, &plant, elsewhere);
         assert!(left < 0.01, "{left}");
+    }
+
+    /// An instrument that averages the speed changes nothing else, and needs nothing else: what it is shown here is enough.
+    #[test]
+    fn an_instrument_of_the_speed_reads_the_speed_alone() {
+        let (case, plant) = running();
+        let outputs = run(&case, &plant, &Drive::of(&case), SpeedObserver::Off);
+        let meters = speedometers(&case, &plant);
+        assert!(!meters.is_empty());
+        for meter in meters {
+            let mut whole = outputs.clone();
+            let values = meter.effect.prepared(&meter.values, &plant.rated);
+            meter.effect.outputs(&values, &plant.rated, &mut whole);
+            assert_ne!(whole.omega_mech, outputs.omega_mech);
+            assert_eq!(
+                read_by(&meter, &plant, &speed_of(&outputs)),
+                whole.omega_mech
+            );
+            whole.omega_mech.clone_from(&outputs.omega_mech);
+            assert_eq!(whole, outputs);
+        }
     }
 
     /// Of a motor that starts from rest on a smooth supply everything is known.

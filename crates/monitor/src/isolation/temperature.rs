@@ -67,7 +67,8 @@ pub(super) const MOST_APART: f32 = 0.1;
 const LEARNABLE: f32 = 0.5;
 /// A window that tells the temperature so much better than what was known replaces it.
 const BETTER: f32 = 0.67;
-/// One that tells it so much worse teaches nothing.
+/// One that tells it so much worse teaches nothing: about the inverse of [`BETTER`], so that windows at one load, whose
+/// deviations scatter, count as equally good.
 const WORSE: f32 = 1.6;
 /// Beyond so many standard deviations of its range nothing is taken for heating.
 const FARTHEST: f32 = 2.0;

@@ -34,8 +34,13 @@ pub fn stretches(rec: &Recording) -> Option<Vec<Stretch>> {
     if rec.duration() <= LONGEST_WHOLE || length == 0 {
         return None;
     }
-    let taken = least_alike(&features(rec, length), COUNT);
     let settles = (SETTLES / t_sample).round() as usize;
+    let simulated = |taken: &[usize]| {
+        let stretches = merged(taken, length, settles);
+        stretches.iter().map(|stretch| stretch.samples.len()).sum()
+    };
+    let longest = COUNT * (length + settles);
+    let taken = least_alike_within(&features(rec, length), COUNT, longest, simulated);
     Some(merged(&taken, length, settles))
 }
 
@@ -72,6 +77,19 @@ fn merged(cells: &[usize], length: usize, settles: usize) -> Vec<Stretch> {
         }
     }
     all
+}
+
+/// The cells that are least alike: `alone`, or as many more as are `simulated` in no more than `longest` samples. Those that follow
+/// one another need less time to settle than those that stand alone.
+pub(super) fn least_alike_within(
+    features: &[Vec<f64>],
+    alone: usize,
+    longest: usize,
+    simulated: impl Fn(&[usize]) -> usize,
+) -> Vec<usize> {
+    let more = (alone + 1..=features.len()).map(|count| least_alike(features, count));
+    let fitting = more.take_while(|taken| simulated(taken) <= longest).last();
+    fitting.unwrap_or_else(|| least_alike(features, alone))
 }
 
 /// The first cell, then always the one farthest from all that were taken (farthest-first traversal), sorted.

@@ -3,8 +3,8 @@
 use serde::Serialize;
 use std::ops::Range;
 
-use super::cells::{CURRENT, Cell, Cells, QUANTITIES, Run, SPEED, TORQUE, VOLTAGE};
-use super::choice::{COUNT, LENGTH, SETTLES, least_alike, usual};
+use super::cells::{CURRENT, Cell, Cells, QUANTITIES, SPEED, TORQUE, VOLTAGE};
+use super::choice::{COUNT, LENGTH, SETTLES, least_alike_within, usual};
 use schemars::JsonSchema;
 
 /// Time on either side of a stretch with which its signals are smoothed, s: without it a window would end where the stretch does.
@@ -110,31 +110,45 @@ pub(super) fn chosen(cells: &Cells, budget: Budget) -> Vec<Wanted> {
     }
     let scales = scales(&usable);
     let features = features(&usable, &scales, cells.rows());
-    let fitted = fitted(&features, &usable, cells, budget.fitted);
+    let wanted = |all: &[(usize, Role)]| {
+        let one = |&(k, role): &(usize, Role)| Wanted::of(usable[k], role, cells, &scales);
+        merged(all.iter().map(one))
+    };
+    let fitted_alone =
+        |taken: &[usize]| -> Vec<_> { taken.iter().map(|k| (*k, Role::Fitted)).collect() };
+    let simulated = |taken: &[usize]| {
+        let stretches = wanted(&fitted_alone(taken));
+        stretches.iter().map(|one| one.stretch.len()).sum()
+    };
+    let longest = budget.fitted * (cells.length + cells.samples(SETTLES));
+    let fitted = least_alike_within(&features, budget.fitted, longest, simulated);
     let proving = like(&features, &fitted, budget.proving);
-    let mut all: Vec<(usize, Role)> = fitted.iter().map(|k| (*k, Role::Fitted)).collect();
+    let mut all = fitted_alone(&fitted);
     all.extend(proving.iter().map(|k| (*k, Role::Proves)));
     all.sort_unstable_by_key(|(k, _)| *k);
-    let mut wanted: Vec<Wanted> = Vec::new();
-    for (k, role) in all {
-        let (cell, run) = (usable[k], &cells.runs[usable[k].run]);
-        let one = Wanted::of(cell, role, cells, run, why(cell, &scales));
-        match wanted.last_mut() {
+    wanted(&all)
+}
+
+/// Neighbours of the same role become one.
+fn merged(each: impl Iterator<Item = Wanted>) -> Vec<Wanted> {
+    let mut all: Vec<Wanted> = Vec::new();
+    for one in each {
+        match all.last_mut() {
             Some(last) if last.goes_on_as(&one) => last.extend(one),
-            _ => wanted.push(one),
+            _ => all.push(one),
         }
     }
-    wanted
+    all
 }
 
 impl Wanted {
-    fn of(cell: &Cell, role: Role, cells: &Cells, run: &Run, why: String) -> Self {
-        let samples = |seconds: f64| cells.samples(seconds);
-        let settles = samples(SETTLES).min(cell.first - run.start);
+    fn of(cell: &Cell, role: Role, cells: &Cells, scales: &[f64; QUANTITIES]) -> Self {
+        let run = &cells.runs[cell.run];
+        let around = cells.samples(AROUND);
+        let settles = cells.samples(SETTLES).min(cell.first - run.start);
         let begin = cell.first - settles;
         let end = cell.first + cells.length;
-        let rows = begin.saturating_sub(samples(AROUND)).max(run.start)
-            ..(end + samples(AROUND)).min(run.end);
+        let rows = begin.saturating_sub(around).max(run.start)..(end + around).min(run.end);
         Wanted {
             stretch: begin - rows.start..end - rows.start,
             rows,
@@ -144,7 +158,7 @@ impl Wanted {
                 from_s: cell.at_s - cells.begin_s,
                 to_s: cell.at_s - cells.begin_s + cells.length as f64 * cells.t_sample,
                 role,
-                why,
+                why: why(cell, scales),
             },
         }
     }
@@ -167,24 +181,6 @@ impl Wanted {
             self.told.why += &format!("; then {}", next.told.why);
         }
     }
-}
-
-/// Those that differ most, as many as take no longer than `alone` stretches that stand alone.
-fn fitted(features: &[Vec<f64>], usable: &[&Cell], cells: &Cells, alone: usize) -> Vec<usize> {
-    let settles = cells.samples(SETTLES);
-    let longest = alone * (cells.length + settles);
-    let most = (longest / cells.length.max(1)).min(features.len());
-    let simulated = |taken: &Vec<usize>| {
-        let goes_on = |pair: &&[usize]| {
-            let [before, cell] = [usable[pair[0]], usable[pair[1]]];
-            before.run == cell.run && before.first + cells.length == cell.first
-        };
-        let going_on = taken.windows(2).filter(goes_on).count();
-        taken.len() * cells.length + (taken.len() - going_on) * settles
-    };
-    let all = (alone..=most).map(|count| least_alike(features, count));
-    let fitting = all.take_while(|taken| simulated(taken) <= longest).last();
-    fitting.unwrap_or_else(|| least_alike(features, alone))
 }
 
 /// What is usual of each quantity; the recording's own, so that a small motor's step is one too.

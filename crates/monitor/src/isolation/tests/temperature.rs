@@ -99,6 +99,7 @@ fn a_motor_that_cooled_at_light_load_is_cold_when_the_load_comes() {
         let mut broken = cold;
         broken.gains[3] *= 0.97;
         let [cold, broken] = [cold, broken].map(|plant| after(&plant));
+        // Half of the limit: the cold motor is healthy enough to be learnt from.
         assert!(cold < 0.5 * limit && broken > limit, "{cold} {broken}");
     }
 }
