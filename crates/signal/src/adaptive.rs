@@ -7,7 +7,8 @@
 
 use super::polynomial::{reach, smooth_where};
 use crate::dot::dot;
-use crate::sample::{Sample, Smoothed};
+use crate::sample::Sample;
+use crate::smoothed::Smoothed;
 use std::borrow::Cow;
 use std::ops::{Add, Mul, Range};
 

@@ -13,10 +13,12 @@ mod dot;
 mod noise;
 mod polynomial;
 mod sample;
+mod smoothed;
 mod supply;
 
 pub use adaptive::{Noisy, Windows, longest_real};
 pub use dot::dot;
 pub use noise::{estimated_sigma, sigma};
-pub use sample::{Line, Sample, Smoothed, append};
+pub use sample::{Sample, append};
+pub use smoothed::{Line, Smoothed};
 pub use supply::{Supply, denoise, refined};

@@ -1,6 +1,6 @@
 //! Local quadratic smoothing (Savitzky-Golay) that respects the ends of a segment.
 
-use crate::sample::{Smoothed, Weights};
+use crate::smoothed::{Smoothed, Weights};
 use nalgebra::{Matrix3, Vector3};
 
 /// Points per window at which a smoothed signal is evaluated.
@@ -99,7 +99,7 @@ fn join<S: Smoothed>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sample::Line;
+    use crate::smoothed::Line;
     use num_complex::Complex64;
 
     fn smooth<S: Smoothed>(x: &[S::Of], window: usize) -> Vec<S> {

@@ -3,7 +3,8 @@
 mod steps;
 
 use super::adaptive::{Noisy, Windows};
-use super::sample::{Line, append};
+use super::sample::append;
+use super::smoothed::Line;
 use num_complex::Complex64;
 use std::ops::Range;
 use steps::{largest, segments};

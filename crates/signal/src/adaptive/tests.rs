@@ -1,5 +1,5 @@
 use super::*;
-use crate::sample::Line;
+use crate::smoothed::Line;
 use num_complex::Complex64;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
