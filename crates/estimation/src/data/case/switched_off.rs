@@ -6,6 +6,16 @@ use std::ops::Range;
 const CARRIES: f64 = 20.0;
 /// ... and up to which it is only noise: three standard deviations over a period of 200 samples are 1.3.
 const NOISE_ONLY: f64 = 1.6;
+/// Square of a channel's offset over that of the current before, up to which it can be an offset: a drive that holds a motor with
+/// direct current carries more.
+const OFFSET: f64 = 0.06;
+/// Parts of a silent period whose means are compared ...
+const PARTS: usize = 8;
+/// ... and their variance, in units of the noise of one sample, up to which nothing but noise and some hum moves them: a current
+/// that swings slowly through zero, behind a drive that has just started, is carried all the time.
+const HUM: f64 = 0.2;
+/// Variance of the means of parts of white noise, seven degrees of freedom, over its expectation: exceeded once in 300 periods.
+const MEANS_OF_NOISE: f64 = 3.0;
 
 /// Samples during which the motor is off its supply: the phases carried current, now they carry noise.
 ///
@@ -22,14 +32,24 @@ pub(super) fn switched_off(
         .map(|p| Running::new(currents[p], sigma[p]))
         .collect();
     let loudest = |of: &dyn Fn(&Running) -> f64| running.iter().map(of).fold(0.0, f64::max);
-    let carried = |k: usize| loudest(&|r| r.power(k - window..k)) > CARRIES;
-    let silent = |k: usize| loudest(&|r| r.variance(k..k + window)) < NOISE_ONLY;
-    let back = |k: usize| loudest(&|r| r.variance(k..k + 4)) > CARRIES;
+    let moves = HUM + MEANS_OF_NOISE / (window / PARTS) as f64;
+    let is_open = |k: usize| {
+        let (before, now) = (k - window..k, k..k + window);
+        let carried = loudest(&|r| r.power_about(r.mean(now.clone()), before.clone()));
+        loudest(&|r| r.variance(now.clone())) < NOISE_ONLY
+            && carried > CARRIES
+            && loudest(&|r| r.mean(now.clone()).powi(2)) < OFFSET * carried
+            && loudest(&|r| r.swing(now.clone())) < moves
+    };
+    let back = |level: &Range<usize>, j: usize| {
+        loudest(&|r| r.power_about(r.mean(level.clone()), j..j + 4)) > CARRIES
+    };
     let mut open = Vec::new();
     let mut k = window;
     while k + window < n {
-        if silent(k) && carried(k) {
-            let end = (k..n - 4).find(|&j| back(j)).unwrap_or(n);
+        if is_open(k) {
+            let level = k..k + window;
+            let end = (k..n - 4).find(|&j| back(&level, j)).unwrap_or(n);
             open.push(k..end);
             k = end;
         }
@@ -60,14 +80,35 @@ impl Running {
         }
     }
 
+    /// Mean.
+    fn mean(&self, r: Range<usize>) -> f64 {
+        (self.sum[r.end] - self.sum[r.start]) / r.len() as f64
+    }
+
     /// Mean square.
     pub(super) fn power(&self, r: Range<usize>) -> f64 {
         (self.square[r.end] - self.square[r.start]) / r.len() as f64
     }
 
-    /// Mean square about the mean: an offset carries no current.
+    /// Mean square about a level: the offset of a channel carries no current.
+    fn power_about(&self, level: f64, r: Range<usize>) -> f64 {
+        self.power(r.clone()) - level * (2.0 * self.mean(r) - level)
+    }
+
+    /// Mean square about the mean.
     pub(super) fn variance(&self, r: Range<usize>) -> f64 {
-        let mean = (self.sum[r.end] - self.sum[r.start]) / r.len() as f64;
-        self.power(r) - mean * mean
+        self.power_about(self.mean(r.clone()), r)
+    }
+
+    /// Variance of the means of equal parts.
+    fn swing(&self, r: Range<usize>) -> f64 {
+        let part = r.len() / PARTS;
+        let means: [f64; PARTS] = std::array::from_fn(|n| {
+            let start = r.start + n * part;
+            self.mean(start..start + part)
+        });
+        let middle = means.iter().sum::<f64>() / PARTS as f64;
+        let squares = means.iter().map(|mean| (mean - middle).powi(2));
+        squares.sum::<f64>() / (PARTS - 1) as f64
     }
 }

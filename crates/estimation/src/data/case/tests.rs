@@ -1,6 +1,9 @@
 use super::switched_off::Running;
 use super::*;
 use crate::specimen::{self, SIGMA, T_SAMPLE};
+use rand::SeedableRng;
+use rand_distr::{Distribution, Normal};
+use rand_pcg::Pcg64;
 use recording::{LoadTorque, Metadata};
 use signal::estimated_sigma;
 
@@ -242,6 +245,61 @@ fn an_open_switch_is_found_and_its_moments_are_not_judged() {
     assert!(!judged(open.start + 150) && judged(open.start + 152));
     // Speed and voltage are judged all the time.
     assert!(case.weight.iter().all(|w| w[3] > 0.0 && w[4] > 0.0));
+}
+
+/// White noise of a standard deviation.
+fn noise(seed: u64, sigma: f64) -> impl FnMut() -> f64 {
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let normal = Normal::new(0.0, sigma).unwrap();
+    move || normal.sample(&mut rng)
+}
+
+/// Behind a drive that starts, the current's vector can swing past zero: for 20 ms its phases move by little more than the noise,
+/// and then a drive holds the motor with direct current.
+#[test]
+fn a_slow_current_that_passes_zero_is_carried_all_the_time() {
+    let t_sample = 1e-4;
+    let mut noise = noise(7, 0.05);
+    let mut course = |p: f64| -> Vec<f64> {
+        let mut at = |k: usize| {
+            let t: f64 = k as f64 * t_sample - 0.1;
+            let near = 1.15 * t.clamp(-0.01, 0.01) / 0.01;
+            let far = t.signum() * (t.abs() - 0.01).max(0.0) / 0.001;
+            let vector = Complex64::new(near + far.clamp(-20.0, 20.0), 0.5);
+            let axis = Complex64::cis(-std::f64::consts::TAU * p / 3.0);
+            0.05 * (vector * axis).re + noise()
+        };
+        (0..4000).map(&mut at).collect()
+    };
+    let [a, b, c] = [0.0, 1.0, 2.0].map(&mut course);
+    let found = switched_off([&a, &b, &c], [0.05; 3], t_sample);
+    assert!(found.is_empty(), "{found:?}");
+}
+
+/// What comes back slowly is back: a drive that catches a motor changes its current by less than the noise between samples.
+#[test]
+fn a_current_that_returns_slowly_ends_what_was_open() {
+    let mut noise = noise(8, 0.05);
+    let mut course = |p: f64| -> Vec<f64> {
+        let mut at = |k: usize| {
+            let t = k as f64 * T_SAMPLE;
+            let angle = std::f64::consts::TAU * (5.0 * t - p / 3.0);
+            let amplitude = match t {
+                t if t < 0.1 => 2.0,
+                t if t < 0.2 => 0.0,
+                t => (20.0 * (t - 0.2)).min(2.0),
+            };
+            amplitude * angle.cos() + noise()
+        };
+        (0..4000).map(&mut at).collect()
+    };
+    let [a, b, c] = [0.0, 1.0, 2.0].map(&mut course);
+    let found = switched_off([&a, &b, &c], [0.05; 3], T_SAMPLE);
+    let off = |t: f64| (t / T_SAMPLE) as usize;
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].start.abs_diff(off(0.1)) < 10, "{found:?}");
+    // 20 A/s: 4.5 deviations of the noise after 11 ms.
+    assert!(found[0].end.abs_diff(off(0.211)) < off(0.01), "{found:?}");
 }
 
 #[test]
