@@ -80,10 +80,28 @@ fn by_differences(x: &[f64]) -> f64 {
     if third.is_empty() {
         return 0.0;
     }
-    let middle = third.len() / 2;
-    let median = *third.select_nth_unstable_by(middle, f64::total_cmp).1;
     // Variance of the difference: 1 + 9 + 9 + 1; median of |normal|: 0.6745 sigma.
-    median / (0.6745 * 20f64.sqrt())
+    median_of_levels(&mut third) / (0.6745 * 20f64.sqrt())
+}
+
+/// Share of a value within which others are the same level of a converter.
+const SAME_LEVEL: f64 = 1e-4;
+
+/// Median of values that a converter may have put on levels: within the level on which half of them fall, by the share that lies
+/// below it. The level itself would be off by up to half a step, 4 % of noise of four steps.
+fn median_of_levels(values: &mut [f64]) -> f64 {
+    let count = values.len();
+    let level = *values.select_nth_unstable_by(count / 2, f64::total_cmp).1;
+    let near = SAME_LEVEL * level;
+    let is_same = |x: &&f64| (**x - level).abs() <= near;
+    let same = values.iter().filter(is_same).count() as f64;
+    let below = values.iter().filter(|x| **x < level - near).count() as f64;
+    let others = values.iter().filter(|x| !is_same(x));
+    let step = others.fold(f64::INFINITY, |step, x| step.min((x - level).abs()));
+    if level == 0.0 || step == f64::INFINITY {
+        return level;
+    }
+    level + step * ((0.5 * count as f64 - below) / same - 0.5)
 }
 
 /// Declared noise of a channel, or an estimate, never zero. A converter whose noise is not declared has that of its rounding at least.
@@ -112,6 +130,26 @@ mod tests {
             .map(|k| 10.0 * (0.0314 * f64::from(k)).sin() + normal.sample(&mut rng))
             .collect();
         assert!((estimated_sigma(&x) / 0.1 - 1.0).abs() < 0.05);
+    }
+
+    /// The median of levels would jump by half a step: 6 % at two steps of noise.
+    #[test]
+    fn the_noise_of_readings_on_steps_is_found_within_two_percent() {
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+        for sigma in [1.0, 1.3, 1.7, 2.0, 2.4, 3.1, 4.0, 7.0] {
+            let normal = Normal::new(0.0, sigma).unwrap();
+            let x: Vec<f64> = (0..60_000)
+                .map(|k| (400.0 * (0.0314 * f64::from(k)).sin() + normal.sample(&mut rng)).round())
+                .map(|count: f64| 0.21 * count)
+                .collect();
+            // Rounding adds its own variance, a twelfth. The median of 60 000 differences scatters by 0.7 %.
+            let truth = 0.21 * (sigma * sigma + 1.0f64 / 12.0).sqrt();
+            let found = estimated_sigma(&x);
+            assert!(
+                (found / truth - 1.0).abs() < 0.02,
+                "{sigma}: {found} {truth}"
+            );
+        }
     }
 
     /// A recorder of 2 kHz on a supply with a nineteenth harmonic: third differences take that for noise.
