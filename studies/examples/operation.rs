@@ -2,13 +2,14 @@
 //! motor file that is right. Anything but "adequate" is wrong, except the lateness of an encoder's counts, which is there.
 //!
 //! `cargo run --release -p studies --example operation -- --cases 60 --first 1`; `--show N` prints the scenario of a case.
+//! With `--bare` the recordings say nothing of their instruments: neither noise nor ranges nor bits, as those of most recorders.
 
 use discovery::{ExplainReport, Verdict, explain};
 use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
-use recording::Source;
+use recording::{Sensors, Source};
 use scenario::Scenario;
 use scenario::simulate::record;
 use std::fmt::Write as _;
@@ -148,12 +149,15 @@ fn load(rng: &mut Pcg64, seconds: f64) -> String {
 }
 
 /// What was said, and whether it is right.
-fn judged(operation: &Operation) -> (String, bool) {
+fn judged(operation: &Operation, bare: bool) -> (String, bool) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let asked = || -> Result<ExplainReport, String> {
         let scenario =
             Scenario::parse(&operation.text, "random.toml", folder).map_err(|e| e.to_string())?;
-        let recorded = record(&scenario, |_| {}).map_err(|e| e.to_string())?;
+        let mut recorded = record(&scenario, |_| {}).map_err(|e| e.to_string())?;
+        if bare {
+            recorded.metadata.sensors = Sensors::default();
+        }
         explain(
             &[Source::Recording(recorded)],
             &scenario.motor,
@@ -195,11 +199,12 @@ fn main() {
         number("--cases").unwrap_or(60),
         number("--first").unwrap_or(1),
     );
+    let bare = std::env::args().any(|x| x == "--bare");
     let all: Vec<(u64, String, bool)> = (first..first + cases)
         .into_par_iter()
         .map(|seed| {
             let operation = Operation::random(seed);
-            let (said, right) = judged(&operation);
+            let (said, right) = judged(&operation, bare);
             eprintln!("{seed}: {}{said}", if right { "" } else { "WRONG: " });
             (seed, said, right)
         })

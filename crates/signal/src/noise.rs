@@ -25,17 +25,44 @@ pub fn estimated_sigma(x: &[f64]) -> f64 {
 
 /// Fewest steps between readings that show a resolution: a load that is switched now and then makes a few, too.
 const STEPS: usize = 8;
+/// Share of steps of one size from which all readings are counts, and how far a step may be from that size.
+const OF_ONE_SIZE: f64 = 0.9;
+const SAME_SIZE: f64 = 0.01;
+/// Readings within which counts are compared with their mean.
+const NEAR: usize = 64;
 
-/// Rounding of readings that stand on steps, as counts of an encoder do: of those most equal the one before, and their third
-/// differences are zero.
+/// Rounding of readings that stand on steps, as counts of an encoder do: their third differences are zero, or a pattern that has lines
+/// in the spectrum and nothing between them.
 fn by_steps(x: &[f64]) -> f64 {
     let steps = x.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
-    if steps.len() < STEPS || 2 * steps.len() > x.len() {
+    if steps.len() < STEPS {
         return 0.0;
     }
     let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1 / 12f64.sqrt()
+    let step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let of_one_size = steps.iter().filter(|x| (*x / step - 1.0).abs() < SAME_SIZE);
+    let are_counts = of_one_size.count() as f64 > OF_ONE_SIZE * steps.len() as f64;
+    let stand = 2 * steps.len() <= x.len();
+    let rounding = step * step / 12.0;
+    match are_counts {
+        true => rounding.max(rounding_of_counts(x, step)).sqrt(),
+        false if stand => rounding.sqrt(),
+        false => 0.0,
+    }
+}
+
+/// Variance of counts about what they count: a share `p` of readings stands one step higher than the others, which makes
+/// `p (1 - p)` steps squared, a quarter at most; what changes more within a few readings has changed itself.
+fn rounding_of_counts(x: &[f64], step: f64) -> f64 {
+    let largest = step * step / 4.0;
+    let variance = |piece: &[f64]| {
+        let mean = piece.iter().sum::<f64>() / piece.len() as f64;
+        let squares = piece.iter().map(|x| (x - mean).powi(2));
+        (squares.sum::<f64>() / piece.len() as f64).min(largest)
+    };
+    let pieces = x.chunks(NEAR);
+    pieces.clone().map(variance).sum::<f64>() / pieces.len() as f64
 }
 
 /// What lies between the lines of the spectrum: the lower quartile of its upper half, which for white noise is the share
@@ -104,12 +131,12 @@ fn median_of_levels(values: &mut [f64]) -> f64 {
     level + step * ((0.5 * count as f64 - below) / same - 0.5)
 }
 
-/// Declared noise of a channel, or an estimate, never zero. A converter whose noise is not declared has that of its rounding at least.
+/// Declared noise of a channel, or an estimate, never zero, nor less than the steps that its readings stand on. A converter whose noise is not declared has that of its rounding at least.
 pub fn sigma(rec: &Recording, channel: Channel, x: &[f64]) -> f64 {
     let sensors = &rec.metadata.sensors;
     let declared = sensors.sigma(channel);
     let sigma = match sensors.noise_sigma_fraction_of_full_scale {
-        Some(_) => declared.unwrap_or_else(|| estimated_sigma(x)),
+        Some(_) => declared.map_or_else(|| estimated_sigma(x), |sigma| sigma.max(by_steps(x))),
         None => estimated_sigma(x).max(declared.unwrap_or(0.0)),
     };
     let top = x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
@@ -130,6 +157,25 @@ mod tests {
             .map(|k| 10.0 * (0.0314 * f64::from(k)).sin() + normal.sample(&mut rng))
             .collect();
         assert!((estimated_sigma(&x) / 0.1 - 1.0).abs() < 0.05);
+    }
+
+    /// Counts per 10 ms of an encoder at a steady speed: between two counts in the share of the speed, for which the exact deviation
+    /// is that of a coin. A twelfth of the step squared is what a reading rounds, and up to three times too little.
+    #[test]
+    fn counts_of_an_encoder_scatter_as_a_coin_does() {
+        for share in [0.3, 0.46, 0.5, 0.62, 0.77] {
+            let position = |k: usize| (0.37 + (41.0 + share) * k as f64).floor();
+            let x: Vec<f64> = (0..12_000)
+                .map(|k| 0.153 * (position(k + 1) - position(k)))
+                .collect();
+            let truth = 0.153 * (share * (1.0 - share)).sqrt();
+            let found = estimated_sigma(&x);
+            // Pieces of 64 readings hold no whole number of periods of the pattern.
+            assert!(
+                (found / truth - 1.0).abs() < 0.02,
+                "{share}: {found} {truth}"
+            );
+        }
     }
 
     /// The median of levels would jump by half a step: 6 % at two steps of noise.
@@ -179,11 +225,15 @@ mod tests {
             .map(|k| step * (550.0 + 0.4 * (0.2 * f64::from(k)).sin()).round())
             .collect();
         assert_eq!(estimated_sigma(&x), 0.0, "it never changes");
-        let x: Vec<f64> = (0..640)
-            .map(|k| step * (550.4 + 0.2 * (0.2 * f64::from(k)).sin()).round())
-            .collect();
+        let truth = |k: u32| step * (550.4 + 0.2 * (0.2 * f64::from(k)).sin());
+        let read = |k: u32| step * (truth(k) / step).round();
+        let x: Vec<f64> = (0..640).map(read).collect();
         assert!(by_differences(&x) == 0.0);
-        assert!((estimated_sigma(&x) / (step / 12f64.sqrt()) - 1.0).abs() < 1e-9);
+        let squares: f64 = (0..640).map(|k| (read(k) - truth(k)).powi(2)).sum();
+        let rounded = (squares / 640.0).sqrt();
+        // What moves by less than a step is taken for rounding: not less than it was, nor more than half a step.
+        let found = estimated_sigma(&x);
+        assert!(found >= rounded && found <= 0.5 * step, "{found} {rounded}");
         // Three steps of a load are no resolution.
         let load: Vec<f64> = (0..640).map(|k| f64::from(k / 200)).collect();
         assert_eq!(estimated_sigma(&load), 0.0);
