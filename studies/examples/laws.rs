@@ -1,9 +1,10 @@
 //! Laws that no library holds: what `explain` says about plants that share no code with it.
 //!
 //! ```text
-//! cargo run --release -p studies --example laws -- [--seeds N] [--first SEED] [--supply drive|grid] [LAW...]
+//! cargo run --release -p studies --example laws -- [--seeds N] [--first SEED] [--supply drive|grid] [--bare] [LAW...]
 //! ```
 //!
+//! With `--bare` the recordings say nothing of their instruments, as those of most recorders.
 //! One line each: truth, answer, errors, simulations and time; shares at the end. A law is visible where the model without
 //! it is at least 2 % worse than the model of the same machine with nothing hidden.
 
@@ -16,7 +17,7 @@ use foreign::laws::Law;
 use foreign::{
     DRIVE, DRIVE_B, Hidden, LOADS, MACHINES, Machine, SMALLEST_AND_LARGEST, STEPS, priors, record,
 };
-use recording::Source;
+use recording::{Sensors, Source};
 use std::time::Instant;
 
 /// Errors that count as visible (a proof needs as much), and as good as the true law's, over the error with nothing hidden.
@@ -34,6 +35,7 @@ struct Question {
     law: Option<Law>,
     seed: u64,
     supply: Supply,
+    bare: bool,
 }
 
 /// What an answer is worth.
@@ -72,7 +74,11 @@ fn asked(question: Question) -> ExplainReport {
     };
     let recording = |n: usize| {
         let seed = 100 * question.seed + 1 + n as u64;
-        Source::Recording(record(&machine, &hidden, &courses[n], seed))
+        let mut recorded = record(&machine, &hidden, &courses[n], seed);
+        if question.bare {
+            recorded.metadata.sensors = Sensors::default();
+        }
+        Source::Recording(recorded)
     };
     let sources = [recording(0), recording(1)];
     explain(&sources, &priors(&machine, question.seed), &mut |_, _| {}).expect("judged")
@@ -81,10 +87,10 @@ fn asked(question: Question) -> ExplainReport {
 fn outcome(question: Question, report: &ExplainReport, nothing_hidden: f64) -> Outcome {
     let Some(law) = question.law else {
         let nothing = report.laws.is_empty() && report.steps.is_empty();
-        return if nothing {
-            Outcome::Right
-        } else {
-            Outcome::Wrong
+        return match report.verdict {
+            discovery::Verdict::Adequate if nothing => Outcome::Right,
+            _ if nothing => Outcome::Open,
+            _ => Outcome::Wrong,
         };
     };
     let named = |proven: bool| {
@@ -199,10 +205,10 @@ fn print_shares(answers: &[Answer]) {
         .filter(|a| a.outcome != Outcome::Invisible && a.as_good);
     let shaped: Vec<Option<usize>> = laws.iter().filter_map(|a| a.formula).collect();
     let without = answers.iter().filter(|a| a.law.is_none());
-    let invented = without.clone().filter(|a| a.outcome == Outcome::Wrong);
+    let of_nothing = |outcome| without.clone().filter(|a| a.outcome == outcome).count();
     println!(
         "{} laws, {visible} visible: {named} named ({} as the library's effect), {} as a lead, {} open, {} missed, {} wrong; \
-         error within 5 % in {}; of {} laws with a shape in the dictionary the first formula has it in {}, one of the list in {}; nothing hidden: invented in {} of {}",
+         error within 5 % in {}; of {} laws with a shape in the dictionary the first formula has it in {}, one of the list in {}; nothing hidden: invented in {}, called incomplete in {} of {}",
         laws.len(),
         count(Outcome::Library),
         count(Outcome::Lead),
@@ -213,7 +219,8 @@ fn print_shares(answers: &[Answer]) {
         shaped.len(),
         shaped.iter().filter(|rank| **rank == Some(0)).count(),
         shaped.iter().flatten().count(),
-        invented.count(),
+        of_nothing(Outcome::Wrong),
+        of_nothing(Outcome::Open),
         without.count(),
     );
 }
@@ -221,6 +228,7 @@ fn print_shares(answers: &[Answer]) {
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let (mut seeds, mut first) = (1, 31);
+    let mut bare = false;
     let mut supplies = vec![Supply::Drive, Supply::Grid];
     let mut wanted: Vec<String> = Vec::new();
     while let Some(argument) = arguments.next() {
@@ -231,6 +239,7 @@ fn main() {
         match argument.as_str() {
             "--seeds" => seeds = number(),
             "--first" => first = number(),
+            "--bare" => bare = true,
             "--supply" => match arguments.next().as_deref() {
                 Some("drive") => supplies = vec![Supply::Drive],
                 Some("grid") => supplies = vec![Supply::Grid],
@@ -243,7 +252,12 @@ fn main() {
     let mut answers = Vec::new();
     for seed in first..first + seeds {
         for &supply in &supplies {
-            let question = |law| Question { law, seed, supply };
+            let question = |law| Question {
+                law,
+                seed,
+                supply,
+                bare,
+            };
             let (nothing, error) = answered(question(None), None);
             answers.push(nothing);
             for law in Law::ALL.into_iter().filter(is_asked) {
