@@ -2,9 +2,11 @@
 //! motor file that is right. Anything but "adequate" is wrong, except the lateness of an encoder's counts, which is there.
 //!
 //! `cargo run --release -p studies --example operation -- --cases 60 --first 1`; `--show N` prints the scenario of a case.
+//! With `--machines` the circuits and inertias of the motors are drawn around those of their files, and the motor files are right about that.
 //! With `--bare` the recordings say nothing of their instruments: neither noise nor ranges nor bits, as those of most recorders.
 
 use discovery::{ExplainReport, Verdict, explain};
+use motor::MotorFile;
 use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -28,8 +30,16 @@ const ORDERS: [i32; 8] = [-5, 7, -11, 13, -17, 19, 3, -3];
 
 /// A scenario as its file says it.
 struct Operation {
+    seed: u64,
     text: String,
     encoder: bool,
+}
+
+/// What is asked of every case.
+#[derive(Clone, Copy)]
+struct Asked {
+    bare: bool,
+    machines: bool,
 }
 
 impl Operation {
@@ -70,6 +80,7 @@ impl Operation {
             "[sensors]\nnoise_sigma_fraction_of_full_scale = {noise}\nadc_bits = {bits}\nspeed = \"{speed}\"\ntorque = {torque}\n"
         );
         Operation {
+            seed,
             text,
             encoder: speed == "encoder",
         }
@@ -148,14 +159,31 @@ fn load(rng: &mut Pcg64, seconds: f64) -> String {
     }
 }
 
+/// Another machine of the same kind.
+fn scatter(motor: &mut MotorFile, seed: u64) {
+    let mut rng = Pcg64::seed_from_u64(seed ^ 0x5EED);
+    let mut by = |range: f64| rng.random_range(-range.ln()..range.ln()).exp();
+    let circuit = &mut motor.parameters;
+    circuit.r_s *= by(1.4);
+    circuit.r_r *= by(1.4);
+    let leakage = by(1.4);
+    circuit.l_ls *= leakage;
+    circuit.l_lr *= leakage;
+    circuit.l_m *= by(1.25);
+    motor.mechanics.inertia *= by(4.0);
+}
+
 /// What was said, and whether it is right.
-fn judged(operation: &Operation, bare: bool) -> (String, bool) {
+fn judged(operation: &Operation, asked: Asked) -> (String, bool) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let asked = || -> Result<ExplainReport, String> {
-        let scenario =
+    let answer = || -> Result<ExplainReport, String> {
+        let mut scenario =
             Scenario::parse(&operation.text, "random.toml", folder).map_err(|e| e.to_string())?;
+        if asked.machines {
+            scatter(&mut scenario.motor, operation.seed);
+        }
         let mut recorded = record(&scenario, |_| {}).map_err(|e| e.to_string())?;
-        if bare {
+        if asked.bare {
             recorded.metadata.sensors = Sensors::default();
         }
         explain(
@@ -165,7 +193,7 @@ fn judged(operation: &Operation, bare: bool) -> (String, bool) {
         )
         .map_err(|e| e.to_string())
     };
-    match asked() {
+    match answer() {
         // A motor that cannot carry its load is no recording.
         Err(error) => (format!("not asked: {error}"), true),
         Ok(report) => {
@@ -199,12 +227,16 @@ fn main() {
         number("--cases").unwrap_or(60),
         number("--first").unwrap_or(1),
     );
-    let bare = std::env::args().any(|x| x == "--bare");
+    let told = |name: &str| std::env::args().any(|x| x == name);
+    let asked = Asked {
+        bare: told("--bare"),
+        machines: told("--machines"),
+    };
     let all: Vec<(u64, String, bool)> = (first..first + cases)
         .into_par_iter()
         .map(|seed| {
             let operation = Operation::random(seed);
-            let (said, right) = judged(&operation, bare);
+            let (said, right) = judged(&operation, asked);
             eprintln!("{seed}: {}{said}", if right { "" } else { "WRONG: " });
             (seed, said, right)
         })
