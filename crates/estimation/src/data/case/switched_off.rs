@@ -59,13 +59,13 @@ pub(super) fn switched_off(
 }
 
 /// Running sums of a current in units of its noise.
-pub(super) struct Running {
+struct Running {
     sum: Vec<f64>,
     square: Vec<f64>,
 }
 
 impl Running {
-    pub(super) fn new(x: &[f64], sigma: f64) -> Self {
+    fn new(x: &[f64], sigma: f64) -> Self {
         let total = |f: &dyn Fn(f64) -> f64| {
             let mut sum = 0.0;
             let next = |x: &f64| {
@@ -86,7 +86,7 @@ impl Running {
     }
 
     /// Mean square.
-    pub(super) fn power(&self, r: Range<usize>) -> f64 {
+    fn power(&self, r: Range<usize>) -> f64 {
         (self.square[r.end] - self.square[r.start]) / r.len() as f64
     }
 
@@ -112,3 +112,6 @@ impl Running {
         squares.sum::<f64>() / (PARTS - 1) as f64
     }
 }
+
+#[cfg(test)]
+mod tests;

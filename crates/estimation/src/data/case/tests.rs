@@ -1,9 +1,5 @@
-use super::switched_off::Running;
 use super::*;
 use crate::specimen::{self, SIGMA, T_SAMPLE};
-use rand::SeedableRng;
-use rand_distr::{Distribution, Normal};
-use rand_pcg::Pcg64;
 use recording::{LoadTorque, Metadata};
 use signal::estimated_sigma;
 
@@ -209,16 +205,6 @@ fn a_flat_top_is_the_end_of_the_scale() {
     assert_eq!(clip_limit(&bare, 0, &held), f64::INFINITY);
 }
 
-#[test]
-fn running_sums_give_power_and_variance_of_any_range() {
-    let x = [1.0, -3.0, 2.0, 4.0, 7.0];
-    let running = Running::new(&x, 2.0);
-    // In units of the noise: -1.5, 1, 2.
-    let (power, mean) = ((2.25 + 1.0 + 4.0) / 3.0, 0.5);
-    assert!((running.power(1..4) - power).abs() < 1e-12);
-    assert!((running.variance(1..4) - (power - mean * mean)).abs() < 1e-12);
-}
-
 /// A motor that is switched off at 0.5 s and on again at 0.8 s.
 #[test]
 fn an_open_switch_is_found_and_its_moments_are_not_judged() {
@@ -245,114 +231,6 @@ fn an_open_switch_is_found_and_its_moments_are_not_judged() {
     assert!(!judged(open.start + 150) && judged(open.start + 152));
     // Speed and voltage are judged all the time.
     assert!(case.weight.iter().all(|w| w[3] > 0.0 && w[4] > 0.0));
-}
-
-/// White noise of a standard deviation.
-fn noise(seed: u64, sigma: f64) -> impl FnMut() -> f64 {
-    let mut rng = Pcg64::seed_from_u64(seed);
-    let normal = Normal::new(0.0, sigma).unwrap();
-    move || normal.sample(&mut rng)
-}
-
-/// Behind a drive that starts, the current's vector can swing past zero: for 20 ms its phases move by little more than the noise,
-/// and then a drive holds the motor with direct current.
-#[test]
-fn a_slow_current_that_passes_zero_is_carried_all_the_time() {
-    let t_sample = 1e-4;
-    let mut noise = noise(7, 0.05);
-    let mut course = |p: f64| -> Vec<f64> {
-        let mut at = |k: usize| {
-            let t: f64 = k as f64 * t_sample - 0.1;
-            let near = 1.15 * t.clamp(-0.01, 0.01) / 0.01;
-            let far = t.signum() * (t.abs() - 0.01).max(0.0) / 0.001;
-            let vector = Complex64::new(near + far.clamp(-20.0, 20.0), 0.5);
-            let axis = Complex64::cis(-std::f64::consts::TAU * p / 3.0);
-            0.05 * (vector * axis).re + noise()
-        };
-        (0..4000).map(&mut at).collect()
-    };
-    let [a, b, c] = [0.0, 1.0, 2.0].map(&mut course);
-    let found = switched_off([&a, &b, &c], [0.05; 3], t_sample);
-    assert!(found.is_empty(), "{found:?}");
-}
-
-/// What comes back slowly is back: a drive that catches a motor changes its current by less than the noise between samples.
-#[test]
-fn a_current_that_returns_slowly_ends_what_was_open() {
-    let mut noise = noise(8, 0.05);
-    let mut course = |p: f64| -> Vec<f64> {
-        let mut at = |k: usize| {
-            let t = k as f64 * T_SAMPLE;
-            let angle = std::f64::consts::TAU * (5.0 * t - p / 3.0);
-            let amplitude = match t {
-                t if t < 0.1 => 2.0,
-                t if t < 0.2 => 0.0,
-                t => (20.0 * (t - 0.2)).min(2.0),
-            };
-            amplitude * angle.cos() + noise()
-        };
-        (0..4000).map(&mut at).collect()
-    };
-    let [a, b, c] = [0.0, 1.0, 2.0].map(&mut course);
-    let found = switched_off([&a, &b, &c], [0.05; 3], T_SAMPLE);
-    let off = |t: f64| (t / T_SAMPLE) as usize;
-    assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].start.abs_diff(off(0.1)) < 10, "{found:?}");
-    // 20 A/s: 4.5 deviations of the noise after 11 ms.
-    assert!(found[0].end.abs_diff(off(0.211)) < off(0.01), "{found:?}");
-}
-
-#[test]
-fn a_motor_that_never_carried_current_is_not_switched_off() {
-    let quiet: Vec<f64> = (0..2000)
-        .map(|k| 0.005 * ((k * 7_919 % 1000) as f64 / 500.0 - 1.0))
-        .collect();
-    let all = [&quiet[..]; 3];
-    assert!(switched_off(all, [0.005; 3], T_SAMPLE).is_empty());
-}
-
-/// Three currents of an amplitude that may change, A, with a noise of which 5 mA is the largest.
-fn currents(n: usize, amplitude: impl Fn(usize) -> f64) -> [Vec<f64>; 3] {
-    let omega = 120.0 * std::f64::consts::PI * T_SAMPLE;
-    [0.0, 1.0, 2.0].map(|phase| {
-        let shift = phase * std::f64::consts::TAU / 3.0;
-        let at = |k: usize| {
-            let noise = 0.005 * ((k * 7_919 % 1000) as f64 / 500.0 - 1.0);
-            amplitude(k) * (omega * k as f64 - shift).cos() + noise
-        };
-        (0..n).map(at).collect()
-    })
-}
-
-fn open_of(x: &[Vec<f64>; 3]) -> Vec<Range<usize>> {
-    switched_off([&x[0], &x[1], &x[2]], [0.005; 3], T_SAMPLE)
-}
-
-#[test]
-fn a_motor_that_is_switched_off_for_good_stays_off_to_the_end() {
-    let x = currents(3000, |k| if k < 1500 { 1.0 } else { 0.0 });
-    let open = open_of(&x);
-    assert_eq!(open.len(), 1, "{open:?}");
-    assert!(
-        open[0].start.abs_diff(1500) <= 2 && open[0].end == 3000,
-        "{open:?}"
-    );
-}
-
-/// 20 ms must be silent: 12 ms are no open switch.
-#[test]
-fn a_short_silence_is_no_open_switch() {
-    let x = currents(3000, |k| if (1500..1560).contains(&k) { 0.0 } else { 1.0 });
-    assert!(open_of(&x).is_empty());
-}
-
-/// A current that fades away over a second carries nothing any more in the last 20 ms before the silence.
-#[test]
-fn what_fades_away_was_not_switched_off() {
-    let x = currents(8000, |k| {
-        (1.0 - k.saturating_sub(1000) as f64 / 5000.0).max(0.0)
-    });
-    assert!(open_of(&x).is_empty());
 }
 
 #[test]
