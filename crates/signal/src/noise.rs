@@ -28,8 +28,10 @@ const STEPS: usize = 8;
 /// Share of steps of one size from which all readings are counts, and how far a step may be from that size.
 const OF_ONE_SIZE: f64 = 0.9;
 const SAME_SIZE: f64 = 0.01;
-/// Readings within which counts are compared with their mean.
+/// Readings within which counts are compared with their mean, and changes of the count that these hold on average at least: of a window that
+/// moves on from sample to sample, as long as two hundred of them, a count stays for all of them.
 const NEAR: usize = 64;
+const CHANGES: usize = 4;
 
 /// Rounding of readings that stand on steps, as counts of an encoder do: their third differences are zero, or a pattern that has lines
 /// in the spectrum and nothing between them.
@@ -45,23 +47,24 @@ fn by_steps(x: &[f64]) -> f64 {
     let are_counts = of_one_size.count() as f64 > OF_ONE_SIZE * steps.len() as f64;
     let stand = 2 * steps.len() <= x.len();
     let rounding = step * step / 12.0;
+    let near = NEAR.max(CHANGES * x.len() / steps.len());
     match are_counts {
-        true => rounding.max(rounding_of_counts(x, step)).sqrt(),
+        true => rounding.max(rounding_of_counts(x, step, near)).sqrt(),
         false if stand => rounding.sqrt(),
         false => 0.0,
     }
 }
 
 /// Variance of counts about what they count: a share `p` of readings stands one step higher than the others, which makes
-/// `p (1 - p)` steps squared, a quarter at most; what changes more within a few readings has changed itself.
-fn rounding_of_counts(x: &[f64], step: f64) -> f64 {
+/// `p (1 - p)` steps squared, a quarter at most; what changes more within `near` readings has changed itself.
+fn rounding_of_counts(x: &[f64], step: f64, near: usize) -> f64 {
     let largest = step * step / 4.0;
     let variance = |piece: &[f64]| {
         let mean = piece.iter().sum::<f64>() / piece.len() as f64;
         let squares = piece.iter().map(|x| (x - mean).powi(2));
         (squares.sum::<f64>() / piece.len() as f64).min(largest)
     };
-    let pieces = x.chunks(NEAR);
+    let pieces = x.chunks(near);
     pieces.clone().map(variance).sum::<f64>() / pieces.len() as f64
 }
 
@@ -173,6 +176,24 @@ mod tests {
             // Pieces of 64 readings hold no whole number of periods of the pattern.
             assert!(
                 (found / truth - 1.0).abs() < 0.02,
+                "{share}: {found} {truth}"
+            );
+        }
+    }
+
+    /// The same of a window of 10 ms that moves on at 20 kHz, near a speed of a whole number of counts: each count stays for hundreds of readings.
+    #[test]
+    fn counts_of_a_moving_window_scatter_as_much() {
+        for share in [0.02, 0.1, 0.3, 0.5] {
+            let position = |k: usize| (0.37 + (1200.0 + share) * k as f64 / 200.0).floor();
+            let x: Vec<f64> = (0..40_000)
+                .map(|k| 0.153 * (position(k + 200) - position(k)))
+                .collect();
+            let truth = 0.153 * f64::sqrt((share * (1.0 - share)).max(1.0 / 12.0));
+            let found = estimated_sigma(&x);
+            // Pieces of two periods of the pattern, and not always whole ones.
+            assert!(
+                found / truth > 0.9 && found / truth < 1.1,
                 "{share}: {found} {truth}"
             );
         }

@@ -1,7 +1,8 @@
 //! Directions of the weighted outputs by which nothing is judged: what parameters nobody asks about may move.
 //!
 //! They are taken out of measurement, model and derivatives alike, by projection (Frisch and Waugh, 1933, doi:10.2307/1907330):
-//! a fit has no more coordinates, and its result is as if they had been fitted too.
+//! a fit has no more coordinates, and its result is as if they had been fitted too. Of a direction whose amount has a prior, only so much is
+//! taken that what may be there counts as one deviation, as if noise had made it.
 
 use crate::data::channels::N_CHANNELS;
 use std::ops::Range;
@@ -16,7 +17,14 @@ const FADED: f64 = 1e-7;
 /// Directions of unit length, at right angles to each other.
 #[derive(Clone, Debug, Default)]
 pub struct Nuisance {
-    directions: Vec<Strip>,
+    directions: Vec<Direction>,
+}
+
+#[derive(Clone, Debug)]
+struct Direction {
+    strip: Strip,
+    /// Share of what lies along it that is taken: all, or with a prior of deviation `d` what makes `1 + d^2` one.
+    taken: f64,
 }
 
 /// Weighted rows that are zero outside a stretch, and between its values where they are those of one channel: a long recording
@@ -86,11 +94,11 @@ impl Strip {
         }
     }
 
-    /// Takes it, a direction, from rows that begin with the row value `begin`.
-    fn take_from(&self, rows: &mut [f64], begin: usize) {
+    /// Takes so much of it, a direction, from rows that begin with the row value `begin`.
+    fn take_from(&self, rows: &mut [f64], begin: usize, taken: f64) {
         let mine = self.range();
         let there = &mut rows[mine.start - begin..mine.end - begin];
-        let share = self.share(there);
+        let share = taken * self.share(there);
         let both = there.iter_mut().step_by(self.stride).zip(&self.values);
         both.for_each(|(x, d)| *x -= share * d);
     }
@@ -99,13 +107,27 @@ impl Strip {
 impl Nuisance {
     /// Takes out of weighted rows what nobody asks about.
     pub fn project_out(&self, rows: &mut [f64]) {
-        self.directions.iter().for_each(|d| d.take_from(rows, 0));
+        let all = self.directions.iter();
+        all.for_each(|d| d.strip.take_from(rows, 0, d.taken));
     }
 
     /// Adds what a response, or a part of it, has beside those that are there, unless that is nothing beside the `whole` response's length.
     pub fn add(&mut self, response: &Strip, whole: f64) {
+        self.add_direction(response, whole, |_| 1.0);
+    }
+
+    /// The same of a response to one standard deviation of an amount that has a prior, not one whose amount may be any.
+    pub fn add_expected(&mut self, response: &Strip, whole: f64) {
+        self.add_direction(response, whole, |deviation| {
+            1.0 - 1.0 / deviation.hypot(1.0)
+        });
+    }
+
+    /// `taken`: of the length of what a response has beside the others.
+    fn add_direction(&mut self, response: &Strip, whole: f64, taken: impl Fn(f64) -> f64) {
         let there = response.range();
-        let overlapping = self.directions.iter().filter(|d| d.overlaps(&there));
+        let overlapping = self.directions.iter().map(|d| &d.strip);
+        let overlapping = overlapping.filter(|d| d.overlaps(&there));
         let ranges = overlapping.clone().map(Strip::range);
         let all = ranges.fold(there.clone(), |a, b| a.start.min(b.start)..a.end.max(b.end));
         let begin = all.start;
@@ -117,13 +139,15 @@ impl Nuisance {
         for _ in 0..2 {
             overlapping
                 .clone()
-                .for_each(|d| d.take_from(&mut left, begin));
+                .for_each(|d| d.take_from(&mut left, begin, 1.0));
         }
         let size = length(&left);
         if size.is_finite() && size > INDEPENDENT * whole {
             let kept = unfaded(&left);
-            let direction = Strip::direction(begin + kept.start, &left[kept], size);
-            self.directions.push(direction);
+            self.directions.push(Direction {
+                strip: Strip::direction(begin + kept.start, &left[kept], size),
+                taken: taken(size),
+            });
         }
     }
 }
@@ -193,7 +217,7 @@ mod tests {
         speed([2.0, 1.0, 5.0]);
         let all = [[1.0, 0.0, 0.0, 7.0, 1.0], [0.0; 5], [0.0; 5]].concat();
         add(&mut nuisance, 0, &all);
-        let places = nuisance.directions.iter().map(|d| d.values.len());
+        let places = nuisance.directions.iter().map(|d| d.strip.values.len());
         assert_eq!(places.collect::<Vec<_>>(), [2, 1, 9]);
         // Once each of the three, and what is at right angles to all of them.
         let left = [[-6.0, 0.0, 0.0, 1.0, -1.0], [0.0, 0.0, 0.0, -2.0, 0.0]].concat();
@@ -230,6 +254,26 @@ mod tests {
         assert_eq!(unfaded(&[1.0, f64::NAN]), 0..2);
         assert_eq!(unfaded(&[0.0, 0.0]).len(), 0);
         assert_eq!(unfaded(&[]), 0..0);
+    }
+
+    /// With a prior: the covariance of the noise and of the amount, `I + d d'`, becomes `I`.
+    #[test]
+    fn what_is_expected_counts_as_noise() {
+        let mut nuisance = Nuisance::default();
+        let d = [3.0, 4.0];
+        nuisance.add_expected(&Strip::new(0, d.to_vec()), 5.0);
+        let mut whitened = [[1.0, 0.0], [0.0, 1.0]];
+        for column in &mut whitened {
+            nuisance.project_out(column);
+        }
+        let covariance = |i: usize, j: usize| f64::from(i == j) + d[i] * d[j];
+        for i in 0..2 {
+            for j in 0..2 {
+                let terms = (0..4)
+                    .map(|k| whitened[i][k / 2] * covariance(k / 2, k % 2) * whitened[j][k % 2]);
+                assert!((terms.sum::<f64>() - f64::from(i == j)).abs() < 1e-12);
+            }
+        }
     }
 
     /// Stretches know nothing of each other.

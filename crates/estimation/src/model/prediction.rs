@@ -158,12 +158,13 @@ pub fn outputs_on(case: &Case, plant: &Plant, drive: &Drive<'_>) -> Vec<f64> {
     weighted(case, &run(case, plant, drive, SpeedObserver::Off))
 }
 
-/// Residual: weighted measurement minus weighted model, without what the unknown state of the motor moves in them.
+/// Residual: weighted measurement minus weighted model ([`weighted`]), both without what nobody knows of the motor's state.
 pub fn residual(case: &Case, model: &[f64]) -> Vec<f64> {
     let measured = case.measured.iter().zip(&case.weight);
     let rows = measured.flat_map(|(y, w)| (0..N_CHANNELS).map(move |k| y[k] * w[k]));
-    let mut rows: Vec<f64> = rows.zip(model).map(|(y, m)| y - m).collect();
+    let mut rows: Vec<f64> = rows.collect();
     case.nuisance.project_out(&mut rows);
+    rows.iter_mut().zip(model).for_each(|(y, m)| *y -= m);
     rows
 }
 

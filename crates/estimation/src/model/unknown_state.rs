@@ -5,6 +5,11 @@
 //! did: a part of a sampling interval times the jump is missing in the stator flux. Such differences fade, but at first they
 //! are larger than the noise. To first order they are sums of known responses with unknown amounts; where a recording is slow, what
 //! a jump leaves is so large a part of the flux that the second order is taken as unknown too.
+//!
+//! Where the measured speed drives the model, nobody knows either how the shaft trembles at twice the supply's frequency: that is gone with the
+//! noise that is smoothed away, and in what an encoder counts during one period of it.
+
+mod ripple;
 
 use crate::data::case::Case;
 use crate::data::channels::{N_CHANNELS, SPEED};
@@ -13,6 +18,8 @@ use crate::model::prediction::{Drive, SpeedObserver, as_shown, run, speed_shown}
 use motor::effect::{EffectConfig, Outputs, Plant, StateOffset};
 use num_complex::Complex64;
 use rayon::prelude::*;
+use ripple::Ripple;
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::ops::Range;
 
@@ -30,27 +37,24 @@ const CURVED: f64 = 0.05;
 /// stator flux at jumps of the voltage.
 pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
     let stretches = stretches(case);
-    let all = unknowns(&stretches, plant, left_by_a_jump(case, plant));
+    let mut all = unknowns(&stretches, plant, left_by_a_jump(case, plant));
+    all.extend(trembling(case, plant, &stretches));
     let mut nuisance = Nuisance::default();
     if all.is_empty() {
         return nuisance;
     }
     let meters = speedometers(case, plant);
     // As shown, and the shaft's speed: of a long recording no more is kept.
-    let shown = |offsets: &[StateOffset]| {
-        let drive = Drive {
-            offsets,
-            ..Drive::of(case)
-        };
-        let outputs = run(case, plant, &drive, SpeedObserver::Off);
+    let shown = |drive: &Drive<'_>| {
+        let outputs = run(case, plant, drive, SpeedObserver::Off);
         (as_shown(case, &outputs), speed_of(&outputs))
     };
-    let (rows_without, without) = shown(&[]);
+    let (rows_without, without) = shown(&Drive::of(case));
     let response = |unknown: &Unknown| {
-        let (mut rows, mut with) = shown(&unknown.offsets);
+        let (mut rows, mut with) = shown(&unknown.departure.drive(case));
         take(&mut rows, &rows_without);
         if unknown.curved {
-            let (mut other_rows, mut other) = shown(&unknown.opposite());
+            let (mut other_rows, mut other) = shown(&unknown.departure.opposite().drive(case));
             take(&mut other_rows, &rows_without);
             take(&mut other.omega_mech, &without.omega_mech);
             add(&mut rows, &other_rows);
@@ -68,14 +72,21 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
         });
         let mut parts: Vec<Vec<Strip>> = others.collect();
         parts.push(unknown.in_all(&stretches, rows));
-        Responses { lengths, parts }
+        Responses {
+            lengths,
+            parts,
+            expected: matches!(unknown.departure, Departure::Ripple(_)),
+        }
     };
     let responses: Vec<Responses> = all.par_iter().map(response).collect();
     // What instruments make of a response is in the speed alone, and stays there as long as nothing else was added.
     for part in 0..=meters.len() {
         for response in &responses {
             let strips = response.parts[part].iter().zip(&response.lengths);
-            strips.for_each(|(strip, length)| nuisance.add(strip, *length));
+            strips.for_each(|(strip, length)| match response.expected {
+                true => nuisance.add_expected(strip, *length),
+                false => nuisance.add(strip, *length),
+            });
         }
     }
     nuisance
@@ -87,6 +98,8 @@ struct Responses {
     lengths: Vec<f64>,
     /// What each instrument makes of it beside that, and the response itself.
     parts: Vec<Vec<Strip>>,
+    /// Whether the unknown is as large as it is expected to be, not any size.
+    expected: bool,
 }
 
 fn take(from: &mut [f64], what: &[f64]) {
@@ -188,9 +201,44 @@ fn jumps(case: &Case, within: Range<usize>) -> Vec<usize> {
     }
 }
 
-/// An unknown of some stretches: the same offset, once in each of them.
+/// How a motor may depart from the model of it.
+enum Departure {
+    /// Offsets of its state.
+    State(Vec<StateOffset>),
+    /// A ripple of the speed that is given, as large as may be.
+    Ripple(Ripple),
+}
+
+impl Departure {
+    /// What drives a model that departs so.
+    fn drive<'a>(&'a self, case: &'a Case) -> Drive<'a> {
+        let given = Drive::of(case);
+        match self {
+            Self::State(offsets) => Drive { offsets, ..given },
+            Self::Ripple(ripple) => Drive {
+                speed: Cow::Owned(ripple.added(case)),
+                ..given
+            },
+        }
+    }
+
+    fn opposite(&self) -> Self {
+        let turned = |offset: &StateOffset| StateOffset {
+            sample: offset.sample,
+            psi_s: -offset.psi_s,
+            psi_r: -offset.psi_r,
+            omega_mech: -offset.omega_mech,
+        };
+        match self {
+            Self::State(offsets) => Self::State(offsets.iter().map(turned).collect()),
+            Self::Ripple(ripple) => Self::Ripple(ripple.opposite()),
+        }
+    }
+}
+
+/// An unknown of some stretches: the same departure in each of them.
 struct Unknown {
-    offsets: Vec<StateOffset>,
+    departure: Departure,
     /// Whether what it does beside its first order is asked for: what it does in either direction together.
     curved: bool,
     /// Their numbers.
@@ -200,16 +248,6 @@ struct Unknown {
 impl Unknown {
     fn ranges<'a>(&'a self, stretches: &'a [Stretch]) -> impl Iterator<Item = &'a Range<usize>> {
         self.stretches.iter().map(|&k| &stretches[k].values)
-    }
-
-    fn opposite(&self) -> Vec<StateOffset> {
-        let turned = |offset: &StateOffset| StateOffset {
-            sample: offset.sample,
-            psi_s: -offset.psi_s,
-            psi_r: -offset.psi_r,
-            omega_mech: -offset.omega_mech,
-        };
-        self.offsets.iter().map(turned).collect()
     }
 
     /// Length of what it does to each of its stretches.
@@ -250,7 +288,7 @@ fn unknowns(stretches: &[Stretch], plant: &Plant, share: f64) -> Vec<Unknown> {
             .map(|(k, sample)| (k, StateOffset { sample, ..*unit }))
             .unzip();
         Unknown {
-            offsets,
+            departure: Departure::State(offsets),
             curved,
             stretches,
         }
@@ -269,6 +307,18 @@ fn unknowns(stretches: &[Stretch], plant: &Plant, share: f64) -> Vec<Unknown> {
         .chain(jumped)
         .filter(|unknown| !unknown.stretches.is_empty())
         .collect()
+}
+
+/// What is unknown of the speed within the stretches where it is given.
+fn trembling(case: &Case, plant: &Plant, stretches: &[Stretch]) -> Vec<Unknown> {
+    let is_given = case.speed_is_input && !stretches.is_empty();
+    let ripples = is_given.then(|| Ripple::expected(case, plant));
+    let one = |ripple: Ripple| Unknown {
+        departure: Departure::Ripple(ripple),
+        curved: false,
+        stretches: (0..stretches.len()).collect(),
+    };
+    ripples.into_iter().flatten().map(one).collect()
 }
 
 /// Offsets of the stator flux whose second orders span those of all: along both axes and between them, as large as a jump leaves.
@@ -303,172 +353,4 @@ fn units(plant: &Plant) -> [StateOffset; 5] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::prediction::residual;
-    use crate::specimen;
-
-    /// What is left of a recording of a motor that was elsewhere, as a share of what was there before anything was taken out.
-    fn left(case: &mut Case, plant: &Plant, elsewhere: StateOffset) -> f64 {
-        left_through(None, case, plant, elsewhere)
-    }
-
-    /// The same where an instrument shows the speed, of the recording and of the model that is held against it.
-    fn left_through(
-        meter: Option<EffectConfig>,
-        case: &mut Case,
-        plant: &Plant,
-        elsewhere: StateOffset,
-    ) -> f64 {
-        let shown = |offsets: &[StateOffset]| {
-            let drive = Drive {
-                offsets,
-                ..Drive::of(case)
-            };
-            let mut outputs = run(case, plant, &drive, SpeedObserver::Off);
-            if let Some(config) = &meter {
-                let values = config.effect.prepared(&config.values, &plant.rated);
-                config.effect.outputs(&values, &plant.rated, &mut outputs);
-            }
-            outputs
-        };
-        let (there, model) = (shown(&[elsewhere]), shown(&[]));
-        let rows = (0..case.measured.len()).map(|row| row * case.decimation);
-        case.measured = rows
-            .map(|k| {
-                let [a, b, c] = there.i_s_abc[k];
-                [a, b, c, there.omega_mech[k], there.u_zero[k]]
-            })
-            .collect();
-        let model = as_shown(case, &model);
-        let error =
-            |case: &Case| signal::dot(&residual(case, &model), &residual(case, &model)).sqrt();
-        let before = error(case);
-        case.nuisance = unknown_state(case, plant);
-        error(case) / before
-    }
-
-    fn running() -> (Case, Plant) {
-        let study = specimen::study(1.0, |_| 1.0);
-        let case = Case {
-            nuisance: Nuisance::default(),
-            ..study.fitted.case
-        };
-        (case, study.prior.plant)
-    }
-
-    /// The motor's equations are linear but for products of speed, flux and current: what is left is of second order, ten times
-    /// as little of what began ten times as near.
-    #[test]
-    fn a_motor_that_began_elsewhere_is_explained() {
-        let begun = |share: f64| {
-            let (mut case, plant) = running();
-            let flux = share * plant.rated.flux();
-            let elsewhere = StateOffset {
-                sample: 0,
-                psi_s: Complex64::from_polar(flux, 0.3),
-                psi_r: Complex64::from_polar(flux, -2.0),
-                omega_mech: 0.1 * share * plant.rated.speed(),
-            };
-            left(&mut case, &plant, elsewhere)
-        };
-        let (far, near) = (begun(0.1), begun(0.01));
-        // A tenth of the flux and a hundredth of the speed: products of both, some of them.
-        assert!(far < 0.05, "{far}");
-        assert!(near < 0.15 * far, "{near} {far}");
-    }
-
-    /// The counts of an encoder show a start that is unknown as another one.
-    #[test]
-    fn a_motor_that_began_elsewhere_is_explained_through_an_encoder_too() {
-        let through = |delay_s: f64| {
-            let (mut case, plant) = running();
-            let encoder = motor::effects::find("speed-delay", "mean").expect("in the library");
-            let mut meter = EffectConfig::absent(encoder, &plant.rated);
-            meter.values[0] = delay_s;
-            let elsewhere = StateOffset {
-                sample: 0,
-                psi_s: Complex64::ZERO,
-                psi_r: Complex64::ZERO,
-                omega_mech: 0.01 * plant.rated.speed(),
-            };
-            left_through(Some(meter), &mut case, &plant, elsewhere)
-        };
-        // One of those that are looked through leaves what is of second order, a hundredth of the speed; between two of them half
-        // of what is left without any (0.076) must be gone at least.
-        assert!(through(5e-3) < 0.02, "{}", through(5e-3));
-        assert!(through(3.5e-3) < 0.038, "{}", through(3.5e-3));
-    }
-
-    /// A voltage that jumps between two samples leaves a part of a sampling interval in the stator flux.
-    #[test]
-    fn the_instant_of_a_jump_is_unknown() {
-        let (mut case, plant) = running();
-        let n = case.inputs.u_s.len();
-        let elsewhere = StateOffset {
-            sample: n / 2,
-            psi_s: Complex64::new(0.0, 0.02 * plant.rated.flux()),
-            psi_r: Complex64::ZERO,
-            omega_mech: 0.0,
-        };
-        case.running_at = None;
-        let smooth = left(&mut case.clone(), &plant, elsewhere);
-        assert_eq!(smooth, 1.0, "nothing jumps there");
-        case.supply.segments = vec![0..n / 2, n / 2..n];
-        let left = left(&mut case, &plant, elsewhere);
-        assert!(left < 0.01, "{left}");
-    }
-
-    /// A slow recording leaves so much open that the first order alone is not enough: of the same eight hundredths of the flux, in any
-    /// direction, at least nine tenths of what the first order leaves is gone.
-    #[test]
-    fn what_a_jump_leaves_in_a_slow_recording_is_unknown_to_second_order() {
-        let (mut case, plant) = running();
-        let n = case.inputs.u_s.len();
-        case.running_at = None;
-        case.supply.segments = vec![0..n / 2, n / 2..n];
-        for angle in [0.3, 1.2, 2.4, 4.0] {
-            let elsewhere = StateOffset {
-                sample: n / 2,
-                psi_s: Complex64::from_polar(0.08 * plant.rated.flux(), angle),
-                psi_r: Complex64::ZERO,
-                omega_mech: 0.0,
-            };
-            case.finer = 1;
-            let first = left(&mut case.clone(), &plant, elsewhere);
-            case.finer = 3;
-            assert!(left_by_a_jump(&case, &plant) > CURVED);
-            let second = left(&mut case.clone(), &plant, elsewhere);
-            assert!(second < 0.1 * first, "{angle}: {first} {second}");
-        }
-    }
-
-    /// An instrument that averages the speed changes nothing else, and needs nothing else: what it is shown here is enough.
-    #[test]
-    fn an_instrument_of_the_speed_reads_the_speed_alone() {
-        let (case, plant) = running();
-        let outputs = run(&case, &plant, &Drive::of(&case), SpeedObserver::Off);
-        let meters = speedometers(&case, &plant);
-        assert!(!meters.is_empty());
-        for meter in meters {
-            let mut whole = outputs.clone();
-            let values = meter.effect.prepared(&meter.values, &plant.rated);
-            meter.effect.outputs(&values, &plant.rated, &mut whole);
-            assert_ne!(whole.omega_mech, outputs.omega_mech);
-            assert_eq!(
-                read_by(&meter, &plant, &speed_of(&outputs)),
-                whole.omega_mech
-            );
-            whole.omega_mech.clone_from(&outputs.omega_mech);
-            assert_eq!(whole, outputs);
-        }
-    }
-
-    /// Of a motor that starts from rest on a smooth supply everything is known.
-    #[test]
-    fn a_start_from_rest_leaves_nothing_open() {
-        let (mut case, plant) = running();
-        case.running_at = None;
-        assert!(unknowns(&stretches(&case), &plant, 0.1).is_empty());
-    }
-}
+mod tests;
