@@ -120,13 +120,13 @@ pub fn tied(candidates: &[Candidate]) -> usize {
 
 /// What to do about causes that cannot be told apart, each step once. A motor that was not calibrated is asked first
 /// whether it is merely warm: the calibration knows heat.
-pub fn todo(causes: &[Candidate], calibrated: bool) -> Vec<&'static str> {
+pub fn todo(causes: &[FaultId], calibrated: bool) -> Vec<&'static str> {
     let mut steps = Vec::new();
     if !calibrated {
-        let first = causes.iter().find_map(|cause| cause.fault.first_advice());
+        let first = causes.iter().find_map(|cause| cause.first_advice());
         steps.extend(first);
     }
-    steps.extend(tests(causes));
+    steps.extend(tests_of(causes.iter().copied()));
     if steps.is_empty() && !causes.is_empty() {
         steps.push("is it this motor's file? Then look at the residuals and the recording itself");
     }
@@ -135,8 +135,12 @@ pub fn todo(causes: &[Candidate], calibrated: bool) -> Vec<&'static str> {
 
 /// What would prove or clear each of these causes, each test once.
 pub fn tests(candidates: &[Candidate]) -> Vec<&'static str> {
+    tests_of(candidates.iter().map(|candidate| candidate.fault))
+}
+
+fn tests_of(causes: impl Iterator<Item = FaultId>) -> Vec<&'static str> {
     let mut tests = Vec::new();
-    for test in candidates.iter().filter_map(|c| c.fault.separating_test()) {
+    for test in causes.filter_map(FaultId::separating_test) {
         if !tests.contains(&test) {
             tests.push(test);
         }

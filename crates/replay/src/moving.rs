@@ -1,14 +1,14 @@
 //! What of a recording was judged while current, speed or supply changed, beside the windows at rest.
 
-use monitor::{Monitor, MonitorState, NotJudged, Report, Sample};
+use monitor::{Channel, FaultId, Monitor, MonitorState, NotJudged, Report, Sample};
 use motion::{
-    Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NoMotion, NotInMotion,
+    Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NotInMotion,
 };
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use std::collections::VecDeque;
 
-use crate::words;
+use crate::{VerdictState, words};
 
 /// Windows that are not at rest, and what motion says of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
@@ -23,8 +23,8 @@ pub struct MotionSummary {
     pub not_judged: Vec<MotionShare>,
     /// Alarms that came while something was changing, in the order of time.
     pub alarms: Vec<MotionFault>,
-    /// What fits neither the model nor a fault of a size that occurs: a larger fault, a speed channel that lags, an effect that
-    /// the motor file lacks. No FAULT, and nothing is called healthy.
+    /// What does not fit the model: a fault of no size that occurs, a speed channel that lags, an effect that the motor file lacks; of a
+    /// motor that was never seen in motion in good order, every alarm but a dead sensor's. No FAULT, and nothing is called healthy.
     pub unexplained: Vec<MotionFault>,
 }
 
@@ -53,9 +53,29 @@ pub struct MotionFault {
 }
 
 impl MotionFault {
+    /// Of what does not fit: what is known of it, and what it may be.
+    pub fn doubt(&self) -> String {
+        match self.words() {
+            Some(cause) => format!("it looks like {cause}, but {}", words::NEVER_SEEN_IN_MOTION),
+            None => format!(
+                "no fault of a size that occurs explains it. It may be {}",
+                words::UNEXPLAINED
+            ),
+        }
+    }
+
     /// The cause in words; `None` where it could not be told, or no fault of a size that occurs is one.
     pub fn words(&self) -> Option<String> {
         self.cause.and_then(motion_cause)
+    }
+
+    /// The fault that is the cause; `None` as in [`MotionFault::words`].
+    pub fn fault(&self) -> Option<FaultId> {
+        match self.cause? {
+            MotionCause::Dead(finding) => Some(Channel::of(finding).row),
+            MotionCause::Departure(cause) => Some(cause.fault()),
+            MotionCause::Untold => None,
+        }
     }
 }
 
@@ -65,7 +85,8 @@ fn in_words<S: Serializer>(cause: &Option<MotionCause>, serializer: S) -> Result
 
 /// Judges in motion beside the windows at rest.
 pub struct Follower {
-    motion: Result<Motion, NoMotion>,
+    /// `None` where nothing is judged.
+    motion: Option<Motion>,
     state: MotionState,
     latest: Option<MotionCycle>,
     /// Whether the latest window was at rest, and could be judged.
@@ -75,6 +96,8 @@ pub struct Follower {
     times: RecentTimes,
     /// Number and time of the sample with which the statistic left the noise, s.
     restless: Option<(u64, f64)>,
+    /// Whether an alarm may be an effect that the motor file lacks.
+    doubtful: bool,
     summary: MotionSummary,
 }
 
@@ -105,6 +128,33 @@ impl RecentTimes {
 }
 
 impl MotionSummary {
+    /// Nothing was judged in motion, for this reason.
+    pub(crate) fn impossible(why: &str) -> Self {
+        MotionSummary {
+            not_possible: Some(why.to_owned()),
+            ..MotionSummary::default()
+        }
+    }
+
+    /// Takes alarms as what does not fit, in the order of time.
+    fn doubt(&mut self, alarms: Vec<MotionFault>) {
+        self.unexplained.extend(alarms);
+        self.unexplained
+            .sort_by(|a, b| a.raised_s.total_cmp(&b.raised_s));
+    }
+
+    /// What a recording comes to whose windows at rest come to `at_rest`: FAULT at rest or in motion; healthy where either was judged and
+    /// neither lit; not judged where something came in motion that no fault explains.
+    pub fn state_with(&self, at_rest: VerdictState) -> VerdictState {
+        match at_rest {
+            VerdictState::Fault => VerdictState::Fault,
+            _ if self.is_fault() => VerdictState::Fault,
+            _ if !self.unexplained.is_empty() => VerdictState::NotJudged,
+            VerdictState::NotJudged if self.is_healthy() => VerdictState::Healthy,
+            state => state,
+        }
+    }
+
     /// Whether an alarm came in motion.
     pub fn is_fault(&self) -> bool {
         !self.alarms.is_empty()
@@ -119,7 +169,28 @@ impl MotionSummary {
 impl Follower {
     /// For a monitor of this configuration.
     pub fn new(monitor: &Monitor) -> Self {
-        let motion = Motion::new(monitor.config());
+        match Motion::new(monitor.config()) {
+            Ok(motion) => Follower::of(Some(motion), MotionSummary::default()),
+            Err(why) => Follower::without(&why.to_string()),
+        }
+    }
+
+    /// One that judges nothing, for this reason.
+    pub fn without(why: &str) -> Self {
+        Follower::of(None, MotionSummary::impossible(why))
+    }
+
+    /// The same of a motor that was never seen to move as its file says: what comes in motion may be what the file lacks, but for
+    /// a dead sensor.
+    #[must_use]
+    pub fn in_doubt(self) -> Self {
+        Follower {
+            doubtful: true,
+            ..self
+        }
+    }
+
+    fn of(motion: Option<Motion>, summary: MotionSummary) -> Self {
         Follower {
             state: MotionState::default(),
             latest: None,
@@ -133,10 +204,8 @@ impl Follower {
                 ..RecentTimes::default()
             },
             restless: None,
-            summary: MotionSummary {
-                not_possible: motion.err().map(|why| why.to_string()),
-                ..MotionSummary::default()
-            },
+            doubtful: false,
+            summary,
             motion,
         }
     }
@@ -148,7 +217,7 @@ impl Follower {
 
     /// Takes a sample that `monitor` has just taken.
     pub fn update(&mut self, t: f64, sample: &Sample, monitor: &MonitorState) {
-        let Ok(motion) = &self.motion else {
+        let Some(motion) = &self.motion else {
             return;
         };
         self.times.push(t);
@@ -227,6 +296,13 @@ impl Follower {
         shares.sort_by_key(|share| (std::cmp::Reverse(share.windows), share.reason));
         if self.summary.not_possible.is_some() {
             shares.clear();
+        }
+        if self.doubtful {
+            let is_dead = |alarm: &MotionFault| matches!(alarm.cause, Some(MotionCause::Dead(_)));
+            let alarms = std::mem::take(&mut self.summary.alarms);
+            let (sure, doubts) = alarms.into_iter().partition(is_dead);
+            self.summary.alarms = sure;
+            self.summary.doubt(doubts);
         }
         self.summary
     }

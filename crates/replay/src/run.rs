@@ -1,10 +1,16 @@
 //! Samples through the core, at once or piece by piece.
 
 use monitor::{Monitor, MonitorState, Report};
+use motor::MotorFile;
+use motor::motor_file::InMotion;
 
 use crate::moving::Follower;
 use crate::samples::{Before, Samples};
 use crate::timeline::Timeline;
+
+/// Why a motor is not judged in motion whose file misses something.
+const DIFFERS_IN_MOTION: &str = "in good order it moved otherwise than its file says: an effect is missing there, and drivemon explain \
+     says which; then calibrate again";
 
 /// A replay of a recording that comes in pieces: all that the core remembers goes on from one to the next, so that the
 /// answer is that of the recording as a whole, bit for bit.
@@ -17,6 +23,17 @@ pub struct Replay {
 }
 
 impl Replay {
+    /// Of a motor by its file, before the first sample: judged in motion as far as it was seen to move as that file says.
+    pub fn of(motor: &MotorFile, monitor: Monitor) -> Replay {
+        let replay = Replay::new(monitor);
+        let follower = match motor.healthy.map(|healthy| healthy.in_motion) {
+            Some(InMotion::Unseen) => replay.follower.in_doubt(),
+            Some(InMotion::Differs) => Follower::without(DIFFERS_IN_MOTION),
+            Some(InMotion::Fits) | None => replay.follower,
+        };
+        Replay { follower, ..replay }
+    }
+
     /// Before the first sample.
     pub fn new(monitor: Monitor) -> Replay {
         Replay {

@@ -29,6 +29,10 @@ pub fn not_judged(reason: NotJudged) -> String {
 pub const UNEXPLAINED: &str = "a larger fault, a speed channel that lags, or an effect that the motor file lacks; \
      compare the recording with the model (drivemon compare), or record the shaft without a filter";
 
+/// Why an alarm in motion is no FAULT of a motor that was calibrated at rest alone.
+pub const NEVER_SEEN_IN_MOTION: &str = "the motor in good order was never seen in motion: its file may lack an effect. \
+     Calibrate it on a recording with a start and load steps as well";
+
 /// Why a cycle was not judged in motion.
 pub fn not_in_motion(reason: NotInMotion) -> &'static str {
     match reason {

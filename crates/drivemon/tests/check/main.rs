@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod in_motion;
 mod standard_tests;
 
 use std::path::{Path, PathBuf};

@@ -54,6 +54,36 @@ pub struct HealthySettings {
     pub significance: f64,
     /// Sidebands of the rotor's bars; `None`: not calibrated.
     pub rotor: Option<HealthyRotor>,
+    /// How the motor in good order moved, beside how its file says.
+    pub in_motion: InMotion,
+}
+
+/// How a motor in good order moved while current, speed or supply changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InMotion {
+    /// It was seen at rest alone: whether its file lacks an effect that shows in motion is not known.
+    #[default]
+    Unseen,
+    /// As its file says.
+    Fits,
+    /// Otherwise: its file lacks an effect.
+    Differs,
+}
+
+impl InMotion {
+    /// The words of a motor file.
+    pub const CHOICE: [(&'static str, InMotion); 3] = [
+        ("unseen", InMotion::Unseen),
+        ("fits", InMotion::Fits),
+        ("differs", InMotion::Differs),
+    ];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        let mut all = InMotion::CHOICE.into_iter();
+        all.find(|(_, one)| *one == self)
+            .map_or("", |(word, _)| word)
+    }
 }
 
 impl Default for HealthySettings {
@@ -78,6 +108,7 @@ impl Default for HealthySettings {
             negative_impedance_percent: 10.0,
             significance: 5.5,
             rotor: None,
+            in_motion: InMotion::Unseen,
         }
     }
 }
@@ -116,6 +147,7 @@ fn read_values(section: &Section<'_>) -> Option<HealthySettings> {
     let angle = section.number_or("turns_angle_deg", &ANGLE, base.turns_angle_deg);
     let significance = section.number_or("significance", &SIGNIFICANCE, base.significance);
     let rotor = read_rotor(section);
+    let in_motion = section.choice_or("in_motion", &InMotion::CHOICE, base.in_motion);
     let mut settings = HealthySettings {
         mean_percent: mean?,
         scatter_percent: scatter?,
@@ -123,6 +155,7 @@ fn read_values(section: &Section<'_>) -> Option<HealthySettings> {
         turns_angle_deg: angle?,
         significance: significance?,
         rotor: rotor?,
+        in_motion: in_motion?,
         ..base
     };
     for (place, number) in settings.share_places().into_iter().zip(numbers) {

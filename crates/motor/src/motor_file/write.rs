@@ -3,8 +3,8 @@
 use super::monitor::{FIELD_CURRENTS, FRAMES, LOADS};
 use super::sensors::MICROSECOND;
 use super::{
-    Connection, EffectEntry, EffectValue, HealthySettings, MonitorSettings, MotorFile, Nameplate,
-    Sensors, Uncertainty,
+    Connection, EffectEntry, EffectValue, HealthySettings, InMotion, MonitorSettings, MotorFile,
+    Nameplate, Sensors, Uncertainty,
 };
 use std::fmt::Write;
 
@@ -174,6 +174,9 @@ fn healthy(text: &mut Text, settings: &HealthySettings) {
         text.numbers("rotor_active_percent", &rotor.active_percent);
         text.numbers("rotor_sideband_percent", &rotor.sideband_percent);
         text.number("rotor_sideband_scatter_percent", rotor.scatter_percent);
+    }
+    if settings.in_motion != InMotion::Unseen {
+        text.words("in_motion", settings.in_motion.word());
     }
 }
 

@@ -62,7 +62,8 @@ pub(crate) fn likely(
     calibrated: bool,
 ) -> (Vec<LikelyCause>, Vec<&'static str>) {
     let tied = causes::tied(&candidates);
-    let todo = causes::todo(&candidates[..tied], calibrated);
+    let faults: Vec<_> = candidates[..tied].iter().map(|one| one.fault).collect();
+    let todo = causes::todo(&faults, calibrated);
     let told = causes::listed(candidates)
         .into_iter()
         .enumerate()

@@ -15,7 +15,7 @@ mod windows;
 use audit::Audit;
 use monitor::{Cause, Healthy, Monitor, MonitorConfig};
 use motor::MotorFile;
-use motor::motor_file::HealthySettings;
+use motor::motor_file::{HealthySettings, InMotion};
 use recording::Recording;
 
 pub use gains::Kind;
@@ -151,6 +151,11 @@ pub fn calibrate_pieces(
         motor.monitor.threshold_percent = statistics::thresholds(&motor, &observed, &monitor_of)?;
     }
     refuse::contradictions(&motor, &sources, &observed)?;
+    let healthy = HealthySettings {
+        in_motion: in_motion(&motor, &sources)?,
+        ..healthy
+    };
+    motor.healthy = Some(healthy);
     Ok(Calibrated {
         motor,
         windows: observed.len(),
@@ -162,6 +167,24 @@ pub fn calibrate_pieces(
         gains,
         misfit_percent: fitted.misfit.map(|x| 100.0 * x),
         healthy,
+    })
+}
+
+/// Fewest windows in motion that show how a motor moves.
+const SEEN_IN_MOTION: u64 = 20;
+
+/// How the motor in good order moved: what judges in motion would call a lacking effect a fault, now and later.
+fn in_motion(motor: &MotorFile, sources: &[Healthily<'_>]) -> Result<InMotion, Refusal> {
+    let (mut seen, mut differs) = (0, false);
+    for source in sources {
+        let motion = source.replayed(configured(motor, source.head())?)?.motion;
+        seen += motion.judged;
+        differs |= !motion.alarms.is_empty() || !motion.unexplained.is_empty();
+    }
+    Ok(match differs {
+        true => InMotion::Differs,
+        false if seen >= SEEN_IN_MOTION => InMotion::Fits,
+        false => InMotion::Unseen,
     })
 }
 

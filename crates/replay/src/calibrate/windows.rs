@@ -11,7 +11,7 @@ use super::pieces::Pieces;
 use super::{Refusal, configured};
 use crate::samples::{Before, Samples};
 use crate::timeline::Thinned;
-use crate::words;
+use crate::{Replay, Timeline, words};
 
 /// One steady window.
 #[derive(Clone, Copy, Debug)]
@@ -155,6 +155,23 @@ impl<'r> Healthily<'r> {
     /// The first samples, with what is known of the whole.
     pub fn head(&self) -> &Recording {
         &self.head
+    }
+
+    /// What the recording comes to.
+    ///
+    /// # Errors
+    /// Values that the core does not take, and a file that can be read no more.
+    pub fn replayed(&self, config: MonitorConfig) -> Result<Timeline, Refusal> {
+        let refused = |error: monitor::ConfigError| Refusal::new(self.name(), error.to_string());
+        let mut replay = Replay::new(Monitor::new(config).map_err(refused)?);
+        let mut audits = self.of_pieces.iter();
+        self.pieces.each(&mut |piece| {
+            if let Some(Some(audit)) = audits.next() {
+                replay.take(Samples::new(piece, audit), &mut |_| {});
+            }
+            Ok(())
+        })?;
+        Ok(replay.finish())
     }
 
     /// Sends the recording through the core; `look` takes the time, s, and each report.

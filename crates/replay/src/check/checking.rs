@@ -8,7 +8,11 @@ use recording::Recording;
 use super::clamp::{ClampSignal, clamp_signals};
 use super::{BlindSpot, Checked, Told, VerdictState, blind, blind_spots, severity, todo};
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
-use crate::{NotJudgedShare, Replay, Samples, Timeline, config_for, replay, words};
+use crate::{MotionSummary, NotJudgedShare, Replay, Samples, Timeline, config_for, replay, words};
+
+/// Why a recording without a speed is not judged in motion.
+const SPEED_IS_ESTIMATED: &str =
+    "the speed is not recorded: an estimate is too slow for what changes within a cycle";
 
 /// The pieces so far.
 pub struct Checking<'m> {
@@ -108,7 +112,9 @@ impl<'m> Checking<'m> {
         };
         let samples = Samples::new(shown, audit);
         if is_usable {
-            let replay = self.replay.get_or_insert_with(|| Replay::new(monitor));
+            let replay = self
+                .replay
+                .get_or_insert_with(|| Replay::of(self.motor, monitor));
             replay.take(samples, progress);
         } else if self.pieces == 1 {
             self.refused = Some(replay(&monitor, &samples, progress));
@@ -138,17 +144,25 @@ impl<'m> Checking<'m> {
         };
         let speed = self.speed.map(|speed| speed.estimated);
         let mut verdict = timeline.verdict(&shown.findings);
+        let mut motion = timeline.motion.clone();
         if speed.is_some() {
             blind::forget_speed(&mut verdict);
+            motion = MotionSummary::impossible(SPEED_IS_ESTIMATED);
         }
+        if motion.not_possible.is_some() && !timeline.something_moved() {
+            motion = MotionSummary::default();
+        }
+        let mut state = motion.state_with(verdict.state);
         if !shown.supported {
-            verdict.state = VerdictState::NotJudged;
+            (state, verdict.state) = (VerdictState::NotJudged, VerdictState::NotJudged);
         }
         let share = |share: &NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
         let clamps = self.clamps.finish();
         let mut answer = Checked {
+            state,
             severity: severity::of(&verdict),
-            todo: todo(self.motor, &verdict),
+            todo: todo(self.motor, state, &verdict, &motion),
+            motion,
             windows: [timeline.judged, timeline.windows],
             not_judged: match clamps.is_empty() {
                 true => timeline.not_judged.iter().map(share).collect(),

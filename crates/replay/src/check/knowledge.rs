@@ -2,6 +2,7 @@
 
 use discovery::{Given, IdentifyReport, Sources};
 use motor::MotorFile;
+use motor::motor_file::InMotion;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Display;
@@ -91,16 +92,25 @@ impl Learnt {
     }
 
     /// Without an encoder the speed is estimated here as it will be when the motor is checked.
-    fn calibrate(&mut self, healthy: &[&dyn Reference]) {
+    fn calibrate(&mut self, references: &[&dyn Reference]) {
         let believed = self.motor.clone();
-        let healthy = healthy.iter().map(|one| WithSpeed::new(*one, &believed));
+        let healthy = references.iter().map(|one| WithSpeed::new(*one, &believed));
         let healthy: Vec<WithSpeed<'_>> = healthy.collect();
         let healthy: Vec<&dyn Pieces> = healthy.iter().map(|one| one as _).collect();
         match calibrate_pieces(&believed, &healthy, &Surroundings::default()) {
             Ok(calibrated) => {
                 (self.motor, self.knowledge) = (calibrated.motor, Knowledge::Calibrated);
+                self.forget_motion_of_estimates(references);
             }
             Err(refusal) => self.notes.push(format!("not calibrated: {refusal}")),
+        }
+    }
+
+    /// An estimated speed is too slow to follow a motor in motion: how it seemed to move says nothing.
+    fn forget_motion_of_estimates(&mut self, references: &[&dyn Reference]) {
+        let is_estimated = references.iter().any(|one| one.head().speed().is_none());
+        if let Some(healthy) = self.motor.healthy.as_mut().filter(|_| is_estimated) {
+            healthy.in_motion = InMotion::Unseen;
         }
     }
 }

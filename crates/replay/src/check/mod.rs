@@ -19,21 +19,27 @@ pub use severity::Severity;
 pub use told::Told;
 
 use audit::Audit;
-use motor::MotorFile;
+use motor::{FaultId, MotorFile};
 use recording::Recording;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::speed::EstimatedSpeed;
-use crate::{Verdict, VerdictState, WindowOperation, WindowResiduals, causes};
+use crate::{
+    MotionFault, MotionSummary, Verdict, VerdictState, WindowOperation, WindowResiduals, causes,
+};
 
 /// What one recording says of a motor.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Checked {
     /// Audit of the recording.
     pub audit: Audit,
-    /// State and possible causes.
+    /// What the recording comes to, at rest and in motion together.
+    pub state: VerdictState,
+    /// State and possible causes of the windows at rest.
     pub verdict: Verdict,
+    /// What was judged while current, speed or supply changed.
+    pub motion: MotionSummary,
     /// How bad the likeliest cause is, where its size is known.
     pub severity: Option<Severity>,
     /// What to do, in order.
@@ -84,15 +90,32 @@ pub fn check(
 }
 
 /// Steps for the causes that cannot be told apart, or what makes a dark answer worth more.
-fn todo(motor: &MotorFile, verdict: &Verdict) -> Vec<String> {
+fn todo(
+    motor: &MotorFile,
+    state: VerdictState,
+    verdict: &Verdict,
+    motion: &MotionSummary,
+) -> Vec<String> {
     let calibrated = motor.healthy.is_some();
     let tied = &verdict.candidates[..verdict.tied.min(verdict.candidates.len())];
-    let mut steps: Vec<String> = match verdict.state {
-        VerdictState::Fault => causes::todo(tied, calibrated)
+    let in_motion = motion.alarms.iter().filter_map(|alarm| alarm.fault());
+    let causes: Vec<FaultId> = match verdict.state {
+        VerdictState::Fault => tied.iter().map(|candidate| candidate.fault).collect(),
+        _ => in_motion.collect(),
+    };
+    let mut steps: Vec<String> = match state {
+        VerdictState::Fault => causes::todo(&causes, calibrated)
             .into_iter()
             .map(str::to_owned)
             .collect(),
         VerdictState::Healthy => Vec::new(),
+        VerdictState::NotJudged if !motion.unexplained.is_empty() => {
+            let first = motion.unexplained.iter().take(1);
+            let step = |doubt: &MotionFault| {
+                format!("find out what does not fit in motion: {}", doubt.doubt())
+            };
+            first.map(step).collect()
+        }
         VerdictState::NotJudged => {
             vec!["record ten seconds of steady running with three voltages, three currents and, if there is one, the speed".to_owned()]
         }

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::Checked;
 use super::blind::NOT_CALIBRATED;
-use crate::VerdictState;
 use crate::causes::Candidate;
+use crate::{MotionFault, VerdictState};
 
 /// What a technician reads first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
@@ -25,15 +25,19 @@ pub struct Told {
 impl Told {
     pub(super) fn of(checked: &Checked) -> Told {
         let verdict = &checked.verdict;
-        let fault = verdict.state == VerdictState::Fault;
-        let likeliest = verdict.candidates.first().filter(|_| fault);
+        let at_rest = verdict.state == VerdictState::Fault;
+        let likeliest = verdict.candidates.first().filter(|_| at_rest);
+        let in_motion = checked.motion.alarms.first().filter(|_| !at_rest);
         Told {
-            state: state(verdict.state),
-            cause: likeliest.map(ToString::to_string),
-            sure: match verdict.state {
-                VerdictState::Fault => sure_of_cause(checked),
-                VerdictState::Healthy => looked_at(checked),
-                VerdictState::NotJudged => why_not(checked),
+            state: state(checked.state),
+            cause: likeliest
+                .map(ToString::to_string)
+                .or_else(|| in_motion.and_then(MotionFault::words)),
+            sure: match (checked.state, in_motion) {
+                (VerdictState::Fault, Some(alarm)) => sure_in_motion(alarm),
+                (VerdictState::Fault, None) => sure_of_cause(checked),
+                (VerdictState::Healthy, _) => looked_at(checked),
+                (VerdictState::NotJudged, _) => why_not(checked),
             },
             severity: likeliest.and_then(|cause| severity(checked, cause)),
         }
@@ -68,6 +72,18 @@ fn sure_of_cause(checked: &Checked) -> String {
     }
 }
 
+/// When an alarm came in motion, and how far it stands out.
+fn sure_in_motion(alarm: &MotionFault) -> String {
+    let cause = match alarm.cause {
+        Some(_) => "",
+        None => "; the motion was over before its cause could be told",
+    };
+    format!(
+        "it came in motion, from about {:.2} s on (T = {:.1}){cause}",
+        alarm.onset_s, alarm.statistic
+    )
+}
+
 fn severity(checked: &Checked, cause: &Candidate) -> Option<&'static str> {
     let sensors = [
         FaultId::CurrentSensor,
@@ -87,6 +103,13 @@ fn severity(checked: &Checked, cause: &Candidate) -> Option<&'static str> {
 /// What a dark answer rests on.
 fn looked_at(checked: &Checked) -> String {
     let [judged, windows] = checked.windows;
+    if judged == 0 && checked.motion.judged > 0 {
+        let motion = &checked.motion;
+        return format!(
+            "{} of {} windows judged in motion, none at rest",
+            motion.judged, motion.windows
+        );
+    }
     match checked.visible_percent {
         Some([r1, ..]) => format!(
             "{judged} of {windows} windows judged; a fault shows from {r1:.2} % of the voltage balance (r1) on"
@@ -103,6 +126,13 @@ fn why_not(checked: &Checked) -> String {
         .findings
         .iter()
         .find(|finding| finding.refuses);
+    if let Some(doubt) = checked.motion.unexplained.first() {
+        return format!(
+            "in motion something does not fit, from about {:.2} s on: {}",
+            doubt.onset_s,
+            doubt.doubt()
+        );
+    }
     let first = checked.not_judged.first();
     let why = refusal.map(|finding| &finding.detail).or(first);
     why.map_or("nothing in it can be judged".to_owned(), Clone::clone)

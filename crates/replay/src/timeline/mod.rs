@@ -285,6 +285,13 @@ impl Timeline {
         }
     }
 
+    /// Whether windows were not judged because current, speed or supply were changing.
+    pub fn something_moved(&self) -> bool {
+        let transient = Unjudged::ByCore(NotJudged::Transient);
+        let mut reasons = self.not_judged.iter().map(|share| share.reason);
+        reasons.any(|reason| reason == transient)
+    }
+
     /// The verdict over everything added so far; `audit` is what is known of the recording's channels beforehand.
     pub fn verdict(&self, audit: &[Finding]) -> Verdict {
         let state = match (self.first_alarm_s, self.judged) {

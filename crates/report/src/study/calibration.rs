@@ -96,6 +96,8 @@ pub struct HealthyStatistics {
     /// Sidebands of the cage at a light and at a heavy load; absent where the recordings show too few blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotor: Option<HealthyCage>,
+    /// How the motor in good order moved, beside how its file says: `fits`, `differs` (it is not judged in motion), or `unseen`.
+    pub in_motion: &'static str,
 }
 
 /// The healthy cage, percent of the active current; loads in percent of the rated current.
@@ -171,6 +173,7 @@ fn healthy(settings: &HealthySettings) -> HealthyStatistics {
             sideband_percent: rotor.sideband_percent,
             scatter_percent: rotor.scatter_percent,
         }),
+        in_motion: settings.in_motion.word(),
     }
 }
 

@@ -118,7 +118,7 @@ impl Checkup {
 
     /// The state of all recordings together: a fault outweighs what was not judged.
     pub fn state(&self) -> VerdictState {
-        let mut states = self.recordings.iter().map(|one| one.checked.verdict.state);
+        let mut states = self.recordings.iter().map(|one| one.checked.state);
         let worst = |a, b| match (a, b) {
             (VerdictState::Fault, _) | (_, VerdictState::Fault) => VerdictState::Fault,
             (VerdictState::Healthy, VerdictState::Healthy) => VerdictState::Healthy,

@@ -198,7 +198,10 @@ impl<'m> Monitoring<'m> {
             Some(replay) => replay,
             none => {
                 let monitor = Monitor::new(config).map_err(MonitorError::Config)?;
-                none.insert(Replay::new(monitor))
+                none.insert(match self.motor {
+                    Some(motor) => Replay::of(motor, monitor),
+                    None => Replay::new(monitor),
+                })
             }
         };
         replay.follow(samples, look);
@@ -238,14 +241,7 @@ impl Monitored {
     /// What the recording comes to: FAULT at rest or in motion; healthy where either was judged and neither lit; not judged
     /// where something came in motion that no fault explains.
     pub fn state(&self) -> VerdictState {
-        let motion = &self.timeline.motion;
-        match self.verdict.state {
-            VerdictState::Fault => VerdictState::Fault,
-            _ if motion.is_fault() => VerdictState::Fault,
-            _ if !motion.unexplained.is_empty() => VerdictState::NotJudged,
-            VerdictState::NotJudged if motion.is_healthy() => VerdictState::Healthy,
-            state => state,
-        }
+        self.timeline.motion.state_with(self.verdict.state)
     }
 }
 

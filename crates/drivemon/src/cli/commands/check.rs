@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use recording::{Recording, Source};
+use replay::VerdictState;
 use replay::check::{Checked, Reference};
 use replay::speed::{EstimatedSpeed, SpeedSource};
-use replay::{Verdict, VerdictState};
 use report::Subject;
 use report::study::{CheckedRecording, Checkup, Known, Taken};
 
@@ -17,6 +17,7 @@ use crate::cli::arguments::study::{print_audit, quantity, with_progress};
 use crate::cli::commands::motor::identify::print_table;
 use crate::cli::commands::motor::plate::PlateArgs;
 use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::motion::print_motion;
 use crate::cli::printing::output::{OutputArgs, write_text};
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
@@ -187,6 +188,7 @@ fn print_one(named: &CheckedRecording) {
         .not_judged
         .iter()
         .for_each(|why| say!("    not judged: {why}"));
+    print_motion(&checked.motion, "  ");
     if checked.clamps.is_empty() {
         say!("  {}", checked.rotor);
     }
@@ -227,20 +229,18 @@ fn print_speed(speed: &EstimatedSpeed) {
 }
 
 fn print_state(checked: &Checked) {
-    let Verdict {
-        state, candidates, ..
-    } = &checked.verdict;
     let told = checked.told.state;
-    match state {
+    match checked.state {
         VerdictState::Healthy => say!("  {}", paint::good(told)),
         VerdictState::NotJudged => say!("  {}", paint::caution(told)),
-        VerdictState::Fault => {
+        VerdictState::Fault if checked.verdict.state == VerdictState::Fault => {
             let told = told.to_uppercase();
             say!("  {}", paint::error(format!("{told}; possible causes:")));
-            for candidate in candidates {
+            for candidate in &checked.verdict.candidates {
                 say!("  {:5.1} %  {candidate}", 100.0 * candidate.probability);
             }
         }
+        VerdictState::Fault => say!("  {}", paint::error(told.to_uppercase())),
     }
 }
 

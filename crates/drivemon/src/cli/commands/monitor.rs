@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use monitor::{NotJudged, Report};
+use monitor::Report;
 use motor::MotorFile;
 use recording::{LoadTable, Recording, Source};
 
@@ -14,12 +14,13 @@ use crate::cli::commands::live::LiveArgs;
 use crate::cli::printing::answers::{self, Answers};
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::lamp_symbol::symbol;
+use crate::cli::printing::motion::print_motion;
 use crate::cli::printing::output::OutputArgs;
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
 use replay::operating_points::OperatingPoints;
 use replay::words;
-use replay::{SequenceSummary, Timeline, Unjudged, Verdict, VerdictState};
+use replay::{SequenceSummary, Timeline, Verdict, VerdictState};
 use report::Subject;
 use report::study::{MonitorError, Monitored, Monitoring, WindowTrace};
 
@@ -205,58 +206,10 @@ fn print(result: &Monitored) {
     print_windows(timeline);
     print_sequence(&timeline.sequence());
     say!("{}", words::rotor(&timeline.rotor()));
-    print_motion(timeline);
+    if timeline.motion.not_possible.is_none() || timeline.something_moved() {
+        print_motion(&timeline.motion, "");
+    }
     print_verdict(timeline, &result.verdict);
-}
-
-/// What was judged while something changed.
-fn print_motion(timeline: &Timeline) {
-    let motion = &timeline.motion;
-    if let Some(why) = &motion.not_possible {
-        let transient = Unjudged::ByCore(NotJudged::Transient);
-        if timeline
-            .not_judged
-            .iter()
-            .any(|share| share.reason == transient)
-        {
-            say!("in motion not judged: {why}");
-        }
-        return;
-    }
-    if motion.windows == 0 {
-        return;
-    }
-    say!(
-        "judged in motion: {} of {} windows that were not at rest",
-        motion.judged,
-        motion.windows
-    );
-    for share in &motion.not_judged {
-        say!("  {} not judged: {}", share.windows, share.reason);
-    }
-    for fault in &motion.alarms {
-        let cause = fault.words();
-        let cause =
-            cause.unwrap_or_else(|| "it was over before its cause could be told".to_owned());
-        let alarm = format!(
-            "FAULT in motion at {:.3} s, first seen at about {:.3} s, T = {:.1}:",
-            fault.raised_s, fault.onset_s, fault.statistic
-        );
-        say!("{} {cause}", paint::error(alarm));
-    }
-    for doubt in &motion.unexplained {
-        let found = format!(
-            "from about {:.3} s on something does not fit, T = {:.1}, and no fault of a size that occurs explains it",
-            doubt.onset_s, doubt.statistic
-        );
-        say!("{}", paint::caution(found));
-    }
-    if !motion.unexplained.is_empty() {
-        say!("  it may be {}", words::UNEXPLAINED);
-    }
-    if motion.is_healthy() {
-        say!("{}", paint::good("in motion no fault was seen"));
-    }
 }
 
 pub(crate) fn print_lamps(timeline: &Timeline) {

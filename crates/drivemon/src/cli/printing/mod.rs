@@ -4,6 +4,7 @@ pub(crate) mod answers;
 pub(crate) mod failure;
 pub(crate) mod findings;
 pub(crate) mod lamp_symbol;
+pub(crate) mod motion;
 pub(crate) mod output;
 pub(crate) mod paint;
 pub(crate) mod progress;

@@ -6,7 +6,7 @@ use crate::page::elements::chart::{Chart, Kind, Series};
 use crate::page::elements::number::{Style, decimals, shown, significant};
 use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, verdict};
-use crate::page::sections::{audit, plate};
+use crate::page::sections::{audit, motion, plate};
 use motor::FaultId;
 use replay::VerdictState;
 
@@ -20,6 +20,7 @@ pub fn content(result: &Place<'_>) -> Markup {
                 (steps(one, k))
                 (cards(&figures(one)))
                 (signals(one, k))
+                (motion::section(one, &id("motion", k)))
                 (causes(one, k))
             }
             (plate::section(result))
@@ -29,7 +30,7 @@ pub fn content(result: &Place<'_>) -> Markup {
 }
 
 fn answer(result: &Place<'_>, one: &Place<'_>) -> Markup {
-    let mood = match one.read("verdict/state") {
+    let mood = match one.read("state") {
         Some(VerdictState::Healthy) => Mood::Good,
         Some(VerdictState::Fault) => Mood::Bad,
         Some(VerdictState::NotJudged) | None => Mood::Caution,

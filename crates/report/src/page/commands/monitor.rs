@@ -16,7 +16,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (answer(result))
         (cards(&summary(result)))
         (candidates(result))
-        (motion::section(result))
+        (motion::section(result, "motion"))
         (lamps(result))
         (residuals(result))
         (audit::section(result))

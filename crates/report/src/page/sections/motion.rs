@@ -15,8 +15,8 @@ pub fn alarm(result: &Place<'_>) -> Option<Markup> {
     )
 }
 
-/// How much was judged in motion, why the rest was not, and every alarm.
-pub fn section(result: &Place<'_>) -> Markup {
+/// How much was judged in motion, why the rest was not, and every alarm; `id`: of the heading.
+pub fn section(result: &Place<'_>, id: &str) -> Markup {
     let Some(motion) = result.get("motion") else {
         return html! {};
     };
@@ -25,8 +25,8 @@ pub fn section(result: &Place<'_>) -> Markup {
     let unexplained = motion.items("unexplained");
     html! {
         @if windows > 0.0 {
-            section aria-labelledby="motion" {
-                h2 id="motion" { "In motion" }
+            section aria-labelledby=(id) {
+                h2 id=(id) { "In motion" }
                 p {
                     @if motion.get("not_possible").is_some() {
                         "Windows that were not at rest were not judged: " (motion.text("not_possible")) "."
@@ -35,14 +35,14 @@ pub fn section(result: &Place<'_>) -> Markup {
                         " windows that were not at rest were judged" @if alarms.is_empty() && unexplained.is_empty() { "; no fault was seen" } "."
                     }
                 }
-                @if !unexplained.is_empty() {
+                @for doubt in &unexplained {
                     p {
-                        "Something does not fit, and no fault of a size that occurs explains it: from about "
-                        @for (k, doubt) in unexplained.iter().enumerate() {
-                            @if k > 0 { ", " }
-                            (shown(doubt, "onset_s", decimals(3))) " s (T = " (shown(doubt, "statistic", decimals(1))) ")"
+                        "From about " (shown(doubt, "onset_s", decimals(3))) " s on something does not fit (T = "
+                        (shown(doubt, "statistic", decimals(1))) "): "
+                        @match doubt.text("cause") {
+                            "" => { "no fault of a size that occurs explains it. It may be " (words::UNEXPLAINED) "." }
+                            cause => { "it looks like " (cause) ", but " (words::NEVER_SEEN_IN_MOTION) "." }
                         }
-                        " on. It may be " (words::UNEXPLAINED) "."
                     }
                 }
                 @if !alarms.is_empty() {

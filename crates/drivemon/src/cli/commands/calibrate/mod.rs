@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use monitor::Cage;
 use motor::MotorFile;
+use motor::motor_file::InMotion;
 use recording::{Recording, Source};
 
 use crate::cli::arguments::files::Files;
@@ -235,8 +236,23 @@ fn print_statistics(result: &Calibration) {
         result.false_alarm_rate
     );
     print_rotor(healthy.rotor.as_ref());
+    print_in_motion(healthy.in_motion);
     let [r1, r2, r3, r4] = result.threshold_percent;
     say!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
+}
+
+fn print_in_motion(seen: &str) {
+    let fits = InMotion::Fits.word();
+    let caution = paint::caution("in motion:");
+    match seen {
+        _ if seen == fits => say!("  in motion the model follows the motor in good order"),
+        _ if seen == InMotion::Differs.word() => say!(
+            "  {caution} in good order it moved otherwise than its file says, so it will not be judged in motion: drivemon explain says which effect is missing"
+        ),
+        _ => say!(
+            "  {caution} hardly anything moved: what departs in motion will be no FAULT. A recording with a start and load steps shows whether the model fits there"
+        ),
+    }
 }
 
 fn print_rotor(rotor: Option<&HealthyCage>) {
