@@ -1,7 +1,8 @@
 //! A fault on a board becomes one alarm with its evidence, whatever becomes of the gateway meanwhile.
 
+mod ports;
+
 use std::collections::HashMap;
-use std::net::{SocketAddr, TcpListener};
 use std::time::{Duration, Instant};
 
 use fleet::alarm::{Alarm, AlarmCause, AlarmFilter};
@@ -12,11 +13,9 @@ use gateway::simulate::{Plan, Plant, Truth, listen};
 const FAULTY: u32 = 4;
 
 fn plan() -> Plan {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let listen: SocketAddr = listener.local_addr().expect("bound");
     Plan {
         boards: 20,
-        listen,
+        listen: ports::free(),
         per_port: 200,
         seed: 3,
         faulty: FAULTY,

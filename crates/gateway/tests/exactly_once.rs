@@ -1,7 +1,8 @@
 //! What simulated boards have produced, by their own record, is in the store once, or a gap says that it is not.
 
+mod ports;
+
 use std::collections::{BTreeMap, HashMap, HashSet};
-use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -10,16 +11,10 @@ use gateway::Gateway;
 use gateway::config::Config;
 use gateway::simulate::{Plan, Plant, Truth, listen};
 
-/// A free port; whoever else takes it before this test does makes the test fail, not lie.
-fn free() -> SocketAddr {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    listener.local_addr().expect("bound")
-}
-
 fn plan(boards: u32, restart_s: Option<u32>) -> Plan {
     Plan {
         boards,
-        listen: free(),
+        listen: ports::free(),
         per_port: 200,
         seed: 7,
         faulty: boards / 2,

@@ -1,6 +1,7 @@
 //! Masters that are not ours read simulated boards over Modbus TCP: mbpoll and pymodbus, where they are installed.
 
-use std::net::{SocketAddr, TcpListener};
+mod ports;
+
 use std::process::{Command, Output};
 
 use gateway::simulate::{Plan, Plant, Truth, listen};
@@ -27,11 +28,9 @@ for unit in range(1, 4):
 "#;
 
 fn plan() -> Plan {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let listen: SocketAddr = listener.local_addr().expect("bound");
     Plan {
         boards: BOARDS,
-        listen,
+        listen: ports::free(),
         per_port: 200,
         seed: 11,
         faulty: 1,

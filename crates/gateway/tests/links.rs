@@ -1,8 +1,10 @@
 //! Every kind of link, a board that was exchanged, and one that does not answer.
 
+mod ports;
+
 use std::collections::HashSet;
 use std::io::Write;
-use std::net::{SocketAddr, TcpListener};
+use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -14,15 +16,10 @@ use gateway::simulate::{Plan, Plant, answer_line, listen};
 use monitor::Report;
 use serialport::{SerialPort, TTYPort};
 
-fn free() -> SocketAddr {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    listener.local_addr().expect("bound")
-}
-
 fn plan(boards: u32, seed: u64) -> Plan {
     Plan {
         boards,
-        listen: free(),
+        listen: ports::free(),
         per_port: 200,
         seed,
         faulty: 0,

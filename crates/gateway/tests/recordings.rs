@@ -1,7 +1,8 @@
 //! Every alarm of a fault ends with the samples that its board took, or with a reason, once.
 
+mod ports;
+
 use std::collections::HashSet;
-use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -21,17 +22,15 @@ struct Scene {
 
 impl Scene {
     async fn new(faulty: u32, restart_s: Option<u32>) -> Scene {
-        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let plan = Plan {
             boards: 8,
-            listen: listener.local_addr().expect("bound"),
+            listen: ports::free(),
             per_port: 200,
             seed: 5,
             faulty,
             faults_within_s: 60,
             restart_s,
         };
-        drop(listener);
         let folder = tempfile::tempdir().expect("a folder");
         let truth = Truth::create(&folder.path().join("truth")).expect("a file");
         let plant = Plant::new(&plan, Some(truth)).expect("a sound plan");

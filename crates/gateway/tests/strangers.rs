@@ -1,5 +1,7 @@
 //! Boards that are not who they should be, and bytes that no board sends: refused, counted, and nothing of the others is lost.
 
+mod ports;
+
 use std::io::Write;
 use std::net::TcpListener;
 use std::path::Path;
@@ -40,17 +42,15 @@ fn seconds(store: &Store, motor: &str) -> Vec<u32> {
 /// A second board answers at the address of a motor whose board is known by its serial number.
 #[tokio::test(flavor = "current_thread")]
 async fn a_board_under_a_forged_address_is_refused() {
-    let free = TcpListener::bind("127.0.0.1:0").expect("a port");
     let plan = Plan {
         boards: 2,
-        listen: free.local_addr().expect("bound"),
+        listen: ports::free(),
         per_port: 200,
         seed: 9,
         faulty: 0,
         faults_within_s: 60,
         restart_s: None,
     };
-    drop(free);
     let mut plant = Plant::new(&plan, None).expect("a sound plan");
     listen(&plant, &plan).await.expect("a free port");
     let folder = tempfile::tempdir().expect("a folder");

@@ -53,6 +53,10 @@ fn a_fault_that_comes_in_motion_is_told_with_its_cause() {
     assert_eq!(one["told"]["cause"], "current sensor, phase b");
     let sure = one["told"]["sure"].as_str().unwrap();
     assert!(sure.starts_with("it came in motion"), "{sure}");
+    assert_eq!(
+        one["told"]["severity"],
+        "an instrument is wrong, not the motor"
+    );
     assert_eq!(one["todo"][0], "clamp a second ammeter around each lead");
     let page = std::fs::read_to_string(page).unwrap();
     assert!(page.contains("windows that were not at rest were judged"));

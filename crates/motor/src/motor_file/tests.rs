@@ -28,6 +28,7 @@ significance = 6.5
 rotor_active_percent = [90.0, 40.0]
 rotor_sideband_percent = [0.5, 0.3]
 rotor_sideband_scatter_percent = 0.04
+in_motion = "differs"
 "#;
 
 fn smallest() -> MotorFile {
@@ -168,6 +169,7 @@ fn a_healthy_section_is_read_key_by_key() {
             sideband_percent: [0.3, 0.5],
             scatter_percent: 0.04,
         }),
+        in_motion: InMotion::Differs,
     };
     assert_eq!(motor.healthy, Some(expected));
     assert_eq!(

@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::Checked;
 use super::blind::NOT_CALIBRATED;
-use crate::causes::Candidate;
 use crate::{MotionFault, VerdictState};
 
 /// What a technician reads first.
@@ -39,7 +38,10 @@ impl Told {
                 (VerdictState::Healthy, _) => looked_at(checked),
                 (VerdictState::NotJudged, _) => why_not(checked),
             },
-            severity: likeliest.and_then(|cause| severity(checked, cause)),
+            severity: likeliest
+                .map(|cause| cause.fault)
+                .or_else(|| in_motion.and_then(MotionFault::fault))
+                .and_then(|fault| severity(checked, fault)),
         }
     }
 }
@@ -84,7 +86,7 @@ fn sure_in_motion(alarm: &MotionFault) -> String {
     )
 }
 
-fn severity(checked: &Checked, cause: &Candidate) -> Option<&'static str> {
+fn severity(checked: &Checked, fault: FaultId) -> Option<&'static str> {
     let sensors = [
         FaultId::CurrentSensor,
         FaultId::VoltageSensor,
@@ -92,7 +94,7 @@ fn severity(checked: &Checked, cause: &Candidate) -> Option<&'static str> {
     ];
     match checked.severity {
         Some(severity) => Some(severity.words()),
-        None if sensors.contains(&cause.fault) => Some("an instrument is wrong, not the motor"),
+        None if sensors.contains(&fault) => Some("an instrument is wrong, not the motor"),
         None if checked.blind.contains(&NOT_CALIBRATED) => {
             Some("not known: a size is told once a recording in good order was given")
         }

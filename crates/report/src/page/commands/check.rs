@@ -95,6 +95,13 @@ fn figures(one: &Place<'_>) -> Vec<(Markup, Markup)> {
         html! { (shown(one, "windows/0", decimals(0))) },
         html! { "windows judged, of " (shown(one, "windows/1", decimals(0))) },
     );
+    let moved = one.number("motion/judged").filter(|judged| *judged > 0.0);
+    let moved = moved.map(|_| {
+        (
+            html! { (shown(one, "motion/judged", decimals(0))) },
+            html! { "windows judged in motion, of " (shown(one, "motion/windows", decimals(0))) " that were not at rest" },
+        )
+    });
     let speed = one.get("speed/mean_rpm").map(|_| {
         (
             html! { (shown(one, "speed/mean_rpm", decimals(0))) " rpm" },
@@ -125,7 +132,7 @@ fn figures(one: &Place<'_>) -> Vec<(Markup, Markup)> {
             },
         )
     });
-    let known = [Some(judged), visible, unbalance, speed];
+    let known = [Some(judged), moved, visible, unbalance, speed];
     known.into_iter().flatten().chain(clamps).collect()
 }
 
