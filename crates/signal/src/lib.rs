@@ -18,7 +18,7 @@ mod supply;
 
 pub use adaptive::{Noisy, Windows, longest_real};
 pub use dot::dot;
-pub use noise::{estimated_sigma, sigma};
+pub use noise::{are_counts, estimated_sigma, sigma};
 pub use sample::{Sample, append};
 pub use smoothed::{Line, Smoothed};
 pub use supply::{Supply, denoise, refined};

@@ -33,18 +33,38 @@ const SAME_SIZE: f64 = 0.01;
 const NEAR: usize = 64;
 const CHANGES: usize = 4;
 
+/// Whether readings are counts, as those of an encoder: they change by one size, or stay what they are most of the time. Noise on a converter
+/// of enough bits does neither.
+pub fn are_counts(x: &[f64]) -> bool {
+    let steps = steps_between(x);
+    let most_stay = 2 * steps.len() <= x.len();
+    steps.len() >= STEPS && (most_stay || are_of_one_size(&steps, middle(&mut steps.clone())))
+}
+
+fn steps_between(x: &[f64]) -> Vec<f64> {
+    let steps = x.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    steps.filter(|step| *step > 0.0).collect()
+}
+
+fn middle(steps: &mut [f64]) -> f64 {
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+fn are_of_one_size(steps: &[f64], step: f64) -> bool {
+    let of_one_size = steps.iter().filter(|x| (*x / step - 1.0).abs() < SAME_SIZE);
+    of_one_size.count() as f64 > OF_ONE_SIZE * steps.len() as f64
+}
+
 /// Rounding of readings that stand on steps, as counts of an encoder do: their third differences are zero, or a pattern that has lines
 /// in the spectrum and nothing between them.
 fn by_steps(x: &[f64]) -> f64 {
-    let steps = x.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    let mut steps = steps_between(x);
     if steps.len() < STEPS {
         return 0.0;
     }
-    let middle = steps.len() / 2;
-    let step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let of_one_size = steps.iter().filter(|x| (*x / step - 1.0).abs() < SAME_SIZE);
-    let are_counts = of_one_size.count() as f64 > OF_ONE_SIZE * steps.len() as f64;
+    let step = middle(&mut steps);
+    let are_counts = are_of_one_size(&steps, step);
     let stand = 2 * steps.len() <= x.len();
     let rounding = step * step / 12.0;
     let near = NEAR.max(CHANGES * x.len() / steps.len());

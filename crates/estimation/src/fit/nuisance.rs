@@ -56,6 +56,11 @@ impl Strip {
         }
     }
 
+    /// Square root of the sum of its squares.
+    pub fn length(&self) -> f64 {
+        length(&self.values)
+    }
+
     /// Of `values`, which begin with the row value `first`, to the length of one.
     fn direction(first: usize, values: &[f64], length: f64) -> Self {
         let is_of_one_channel = values

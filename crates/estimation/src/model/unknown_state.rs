@@ -7,7 +7,7 @@
 //! a jump leaves is so large a part of the flux that the second order is taken as unknown too.
 //!
 //! Where the measured speed drives the model, nobody knows either how the shaft trembles at twice the supply's frequency: that is gone with the
-//! noise that is smoothed away, and in what an encoder counts during one period of it.
+//! noise that is smoothed away, and in what an encoder counts during one period of it. Nor is a model judged by how such counts tremble.
 
 mod ripple;
 
@@ -40,6 +40,12 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
     let mut all = unknowns(&stretches, plant, left_by_a_jump(case, plant));
     all.extend(trembling(case, plant, &stretches));
     let mut nuisance = Nuisance::default();
+    for strip in stretches
+        .iter()
+        .flat_map(|stretch| stretch.trembling_counts(case))
+    {
+        nuisance.add(&strip, strip.length());
+    }
     if all.is_empty() {
         return nuisance;
     }
@@ -159,6 +165,26 @@ struct Stretch {
     running: bool,
     /// Samples at which the voltage has jumped.
     jumps: Vec<usize>,
+}
+
+impl Stretch {
+    /// How counts may tremble, from one jump of the voltage to the next: an unbalanced supply's ripple changes there.
+    fn trembling_counts(&self, case: &Case) -> Vec<Strip> {
+        let rows = self.values.start / N_CHANNELS..self.values.end / N_CHANNELS;
+        let jumps = self
+            .jumps
+            .iter()
+            .map(|k| k.div_ceil(case.samples_per_row()));
+        let begins: Vec<usize> = [rows.start]
+            .into_iter()
+            .chain(jumps)
+            .chain([rows.end])
+            .collect();
+        let parts = begins.windows(2).map(|ends| ends[0]..ends[1]);
+        parts
+            .flat_map(|part| ripple::of_counts(case, part))
+            .collect()
+    }
 }
 
 fn stretches(case: &Case) -> Vec<Stretch> {

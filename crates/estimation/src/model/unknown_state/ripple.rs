@@ -5,10 +5,14 @@
 //! smaller. Its two amounts, cosine and sine, are expected to be as large as that.
 
 use crate::data::case::Case;
+use crate::data::channels::SPEED;
+use crate::fit::nuisance::Strip;
 use motor::dynamic::clarke;
 use motor::effect::Plant;
 use num_complex::Complex64;
+use signal::are_counts;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::ops::Range;
 
 /// A ripple of the speed that drives a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +57,27 @@ fn angles(case: &Case) -> impl Iterator<Item = f64> + '_ {
             *angle += omega * step;
             Some(here)
         })
+}
+
+/// The cosine and the sine that counts of the speed may show in some rows, whatever the shaft does: a count over one period of the ripple
+/// shows none, a shorter one a part. Nothing where the speed is no output, or no count.
+pub fn of_counts(case: &Case, rows: Range<usize>) -> Vec<Strip> {
+    let speeds: Vec<f64> = case.measured[rows.clone()]
+        .iter()
+        .map(|row| row[SPEED])
+        .collect();
+    if case.speed_is_input || !are_counts(&speeds) {
+        return Vec::new();
+    }
+    let angles = angles(case).step_by(case.samples_per_row());
+    let angles: Vec<f64> = angles.skip(rows.start).take(rows.len()).collect();
+    let weights = &case.weight[rows.clone()];
+    let wave = |phase: f64| {
+        let both = angles.iter().zip(weights);
+        let values = both.map(|(angle, w)| w[SPEED] * (2.0 * angle + phase).cos());
+        Strip::of_channel(SPEED, rows.start, values.collect())
+    };
+    [0.0, FRAC_PI_2].map(wave).into()
 }
 
 /// Amplitude of a ripple, rad/s: the upper quartile of the supply's pairs of cycles. The first ones after a switch hold direct current that

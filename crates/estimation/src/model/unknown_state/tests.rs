@@ -252,3 +252,32 @@ fn an_unknown_ripple_does_not_hide_an_asymmetry() {
     let left = left_of(&case, &plant, rows);
     assert!(left > 0.3, "{left}");
 }
+
+/// An encoder's counts in 10 ms hold none of the ripple that the shaft has: no model is judged by it. A tachometer shows it.
+#[test]
+fn the_ripple_of_counts_is_not_judged() {
+    let (mut case, plant) = running();
+    case.running_at = None;
+    let t_row = case.t_row();
+    let rows = case.measured.len();
+    let ripple = |over: f64| {
+        let omega = over * plant.rated.omega_sync;
+        let mut values = vec![0.0; rows * N_CHANNELS];
+        for row in 0..rows {
+            values[row * N_CHANNELS + SPEED] = (omega * t_row * row as f64 + 0.4).cos();
+        }
+        values
+    };
+    let count = |row: usize| (187.3 + 0.3 * (0.05 * row as f64).sin()).round();
+    for (row, measured) in case.measured.iter_mut().enumerate() {
+        measured[SPEED] = count(row);
+    }
+    let counted = left_of(&case, &plant, ripple(2.0));
+    assert!(counted < 0.02, "{counted}");
+    let slower = left_of(&case, &plant, ripple(0.7));
+    assert!(slower > 0.98, "{slower}");
+    for (row, measured) in case.measured.iter_mut().enumerate() {
+        measured[SPEED] = 187.3 + 0.1 * (0.61 * (row * row) as f64).sin();
+    }
+    assert_eq!(left_of(&case, &plant, ripple(2.0)), 1.0);
+}
