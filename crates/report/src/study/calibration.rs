@@ -5,11 +5,11 @@ use std::ops::RangeInclusive;
 use audit::Audit;
 use monitor::Cause;
 use motor::MotorFile;
-use motor::motor_file::HealthySettings;
+use motor::motor_file::{HealthySettings, InMotion};
 use recording::Recording;
 use replay::calibrate::{Calibrated, Kind, Pieces, Refusal, Surroundings, calibrate_pieces};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// FAULT lamps per judged window that may be accepted on a healthy motor.
 pub const FALSE_ALARM_RATES: RangeInclusive<f64> = 1e-12..=0.01;
@@ -97,7 +97,9 @@ pub struct HealthyStatistics {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotor: Option<HealthyCage>,
     /// How the motor in good order moved, beside how its file says: `fits`, `differs` (it is not judged in motion), or `unseen`.
-    pub in_motion: &'static str,
+    #[serde(serialize_with = "by_word")]
+    #[schemars(with = "String")]
+    pub in_motion: InMotion,
 }
 
 /// The healthy cage, percent of the active current; loads in percent of the rated current.
@@ -161,6 +163,10 @@ impl Calibration {
     }
 }
 
+fn by_word<S: Serializer>(seen: &InMotion, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(seen.word())
+}
+
 fn healthy(settings: &HealthySettings) -> HealthyStatistics {
     HealthyStatistics {
         significance: settings.significance,
@@ -173,7 +179,7 @@ fn healthy(settings: &HealthySettings) -> HealthyStatistics {
             sideband_percent: rotor.sideband_percent,
             scatter_percent: rotor.scatter_percent,
         }),
-        in_motion: settings.in_motion.word(),
+        in_motion: settings.in_motion,
     }
 }
 

@@ -129,7 +129,8 @@ fn pairs_of_cycles(case: &Case) -> Vec<Pair> {
     let rows = inputs.step_by(case.samples_per_row()).zip(&case.measured);
     let (mut all, mut pair, mut number) = (Vec::new(), Pair::default(), 0.0);
     for (((angle, omega_sync), u), [a, b, c, ..]) in rows {
-        let pairs = (angle / (2.0 * TAU)).floor();
+        // A field that turns backwards counts its cycles too.
+        let pairs = (angle.abs() / (2.0 * TAU)).floor();
         if pairs != number {
             all.push(std::mem::take(&mut pair));
             number = pairs;

@@ -191,9 +191,35 @@ fn a_ripple_is_expected_to_be_as_large_as_its_torque_makes_it() {
         let moved = ripple.added(&case);
         let largest = moved.iter().zip(&case.speed);
         let found = largest.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
-        // 60 Hz at 5 kHz: a cycle is 83 1/3 samples, the largest of the samples may lie 0.1 % below the amplitude.
-        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+        // 41.7 samples a period of the ripple: the largest may miss the amplitude by 1 - cos(pi/41.7), 0.3 %.
+        assert!((found / expected - 1.0).abs() < 3e-3, "{found} {expected}");
     }
+}
+
+/// The same motor with two phases swapped: its field turns backwards.
+#[test]
+fn a_field_that_turns_backwards_ripples_as_much() {
+    let (case, plant) = driven_by_its_speed(0.05);
+    let forward = Ripple::expected(&case, &plant);
+    let mut swapped = case.clone();
+    let timeline = std::sync::Arc::make_mut(&mut swapped.timeline);
+    timeline
+        .omega_sync
+        .iter_mut()
+        .for_each(|omega| *omega = -*omega);
+    swapped.inputs.u_s.iter_mut().for_each(|u| *u = u.conj());
+    swapped.measured.iter_mut().for_each(|row| row.swap(1, 2));
+    let largest = |ripple: &Ripple, case: &Case| {
+        let moved = ripple.added(case);
+        let both = moved.iter().zip(&case.speed);
+        both.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()))
+    };
+    let [forth, back] = [
+        largest(&forward[0], &case),
+        largest(&Ripple::expected(&swapped, &plant)[0], &swapped),
+    ];
+    // The same sums in another order.
+    assert!((back / forth - 1.0).abs() < 1e-9, "{forth} {back}");
 }
 
 /// What is left where the motor's shaft trembles beside the speed that is given: 0.01 rad/s at `over` times the supply's frequency.
@@ -222,6 +248,7 @@ fn left_of(case: &Case, plant: &Plant, mut rows: Vec<f64>) -> f64 {
 fn a_ripple_at_twice_the_supplys_frequency_is_unknown_where_the_speed_is_given() {
     let (case, plant) = driven_by_its_speed(0.2);
     let twice = left_of_a_trembling(2.0, &plant, &case);
+    // One over the response's length in deviations: what is expected here stands out of the noise by far more than ten of them.
     assert!(twice < 0.1, "{twice}");
     // A fan's ripple at another frequency is no part of it.
     let other = left_of_a_trembling(1.5, &plant, &case);
@@ -250,7 +277,8 @@ fn an_unknown_ripple_does_not_hide_an_asymmetry() {
     let mut rows = of(&asymmetric);
     take(&mut rows, &of(&plant));
     let left = left_of(&case, &plant, rows);
-    assert!(left > 0.3, "{left}");
+    // The two have the currents of negative sequence in common, and no others: most of the asymmetry must be left.
+    assert!(left > 0.8, "{left}");
 }
 
 /// An encoder's counts in 10 ms hold none of the ripple that the shaft has: no model is judged by it. A tachometer shows it.

@@ -241,15 +241,14 @@ fn print_statistics(result: &Calibration) {
     say!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
 }
 
-fn print_in_motion(seen: &str) {
-    let fits = InMotion::Fits.word();
+fn print_in_motion(seen: InMotion) {
     let caution = paint::caution("in motion:");
     match seen {
-        _ if seen == fits => say!("  in motion the model follows the motor in good order"),
-        _ if seen == InMotion::Differs.word() => say!(
+        InMotion::Fits => say!("  in motion the model follows the motor in good order"),
+        InMotion::Differs => say!(
             "  {caution} in good order it moved otherwise than its file says, so it will not be judged in motion: drivemon explain says which effect is missing"
         ),
-        _ => say!(
+        InMotion::Unseen => say!(
             "  {caution} hardly anything moved: what departs in motion will be no FAULT. A recording with a start and load steps shows whether the model fits there"
         ),
     }
