@@ -5,8 +5,8 @@ use heapless::Vec;
 use monitor::{
     Abc, ActiveEffect, ActiveEffects, ActiveLaws, AnalogueChain, CHANNELS, CIRCUIT, Cage,
     ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, Healthy, HealthySidebands,
-    LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS, MonitorConfig, ParameterDoubt, ROWS,
-    Uncertainty,
+    InMotion, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS, MonitorConfig,
+    ParameterDoubt, ROWS, Uncertainty,
 };
 use motor::effect::SteadyEffect;
 use motor::effect::curve::{Action, BOARD_KNOTS, SteadyCurve};
@@ -29,7 +29,7 @@ pub const IMAGE_WORDS: usize = 42
 const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 
 /// Words of the healthy motor's statistics.
-const HEALTHY_WORDS: usize = 6 + 2 * ROWS + 10;
+const HEALTHY_WORDS: usize = 7 + 2 * ROWS + 10;
 
 /// Words of the analogue chain: delays and roll-off.
 const CHAIN_WORDS: usize = CHANNELS + 1;
@@ -38,7 +38,7 @@ const CHAIN_WORDS: usize = CHANNELS + 1;
 const CAGE_WORDS: usize = 6;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_0009;
+const SCHEMA: u32 = 0x444D_000A;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -204,6 +204,11 @@ fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
     w.numbers(&[u.magnetizing_inductance, u.leakage, u.friction]);
     w.numbers(&[u.current_gain, u.voltage_gain, u.speed]);
     w.number(u.negative_impedance);
+    w.word(match h.in_motion {
+        InMotion::Unseen => 0,
+        InMotion::Fits => 1,
+        InMotion::Differs => 2,
+    });
 }
 
 fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
@@ -227,6 +232,12 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
             negative_impedance: r.number(),
         },
         significance,
+        in_motion: match r.word() {
+            1 => InMotion::Fits,
+            2 => InMotion::Differs,
+            // A motor that was not calibrated, or was not seen in motion.
+            _ => InMotion::Unseen,
+        },
     };
     (significance > 0.0).then_some(healthy)
 }

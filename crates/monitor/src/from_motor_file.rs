@@ -246,6 +246,7 @@ fn healthy(settings: &HealthySettings) -> Healthy {
             negative_impedance: share(settings.negative_impedance_percent),
         },
         significance: settings.significance as f32,
+        in_motion: settings.in_motion,
     }
 }
 

@@ -39,6 +39,7 @@
 #[cfg(all(feature = "motor-file", not(test)))]
 extern crate std;
 
+mod beside;
 mod by_cycle;
 mod checks;
 mod config;
@@ -50,6 +51,7 @@ mod isolation;
 mod lamps;
 mod model;
 mod monitor;
+mod moving;
 mod noise;
 #[cfg(feature = "motor-file")]
 mod of_board;
@@ -61,6 +63,7 @@ mod sync;
 mod tests;
 mod window;
 
+pub use beside::{Beside, CodeUnits, Stretch};
 pub use checks::cage::{Cage, CageLimits, HealthySidebands, RotorReading};
 pub use checks::rotor_bars::{RotorState, Sidebands};
 pub use checks::sensors::{HealthConfig, Phase, SensorFinding, dead_channel};
@@ -87,7 +90,8 @@ pub use model::effects::{
 pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
-pub use motor::FaultId;
+pub use motor::{FaultId, InMotion};
+pub use moving::{Moving, MovingCause, MovingFault};
 #[cfg(feature = "motor-file")]
 pub use of_board::{BOARD_CONVERSIONS, BOARD_T_SAMPLE};
 pub use reason::Reason;

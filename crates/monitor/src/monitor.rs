@@ -4,6 +4,7 @@ use motor::TParams;
 use motor::effect::Rated;
 use num_complex::Complex32;
 
+use crate::beside::CodeUnits;
 use crate::checks::cage::CageLimits;
 use crate::checks::rotor_bars::{RotorState, Sidebands};
 use crate::checks::sensors::{HealthConfig, SensorFinding};
@@ -267,6 +268,25 @@ impl Monitor {
         } else {
             cycle
         }
+    }
+
+    /// What the codes of an instant are at the terminals, with all that is known of the instrument's gains.
+    pub(crate) fn code_units(&self, state: &MonitorState) -> [CodeUnits; CHANNELS] {
+        let converter = &self.config.converter;
+        let gains = converter.supply_gains(state.converter_supply.0);
+        let [volt, ampere] = self.codes.range.zero;
+        let zeros = [volt, volt, volt, ampere, ampere, ampere];
+        let channels = self.codes.units.iter().zip(zeros).zip(gains);
+        let mut units = [CodeUnits::default(); CHANNELS];
+        let own = channels.zip(&self.config.channel_gain);
+        for (place, (((unit, zero), gain), known)) in units.iter_mut().zip(own) {
+            let gain = gain * known;
+            *place = CodeUnits {
+                scale: unit.scale * gain,
+                offset: (unit.scale * zero + unit.offset) * gain,
+            };
+        }
+        units
     }
 
     fn idle_report(&self, state: &mut MonitorState) -> Option<Report> {

@@ -8,6 +8,7 @@ use crate::lamps::lamp::Lamps;
 use crate::lamps::signature::Candidates;
 use crate::model::operating_point::OperatingPoint;
 use crate::model::residuals::{RESIDUALS, Residuals};
+use crate::moving::Moving;
 use crate::window::Window;
 
 /// Why a window was not judged.
@@ -67,13 +68,38 @@ pub struct Report {
     pub isolation: Option<Isolation>,
     /// What the current's sidebands say about the rotor's bars.
     pub rotor: RotorReading,
-    /// Lamps after this window.
+    /// Lamps after this window, as the windows at rest have them.
     pub lamps: Lamps,
+    /// What is said in motion, where something judges beside the windows.
+    pub moving: Option<Moving>,
     /// Probability of each row of Table 1 while r1..r4 light FAULT: without a calibration.
     pub candidates: Option<Candidates>,
 }
 
+impl NotJudged {
+    /// Whether the window is left to what judges in motion.
+    pub const fn is_motion(self) -> bool {
+        matches!(
+            self,
+            NotJudged::Transient | NotJudged::Settling | NotJudged::NotLocked
+        )
+    }
+}
+
 impl Report {
+    /// The lamps as the door shows them: those of the windows at rest with what is said in motion.
+    ///
+    /// A window that is judged in motion has RUN on; LOAD goes on blinking, which says that something changes.
+    pub fn shown_lamps(&self) -> Lamps {
+        self.moving
+            .map_or(self.lamps, |moving| moving.over(&self.lamps))
+    }
+
+    /// Whether the window was judged, at rest or in motion.
+    pub fn is_judged_either_way(&self) -> bool {
+        self.is_judged() || self.moving.is_some_and(|moving| moving.is_judged)
+    }
+
     /// Whether thresholds were applied to this window.
     pub fn is_judged(&self) -> bool {
         self.not_judged.is_none()

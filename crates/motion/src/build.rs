@@ -1,6 +1,6 @@
 //! Which motors can be judged in motion, and with which constants.
 
-use monitor::{ActiveEffect, FieldCurrent, LoadKind, MonitorConfig};
+use monitor::{ActiveEffect, FieldCurrent, InMotion, LoadKind, MonitorConfig};
 
 use crate::circuit::{Circuit, Iron, Scales};
 use crate::decision::Limits;
@@ -18,6 +18,10 @@ pub enum NoMotion {
     NominalField,
     /// Fewer samples a cycle than the flux equations need.
     SampledTooSlowly,
+    /// In good order the motor moved otherwise than its file says.
+    Differs,
+    /// Channels are late by times that are further apart than a sample.
+    ChannelsApart,
 }
 
 impl core::fmt::Display for NoMotion {
@@ -30,6 +34,13 @@ impl core::fmt::Display for NoMotion {
                 write!(f, "the motor file's {name} is not in the equations of motion")
             }
             NoMotion::NominalField => f.write_str("the motor file takes a constant field current"),
+            NoMotion::Differs => f.write_str(
+                "in good order it moved otherwise than its file says: an effect is missing there, and drivemon explain \
+                 says which; then calibrate again",
+            ),
+            NoMotion::ChannelsApart => {
+                f.write_str("channels are late by times that are more than a sample apart")
+            }
             NoMotion::SampledTooSlowly => {
                 f.write_str("it takes 80 samples a cycle: record at 5 kHz or more")
             }
@@ -67,6 +78,9 @@ impl Motion {
             return Err(NoMotion::SampledTooSlowly);
         }
         let healthy = config.healthy.as_ref().ok_or(NoMotion::NotCalibrated)?;
+        if healthy.in_motion == InMotion::Differs {
+            return Err(NoMotion::Differs);
+        }
         let mut priors = Priors::of(&healthy.uncertainty);
         if circuit.iron == Iron::LINEAR {
             priors.widen(place::IRON, ANY_IRON);
@@ -87,6 +101,7 @@ impl Motion {
                 LoadKind::Free => KnownLoad::Nothing,
             },
             circuit,
+            is_doubted: healthy.in_motion == InMotion::Unseen,
         })
     }
 }

@@ -327,6 +327,23 @@ impl Scores {
     }
 }
 
+impl Scores {
+    /// Probability of one cause among those of which `admits` accepts the size: each explains the rows with the likelihood ratio
+    /// `exp(T^2/2)`, and none is likelier beforehand.
+    pub fn probability(&self, of: &Best, admits: impl Fn(&Hypothesis, f32) -> bool) -> f32 {
+        let best = of.statistic * of.statistic;
+        let all = ALL.iter().zip(self.statistics.iter().zip(&self.weights));
+        let weights = all.map(|(hypothesis, (t, w))| {
+            let size = t / w.max(f32::MIN_POSITIVE);
+            match admits(hypothesis, size) {
+                true => libm::expf(0.5 * (t * t - best)),
+                false => 0.0,
+            }
+        });
+        1.0 / weights.sum::<f32>().max(1.0)
+    }
+}
+
 /// `z' (1 + A A')^-1 z = z'z - b' (1 + A'A)^-1 b`: nine degrees of freedom on a healthy motor.
 fn squared_length(cycle: &White) -> f32 {
     let mut own = Information::default();

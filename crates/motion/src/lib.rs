@@ -9,6 +9,7 @@
 
 mod build;
 mod circuit;
+mod companion;
 mod decision;
 mod departures;
 mod gate;
@@ -17,24 +18,27 @@ mod information;
 mod observer;
 mod rows;
 mod scatter;
+mod standing;
 #[cfg(test)]
 mod tests;
 
 use num_complex::Complex32;
 
 pub use build::NoMotion;
+pub use companion::Companion;
 pub use decision::Limits;
 pub use departures::Priors;
 pub use gate::NotInMotion;
+pub use standing::Standing;
 
 use circuit::{Circuit, Coefficients};
 use decision::{Decision, Outcome, Scores};
-use departures::ALL;
+use departures::{ALL, Hypothesis};
 use gate::{Gate, Seen};
 use influence::Influences;
 use monitor::{
-    Abc, CHANNELS, Cause, ClippedChannels, Sample, SensorFinding, SpeedSample, Supply,
-    dead_channel, magnitude, small_rotation,
+    Abc, CHANNELS, Cause, ClippedChannels, MovingCause, MovingFault, Sample, SensorFinding,
+    SpeedSample, Supply, dead_channel, magnitude, small_rotation,
 };
 use observer::{Instant, Interval, Observer};
 use rows::{Past, Sums};
@@ -58,6 +62,7 @@ pub struct Motion {
     step: Complex32,
     /// The load's torque is known: declared as friction, or measured.
     load: KnownLoad,
+    is_doubted: bool,
 }
 
 /// What is known of the load's torque.
@@ -140,16 +145,14 @@ pub struct MotionAlarm {
     /// `T` of the likeliest cause.
     pub statistic: f32,
     /// What it was named, twenty judged cycles after the alarm; `None` before.
-    pub named: Option<MotionCause>,
+    pub named: Option<Named>,
 }
 
 /// What an alarm in motion is put down to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MotionCause {
-    /// A departure of motor, load or instrument.
-    Departure(Cause),
-    /// A channel that shows nothing.
-    Dead(SensorFinding),
+pub enum Named {
+    /// A fault.
+    Fault(MovingFault),
     /// None of the causes explains it with a size that occurs.
     Untold,
 }
@@ -172,6 +175,11 @@ const TURNING: f32 = 0.2;
 const FASTEST: f32 = 0.7;
 
 impl Motion {
+    /// Whether the motor in good order was never seen in motion: what departs may be what its file lacks.
+    pub fn is_doubted(&self) -> bool {
+        self.is_doubted
+    }
+
     /// Samples of a cycle, rounded up.
     pub fn cycle_samples(&self) -> usize {
         self.samples as usize + 1
@@ -180,15 +188,28 @@ impl Motion {
     /// Takes one instant; something comes back at the end of each cycle of rated length.
     #[inline]
     pub fn update(&self, state: &mut MotionState, sample: &MotionSample) -> Option<MotionCycle> {
+        let instant = self.instant(state, sample);
+        let clipped = sample.sample.clipped != ClippedChannels::NONE;
+        let omega = sample.supply.map(|supply| supply.omega);
+        self.take(state, instant, clipped, omega)
+    }
+
+    /// The same of an instant that is `None` where something is missing; the oscillator's frequency is `None` while no supply is followed.
+    #[inline]
+    fn take(
+        &self,
+        state: &mut MotionState,
+        instant: Option<Instant>,
+        clipped: bool,
+        omega: Option<f32>,
+    ) -> Option<MotionCycle> {
         state.count += 1;
-        let Some(instant) = self.instant(state, sample) else {
+        let Some(instant) = instant else {
             return self.interrupt(state);
         };
-        state.seen.clipped |= sample.sample.clipped != ClippedChannels::NONE;
-        state.seen.unlocked |= sample.supply.is_none();
-        if let Some(supply) = sample.supply {
-            state.omega_supply = supply.omega;
-        }
+        state.seen.clipped |= clipped;
+        state.seen.unlocked |= omega.is_none();
+        state.omega_supply = omega.unwrap_or(state.omega_supply);
         let c = *state
             .coefficients
             .get_or_insert_with(|| self.circuit.at(0.0, 0.0));
@@ -448,15 +469,19 @@ impl Motion {
         })
     }
 
-    fn cause(&self, scores: &Scores, dead: Option<SensorFinding>) -> MotionCause {
+    fn cause(&self, scores: &Scores, dead: Option<SensorFinding>) -> Named {
         if let Some(finding) = dead {
-            return MotionCause::Dead(finding);
+            return Named::Fault(MovingFault {
+                cause: MovingCause::Dead(finding),
+                probability: 1.0,
+            });
         }
         let best = scores.best_of(|_, _| true);
-        let told = scores.best_of(|hypothesis, size| {
+        let occurs = |hypothesis: &Hypothesis, size: f32| {
             let prior = self.priors.0.get(hypothesis.first).unwrap_or(&1.0);
             (size * prior).abs() < MOST_TYPICAL * hypothesis.cause.typical_size()
-        });
+        };
+        let told = scores.best_of(occurs);
         let hypothesis = ALL.get(told.hypothesis);
         // An alarm by the rows' length alone has no cause yet.
         let least = self
@@ -464,8 +489,11 @@ impl Motion {
             .statistic
             .max(LEAST_SHARE * best.statistic.abs());
         match hypothesis.filter(|_| told.statistic.abs() > least) {
-            Some(hypothesis) => MotionCause::Departure(hypothesis.cause),
-            None => MotionCause::Untold,
+            Some(hypothesis) => Named::Fault(MovingFault {
+                cause: MovingCause::Departure(hypothesis.cause),
+                probability: scores.probability(&told, occurs),
+            }),
+            None => Named::Untold,
         }
     }
 }

@@ -25,6 +25,7 @@ pub mod connection;
 pub mod dynamic;
 pub mod effect;
 pub mod effects;
+mod in_motion;
 #[cfg(feature = "file")]
 pub mod motor_file;
 mod params;
@@ -34,6 +35,7 @@ pub mod temperature;
 #[cfg(feature = "file")]
 pub use document::FileError;
 pub use faults::FaultId;
+pub use in_motion::InMotion;
 #[cfg(feature = "file")]
 pub use motor_file::MotorFile;
 pub use params::{Mechanics, TParams};

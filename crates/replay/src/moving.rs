@@ -1,9 +1,7 @@
 //! What of a recording was judged while current, speed or supply changed, beside the windows at rest.
 
-use monitor::{Channel, FaultId, Monitor, MonitorState, NotJudged, Report, Sample};
-use motion::{
-    Motion, MotionAlarm, MotionCause, MotionCycle, MotionSample, MotionState, NotInMotion,
-};
+use monitor::{Channel, FaultId, Monitor, MonitorState, Moving, MovingCause, Report, Sample};
+use motion::{Motion, MotionAlarm, MotionSample, MotionState, Named, NotInMotion, Standing};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use std::collections::VecDeque;
@@ -49,7 +47,7 @@ pub struct MotionFault {
     /// The cause in words; `null` where the motion ended before it could be told, and where no fault of a size that occurs is one.
     #[serde(serialize_with = "in_words")]
     #[schemars(with = "Option<String>")]
-    pub cause: Option<MotionCause>,
+    pub cause: Option<MovingCause>,
 }
 
 impl MotionFault {
@@ -66,21 +64,20 @@ impl MotionFault {
 
     /// The cause in words; `None` where it could not be told, or no fault of a size that occurs is one.
     pub fn words(&self) -> Option<String> {
-        self.cause.and_then(motion_cause)
+        self.cause.map(motion_cause)
     }
 
     /// The fault that is the cause; `None` as in [`MotionFault::words`].
     pub fn fault(&self) -> Option<FaultId> {
         match self.cause? {
-            MotionCause::Dead(finding) => Some(Channel::of(finding).row),
-            MotionCause::Departure(cause) => Some(cause.fault()),
-            MotionCause::Untold => None,
+            MovingCause::Dead(finding) => Some(Channel::of(finding).row),
+            MovingCause::Departure(cause) => Some(cause.fault()),
         }
     }
 }
 
-fn in_words<S: Serializer>(cause: &Option<MotionCause>, serializer: S) -> Result<S::Ok, S::Error> {
-    cause.and_then(motion_cause).serialize(serializer)
+fn in_words<S: Serializer>(cause: &Option<MovingCause>, serializer: S) -> Result<S::Ok, S::Error> {
+    cause.map(motion_cause).serialize(serializer)
 }
 
 /// Judges in motion beside the windows at rest.
@@ -88,16 +85,10 @@ pub struct Follower {
     /// `None` where nothing is judged.
     motion: Option<Motion>,
     state: MotionState,
-    latest: Option<MotionCycle>,
-    /// Whether the latest window was at rest, and could be judged.
-    at_rest: bool,
-    /// Whether the alarm that is on came in motion.
-    in_motion: bool,
+    standing: Standing,
     times: RecentTimes,
     /// Number and time of the sample with which the statistic left the noise, s.
     restless: Option<(u64, f64)>,
-    /// Whether an alarm may be an effect that the motor file lacks.
-    doubtful: bool,
     summary: MotionSummary,
 }
 
@@ -180,22 +171,10 @@ impl Follower {
         Follower::of(None, MotionSummary::impossible(why))
     }
 
-    /// The same of a motor that was never seen to move as its file says: what comes in motion may be what the file lacks, but for
-    /// a dead sensor.
-    #[must_use]
-    pub fn in_doubt(self) -> Self {
-        Follower {
-            doubtful: true,
-            ..self
-        }
-    }
-
     fn of(motion: Option<Motion>, summary: MotionSummary) -> Self {
         Follower {
             state: MotionState::default(),
-            latest: None,
-            at_rest: false,
-            in_motion: false,
+            standing: Standing::new(motion.as_ref().is_some_and(Motion::is_doubted)),
             times: RecentTimes {
                 // What is asked for lies a cycle back.
                 most: motion
@@ -204,7 +183,6 @@ impl Follower {
                 ..RecentTimes::default()
             },
             restless: None,
-            doubtful: false,
             summary,
             motion,
         }
@@ -230,26 +208,26 @@ impl Follower {
         if since != self.restless.map(|(sample, _)| sample) {
             self.restless = since.map(|sample| (sample, self.times.of(sample)));
         }
-        if let Some(alarm) = &cycle.alarm {
-            self.note(alarm);
+        self.standing.cycle(&cycle);
+        if let Some(alarm) = cycle.alarm.filter(|_| self.standing.counts()) {
+            self.note(&alarm);
         }
-        self.latest = Some(cycle);
     }
 
     /// Takes the window that the sample ended. Of one that is not at rest: whether it was judged in motion.
     pub fn window(&mut self, report: &Report) -> Option<bool> {
-        self.at_rest = !is_motion(report.not_judged);
-        if self.at_rest {
-            return None;
-        }
+        let judged = self.standing.window(report)?;
         self.summary.windows += 1;
-        let latest = self.latest.as_ref().map(|cycle| cycle.not_judged);
-        let reason = latest.unwrap_or(Some(NotInMotion::FluxUnknown));
-        match reason {
-            None => self.summary.judged += 1,
-            Some(reason) => self.count(reason),
+        match judged {
+            Ok(()) => self.summary.judged += 1,
+            Err(reason) => self.count(reason),
         }
-        Some(reason.is_none())
+        Some(judged.is_ok())
+    }
+
+    /// What is said in motion with the latest window; `None` where nothing is judged in motion.
+    pub fn moving(&self) -> Option<Moving> {
+        self.motion.as_ref().map(|_| self.standing.moving())
     }
 
     fn count(&mut self, reason: NotInMotion) {
@@ -266,27 +244,25 @@ impl Follower {
             Some((since, t)) if since == sample => t,
             _ => self.times.of(sample),
         };
-        let Some(cause) = alarm.named else {
-            // What comes in a window that is judged at rest is its affair.
-            self.in_motion = !self.at_rest;
-            if self.in_motion {
-                self.summary.alarms.push(MotionFault {
-                    onset_s: time(alarm.onset_sample),
-                    raised_s: time(alarm.raised_sample),
-                    statistic: f64::from(alarm.statistic),
-                    cause: None,
-                });
-            }
+        let Some(named) = alarm.named else {
+            self.summary.alarms.push(MotionFault {
+                onset_s: time(alarm.onset_sample),
+                raised_s: time(alarm.raised_sample),
+                statistic: f64::from(alarm.statistic),
+                cause: None,
+            });
             return;
         };
-        let Some(mut fault) = self.summary.alarms.pop_if(|_| self.in_motion) else {
+        let Some(mut fault) = self.summary.alarms.pop() else {
             return;
         };
         fault.statistic = f64::from(alarm.statistic);
-        fault.cause = Some(cause);
-        match cause {
-            MotionCause::Untold => self.summary.unexplained.push(fault),
-            _ => self.summary.alarms.push(fault),
+        match named {
+            Named::Untold => self.summary.unexplained.push(fault),
+            Named::Fault(found) => {
+                fault.cause = Some(found.cause);
+                self.summary.alarms.push(fault);
+            }
         }
     }
 
@@ -297,8 +273,8 @@ impl Follower {
         if self.summary.not_possible.is_some() {
             shares.clear();
         }
-        if self.doubtful {
-            let is_dead = |alarm: &MotionFault| matches!(alarm.cause, Some(MotionCause::Dead(_)));
+        if self.motion.as_ref().is_some_and(Motion::is_doubted) {
+            let is_dead = |alarm: &MotionFault| matches!(alarm.cause, Some(MovingCause::Dead(_)));
             let alarms = std::mem::take(&mut self.summary.alarms);
             let (sure, doubts) = alarms.into_iter().partition(is_dead);
             self.summary.alarms = sure;
@@ -308,23 +284,14 @@ impl Follower {
     }
 }
 
-/// Whether a window is left to motion.
-fn is_motion(not_judged: Option<NotJudged>) -> bool {
-    matches!(
-        not_judged,
-        Some(NotJudged::Transient | NotJudged::Settling | NotJudged::NotLocked)
-    )
-}
-
-fn motion_cause(cause: MotionCause) -> Option<String> {
+fn motion_cause(cause: MovingCause) -> String {
     match cause {
-        MotionCause::Dead(finding) => Some(words::sensor(finding)),
-        MotionCause::Untold => None,
-        MotionCause::Departure(cause) => {
+        MovingCause::Dead(finding) => words::sensor(finding),
+        MovingCause::Departure(cause) => {
             let phase = cause
                 .phase()
                 .map_or(String::new(), |phase| format!(", phase {}", phase.letter()));
-            Some(format!("{}{phase}", cause.fault().words()))
+            format!("{}{phase}", cause.fault().words())
         }
     }
 }

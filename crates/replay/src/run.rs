@@ -1,16 +1,10 @@
 //! Samples through the core, at once or piece by piece.
 
 use monitor::{Monitor, MonitorState, Report};
-use motor::MotorFile;
-use motor::motor_file::InMotion;
 
 use crate::moving::Follower;
 use crate::samples::{Before, Samples};
 use crate::timeline::Timeline;
-
-/// Why a motor is not judged in motion whose file misses something.
-const DIFFERS_IN_MOTION: &str = "in good order it moved otherwise than its file says: an effect is missing there, and drivemon explain \
-     says which; then calibrate again";
 
 /// A replay of a recording that comes in pieces: all that the core remembers goes on from one to the next, so that the
 /// answer is that of the recording as a whole, bit for bit.
@@ -23,18 +17,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Of a motor by its file, before the first sample: judged in motion as far as it was seen to move as that file says.
-    pub fn of(motor: &MotorFile, monitor: Monitor) -> Replay {
-        let replay = Replay::new(monitor);
-        let follower = match motor.healthy.map(|healthy| healthy.in_motion) {
-            Some(InMotion::Unseen) => replay.follower.in_doubt(),
-            Some(InMotion::Differs) => Follower::without(DIFFERS_IN_MOTION),
-            Some(InMotion::Fits) | None => replay.follower,
-        };
-        Replay { follower, ..replay }
-    }
-
-    /// Before the first sample.
+    /// Before the first sample. The motor is judged in motion as far as it was seen to move as its file says.
     pub fn new(monitor: Monitor) -> Replay {
         Replay {
             state: MonitorState::default(),
@@ -64,8 +47,9 @@ impl Replay {
             }
             let report = self.monitor.update(&mut self.state, &timed.sample);
             self.follower.update(timed.t, &timed.sample, &self.state);
-            if let Some(report) = report {
+            if let Some(mut report) = report {
                 self.follower.window(&report);
+                report.moving = self.follower.moving();
                 self.timeline.add(timed.t, &report);
                 look(k + 1, timed.t, &report);
             }

@@ -1,7 +1,7 @@
 //! Faults in motion: share found, median delay, cause.
 
-use monitor::{Cause, Phase, SensorFinding};
-use motion::MotionCause;
+use monitor::{Cause, MovingCause, Phase, SensorFinding};
+use motion::Named;
 use rayon::prelude::*;
 use scenario::{Asymmetry, Parameter, Probe, Target};
 
@@ -13,7 +13,7 @@ struct Fault {
     label: &'static str,
     targets: &'static [Target],
     percent: f64,
-    right: MotionCause,
+    right: MovingCause,
 }
 
 const fn fault(
@@ -22,7 +22,7 @@ const fn fault(
     percent: f64,
     cause: Cause,
 ) -> Fault {
-    let right = MotionCause::Departure(cause);
+    let right = MovingCause::Departure(cause);
     Fault {
         label,
         targets,
@@ -59,7 +59,7 @@ const FAULTS: [Fault; 12] = [
         label: "current a dead",
         targets: I_A,
         percent: -100.0,
-        right: MotionCause::Dead(SensorFinding::DeadCurrent(Phase::A)),
+        right: MovingCause::Dead(SensorFinding::DeadCurrent(Phase::A)),
     },
     fault(
         "voltage gain b 2 %",
@@ -77,7 +77,7 @@ const FAULTS: [Fault; 12] = [
         label: "voltage b dead",
         targets: U_B,
         percent: -100.0,
-        right: MotionCause::Dead(SensorFinding::DeadVoltage(Phase::B)),
+        right: MovingCause::Dead(SensorFinding::DeadVoltage(Phase::B)),
     },
     fault("speed 1 %", SPEED, 1.0, Cause::SpeedGain),
     fault(
@@ -121,7 +121,11 @@ fn cell(name: &str, fault: &Fault, drive: Drive, during: bool, draws: u64) -> St
     delays.sort_by(f64::total_cmp);
     let fast = delays.iter().filter(|delay| **delay <= 150.0).count();
     let named: Vec<_> = outcomes.iter().filter_map(|(o, _)| o.named).collect();
-    let right = named.iter().filter(|cause| **cause == fault.right).count();
+    let is_right = |named: &Named| match named {
+        Named::Fault(found) => found.cause == fault.right,
+        Named::Untold => false,
+    };
+    let right = named.iter().filter(|named| is_right(named)).count();
     let Some(median) = delays.get(delays.len() / 2) else {
         return format!("0 of {}", outcomes.len());
     };

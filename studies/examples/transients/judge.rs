@@ -1,7 +1,7 @@
 //! One run through the core as the board samples it: windows at rest and cycles in motion side by side.
 
 use monitor::{Abc, Monitor, MonitorConfig, MonitorState, RawSample, Sample};
-use motion::{Motion, MotionCause, MotionCycle, MotionSample, MotionState};
+use motion::{Motion, MotionCycle, MotionSample, MotionState, Named};
 use motor::MotorFile;
 use scenario::simulate::{SimSample, Simulation};
 
@@ -14,7 +14,7 @@ pub struct Outcome {
     pub alarm_s: Option<f64>,
     /// Alarm before the fault.
     pub early: bool,
-    pub named: Option<MotionCause>,
+    pub named: Option<Named>,
     /// Largest statistic in two cycles running, while no fault was there.
     pub largest: f32,
     /// Cycles after the supply came on, and those that were judged.

@@ -120,6 +120,7 @@ fn calibrated() -> MonitorConfig {
             negative_impedance: number(),
         },
         significance: 5.5,
+        in_motion: InMotion::Differs,
     };
     let sidebands = HealthySidebands {
         at: [number(), number()],

@@ -1,7 +1,6 @@
 //! What a stream of reports amounts to: the only place of a campaign that looks into the monitor's answers.
 
-use monitor::{Channel, Lamp, Lamps, NotJudged, Phase, Report, Suspect};
-use motion::MotionCause;
+use monitor::{Channel, Lamp, Lamps, MovingCause, NotJudged, Phase, Report, Suspect};
 
 use crate::planned::fault::FaultKind;
 use replay::causes::{self, Candidate};
@@ -36,7 +35,7 @@ pub struct Outcome {
     /// Alarms in motion of the healthy motor that no fault explains: no FAULT, and nothing is called healthy.
     pub healthy_unexplained: u32,
     /// What was named in motion, where FAULT came there first.
-    motion_cause: Option<MotionCause>,
+    motion_cause: Option<MovingCause>,
     /// Whether FAULT came in motion first.
     pub found_in_motion: bool,
     /// Lamps seen while the motor was healthy, RUN apart.
@@ -182,11 +181,10 @@ impl Outcome {
 }
 
 /// What was named in motion: one cause, or none of a size that occurs.
-fn answer_in_motion(cause: MotionCause, truth: Option<&FaultKind>) -> Answer {
+fn answer_in_motion(cause: MovingCause, truth: Option<&FaultKind>) -> Answer {
     let suspect = match cause {
-        MotionCause::Departure(cause) => Suspect::Cause(cause),
-        MotionCause::Dead(finding) => Suspect::Channel(Channel::of(finding)),
-        MotionCause::Untold => Suspect::Unknown,
+        MovingCause::Departure(cause) => Suspect::Cause(cause),
+        MovingCause::Dead(finding) => Suspect::Channel(Channel::of(finding)),
     };
     let right = truth.is_some_and(|kind| kind.is_named_by(suspect.fault()));
     Answer {

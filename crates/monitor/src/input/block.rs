@@ -4,6 +4,9 @@
 //! wait for the end of the block (or of the turn) and then keep their place in the processor's registers. Sample by
 //! sample, in blocks of any length: the operations and their order are the same, and so is every bit of the result.
 
+use num_complex::Complex32;
+
+use crate::beside::{Beside, Stretch};
 use crate::input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample};
 use crate::input::validity::IntakeState;
 use crate::monitor::{Monitor, MonitorState};
@@ -28,16 +31,83 @@ impl Monitor {
         state: &mut MonitorState,
         block: &mut RawBlock<'_>,
     ) -> Option<Report> {
+        self.update_block_beside(state, block, &mut ())
+    }
+
+    /// The same, with what goes through every instant beside the windows.
+    #[inline]
+    pub fn update_block_beside(
+        &self,
+        state: &mut MonitorState,
+        block: &mut RawBlock<'_>,
+        beside: &mut impl Beside,
+    ) -> Option<Report> {
         state.expect_codes(true);
         while !block.is_empty() {
+            let counts = block.counts();
             let (plain, event) = self.follow(state, block);
-            self.sum_up(state, block.take(plain), block.is_watched);
-            let report = event.and_then(|tick| self.take_event(state, block.take(1), &tick));
-            if report.is_some() {
-                return report;
+            let taken = block.take(plain);
+            let clipped = self.sum_up(state, taken, block.is_watched);
+            let of_turn = (taken.0, counts);
+            self.show(state, of_turn, clipped, beside);
+            let Some(tick) = event else {
+                continue;
+            };
+            let counts = block.counts();
+            let last = block.take(1);
+            let report = self.take_event(state, last, &tick);
+            self.show_last(state, (last, counts), &tick, beside);
+            if let Some(mut report) = report {
+                report.moving = beside.window(&report);
+                return Some(report);
             }
         }
         None
+    }
+
+    /// Shows instants inside one turn to what goes beside.
+    #[inline]
+    fn show(
+        &self,
+        state: &MonitorState,
+        (codes, counts): (&[[u16; CHANNELS]], &[u16]),
+        clipped: ClippedChannels,
+        beside: &mut impl Beside,
+    ) {
+        if codes.is_empty() {
+            return;
+        }
+        beside.take(&Stretch {
+            codes,
+            counts,
+            axes: state.axes.0.get(..codes.len()).unwrap_or_default(),
+            omega: state.sync.omega(),
+            clipped,
+            units: &self.code_units(state),
+        });
+    }
+
+    /// Shows the instant that ends a turn, or has none.
+    #[inline]
+    fn show_last(
+        &self,
+        state: &MonitorState,
+        ((codes, clipped), counts): ((&[[u16; CHANNELS]], ClippedChannels), &[u16]),
+        tick: &SyncTick,
+        beside: &mut impl Beside,
+    ) {
+        let axes: &[Complex32] = match state.sync.is_searching() {
+            true => &[],
+            false => core::slice::from_ref(&tick.axis),
+        };
+        beside.take(&Stretch {
+            codes,
+            counts,
+            axes,
+            omega: state.sync.omega(),
+            clipped: clipped.union(self.config.converter.clipped(codes)),
+            units: &self.code_units(state),
+        });
     }
 
     /// Follows supply and shaft through the instants inside one turn, whose axes it notes, to the first that is more.
@@ -87,7 +157,7 @@ impl Monitor {
         state: &mut MonitorState,
         (codes, clipped): (&[[u16; CHANNELS]], ClippedChannels),
         is_watched: bool,
-    ) {
+    ) -> ClippedChannels {
         state.count(codes.len());
         let axes = state.axes.0.get(..codes.len()).unwrap_or_default();
         let range = &self.codes.range;
@@ -96,7 +166,7 @@ impl Monitor {
         } else {
             state.phasor.add_codes::<true>(codes, axes, range)
         };
-        self.admit(state, (codes, clipped), inside);
+        self.admit(state, (codes, clipped), inside)
     }
 
     #[inline]
@@ -105,15 +175,15 @@ impl Monitor {
         state: &mut MonitorState,
         (codes, clipped): (&[[u16; CHANNELS]], ClippedChannels),
         inside: bool,
-    ) {
+    ) -> ClippedChannels {
         let at_rail = if inside {
             ClippedChannels::NONE
         } else {
             self.config.converter.clipped(codes)
         };
-        state
-            .intake
-            .admit_codes(codes.len(), at_rail.union(clipped));
+        let clipped = at_rail.union(clipped);
+        state.intake.admit_codes(codes.len(), clipped);
+        clipped
     }
 
     #[inline(never)]

@@ -59,6 +59,12 @@ impl<'a> RawBlock<'a> {
         self.codes.is_empty()
     }
 
+    /// Counts of the instants that are left.
+    #[inline]
+    pub(crate) fn counts(&self) -> &'a [u16] {
+        self.counts
+    }
+
     /// The instants that are left.
     #[inline]
     pub(crate) fn instants(&self) -> impl Iterator<Item = (&'a [u16; CHANNELS], u16)> + use<'a> {

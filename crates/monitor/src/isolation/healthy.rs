@@ -1,5 +1,7 @@
 //! What a calibration learned about the healthy motor and its instrument.
 
+use motor::InMotion;
+
 use crate::config::{ConfigError, check_range};
 
 /// Rows of evidence.
@@ -67,6 +69,8 @@ pub struct Healthy {
     pub uncertainty: Uncertainty,
     /// Standard deviations at which FAULT lights, > 0.
     pub significance: f32,
+    /// How the motor in good order moved, beside how its file says.
+    pub in_motion: InMotion,
 }
 
 impl Uncertainty {
@@ -127,6 +131,7 @@ impl Healthy {
             turns_axis: [1.0, 0.0],
             uncertainty: Uncertainty::default(),
             significance: 1000.0,
+            in_motion: InMotion::Unseen,
         }
     }
 }

@@ -3,7 +3,9 @@
 
 use crate::checks::sensors::{Phase, SensorFinding};
 use crate::isolation::{ALL_CAUSES, CAUSES, Cause, Isolation};
+use crate::lamps::lamp::Lamp;
 use crate::lamps::signature::{Candidates, TABLE_1};
+use crate::moving::{MovingCause, MovingFault};
 use crate::report::Report;
 use motor::FaultId;
 
@@ -79,6 +81,15 @@ pub struct Known<'a> {
 
 /// What a window's report says while FAULT is lit.
 pub fn likely(report: &Report, wrong: &[Channel], tell: &mut dyn FnMut(Suspicion)) {
+    // What the windows at rest say is surer, where they say anything.
+    if let (Some(fault), false) = (fault_in_motion(report), report.lamps.fault == Lamp::On) {
+        tell(Suspicion {
+            suspect: Suspect::of_motion(fault.cause),
+            probability: fault.probability,
+            size: None,
+        });
+        return;
+    }
     let found = report.sensor.map(|finding| (Channel::of(finding), 1.0));
     let known = Known {
         found: found.as_slice(),
@@ -86,6 +97,10 @@ pub fn likely(report: &Report, wrong: &[Channel], tell: &mut dyn FnMut(Suspicion
         wrong,
     };
     known.weigh(tell);
+}
+
+fn fault_in_motion(report: &Report) -> Option<MovingFault> {
+    report.moving.and_then(|moving| moving.fault)
 }
 
 impl Channel {
@@ -103,6 +118,13 @@ impl Channel {
 }
 
 impl Suspect {
+    const fn of_motion(cause: MovingCause) -> Suspect {
+        match cause {
+            MovingCause::Departure(cause) => Suspect::Cause(cause),
+            MovingCause::Dead(finding) => Suspect::Channel(Channel::of(finding)),
+        }
+    }
+
     /// The fault of the catalogue that it is.
     pub const fn fault(self) -> FaultId {
         match self {

@@ -27,6 +27,7 @@ fn statistics() -> Healthy {
             negative_impedance: 0.1,
         },
         significance: 5.5,
+        in_motion: motor::InMotion::Unseen,
     }
 }
 

@@ -11,8 +11,8 @@ use super::{MotionCycle, MotionState, believed, cycles};
 use crate::decision::{Decision, Limits};
 use crate::departures::{ALL, UNKNOWNS};
 use crate::information::{Information, ROWS, White};
-use crate::{MotionCause, MotionSample};
-use monitor::{Cause, Phase, SensorFinding};
+use crate::{MotionSample, Named};
+use monitor::{Cause, MovingCause, Phase, SensorFinding};
 
 const LIMITS: Limits = Limits {
     statistic: 5.5,
@@ -171,12 +171,16 @@ fn with_fault(mut change: impl FnMut(&mut MotionSample)) -> Vec<MotionCycle> {
     cycles(&motion, &samples)
 }
 
-fn alarm(cycles: &[MotionCycle]) -> (f64, Option<MotionCause>) {
+fn alarm(cycles: &[MotionCycle]) -> (f64, Option<MovingCause>) {
     let raised = cycles.iter().find_map(|c| c.alarm).expect("an alarm");
     let named = cycles.iter().filter_map(|c| c.alarm).find_map(|a| a.named);
     let onset = raised.onset_sample as f64 * 1e-4;
     assert!((onset - 1.2).abs() < 0.06, "onset at {onset}");
-    (raised.raised_sample as f64 * 1e-4 - 1.2, named)
+    let cause = named.and_then(|named| match named {
+        Named::Fault(fault) => Some(fault.cause),
+        Named::Untold => None,
+    });
+    (raised.raised_sample as f64 * 1e-4 - 1.2, cause)
 }
 
 #[test]
@@ -194,7 +198,7 @@ fn a_gain_that_jumps_in_a_press_is_found_within_the_time_of_the_document_and_nam
     assert!(delay < 0.15, "{delay}");
     assert_eq!(
         named,
-        Some(MotionCause::Departure(Cause::CurrentChannel(Phase::B)))
+        Some(MovingCause::Departure(Cause::CurrentChannel(Phase::B)))
     );
 }
 
@@ -205,7 +209,7 @@ fn a_sensor_that_dies_in_a_press_is_named_by_its_silence() {
     assert!(delay < 0.1, "{delay}");
     assert_eq!(
         named,
-        Some(MotionCause::Dead(SensorFinding::DeadVoltage(Phase::C)))
+        Some(MovingCause::Dead(SensorFinding::DeadVoltage(Phase::C)))
     );
 }
 

@@ -1,4 +1,5 @@
 mod closed_form;
+mod companion;
 mod decision;
 mod gates;
 mod plant;
@@ -53,6 +54,7 @@ pub fn believed(plant: &Plant) -> Motion {
         part: 10.0,
         step: rated_step(rated.omega, T_SAMPLE as f32),
         load: KnownLoad::Measured,
+        is_doubted: false,
     }
 }
 

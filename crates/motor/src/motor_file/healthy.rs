@@ -2,6 +2,8 @@
 
 use document::{Bounds, Section};
 
+use crate::InMotion;
+
 /// Rows of evidence: torque balance, `e_d`, `e_q`, then real and imaginary part of the negative sequence's balance, of the
 /// zero sequence of the currents and of that of the voltages.
 pub const EVIDENCE_ROWS: usize = 9;
@@ -56,34 +58,6 @@ pub struct HealthySettings {
     pub rotor: Option<HealthyRotor>,
     /// How the motor in good order moved, beside how its file says.
     pub in_motion: InMotion,
-}
-
-/// How a motor in good order moved while current, speed or supply changed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum InMotion {
-    /// It was seen at rest alone: whether its file lacks an effect that shows in motion is not known.
-    #[default]
-    Unseen,
-    /// As its file says.
-    Fits,
-    /// Otherwise: its file lacks an effect.
-    Differs,
-}
-
-impl InMotion {
-    /// The words of a motor file.
-    pub const CHOICE: [(&'static str, InMotion); 3] = [
-        ("unseen", InMotion::Unseen),
-        ("fits", InMotion::Fits),
-        ("differs", InMotion::Differs),
-    ];
-
-    /// Its word.
-    pub fn word(self) -> &'static str {
-        let mut all = InMotion::CHOICE.into_iter();
-        all.find(|(_, one)| *one == self)
-            .map_or("", |(word, _)| word)
-    }
 }
 
 impl Default for HealthySettings {

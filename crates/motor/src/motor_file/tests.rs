@@ -1,4 +1,5 @@
 use super::*;
+use crate::InMotion;
 
 pub(super) const SMALLEST: &str = include_str!("smallest.toml");
 

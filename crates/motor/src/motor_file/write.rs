@@ -3,9 +3,10 @@
 use super::monitor::{FIELD_CURRENTS, FRAMES, LOADS};
 use super::sensors::MICROSECOND;
 use super::{
-    Connection, EffectEntry, EffectValue, HealthySettings, InMotion, MonitorSettings, MotorFile,
-    Nameplate, Sensors, Uncertainty,
+    Connection, EffectEntry, EffectValue, HealthySettings, MonitorSettings, MotorFile, Nameplate,
+    Sensors, Uncertainty,
 };
+use crate::InMotion;
 use std::fmt::Write;
 
 pub(super) fn to_toml(motor: &MotorFile) -> String {

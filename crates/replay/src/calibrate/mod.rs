@@ -14,8 +14,9 @@ mod windows;
 
 use audit::Audit;
 use monitor::{Cause, Healthy, Monitor, MonitorConfig};
+use motor::InMotion;
 use motor::MotorFile;
-use motor::motor_file::{HealthySettings, InMotion};
+use motor::motor_file::HealthySettings;
 use recording::Recording;
 
 pub use gains::Kind;
@@ -177,7 +178,12 @@ const SEEN_IN_MOTION: u64 = 20;
 fn in_motion(motor: &MotorFile, sources: &[Healthily<'_>]) -> Result<InMotion, Refusal> {
     let (mut seen, mut differs) = (0, false);
     for source in sources {
-        let motion = source.replayed(configured(motor, source.head())?)?.motion;
+        let mut config = configured(motor, source.head())?;
+        if let Some(healthy) = &mut config.healthy {
+            // What an earlier calibration found is not what is asked.
+            healthy.in_motion = InMotion::Fits;
+        }
+        let motion = source.replayed(config)?.motion;
         seen += motion.judged;
         differs |= !motion.alarms.is_empty() || !motion.unexplained.is_empty();
     }

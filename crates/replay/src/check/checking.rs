@@ -112,9 +112,7 @@ impl<'m> Checking<'m> {
         };
         let samples = Samples::new(shown, audit);
         if is_usable {
-            let replay = self
-                .replay
-                .get_or_insert_with(|| Replay::of(self.motor, monitor));
+            let replay = self.replay.get_or_insert_with(|| Replay::new(monitor));
             replay.take(samples, progress);
         } else if self.pieces == 1 {
             self.refused = Some(replay(&monitor, &samples, progress));

@@ -1,8 +1,8 @@
 //! What recordings of a motor in good order teach before others are checked.
 
 use discovery::{Given, IdentifyReport, Sources};
+use motor::InMotion;
 use motor::MotorFile;
-use motor::motor_file::InMotion;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Display;

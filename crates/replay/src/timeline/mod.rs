@@ -238,7 +238,7 @@ impl Timeline {
     }
 
     fn note_lamps(&mut self, t: f64, report: &Report) {
-        let now = (report.lamps, report.not_judged);
+        let now = (report.shown_lamps(), report.not_judged);
         if self.shown != Some(now) {
             self.shown = Some(now);
             match self.lamps.len() < MOST_CHANGES {
@@ -402,7 +402,7 @@ enum LampWord {
 }
 
 fn lamp_state(t: f64, report: &Report) -> LampState {
-    let lamps = &report.lamps;
+    let lamps = report.shown_lamps();
     let [r1, r2, r3, r4] = lamps.r;
     LampState {
         t,

@@ -4,8 +4,9 @@ use std::ops::RangeInclusive;
 
 use audit::Audit;
 use monitor::Cause;
+use motor::InMotion;
 use motor::MotorFile;
-use motor::motor_file::{HealthySettings, InMotion};
+use motor::motor_file::HealthySettings;
 use recording::Recording;
 use replay::calibrate::{Calibrated, Kind, Pieces, Refusal, Surroundings, calibrate_pieces};
 use schemars::JsonSchema;

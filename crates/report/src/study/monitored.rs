@@ -198,10 +198,7 @@ impl<'m> Monitoring<'m> {
             Some(replay) => replay,
             none => {
                 let monitor = Monitor::new(config).map_err(MonitorError::Config)?;
-                none.insert(match self.motor {
-                    Some(motor) => Replay::of(motor, monitor),
-                    None => Replay::new(monitor),
-                })
+                none.insert(Replay::new(monitor))
             }
         };
         replay.follow(samples, look);

@@ -132,6 +132,7 @@ pub fn statistics() -> Healthy {
             negative_impedance: 0.1,
         },
         significance: 5.5,
+        in_motion: motor::InMotion::Unseen,
     }
 }
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use monitor::Cage;
+use motor::InMotion;
 use motor::MotorFile;
-use motor::motor_file::InMotion;
 use recording::{Recording, Source};
 
 use crate::cli::arguments::files::Files;

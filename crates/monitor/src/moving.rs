@@ -1,0 +1,136 @@
+//! What is said in motion beside the windows at rest, and what it does to the lamps.
+
+use motor::FaultId;
+
+use crate::checks::sensors::SensorFinding;
+use crate::isolation::Cause;
+use crate::lamps::lamp::{Lamp, Lamps};
+
+/// What is said in motion when a window ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moving {
+    /// The window was not at rest, and was judged in motion.
+    pub is_judged: bool,
+    /// A fault that came while something was changing, as long as its alarm is on.
+    pub fault: Option<MovingFault>,
+    /// Something came in motion that is not called a fault: none of a size that occurs explains it, or the motor in good order
+    /// was never seen in motion.
+    pub is_unexplained: bool,
+}
+
+/// A fault that came in motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovingFault {
+    /// What it is.
+    pub cause: MovingCause,
+    /// How probable that is among the causes that can be told in motion, 0..=1.
+    pub probability: f32,
+}
+
+/// What a fault that came in motion is put down to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MovingCause {
+    /// A departure of motor, load or instrument.
+    Departure(Cause),
+    /// A channel that shows nothing.
+    Dead(SensorFinding),
+}
+
+impl Moving {
+    /// The lamps of the windows at rest with what is said in motion over them.
+    pub(crate) fn over(&self, at_rest: &Lamps) -> Lamps {
+        let mut lamps = *at_rest;
+        if self.is_judged {
+            lamps.run = Lamp::On;
+        }
+        if self.is_unexplained {
+            lamps.run = Lamp::Blink;
+        }
+        if let Some(fault) = &self.fault {
+            lamps.fault = Lamp::On;
+            if fault.cause.is_of_instrument() {
+                lamps.sensor = Lamp::On;
+            }
+        }
+        lamps
+    }
+}
+
+impl MovingCause {
+    /// Whether it lies in a sensor.
+    pub fn is_of_instrument(self) -> bool {
+        match self {
+            MovingCause::Dead(_) => true,
+            MovingCause::Departure(cause) => matches!(
+                cause.fault(),
+                FaultId::CurrentSensor | FaultId::VoltageSensor | FaultId::SpeedSensor
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checks::sensors::Phase;
+    use crate::report::{NotJudged, Report};
+
+    fn changing(moving: Moving) -> Lamps {
+        let report = Report {
+            not_judged: Some(NotJudged::Transient),
+            lamps: Lamps {
+                run: Lamp::Blink,
+                load: Lamp::Blink,
+                ..Lamps::default()
+            },
+            moving: Some(moving),
+            ..Report::default()
+        };
+        report.shown_lamps()
+    }
+
+    #[test]
+    fn a_window_judged_in_motion_has_run_on_and_load_says_that_it_changes() {
+        let lamps = changing(Moving {
+            is_judged: true,
+            ..Moving::default()
+        });
+        assert_eq!((lamps.run, lamps.load), (Lamp::On, Lamp::Blink));
+        assert!(lamps.is_quiet());
+        let blind = changing(Moving::default());
+        assert_eq!((blind.run, blind.load), (Lamp::Blink, Lamp::Blink));
+    }
+
+    #[test]
+    fn a_fault_in_motion_lights_fault_and_sensor_where_it_is_one() {
+        let lit = |cause| {
+            let fault = MovingFault {
+                cause,
+                probability: 0.9,
+            };
+            let lamps = changing(Moving {
+                is_judged: true,
+                fault: Some(fault),
+                is_unexplained: false,
+            });
+            (lamps.fault, lamps.sensor)
+        };
+        let of_motor = lit(MovingCause::Departure(Cause::RotorResistance));
+        assert_eq!(of_motor, (Lamp::On, Lamp::Off));
+        let gain = lit(MovingCause::Departure(Cause::CurrentChannel(Phase::B)));
+        assert_eq!(gain, (Lamp::On, Lamp::On));
+        let dead = lit(MovingCause::Dead(SensorFinding::SpeedImplausible));
+        assert_eq!(dead, (Lamp::On, Lamp::On));
+    }
+
+    #[test]
+    fn what_no_fault_explains_lights_nothing_and_run_blinks() {
+        let lamps = changing(Moving {
+            is_judged: true,
+            fault: None,
+            is_unexplained: true,
+        });
+        assert!(lamps.is_quiet());
+        assert_eq!(lamps.run, Lamp::Blink);
+    }
+}

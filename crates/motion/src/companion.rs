@@ -1,0 +1,162 @@
+//! Motion beside the windows, in ADC codes: what runs on the board.
+
+use monitor::{
+    Abc, AnalogueChain, Beside, CHANNELS, ClippedChannels, CodeUnits, MonitorConfig, Moving,
+    Report, SpeedSample, Stretch,
+};
+use num_complex::Complex32;
+
+use crate::observer::Instant;
+use crate::standing::Standing;
+use crate::{KnownLoad, Motion, MotionState, NoMotion};
+
+/// Judges in motion whatever a [`monitor::Monitor`] takes in codes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Companion {
+    motion: Result<Motion, NoMotion>,
+    state: MotionState,
+    standing: Standing,
+    alignment: Alignment,
+}
+
+/// Brings channels that are late by different times to one instant, between two samples along a straight line: at 100 Hz and 10 kHz
+/// off by less than 0.05 % of the amplitude.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Alignment {
+    /// By how much each channel is earlier than the latest one, samples.
+    early: [f32; CHANNELS],
+    before: Option<[f32; CHANNELS]>,
+}
+
+/// Largest part of a sample by which channels may be apart.
+const MOST_EARLY: f32 = 1.0;
+
+impl Companion {
+    /// For a monitor of this configuration.
+    #[inline(never)]
+    pub fn new(config: &MonitorConfig) -> Self {
+        let alignment = Alignment::of(&config.converter.chain, config.t_sample);
+        let motion = match alignment {
+            Some(_) => Motion::new(config).map(Motion::without_torque),
+            None => Err(NoMotion::ChannelsApart),
+        };
+        Companion {
+            state: MotionState::default(),
+            standing: Standing::new(motion.as_ref().is_ok_and(Motion::is_doubted)),
+            alignment: alignment.unwrap_or_default(),
+            motion,
+        }
+    }
+
+    /// Why nothing is judged in motion.
+    pub fn not_possible(&self) -> Option<NoMotion> {
+        self.motion.err()
+    }
+
+    /// Samples are missing before the next one.
+    pub fn resume_after_gap(&mut self) {
+        self.state.resume_after_gap();
+        self.alignment.before = None;
+    }
+}
+
+impl Beside for Companion {
+    #[inline]
+    fn take(&mut self, stretch: &Stretch<'_>) {
+        let Ok(motion) = &self.motion else {
+            return;
+        };
+        let clipped = stretch.clipped != ClippedChannels::NONE;
+        let omega = (!stretch.axes.is_empty()).then_some(stretch.omega);
+        let mut axes = stretch.axes.iter();
+        for (codes, count) in stretch.codes.iter().zip(stretch.counts) {
+            let x = self.alignment.aligned(in_units(codes, stretch.units));
+            let axis = axes.next().copied();
+            let instant = motion.instant_of_count(&mut self.state, *count, x, axis);
+            let omega = omega.filter(|_| axis.is_some());
+            if let Some(cycle) = motion.take(&mut self.state, instant, clipped, omega) {
+                self.standing.cycle(&cycle);
+            }
+        }
+    }
+
+    fn window(&mut self, report: &Report) -> Option<Moving> {
+        self.motion.as_ref().ok()?;
+        let _ = self.standing.window(report);
+        Some(self.standing.moving())
+    }
+}
+
+/// Voltages a, b, c, then currents a, b, c at the terminals.
+#[inline(always)]
+fn in_units(codes: &[u16; CHANNELS], units: &[CodeUnits; CHANNELS]) -> [f32; CHANNELS] {
+    let [v_a, i_a, v_b, i_b, v_c, i_c] = codes.map(f32::from);
+    let mut x = [v_a, v_b, v_c, i_a, i_b, i_c];
+    for (x, unit) in x.iter_mut().zip(units) {
+        *x = *x * unit.scale - unit.offset;
+    }
+    x
+}
+
+impl Alignment {
+    /// `None` where channels are further apart than a sample.
+    fn of(chain: &AnalogueChain, t_sample: f32) -> Option<Self> {
+        let latest = chain.delay.iter().copied().fold(f32::MIN, f32::max);
+        let early = chain.delay.map(|delay| (latest - delay) / t_sample);
+        let near = early.iter().all(|early| *early <= MOST_EARLY);
+        near.then_some(Alignment {
+            early,
+            before: None,
+        })
+    }
+
+    /// A channel that is early is taken as much before its sample.
+    #[inline(always)]
+    fn aligned(&mut self, x: [f32; CHANNELS]) -> [f32; CHANNELS] {
+        let mut aligned = x;
+        let before = self.before.replace(x).unwrap_or(x);
+        for ((place, before), early) in aligned.iter_mut().zip(before).zip(self.early) {
+            *place -= early * (*place - before);
+        }
+        aligned
+    }
+}
+
+impl Motion {
+    /// In codes there is no torque channel: a load that is measured is not known.
+    fn without_torque(self) -> Self {
+        let load = match self.load {
+            KnownLoad::Measured => KnownLoad::Nothing,
+            load => load,
+        };
+        Motion { load, ..self }
+    }
+
+    /// The instant of an encoder's count; `x` are voltages and currents at the terminals.
+    #[inline(always)]
+    fn instant_of_count(
+        &self,
+        state: &mut MotionState,
+        count: u16,
+        [u_a, u_b, u_c, i_a, i_b, i_c]: [f32; CHANNELS],
+        axis: Option<Complex32>,
+    ) -> Option<Instant> {
+        let speed = SpeedSample::Count(count);
+        let turned = self.turned(state.last_speed.replace(speed), speed)?;
+        Some(Instant {
+            u: Abc {
+                a: u_a,
+                b: u_b,
+                c: u_c,
+            },
+            i: Abc {
+                a: i_a,
+                b: i_b,
+                c: i_c,
+            },
+            turned,
+            tau_load: 0.0,
+            axis: axis.unwrap_or(state.observer.supply() * self.step),
+        })
+    }
+}
