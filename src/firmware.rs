@@ -7,6 +7,8 @@ use board::{Button, Calibration, Compiled, Display, Doubt, Doubts, LAMPS, Relay,
 use embassy_executor::Spawner;
 use embassy_time::{Duration, Timer};
 use monitor::{Lamp, Lamps, Monitor, MonitorState, Report};
+use motion::Companion;
+use static_cell::StaticCell;
 
 use crate::commissioning::Commissioning;
 use crate::configuration::{Change, Settings};
@@ -30,6 +32,8 @@ include!(concat!(env!("OUT_DIR"), "/motor.rs"));
 
 /// s; the sampling clock runs at 10 kHz.
 const T_SAMPLE: f32 = 1e-4;
+/// What judges in motion: too large for the stack.
+static COMPANION: StaticCell<Companion> = StaticCell::new();
 /// How long each lamp is lit at power-up.
 const LAMP_TEST: Duration = Duration::from_millis(150);
 /// Blocks that are thrown away at first: the filters and sensors settle (0.1 s).
@@ -112,7 +116,10 @@ async fn main(spawner: Spawner) -> ! {
     match &mut monitor {
         _ if start.gives_up => panel.refuse(Doubt::Restarts).await,
         _ if panel.all_doubts().has(Doubt::Processor) => panel.refuse(Doubt::Processor).await,
-        Some(monitor) => run(monitor, &mut panel, board.sources).await,
+        Some(monitor) => {
+            let companion = companion_of(monitor);
+            run((monitor, companion), &mut panel, board.sources).await
+        }
         None => panel.refuse(Doubt::Constants).await,
     }
 }
@@ -145,8 +152,20 @@ async fn test_lamps(wires: &mut LampWires, watchdog: &mut Watchdog) {
     wires.set([false; LAMPS]);
 }
 
+/// Not inlined: on its way into its place a companion may lie on the stack, which is free again afterwards.
+#[inline(never)]
+fn companion_of(monitor: &Monitor) -> &'static mut Companion {
+    let companion = COMPANION.init_with(Companion::default);
+    companion.set_motor(monitor.config());
+    companion
+}
+
 /// Samples to lamps. Every gap in the samples ends in a fresh acquisition, and every calibration in a fresh monitor.
-async fn run(monitor: &mut Monitor, panel: &mut Panel, mut sources: Sources) -> ! {
+async fn run(
+    (monitor, companion): (&mut Monitor, &mut Companion),
+    panel: &mut Panel,
+    mut sources: Sources,
+) -> ! {
     let mut state = MonitorState::default();
     let mut lamps = Lamps {
         run: Lamp::Blink,
@@ -155,7 +174,8 @@ async fn run(monitor: &mut Monitor, panel: &mut Panel, mut sources: Sources) -> 
     loop {
         let mut acquisition = Acquisition::start(&mut sources);
         panel.selftest.remember_settings();
-        let pause = watch(monitor, &mut state, &mut acquisition, panel, &mut lamps).await;
+        let judges = (&*monitor, &mut state, &mut *companion);
+        let pause = watch(judges, &mut acquisition, panel, &mut lamps).await;
         drop(acquisition);
         panel.selftest.resume();
         match pause {
@@ -167,22 +187,25 @@ async fn run(monitor: &mut Monitor, panel: &mut Panel, mut sources: Sources) -> 
             }
             Pause::Learnt(calibration) => {
                 panel.commissioning.store(&calibration);
-                renew(monitor, panel);
+                renew(monitor, companion, panel);
             }
             Pause::Configured(change) => {
                 if panel.configure(change) {
-                    renew(monitor, panel);
+                    renew(monitor, companion, panel);
                 }
             }
         }
         state.resume_after_gap();
+        companion.resume_after_gap();
     }
 }
 
 /// Judges with what was learnt or configured just now.
-fn renew(monitor: &mut Monitor, panel: &mut Panel) {
+#[inline(never)]
+fn renew(monitor: &mut Monitor, companion: &mut Companion, panel: &mut Panel) {
     if let Some(renewed) = panel.commissioning.monitor() {
         *monitor = renewed;
+        companion.set_motor(monitor.config());
     }
     panel.note_calibration();
 }
@@ -196,8 +219,7 @@ enum Pause {
 
 /// Judges block after block until samples are missing or something was learnt.
 async fn watch(
-    monitor: &Monitor,
-    state: &mut MonitorState,
+    (monitor, state, companion): (&Monitor, &mut MonitorState, &mut Companion),
     acquisition: &mut Acquisition<'_>,
     panel: &mut Panel,
     lamps: &mut Lamps,
@@ -209,9 +231,9 @@ async fn watch(
         }
         state.note_converter_supply(panel.supply);
         if panel.blocks >= INHIBITED_BLOCKS
-            && let Some(report) = process_block(monitor, state, &block)
+            && let Some(report) = process_block(monitor, state, companion, &block)
         {
-            *lamps = report.lamps;
+            *lamps = report.shown_lamps();
             if let Some(calibration) = panel.take(&report, monitor) {
                 return Pause::Learnt(calibration);
             }
@@ -229,11 +251,17 @@ async fn watch(
 /// One block through the core; at most one report ends in it, because a block is shorter than a cycle.
 /// A symbol of its own, so that what it reaches can be inspected (tools/check-firmware).
 #[inline(never)]
-fn process_block(monitor: &Monitor, state: &mut MonitorState, block: &Block) -> Option<Report> {
+fn process_block(
+    monitor: &Monitor,
+    state: &mut MonitorState,
+    companion: &mut Companion,
+    block: &Block,
+) -> Option<Report> {
     let mut raw = block.raw();
     let mut latest = None;
     while !raw.is_empty() {
-        latest = monitor.update_block(state, &mut raw).or(latest);
+        let report = monitor.update_block_beside(state, &mut raw, companion);
+        latest = report.or(latest);
     }
     latest
 }

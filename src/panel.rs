@@ -89,9 +89,9 @@ pub struct Panel {
 impl Panel {
     /// Takes one window's result: shown and told everywhere. A calibration may come out of it.
     pub fn take(&mut self, report: &Report, monitor: &Monitor) -> Option<Calibration> {
-        self.judged |= report.is_judged();
+        self.judged |= report.is_judged_either_way();
         self.reported = true;
-        let shown = self.show(&report.lamps);
+        let shown = self.show(&report.shown_lamps());
         self.record
             .tell(report, &shown, monitor, &self.commissioning);
         let doubts = self.all_doubts();

@@ -129,7 +129,7 @@ impl Record {
         monitor: &Monitor,
         commissioning: &Commissioning,
     ) {
-        let lit = report.lamps.fault == Lamp::On;
+        let lit = report.shown_lamps().fault == Lamp::On;
         let motor = commissioning.motor();
         let alarm = (lit && !self.was_lit).then(|| CaptureAlarm {
             start: self.board.start_number,

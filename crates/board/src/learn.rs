@@ -233,7 +233,7 @@ impl Learner {
 
 /// A lamp that says that the measurement itself cannot be trusted.
 fn lit(report: &Report) -> Option<Refusal> {
-    match report.lamps {
+    match report.shown_lamps() {
         lamps if lamps.sensor == Lamp::On => Some(Refusal::Sensor),
         lamps if lamps.line == Lamp::On => Some(Refusal::Line),
         _ => None,

@@ -74,6 +74,7 @@ pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
 pub use input::chain::AnalogueChain;
 pub use input::converter::{ChannelScale, Converter};
 pub use input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
+pub use isolation::gauss::{Cholesky, Covariance};
 pub use isolation::{
     ALL_CAUSES, CAUSES, Cause, Evidence, Healthy, Heating, Isolation, ROWS, Row, Uncertainty,
     probabilities,
@@ -91,7 +92,7 @@ pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
 pub use motor::{FaultId, InMotion};
-pub use moving::{Moving, MovingCause, MovingFault};
+pub use moving::{MotionWord, Moving, MovingCause, MovingFault};
 #[cfg(feature = "motor-file")]
 pub use of_board::{BOARD_CONVERSIONS, BOARD_T_SAMPLE};
 pub use reason::Reason;

@@ -36,7 +36,61 @@ pub enum MovingCause {
     Dead(SensorFinding),
 }
 
+/// How a window stands in motion, by the number that stands in frames and registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum MotionWord {
+    /// The window was at rest, or nothing is judged in motion.
+    AtRest = 0,
+    /// It was judged in motion, and all of it fits.
+    Judged = 1,
+    /// It was left to motion and could not be judged there either.
+    NotJudged = 2,
+    /// A fault came in motion.
+    Fault = 3,
+    /// Something came in motion that is called no fault.
+    Unexplained = 4,
+}
+
+impl MotionWord {
+    /// Every word, in the order of its number.
+    pub const ALL: [MotionWord; 5] = [
+        MotionWord::AtRest,
+        MotionWord::Judged,
+        MotionWord::NotJudged,
+        MotionWord::Fault,
+        MotionWord::Unexplained,
+    ];
+
+    /// In a few words, for the register map.
+    pub const fn label(self) -> &'static str {
+        match self {
+            MotionWord::AtRest => "at rest, or nothing is judged in motion",
+            MotionWord::Judged => "judged in motion",
+            MotionWord::NotJudged => "not judged in motion either",
+            MotionWord::Fault => "a fault came in motion",
+            MotionWord::Unexplained => "something came in motion that is called no fault",
+        }
+    }
+}
+
 impl Moving {
+    /// How the window stands; `is_motion`: it was left to motion.
+    pub(crate) fn word(&self, is_motion: bool) -> MotionWord {
+        match self {
+            Moving { fault: Some(_), .. } => MotionWord::Fault,
+            Moving {
+                is_unexplained: true,
+                ..
+            } => MotionWord::Unexplained,
+            Moving {
+                is_judged: true, ..
+            } => MotionWord::Judged,
+            _ if is_motion => MotionWord::NotJudged,
+            _ => MotionWord::AtRest,
+        }
+    }
+
     /// The lamps of the windows at rest with what is said in motion over them.
     pub(crate) fn over(&self, at_rest: &Lamps) -> Lamps {
         let mut lamps = *at_rest;

@@ -8,7 +8,7 @@ use crate::lamps::lamp::Lamps;
 use crate::lamps::signature::Candidates;
 use crate::model::operating_point::OperatingPoint;
 use crate::model::residuals::{RESIDUALS, Residuals};
-use crate::moving::Moving;
+use crate::moving::{MotionWord, Moving};
 use crate::window::Window;
 
 /// Why a window was not judged.
@@ -93,6 +93,21 @@ impl Report {
     pub fn shown_lamps(&self) -> Lamps {
         self.moving
             .map_or(self.lamps, |moving| moving.over(&self.lamps))
+    }
+
+    /// How the window stands in motion.
+    pub fn motion_word(&self) -> MotionWord {
+        let is_motion = self.not_judged.is_some_and(NotJudged::is_motion);
+        self.moving
+            .map_or(MotionWord::AtRest, |moving| moving.word(is_motion))
+    }
+
+    /// Number of the reason why the window was judged neither at rest nor in motion; 0 where it was judged.
+    pub fn reason_number(&self) -> u8 {
+        match self.is_judged_either_way() {
+            true => 0,
+            false => self.not_judged.map_or(0, |why| why.reason().number()),
+        }
     }
 
     /// Whether the window was judged, at rest or in motion.

@@ -110,7 +110,7 @@ impl Circuit {
     /// `(psi_m/psi_n)^n - 1`.
     pub fn bend(&self, psi_m: f32) -> f32 {
         let share = (psi_m / self.rated.flux()).min(MOST_FLUX);
-        libm::powf(share, self.iron.exponent) - 1.0
+        power(share, self.iron.exponent) - 1.0
     }
 
     /// Time constant of the open rotor, `L_r/R_r`, s.
@@ -142,6 +142,17 @@ impl Coefficients {
     pub fn linkage(&self, psi_r: Complex32, i_s: Complex32) -> Complex32 {
         i_s * self.l_a + psi_r * self.k_r
     }
+}
+
+/// `x^n`; whole exponents, as most are, by products.
+fn power(x: f32, n: f32) -> f32 {
+    /// Largest exponent that is multiplied out.
+    const MOST_PRODUCTS: f32 = 16.0;
+    let whole = n as u8;
+    if n > MOST_PRODUCTS || f32::from(whole) != n {
+        return libm::powf(x, n);
+    }
+    (0..whole).fold(1.0, |product, _| product * x)
 }
 
 /// `e^{j 2 pi/3}`.

@@ -25,7 +25,22 @@ pub struct Companion {
 struct Alignment {
     /// By how much each channel is earlier than the latest one, samples.
     early: [f32; CHANNELS],
+    /// Whether they differ at all.
+    is_apart: bool,
     before: Option<[f32; CHANNELS]>,
+}
+
+impl Default for Companion {
+    /// Knows no motor.
+    #[inline]
+    fn default() -> Self {
+        Companion {
+            motion: Err(NoMotion::NotCalibrated),
+            state: MotionState::default(),
+            standing: Standing::new(true),
+            alignment: Alignment::default(),
+        }
+    }
 }
 
 /// Largest part of a sample by which channels may be apart.
@@ -33,19 +48,24 @@ const MOST_EARLY: f32 = 1.0;
 
 impl Companion {
     /// For a monitor of this configuration.
-    #[inline(never)]
+    #[inline]
     pub fn new(config: &MonitorConfig) -> Self {
+        let mut companion = Companion::default();
+        companion.set_motor(config);
+        companion
+    }
+
+    /// Begins anew with another configuration.
+    #[inline(never)]
+    pub fn set_motor(&mut self, config: &MonitorConfig) {
         let alignment = Alignment::of(&config.converter.chain, config.t_sample);
-        let motion = match alignment {
+        self.motion = match alignment {
             Some(_) => Motion::new(config).map(Motion::without_torque),
             None => Err(NoMotion::ChannelsApart),
         };
-        Companion {
-            state: MotionState::default(),
-            standing: Standing::new(motion.as_ref().is_ok_and(Motion::is_doubted)),
-            alignment: alignment.unwrap_or_default(),
-            motion,
-        }
+        self.alignment = alignment.unwrap_or_default();
+        self.standing = Standing::new(self.motion.as_ref().is_ok_and(Motion::is_doubted));
+        self.state.begin_anew();
     }
 
     /// Why nothing is judged in motion.
@@ -105,6 +125,7 @@ impl Alignment {
         let early = chain.delay.map(|delay| (latest - delay) / t_sample);
         let near = early.iter().all(|early| *early <= MOST_EARLY);
         near.then_some(Alignment {
+            is_apart: early.iter().any(|early| *early > 0.0),
             early,
             before: None,
         })
@@ -113,6 +134,9 @@ impl Alignment {
     /// A channel that is early is taken as much before its sample.
     #[inline(always)]
     fn aligned(&mut self, x: [f32; CHANNELS]) -> [f32; CHANNELS] {
+        if !self.is_apart {
+            return x;
+        }
         let mut aligned = x;
         let before = self.before.replace(x).unwrap_or(x);
         for ((place, before), early) in aligned.iter_mut().zip(before).zip(self.early) {

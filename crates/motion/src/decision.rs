@@ -7,11 +7,15 @@
 //! e = b - H m     u = P (P+H)^-1 e     W = H - H (P+H)^-1 H     T_h = v_h' u/sqrt(v_h' W v_h)
 //! ```
 //!
+//! With `k = P m` and `x = (P+H)^-1 (b + k)` is `u = P x - k`, and `W = P - P (P+H)^-1 P`: one factor a test, no inverse of P.
+//!
 //! `m_0` is where the prior stands once the rows are taken at a winding temperature of their own. A cause of which the cycles say
 //! next to nothing (`W` small) has T = 0.
 
 use crate::departures::{ALL, HYPOTHESES, Hypothesis, UNKNOWNS, place};
-use crate::information::{Factor, Information, Symmetric, Vector, White, dot};
+use monitor::Covariance;
+
+use crate::information::{ABREAST, Factor, Information, ROWS, Symmetric, Vector, White, dot};
 
 /// What the absolute test keeps from one cycle to the next.
 const ABSOLUTE_KEEP: f32 = 0.9;
@@ -103,6 +107,28 @@ pub struct Outcome {
 }
 
 impl Decision {
+    /// Forgets everything, store by store.
+    #[inline(never)]
+    pub fn begin_anew(&mut self) {
+        let Decision {
+            absolute,
+            baseline,
+            waiting,
+            latest,
+            since,
+            in_block,
+            baseline_cycles,
+            running,
+            course,
+            heating_prior,
+        } = self;
+        for store in [absolute, baseline, waiting, latest, since] {
+            *store = Information::default();
+        }
+        (*in_block, *baseline_cycles, *running) = (0, 0, 0);
+        (*course, *heating_prior) = (Course::Quiet, 0.0);
+    }
+
     /// Takes one judged cycle.
     #[inline(never)]
     pub fn take(&mut self, cycle: &White, limits: &Limits) -> Outcome {
@@ -134,12 +160,15 @@ impl Decision {
         self.course != Course::Quiet
     }
 
+    #[inline(never)]
     fn remember(&mut self, cycle: &White) {
+        let mut own = Information::default();
+        own.add(cycle);
         self.absolute.fade(ABSOLUTE_KEEP);
-        self.absolute.add(cycle);
-        self.latest.add(cycle);
+        self.absolute.merge(&own);
+        self.latest.merge(&own);
         if matches!(self.course, Course::Raised(_)) {
-            self.since.add(cycle);
+            self.since.merge(&own);
             return;
         }
         self.in_block += 1;
@@ -149,6 +178,7 @@ impl Decision {
     }
 
     /// The oldest block joins the baseline.
+    #[inline(never)]
     fn end_block(&mut self) {
         let blocks = libm::powf(BASELINE_KEEP, f32::from(self.in_block));
         self.baseline.fade(blocks);
@@ -160,22 +190,23 @@ impl Decision {
     }
 
     /// Against the priors alone; and what that says of the heating.
+    #[inline(never)]
     fn absolute(&self, seen: &Information) -> (Scores, [f32; 2]) {
-        let prior = self.prior_mean();
-        let none = Symmetric::default();
-        let factor = seen.matrix.with_prior(1.0).factorise();
-        let e = beyond(seen, &prior);
-        let moved = factor.solve(&e);
+        let known = self.prior_mean();
+        let mut all = seen.matrix.with_prior(1.0);
+        let factor = all.factorise();
+        let estimate = factor.solve(&sum(&seen.vector, &known));
         let mut unit = [0.0; UNKNOWNS];
         set(&mut unit, place::HEATING, 1.0);
-        let white = factor.whiten(&unit);
-        let mean = entry(&moved, place::HEATING) + self.heating_prior;
+        let white = factor.whiten(&unit, place::HEATING);
+        let mean = entry(&estimate, place::HEATING);
         let deviation = libm::sqrtf(dot(&white, &white));
-        let scores = score(&none.with_prior(1.0), &factor, &moved);
+        let scores = score(None, &factor, &estimate, &known);
         (scores, [mean, deviation])
     }
 
     /// The latest cycles against all older ones.
+    #[inline(never)]
     fn onset(&self) -> Scores {
         let baseline = self.baseline_cycles;
         if baseline < LEAST_BASELINE + 2 * u16::from(BLOCK) {
@@ -186,12 +217,13 @@ impl Decision {
         for (x, b) in known.iter_mut().zip(self.baseline.vector) {
             *x += BASELINE_SHARE * b;
         }
-        let mean = prior.factorise().solve(&known);
-        let mut seen = self.waiting;
-        seen.merge(&self.latest);
-        let factor = prior.plus(&seen.matrix).factorise();
-        let moved = factor.solve(&beyond(&seen, &mean));
-        score(&prior, &factor, &moved)
+        let mut all = prior;
+        all.add(&self.waiting.matrix);
+        all.add(&self.latest.matrix);
+        let seen = sum(&self.waiting.vector, &self.latest.vector);
+        let factor = all.factorise();
+        let estimate = factor.solve(&sum(&seen, &known));
+        score(Some(&prior), &factor, &estimate, &known)
     }
 
     fn prior_mean(&self) -> Vector {
@@ -221,6 +253,7 @@ impl Decision {
         false
     }
 
+    #[inline(never)]
     fn name(&mut self, scores: &Scores) -> Option<Scores> {
         let Course::Raised(cycles) = self.course else {
             return None;
@@ -254,29 +287,51 @@ impl Decision {
     }
 }
 
-/// `b - H m`.
-fn beyond(seen: &Information, mean: &Vector) -> Vector {
-    let mut e = seen.vector;
-    for (x, expected) in e.iter_mut().zip(seen.matrix.times(mean)) {
-        *x -= expected;
+fn sum(a: &Vector, b: &Vector) -> Vector {
+    let mut sum = *a;
+    for (x, y) in sum.iter_mut().zip(b) {
+        *x += y;
     }
-    e
+    sum
 }
 
-/// `T_h` of every cause: with `y = (P+H)^-1 e` is `u = P y`, and `W = P - P (P+H)^-1 P`.
+/// `T_h` of every cause from `x` and `k`; without a prior P is the unit matrix.
 #[inline(never)]
-fn score(prior: &Symmetric, factor: &Factor, y: &Vector) -> Scores {
-    let u = prior.times(y);
+fn score(prior: Option<&Symmetric>, factor: &Factor<'_>, x: &Vector, k: &Vector) -> Scores {
     let mut scores = Scores::NOTHING;
-    let places = scores.statistics.iter_mut().zip(&mut scores.weights);
-    for (hypothesis, (statistic, weight)) in ALL.iter().zip(places) {
-        let v = hypothesis.direction();
-        let p = prior.times(&v);
-        let white = factor.whiten(&p);
-        let information = dot(&v, &p) - dot(&white, &white);
-        if information > LEAST_INFORMATION * dot(&v, &p) {
-            *weight = libm::sqrtf(information);
-            *statistic = admitted(hypothesis, dot(&v, &u) / *weight);
+    let statistics = scores.statistics.chunks_mut(ABREAST);
+    let places = statistics.zip(scores.weights.chunks_mut(ABREAST));
+    for (hypotheses, (statistics, weights)) in ALL.chunks(ABREAST).zip(places) {
+        let mut columns = [[0.0; ABREAST]; UNKNOWNS];
+        // `v' P v` and `v' u`.
+        let mut along = [[0.0; 2]; ABREAST];
+        for ((n, hypothesis), along) in hypotheses.iter().enumerate().zip(&mut along) {
+            let column = match prior {
+                Some(prior) => prior.columns(hypothesis.first, hypothesis.count),
+                None => hypothesis.direction(),
+            };
+            for (row, p) in columns.iter_mut().zip(column) {
+                set(row, n, p);
+            }
+            *along = [
+                hypothesis.along(&column),
+                dot(&column, x) - hypothesis.along(k),
+            ];
+        }
+        let firsts = hypotheses.iter().map(|hypothesis| hypothesis.first);
+        let first = match prior {
+            Some(_) => 0,
+            None => firsts.min().unwrap_or_default(),
+        };
+        let explained = factor.squared_lengths(&columns, first);
+        let places = statistics.iter_mut().zip(weights);
+        let all = hypotheses.iter().zip(explained).zip(along).zip(places);
+        for (((hypothesis, explained), [believed, shown]), (statistic, weight)) in all {
+            let information = believed - explained;
+            if information > LEAST_INFORMATION * believed {
+                *weight = libm::sqrtf(information);
+                *statistic = admitted(hypothesis, shown / *weight);
+            }
         }
     }
     scores
@@ -344,12 +399,17 @@ impl Scores {
     }
 }
 
-/// `z' (1 + A A')^-1 z = z'z - b' (1 + A'A)^-1 b`: nine degrees of freedom on a healthy motor.
+/// `z' (1 + A A')^-1 z`: nine degrees of freedom on a healthy motor.
+#[inline(never)]
 fn squared_length(cycle: &White) -> f32 {
-    let mut own = Information::default();
-    own.add(cycle);
-    let explained = own.matrix.with_prior(1.0).factorise().whiten(&own.vector);
-    dot(&cycle.rows, &cycle.rows) - dot(&explained, &explained)
+    let mut covariance = Covariance::of_independent(&[1.0; ROWS]);
+    for unknown in 0..UNKNOWNS {
+        let mut moved = cycle.sensitivities.iter();
+        let moves = [(); ROWS].map(|()| moved.next().map_or(0.0, |row| entry(row, unknown)));
+        covariance.add(&moves, 1.0);
+    }
+    let white = covariance.factorise().whiten(&cycle.rows);
+    dot(&white, &white)
 }
 
 fn entry(x: &[f32], k: usize) -> f32 {

@@ -173,6 +173,11 @@ pub const ALL: [Hypothesis; HYPOTHESES] = {
 };
 
 impl Hypothesis {
+    /// Sum of the departures that it moves.
+    pub fn along(&self, of: &[f32; UNKNOWNS]) -> f32 {
+        of.iter().skip(self.first).take(self.count).sum()
+    }
+
     /// Direction among the departures, each in units of its prior.
     pub fn direction(&self) -> [f32; UNKNOWNS] {
         let mut direction = [0.0; UNKNOWNS];

@@ -9,6 +9,9 @@ use crate::departures::UNKNOWNS;
 pub const ROWS: usize = 9;
 const PACKED: usize = UNKNOWNS * (UNKNOWNS + 1) / 2;
 
+/// Vectors that are whitened at once.
+pub const ABREAST: usize = 4;
+
 /// A vector of departures.
 pub type Vector = [f32; UNKNOWNS];
 
@@ -25,9 +28,9 @@ pub struct White {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Symmetric([f32; PACKED]);
 
-/// Lower Cholesky factor.
+/// Lower Cholesky factor, in the place of the matrix that it is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Factor(Symmetric);
+pub struct Factor<'a>(&'a Symmetric);
 
 /// `H` and `b`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,8 +57,22 @@ impl Default for White {
 }
 
 /// Scalar product over the shorter of the two.
+///
+/// Four sums side by side: a processor need not wait for one addition to begin the next.
+#[inline]
 pub fn dot(a: &[f32], b: &[f32]) -> f32 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let length = a.len().min(b.len());
+    let [a, b] = [a, b].map(|x| x.get(..length).unwrap_or_default());
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let [mut s, mut t, mut u, mut v] = [0.0; 4];
+    for ([a, b, c, d], [e, f, g, h]) in a.iter().zip(b) {
+        s += a * e;
+        t += b * f;
+        u += c * g;
+        v += d * h;
+    }
+    let rest: f32 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    (s + t) + (u + v) + rest
 }
 
 fn at(x: &[f32], k: usize) -> f32 {
@@ -76,7 +93,10 @@ impl Symmetric {
 
     /// `scale` times itself, plus the unit matrix.
     pub fn with_prior(&self, scale: f32) -> Symmetric {
-        let mut sum = Symmetric(self.0.map(|x| scale * x));
+        let mut sum = *self;
+        for x in &mut sum.0 {
+            *x *= scale;
+        }
         for i in 0..UNKNOWNS {
             if let Some(diagonal) = sum.row_mut(i).last_mut() {
                 *diagonal += 1.0;
@@ -85,68 +105,68 @@ impl Symmetric {
         sum
     }
 
-    /// Sum of two matrices.
-    pub fn plus(&self, other: &Symmetric) -> Symmetric {
-        let mut sum = *self;
-        for (x, y) in sum.0.iter_mut().zip(&other.0) {
+    /// Adds another one.
+    pub fn add(&mut self, other: &Symmetric) {
+        for (x, y) in self.0.iter_mut().zip(&other.0) {
             *x += y;
+        }
+    }
+
+    /// Sum of some columns that follow each other: the product with a vector of ones there and noughts elsewhere.
+    #[inline(never)]
+    pub fn columns(&self, first: usize, count: usize) -> Vector {
+        let mut sum = [0.0; UNKNOWNS];
+        for column in first..first + count {
+            let (above, below) = sum.split_at_mut_checked(column).unwrap_or_default();
+            for (x, h) in above.iter_mut().zip(self.row(column)) {
+                *x += h;
+            }
+            for (x, i) in below.iter_mut().zip(column..) {
+                *x += at(self.row(i), column);
+            }
         }
         sum
     }
 
-    /// Product with a vector.
-    #[inline(never)]
-    pub fn times(&self, v: &Vector) -> Vector {
-        let mut product = [0.0; UNKNOWNS];
-        for (i, x) in v.iter().enumerate() {
-            let row = self.row(i);
-            let own = dot(row, v);
-            for (p, h) in product.iter_mut().zip(row.get(..i).unwrap_or_default()) {
-                *p += h * x;
-            }
-            if let Some(p) = product.get_mut(i) {
-                *p += own;
-            }
-        }
-        product
-    }
-
     /// Cholesky factor of a positive definite matrix; where rounding leaves nothing of a diagonal it keeps a rounding's share.
     #[inline(never)]
-    pub fn factorise(&self) -> Factor {
+    pub fn factorise(&mut self) -> Factor<'_> {
         /// What single precision leaves of a variance that others explain.
         const LEAST_SHARE: f32 = 1e-6;
-        let mut lower = Symmetric::default();
         for i in 0..UNKNOWNS {
-            let mut row = [0.0; UNKNOWNS];
+            let (done, rest) = self
+                .0
+                .split_at_mut_checked(i * (i + 1) / 2)
+                .unwrap_or_default();
+            let row = rest.get_mut(..=i).unwrap_or_default();
+            let mut above = &*done;
             for j in 0..i {
-                let above = lower.row(j);
-                let before = above.get(..j).unwrap_or_default();
-                let x = (at(self.row(i), j) - dot(before, &row)) / at(above, j);
-                if let Some(place) = row.get_mut(j) {
-                    *place = x;
+                let (own, further) = above.split_at_checked(j + 1).unwrap_or_default();
+                above = further;
+                let (before, here) = row.split_at_mut_checked(j).unwrap_or_default();
+                if let (Some(x), Some(diagonal)) = (here.first_mut(), own.last()) {
+                    *x = (*x - dot(own, before)) / diagonal;
                 }
             }
-            let diagonal = at(self.row(i), i);
-            let own = (diagonal - dot(&row, &row)).max(LEAST_SHARE * diagonal + f32::MIN_POSITIVE);
-            if let Some(place) = row.get_mut(i) {
-                *place = libm::sqrtf(own);
-            }
-            for (place, x) in lower.row_mut(i).iter_mut().zip(row) {
-                *place = x;
+            if let Some((diagonal, before)) = row.split_last_mut() {
+                let least = LEAST_SHARE * *diagonal + f32::MIN_POSITIVE;
+                *diagonal = libm::sqrtf((*diagonal - dot(before, before)).max(least));
             }
         }
-        Factor(lower)
+        Factor(self)
     }
 }
 
-impl Factor {
-    /// `L^-1 x`.
-    pub fn whiten(&self, x: &Vector) -> Vector {
+impl Factor<'_> {
+    /// `L^-1 x` of a vector whose entries before the `first` are nought.
+    #[inline(never)]
+    pub fn whiten(&self, x: &Vector, first: usize) -> Vector {
         let mut white = [0.0; UNKNOWNS];
-        for (i, x) in x.iter().enumerate() {
+        for (i, x) in x.iter().enumerate().skip(first) {
             let row = self.0.row(i);
-            let known = dot(row.get(..i).unwrap_or_default(), &white);
+            let span = first..i;
+            let earlier = white.get(span.clone()).unwrap_or_default();
+            let known = dot(row.get(span).unwrap_or_default(), earlier);
             if let Some(place) = white.get_mut(i) {
                 *place = (x - known) / at(row, i);
             }
@@ -154,10 +174,45 @@ impl Factor {
         white
     }
 
+    /// Squared lengths of `L^-1 x` of vectors side by side, whose entries before the `first` are nought: each entry of the
+    /// factor is fetched once for all of them.
+    #[inline(never)]
+    pub fn squared_lengths(
+        &self,
+        side_by_side: &[[f32; ABREAST]; UNKNOWNS],
+        first: usize,
+    ) -> [f32; ABREAST] {
+        let mut white = [[0.0_f32; ABREAST]; UNKNOWNS];
+        let mut squares = [0.0; ABREAST];
+        for (i, x) in side_by_side.iter().enumerate().skip(first) {
+            let Some((diagonal, row)) = self.0.row(i).split_last() else {
+                continue;
+            };
+            // One by one, so that they stay in registers.
+            let [mut a, mut b, mut c, mut d] = *x;
+            let earlier = white.get(first..).unwrap_or_default();
+            for (l, [p, q, r, s]) in row.get(first..).unwrap_or_default().iter().zip(earlier) {
+                a -= l * p;
+                b -= l * q;
+                c -= l * r;
+                d -= l * s;
+            }
+            let per = 1.0 / diagonal;
+            let own = [a * per, b * per, c * per, d * per];
+            for (square, x) in squares.iter_mut().zip(own) {
+                *square += x * x;
+            }
+            if let Some(place) = white.get_mut(i) {
+                *place = own;
+            }
+        }
+        squares
+    }
+
     /// `(L L')^-1 x`.
     #[inline(never)]
     pub fn solve(&self, x: &Vector) -> Vector {
-        let mut solution = self.whiten(x);
+        let mut solution = self.whiten(x, 0);
         for i in (0..UNKNOWNS).rev() {
             let row = self.0.row(i);
             let own = at(&solution, i) / at(row, i);
@@ -173,7 +228,7 @@ impl Factor {
 }
 
 impl Information {
-    /// Adds one cycle.
+    /// What one cycle knows.
     #[inline(never)]
     pub fn add(&mut self, cycle: &White) {
         for (a, z) in cycle.sensitivities.iter().zip(cycle.rows) {
@@ -197,7 +252,7 @@ impl Information {
 
     /// Adds what another one knows.
     pub fn merge(&mut self, other: &Information) {
-        self.matrix = self.matrix.plus(&other.matrix);
+        self.matrix.add(&other.matrix);
         for (x, y) in self.vector.iter_mut().zip(other.vector) {
             *x += y;
         }
@@ -205,12 +260,8 @@ impl Information {
 
     /// What it would have been had departure `k` been counted from a point `delta` further on.
     pub fn shift(&mut self, k: usize, delta: f32) {
-        let mut unit = [0.0; UNKNOWNS];
-        if let Some(x) = unit.get_mut(k) {
-            *x = delta;
-        }
-        for (b, moved) in self.vector.iter_mut().zip(self.matrix.times(&unit)) {
-            *b -= moved;
+        for (b, moved) in self.vector.iter_mut().zip(self.matrix.columns(k, 1)) {
+            *b -= delta * moved;
         }
     }
 }

@@ -505,15 +505,48 @@ impl MotionState {
     }
 
     /// After missing samples: flux and sums begin anew; alarm and temperature stay.
+    ///
+    /// Part by part: a second state would not fit on a board's stack.
+    #[inline(never)]
     pub fn resume_after_gap(&mut self) {
-        *self = MotionState {
-            decision: self.decision,
-            rise: self.rise,
-            rise_open: self.rise_open,
-            count: self.count,
-            raised: self.raised,
-            ..MotionState::default()
-        };
+        let MotionState {
+            coefficients,
+            observer,
+            influences,
+            sums,
+            past,
+            scatter,
+            decision: _,
+            gate,
+            seen,
+            last_speed,
+            direction,
+            omega_supply,
+            rise: _,
+            rise_open: _,
+            revised,
+            count: _,
+            restless_since,
+            raised: _,
+            turned,
+            speed_died,
+        } = self;
+        (*coefficients, *last_speed, *restless_since) = (None, None, None);
+        *observer = Observer::default();
+        *influences = Influences::default();
+        *sums = Sums::default();
+        *past = Past::default();
+        (*scatter, *gate, *seen) = (Scatter::default(), Gate::default(), Seen::default());
+        (*direction, *omega_supply, *revised) = (0.0, 0.0, 0.0);
+        (*turned, *speed_died) = ([0.0; 2], false);
+    }
+
+    /// As before the first sample.
+    pub(crate) fn begin_anew(&mut self) {
+        self.resume_after_gap();
+        self.decision.begin_anew();
+        (self.rise, self.rise_open) = (0.0, [0.0; 2]);
+        (self.count, self.raised) = (0, None);
     }
 }
 

@@ -26,10 +26,12 @@ pub struct Frame {
     pub omega_sync_rad_s: f32,
     /// Mechanical speed, rad/s, negative backwards; `None` without a sensor.
     pub omega_mech_rad_s: Option<f32>,
-    /// Number of the reason why the window was not judged ([`monitor::Reason`]); 0 when it was.
+    /// Number of the reason why the window was not judged ([`monitor::Reason`]); 0 when it was, at rest or in motion.
     pub not_judged: u8,
     /// Supply of the converters, mV.
     pub vdda_millivolt: u16,
+    /// How the window stands in motion: number of a [`monitor::MotionWord`].
+    pub motion: u8,
 }
 
 impl Frame {
@@ -55,6 +57,7 @@ impl Frame {
             omega_mech_rad_s: window.shaft_speed(),
             not_judged: why_not_judged(report, shown),
             vdda_millivolt,
+            motion: report.motion_word() as u8,
         }
     }
 
@@ -83,7 +86,7 @@ impl Frame {
 fn why_not_judged(report: &Report, shown: &Shown) -> u8 {
     match shown.instrument_faulty {
         true => Reason::Instrument.number(),
-        false => report.not_judged.map_or(0, |why| why.reason().number()),
+        false => report.reason_number(),
     }
 }
 
@@ -117,6 +120,7 @@ mod tests {
             omega_mech_rad_s: Some(f32::MIN),
             not_judged: u8::MAX,
             vdda_millivolt: u16::MAX,
+            motion: u8::MAX,
         }
     }
 
@@ -153,11 +157,11 @@ mod tests {
     #[test]
     fn another_schema_is_named() {
         let mut other = longest();
-        other.schema = 2;
+        other.schema = 1;
         let mut buffer = [0; MAX_FRAME_BYTES];
         assert_eq!(
             Frame::decode(other.encode(&mut buffer)),
-            Err(FrameError::Schema(2))
+            Err(FrameError::Schema(1))
         );
     }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::checksum::crc32;
 
 /// What the fields mean; a reader refuses every other number.
-pub(crate) const SCHEMA: u8 = 1;
+pub(crate) const SCHEMA: u8 = 2;
 /// Bytes of the longest frame, zero byte included: 102 of content at most, 4 of checksum, 2 of COBS and end.
 pub const MAX_FRAME_BYTES: usize = 112;
 const CHECKSUM_BYTES: usize = 4;

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use monitor::{FaultId, Reason};
+use monitor::{FaultId, MotionWord, Reason};
 
 use crate::configuration::Refused;
 use crate::health::doubt::Doubt;
@@ -76,10 +76,11 @@ pub enum Field {
     TrialSeconds,
     StartNumber,
     LastSecond,
+    Motion,
 }
 
 /// Number of values.
-pub(super) const FIELDS: usize = Field::LastSecond as usize + 1;
+pub(super) const FIELDS: usize = Field::Motion as usize + 1;
 
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,6 +123,8 @@ pub enum Meaning {
     Words(&'static str),
     /// Number of a [`Reason`].
     Reasons,
+    /// Number of a [`MotionWord`].
+    Motion,
     /// Number of a [`FaultId`].
     Faults,
     /// Bits of [`Doubts`](crate::Doubts).
@@ -141,6 +144,7 @@ impl fmt::Display for Meaning {
                 let mut all = Reason::ALL.into_iter();
                 all.try_for_each(|why| write!(f, ", {} {}", why.number(), why.label()))
             }
+            Meaning::Motion => list(f, MotionWord::ALL.map(|word| (word as usize, word.label()))),
             Meaning::Faults => {
                 f.write_str("likeliest cause while FAULT is lit: ")?;
                 let named = FaultId::ALL.into_iter().filter(|fault| fault.number() > 0);

@@ -97,6 +97,7 @@ pub struct BoardStatus {
 #[derive(Clone, Copy, Debug)]
 struct Judgement {
     not_judged: u8,
+    motion: u8,
     fault: u16,
     per_mille: u16,
     residuals: [f32; RESIDUALS.len()],
@@ -107,6 +108,7 @@ impl Judgement {
     fn missing(why: Reason) -> Self {
         Judgement {
             not_judged: why.number(),
+            motion: 0,
             fault: 0,
             per_mille: 0,
             residuals: [f32::NAN; RESIDUALS.len()],
@@ -117,7 +119,8 @@ impl Judgement {
         let (fault, probability) = likeliest(report);
         let residuals = report.residuals.map(|residuals| residuals.r);
         Judgement {
-            not_judged: report.not_judged.map_or(0, |why| why.reason().number()),
+            not_judged: report.reason_number(),
+            motion: report.motion_word() as u8,
             fault,
             per_mille: (1000.0 * probability) as u16,
             residuals: residuals.unwrap_or([f32::NAN; RESIDUALS.len()]),
@@ -148,7 +151,9 @@ impl Status {
     #[inline(never)]
     pub fn take(&mut self, report: &Report, shown: &Shown, board: &BoardStatus) -> Image {
         self.windows = self.windows.wrapping_add(1);
-        self.judged = self.judged.wrapping_add(u32::from(report.is_judged()));
+        self.judged = self
+            .judged
+            .wrapping_add(u32::from(report.is_judged_either_way()));
         self.last = Judgement::of(report);
         self.fill(report.window.as_ref(), shown, board)
     }
@@ -275,6 +280,7 @@ fn put_crash(image: &mut Image, crash: Option<&FaultRecord>) {
 
 fn put_judgement(image: &mut Image, judgement: &Judgement) {
     image.set_word(Field::NotJudged, u16::from(judgement.not_judged));
+    image.set_word(Field::Motion, u16::from(judgement.motion));
     image.set_word(Field::LikelyFault, judgement.fault);
     image.set_word(Field::FaultProbability, judgement.per_mille);
     for (field, residual) in RESIDUALS.into_iter().zip(judgement.residuals) {
@@ -285,7 +291,7 @@ fn put_judgement(image: &mut Image, judgement: &Judgement) {
 /// Number of the likeliest cause while FAULT is lit, the first of equals; 0 when it is none that has a number.
 fn likeliest(report: &Report) -> (u16, f32) {
     let mut best = (0, 0.0);
-    if report.lamps.fault == Lamp::On {
+    if report.shown_lamps().fault == Lamp::On {
         likely(report, &[], &mut |Suspicion {
                                       suspect,
                                       probability,

@@ -229,5 +229,6 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "number of the newest second of this run; they count from 1; 0: no second yet",
         ),
+        numbered(Motion, Meaning::Motion),
     ]
 };

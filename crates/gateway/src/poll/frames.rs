@@ -257,6 +257,7 @@ fn fill(image: &mut Image, frame: &Frame) {
     use std::f32::consts::{SQRT_2, TAU};
     image.set_long(Field::Lamps, frame.lamps);
     image.set_word(Field::NotJudged, u16::from(frame.not_judged));
+    image.set_word(Field::Motion, u16::from(frame.motion));
     let residuals = frame.residuals.unwrap_or([f32::NAN; 4]);
     for (field, value) in RESIDUALS.into_iter().zip(residuals) {
         image.set_float(field, value);

@@ -17,11 +17,28 @@ use crate::sync::pll::{SyncState, SyncTick};
 impl Monitor {
     /// Takes one instant in ADC codes. See [`Monitor::update`] and, for many instants, [`Monitor::update_block`].
     pub fn update_raw(&self, state: &mut MonitorState, raw: &RawSample) -> Option<Report> {
+        self.update_raw_beside(state, raw, &mut ())
+    }
+
+    /// The same, with what goes through every instant beside the windows.
+    pub fn update_raw_beside(
+        &self,
+        state: &mut MonitorState,
+        raw: &RawSample,
+        beside: &mut impl Beside,
+    ) -> Option<Report> {
         state.expect_codes(true);
         let codes = raw.interleaved();
         let parts = (&mut state.intake, &mut state.sync, &mut state.encoder);
         let tick = self.follow_instant(parts, &codes, raw.encoder_count);
-        self.take_codes(state, (&codes, raw.clipped), &tick)
+        let report = self.take_codes(state, (&codes, raw.clipped), &tick);
+        let last = (core::slice::from_ref(&codes), raw.clipped);
+        let counts = core::slice::from_ref(&raw.encoder_count);
+        self.show_last(state, (last, counts), &tick, beside);
+        report.map(|mut report| {
+            report.moving = beside.window(&report);
+            report
+        })
     }
 
     /// Takes instants from the front of `block` until a report is due or none is left. See [`Monitor::update`].

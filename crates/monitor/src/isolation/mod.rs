@@ -8,7 +8,7 @@ pub(crate) mod calibrated;
 mod cause;
 mod directions;
 mod evidence;
-mod gauss;
+pub mod gauss;
 mod healthy;
 mod temperature;
 

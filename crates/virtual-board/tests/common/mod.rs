@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use board::{EVENT_BYTES, Event, LOG_EVENTS};
 use monitor::{Lamp, Lamps, Monitor, MonitorConfig, MonitorState, RawSample};
+use motion::Companion;
 use motor::MotorFile;
 use scenario::Scenario;
 use scenario::simulate::Simulation;
@@ -184,16 +185,16 @@ pub fn host_lamps(taken: &[RawSample]) -> Vec<Lamps> {
 fn host_lamps_of(motor: &MotorFile, taken: &[RawSample]) -> Vec<Lamps> {
     let config = MonitorConfig::of_board(motor).expect("effects of the library");
     let monitor = Monitor::new(config).expect("a valid configuration");
-    let mut state = MonitorState::default();
+    let (mut state, mut companion) = (MonitorState::default(), Companion::new(monitor.config()));
     let mut lamps = Lamps {
         run: Lamp::Blink,
         ..Lamps::default()
     };
     let judged = taken.iter().enumerate().map(|(k, raw)| {
         if k >= INHIBITED
-            && let Some(report) = monitor.update_raw(&mut state, raw)
+            && let Some(report) = monitor.update_raw_beside(&mut state, raw, &mut companion)
         {
-            lamps = report.lamps;
+            lamps = report.shown_lamps();
         }
         lamps
     });
