@@ -172,9 +172,9 @@ impl FaultId {
     /// What to ask first of a motor without a calibration, which would know heat; `None` where nothing comes first.
     pub const fn first_advice(self) -> Option<&'static str> {
         match self {
-            FaultId::StatorResistance | FaultId::RotorResistance => {
-                Some("first heat: is the motor hotter than its motor file says?")
-            }
+            FaultId::StatorResistance | FaultId::RotorResistance => Some(
+                "rule out heat: is the motor hotter than its motor file says? Warm windings have a larger resistance",
+            ),
             _ => None,
         }
     }

@@ -69,6 +69,7 @@ pub use checks::rotor_bars::{RotorState, Sidebands};
 pub use checks::sensors::{HealthConfig, Phase, SensorFinding, dead_channel};
 pub use checks::speed_swing::Driven;
 pub use checks::supply::{SupplyConfig, SupplyFinding};
+pub use checks::unbalance::unexplained_current;
 pub use config::{ConfigError, LoadKind, MonitorConfig};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
 pub use input::chain::AnalogueChain;

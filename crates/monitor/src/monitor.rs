@@ -10,6 +10,7 @@ use crate::checks::rotor_bars::{RotorState, Sidebands};
 use crate::checks::sensors::{HealthConfig, SensorFinding};
 use crate::checks::speed_swing::Driven;
 use crate::checks::supply::{SupplyConfig, SupplyFinding};
+use crate::checks::unbalance;
 use crate::config::{ConfigError, LoadKind, MonitorConfig};
 use crate::input::chain::ConverterSupply;
 use crate::input::codes::{Axes, Codes};
@@ -343,6 +344,7 @@ impl Monitor {
             report.supply = self.supply.check(window);
         }
         report.not_judged = self.obstacle(measured, window, report);
+        report.unbalance = self.unexplained_unbalance(window);
         report.rotor.sidebands = self.follow_rotor(state, window, report.not_judged);
         let limits = |sidebands: &Sidebands| self.cage_limits(sidebands.active);
         report.rotor.limits = report.rotor.sidebands.as_ref().map(limits);
@@ -358,6 +360,15 @@ impl Monitor {
         if movement.is_some() {
             self.evaluate(rise, &state.rehearsal, window, report);
         }
+    }
+
+    /// A calibrated motor's evidence holds its unbalance.
+    fn unexplained_unbalance(&self, window: &Window) -> Option<f32> {
+        let config = &self.config;
+        let is_open = config.healthy.is_none();
+        is_open
+            .then(|| unbalance::unexplained(&config.params, config.mechanics.n_p, window))
+            .flatten()
     }
 
     /// Sidebands from which on the cage is doubtful or broken, at an active current, A.

@@ -59,6 +59,11 @@ pub struct Report {
     pub sensor: Option<SensorFinding>,
     /// Finding about the supply in this window, before persistence.
     pub supply: Option<SupplyFinding>,
+    /// Negative sequence of the currents beyond what the voltages explain, over what tolerances leave open: beyond 1 is a fault.
+    /// Only on a motor that was not calibrated.
+    pub unbalance: Option<f32>,
+    /// FAULT is lit by it.
+    pub is_unbalanced: bool,
     /// Residuals over what lights their lamps: beyond 1 is on.
     pub normalised: Option<[f32; RESIDUALS]>,
     /// Residuals, shares of their scales, from which on the lamps light in this window: the thresholds, and what its noise

@@ -51,11 +51,29 @@ use motor::FileError;
 use motor::{Mechanics, MotorFile, TParams};
 use recording::{LoadTorque, Recording};
 
+/// Sampling times that the core takes, s.
+const SAMPLING_TIMES_S: std::ops::RangeInclusive<f64> = 2e-5..=2e-3;
+
+fn sampled_wrongly(t_sample: f64) -> String {
+    format!(
+        "it is sampled every {t_sample} s, {} times a second; 500 to 50 000 times a second can be judged. Is its clock in another unit? Then say \
+         --unit t=ms or --unit t=us; otherwise record at 5 to 20 kHz",
+        1.0 / t_sample
+    )
+}
+
 /// The configuration for a recording: the motor file's, with the sampling time and the load knowledge of the recording.
 ///
 /// # Errors
-/// As [`MonitorConfig::from_motor_file`].
+/// As [`MonitorConfig::from_motor_file`], and a recording that is sampled too slowly or too fast for the core.
 pub fn config_for(motor: &MotorFile, recording: &Recording) -> Result<MonitorConfig, FileError> {
+    let t_sample = recording.t_sample();
+    if !SAMPLING_TIMES_S.contains(&t_sample) {
+        return Err(FileError::whole(
+            recording.name(),
+            sampled_wrongly(t_sample),
+        ));
+    }
     let mut config = MonitorConfig::from_motor_file(motor, recording.t_sample())?;
     config.load = match recording.metadata.load_torque {
         LoadTorque::Measured if recording.torque().is_some() => LoadKind::Measured,

@@ -5,3 +5,4 @@ pub(crate) mod rotor_bars;
 pub(crate) mod sensors;
 pub(crate) mod speed_swing;
 pub(crate) mod supply;
+pub(crate) mod unbalance;

@@ -21,7 +21,7 @@ pub use cause::{ALL_CAUSES, CAUSES, Cause};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
 pub use temperature::Heating;
 
-pub(crate) use directions::Bench;
+pub(crate) use directions::{Bench, impedance};
 pub use evidence::Evidence;
 pub(crate) use evidence::{PositiveEvidence, rows_of, rows_of_currents};
 use gauss::dot;

@@ -55,6 +55,9 @@ pub enum Witness {
     None,
     /// The sidebands of the current say that bars are broken: they shake every window, so nothing else is asked.
     Bars,
+    /// The currents are unbalanced further than the supply makes them: a resistance in one phase, shorted turns or a current
+    /// sensor, which nothing tells apart without a calibration.
+    Unbalance,
     /// The pattern of r1..r4.
     Table(Candidates),
     /// The direction of the evidence of a calibrated motor.
@@ -67,6 +70,14 @@ pub enum Witness {
         sizes: [f32; CAUSES],
     },
 }
+
+/// What unbalances the currents of a motor on a sound supply.
+const BEHIND_UNBALANCE: [FaultId; 4] = [
+    FaultId::StatorResistance,
+    FaultId::Turns,
+    FaultId::CurrentSensor,
+    FaultId::VoltageSensor,
+];
 
 /// Everything that is known about an alarm: of one window, or summed up over many.
 #[derive(Clone, Copy, Debug)]
@@ -161,6 +172,7 @@ impl Witness {
     pub fn of(report: &Report) -> Witness {
         match (&report.isolation, &report.candidates) {
             _ if report.rotor.is_broken => Witness::Bars,
+            _ if report.is_unbalanced => Witness::Unbalance,
             (Some(isolation), _) => Witness::directions(isolation),
             (None, Some(candidates)) => Witness::Table(*candidates),
             (None, None) => Witness::None,
@@ -188,6 +200,12 @@ impl Witness {
         match self {
             Witness::None => {}
             Witness::Bars => plain(Suspect::Bars, 1.0),
+            Witness::Unbalance => {
+                let share = 1.0 / BEHIND_UNBALANCE.len() as f32;
+                BEHIND_UNBALANCE
+                    .into_iter()
+                    .for_each(|fault| plain(Suspect::Row(fault), share));
+            }
             Witness::Table(candidates) => {
                 let rows = TABLE_1.iter().zip(candidates.faults);
                 rows.for_each(|((fault, _), p)| plain(Suspect::Row(*fault), p));
@@ -249,7 +267,7 @@ impl Known<'_> {
             _ if self.wrong.is_empty() => 0.0,
             Witness::Bars | Witness::Directions { .. } => 0.0,
             Witness::None => 1.0,
-            Witness::Table(_) => 0.5,
+            Witness::Table(_) | Witness::Unbalance => 0.5,
         };
         let silent = self.witness == Witness::None && self.wrong.is_empty();
         // Where nothing else speaks, the findings are all there is.

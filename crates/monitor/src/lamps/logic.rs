@@ -27,6 +27,7 @@ pub struct PanelState {
     overload: ComparatorState,
     isolated: ComparatorState,
     rotor: ComparatorState,
+    unbalance: ComparatorState,
 }
 
 impl PanelState {
@@ -62,6 +63,10 @@ impl PanelConfig {
         self.confirm(&mut state.overload, self.is_overloaded(report));
         self.follow_isolation(state, report);
         self.follow_rotor(state, report);
+        if let (true, Some(beyond)) = (judged, report.unbalance) {
+            self.comparator.update(&mut state.unbalance, beyond);
+        }
+        report.is_unbalanced = state.unbalance.is_lit();
         report.candidates = self.candidates(state, report);
         report.lamps = self.lamps(state, report);
     }
@@ -116,7 +121,12 @@ impl PanelConfig {
             sensor: sensor_lamp(sensor, report.not_judged),
             line: line_lamp(state.line.is_lit(), report.not_judged),
             load: load_lamp(state.overload.is_lit(), report.not_judged),
-            fault: Lamp::lit(motor_fault || state.sensor.is_lit() || state.rotor.is_lit()),
+            fault: Lamp::lit(
+                motor_fault
+                    || state.sensor.is_lit()
+                    || state.rotor.is_lit()
+                    || state.unbalance.is_lit(),
+            ),
         }
     }
 

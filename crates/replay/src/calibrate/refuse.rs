@@ -1,6 +1,6 @@
 //! Recordings that must not be learnt from: faulty ones, and ones that contradict each other.
 
-use monitor::{Healthy, Row, magnitude};
+use monitor::{Healthy, Row, magnitude, unexplained_current};
 use motor::MotorFile;
 use num_complex::Complex32;
 
@@ -8,17 +8,10 @@ use super::fit::{Beliefs, Fitted};
 use super::pieces::Pieces;
 use super::windows::{Healthily, Observed};
 use super::{MonitorOf, Refusal, configured};
+use crate::check::{Jump, LARGEST_CHANGE, jump, middle, strays_allowed};
 
-/// Largest change of `I_2/I_1` inside healthy recordings of unchanged supply: a tenth of the turns of a phase shorted
-/// moved a measured motor by 0.06 to 0.09, its healthy windows stay within 0.02.
-const LARGEST_UNBALANCE_CHANGE: f32 = 0.04;
-/// Share of windows that may stray: single disturbances. A few never count: lamps want three in a row.
-const STRAY_SHARE: f64 = 0.01;
-const FEW_STRAYS: usize = 2;
-
-fn strays_allowed(windows: usize) -> usize {
-    ((STRAY_SHARE * windows as f64) as usize).max(FEW_STRAYS)
-}
+/// Largest change of `I_2/I_1` inside healthy recordings of unchanged supply.
+const LARGEST_UNBALANCE_CHANGE: f32 = LARGEST_CHANGE;
 
 /// Refuses a fit that changed a parameter beyond belief.
 pub fn implausible(
@@ -71,6 +64,7 @@ pub fn contradictions(
     observed: &[Observed],
 ) -> Result<(), Refusal> {
     changing_unbalance(sources, observed)?;
+    changing_balance(motor, sources, observed)?;
     for source in sources {
         let config = configured(motor, source.head())?;
         let limit = config.healthy.map_or(f32::INFINITY, |h| h.significance);
@@ -126,18 +120,38 @@ fn changing_unbalance(sources: &[Healthily<'_>], observed: &[Observed]) -> Resul
     Ok(())
 }
 
-fn unbalance(o: &Observed) -> Complex32 {
-    o.window.in_channels(o.window.i_s.unbalance())
+/// With voltages: what the supply does not explain of the currents' negative sequence must stand still, as a share of the rated
+/// current, however load and supply change.
+fn changing_balance(
+    motor: &MotorFile,
+    sources: &[Healthily<'_>],
+    observed: &[Observed],
+) -> Result<(), Refusal> {
+    for (k, source) in sources.iter().enumerate() {
+        let config = configured(motor, source.head())?;
+        let of_recording = observed.iter().filter(|o| o.recording == k);
+        let seen: Vec<(f64, Complex32)> = of_recording
+            .filter_map(|o| {
+                let current = unexplained_current(&config, &o.window)?;
+                Some((o.t, current / config.rated_current))
+            })
+            .collect();
+        if let Some(Jump { t, share }) = jump(&seen) {
+            return Err(Refusal::new(
+                source.name(),
+                format!(
+                    "a negative sequence of the currents that the voltages do not explain changes by {:.1} % of the rated current at {t:.3} s: \
+                     this is not one healthy state; calibrate from recordings without a fault in them",
+                    100.0 * share
+                ),
+            ));
+        }
+    }
+    Ok(())
 }
 
-/// Median of the real and of the imaginary parts.
-fn middle(values: impl Iterator<Item = Complex32> + Clone) -> Complex32 {
-    let median = |part: fn(&Complex32) -> f32| {
-        let mut sorted: Vec<f32> = values.clone().map(|x| part(&x)).collect();
-        sorted.sort_by(f32::total_cmp);
-        sorted.get(sorted.len() / 2).copied().unwrap_or_default()
-    };
-    Complex32::new(median(|x| x.re), median(|x| x.im))
+fn unbalance(o: &Observed) -> Complex32 {
+    o.window.in_channels(o.window.i_s.unbalance())
 }
 
 fn not_one_state(name: &str, stray: &Observed, middle: Complex32) -> Refusal {

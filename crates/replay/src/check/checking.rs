@@ -5,7 +5,10 @@ use monitor::Monitor;
 use motor::MotorFile;
 use recording::Recording;
 
+use super::balance::Balance;
+use super::caveat::caveat;
 use super::clamp::{ClampSignal, clamp_signals};
+use super::doubts::doubts;
 use super::{BlindSpot, Checked, Told, VerdictState, blind, blind_spots, severity, todo};
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
 use crate::{MotionSummary, NotJudgedShare, Replay, Samples, Timeline, config_for, replay, words};
@@ -28,6 +31,7 @@ pub struct Checking<'m> {
     speed: Option<Speed>,
     clamps: Clamps,
     blind: Vec<BlindSpot>,
+    balance: Balance,
     pieces: u64,
 }
 
@@ -62,6 +66,7 @@ impl<'m> Checking<'m> {
             speed: None,
             clamps: Clamps::default(),
             blind: Vec::new(),
+            balance: Balance::default(),
             pieces: 0,
         }
     }
@@ -113,7 +118,11 @@ impl<'m> Checking<'m> {
         let samples = Samples::new(shown, audit);
         if is_usable {
             let replay = self.replay.get_or_insert_with(|| Replay::new(monitor));
-            replay.take(samples, progress);
+            let (balance, config) = (&mut self.balance, monitor.config());
+            replay.follow(samples, &mut |done, t, report| {
+                balance.add(t, report, config);
+                progress(done);
+            });
         } else if self.pieces == 1 {
             self.refused = Some(replay(&monitor, &samples, progress));
         }
@@ -151,6 +160,12 @@ impl<'m> Checking<'m> {
             motion = MotionSummary::default();
         }
         let mut state = motion.state_with(verdict.state);
+        let calibrated = self.motor.healthy.is_some();
+        let jump = self.balance.jump().filter(|_| !calibrated);
+        let doubts = doubts(&shown.findings, &timeline.rotor(), jump, calibrated);
+        if state == VerdictState::Healthy && !doubts.is_empty() {
+            state = VerdictState::NotJudged;
+        }
         if !shown.supported {
             (state, verdict.state) = (VerdictState::NotJudged, VerdictState::NotJudged);
         }
@@ -159,7 +174,10 @@ impl<'m> Checking<'m> {
         let mut answer = Checked {
             state,
             severity: severity::of(&verdict),
-            todo: todo(self.motor, state, &verdict, &motion),
+            todo: todo(self.motor, state, &verdict, &motion, &doubts),
+            doubts,
+            caveat: caveat(self.motor)
+                .filter(|_| state == VerdictState::Fault && verdict.names_a_phase()),
             motion,
             windows: [timeline.judged, timeline.windows],
             not_judged: match clamps.is_empty() {

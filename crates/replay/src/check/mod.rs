@@ -1,22 +1,27 @@
 //! From recordings and what is known of a motor to an answer on which a technician can act.
 
+mod balance;
 mod blind;
+mod caveat;
 mod checking;
 mod clamp;
 mod clamp_bars;
+mod doubts;
 mod knowledge;
 mod reference;
 mod severity;
 mod told;
 
+pub(crate) use balance::{Jump, LARGEST_CHANGE, jump, middle, strays_allowed};
 pub use blind::{BlindSpot, blind_spots, channels_missing};
 pub use checking::Checking;
 pub use clamp::{ClampSignal, clamp_signals};
 pub use clamp_bars::{BesideSupply, SupplySideband};
+pub use doubts::CheckDoubt;
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use reference::{Reference, begins_like};
 pub use severity::Severity;
-pub use told::Told;
+pub use told::{Told, two_digits};
 
 use audit::Audit;
 use motor::{FaultId, MotorFile};
@@ -40,8 +45,12 @@ pub struct Checked {
     pub verdict: Verdict,
     /// What was judged while current, speed or supply changed.
     pub motion: MotionSummary,
+    /// What does not fit a motor in good order although no lamp lights.
+    pub doubts: Vec<CheckDoubt>,
     /// How bad the likeliest cause is, where its size is known.
     pub severity: Option<Severity>,
+    /// What kind, phase and size of a fault in one phase rest on, where it is hardly known.
+    pub caveat: Option<String>,
     /// What to do, in order.
     pub todo: Vec<String>,
     /// Windows judged, of all.
@@ -95,6 +104,7 @@ fn todo(
     state: VerdictState,
     verdict: &Verdict,
     motion: &MotionSummary,
+    doubts: &[CheckDoubt],
 ) -> Vec<String> {
     let calibrated = motor.healthy.is_some();
     let tied = &verdict.candidates[..verdict.tied.min(verdict.candidates.len())];
@@ -115,6 +125,9 @@ fn todo(
                 format!("find out what does not fit in motion: {}", doubt.doubt())
             };
             first.map(step).collect()
+        }
+        VerdictState::NotJudged if !doubts.is_empty() => {
+            doubts.iter().map(|doubt| doubt.remedy.clone()).collect()
         }
         VerdictState::NotJudged => {
             vec!["record ten seconds of steady running with three voltages, three currents and, if there is one, the speed".to_owned()]

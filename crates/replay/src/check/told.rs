@@ -34,7 +34,7 @@ impl Told {
                 .or_else(|| in_motion.and_then(MotionFault::words)),
             sure: match (checked.state, in_motion) {
                 (VerdictState::Fault, Some(alarm)) => sure_in_motion(alarm),
-                (VerdictState::Fault, None) => sure_of_cause(checked),
+                (VerdictState::Fault, None) => with_caveat(checked, sure_of_cause(checked)),
                 (VerdictState::Healthy, _) => looked_at(checked),
                 (VerdictState::NotJudged, _) => why_not(checked),
             },
@@ -71,6 +71,13 @@ fn sure_of_cause(checked: &Checked) -> String {
             100.0 * next.probability
         ),
         (_, None) => format!("{percent:.1} %; no other cause of the list explains it"),
+    }
+}
+
+fn with_caveat(checked: &Checked, sure: String) -> String {
+    match &checked.caveat {
+        Some(caveat) => format!("{sure}; {caveat}"),
+        None => sure,
     }
 }
 
@@ -114,11 +121,21 @@ fn looked_at(checked: &Checked) -> String {
     }
     match checked.visible_percent {
         Some([r1, ..]) => format!(
-            "{judged} of {windows} windows judged; a fault shows from {r1:.2} % of the voltage balance (r1) on"
+            "{judged} of {windows} windows judged; the voltage balance (r1) shows a departure of {} % and more",
+            two_digits(r1)
         ),
         None => {
             format!("{judged} of {windows} windows judged, by the unbalance of the currents alone")
         }
+    }
+}
+
+/// As exact as a limit is known, percent.
+pub fn two_digits(percent: f64) -> String {
+    match percent {
+        x if x < 1.0 => format!("{x:.2}"),
+        x if x < 10.0 => format!("{x:.1}"),
+        x => format!("{x:.0}"),
     }
 }
 
@@ -134,6 +151,9 @@ fn why_not(checked: &Checked) -> String {
             doubt.onset_s,
             doubt.doubt()
         );
+    }
+    if let (Some(doubt), None) = (checked.doubts.first(), refusal) {
+        return doubt.seen.clone();
     }
     let first = checked.not_judged.first();
     let why = refusal.map(|finding| &finding.detail).or(first);

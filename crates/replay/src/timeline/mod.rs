@@ -85,6 +85,13 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// Whether the likeliest cause lies in one phase of the stator.
+    pub(crate) fn names_a_phase(&self) -> bool {
+        self.candidates
+            .first()
+            .is_some_and(|first| first.phase.is_some() && !first.fault.is_sensor())
+    }
+
     fn new(state: VerdictState, candidates: Vec<Candidate>) -> Self {
         let tied = causes::tied(&candidates);
         let separating_tests = match tied {
@@ -144,6 +151,8 @@ pub struct Timeline {
     /// Whether one of them was dead.
     names_a_dead_sensor: bool,
     since_alarm: u64,
+    /// Of these such with currents that are unbalanced further than the supply makes them.
+    unbalanced: u64,
     sequences: Sequences,
     /// Windows in which the field turned forwards and backwards.
     turned: [u64; 2],
@@ -257,6 +266,7 @@ impl Timeline {
             return;
         }
         self.since_alarm += 1;
+        self.unbalanced += u64::from(report.is_unbalanced);
         if let Some(candidates) = &report.candidates {
             self.add_candidates(candidates);
         }
@@ -328,7 +338,9 @@ impl Timeline {
 
     /// What the windows without a finding say, and how many they are.
     fn witness(&self) -> (Witness, u64) {
-        if self.rotor.is_broken() {
+        if self.unbalanced > 0 && !self.rotor.is_broken() {
+            (Witness::Unbalance, self.unbalanced)
+        } else if self.rotor.is_broken() {
             let found: u64 = self.found.iter().map(|(_, windows)| windows).sum();
             (Witness::Bars, self.since_alarm.saturating_sub(found))
         } else if self.causes.windows() > 0 {

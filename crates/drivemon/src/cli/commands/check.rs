@@ -197,8 +197,8 @@ fn print_one(named: &CheckedRecording) {
     }
     if let Some([r1, ..]) = checked.visible_percent {
         say!(
-            "  a fault shows here from {} % of the voltage balance (r1) on",
-            quantity(r1)
+            "  the voltage balance (r1) shows a departure of {} % and more",
+            replay::check::two_digits(r1)
         );
     }
     print_steps(checked);
@@ -241,6 +241,12 @@ fn print_state(checked: &Checked) {
             }
         }
         VerdictState::Fault => say!("  {}", paint::error(told.to_uppercase())),
+    }
+    if let Some(caveat) = &checked.caveat {
+        say!("  {caveat}");
+    }
+    for doubt in &checked.doubts {
+        say!("  does not fit: {}", doubt.seen);
     }
 }
 

@@ -119,7 +119,7 @@ fn figures(one: &Place<'_>) -> Vec<(Markup, Markup)> {
     let visible = percent(
         "visible_percent/0",
         significant(3),
-        "of the voltage balance (r1): a fault shows from here on",
+        "of the voltage balance (r1): a departure shows from here on",
     );
     let clamps = one.items("clamps").into_iter().map(|clamp| {
         (
@@ -161,8 +161,8 @@ fn signals(one: &Place<'_>, k: usize) -> Markup {
 const RESIDUALS: [&str; 4] = [
     "Voltage balance.",
     "Torque balance.",
-    "Both, without the speed.",
-    "Both, without the current.",
+    "Voltage and torque balance together, the speed taken out.",
+    "Voltage and torque balance together, the current taken out.",
 ];
 
 fn residual(one: &Place<'_>, r: usize) -> Markup {

@@ -1,0 +1,145 @@
+//! What contradicts a motor in good order although no lamp lights: then the answer is not "in good order".
+
+use audit::{Code, Finding};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::balance::Jump;
+use crate::rotor::{RotorCage, RotorSummary};
+
+/// Something that does not fit a motor in good order.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct CheckDoubt {
+    /// What does not fit.
+    pub seen: String,
+    /// What settles it.
+    pub remedy: String,
+}
+
+/// Zero sequence from which on a channel that it names is as far off as no sensor in good order is, percent of the positive
+/// sequence: a gain that is 10 % wrong.
+const WRONG_GAIN_PERCENT: f64 = 100.0 / 30.0;
+
+/// What does not fit; `calibrated`: the zero sequences of the motor in good order are known, and the lamps hold them.
+pub(super) fn doubts(
+    findings: &[Finding],
+    rotor: &RotorSummary,
+    jump: Option<Jump>,
+    calibrated: bool,
+) -> Vec<CheckDoubt> {
+    let channels = findings
+        .iter()
+        .filter(|finding| is_doubt(finding, calibrated))
+        .map(|finding| CheckDoubt {
+            seen: format!(
+                "the audit finds that the channel {} cannot be trusted",
+                channel(finding)
+            ),
+            remedy: format!("check the channel {}: {}", channel(finding), finding.detail),
+        });
+    channels
+        .chain(jump.map(changed))
+        .chain(bars(rotor))
+        .collect()
+}
+
+fn is_doubt(finding: &Finding, calibrated: bool) -> bool {
+    let throughout = finding.from_s.is_none() && finding.to_s.is_none();
+    throughout
+        && match finding.code {
+            Code::SpeedImplausible => true,
+            Code::ZeroSequence => {
+                !calibrated && finding.suspect.is_some() && finding.value > WRONG_GAIN_PERCENT
+            }
+            _ => false,
+        }
+}
+
+fn channel(finding: &Finding) -> &str {
+    finding.suspect.as_deref().unwrap_or(&finding.channel)
+}
+
+fn changed(jump: Jump) -> CheckDoubt {
+    CheckDoubt {
+        seen: format!(
+            "the unbalance of the currents changes by {:.1} % of the rated current from {:.2} s on, and the voltages do not explain it: a phase of the \
+             motor or a current sensor is not what it was",
+            100.0 * jump.share,
+            jump.t
+        ),
+        remedy: "measure the windings' resistances phase by phase, and clamp a second ammeter around each lead; a recording in good order (--healthy) \
+                 tells which"
+            .to_owned(),
+    }
+}
+
+/// Sidebands as large as broken bars make them, in fewer blocks than it takes to say so.
+fn bars(rotor: &RotorSummary) -> Option<CheckDoubt> {
+    let lower = rotor.lower_sideband_percent?;
+    let beyond = rotor.state == RotorCage::Doubtful && lower >= rotor.broken_from_percent;
+    beyond.then(|| CheckDoubt {
+        seen: format!(
+            "the sidebands at twice the slip frequency ({lower:.1} % of the active current) are as large as broken rotor bars make them (from {:.1} % on), \
+             in fewer blocks than it takes to be sure",
+            rotor.broken_from_percent
+        ),
+        remedy: "record at least twenty seconds at this load: broken rotor bars are then told from a load that swings".to_owned(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rotor(state: RotorCage, lower: f64) -> RotorSummary {
+        RotorSummary {
+            state,
+            blocks: 2,
+            swinging_blocks: 0,
+            lower_sideband_percent: Some(lower),
+            upper_sideband_percent: Some(lower),
+            beside_percent: Some(0.1),
+            doubtful_from_percent: 0.5,
+            broken_from_percent: 1.25,
+            at_calibration_percent: None,
+            broken: false,
+        }
+    }
+
+    #[test]
+    fn sidebands_of_broken_bars_in_few_blocks_are_a_doubt_and_small_ones_are_none() {
+        let of = |state, lower| doubts(&[], &rotor(state, lower), None, false).len();
+        assert_eq!(of(RotorCage::Doubtful, 8.7), 1);
+        assert_eq!(of(RotorCage::Doubtful, 0.8), 0);
+        assert_eq!(of(RotorCage::Whole, 0.3), 0);
+    }
+
+    #[test]
+    fn a_channel_that_the_audit_finds_far_off_is_a_doubt() {
+        let finding = |code, suspect: Option<&str>, value, to_s| Finding {
+            code,
+            channel: "va vb vc".to_owned(),
+            suspect: suspect.map(str::to_owned),
+            value,
+            unit: "%".to_owned(),
+            detail: "seen".to_owned(),
+            refuses: false,
+            from_s: None,
+            to_s,
+            share: None,
+        };
+        let none = rotor(RotorCage::NotTested, 0.0);
+        let of = |finding, calibrated| doubts(&[finding], &none, None, calibrated);
+        let gain = finding(Code::ZeroSequence, Some("va"), 9.1, None);
+        assert!(of(gain.clone(), false)[0].remedy.contains("va"));
+        assert!(of(gain, true).is_empty(), "its evidence holds it");
+        let displaced = finding(Code::ZeroSequence, None, 9.1, None);
+        assert!(of(displaced, false).is_empty());
+        let small = finding(Code::ZeroSequence, Some("va"), 2.0, None);
+        assert!(of(small, false).is_empty());
+        let speed = finding(Code::SpeedImplausible, None, -2.1, None);
+        assert_eq!(of(speed, true).len(), 1);
+        let for_a_while = finding(Code::SpeedImplausible, None, -2.1, Some(1.0));
+        assert!(of(for_a_while, true).is_empty());
+    }
+}
