@@ -224,6 +224,8 @@ globalThis.drawFigures = (root, result) => {
     const chart = JSON.parse(figure.dataset.chart);
     const entry = { figure, chart, box: figure.querySelector(".plot"), data: table(chart), plot: null };
     charts.push(entry);
+    // More classes than half a page has room for take the whole of it.
+    figure.classList.toggle("across", least(chart) > entry.box.clientWidth && entry.box.clientWidth > 0);
     build(entry);
     keyboard(entry);
     figure.querySelector(".reset").addEventListener("click", () => zoomOut(entry));

@@ -6,6 +6,9 @@ use crate::measure::blocks::tracked;
 use recording::Channel;
 use std::f64::consts::TAU;
 
+/// Three periods of a 50 Hz supply, s.
+const SHORTEST_S: f64 = 0.06;
+
 pub(crate) fn check(context: &Context<'_>) -> Vec<Finding> {
     // One or two clamps turn no angle: what is missing is told, not that there is no supply.
     let three = context
@@ -24,6 +27,10 @@ pub(crate) fn check(context: &Context<'_>) -> Vec<Finding> {
     let any = other_time_unit(context);
     let hint = match any {
         Some(hz) => format!("A period is found if the clock counts otherwise ({hz:.4} Hz as recorded): check --unit t=ms."),
+        None if context.recording.duration() < SHORTEST_S => format!(
+            "{:.3} s are too short for it: record several seconds.",
+            context.recording.duration()
+        ),
         None => "Check that the motor was supplied, that the columns are the right ones, and the sampling rate.".to_owned(),
     };
     let code = if any.is_some() {

@@ -126,7 +126,10 @@ fn of_event(event: &BoardEvent) -> Vec<Told> {
     };
     match event.cause {
         cause::FAULT_ON => {
-            let words = format!("FAULT lit, probability {} per mille", second);
+            let words = match second {
+                0 => "FAULT lit".to_owned(),
+                second => format!("FAULT lit, probability {:.1} %", f64::from(second) / 10.0),
+            };
             let mut fault = told(AlarmCause::Fault, true, &words);
             fault.details.fault = u8::try_from(first).unwrap_or(0);
             vec![fault]

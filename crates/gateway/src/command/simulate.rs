@@ -62,6 +62,7 @@ impl Simulate {
             .transpose()?;
         let plant = Plant::new(&plan, truth)?;
         if let Some(path) = &self.config_out {
+            spare_the_work_of_people(path)?;
             std::fs::write(path, plan.configuration("plant.db"))
                 .map_err(|error| file("--config-out", path, error))?;
             let motor = path.with_file_name(MOTOR_FILE_NAME);
@@ -104,5 +105,44 @@ fn file(option: &'static str, path: &Path, error: std::io::Error) -> CommandErro
         option,
         path,
         error,
+    }
+}
+
+/// A configuration that somebody wrote is not replaced; one that this command wrote may be.
+fn spare_the_work_of_people(path: &Path) -> Result<(), CommandError> {
+    match std::fs::read_to_string(path) {
+        Ok(text) if !is_written_here(&text) => Err(CommandError::Output(format!(
+            "--config-out would overwrite {}, which this command did not write; name another file",
+            path.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// By its first line: "# 20 simulated boards".
+fn is_written_here(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    first.starts_with("# ") && first.ends_with(" simulated boards")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_configuration_that_somebody_wrote_is_kept() {
+        let folder = std::env::temp_dir().join(format!("drivemon-simulate-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.join("plant.toml");
+        assert!(
+            spare_the_work_of_people(&path).is_ok(),
+            "nothing is there yet"
+        );
+        std::fs::write(&path, "# 20 simulated boards\n[store]\n").expect("written");
+        assert!(spare_the_work_of_people(&path).is_ok());
+        std::fs::write(&path, "# My plant\n[store]\n").expect("written");
+        let refused = spare_the_work_of_people(&path).expect_err("kept");
+        assert!(refused.to_string().contains("did not write"), "{refused}");
+        std::fs::remove_dir_all(&folder).expect("removed");
     }
 }

@@ -20,15 +20,21 @@ pub struct BlindSpot {
 
 /// What the channels that a recording lacks leave dark.
 pub fn channels_missing(recording: &Recording, motor: &MotorFile) -> Vec<BlindSpot> {
-    let calibrated = |spot: &BlindSpot| *spot != NOT_CALIBRATED;
+    let by_channels = |spot: &BlindSpot| ![NOT_CALIBRATED, WARM].contains(spot);
     let all = blind_spots(recording, motor, false);
-    all.into_iter().filter(calibrated).collect()
+    all.into_iter().filter(by_channels).collect()
 }
 
 /// What a motor that was never seen in good order leaves dark.
 pub(super) const NOT_CALIBRATED: BlindSpot = BlindSpot {
     unseen: "which phase is at fault, and faults smaller than the plate's uncertainty",
     needs: "a recording of the motor in good order",
+};
+
+/// Both resistances rise as the motor warms: by some 40 % over 100 K.
+const WARM: BlindSpot = BlindSpot {
+    unseen: "a resistance of all phases or of the rotor that has grown by as much as heat makes it grow, up to some 40 %",
+    needs: "the winding's temperature: compare recordings of the same temperature",
 };
 
 /// What these channels and this motor file leave dark.
@@ -61,6 +67,7 @@ pub fn blind_spots(
         "friction and the load",
         "the shaft torque",
     );
+    add(motor.healthy.is_some() && voltages, WARM.unseen, WARM.needs);
     add(
         motor.healthy.is_none(),
         NOT_CALIBRATED.unseen,

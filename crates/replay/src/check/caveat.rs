@@ -1,4 +1,4 @@
-//! When kind, phase and size of a fault in one phase rest on parameters that are hardly known.
+//! When kind, phase and size of a fault rest on parameters that are hardly known.
 
 use motor::MotorFile;
 
@@ -20,7 +20,7 @@ pub(super) fn caveat(motor: &MotorFile) -> Option<String> {
     let wide: Vec<String> = wide.collect();
     (!wide.is_empty()).then(|| {
         format!(
-            "kind, phase and size are uncertain as long as the motor is known so little ({}); the winding's DC resistance, a no-load and a \
+            "cause, phase and size are uncertain as long as the motor is known so little ({}); the winding's DC resistance, a no-load and a \
              locked-rotor test narrow that",
             wide.join(", ")
         )

@@ -166,9 +166,7 @@ impl<'m> Checking<'m> {
         if state == VerdictState::Healthy && !doubts.is_empty() {
             state = VerdictState::NotJudged;
         }
-        if !shown.supported {
-            (state, verdict.state) = (VerdictState::NotJudged, VerdictState::NotJudged);
-        }
+        let is_refused = !shown.supported;
         let share = |share: &NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
         let clamps = self.clamps.finish();
         let mut answer = Checked {
@@ -177,7 +175,7 @@ impl<'m> Checking<'m> {
             todo: todo(self.motor, state, &verdict, &motion, &doubts),
             doubts,
             caveat: caveat(self.motor)
-                .filter(|_| state == VerdictState::Fault && verdict.names_a_phase()),
+                .filter(|_| state == VerdictState::Fault && verdict.rests_on_parameters()),
             motion,
             windows: [timeline.judged, timeline.windows],
             not_judged: match clamps.is_empty() {
@@ -199,6 +197,9 @@ impl<'m> Checking<'m> {
             residuals: timeline.trace.residuals.to_vec(),
             operation: timeline.trace.operation.to_vec(),
         };
+        if is_refused {
+            answer.withdraw();
+        }
         answer.told = Told::of(&answer);
         answer
     }

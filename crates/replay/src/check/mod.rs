@@ -31,7 +31,8 @@ use serde::Serialize;
 
 use crate::speed::EstimatedSpeed;
 use crate::{
-    MotionFault, MotionSummary, Verdict, VerdictState, WindowOperation, WindowResiduals, causes,
+    MotionFault, MotionSummary, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
+    causes, words,
 };
 
 /// What one recording says of a motor.
@@ -49,7 +50,7 @@ pub struct Checked {
     pub doubts: Vec<CheckDoubt>,
     /// How bad the likeliest cause is, where its size is known.
     pub severity: Option<Severity>,
-    /// What kind, phase and size of a fault in one phase rest on, where it is hardly known.
+    /// What cause, phase and size rest on, where it is hardly known.
     pub caveat: Option<String>,
     /// What to do, in order.
     pub todo: Vec<String>,
@@ -78,6 +79,25 @@ pub struct Checked {
 }
 
 impl Checked {
+    /// Of a recording that the audit refuses no number is told: it would be another quantity than it says. What to do is the
+    /// remedy of the audit.
+    fn withdraw(&mut self) {
+        (self.state, self.verdict.state) = (VerdictState::NotJudged, VerdictState::NotJudged);
+        self.verdict.candidates.clear();
+        self.verdict.tied = 0;
+        self.verdict.separating_tests.clear();
+        self.motion = MotionSummary::default();
+        let refusals = self.audit.findings.iter().filter(|finding| finding.refuses);
+        self.todo = refusals.map(|finding| finding.detail.clone()).collect();
+        (self.doubts, self.not_judged) = (Vec::new(), Vec::new());
+        (self.caveat, self.severity, self.speed) = (None, None, None);
+        (self.visible_percent, self.current_unbalance_percent) = (None, None);
+        let [judged, _] = &mut self.windows;
+        *judged = 0;
+        self.rotor = words::rotor(&Timeline::default().rotor());
+        self.residuals.clear();
+    }
+
     /// Whether no recording in good order was given yet.
     pub fn lacks_reference(&self) -> bool {
         self.blind.contains(&blind::NOT_CALIBRATED)

@@ -101,6 +101,9 @@ fn severity(checked: &Checked, fault: FaultId) -> Option<&'static str> {
     ];
     match checked.severity {
         Some(severity) => Some(severity.words()),
+        None if sensors.contains(&fault) && checked.caveat.is_some() => Some(
+            "not known: an instrument or the motor, whose parameters are not known well enough to tell",
+        ),
         None if sensors.contains(&fault) => Some("an instrument is wrong, not the motor"),
         None if checked.blind.contains(&NOT_CALIBRATED) => {
             Some("not known: a size is told once a recording in good order was given")

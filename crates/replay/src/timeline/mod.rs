@@ -85,11 +85,10 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Whether the likeliest cause lies in one phase of the stator.
-    pub(crate) fn names_a_phase(&self) -> bool {
-        self.candidates
-            .first()
-            .is_some_and(|first| first.phase.is_some() && !first.fault.is_sensor())
+    /// Whether the likeliest cause has a size, which follows from the motor's parameters.
+    pub(crate) fn rests_on_parameters(&self) -> bool {
+        let first = self.candidates.first();
+        first.is_some_and(|first| first.size_percent.is_some())
     }
 
     fn new(state: VerdictState, candidates: Vec<Candidate>) -> Self {

@@ -90,6 +90,7 @@ impl Files {
         self.read_once()?;
         for (k, written) in self.written.iter().enumerate() {
             written.refuse_dash()?;
+            written.refuse_missing_folder()?;
             if let Some(read) = self.read.iter().find(|read| read.is(written)) {
                 return Err(written.overwrites(read));
             }
@@ -147,6 +148,23 @@ impl Named {
                 "{} -: only --json can go to standard output; name a file",
                 self.part
             ))),
+        }
+    }
+
+    /// Told before minutes of work, not after them.
+    fn refuse_missing_folder(&self) -> Result<(), Failure> {
+        let folder = self
+            .path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        match folder {
+            Some(folder) if !folder.is_dir() => Err(Failure::Usage(format!(
+                "{}: there is no folder {} for {}; make it, or name another one",
+                self.path.display(),
+                folder.display(),
+                self.part
+            ))),
+            _ => Ok(()),
         }
     }
 

@@ -320,7 +320,13 @@ pub(crate) fn print_verdict(timeline: &Timeline, verdict: &Verdict) {
                     .map_or(String::new(), |phase| format!(", phase {phase}"));
                 let cause = candidate.fault.words();
                 let percent = 100.0 * candidate.probability;
-                say!("  {percent:5.1} %  {:<3} {cause}{phase}", candidate.fault);
+                let size = candidate
+                    .size_percent
+                    .map_or(String::new(), |size| format!(", {size:+.1} %"));
+                say!(
+                    "  {percent:5.1} %  {:<3} {cause}{phase}{size}",
+                    candidate.fault
+                );
             }
             print_tie(verdict);
         }

@@ -13,6 +13,10 @@ pub(in crate::read) fn clock(
     let rows = raw.rows.len();
     if rows < 2 {
         let message = match rows {
+            0 if raw.skipped > 0 => format!(
+                "all {} rows were left out: each has an empty or NaN cell (--skip-missing)",
+                raw.skipped
+            ),
             0 => "holds a header, but no samples".to_owned(),
             _ => "holds a single sample; at least 2 are needed".to_owned(),
         };
