@@ -28,9 +28,9 @@ impl Told {
         let likeliest = verdict.candidates.first().filter(|_| at_rest);
         let in_motion = checked.motion.alarms.first().filter(|_| !at_rest);
         Told {
-            state: state(checked.state),
+            state: state(checked),
             cause: likeliest
-                .map(ToString::to_string)
+                .map(|_| causes_in_words(checked))
                 .or_else(|| in_motion.and_then(MotionFault::words)),
             sure: match (checked.state, in_motion) {
                 (VerdictState::Fault, Some(alarm)) => sure_in_motion(alarm),
@@ -46,8 +46,26 @@ impl Told {
     }
 }
 
-fn state(state: VerdictState) -> &'static str {
-    match state {
+/// The likeliest cause, or all that cannot be told apart.
+fn causes_in_words(checked: &Checked) -> String {
+    /// Names that are read at one glance.
+    const MOST: usize = 4;
+    let causes = &checked.verdict.candidates;
+    let tied = causes.iter().take(checked.verdict.tied.max(1));
+    let names: Vec<String> = tied.map(ToString::to_string).collect();
+    match names.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) if names.len() <= MOST => {
+            format!("{} or {last}", others.join(", "))
+        }
+        _ => format!("one of {} causes", names.len()),
+    }
+}
+
+fn state(checked: &Checked) -> &'static str {
+    let does_not_fit = !checked.doubts.is_empty() || !checked.motion.unexplained.is_empty();
+    match checked.state {
+        VerdictState::NotJudged if does_not_fit => "something does not fit",
         VerdictState::Healthy => "in good order, as far as can be seen here",
         VerdictState::NotJudged => "not judged",
         VerdictState::Fault => "fault",

@@ -42,7 +42,7 @@ fn answer(result: &Place<'_>, one: &Place<'_>) -> Markup {
     let severity = one.text("told/severity");
     let more = html! {
         @if !severity.is_empty() { p.severity { "Severity: " b { (severity) } } }
-        p { "How sure: " (one.text("told/sure")) }
+        p { (how_sure(one)) (one.text("told/sure")) }
         @for contradiction in result.items("contradictions").iter().take(1) {
             p { b { "The plate contradicts itself: " } (contradiction.as_text()) ". Read it again: the answer is as good as the plate." }
         }
@@ -52,6 +52,13 @@ fn answer(result: &Place<'_>, one: &Place<'_>) -> Markup {
         p.subtle { (result.text("motor")) ", " (result.text("known_by")) ". " (one.text("recording")) ", " (shown(one, "duration_s", significant(3))) " s." }
     };
     verdict(mood, &text, &more)
+}
+
+fn how_sure(one: &Place<'_>) -> &'static str {
+    match one.read("state") {
+        Some(VerdictState::Healthy | VerdictState::Fault) => "How sure: ",
+        Some(VerdictState::NotJudged) | None => "Why: ",
+    }
 }
 
 /// Faults that no row of the method is about ([`FaultId`]).
