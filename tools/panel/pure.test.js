@@ -38,7 +38,7 @@ const NOTHING = {
  * @returns {WindowMessage}
  */
 const window = (lamps, rest = {}) => ({
-  sequence: 1, t_s: 1, lamps: { ...DARK, ...lamps }, not_judged: null, findings: [], r_percent: null, r_over_threshold: null,
+  sequence: 1, t_s: 1, lamps: { ...DARK, ...lamps }, not_judged: null, motion: null, findings: [], r_percent: null, r_over_threshold: null,
   significance_sigma: null, resistance_rise_percent: null, causes: [], todo: [], operation: NOTHING, vectors: null, ...rest,
 });
 

@@ -1,10 +1,12 @@
 //! What goes through every instant of a block beside the windows.
 
+pub(crate) mod moving;
+
 use num_complex::Complex32;
 
 use crate::input::sample::{CHANNELS, ClippedChannels};
-use crate::moving::Moving;
 use crate::report::Report;
+use moving::Moving;
 
 /// Units of a channel whose code of one instant is `code`: `scale code - offset` is V or A at the terminals, with all that is known of
 /// the channel's gain.

@@ -51,11 +51,9 @@ mod isolation;
 mod lamps;
 mod model;
 mod monitor;
-mod moving;
 mod noise;
 #[cfg(feature = "motor-file")]
 mod of_board;
-mod reason;
 mod rehearsal;
 mod report;
 mod sync;
@@ -63,6 +61,7 @@ mod sync;
 mod tests;
 mod window;
 
+pub use beside::moving::{MotionWord, Moving, MovingCause, MovingFault};
 pub use beside::{Beside, CodeUnits, Stretch};
 pub use checks::cage::{Cage, CageLimits, HealthySidebands, RotorReading};
 pub use checks::rotor_bars::{RotorState, Sidebands};
@@ -93,12 +92,10 @@ pub use model::operating_point::{Frame, OperatingPoint};
 pub use model::residuals::{FieldCurrent, RESIDUALS, ResidualModel, Residuals};
 pub use monitor::{Monitor, MonitorState};
 pub use motor::{FaultId, InMotion};
-pub use moving::{MotionWord, Moving, MovingCause, MovingFault};
 #[cfg(feature = "motor-file")]
 pub use of_board::{BOARD_CONVERSIONS, BOARD_T_SAMPLE};
-pub use reason::Reason;
 pub use rehearsal::Rehearsal;
-pub use report::{NotJudged, Report};
+pub use report::{NotJudged, Reason, Report};
 pub use sync::encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use sync::phasor::{ChannelCycle, CyclePhasors};
 pub use sync::pll::{Supply, SyncConfig, SyncState, SyncTick};

@@ -1,5 +1,9 @@
 //! What the monitor says about one window.
 
+pub(crate) mod not_judged;
+pub(crate) mod reason;
+
+use crate::beside::moving::{MotionWord, Moving};
 use crate::checks::cage::RotorReading;
 use crate::checks::sensors::SensorFinding;
 use crate::checks::supply::SupplyFinding;
@@ -8,39 +12,10 @@ use crate::lamps::lamp::Lamps;
 use crate::lamps::signature::Candidates;
 use crate::model::operating_point::OperatingPoint;
 use crate::model::residuals::{RESIDUALS, Residuals};
-use crate::moving::{MotionWord, Moving};
 use crate::window::Window;
 
-/// Why a window was not judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NotJudged {
-    /// No periodic supply was found between 5 and 100 Hz.
-    NotLocked,
-    /// Fewer cycles than a window needs since the oscillator (re)started.
-    Settling,
-    /// A channel touched the rail of its converter.
-    Clipped,
-    /// Samples were not finite numbers.
-    Invalid,
-    /// Voltages are not measured.
-    NoVoltages,
-    /// Currents are not measured.
-    NoCurrents,
-    /// The speed is not measured.
-    NoSpeed,
-    /// The supply is missing.
-    Supply(SupplyFinding),
-    /// A sensor is dead or contradicts the others.
-    Sensor(SensorFinding),
-    /// Current or speed are changing, and not along straight lines.
-    Transient,
-    /// The motor is supplied but draws no current.
-    NoLoadCurrent,
-    /// The shaft turns against the field, which brakes or reverses it (slip above 1), or the field changes its direction.
-    Reversing,
-    /// Noise hides what the lamps are to show: see [`Report::visible`].
-    Noise,
-}
+pub use not_judged::NotJudged;
+pub use reason::Reason;
 
 /// One window's result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,16 +56,6 @@ pub struct Report {
     pub candidates: Option<Candidates>,
 }
 
-impl NotJudged {
-    /// Whether the window is left to what judges in motion.
-    pub const fn is_motion(self) -> bool {
-        matches!(
-            self,
-            NotJudged::Transient | NotJudged::Settling | NotJudged::NotLocked
-        )
-    }
-}
-
 impl Report {
     /// The lamps as the door shows them: those of the windows at rest with what is said in motion.
     ///
@@ -107,17 +72,19 @@ impl Report {
             .map_or(MotionWord::AtRest, |moving| moving.word(is_motion))
     }
 
-    /// Number of the reason why the window was judged neither at rest nor in motion; 0 where it was judged.
-    pub fn reason_number(&self) -> u8 {
-        match self.is_judged_either_way() {
-            true => 0,
-            false => self.not_judged.map_or(0, |why| why.reason().number()),
+    /// Why the window counts for nothing; `None` where it was judged, at rest or in motion.
+    pub fn reason(&self) -> Option<Reason> {
+        let moving = self.moving.unwrap_or_default();
+        match moving.is_unexplained {
+            true => Some(Reason::DoesNotFit),
+            false if moving.is_judged => None,
+            false => self.not_judged.map(NotJudged::reason),
         }
     }
 
     /// Whether the window was judged, at rest or in motion.
     pub fn is_judged_either_way(&self) -> bool {
-        self.is_judged() || self.moving.is_some_and(|moving| moving.is_judged)
+        self.reason().is_none()
     }
 
     /// Whether thresholds were applied to this window.

@@ -1,5 +1,7 @@
 //! Motion beside the windows, in ADC codes: what runs on the board.
 
+pub(crate) mod standing;
+
 use monitor::{
     Abc, AnalogueChain, Beside, CHANNELS, ClippedChannels, CodeUnits, MonitorConfig, Moving,
     Report, SpeedSample, Stretch,
@@ -7,8 +9,8 @@ use monitor::{
 use num_complex::Complex32;
 
 use crate::observer::Instant;
-use crate::standing::Standing;
-use crate::{KnownLoad, Motion, MotionState, NoMotion};
+use crate::{KnownLoad, Motion, MotionSample, MotionState, NoMotion};
+use standing::Standing;
 
 /// Judges in motion whatever a [`monitor::Monitor`] takes in codes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +68,26 @@ impl Companion {
         self.alignment = alignment.unwrap_or_default();
         self.standing = Standing::new(self.motion.as_ref().is_ok_and(Motion::is_doubted));
         self.state.begin_anew();
+    }
+
+    /// For samples in SI units, which may hold a torque.
+    pub fn of_samples(config: &MonitorConfig) -> Self {
+        let motion = Motion::new(config);
+        Companion {
+            standing: Standing::new(motion.as_ref().is_ok_and(Motion::is_doubted)),
+            motion,
+            ..Companion::default()
+        }
+    }
+
+    /// Takes a sample in SI units, with the supply's oscillator behind it.
+    pub fn take_sample(&mut self, sample: &MotionSample) {
+        let Ok(motion) = &self.motion else {
+            return;
+        };
+        if let Some(cycle) = motion.update(&mut self.state, sample) {
+            self.standing.cycle(&cycle);
+        }
     }
 
     /// Why nothing is judged in motion.

@@ -18,7 +18,6 @@ mod information;
 mod observer;
 mod rows;
 mod scatter;
-mod standing;
 #[cfg(test)]
 mod tests;
 
@@ -26,10 +25,10 @@ use num_complex::Complex32;
 
 pub use build::NoMotion;
 pub use companion::Companion;
+pub use companion::standing::Standing;
 pub use decision::Limits;
 pub use departures::Priors;
 pub use gate::NotInMotion;
-pub use standing::Standing;
 
 use circuit::{Circuit, Coefficients};
 use decision::{Decision, Outcome, Scores};

@@ -65,7 +65,8 @@ export function headline(window) {
   if (lamps.load === "on") return { mood: "caution", title: "Overload", why: "More torque than rated.", todo };
   if (lamps.sensor === "on") return { mood: "bad", title: "Sensor", why: found, todo };
   if (window.not_judged) return { mood: "waiting", title: "Not judged", why: sentence(window.not_judged), todo };
-  return { mood: "good", title: "Healthy", why: "The motor is being judged, and every residual is within its threshold.", todo };
+  const why = window.motion ? "The motor is being judged while current, speed or supply change, and all of it fits." : "The motor is being judged, and every residual is within its threshold.";
+  return { mood: "good", title: "Healthy", why, todo };
 }
 
 /**

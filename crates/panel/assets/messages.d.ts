@@ -39,6 +39,7 @@ export interface WindowMessage {
   t_s: number;
   lamps: Lamps;
   not_judged: string | null;
+  motion: string | null;
   findings: string[];
   r_percent: number[] | null;
   r_over_threshold: (number | null)[] | null;

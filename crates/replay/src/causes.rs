@@ -40,7 +40,7 @@ pub fn candidates(known: &Known<'_>, load_friction: bool) -> Vec<Candidate> {
 
 /// The same of one window; empty while FAULT is dark.
 pub fn of_report(report: &Report, wrong: &[Channel], load_friction: bool) -> Vec<Candidate> {
-    if report.lamps.fault != Lamp::On {
+    if report.shown_lamps().fault != Lamp::On {
         return Vec::new();
     }
     ranked(load_friction, &mut |tell| likely(report, wrong, tell))

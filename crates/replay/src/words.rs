@@ -29,6 +29,9 @@ pub fn not_judged(reason: NotJudged) -> String {
 pub const UNEXPLAINED: &str = "a larger fault, a speed channel that lags, or an effect that the motor file lacks; \
      compare the recording with the model (drivemon compare), or record the shaft without a filter";
 
+/// What a board says of what it calls no fault.
+pub const SOMETHING_IN_MOTION: &str = "something came in motion that no fault of a size that occurs explains, or that was never seen in good order";
+
 /// Why an alarm in motion is no FAULT of a motor that was calibrated at rest alone.
 pub const NEVER_SEEN_IN_MOTION: &str = "the motor in good order was never seen in motion: its file may lack an effect. \
      Calibrate it on a recording with a start and load steps as well";
@@ -68,6 +71,7 @@ pub fn reason(number: u8) -> Option<String> {
         Reason::Reversing => not_judged(NotJudged::Reversing),
         Reason::Noise => not_judged(NotJudged::Noise),
         Reason::Instrument => "the board doubts its own converters or their supply".to_owned(),
+        Reason::DoesNotFit => SOMETHING_IN_MOTION.to_owned(),
     })
 }
 

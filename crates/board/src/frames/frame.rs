@@ -86,7 +86,7 @@ impl Frame {
 fn why_not_judged(report: &Report, shown: &Shown) -> u8 {
     match shown.instrument_faulty {
         true => Reason::Instrument.number(),
-        false => report.reason_number(),
+        false => report.reason().map_or(0, Reason::number),
     }
 }
 

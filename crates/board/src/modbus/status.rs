@@ -119,7 +119,7 @@ impl Judgement {
         let (fault, probability) = likeliest(report);
         let residuals = report.residuals.map(|residuals| residuals.r);
         Judgement {
-            not_judged: report.reason_number(),
+            not_judged: report.reason().map_or(0, Reason::number),
             motion: report.motion_word() as u8,
             fault,
             per_mille: (1000.0 * probability) as u16,
@@ -203,6 +203,7 @@ impl Status {
         match (shown.lamps.fault, shown.lamps.sensor) {
             (Lamp::On, _) => 2,
             (_, Lamp::On) => 0,
+            _ if self.last.not_judged == Reason::DoesNotFit.number() => 0,
             _ if self.judged > 0 => 1,
             _ => 0,
         }

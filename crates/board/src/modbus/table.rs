@@ -54,7 +54,7 @@ pub const MAP: [Entry; FIELDS] = {
             Verdict,
             Word,
             "",
-            "0 not judged yet or SENSOR lit, 1 healthy, 2 FAULT lit",
+            "0 not judged yet, SENSOR lit or something does not fit in motion, 1 healthy, 2 FAULT lit",
         ),
         numbered(LikelyFault, Meaning::Faults),
         entry(FaultProbability, Word, "per mille", "its probability"),

@@ -1,10 +1,12 @@
 //! How a panel begins and ends, and what its interface says.
 
+use std::path::Path;
+use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::http::{get, post};
-use crate::server::{Server, refused};
+use crate::server::{Server, refused, root};
 
 /// Waits for something that the source's thread brings about.
 pub fn until(what: &str, mut holds: impl FnMut() -> bool) {
@@ -271,4 +273,34 @@ fn a_recording_that_the_audit_refuses_is_not_played() {
     std::fs::remove_file(&path).expect("it was made");
     assert_eq!(code, Some(3), "{said}");
     assert!(said.contains("effective values"), "{said}");
+}
+
+/// A press that is never steady for five cycles: its recording is judged, and the current sensor that shows 5 % too much from 2 s on
+/// lights FAULT.
+#[test]
+fn a_recording_is_judged_in_motion() {
+    let press = Path::new(env!("CARGO_TARGET_TMPDIR")).join("panel-press.csv.gz");
+    let press = press.to_str().expect("a name");
+    let simulated = Command::new(env!("CARGO_BIN_EXE_drivemon"))
+        .args(["simulate", "sim-host/scenarios/press.toml", "-o", press])
+        .current_dir(root())
+        .output()
+        .expect("it runs");
+    assert!(simulated.status.success(), "{simulated:?}");
+    let motor = "motors/peer-2k2-calibrated.toml";
+    let server = Server::start(&["--replay", press, "--motor", motor, "--speed", "50"]);
+    let address = server.address.as_str();
+    until("the end", || {
+        get(address, "/api/status").json()["ended"] == true
+    });
+    let rows = get(address, "/api/history").json();
+    let rows = rows.as_array().expect("rows");
+    let at = |row: &serde_json::Value| row["t_s"].as_f64().expect("a time");
+    let moving = rows.iter().filter(|row| at(row) > 0.7);
+    assert!(moving.clone().count() > 100);
+    assert!(moving.clone().all(|row| row["judged"] == true));
+    // Named 0.4 s after it was found.
+    let lit = moving.filter(|row| row["fault"] == true);
+    let first = lit.map(at).next().expect("a fault");
+    assert!((2.4..2.7).contains(&first), "{first}");
 }

@@ -1,11 +1,11 @@
 //! What an alarm is likely caused by: the one place where findings about sensors, sidebands of the rotor, the direction
 //! of the evidence, the rows of Table 1 and what is known of the instrument beforehand become probabilities.
 
+use crate::beside::moving::{MovingCause, MovingFault};
 use crate::checks::sensors::{Phase, SensorFinding};
 use crate::isolation::{ALL_CAUSES, CAUSES, Cause, Isolation};
 use crate::lamps::lamp::Lamp;
 use crate::lamps::signature::{Candidates, TABLE_1};
-use crate::moving::{MovingCause, MovingFault};
 use crate::report::Report;
 use motor::FaultId;
 

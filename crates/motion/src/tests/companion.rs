@@ -2,7 +2,7 @@
 
 use monitor::{
     AnalogueChain, CHANNELS, Cause, ClippedChannels, Converter, InMotion, Lamp, Monitor,
-    MonitorConfig, MonitorState, MovingCause, Phase, RawBlock, Report,
+    MonitorConfig, MonitorState, MovingCause, Phase, RawBlock, Reason, Report,
 };
 use motor::MotorFile;
 
@@ -167,6 +167,11 @@ fn a_motor_never_seen_in_motion_lights_no_fault_there() {
         .filter(|r| r.moving.is_some_and(|moving| moving.is_unexplained));
     assert!(doubts.clone().count() > 10);
     assert!(doubts.clone().all(|r| r.shown_lamps().run == Lamp::Blink));
+    assert!(
+        doubts
+            .clone()
+            .all(|r| r.reason() == Some(Reason::DoesNotFit))
+    );
     config.healthy.as_mut().expect("calibrated").in_motion = InMotion::Differs;
     assert_eq!(
         Companion::new(&config).not_possible(),

@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant as WallTime};
 
 use document::FileError;
-use monitor::{ConfigError, LoadKind, Monitor, MonitorState, Rehearsal, Report};
+use monitor::{Beside, ConfigError, LoadKind, Monitor, MonitorState, Rehearsal, Report};
+use motion::{Companion, MotionSample};
 use motor::MotorFile;
 use recording::{LoadTorque, Sensors};
 use serde::Serialize;
@@ -33,6 +34,8 @@ pub enum MotorError {
 pub(crate) struct Bench {
     monitor: Option<Monitor>,
     state: MonitorState,
+    /// Judges in motion; made with the first sample, which says in what units the source delivers.
+    companion: Option<Companion>,
     plate: Plate,
     belief: Belief,
     sequence: u64,
@@ -57,6 +60,7 @@ impl Bench {
             plate,
             monitor,
             state: MonitorState::default(),
+            companion: None,
             sequence: 0,
             wave: Wave::default(),
             wave_sent: WallTime::now(),
@@ -69,7 +73,7 @@ impl Bench {
         self.plate = plate(source, Some(&monitor), true);
         self.belief = belief(source, Some(motor), self.plate.load_friction);
         self.monitor = Some(monitor);
-        self.state = MonitorState::default();
+        self.restart_judging();
     }
 
     /// Sensor faults that are rehearsed from the next window on.
@@ -79,8 +83,13 @@ impl Bench {
 
     /// The source has gone elsewhere.
     pub fn restart(&mut self) {
-        self.state = MonitorState::default();
+        self.restart_judging();
         self.wave.clear();
+    }
+
+    fn restart_judging(&mut self) {
+        self.state = MonitorState::default();
+        self.companion = None;
     }
 
     /// Takes what the source delivers.
@@ -103,13 +112,26 @@ impl Bench {
         let Some(monitor) = &self.monitor else {
             return;
         };
+        let companion = self.companion.get_or_insert_with(|| match reading {
+            Reading::Raw(_) => Companion::new(monitor.config()),
+            Reading::Si(..) => Companion::of_samples(monitor.config()),
+        });
         let report = match reading {
-            Reading::Raw(raw) => monitor.update_raw(&mut self.state, raw),
+            Reading::Raw(raw) => monitor.update_raw_beside(&mut self.state, raw, companion),
             Reading::Si(sample, gap) => {
                 if *gap {
                     self.state.resume_after_gap();
+                    companion.resume_after_gap();
                 }
-                monitor.update(&mut self.state, sample)
+                let report = monitor.update(&mut self.state, sample);
+                companion.take_sample(&MotionSample {
+                    sample: *sample,
+                    supply: self.state.supply(),
+                });
+                report.map(|report| Report {
+                    moving: companion.window(&report),
+                    ..report
+                })
             }
         };
         if let Some(report) = report {

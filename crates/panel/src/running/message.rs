@@ -1,6 +1,6 @@
 //! What the page is told about each window: one schema for every source.
 
-use monitor::{Frame, Lamp, Lamps, Report, Window};
+use monitor::{Frame, Lamp, Lamps, MotionWord, Reason, Report, Window};
 use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 use serde::{Serialize, Serializer};
@@ -17,8 +17,10 @@ pub struct WindowMessage {
     pub t_s: f64,
     /// The nine lamps.
     pub lamps: LampsMessage,
-    /// Why thresholds were not applied; `None` when they were.
+    /// Why the window counts for nothing; `None` when it was judged, at rest or in motion.
     pub not_judged: Option<String>,
+    /// How it stands in motion; `None` at rest, or where nothing is judged in motion.
+    pub motion: Option<&'static str>,
     /// Findings about sensors and supply, in words.
     pub findings: Vec<String>,
     /// r1..r4, percent of their scales; `None` where they could not be evaluated.
@@ -173,8 +175,9 @@ impl WindowMessage {
         WindowMessage {
             sequence,
             t_s,
-            lamps: LampsMessage::of(&report.lamps),
-            not_judged: report.not_judged.map(words::not_judged),
+            lamps: LampsMessage::of(&report.shown_lamps()),
+            not_judged: not_judged(report),
+            motion: in_motion(report.motion_word()),
             findings: findings(report),
             r_percent: report
                 .residuals
@@ -193,6 +196,18 @@ impl WindowMessage {
                 .map(|point| Vectors::new(&point, plate.frame)),
         }
     }
+}
+
+fn not_judged(report: &Report) -> Option<String> {
+    match report.reason()? {
+        Reason::DoesNotFit => Some(words::SOMETHING_IN_MOTION.to_owned()),
+        _ => report.not_judged.map(words::not_judged),
+    }
+}
+
+/// In a few words.
+pub(crate) fn in_motion(word: MotionWord) -> Option<&'static str> {
+    (word != MotionWord::AtRest).then(|| word.label())
 }
 
 fn findings(report: &Report) -> Vec<String> {

@@ -4,12 +4,12 @@ use std::time::{Duration, Instant as WallTime};
 
 use ::board::{Frame, Message};
 use document::FileError;
-use monitor::{Candidates, Lamp, MonitorConfig, Reason, Report};
+use monitor::{Candidates, Lamp, MonitorConfig, MotionWord, Reason, Report};
 use motor::MotorFile;
 
 use super::{Can, Item, Source, SourceFailure, SourceInfo};
 use crate::running::message::{
-    LampsMessage, LikelyCause, Operation, WindowMessage, likely, rms, slip_percent,
+    LampsMessage, LikelyCause, Operation, WindowMessage, in_motion, likely, rms, slip_percent,
 };
 use live::{Collector, Decoder, Source as Link, recording};
 use replay::words;
@@ -60,6 +60,7 @@ impl BoardSource {
             t_s: self.now_s,
             lamps: LampsMessage::from_order(std::array::from_fn(|k| frame.lamp(k))),
             not_judged: words::reason(frame.not_judged),
+            motion: MotionWord::from_number(frame.motion).and_then(in_motion),
             r_percent: frame.residuals.map(|r| r.map(|r| 100.0 * r)),
             r_over_threshold: normalised.map(|r| r.map(Some)),
             operation: operation(frame, pole_pairs),

@@ -1,6 +1,6 @@
 //! Why a window was not judged, by the number that stands in frames and registers.
 
-use crate::report::NotJudged;
+use super::not_judged::NotJudged;
 
 /// The reason without its details. The value is its number on the wire; 0 is a judged window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,11 +34,13 @@ pub enum Reason {
     Noise = 13,
     /// The board doubts its own converters or their supply: nothing that it measures counts.
     Instrument = 14,
+    /// Something came in motion that is called no fault.
+    DoesNotFit = 15,
 }
 
 impl Reason {
     /// Every reason, in the order of its number.
-    pub const ALL: [Reason; 14] = [
+    pub const ALL: [Reason; 15] = [
         Reason::NotLocked,
         Reason::Settling,
         Reason::Clipped,
@@ -53,6 +55,7 @@ impl Reason {
         Reason::Reversing,
         Reason::Noise,
         Reason::Instrument,
+        Reason::DoesNotFit,
     ];
 
     /// Number on the wire.
@@ -83,6 +86,7 @@ impl Reason {
             Reason::Reversing => "braking or reversing",
             Reason::Noise => "noise",
             Reason::Instrument => "instrument",
+            Reason::DoesNotFit => "does not fit in motion",
         }
     }
 }
@@ -119,7 +123,7 @@ mod tests {
             assert_eq!(Reason::from_number(number), Some(reason));
         }
         assert_eq!(
-            (Reason::from_number(0), Reason::from_number(15)),
+            (Reason::from_number(0), Reason::from_number(16)),
             (None, None)
         );
     }

@@ -62,6 +62,12 @@ impl MotionWord {
         MotionWord::Unexplained,
     ];
 
+    /// The word of a number; `None` for one that this version does not know.
+    pub fn from_number(number: u8) -> Option<MotionWord> {
+        let mut all = MotionWord::ALL.into_iter();
+        all.find(|word| *word as u8 == number)
+    }
+
     /// In a few words, for the register map.
     pub const fn label(self) -> &'static str {
         match self {
