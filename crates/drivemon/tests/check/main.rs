@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod does_not_fit;
 mod in_motion;
 mod standard_tests;
 
