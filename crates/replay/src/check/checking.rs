@@ -174,8 +174,7 @@ impl<'m> Checking<'m> {
             severity: severity::of(&verdict),
             todo: todo(self.motor, state, &verdict, &motion, &doubts),
             doubts,
-            caveat: caveat(self.motor)
-                .filter(|_| state == VerdictState::Fault && verdict.rests_on_parameters()),
+            caveat: caveat(self.motor, &timeline, &verdict),
             motion,
             windows: [timeline.judged, timeline.windows],
             not_judged: match clamps.is_empty() {
