@@ -40,6 +40,8 @@ pub enum Refusal {
     Store = 7,
     /// The board doubts something about itself.
     Instrument = 8,
+    /// The currents are unbalanced further than the supply makes them: a fault would be learnt.
+    Unbalanced = 9,
 }
 
 /// How learning stands, as a number for Modbus.
@@ -231,11 +233,12 @@ impl Learner {
     }
 }
 
-/// A lamp that says that the measurement itself cannot be trusted.
+/// A lamp that says that the measurement itself cannot be trusted, or that the motor is not in good order.
 fn lit(report: &Report) -> Option<Refusal> {
     match report.shown_lamps() {
         lamps if lamps.sensor == Lamp::On => Some(Refusal::Sensor),
         lamps if lamps.line == Lamp::On => Some(Refusal::Line),
+        _ if report.is_unbalanced => Some(Refusal::Unbalanced),
         _ => None,
     }
 }

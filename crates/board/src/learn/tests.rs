@@ -163,6 +163,13 @@ fn a_lit_sensor_or_line_is_refused_at_once() {
     line.supply = Some(SupplyFinding::Unbalance);
     line.lamps.line = Lamp::On;
     assert_eq!(learn([line]), Progress::Refused(Refusal::Line));
+    let mut unbalanced = judged([0.0; 4], [0.0; CHANNELS]);
+    unbalanced.is_unbalanced = true;
+    assert_eq!(
+        learn([unbalanced]),
+        Progress::Refused(Refusal::Unbalanced),
+        "a fault would be learnt"
+    );
 }
 
 #[test]

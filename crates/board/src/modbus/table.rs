@@ -100,7 +100,7 @@ pub const MAP: [Entry; FIELDS] = {
             Learning,
             Word,
             "",
-            "0 idle, 1 learning, 2 stored; refused: 17 sensor, 18 line, 19 unsteady, 20 too few windows, 21 offset, 22 residuals too large, 23 flash, 24 instrument",
+            "0 idle, 1 learning, 2 stored; refused: 17 sensor, 18 line, 19 unsteady, 20 too few windows, 21 offset, 22 residuals too large, 23 flash, 24 instrument, 25 unbalanced currents",
         ),
         entry(
             LearnedWindows,
