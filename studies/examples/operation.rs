@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release -p studies --example operation -- --cases 60 --first 1`; `--show N` prints the scenario of a case.
 //! With `--machines` the circuits and inertias of the motors are drawn around those of their files, and the motor files are right about that.
+//! `--save N` writes recording and motor file of a case into the working folder, for `drivemon explain`.
 //! With `--bare` the recordings say nothing of their instruments: neither noise nor ranges nor bits, as those of most recorders.
 
 use discovery::{ExplainReport, Verdict, explain};
@@ -11,7 +12,7 @@ use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
-use recording::{Sensors, Source};
+use recording::{Recording, Sensors, Source};
 use scenario::Scenario;
 use scenario::simulate::record;
 use std::fmt::Write as _;
@@ -173,25 +174,34 @@ fn scatter(motor: &mut MotorFile, seed: u64) {
     motor.mechanics.inertia *= by(4.0);
 }
 
+/// The motor and its recording.
+fn recorded(operation: &Operation, asked: Asked) -> Result<(MotorFile, Recording), String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut scenario =
+        Scenario::parse(&operation.text, "random.toml", folder).map_err(|e| e.to_string())?;
+    if asked.machines {
+        scatter(&mut scenario.motor, operation.seed);
+    }
+    let mut recorded = record(&scenario, |_| {}).map_err(|e| e.to_string())?;
+    if asked.bare {
+        recorded.metadata.sensors = Sensors::default();
+    }
+    Ok((scenario.motor, recorded))
+}
+
+fn save(seed: u64, asked: Asked) -> Result<(), String> {
+    let (motor, recorded) = recorded(&Operation::random(seed), asked)?;
+    let name = format!("operation-{seed}");
+    std::fs::write(format!("{name}.toml"), motor.to_toml()).map_err(|e| e.to_string())?;
+    let path = format!("{name}.csv.gz");
+    formats::write_recording(path.as_ref(), &recorded).map_err(|e| e.to_string())
+}
+
 /// What was said, and whether it is right.
 fn judged(operation: &Operation, asked: Asked) -> (String, bool) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let answer = || -> Result<ExplainReport, String> {
-        let mut scenario =
-            Scenario::parse(&operation.text, "random.toml", folder).map_err(|e| e.to_string())?;
-        if asked.machines {
-            scatter(&mut scenario.motor, operation.seed);
-        }
-        let mut recorded = record(&scenario, |_| {}).map_err(|e| e.to_string())?;
-        if asked.bare {
-            recorded.metadata.sensors = Sensors::default();
-        }
-        explain(
-            &[Source::Recording(recorded)],
-            &scenario.motor,
-            &mut |_, _| {},
-        )
-        .map_err(|e| e.to_string())
+        let (motor, recorded) = recorded(operation, asked)?;
+        explain(&[Source::Recording(recorded)], &motor, &mut |_, _| {}).map_err(|e| e.to_string())
     };
     match answer() {
         // A motor that cannot carry its load is no recording.
@@ -223,15 +233,19 @@ fn main() {
         print!("{}", Operation::random(seed).text);
         return;
     }
-    let (cases, first) = (
-        number("--cases").unwrap_or(60),
-        number("--first").unwrap_or(1),
-    );
     let told = |name: &str| std::env::args().any(|x| x == name);
     let asked = Asked {
         bare: told("--bare"),
         machines: told("--machines"),
     };
+    if let Some(seed) = number("--save") {
+        save(seed, asked).unwrap_or_else(|error| eprintln!("{error}"));
+        return;
+    }
+    let (cases, first) = (
+        number("--cases").unwrap_or(60),
+        number("--first").unwrap_or(1),
+    );
     let all: Vec<(u64, String, bool)> = (first..first + cases)
         .into_par_iter()
         .map(|seed| {
