@@ -191,9 +191,8 @@ fn recorded(operation: &Operation, asked: Asked) -> Result<(MotorFile, Recording
 
 fn save(seed: u64, asked: Asked) -> Result<(), String> {
     let (motor, recorded) = recorded(&Operation::random(seed), asked)?;
-    let name = format!("operation-{seed}");
-    std::fs::write(format!("{name}.toml"), motor.to_toml()).map_err(|e| e.to_string())?;
-    let path = format!("{name}.csv.gz");
+    std::fs::write(format!("motor-{seed}.toml"), motor.to_toml()).map_err(|e| e.to_string())?;
+    let path = format!("operation-{seed}.csv.gz");
     formats::write_recording(path.as_ref(), &recorded).map_err(|e| e.to_string())
 }
 
