@@ -99,6 +99,9 @@ const HUGE: f32 = 1e6;
 const TINY: f32 = 1e-9;
 
 impl MonitorConfig {
+    /// Shortest and longest sampling time, s.
+    pub const SAMPLING_TIMES: [f32; 2] = [2e-5, 2e-3];
+
     /// Rated amplitudes of a voltage, V, and of a current, A.
     pub(crate) fn rated_channels(&self) -> [f32; 2] {
         [self.rated_voltage, self.rated_current]
@@ -114,7 +117,7 @@ impl MonitorConfig {
         let non_negative = [0.0, HUGE];
         let p = &self.params;
         let checks = [
-            ("t_sample", self.t_sample, [2e-5, 2e-3]),
+            ("t_sample", self.t_sample, MonitorConfig::SAMPLING_TIMES),
             (
                 "encoder_counts_per_revolution",
                 self.encoder_counts_per_revolution,

@@ -1,10 +1,8 @@
 //! The monitor: one sample in, one report per supply cycle out.
 
-use motor::TParams;
 use motor::effect::Rated;
 use num_complex::Complex32;
 
-use crate::beside::CodeUnits;
 use crate::checks::cage::CageLimits;
 use crate::checks::rotor_bars::{RotorState, Sidebands};
 use crate::checks::sensors::{HealthConfig, SensorFinding};
@@ -20,10 +18,7 @@ use crate::input::validity::{
 };
 use crate::isolation::Temperature;
 use crate::lamps::logic::{PanelConfig, PanelState};
-use crate::model::effects::{ActiveEffects, Corrected, correct};
-use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::ResidualModel;
-use crate::model::settled::settled;
 use crate::noise::allowance::CycleScatter;
 use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
@@ -47,7 +42,7 @@ pub struct Monitor {
     pub(crate) health: HealthConfig,
     supply: SupplyConfig,
     panel: PanelConfig,
-    rated: Rated<f32>,
+    pub(crate) rated: Rated<f32>,
     idle_samples: u32,
 }
 
@@ -68,7 +63,7 @@ pub struct MonitorState {
     samples: u64,
     pub(crate) since_report: u32,
     pub(crate) rehearsal: Rehearsal,
-    converter_supply: ConverterSupply,
+    pub(crate) converter_supply: ConverterSupply,
     /// Whether the open cycle is summed up in codes.
     in_codes: bool,
 }
@@ -271,25 +266,6 @@ impl Monitor {
         }
     }
 
-    /// What the codes of an instant are at the terminals, with all that is known of the instrument's gains.
-    pub(crate) fn code_units(&self, state: &MonitorState) -> [CodeUnits; CHANNELS] {
-        let converter = &self.config.converter;
-        let gains = converter.supply_gains(state.converter_supply.0);
-        let [volt, ampere] = self.codes.range.zero;
-        let zeros = [volt, volt, volt, ampere, ampere, ampere];
-        let channels = self.codes.units.iter().zip(zeros).zip(gains);
-        let mut units = [CodeUnits::default(); CHANNELS];
-        let own = channels.zip(&self.config.channel_gain);
-        for (place, (((unit, zero), gain), known)) in units.iter_mut().zip(own) {
-            let gain = gain * known;
-            *place = CodeUnits {
-                scale: unit.scale * gain,
-                offset: (unit.scale * zero + unit.offset) * gain,
-            };
-        }
-        units
-    }
-
     fn idle_report(&self, state: &mut MonitorState) -> Option<Report> {
         if state.since_report < self.idle_samples {
             return None;
@@ -344,7 +320,7 @@ impl Monitor {
             report.supply = self.supply.check(window);
         }
         report.not_judged = self.obstacle(measured, window, report);
-        report.unbalance = self.unexplained_unbalance(window);
+        report.unbalance = unbalance::unexplained(&self.config, window);
         report.rotor.sidebands = self.follow_rotor(state, window, report.not_judged);
         let limits = |sidebands: &Sidebands| self.cage_limits(sidebands.active);
         report.rotor.limits = report.rotor.sidebands.as_ref().map(limits);
@@ -360,15 +336,6 @@ impl Monitor {
         if movement.is_some() {
             self.evaluate(rise, &state.rehearsal, window, report);
         }
-    }
-
-    /// A calibrated motor's evidence holds its unbalance.
-    fn unexplained_unbalance(&self, window: &Window) -> Option<f32> {
-        let config = &self.config;
-        let is_open = config.healthy.is_none();
-        is_open
-            .then(|| unbalance::unexplained(&config.params, config.mechanics.n_p, window))
-            .flatten()
     }
 
     /// Sidebands from which on the cage is doubtful or broken, at an active current, A.
@@ -443,87 +410,5 @@ impl Monitor {
     pub(crate) fn tau_load(&self, window: &Window) -> Option<f32> {
         let is_measured = self.config.load == LoadKind::Measured;
         window.tau_load.filter(|_| is_measured)
-    }
-
-    /// What one window measured, freed from physical effects.
-    pub(crate) fn corrected(&self, window: &Window) -> Option<Corrected> {
-        self.corrected_at(0.0, window)
-    }
-
-    /// The same with resistances that have risen by this share: an effect's law may depend on the flux behind them.
-    #[inline(never)]
-    pub(crate) fn corrected_at(&self, rise: f32, window: &Window) -> Option<Corrected> {
-        let moving = self.moving_at(rise, window)?;
-        let mechanics = &self.config.mechanics;
-        Some(settled(
-            &moving,
-            &window.rates,
-            window.omega_sync,
-            mechanics,
-        ))
-    }
-
-    /// The same as it is, with whatever it changes.
-    #[inline(never)]
-    pub(crate) fn moving_at(&self, rise: f32, window: &Window) -> Option<Corrected> {
-        let config = &self.config;
-        let params = TParams {
-            r_s: config.params.r_s * (1.0 + rise),
-            r_r: config.params.r_r * (1.0 + rise),
-            ..config.params
-        };
-        self.moving(&params, &config.effects, window)
-    }
-
-    fn moving(
-        &self,
-        params: &TParams<f32>,
-        effects: &ActiveEffects,
-        window: &Window,
-    ) -> Option<Corrected> {
-        Some(correct(
-            (effects, &self.config.laws),
-            self.rated,
-            params,
-            [window.u_s.positive, window.i_s.positive],
-            [window.omega_sync, window.omega_mech?],
-        ))
-    }
-
-    #[inline(never)]
-    pub(crate) fn operating_point(
-        &self,
-        frame: Frame,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<OperatingPoint> {
-        self.point_at(&self.corrected(window)?, frame, rehearsal, window)
-    }
-
-    /// The operating point as another motor would have it.
-    pub(crate) fn operating_point_of(
-        &self,
-        params: &TParams<f32>,
-        effects: &ActiveEffects,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<OperatingPoint> {
-        let moving = self.moving(params, effects, window)?;
-        let mechanics = &self.config.mechanics;
-        let corrected = settled(&moving, &window.rates, window.omega_sync, mechanics);
-        self.point_at(&corrected, self.config.frame, rehearsal, window)
-    }
-
-    #[inline(never)]
-    pub(crate) fn point_at(
-        &self,
-        corrected: &Corrected,
-        frame: Frame,
-        rehearsal: &Rehearsal,
-        window: &Window,
-    ) -> Option<OperatingPoint> {
-        let omega_el = corrected.omega_mech * self.config.mechanics.n_p;
-        OperatingPoint::new(corrected, frame, window.omega_sync, omega_el)
-            .map(|point| point.rehearse(rehearsal))
     }
 }

@@ -1,6 +1,6 @@
-//! Motion beside the windows, in ADC codes: what runs on the board.
+//! Motion beside the windows: in ADC codes, as it runs on the board, or in SI units.
 
-pub(crate) mod standing;
+mod standing;
 
 use monitor::{
     Abc, AnalogueChain, Beside, CHANNELS, ClippedChannels, CodeUnits, MonitorConfig, Moving,
@@ -8,11 +8,12 @@ use monitor::{
 };
 use num_complex::Complex32;
 
+use crate::gate::NotInMotion;
 use crate::observer::Instant;
-use crate::{KnownLoad, Motion, MotionSample, MotionState, NoMotion};
+use crate::{KnownLoad, Motion, MotionCycle, MotionSample, MotionState, NoMotion};
 use standing::Standing;
 
-/// Judges in motion whatever a [`monitor::Monitor`] takes in codes.
+/// Judges in motion whatever a [`monitor::Monitor`] takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Companion {
     motion: Result<Motion, NoMotion>,
@@ -80,14 +81,42 @@ impl Companion {
         }
     }
 
-    /// Takes a sample in SI units, with the supply's oscillator behind it.
-    pub fn take_sample(&mut self, sample: &MotionSample) {
-        let Ok(motion) = &self.motion else {
-            return;
-        };
-        if let Some(cycle) = motion.update(&mut self.state, sample) {
-            self.standing.cycle(&cycle);
-        }
+    /// Takes a sample in SI units, with the supply's oscillator behind it; gives the cycle that ends with it.
+    pub fn take_sample(&mut self, sample: &MotionSample) -> Option<MotionCycle> {
+        let motion = self.motion.as_ref().ok()?;
+        let cycle = motion.update(&mut self.state, sample)?;
+        self.standing.cycle(&cycle);
+        Some(cycle)
+    }
+
+    /// Takes the window that ends. Of one that is left to motion: why it was not judged there either.
+    pub fn judged(&mut self, report: &Report) -> Option<Result<(), NotInMotion>> {
+        self.standing.window(report)
+    }
+
+    /// What is said with the latest window; `None` where nothing is judged in motion.
+    pub fn moving(&self) -> Option<Moving> {
+        self.motion.as_ref().ok().map(|_| self.standing.moving())
+    }
+
+    /// Whether the alarm that is on came in motion: one that came while the windows were at rest is theirs.
+    pub fn counts(&self) -> bool {
+        self.standing.counts()
+    }
+
+    /// See [`MotionState::restless_since`].
+    pub fn restless_since(&self) -> Option<u64> {
+        self.state.restless_since()
+    }
+
+    /// Samples of a cycle, rounded up; 0 where nothing is judged.
+    pub fn cycle_samples(&self) -> usize {
+        self.motion.as_ref().map_or(0, Motion::cycle_samples)
+    }
+
+    /// See [`Motion::is_doubted`].
+    pub fn is_doubted(&self) -> bool {
+        self.motion.as_ref().is_ok_and(Motion::is_doubted)
     }
 
     /// Why nothing is judged in motion.
@@ -123,9 +152,8 @@ impl Beside for Companion {
     }
 
     fn window(&mut self, report: &Report) -> Option<Moving> {
-        self.motion.as_ref().ok()?;
-        let _ = self.standing.window(report);
-        Some(self.standing.moving())
+        self.judged(report);
+        self.moving()
     }
 }
 

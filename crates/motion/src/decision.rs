@@ -13,6 +13,8 @@
 //! next to nothing (`W` small) has T = 0.
 
 use crate::departures::{ALL, HYPOTHESES, Hypothesis, UNKNOWNS, place};
+pub(crate) mod alarm;
+
 use monitor::Covariance;
 
 use crate::information::{ABREAST, Factor, Information, ROWS, Symmetric, Vector, White, dot};

@@ -25,19 +25,19 @@ use num_complex::Complex32;
 
 pub use build::NoMotion;
 pub use companion::Companion;
-pub use companion::standing::Standing;
 pub use decision::Limits;
+pub use decision::alarm::{MotionAlarm, Named};
 pub use departures::Priors;
 pub use gate::NotInMotion;
 
 use circuit::{Circuit, Coefficients};
-use decision::{Decision, Outcome, Scores};
-use departures::{ALL, Hypothesis};
+use decision::{Decision, Outcome};
+use departures::ALL;
 use gate::{Gate, Seen};
 use influence::Influences;
 use monitor::{
-    Abc, CHANNELS, Cause, ClippedChannels, MovingCause, MovingFault, Sample, SensorFinding,
-    SpeedSample, Supply, dead_channel, magnitude, small_rotation,
+    Abc, CHANNELS, Cause, ClippedChannels, Sample, SensorFinding, SpeedSample, Supply,
+    dead_channel, magnitude, small_rotation,
 };
 use observer::{Instant, Interval, Observer};
 use rows::{Past, Sums};
@@ -134,40 +134,12 @@ pub struct MotionCycle {
     pub is_alarmed: bool,
 }
 
-/// An alarm in motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionAlarm {
-    /// Sample at which the statistic left the noise: about when the fault showed first.
-    pub onset_sample: u64,
-    /// Sample of the alarm.
-    pub raised_sample: u64,
-    /// `T` of the likeliest cause.
-    pub statistic: f32,
-    /// What it was named, twenty judged cycles after the alarm; `None` before.
-    pub named: Option<Named>,
-}
-
-/// What an alarm in motion is put down to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Named {
-    /// A fault.
-    Fault(MovingFault),
-    /// None of the causes explains it with a size that occurs.
-    Untold,
-}
-
-/// Share of the limit at which the statistic has left the noise.
-const RESTLESS: f32 = 0.5;
 /// A revision of the heating below this is not worth while, relative rise.
 const LEAST_REVISION: f32 = 0.005;
 /// Largest rise that is believed, and smallest.
 const RISES: [f32; 2] = [-0.4, 1.0];
 /// Standard deviation below which heating may be revised, share of its prior.
 const KNOWN_HEATING: f32 = 0.25;
-/// A cause larger than so many times its typical size does not occur.
-const MOST_TYPICAL: f32 = 2.5;
-/// The cause that is named explains at least this share of what the strongest would.
-const LEAST_SHARE: f32 = 0.7;
 /// Share of rated speed from which a shaft does not come to rest within two cycles.
 const TURNING: f32 = 0.2;
 /// A rotor that turns further from one sample to the next is no rotor, electrical rad.
@@ -442,58 +414,6 @@ impl Motion {
         let turning = older.max(newer) > TURNING * self.circuit.rated.omega;
         state.speed_died = omega == 0.0 && (state.speed_died || turning);
         state.turned = [state.turned[1], omega];
-    }
-
-    fn note_alarm(
-        &self,
-        state: &mut MotionState,
-        outcome: &Outcome,
-        dead: Option<SensorFinding>,
-    ) -> Option<MotionAlarm> {
-        let restless = outcome.best.statistic.abs() > RESTLESS * self.limits.statistic
-            || outcome.square > RESTLESS * self.limits.square;
-        let began = state.count.saturating_sub(self.samples as u64);
-        state.restless_since = restless.then(|| state.restless_since.unwrap_or(began));
-        if outcome.raised {
-            state.raised = Some((state.restless_since.unwrap_or(began), state.count));
-        }
-        let (onset_sample, raised_sample) = state.raised?;
-        let named = outcome.named.as_ref();
-        let best = named.map_or(outcome.best, |scores| scores.best_of(|_, _| true));
-        (outcome.raised || named.is_some()).then(|| MotionAlarm {
-            onset_sample,
-            raised_sample,
-            statistic: best.statistic.abs(),
-            named: named.map(|scores| self.cause(scores, dead)),
-        })
-    }
-
-    fn cause(&self, scores: &Scores, dead: Option<SensorFinding>) -> Named {
-        if let Some(finding) = dead {
-            return Named::Fault(MovingFault {
-                cause: MovingCause::Dead(finding),
-                probability: 1.0,
-            });
-        }
-        let best = scores.best_of(|_, _| true);
-        let occurs = |hypothesis: &Hypothesis, size: f32| {
-            let prior = self.priors.0.get(hypothesis.first).unwrap_or(&1.0);
-            (size * prior).abs() < MOST_TYPICAL * hypothesis.cause.typical_size()
-        };
-        let told = scores.best_of(occurs);
-        let hypothesis = ALL.get(told.hypothesis);
-        // An alarm by the rows' length alone has no cause yet.
-        let least = self
-            .limits
-            .statistic
-            .max(LEAST_SHARE * best.statistic.abs());
-        match hypothesis.filter(|_| told.statistic.abs() > least) {
-            Some(hypothesis) => Named::Fault(MovingFault {
-                cause: MovingCause::Departure(hypothesis.cause),
-                probability: scores.probability(&told, occurs),
-            }),
-            None => Named::Untold,
-        }
     }
 }
 

@@ -51,14 +51,14 @@ use motor::FileError;
 use motor::{Mechanics, MotorFile, TParams};
 use recording::{LoadTorque, Recording};
 
-/// Sampling times that the core takes, s.
-const SAMPLING_TIMES_S: std::ops::RangeInclusive<f64> = 2e-5..=2e-3;
-
 fn sampled_wrongly(t_sample: f64) -> String {
+    let [shortest, longest] = MonitorConfig::SAMPLING_TIMES;
     format!(
-        "it is sampled every {t_sample} s, {} times a second; 500 to 50 000 times a second can be judged. Is its clock in another unit? Then say \
+        "it is sampled every {t_sample} s, {} times a second; {:.0} to {:.0} times a second can be judged. Is its clock in another unit? Then say \
          --unit t=ms or --unit t=us; otherwise record at 5 to 20 kHz",
-        1.0 / t_sample
+        1.0 / t_sample,
+        1.0 / longest,
+        1.0 / shortest
     )
 }
 
@@ -68,7 +68,8 @@ fn sampled_wrongly(t_sample: f64) -> String {
 /// As [`MonitorConfig::from_motor_file`], and a recording that is sampled too slowly or too fast for the core.
 pub fn config_for(motor: &MotorFile, recording: &Recording) -> Result<MonitorConfig, FileError> {
     let t_sample = recording.t_sample();
-    if !SAMPLING_TIMES_S.contains(&t_sample) {
+    let [shortest, longest] = MonitorConfig::SAMPLING_TIMES;
+    if !(shortest..=longest).contains(&(t_sample as f32)) {
         return Err(FileError::whole(
             recording.name(),
             sampled_wrongly(t_sample),

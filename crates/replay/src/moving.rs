@@ -1,7 +1,7 @@
 //! What of a recording was judged while current, speed or supply changed, beside the windows at rest.
 
 use monitor::{Channel, FaultId, Monitor, MonitorState, Moving, MovingCause, Report, Sample};
-use motion::{Motion, MotionAlarm, MotionSample, MotionState, Named, NotInMotion, Standing};
+use motion::{Companion, MotionAlarm, MotionSample, Named, NotInMotion};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use std::collections::VecDeque;
@@ -82,10 +82,7 @@ fn in_words<S: Serializer>(cause: &Option<MovingCause>, serializer: S) -> Result
 
 /// Judges in motion beside the windows at rest.
 pub struct Follower {
-    /// `None` where nothing is judged.
-    motion: Option<Motion>,
-    state: MotionState,
-    standing: Standing,
+    companion: Companion,
     times: RecentTimes,
     /// Number and time of the sample with which the statistic left the noise, s.
     restless: Option<(u64, f64)>,
@@ -160,63 +157,47 @@ impl MotionSummary {
 impl Follower {
     /// For a monitor of this configuration.
     pub fn new(monitor: &Monitor) -> Self {
-        match Motion::new(monitor.config()) {
-            Ok(motion) => Follower::of(Some(motion), MotionSummary::default()),
-            Err(why) => Follower::without(&why.to_string()),
-        }
-    }
-
-    /// One that judges nothing, for this reason.
-    pub fn without(why: &str) -> Self {
-        Follower::of(None, MotionSummary::impossible(why))
-    }
-
-    fn of(motion: Option<Motion>, summary: MotionSummary) -> Self {
+        let companion = Companion::of_samples(monitor.config());
+        let why = companion.not_possible();
         Follower {
-            state: MotionState::default(),
-            standing: Standing::new(motion.as_ref().is_some_and(Motion::is_doubted)),
             times: RecentTimes {
                 // What is asked for lies a cycle back.
-                most: motion
-                    .as_ref()
-                    .map_or(1, |motion| motion.cycle_samples() + 1),
+                most: companion.cycle_samples() + 1,
                 ..RecentTimes::default()
             },
             restless: None,
-            summary,
-            motion,
+            summary: why.map_or_else(MotionSummary::default, |why| {
+                MotionSummary::impossible(&why.to_string())
+            }),
+            companion,
         }
     }
 
     /// Samples are missing before the next one.
     pub fn resume_after_gap(&mut self) {
-        self.state.resume_after_gap();
+        self.companion.resume_after_gap();
     }
 
     /// Takes a sample that `monitor` has just taken.
     pub fn update(&mut self, t: f64, sample: &Sample, monitor: &MonitorState) {
-        let Some(motion) = &self.motion else {
-            return;
-        };
         self.times.push(t);
         let supply = monitor.supply();
         let sample = *sample;
-        let Some(cycle) = motion.update(&mut self.state, &MotionSample { sample, supply }) else {
+        let Some(cycle) = self.companion.take_sample(&MotionSample { sample, supply }) else {
             return;
         };
-        let since = self.state.restless_since();
+        let since = self.companion.restless_since();
         if since != self.restless.map(|(sample, _)| sample) {
             self.restless = since.map(|sample| (sample, self.times.of(sample)));
         }
-        self.standing.cycle(&cycle);
-        if let Some(alarm) = cycle.alarm.filter(|_| self.standing.counts()) {
+        if let Some(alarm) = cycle.alarm.filter(|_| self.companion.counts()) {
             self.note(&alarm);
         }
     }
 
     /// Takes the window that the sample ended. Of one that is not at rest: whether it was judged in motion.
     pub fn window(&mut self, report: &Report) -> Option<bool> {
-        let judged = self.standing.window(report)?;
+        let judged = self.companion.judged(report)?;
         self.summary.windows += 1;
         match judged {
             Ok(()) => self.summary.judged += 1,
@@ -227,7 +208,7 @@ impl Follower {
 
     /// What is said in motion with the latest window; `None` where nothing is judged in motion.
     pub fn moving(&self) -> Option<Moving> {
-        self.motion.as_ref().map(|_| self.standing.moving())
+        self.companion.moving()
     }
 
     fn count(&mut self, reason: NotInMotion) {
@@ -273,7 +254,7 @@ impl Follower {
         if self.summary.not_possible.is_some() {
             shares.clear();
         }
-        if self.motion.as_ref().is_some_and(Motion::is_doubted) {
+        if self.companion.is_doubted() {
             let is_dead = |alarm: &MotionFault| matches!(alarm.cause, Some(MovingCause::Dead(_)));
             let alarms = std::mem::take(&mut self.summary.alarms);
             let (sure, doubts) = alarms.into_iter().partition(is_dead);

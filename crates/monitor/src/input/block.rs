@@ -6,7 +6,7 @@
 
 use num_complex::Complex32;
 
-use crate::beside::{Beside, Stretch};
+use crate::beside::{Beside, CodeUnits, Stretch};
 use crate::input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample};
 use crate::input::validity::IntakeState;
 use crate::monitor::{Monitor, MonitorState};
@@ -100,7 +100,7 @@ impl Monitor {
             axes: state.axes.0.get(..codes.len()).unwrap_or_default(),
             omega: state.sync.omega(),
             clipped,
-            units: &self.code_units(state),
+            units: &self.units_at_terminals(state),
         });
     }
 
@@ -123,8 +123,18 @@ impl Monitor {
             axes,
             omega: state.sync.omega(),
             clipped: clipped.union(self.config.converter.clipped(codes)),
-            units: &self.code_units(state),
+            units: &self.units_at_terminals(state),
         });
+    }
+
+    /// With the channels' gains and the converter's supply as they are known.
+    fn units_at_terminals(&self, state: &MonitorState) -> [CodeUnits; CHANNELS] {
+        let converter = &self.config.converter;
+        let mut gains = converter.supply_gains(state.converter_supply.0);
+        for (gain, known) in gains.iter_mut().zip(&self.config.channel_gain) {
+            *gain *= known;
+        }
+        self.codes.at_terminals(gains)
     }
 
     /// Follows supply and shaft through the instants inside one turn, whose axes it notes, to the first that is more.

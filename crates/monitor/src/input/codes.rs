@@ -2,6 +2,7 @@
 
 use num_complex::Complex32;
 
+use crate::beside::CodeUnits;
 use crate::config::MonitorConfig;
 use crate::input::sample::CHANNELS;
 use crate::input::validity::reference_scales;
@@ -24,6 +25,21 @@ pub(crate) struct Codes {
 }
 
 impl Codes {
+    /// Units of the codes of an instant at the terminals; each channel's gain is what is known of the instrument beside its scale.
+    pub fn at_terminals(&self, gains: [f32; CHANNELS]) -> [CodeUnits; CHANNELS] {
+        let [volt, ampere] = self.range.zero;
+        let zeros = [volt, volt, volt, ampere, ampere, ampere];
+        let mut units = [CodeUnits::default(); CHANNELS];
+        let channels = self.units.iter().zip(zeros).zip(gains);
+        for (place, ((unit, zero), gain)) in units.iter_mut().zip(channels) {
+            *place = CodeUnits {
+                scale: unit.scale * gain,
+                offset: (unit.scale * zero + unit.offset) * gain,
+            };
+        }
+        units
+    }
+
     pub fn new(config: &MonitorConfig) -> Self {
         let converter = &config.converter;
         let [per_volt, per_ampere] = reference_scales(config.rated_channels());

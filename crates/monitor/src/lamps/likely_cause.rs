@@ -172,9 +172,9 @@ impl Witness {
     pub fn of(report: &Report) -> Witness {
         match (&report.isolation, &report.candidates) {
             _ if report.rotor.is_broken => Witness::Bars,
-            _ if report.is_unbalanced => Witness::Unbalance,
             (Some(isolation), _) => Witness::directions(isolation),
             (None, Some(candidates)) => Witness::Table(*candidates),
+            (None, None) if report.is_unbalanced => Witness::Unbalance,
             (None, None) => Witness::None,
         }
     }
@@ -390,6 +390,26 @@ mod tests {
         };
         assert!((of("Rs") - of("Rr")).abs() < 1e-6 && of("Rs") > 0.3);
         assert!((0.25..0.27).contains(&of("Iq")), "{all:?}");
+    }
+
+    /// Where r1..r4 name a row, an unbalance beside it does not blur it; where they are dark it is all there is.
+    #[test]
+    fn an_unbalance_speaks_where_the_residuals_are_dark() {
+        let mut unbalanced = Report {
+            is_unbalanced: true,
+            ..Report::default()
+        };
+        assert_eq!(Witness::of(&unbalanced), Witness::Unbalance);
+        let rows = weighed(&Known {
+            found: &[],
+            witness: Witness::Unbalance,
+            wrong: &[],
+        });
+        assert_eq!(rows.len(), BEHIND_UNBALANCE.len());
+        assert!(rows.iter().all(|(_, _, p)| (p - 0.25).abs() < 1e-6)); // f32
+        let candidates = Candidates::from_normalised(&[3.0, 3.0, 3.0, 0.0]);
+        unbalanced.candidates = Some(candidates);
+        assert_eq!(Witness::of(&unbalanced), Witness::Table(candidates));
     }
 
     #[test]

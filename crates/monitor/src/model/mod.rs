@@ -4,6 +4,7 @@ pub(crate) mod doubt;
 mod doubted;
 pub(crate) mod effects;
 mod judgement;
+mod measured;
 pub(crate) mod movement;
 pub(crate) mod operating_point;
 pub(crate) mod residuals;

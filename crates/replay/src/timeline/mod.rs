@@ -337,15 +337,15 @@ impl Timeline {
 
     /// What the windows without a finding say, and how many they are.
     fn witness(&self) -> (Witness, u64) {
-        if self.unbalanced > 0 && !self.rotor.is_broken() {
-            (Witness::Unbalance, self.unbalanced)
-        } else if self.rotor.is_broken() {
+        if self.rotor.is_broken() {
             let found: u64 = self.found.iter().map(|(_, windows)| windows).sum();
             (Witness::Bars, self.since_alarm.saturating_sub(found))
         } else if self.causes.windows() > 0 {
             (self.causes.witness(), self.causes.windows())
         } else if self.candidate_windows > 0 {
             (Witness::Table(self.table()), self.candidate_windows)
+        } else if self.unbalanced > 0 {
+            (Witness::Unbalance, self.unbalanced)
         } else {
             (Witness::None, 0)
         }
