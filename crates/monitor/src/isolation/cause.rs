@@ -106,11 +106,22 @@ impl Cause {
         }
     }
 
+    /// The relative change behind a departure of so many directions. A channel's gain moves the positive sequence, to which all rows
+    /// are relative, by a third of itself.
+    pub(super) fn change(self, directions: f32) -> f32 {
+        match self {
+            Cause::CurrentChannel(_) | Cause::VoltageChannel(_) => {
+                directions / (1.0 - directions / 3.0).max(LEAST_SHARE)
+            }
+            _ => directions,
+        }
+    }
+
     /// How far a real fault's direction may lie off the computed one, as a share of its length: large changes bend it, and
     /// the current of a short is only nearly in phase with its voltage.
     pub const fn looseness(self) -> f32 {
         match self {
-            Cause::Turns(_) => 0.35,
+            Cause::Turns(_) => 0.15,
             _ => 0.1,
         }
     }
@@ -120,6 +131,9 @@ impl Cause {
         matches!(self, Cause::SeriesResistance(_) | Cause::Turns(_))
     }
 }
+
+/// A gain three times too large takes two thirds of the positive sequence; beyond it no size is worth telling.
+const LEAST_SHARE: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {

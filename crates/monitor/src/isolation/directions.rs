@@ -28,6 +28,8 @@ pub struct Directions {
     pub speed: Positive,
     /// Current through shorted turns, in phase with the voltage, per motor current.
     pub turns: Positive,
+    /// The same current a quarter of a turn behind.
+    pub turns_lagging: Positive,
 }
 
 /// Large enough against the rounding of a residual (1e-6), small enough against its curvature.
@@ -114,6 +116,10 @@ impl Bench<'_> {
             })?,
             turns: sensor(Corrected {
                 i_s: m.i_s + shunt,
+                ..*m
+            })?,
+            turns_lagging: sensor(Corrected {
+                i_s: m.i_s - shunt * Complex32::I,
                 ..*m
             })?,
         })

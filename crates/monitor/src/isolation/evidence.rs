@@ -4,11 +4,13 @@ use num_complex::Complex32;
 
 use super::cause::Cause;
 use super::directions::{Directions, Positive, impedance};
+use super::fit::Across;
 use super::gauss::Covariance;
-use super::healthy::{Healthy, ROWS, Row};
+use super::healthy::{Healthy, ROWS, Row, Uncertainty};
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
+use motor::TParams;
 
 /// A vector over the rows of evidence.
 pub type Rows = [f32; ROWS];
@@ -23,6 +25,11 @@ pub struct Evidence {
     scatter: Rows,
     positive: Directions,
     negative: Negative,
+    /// Standard deviation of the angle, rad, that the uncertain impedance of the negative sequence leaves open where a resistance
+    /// in series draws current through it.
+    turn: f32,
+    /// `I_2/I_1`.
+    unbalance: Complex32,
     /// Rise of the resistances at which all this was computed.
     rise: f32,
     /// The rows are those of the mirror image: see [`Window`].
@@ -82,6 +89,8 @@ impl Evidence {
             scatter,
             positive: positive.directions,
             negative,
+            turn: angle_left_open(window, measured, n_p, &healthy.uncertainty),
+            unbalance: window.i_s.unbalance(),
             rise: positive.rise,
             backwards: window.backwards,
         };
@@ -126,6 +135,8 @@ impl Evidence {
             scatter,
             positive: Directions::default(),
             negative,
+            turn: 0.0,
+            unbalance: window.i_s.unbalance(),
             rise: 0.0,
             backwards: window.backwards,
         };
@@ -193,14 +204,48 @@ impl Evidence {
             Cause::AllCurrents => self.all(&d.current),
             Cause::AllVoltages => self.all(&d.voltage),
             Cause::SpeedGain => self.all(&d.speed),
-            Cause::SeriesResistance(phase) => self.one(phase, &d.r_s, n.series, [no, no]),
-            Cause::Turns(phase) => self.one(phase, &d.turns, n.turns, [no, no]),
+            Cause::SeriesResistance(phase) => {
+                let current = self.current_in(phase);
+                self.one(&d.r_s, n.series * current, [no, no])
+            }
+            Cause::Turns(phase) => {
+                let (axis, _) = axes(phase, self.backwards);
+                self.one(&d.turns, n.turns * axis, [no, no])
+            }
             Cause::CurrentChannel(phase) => {
-                self.one(phase, &d.current, n.current, [Complex32::ONE, no])
+                let (axis, zero) = axes(phase, self.backwards);
+                self.one(&d.current, n.current * axis, [zero, no])
             }
             Cause::VoltageChannel(phase) => {
-                self.one(phase, &d.voltage, n.voltage, [no, Complex32::ONE])
+                let (axis, zero) = axes(phase, self.backwards);
+                self.one(&d.voltage, n.voltage * axis, [no, zero])
             }
+        }
+    }
+
+    /// A second direction of a cause, where it has one.
+    ///
+    /// `V_2 - Z_2 I_2` shows shorted turns and gains as they are, whatever the believed `Z_2` is. A resistance in series draws
+    /// `I_2 = -R I_1/(3 Z_2)` through the motor's own impedance: its row is turned by the angle between both. The loop of shorted
+    /// turns has a resistance and a leakage: its current lags its voltage by anything up to a quarter of a turn.
+    pub(crate) fn across(&self, cause: Cause) -> Option<Across<Rows>> {
+        let no = [Complex32::ZERO; 2];
+        match cause {
+            Cause::SeriesResistance(phase) => {
+                let by = Complex32::new(0.0, self.turn);
+                let across = self.negative.series * self.current_in(phase) * by;
+                (self.turn > 0.0).then(|| Across::Turned(self.one(&[0.0; 3], across, no)))
+            }
+            Cause::Turns(phase) if self.has_voltages() => {
+                let (axis, _) = axes(phase, self.backwards);
+                let lagging = self.negative.turns * axis * -Complex32::I;
+                Some(Across::Added(self.one(
+                    &self.positive.turns_lagging,
+                    lagging,
+                    no,
+                )))
+            }
+            _ => None,
         }
     }
 
@@ -210,20 +255,24 @@ impl Evidence {
         self.masked(assemble(positive, no, [no, no]))
     }
 
+    fn has_voltages(&self) -> bool {
+        self.negative.voltage != Complex32::ZERO
+    }
+
+    /// A phase's own current as its drop enters the negative sequence, per positive sequence: of three wires without a neutral.
+    fn current_in(&self, phase: Phase) -> Complex32 {
+        let (axis, _) = axes(phase, self.backwards);
+        axis + self.unbalance
+    }
+
+    /// A third of what all phases would show: `negative` and `zero` hold the phase's axis already.
     #[inline(never)]
-    fn one(
-        &self,
-        phase: Phase,
-        positive: &Positive,
-        negative: Complex32,
-        zero: [Complex32; 2],
-    ) -> Rows {
+    fn one(&self, positive: &Positive, negative: Complex32, zero: [Complex32; 2]) -> Rows {
         let third = 1.0 / 3.0;
-        let (axis, zero_axis) = axes(phase, self.backwards);
         let rows = assemble(
             &positive.map(|x| x * third),
-            negative * axis * third,
-            zero.map(|x| x * zero_axis * third),
+            negative * third,
+            zero.map(|x| x * third),
         );
         self.masked(rows)
     }
@@ -377,6 +426,34 @@ pub(crate) fn rows_of(
 pub(crate) fn rows_of_currents(window: &Window) -> Rows {
     let zero = [window.i_s.zero_ratio(), Complex32::ZERO];
     assemble(&[0.0; 3], window.i_s.unbalance(), zero)
+}
+
+/// Standard deviation of the angle of `Z_2` that the uncertain parameters leave open, rad: to first order, each by itself.
+fn angle_left_open(window: &Window, measured: &Corrected, n_p: f32, u: &Uncertainty) -> f32 {
+    let slip = (window.omega_sync + measured.omega_mech * n_p) / window.omega_sync;
+    let p = measured.params;
+    let z_2 = impedance(&p, window.omega_sync, slip);
+    let leakage = 1.0 + u.leakage;
+    let stator = TParams {
+        r_s: p.r_s * (1.0 + u.stator_resistance),
+        ..p
+    };
+    let rotor = TParams {
+        r_r: p.r_r * (1.0 + u.rotor_resistance),
+        ..p
+    };
+    let stray = TParams {
+        l_ls: p.l_ls * leakage,
+        l_lr: p.l_lr * leakage,
+        ..p
+    };
+    let squares = [stator, rotor, stray].map(|moved| {
+        let turned = impedance(&moved, window.omega_sync, slip) / z_2;
+        let angle = turned.im / turned.re;
+        angle * angle
+    });
+    let angle = libm::sqrtf(squares.iter().sum());
+    if angle.is_finite() { angle } else { 0.0 }
 }
 
 fn rows_with(window: &Window, positive: &Positive, negative: Complex32) -> Rows {

@@ -83,6 +83,17 @@ fn set<const N: usize>(row: &mut [f32; N], k: usize, x: f32) {
 const LEAST_SHARE: f32 = 1e-6;
 
 impl<const N: usize> Cholesky<N> {
+    /// Standard deviation of each row, given the rows before it.
+    pub fn deviations(&self) -> impl Iterator<Item = f32> {
+        let rows = self.lower.iter().enumerate();
+        rows.map(|(i, row)| entry(row, i))
+    }
+
+    /// Variance of each row.
+    pub fn variances(&self) -> impl Iterator<Item = f32> {
+        self.lower.iter().map(|row| dot(row, row))
+    }
+
     /// `L^-1 x`: white if `x` has this covariance.
     #[inline(never)]
     pub fn whiten(&self, x: &[f32; N]) -> [f32; N] {

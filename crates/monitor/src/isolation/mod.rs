@@ -8,14 +8,14 @@ pub(crate) mod calibrated;
 mod cause;
 mod directions;
 mod evidence;
+mod fit;
 pub mod gauss;
 mod healthy;
 mod temperature;
+mod weighing;
 
 #[cfg(test)]
 mod tests;
-
-use core::f32::consts::LN_2;
 
 pub use cause::{ALL_CAUSES, CAUSES, Cause};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
@@ -23,10 +23,11 @@ pub use temperature::Heating;
 
 pub(crate) use directions::{Bench, impedance};
 pub use evidence::Evidence;
-pub(crate) use evidence::{PositiveEvidence, rows_of, rows_of_currents};
-use gauss::dot;
+pub(crate) use evidence::{PositiveEvidence, Rows, rows_of, rows_of_currents};
+use fit::LEAST_INFORMATION;
 use temperature::MOST_APART;
 pub(crate) use temperature::Temperature;
+use weighing::{Weighing, square};
 
 /// What one window says about the causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,17 +66,17 @@ impl Isolation {
         let covariance = evidence.covariance(healthy, &resistances, deviations);
         let cholesky = covariance.factorise();
         let departure = evidence.departure_at(&resistances, [expected.rise, apart.rise]);
-        let white = cholesky.whiten(&departure);
-        let known = evidence.known_rows();
+        let weighing = Weighing::new(evidence, &cholesky, &departure);
+        let (white, known) = (weighing.white(), weighing.known());
         let resistances = resistances.map(|direction| cholesky.whiten(direction));
-        let along = Warmth::new(&resistances.heating(), &white);
-        let parting = Warmth::new(&resistances.parting(), &white);
-        let square = dot(&white, &white);
+        let along = Warmth::new(weighing.judged(&resistances.heating()), white);
+        let parting = Warmth::new(weighing.judged(&resistances.parting()), white);
+        let square = square(white);
         let mut isolation = Isolation {
             scores: [0.0; CAUSES],
-            unknown: score_of_anything(square, known),
+            unknown: weighing.anything(),
             sizes: [0.0; CAUSES],
-            significance: significance_of_anything(square, known),
+            significance: weighing.significance(),
             at_any_temperature: significance_of_anything(
                 along.square_at_any(square, healthy, expected),
                 known,
@@ -91,12 +92,12 @@ impl Isolation {
                 Cause::RotorResistance => resistances.rotor,
                 other => cholesky.whiten(&evidence.direction(other)),
             };
-            let fit = Fit::along(&direction, &white);
-            *size = fit.size;
-            *score = fit.score(cause, square, known);
-            if !fit.is_impossible(cause) {
-                longest = fit.square().max(longest);
-            }
+            let across = evidence.across(cause);
+            let across = across.map(|across| across.map(|rows| cholesky.whiten(rows)));
+            let weighed = weighing.weigh(cause, &direction, across.as_ref());
+            *score = weighed.score;
+            *size = weighed.size;
+            longest = weighed.square.max(longest);
         }
         isolation.significance = libm::sqrtf(longest).max(isolation.significance);
         isolation
@@ -134,51 +135,6 @@ pub fn probabilities(scores: &[f32; CAUSES], unknown: f32) -> ([f32; CAUSES], f3
     (weights, rest / sum)
 }
 
-/// Least squares along one direction, all white.
-struct Fit {
-    /// Squared length of the direction per unit change.
-    information: f32,
-    size: f32,
-}
-
-impl Fit {
-    fn along(direction: &[f32; ROWS], departure: &[f32; ROWS]) -> Self {
-        let information = dot(direction, direction);
-        let size = dot(direction, departure) / information.max(LEAST_INFORMATION);
-        Fit { information, size }
-    }
-
-    /// Squared length of the departure along the direction.
-    fn square(&self) -> f32 {
-        self.information * self.size * self.size
-    }
-
-    fn is_impossible(&self, cause: Cause) -> bool {
-        cause.only_adds() && self.size < 0.0
-    }
-
-    /// Logarithm of the Bayes factor against health for a change of the cause's typical size, normally distributed,
-    /// whose direction is only roughly the computed one. `square`: squared length of the whole departure.
-    fn score(&self, cause: Cause, square: f32, known: usize) -> f32 {
-        if self.is_impossible(cause) {
-            return IMPOSSIBLE;
-        }
-        let typical = cause.typical_size();
-        let k = self.information * typical * typical;
-        let along = self.square();
-        let astray = cause.looseness() * cause.looseness() * along;
-        // Shares first: their products with lengths may exceed single precision.
-        let explained = along * (k / (1.0 + k)) + (square - along) * (astray / (1.0 + astray));
-        let others = (known as f32 - 1.0).max(0.0);
-        let both_signs = if cause.only_adds() { LN_2 } else { 0.0 };
-        0.5 * explained - 0.5 * ln(1.0 + k) - 0.5 * others * ln(1.0 + astray) + both_signs
-    }
-}
-
-/// A direction without length says nothing about its cause.
-const LEAST_INFORMATION: f32 = 1e-12;
-/// Score of a cause whose sign is impossible.
-const IMPOSSIBLE: f32 = -1e3;
 /// Departures of an unknown kind are held to be this many standard deviations long in every row.
 const UNKNOWN_SPREAD: f32 = 100.0;
 
@@ -210,10 +166,11 @@ struct Warmth {
 }
 
 impl Warmth {
-    fn new(direction: &[f32; ROWS], white: &[f32; ROWS]) -> Self {
+    fn new(direction: &[f32], white: &[f32]) -> Self {
+        let products = direction.iter().zip(white).map(|(d, x)| d * x);
         Warmth {
-            information: dot(direction, direction),
-            along: dot(direction, white),
+            information: square(direction),
+            along: products.sum(),
         }
     }
 

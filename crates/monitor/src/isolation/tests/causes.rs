@@ -124,6 +124,74 @@ fn shorted_turns_are_named_in_their_phase() {
     of_phases(Cause::Turns).for_each(|cause| assert_named(cause, 0.15));
 }
 
+/// A loose contact of several times the winding's resistance is as much a contact as one of a fifth of it.
+#[test]
+fn a_large_series_resistance_is_no_shorted_turn() {
+    for by in [1.0, 2.0, 4.0] {
+        for cause in of_phases(Cause::SeriesResistance) {
+            let (named, probability) = likeliest(&isolated(&changed(cause, by)));
+            assert_eq!(named, Some(cause), "by {by}: {probability}");
+        }
+    }
+}
+
+/// The loop's resistance and leakage decide on the angle of its current. Where a quarter of a turn is behind, what is in all phases alike
+/// (magnetizing current, leakage) has a share of it, but no negative sequence.
+#[test]
+fn shorted_turns_are_named_in_their_phase_however_their_current_lags() {
+    for phase in Phase::ALL {
+        for lag_deg in [15.0_f64, 45.0, 75.0, 90.0] {
+            let cause = Cause::Turns(phase);
+            let mut plant = changed(cause, 0.15);
+            plant.lag = lag_deg.to_radians();
+            let isolation = isolated(&plant);
+            let (named, probability) = likeliest(&isolation);
+            assert_eq!(named, Some(cause), "{lag_deg} deg: {probability}");
+            let place = ALL_CAUSES.iter().position(|c| *c == cause);
+            let size = isolation.sizes[place.expect("listed")];
+            assert!((size / 0.15 - 1.0).abs() < 0.15, "{lag_deg} deg: {size}");
+        }
+    }
+}
+
+/// No motor without a neutral feels where the supply's neutral is.
+#[test]
+fn a_displaced_neutral_lights_nothing() {
+    for share in [0.002, 0.005, 0.01, 0.03, 0.1, 0.5] {
+        for turn in [1.0, 100.0, 200.0_f64] {
+            let mut plant = Plant::healthy();
+            plant.neutral = share * num_complex::Complex64::cis(turn.to_radians());
+            let isolation = isolated(&plant);
+            assert!(
+                isolation.significance < 0.9 * statistics().significance,
+                "{share}: {isolation:?}"
+            );
+        }
+    }
+}
+
+/// With the neutral displaced by 1 % what the other rows show is still seen, a voltage channel by the negative sequence alone.
+#[test]
+fn a_displaced_neutral_hides_no_fault() {
+    for (cause, by) in [
+        (Cause::SeriesResistance(Phase::B), 0.5),
+        (Cause::Turns(Phase::A), 0.15),
+        (Cause::CurrentChannel(Phase::C), 0.05),
+        (Cause::VoltageChannel(Phase::A), 0.05),
+    ] {
+        let mut plant = changed(cause, by);
+        plant.neutral = num_complex::Complex64::new(0.0, 0.01);
+        let isolation = isolated(&plant);
+        assert!(
+            isolation.significance > statistics().significance,
+            "{cause:?}: {isolation:?}"
+        );
+        if !matches!(cause, Cause::VoltageChannel(_)) {
+            assert_eq!(likeliest(&isolation).0, Some(cause), "{isolation:?}");
+        }
+    }
+}
+
 /// The three numbers of the positive sequence leave resistances nearly as likely as a voltage gain: 0.28 and 0.15 to 0.35.
 #[test]
 fn gains_of_all_phases_are_the_likeliest_cause() {

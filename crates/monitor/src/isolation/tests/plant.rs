@@ -27,6 +27,10 @@ pub struct Plant {
     pub series: [f64; 3],
     /// Current through shorted turns of each phase in phase with its voltage, as a share of the motor's current.
     pub shorted: [f64; 3],
+    /// Angle by which that current lags, rad.
+    pub lag: f64,
+    /// Displacement of the supply's neutral, against which voltages are measured, as a share of the voltage.
+    pub neutral: Complex64,
 }
 
 impl Plant {
@@ -39,6 +43,8 @@ impl Plant {
             speed_gain: 1.0,
             series: [0.0; 3],
             shorted: [0.0; 3],
+            lag: 0.0,
+            neutral: Complex64::ZERO,
         }
     }
 
@@ -73,7 +79,8 @@ impl Plant {
         }
         let voltages = phases(point.u_s);
         for (k, share) in self.shorted.iter().enumerate() {
-            let shunt = voltages[k] / AMPLITUDE * point.i_s.norm() * *share;
+            let lagging = Complex64::cis(-self.lag);
+            let shunt = voltages[k] / AMPLITUDE * point.i_s.norm() * *share * lagging;
             currents[k] += shunt;
             // Three wires carry no zero sequence.
             currents
@@ -85,7 +92,7 @@ impl Plant {
 
     pub fn window(&self) -> Window {
         let point = self.point();
-        let [ua, ub, uc] = phases(point.u_s);
+        let [ua, ub, uc] = phases(point.u_s).map(|u| u + AMPLITUDE * self.neutral);
         let [ia, ib, ic] = self.currents(&point);
         let mut channels = [ua, ub, uc, ia, ib, ic];
         for (x, gain) in channels.iter_mut().zip(self.gains) {

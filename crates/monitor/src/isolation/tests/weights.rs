@@ -4,9 +4,11 @@ use core::f64::consts::TAU;
 
 use super::plant::{Plant, evidence, statistics};
 use crate::checks::sensors::Phase;
+use crate::isolation::fit::{Direction, Fit, IMPOSSIBLE};
+use crate::isolation::gauss::dot;
 use crate::isolation::{
-    ALL_CAUSES, Cause, Fit, Heating, IMPOSSIBLE, Isolation, ROWS, Warmth, dot, probabilities,
-    score_of_anything, significance_of_anything,
+    ALL_CAUSES, Cause, Heating, Isolation, ROWS, Warmth, probabilities, score_of_anything,
+    significance_of_anything,
 };
 
 /// Density of a normal distribution of this variance.
@@ -32,15 +34,18 @@ fn rows(values: &[f32]) -> [f32; ROWS] {
 
 fn score(direction: &[f32], departure: &[f32], cause: Cause) -> f64 {
     let (direction, departure) = (rows(direction), rows(departure));
-    let fit = Fit::along(&direction, &departure);
-    let known = departure.iter().filter(|x| **x != 0.0).count();
-    f64::from(fit.score(cause, dot(&departure, &departure), known))
+    let known = departure.map(|x| x != 0.0);
+    let direction = Direction {
+        along: &direction,
+        across: None,
+    };
+    f64::from(Fit::of(cause, &direction, &departure, &known).score(cause))
 }
 
 #[test]
 fn a_score_in_one_row_is_the_bayes_factor() {
-    for (x, direction) in [(4.0, 20.0), (-4.0, 20.0), (0.5, 3.0), (7.0, 1.0)] {
-        for cause in [Cause::StatorResistance, Cause::Friction, Cause::SpeedGain] {
+    for (x, direction) in [(4.0, 20.0), (-4.0, 20.0), (0.5, 3.0), (7.0, 30.0)] {
+        for cause in [Cause::StatorResistance, Cause::Friction] {
             let got = score(&[direction], &[x], cause);
             let typical = f64::from(cause.typical_size());
             let expected = integrated(f64::from(x), f64::from(direction), typical);
@@ -48,6 +53,25 @@ fn a_score_in_one_row_is_the_bayes_factor() {
                 (got - expected).abs() < 1e-3 * (1.0 + expected.abs()),
                 "{got} {expected}"
             );
+        }
+    }
+}
+
+/// A size beyond the typical one is rare in proportion: normal with the scale `s`, of which `1/s^2` is left to larger ones. What the
+/// score takes is the scale of the size itself, which is within a factor of three of the integral over all scales.
+#[test]
+fn a_large_size_is_rare_and_not_impossible() {
+    for (x, direction) in [(12.0, 20.0), (-15.0, 5.0), (9.0, 3.0), (6.0, 100.0)] {
+        for cause in [Cause::StatorResistance, Cause::SpeedGain] {
+            let typical = f64::from(cause.typical_size());
+            // u = typical/s is uniform.
+            let scales = (1..=200).map(|k| typical * 200.0 / (f64::from(k) - 0.5));
+            let all: Vec<f64> = scales.map(|s| integrated(x, direction, s)).collect();
+            let best = all.iter().copied().fold(f64::MIN, f64::max);
+            let sum: f64 = all.iter().map(|ln| (ln - best).exp()).sum();
+            let expected = best + (sum / 200.0).ln();
+            let got = score(&[direction as f32], &[x as f32], cause);
+            assert!((got - expected).abs() < 3.0_f64.ln(), "{got} {expected}");
         }
     }
 }
@@ -84,8 +108,12 @@ fn what_lies_beside_the_direction_costs_as_much_as_its_density() {
 
 #[test]
 fn a_direction_without_length_explains_nothing() {
-    let fit = Fit::along(&[0.0; ROWS], &rows(&[3.0]));
-    assert_eq!((fit.size, fit.square()), (0.0, 0.0));
+    let direction = Direction {
+        along: &[0.0; ROWS],
+        across: None,
+    };
+    let fit = Fit::of(Cause::Leakage, &direction, &rows(&[3.0]), &[true; ROWS]);
+    assert_eq!((fit.size(), fit.square()), (0.0, 0.0));
 }
 
 /// Something else: a hundred standard deviations in every row.

@@ -1,0 +1,206 @@
+//! All causes weighed against one white departure, with the supply's neutral where it was, and with it displaced.
+//!
+//! Voltages against earth or the supply's neutral hold its displacement `V_0`, which no motor without a neutral feels. What it does
+//! is the supply's affair, not a fault of the motor: FAULT rests on the other rows. A voltage channel moves `V_0` and the negative
+//! sequence together, and is named by both.
+
+use super::fit::{Across, Direction, Fit};
+use super::gauss::Cholesky;
+use super::{Cause, Evidence, ROWS, Row, Rows, ln, score_of_anything, significance_of_anything};
+
+/// How often a supply's neutral has moved since the calibration, against all other times.
+const DISPLACED: f32 = 0.1;
+/// A displacement that is usual, as a share of the voltage; a larger one is rare in proportion.
+const USUAL_DISPLACEMENT: f32 = 0.02;
+/// The zero sequence of the voltages is the end of the rows: without it a white vector is its beginning.
+const BEFORE_ZERO_VOLTAGE: usize = Row::ZeroVoltage as usize;
+
+/// Beyond so many standard deviations the neutral has moved, whatever else has happened.
+const MOVED: f32 = 4.0;
+
+/// A departure in white rows.
+pub(super) struct Weighing {
+    white: Rows,
+    known: [bool; ROWS],
+    /// `None` where `V_0` cannot be told from other rows.
+    neutral: Option<Neutral>,
+}
+
+/// The supply's neutral beside the one of the calibration.
+struct Neutral {
+    /// Logarithm of how much better a displaced one explains `V_0` where nothing else has changed.
+    better: f32,
+    /// What that explanation costs, as a squared length: how rare a displacement of this size is.
+    cost: f32,
+    has_moved: bool,
+}
+
+/// What is said of one cause.
+pub(super) struct Weighed {
+    /// Logarithm of the Bayes factor against health.
+    pub score: f32,
+    /// Relative change.
+    pub size: f32,
+    /// Squared length of the departure that it explains, where its sign is possible.
+    pub square: f32,
+}
+
+impl Weighing {
+    /// `departure`: before it was made white by the factor.
+    pub fn new(evidence: &Evidence, cholesky: &Cholesky<ROWS>, departure: &Rows) -> Self {
+        let white = cholesky.whiten(departure);
+        let known = *evidence.known();
+        let is_known = |row: Row| known.get(row as usize).copied().unwrap_or(false);
+        let both = is_known(Row::ZeroVoltage) && is_known(Row::Negative);
+        Weighing {
+            neutral: both.then(|| Neutral::of(cholesky, departure, &white)),
+            white,
+            known,
+        }
+    }
+
+    /// The white rows that speak of motor and instrument.
+    pub fn white(&self) -> &[f32] {
+        self.judged(&self.white)
+    }
+
+    /// How many of these are known.
+    pub fn known(&self) -> usize {
+        count(self.judged(&self.known))
+    }
+
+    /// The rows of a white vector that speak of motor and instrument: all of them while the neutral stays, which also tells the
+    /// channels' gains from what the motor does.
+    pub fn judged<'a, T>(&self, rows: &'a [T; ROWS]) -> &'a [T] {
+        let has_moved = self
+            .neutral
+            .as_ref()
+            .is_some_and(|neutral| neutral.has_moved);
+        let judged = if has_moved { BEFORE_ZERO_VOLTAGE } else { ROWS };
+        first(rows, judged)
+    }
+
+    /// Weighs one cause by its white directions.
+    pub fn weigh(&self, cause: Cause, along: &Rows, across: Option<&Across<Rows>>) -> Weighed {
+        let all = self.fit(cause, along, across, ROWS);
+        let Some(neutral) = &self.neutral else {
+            return Weighed::new(cause, &all, all.possible_square(cause));
+        };
+        let without = self.fit(cause, along, across, BEFORE_ZERO_VOLTAGE);
+        let square = neutral.either(all.possible_square(cause), without.possible_square(cause));
+        let health = neutral.better.max(0.0);
+        let mut weighed = if without.score(cause) + neutral.better > all.score(cause) {
+            let mut weighed = Weighed::new(cause, &without, square);
+            weighed.score += neutral.better;
+            weighed
+        } else {
+            Weighed::new(cause, &all, square)
+        };
+        weighed.score -= health;
+        weighed
+    }
+
+    /// Length of the whole departure as a standard deviation that is as rare.
+    pub fn significance(&self) -> f32 {
+        let all = significance_of_anything(square(&self.white), count(&self.known));
+        let Some(neutral) = &self.neutral else {
+            return all;
+        };
+        let (square, known) = self.without_neutral();
+        let without = significance_of_anything(square, known);
+        // Shorter than most departures is negative.
+        let longer = without.max(0.0);
+        all.min(libm::sqrtf(neutral.either(f32::INFINITY, longer * longer)))
+    }
+
+    /// Least squares over the first rows.
+    fn fit(&self, cause: Cause, along: &Rows, across: Option<&Across<Rows>>, rows: usize) -> Fit {
+        let direction = Direction {
+            along: first(along, rows),
+            across: across.map(|across| across.map(|across| first(across, rows))),
+        };
+        Fit::of(
+            cause,
+            &direction,
+            first(&self.white, rows),
+            first(&self.known, rows),
+        )
+    }
+
+    /// Logarithm of the Bayes factor of a departure in any direction.
+    pub fn anything(&self) -> f32 {
+        let all = score_of_anything(square(&self.white), count(&self.known));
+        let Some(neutral) = &self.neutral else {
+            return all;
+        };
+        let (square, known) = self.without_neutral();
+        let without = score_of_anything(square, known);
+        all.max(without + neutral.better) - neutral.better.max(0.0)
+    }
+
+    /// Squared length of the rows before `V_0`, and how many of these are known.
+    fn without_neutral(&self) -> (f32, usize) {
+        let white = first(&self.white, BEFORE_ZERO_VOLTAGE);
+        (
+            square(white),
+            count(first(&self.known, BEFORE_ZERO_VOLTAGE)),
+        )
+    }
+}
+
+impl Weighed {
+    fn new(cause: Cause, fit: &Fit, square: f32) -> Self {
+        Weighed {
+            score: fit.score(cause),
+            size: cause.change(fit.size()),
+            square,
+        }
+    }
+}
+
+impl Neutral {
+    /// Densities of `V_0`: normal with the spread of a displacement, against that of the healthy motor given the rows before.
+    fn of(cholesky: &Cholesky<ROWS>, departure: &Rows, white: &Rows) -> Self {
+        let end = |rows: &Rows| square(rows.get(BEFORE_ZERO_VOLTAGE..).unwrap_or_default());
+        let displacement = end(departure);
+        let spread = libm::sqrtf(displacement).max(USUAL_DISPLACEMENT);
+        let rarity = ln(spread / USUAL_DISPLACEMENT);
+        let own: f32 = cholesky
+            .deviations()
+            .skip(BEFORE_ZERO_VOLTAGE)
+            .map(ln)
+            .sum();
+        let there = -0.5 * displacement / (spread * spread) - 2.0 * ln(spread);
+        let against = rarity - there - own - ln(DISPLACED);
+        let variance: f32 = cholesky.variances().skip(BEFORE_ZERO_VOLTAGE).sum();
+        Neutral {
+            better: 0.5 * end(white) - against,
+            cost: 2.0 * against.max(0.0),
+            has_moved: displacement > 0.5 * MOVED * MOVED * variance,
+        }
+    }
+
+    /// A squared length that a healthy motor may owe to its own neutral or to a displaced one.
+    fn either(&self, all: f32, without: f32) -> f32 {
+        if self.has_moved {
+            without
+        } else {
+            all.min(without + self.cost)
+        }
+    }
+}
+
+/// Squared length.
+pub(super) fn square(rows: &[f32]) -> f32 {
+    rows.iter().map(|x| x * x).sum()
+}
+
+fn first<T>(rows: &[T; ROWS], count: usize) -> &[T] {
+    rows.get(..count).unwrap_or_default()
+}
+
+fn count(known: &[bool]) -> usize {
+    known.iter().filter(|known| **known).count()
+}
+
+const _: () = assert!(BEFORE_ZERO_VOLTAGE + 2 == ROWS);
