@@ -63,6 +63,27 @@ fn ranked(load_friction: bool, weigh: &mut dyn FnMut(&mut Tell<'_>)) -> Vec<Cand
     all
 }
 
+/// Puts broken bars first, as likely as all other causes together: bars shake every window, and what a shaken window says of other
+/// causes may be theirs.
+pub fn suspect_bars(candidates: &mut Vec<Candidate>) {
+    if candidates
+        .iter()
+        .any(|candidate| candidate.fault == FaultId::Bars)
+    {
+        return;
+    }
+    for candidate in candidates.iter_mut() {
+        candidate.probability *= 0.5;
+    }
+    let bars = Candidate {
+        fault: FaultId::Bars,
+        phase: None,
+        probability: 0.5,
+        size_percent: None,
+    };
+    candidates.insert(0, bars);
+}
+
 /// Those that are worth a line.
 pub fn listed(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     candidates.retain(|candidate| candidate.probability >= LEAST_PROBABILITY);

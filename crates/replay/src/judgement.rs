@@ -42,6 +42,22 @@ pub struct NotJudgedShare {
     pub windows: u64,
 }
 
+impl NotJudgedShare {
+    /// Whether the motor was not running then, or only just supplied.
+    pub(crate) fn is_idle(&self) -> bool {
+        let Unjudged::ByCore(reason) = self.reason else {
+            return false;
+        };
+        matches!(
+            reason,
+            NotJudged::NotLocked
+                | NotJudged::Settling
+                | NotJudged::Supply(_)
+                | NotJudged::NoLoadCurrent
+        )
+    }
+}
+
 /// Reasons, counted.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reasons(Vec<NotJudgedShare>);

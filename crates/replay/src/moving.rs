@@ -132,13 +132,16 @@ impl MotionSummary {
     }
 
     /// What a recording comes to whose windows at rest come to `at_rest`: FAULT at rest or in motion; healthy where either was judged and
-    /// neither lit; not judged where something came in motion that no fault explains.
-    pub fn state_with(&self, at_rest: VerdictState) -> VerdictState {
+    /// neither lit; not judged where something came in motion that no fault explains, or where FAULT was raised at rest of which no
+    /// window could be judged.
+    pub(crate) fn state_with(&self, at_rest: VerdictState, raised_at_rest: bool) -> VerdictState {
         match at_rest {
             VerdictState::Fault => VerdictState::Fault,
             _ if self.is_fault() => VerdictState::Fault,
             _ if !self.unexplained.is_empty() => VerdictState::NotJudged,
-            VerdictState::NotJudged if self.is_healthy() => VerdictState::Healthy,
+            VerdictState::NotJudged if self.is_healthy() && !raised_at_rest => {
+                VerdictState::Healthy
+            }
             state => state,
         }
     }

@@ -49,6 +49,12 @@ pub struct RotorSummary {
 }
 
 impl RotorSummary {
+    /// Whether the sidebands are as large as broken bars make them, in fewer blocks than it takes to be sure.
+    pub fn is_suspected(&self) -> bool {
+        let is_large = |lower: f64| lower >= self.broken_from_percent;
+        self.state == RotorCage::Doubtful && self.lower_sideband_percent.is_some_and(is_large)
+    }
+
     /// The lower sideband over that at calibration, where both are known and the latter can be divided by.
     pub fn growth(&self) -> Option<f64> {
         let before = self.at_calibration_percent.filter(|x| *x >= LEAST_BEFORE)?;

@@ -2,6 +2,8 @@
 
 /// Standard deviation of the gain of a voltage or current channel.
 pub const CHANNEL_GAIN: f64 = 0.003;
+/// Standard deviation of the offset of a voltage or current channel, a share of the rated amplitude.
+pub const CHANNEL_OFFSET: f64 = 0.003;
 /// Standard deviation of the gain of a torque transducer.
 pub const TORQUE_GAIN: f64 = 0.005;
 /// Standard deviation of the gain of a speed: an encoder against the clock of the recorder.

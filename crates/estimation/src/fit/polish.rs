@@ -3,13 +3,15 @@
 //! Channels of class 0.5 show an unbalance that is not there. The negative-sequence current that a model answers with
 //! is the smaller the larger its leakage: with no other way out a fit turns the error of the channels into leakage. For
 //! the parameters that are reported the gains of the voltage and current channels are fitted too, believed to be right
-//! within their class. What effects are missing is asked without them: a channel that is further off is a finding.
+//! within their class. So are their offsets: a constant voltage that is not there drives a large constant current through the
+//! model, and the fit takes a resistance of several times the motor's for the reason why none is measured. What effects are
+//! missing is asked without them: a channel that is further off is a finding.
 
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
 use crate::model::prior::N_NOMINAL;
 use motor::effect::{EffectConfig, Instrument};
-use motor::effects::gain_of;
+use motor::effects::{gain_of, offset_of};
 
 /// The instruments whose gains are fitted.
 const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents];
@@ -39,6 +41,14 @@ pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
             }
         };
         any = true;
+    }
+    for instrument in INSTRUMENTS {
+        let is_offset = |c: &EffectConfig| c.effect.offset_of() == Some(instrument);
+        if !held.clone().any(is_offset) {
+            let offsets = EffectConfig::absent(offset_of(instrument)?, rated);
+            here = here.with_instrument(offsets, rated);
+            any = true;
+        }
     }
     if !any {
         return None;

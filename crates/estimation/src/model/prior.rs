@@ -1,6 +1,6 @@
 //! What the user believes, and hypotheses about how it is wrong.
 
-use crate::data::instrument_class::CHANNEL_GAIN;
+use crate::data::instrument_class::{CHANNEL_GAIN, CHANNEL_OFFSET};
 use motor::effect::{
     Effect, EffectConfig, Instrument, Parameter, Plant, Rated, Role, curve, expression, rated,
 };
@@ -327,7 +327,14 @@ impl Hypothesis {
         }
         let p = self.parameter(k);
         match p.role {
-            Role::Size if self.is_prior(k) => (CHANNEL_GAIN / p.typical, 0.0),
+            Role::Size if self.is_prior(k) => {
+                let effect = self.effects[self.effect_of(k)].effect;
+                let class = match effect.offset_of() {
+                    Some(_) => CHANNEL_OFFSET,
+                    None => CHANNEL_GAIN,
+                };
+                (class / p.typical, 0.0)
+            }
             Role::Size => (self.size_deviation(k), 0.0),
             _ => (
                 SHAPE_PRIOR,

@@ -53,10 +53,7 @@ impl Config {
             return Ok(path.to_owned());
         }
         let document = Document::parse(&read_text(path)?, &path.display().to_string())?;
-        let section = document
-            .root()
-            .section("store", "which says where everything is kept");
-        let file = section.and_then(|s| s.text("path", "the file in which everything is kept"));
+        let file = stored_at(&document.root());
         let folder = folder_of(path);
         document.finish(file.map(|file| folder.join(file)))
     }
@@ -65,6 +62,20 @@ impl Config {
     pub fn no_outputs(_: &Section<'_>) -> Option<()> {
         Some(())
     }
+}
+
+/// The file of `[store]`; the other sections are not read, so that what is missing must be told here.
+fn stored_at(root: &Section<'_>) -> Option<String> {
+    const MEANING: &str = "the file in which everything is kept";
+    let section = root.optional_section("store")?;
+    let Some(section) = section.filter(|section| section.has("path")) else {
+        root.report(
+            "store.path",
+            format!("is missing, {MEANING}: give the configuration that drivemon gateway takes"),
+        );
+        return None;
+    };
+    section.text("path", MEANING)
 }
 
 fn of_root(root: &Section<'_>, path: &Path) -> Option<Config> {

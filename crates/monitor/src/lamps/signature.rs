@@ -32,8 +32,10 @@ pub struct Candidates {
     pub unknown: f32,
 }
 
-/// Likelihood of any pattern under "none of the rows": one of the sixteen patterns, each as likely.
-const UNKNOWN_LIKELIHOOD: f32 = 1.0 / 16.0;
+/// Share of "none of the rows" that lights all four: a motor file that is not this motor's, several faults, or a fault that the table
+/// does not hold (broken bars, shorted turns). The rest is one of the sixteen patterns, each as likely.
+const ALL_LIT: f32 = 0.5;
+const ANY_PATTERN: f32 = (1.0 - ALL_LIT) / 16.0;
 
 impl Candidates {
     /// From residuals normalised so that 1 is the threshold. All rows are held equally likely beforehand.
@@ -44,7 +46,7 @@ impl Candidates {
         let on = normalised.map(chance_on);
         let mut candidates = Candidates {
             faults: [0.0; FAULTS],
-            unknown: UNKNOWN_LIKELIHOOD,
+            unknown: ALL_LIT * likelihood_of(&[true; RESIDUALS], &on) + ANY_PATTERN,
         };
         for (likelihood, (_, pattern)) in candidates.faults.iter_mut().zip(&TABLE_1) {
             *likelihood = likelihood_of(pattern, &on);
@@ -188,16 +190,26 @@ mod tests {
     /// One residual at its threshold, the others far from theirs: the rows that differ in it alone share half and half.
     #[test]
     fn a_residual_at_its_threshold_counts_half_for_either() {
-        // `R_s` and `R_r` (I00I) against `L_s` and `V_q` (I0II): each row has a likelihood of one half, "none" 1/16.
+        // `R_s` and `R_r` (I00I) against `L_s` and `V_q` (I0II): each row has a likelihood of one half, "none" 1/32.
         let candidates = Candidates::from_normalised(&[9.0, 0.0, 1.0, 9.0]);
-        let expected = 0.5 / (4.0 * 0.5 + 1.0 / 16.0);
+        let expected = 0.5 / (4.0 * 0.5 + 1.0 / 32.0);
         for place in [0, 1, 2, 7] {
             assert!(
                 (candidates.faults[place] - expected).abs() < 1e-4,
                 "{candidates:?}"
             );
         }
-        assert!((candidates.unknown - expected / 8.0).abs() < 1e-4);
+        assert!((candidates.unknown - expected / 16.0).abs() < 1e-4);
+    }
+
+    /// A wrong motor file lights all four as the rotor's inductance does.
+    #[test]
+    fn all_four_lit_is_a_tie_with_none_of_the_rows() {
+        let candidates = Candidates::from_normalised(&[5.0, -4.0, 9.0, 3.0]);
+        let inductance = probability([5.0, -4.0, 9.0, 3.0], FaultId::RotorInductance);
+        let ratio = inductance / candidates.unknown;
+        assert!((ratio - 1.0 / (0.5 + 1.0 / 32.0)).abs() < 1e-3, "{ratio}");
+        assert!(ratio < crate::TIE_RATIO);
     }
 
     /// `x^8/(1 + x^8)`: 96 per cent at one and a half thresholds, 4 at two thirds.

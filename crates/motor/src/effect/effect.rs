@@ -172,6 +172,11 @@ pub trait Effect: SteadyEffect {
         None
     }
 
+    /// The instrument whose offset this effect is: each parameter is a constant that one channel adds.
+    fn offset_of(&self) -> Option<Instrument> {
+        None
+    }
+
     /// The instrument whose gains no recording tells from this effect.
     fn hides_gain_of(&self) -> Option<Instrument> {
         self.gain_of()

@@ -27,11 +27,15 @@ steady_effect!(CurrentOffset, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::CurrentOffset;
-    use crate::effect::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Instrument, Outputs, Rated};
 
     impl Effect for CurrentOffset {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Outputs]
+        }
+
+        fn offset_of(&self) -> Option<Instrument> {
+            Some(Instrument::Currents)
         }
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {

@@ -84,6 +84,13 @@ pub fn gain_of(instrument: Instrument) -> Option<&'static dyn Effect> {
     ALL.iter().find(is_gain).copied()
 }
 
+/// The effect that is the offset of an instrument's channels, where one is in the library.
+#[cfg(feature = "std")]
+pub fn offset_of(instrument: Instrument) -> Option<&'static dyn Effect> {
+    let is_offset = |e: &&&'static dyn Effect| e.offset_of() == Some(instrument);
+    ALL.iter().find(is_offset).copied()
+}
+
 /// The effect that breaks the symmetry of a winding; each has exactly one, which the tests of the library hold.
 #[cfg(feature = "std")]
 pub fn asymmetry_of(side: Side) -> Option<&'static dyn Effect> {

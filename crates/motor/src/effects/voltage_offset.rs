@@ -28,7 +28,7 @@ steady_effect!(VoltageOffset, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::VoltageOffset;
     use crate::dynamic::clarke;
-    use crate::effect::{Effect, Hook, Inputs, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Instrument, Outputs, Rated};
 
     impl Effect for VoltageOffset {
         fn hooks(&self) -> &'static [Hook] {
@@ -38,6 +38,10 @@ mod dynamic {
         fn inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) {
             let offset = clarke([p[0], p[1], p[2]]);
             inputs.u_s.iter_mut().for_each(|u| *u -= offset);
+        }
+
+        fn offset_of(&self) -> Option<Instrument> {
+            Some(Instrument::Voltages)
         }
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {

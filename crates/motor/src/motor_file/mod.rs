@@ -73,6 +73,11 @@ impl MotorFile {
     /// All problems of the content with line, key, range and remedy.
     pub fn parse(text: &str, file_label: &str) -> Result<MotorFile, FileError> {
         let document = Document::parse(text, file_label)?;
+        if is_plate(&document.root()) {
+            const ADVICE: &str = "this is a plate and no motor file: give it with --plate, or make a motor file of it with `drivemon motor new`";
+            document.report(1, "", ADVICE);
+            return document.finish(None);
+        }
         let motor = read_document(&document);
         document.finish(motor)
     }
@@ -94,6 +99,12 @@ impl MotorFile {
     pub fn to_toml(&self) -> String {
         write::to_toml(self)
     }
+}
+
+/// A plate has its values at the top of the file, a motor file in sections.
+fn is_plate(root: &Section<'_>) -> bool {
+    let has_power = root.has("power_kw") || root.has("power_hp");
+    has_power && !root.has("nameplate") && !root.has("parameters")
 }
 
 /// Reads `[[effects]]` of a file's top level: motor files and scenario files share the form.

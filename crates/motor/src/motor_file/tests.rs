@@ -216,6 +216,15 @@ fn nameplate_quantities_follow_from_the_plate() {
 }
 
 #[test]
+fn a_plate_is_told_to_be_one() {
+    let plate = "name = \"Pump 3\"\npower_kw = 2.2\nvoltage_volt = 400\n";
+    let error = MotorFile::parse(plate, "pump.toml").expect_err("no motor file");
+    let problems = error.problems();
+    assert_eq!(problems.len(), 1, "{error}");
+    assert!(error.to_string().contains("--plate"), "{error}");
+}
+
+#[test]
 fn all_problems_of_a_file_are_reported_together() {
     let text = SMALLEST
         .replace("pole_pairs = 2", "pole_pairs = 0")

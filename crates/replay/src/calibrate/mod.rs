@@ -128,6 +128,7 @@ pub fn calibrate_pieces(
         let beliefs = fit::Beliefs::new(&believed, &monitor_of)?;
         let fitted = fit::fit(&beliefs, &observed, &monitor_of)?;
         refuse::implausible(&beliefs, &fitted, recordings)?;
+        refuse::misfit(&fitted, recordings)?;
         let errors = uncertainty::standard_errors(&beliefs, &fitted, &observed, &monitor_of)?;
         (fitted, errors)
     } else {

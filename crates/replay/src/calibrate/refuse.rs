@@ -35,6 +35,27 @@ pub fn implausible(
     }
 }
 
+/// What may remain of a residual after the fit, a share of its scale: several percent are an effect that the model misses, a fifth is
+/// another motor, another scale or a late channel.
+const LARGEST_MISFIT: f64 = 0.2;
+
+/// Refuses a fit after which the model is still far from the recordings: thresholds as wide as that would hide every fault.
+pub fn misfit(fitted: &Fitted, recordings: &[&dyn Pieces]) -> Result<(), Refusal> {
+    let names_of_rows = ["torque balance", "e_d", "e_q"];
+    let mut rows = names_of_rows.iter().zip(fitted.misfit);
+    match rows.find(|(_, misfit)| *misfit > LARGEST_MISFIT) {
+        None => Ok(()),
+        Some((row, misfit)) => Err(Refusal::new(
+            &names(recordings),
+            format!(
+                "{:.0} % of the scale of the {row} remain with the parameters that fit best: this is not the motor of the motor file, a scale is \
+                 wrong (rms values, a clamp's factor), or channels are late; see what the audit of `drivemon check` and `drivemon explain` say",
+                100.0 * misfit
+            ),
+        )),
+    }
+}
+
 fn names(recordings: &[&dyn Pieces]) -> String {
     let names: Vec<&str> = recordings.iter().map(|one| one.name()).collect();
     names.join(", ")

@@ -8,7 +8,7 @@ use recording::Recording;
 use super::balance::Balance;
 use super::caveat::caveat;
 use super::clamp::{ClampSignal, clamp_signals};
-use super::doubts::doubts;
+use super::doubts::{doubts, hardly_judged, hardly_visible};
 use super::{BlindSpot, Checked, Told, VerdictState, blind, blind_spots, severity, todo};
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
 use crate::{MotionSummary, NotJudgedShare, Replay, Samples, Timeline, config_for, replay, words};
@@ -159,15 +159,22 @@ impl<'m> Checking<'m> {
         if motion.not_possible.is_some() && !timeline.something_moved() {
             motion = MotionSummary::default();
         }
-        let mut state = motion.state_with(verdict.state);
+        let mut state = timeline.state(verdict.state, &motion);
+        let share = |share: &NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
+        let reasons: Vec<String> = timeline.not_judged.iter().map(share).collect();
         let calibrated = self.motor.healthy.is_some();
         let jump = self.balance.jump().filter(|_| !calibrated);
-        let doubts = doubts(&shown.findings, &timeline.rotor(), jump, calibrated);
+        let mut doubts = doubts(&shown.findings, &timeline.rotor(), jump, calibrated);
+        let is_dark = state != VerdictState::Fault;
+        let few = timeline.too_few(&motion).filter(|_| is_dark);
+        doubts.extend(few.and_then(|few| hardly_judged(few, &reasons)));
+        if let Some(visible) = timeline.visible_percent().filter(|_| is_dark) {
+            doubts.extend(hardly_visible(visible));
+        }
         if state == VerdictState::Healthy && !doubts.is_empty() {
             state = VerdictState::NotJudged;
         }
         let is_refused = !shown.supported;
-        let share = |share: &NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
         let clamps = self.clamps.finish();
         let mut answer = Checked {
             state,
@@ -178,7 +185,7 @@ impl<'m> Checking<'m> {
             motion,
             windows: [timeline.judged, timeline.windows],
             not_judged: match clamps.is_empty() {
-                true => timeline.not_judged.iter().map(share).collect(),
+                true => reasons,
                 false => vec!["three voltages or three currents are needed".to_owned()],
             },
             clamps,

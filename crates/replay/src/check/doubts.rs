@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::balance::Jump;
-use crate::rotor::{RotorCage, RotorSummary};
+use crate::rotor::RotorSummary;
 
 /// Something that does not fit a motor in good order.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -59,6 +59,35 @@ fn channel(finding: &Finding) -> &str {
     finding.suspect.as_deref().unwrap_or(&finding.channel)
 }
 
+/// Too little was judged for a dark answer; `None` where nothing was, which is an answer of its own.
+pub(super) fn hardly_judged([judged, running]: [u64; 2], reasons: &[String]) -> Option<CheckDoubt> {
+    let why = reasons
+        .first()
+        .map_or(String::new(), |why| format!(" ({why})"));
+    (judged > 0).then(|| CheckDoubt {
+        seen: format!(
+            "{judged} of {running} windows of the running motor could be judged: what the others hold is not known{why}"
+        ),
+        remedy: "record ten seconds while load and supply are steady; where they never are, calibrate the motor (--healthy): it is then \
+                 judged in motion, too"
+            .to_owned(),
+    })
+}
+
+/// What the lamps could have shown, percent of their scales, is larger than whatever a motor that still runs has.
+pub(super) fn hardly_visible(visible_percent: [f64; 4]) -> Option<CheckDoubt> {
+    let least = visible_percent.into_iter().fold(f64::INFINITY, f64::min);
+    (least >= 100.0).then(|| CheckDoubt {
+        seen: format!(
+            "no residual below {least:.0} % of its scale would have lit a lamp: what is known of the motor does not carry an answer at this load, \
+             voltage and frequency"
+        ),
+        remedy: "compare the recording's voltage, frequency and current with the plate; give a plate with all its values, or a recording of the \
+                 motor in good order (--healthy)"
+            .to_owned(),
+    })
+}
+
 fn changed(jump: Jump) -> CheckDoubt {
     CheckDoubt {
         seen: format!(
@@ -76,8 +105,7 @@ fn changed(jump: Jump) -> CheckDoubt {
 /// Sidebands as large as broken bars make them, in fewer blocks than it takes to say so.
 fn bars(rotor: &RotorSummary) -> Option<CheckDoubt> {
     let lower = rotor.lower_sideband_percent?;
-    let beyond = rotor.state == RotorCage::Doubtful && lower >= rotor.broken_from_percent;
-    beyond.then(|| CheckDoubt {
+    rotor.is_suspected().then(|| CheckDoubt {
         seen: format!(
             "the sidebands at twice the slip frequency ({lower:.1} % of the active current) are as large as broken rotor bars make them (from {:.1} % on), \
              in fewer blocks than it takes to be sure",
@@ -90,6 +118,7 @@ fn bars(rotor: &RotorSummary) -> Option<CheckDoubt> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rotor::RotorCage;
 
     fn rotor(state: RotorCage, lower: f64) -> RotorSummary {
         RotorSummary {

@@ -60,6 +60,24 @@ pub fn learn(
     learnt
 }
 
+/// A parameter further from its plate's than this, in standard deviations of what motors of such plates have, is no motor's.
+const MOST_DEVIATIONS: f64 = 3.0;
+
+/// The parameter by which the recordings contradict the motor file, in words.
+fn beyond_belief(motor: &MotorFile, report: &IdentifyReport) -> Option<String> {
+    let known = motor.uncertainty.as_ref()?;
+    let found = report.parameters.iter().find(|found| {
+        let deviation = known.log_deviation(&found.name);
+        let off = (found.value / found.believed).ln().abs();
+        found.told && deviation.is_some_and(|deviation| off > MOST_DEVIATIONS * deviation)
+    })?;
+    Some(format!(
+        "{} would have to be {:.3e} {} where the motor file says {:.3e}, further off than motors of such plates are; check plate, \
+         connection and scales of the sensors",
+        found.name, found.value, found.unit, found.believed
+    ))
+}
+
 impl Learnt {
     fn identify(&mut self, healthy: &[&dyn Reference], progress: &mut discovery::Progress<'_>) {
         let given = healthy
@@ -72,7 +90,9 @@ impl Learnt {
         match discovery::identify(Sources::Given(&given), &self.motor, progress) {
             Ok((report, motor)) => {
                 let error = report.after.held_out_error_over_noise;
-                if error > FITS {
+                if let Some(beyond) = beyond_belief(&self.motor, &report) {
+                    self.notes.push(format!("parameters not learnt: {beyond}"));
+                } else if error > FITS {
                     // Its parameters stand for what it misses: a confident wrong answer.
                     self.notes.push(format!(
                         "parameters not learnt: the model misses something of the healthy motor ({error:.1} times the noise); \

@@ -134,10 +134,15 @@ fn todo(
         _ => in_motion.collect(),
     };
     let mut steps: Vec<String> = match state {
-        VerdictState::Fault => causes::todo(&causes, calibrated)
-            .into_iter()
-            .map(str::to_owned)
-            .collect(),
+        VerdictState::Fault => {
+            let remedies = doubts.iter().map(|doubt| doubt.remedy.clone());
+            let tests = causes::todo(&causes, calibrated);
+            tests
+                .into_iter()
+                .map(str::to_owned)
+                .chain(remedies)
+                .collect()
+        }
         VerdictState::Healthy => Vec::new(),
         VerdictState::NotJudged if !motion.unexplained.is_empty() => {
             let first = motion.unexplained.iter().take(1);

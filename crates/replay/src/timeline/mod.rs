@@ -114,6 +114,9 @@ struct Moments {
     square: [f64; 4],
 }
 
+/// A motor of which less than the fifth part of its running was judged is not called healthy.
+const LEAST_SHARE: u64 = 5;
+
 /// Changes of the lamps that are kept.
 pub const MOST_CHANGES: usize = 10_000;
 
@@ -304,9 +307,11 @@ impl Timeline {
     /// The verdict over everything added so far; `audit` is what is known of the recording's channels beforehand.
     pub fn verdict(&self, audit: &[Finding]) -> Verdict {
         let state = match (self.first_alarm_s, self.judged) {
-            // A dead sensor is a finding of its own; signals that merely contradict each other, of which no window could be
-            // judged, are none.
-            (Some(_), 0) if !self.names_a_dead_sensor => VerdictState::NotJudged,
+            // A dead sensor and broken bars, which shake every window, are findings of their own; signals that merely contradict each
+            // other, of which no window could be judged, are none.
+            (Some(_), 0) if !self.names_a_dead_sensor && !self.rotor.is_broken() => {
+                VerdictState::NotJudged
+            }
             (Some(_), _) => VerdictState::Fault,
             (None, 0) => VerdictState::NotJudged,
             (None, _) => VerdictState::Healthy,
@@ -315,6 +320,24 @@ impl Timeline {
             self.candidates(&causes::wrong_channels(audit, [alarm_s, f64::INFINITY]))
         });
         Verdict::new(state, candidates)
+    }
+
+    /// What the recording comes to, with what was judged in motion: as [`MotionSummary::state_with`], and healthy only where enough
+    /// of the running motor was judged.
+    pub fn state(&self, at_rest: VerdictState, motion: &MotionSummary) -> VerdictState {
+        let raised_at_rest = self.first_alarm_s.is_some();
+        match motion.state_with(at_rest, raised_at_rest) {
+            VerdictState::Healthy if self.too_few(motion).is_some() => VerdictState::NotJudged,
+            state => state,
+        }
+    }
+
+    /// Windows judged, at rest and in motion, and windows of the running motor, where the former are too few for a dark answer.
+    pub fn too_few(&self, motion: &MotionSummary) -> Option<[u64; 2]> {
+        let judged = self.judged + motion.judged;
+        let idle = self.not_judged.iter().filter(|share| share.is_idle());
+        let running = self.windows - idle.map(|share| share.windows).sum::<u64>();
+        (LEAST_SHARE * judged < running).then_some([judged, running])
     }
 
     /// Each window since the alarm that says something has one voice.
@@ -332,7 +355,11 @@ impl Timeline {
             witness,
             wrong,
         };
-        causes::listed(causes::candidates(&known, self.load_friction))
+        let mut candidates = causes::candidates(&known, self.load_friction);
+        if self.rotor().is_suspected() {
+            causes::suspect_bars(&mut candidates);
+        }
+        causes::listed(candidates)
     }
 
     /// What the windows without a finding say, and how many they are.

@@ -235,10 +235,11 @@ impl<'m> Monitoring<'m> {
 }
 
 impl Monitored {
-    /// What the recording comes to: FAULT at rest or in motion; healthy where either was judged and neither lit; not judged
-    /// where something came in motion that no fault explains.
+    /// What the recording comes to: FAULT at rest or in motion; healthy where a fifth of the running motor was judged and neither lit;
+    /// not judged where something came that no fault explains.
     pub fn state(&self) -> VerdictState {
-        self.timeline.motion.state_with(self.verdict.state)
+        self.timeline
+            .state(self.verdict.state, &self.timeline.motion)
     }
 }
 

@@ -193,7 +193,7 @@ fn print_one(named: &CheckedRecording) {
         say!("  {}", checked.rotor);
     }
     if let Some(percent) = checked.current_unbalance_percent {
-        say!("  unbalance of the currents (negative over positive sequence): {percent:.2} %");
+        say!("  unbalance of the currents (negative over positive sequence), mean: {percent:.2} %");
     }
     if let Some([r1, ..]) = checked.visible_percent {
         say!(

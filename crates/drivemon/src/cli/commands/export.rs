@@ -72,6 +72,15 @@ enum Kind {
 }
 
 impl To {
+    /// Keeps the Python files of one motor apart.
+    fn suffix(self) -> &'static str {
+        match self {
+            To::Motulator => "_motulator",
+            To::GymElectricMotor => "_gym_electric_motor",
+            _ => "",
+        }
+    }
+
     fn kind(self) -> Kind {
         match self {
             To::Python => Kind::Model(Language::Python),
@@ -159,8 +168,9 @@ impl Export {
         let path = match &self.output {
             Some(path) => path.clone(),
             None => PathBuf::from(format!(
-                "{}.{ending}",
-                print::model_name(&stem(&self.motor))
+                "{}{}.{ending}",
+                print::model_name(&stem(&self.motor)),
+                self.to.suffix()
             )),
         };
         if path.extension() != Some(OsStr::new(ending)) {

@@ -355,6 +355,23 @@ fn the_speed_at_the_start_is_a_mean_over_a_period() {
     );
 }
 
+/// Switched on with the first sample: no current yet, and a rotor that has not moved.
+#[test]
+fn a_start_that_begins_with_the_recording_is_a_start() {
+    let rated = rated();
+    let rec = changed(&specimen::recording(0.3, |_| 1.0), |c, x| {
+        let from_zero = |per_s: f64| (0..x.len()).map(|k| per_s * k as f64 * T_SAMPLE).collect();
+        Some(match c {
+            Channel::SPEED => from_zero(10.0 * rated.speed()),
+            c if Channel::CURRENTS.contains(&c) => from_zero(200.0 * rated.current),
+            _ => x,
+        })
+    });
+    let mut rec = rec;
+    rec.metadata.starts_from = StartsFrom::Unknown;
+    assert_eq!(running_at(&rec, &rated), None);
+}
+
 /// A tenth of the rated current, a twentieth of the rated speed: below both it stands, above one it runs.
 #[test]
 fn an_undeclared_start_runs_with_current_or_speed() {

@@ -70,6 +70,43 @@ fn the_errors_of_current_channels_are_not_turned_into_leakage() {
     }
 }
 
+/// Offsets within their class, as a transducer or a converter leaves them: a constant 0.8 V over the stator's resistance would be a
+/// fifth of the rated current, which nobody measures, and without offsets the fit answers with several times the resistance.
+#[test]
+fn the_offset_of_a_channel_is_not_turned_into_resistance() {
+    let prior = specimen::prior("");
+    let rated = prior.plant.rated;
+    let rec = specimen::recording(2.0, |_| 1.0);
+    let shares = [0.002, -0.001, 0.0015, -0.0025, 0.002, 0.0005];
+    let channels = Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS);
+    let offsets: Vec<(Channel, f64)> = channels.zip(shares).collect();
+    let empty = Recording::new("offsets", rec.t().to_vec(), rec.metadata.clone()).expect("a clock");
+    let rec = rec.channels().fold(empty, |to, (channel, x)| {
+        let known = offsets.iter().find(|(shifted, _)| *shifted == channel);
+        let scale = match Channel::VOLTAGES.contains(&channel) {
+            true => rated.voltage,
+            false => rated.current,
+        };
+        let offset = known.map_or(0.0, |(_, share)| share * scale);
+        to.with_channel(channel, x.iter().map(|x| x + offset).collect())
+            .expect("a channel")
+    });
+    let case = Case::new(&rec, &rated).expect("judged");
+    let study = Study::new(prior, case, Vec::new(), None);
+    let trial = study.trial(&study.at_prior(), Effort::FULL);
+    let beside = study.polished(&trial);
+    let covariance = study.covariance(beside);
+    for (at, &k) in beside.fit.free.iter().enumerate() {
+        if k < N_NOMINAL {
+            let off = beside.fit.hypothesis.z[k] / covariance[(at, at)].sqrt();
+            assert!(off.abs() < 3.0, "coordinate {k}: {off:.2} standard errors");
+        }
+    }
+    let resistance = |t: &Trial| t.fit.hypothesis.z[0];
+    assert!(resistance(&trial) > 0.3, "{}", resistance(&trial));
+    assert!(resistance(beside).abs() < 0.1, "{}", resistance(beside));
+}
+
 #[test]
 fn tables_and_models_with_an_unbalance_are_left_as_they_are() {
     let table = specimen::table_study(|_| ());

@@ -121,7 +121,7 @@ fn figures(one: &Place<'_>) -> Vec<(Markup, Markup)> {
     let unbalance = percent(
         "current_unbalance_percent",
         decimals(2),
-        "unbalance of the currents, negative over positive sequence",
+        "unbalance of the currents, negative over positive sequence, mean over the recording",
     );
     let visible = percent(
         "visible_percent/0",
