@@ -74,8 +74,12 @@ fn measured_residuals_are_those_of_the_closed_form() {
 #[test]
 fn ties_of_the_table_are_told_as_ties() {
     for row in &matrix("linear", "voltage").table {
-        let alone = ["Lr", "Iq", "wr"].contains(&row.fault);
-        let expected = if alone { 0.85..1.0 } else { 0.4..0.5 };
+        // All four are lit by a wrong motor file, too: a tie of 1 with 1/2 + 1/32 for "none of the table".
+        let expected = match row.fault {
+            "Iq" | "wr" => 0.85..1.0,
+            "Lr" => 0.64..0.66,
+            _ => 0.4..0.5,
+        };
         assert!(expected.contains(&row.probability), "{row}");
     }
 }
