@@ -165,6 +165,41 @@ fn a_voltage_sensor_of_wrong_gain_is_no_unbalance() {
     );
 }
 
+/// Far from 1 a gain moves the positive sequence as well: it is told all the same.
+#[test]
+fn a_current_sensor_of_half_its_gain() {
+    for gain in [0.5, 1.5, 2.5] {
+        let audit = audited(|s| {
+            s.metadata.sensors = recording::Sensors::default();
+            s.i[1].iter_mut().for_each(|x| *x *= gain);
+        });
+        let found = audit.findings.iter().find(|f| f.code == Code::ZeroSequence);
+        let found = found.expect("a zero sequence");
+        assert_eq!(found.suspect.as_deref(), Some("ib"));
+        let told = found.detail.split("A gain error of ").nth(1);
+        let told = told.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+        let off = told.expect("a percentage") - 100.0 * (gain - 1.0);
+        assert!(off.abs() < 0.3, "{}", found.detail);
+    }
+}
+
+/// The flags exchange the pair that is named, whichever it is.
+#[test]
+fn the_flags_exchange_the_pair_that_is_named() {
+    for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+        let audit = audited(|s| s.i.swap(a, b));
+        assert_codes(&audit, &[Code::SwappedPhases]);
+        let [a, b] = [a, b].map(|k| ["ia", "ib", "ic"][k]);
+        let detail = &audit.findings[0].detail;
+        let words = format!("exchange {a} and {b} (or");
+        let flags = format!("for example --column {a}={b} --column {b}={a}.");
+        assert!(
+            detail.contains(&words) && detail.contains(&flags),
+            "{detail}"
+        );
+    }
+}
+
 #[test]
 fn a_jittering_clock() {
     let mut noise = Noise::new(9);
