@@ -3,4 +3,5 @@
 mod clock;
 mod encoder;
 pub(super) mod finish;
+mod rounded;
 mod spikes;
