@@ -56,6 +56,8 @@ pub enum Code {
     Skew,
     /// Voltages and currents were sampled by two clocks; value: how much faster the currents' runs, ppm.
     ClockDrift,
+    /// Samples are missing though the times go on evenly; value: how often.
+    LostSamples,
 }
 
 /// One finding.

@@ -349,6 +349,7 @@ fn the_json_is_stable() {
         (Code::Held, "held"),
         (Code::Skew, "skew"),
         (Code::ClockDrift, "clock-drift"),
+        (Code::LostSamples, "lost-samples"),
     ];
     for (code, name) in codes {
         assert_eq!(serde_json::to_value(code).unwrap(), name);

@@ -38,6 +38,7 @@ pub(super) fn doubts(
             remedy: format!("check the channel {}: {}", channel(finding), finding.detail),
         });
     channels
+        .chain(findings.iter().filter_map(lost_samples))
         .chain(jump.map(changed))
         .chain(bars(rotor))
         .collect()
@@ -57,6 +58,18 @@ fn is_doubt(finding: &Finding, calibrated: bool) -> bool {
 
 fn channel(finding: &Finding) -> &str {
     finding.suspect.as_deref().unwrap_or(&finding.channel)
+}
+
+/// Samples that are missing here and there: every phase behind them is another one.
+fn lost_samples(finding: &Finding) -> Option<CheckDoubt> {
+    let is_doubt = finding.code == Code::LostSamples && !finding.refuses;
+    is_doubt.then(|| CheckDoubt {
+        seen: format!(
+            "the audit finds {:.0} places where samples are missing",
+            finding.value
+        ),
+        remedy: format!("record without lost samples: {}", finding.detail),
+    })
 }
 
 fn changed(jump: Jump) -> CheckDoubt {
@@ -137,6 +150,8 @@ mod tests {
         assert!(of(displaced, false).is_empty());
         let small = finding(Code::ZeroSequence, Some("va"), 2.0, None);
         assert!(of(small, false).is_empty());
+        let lost = finding(Code::LostSamples, None, 3.0, None);
+        assert!(of(lost, true)[0].seen.contains("3 places"));
         let speed = finding(Code::SpeedImplausible, None, -2.1, None);
         assert_eq!(of(speed, true).len(), 1);
         let for_a_while = finding(Code::SpeedImplausible, None, -2.1, Some(1.0));
