@@ -58,6 +58,8 @@ pub enum Code {
     ClockDrift,
     /// Samples are missing though the times go on evenly; value: how often.
     LostSamples,
+    /// The supply's frequency is not the rated one, by an inverter or a wrong sampling rate; value: the frequency, Hz.
+    SupplyFrequency,
 }
 
 /// One finding.

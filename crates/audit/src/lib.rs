@@ -23,7 +23,7 @@ use levels::{clipping, offset, rms_values, scale, sensor, spikes, unit};
 use recording::Recording;
 use silent::{frozen, held, missing, stuck};
 use timing::{clock, drift, gap, lost, not_locked, skew};
-use wiring::{phases, speed, supply, zero_sequence};
+use wiring::{frequency, phases, speed, supply, zero_sequence};
 
 /// Audits a recording against what the nameplate lets one expect.
 ///
@@ -75,6 +75,7 @@ fn repeats(finding: &Finding) -> bool {
 /// What is wrong with scales, phases, sums, supply and speed.
 fn of_wiring(context: &mut Context<'_>, findings: &mut Vec<Finding>) {
     findings.extend(scale::check(context));
+    findings.extend(frequency::check(context));
     let drift = drift::check(context);
     if drift.is_none() {
         findings.extend(phases::check(context));

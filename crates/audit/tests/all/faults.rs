@@ -240,6 +240,46 @@ fn a_clock_that_is_too_slow() {
     assert_codes(&thinned(10), &[]);
 }
 
+/// 10 kHz read as 8 and as 5 kHz: the clock is named, not the speed or the pole pairs.
+#[test]
+fn a_wrong_sampling_rate() {
+    for (factor, hz) in [(1.25, 40.0), (2.0, 25.0)] {
+        let audit = audited(|s| s.t.iter_mut().for_each(|t| *t *= factor));
+        assert_one(
+            &audit,
+            Code::SupplyFrequency,
+            "t",
+            hz,
+            0.01,
+            "--sample-rate 10000 the supply has 50 Hz",
+        );
+        assert_eq!(audit.unusable, ["speed"]);
+    }
+}
+
+/// An inverter that nobody told of: it keeps the flux, or weakens it above the rated frequency.
+#[test]
+fn an_inverter_is_no_wrong_sampling_rate() {
+    let kept = audited(|s| {
+        s.t.iter_mut().for_each(|t| *t *= 1.25);
+        each(&mut s.v, |x| 0.8 * x);
+        s.speed.iter_mut().for_each(|x| *x *= 0.8);
+    });
+    assert_codes(&kept, &[]);
+    let weakened = audited(|s| {
+        s.t.iter_mut().for_each(|t| *t *= 0.7);
+        s.speed.iter_mut().for_each(|x| *x /= 0.7);
+    });
+    assert_one(
+        &weakened,
+        Code::SupplyFrequency,
+        "va vb vc",
+        50.0 / 0.7,
+        0.01,
+        "an inverter",
+    );
+}
+
 #[test]
 fn nothing_periodic() {
     let mut noise = Noise::new(11);
@@ -350,6 +390,7 @@ fn the_json_is_stable() {
         (Code::Skew, "skew"),
         (Code::ClockDrift, "clock-drift"),
         (Code::LostSamples, "lost-samples"),
+        (Code::SupplyFrequency, "supply-frequency"),
     ];
     for (code, name) in codes {
         assert_eq!(serde_json::to_value(code).unwrap(), name);

@@ -1,9 +1,9 @@
 //! A recording that is checked piece by piece, and of which no sample is kept.
 
-use audit::{Audit, Expectation, Merger, audit};
+use audit::{Audit, Expectation, Finding, Merger, audit};
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::Recording;
+use recording::{Channel, Recording};
 
 use super::balance::Balance;
 use super::caveat::caveat;
@@ -162,7 +162,8 @@ impl<'m> Checking<'m> {
         let mut state = motion.state_with(verdict.state);
         let calibrated = self.motor.healthy.is_some();
         let jump = self.balance.jump().filter(|_| !calibrated);
-        let doubts = doubts(&shown.findings, &timeline.rotor(), jump, calibrated);
+        let about = of_recorded(&shown, speed.is_some());
+        let doubts = doubts(&about, &timeline.rotor(), jump, calibrated);
         if state == VerdictState::Healthy && !doubts.is_empty() {
             state = VerdictState::NotJudged;
         }
@@ -202,6 +203,14 @@ impl<'m> Checking<'m> {
         answer.told = Told::of(&answer);
         answer
     }
+}
+
+/// Findings without those of an estimated speed, which is no channel that anybody could mend.
+fn of_recorded(shown: &Audit, is_estimated: bool) -> Vec<Finding> {
+    let speed = Channel::SPEED.to_string();
+    let recorded = shown.findings.iter();
+    let recorded = recorded.filter(|finding| !is_estimated || finding.channel != speed);
+    recorded.cloned().collect()
 }
 
 impl Speed {

@@ -37,8 +37,11 @@ pub(super) fn doubts(
             ),
             remedy: format!("check the channel {}: {}", channel(finding), finding.detail),
         });
-    channels
-        .chain(findings.iter().filter_map(lost_samples))
+    let samples = findings.iter().filter_map(lost_samples);
+    let clock = findings.iter().filter_map(wrong_clock);
+    clock
+        .chain(channels)
+        .chain(samples)
         .chain(jump.map(changed))
         .chain(bars(rotor))
         .collect()
@@ -69,6 +72,18 @@ fn lost_samples(finding: &Finding) -> Option<CheckDoubt> {
             finding.value
         ),
         remedy: format!("record without lost samples: {}", finding.detail),
+    })
+}
+
+/// A supply at a frequency that the plate excludes at this voltage.
+fn wrong_clock(finding: &Finding) -> Option<CheckDoubt> {
+    let is_doubt = finding.code == Code::SupplyFrequency && finding.channel == "t";
+    is_doubt.then(|| CheckDoubt {
+        seen: format!(
+            "the supply has {:.1} Hz by the sampling rate as it was read, at a voltage that does not go with it",
+            finding.value
+        ),
+        remedy: format!("check the sampling rate: {}", finding.detail),
     })
 }
 
@@ -152,6 +167,10 @@ mod tests {
         assert!(of(small, false).is_empty());
         let lost = finding(Code::LostSamples, None, 3.0, None);
         assert!(of(lost, true)[0].seen.contains("3 places"));
+        let mut clock = finding(Code::SupplyFrequency, None, 40.0, None);
+        assert!(of(clock.clone(), true).is_empty(), "an inverter");
+        clock.channel = "t".to_owned();
+        assert!(of(clock, true)[0].seen.contains("40.0 Hz"));
         let speed = finding(Code::SpeedImplausible, None, -2.1, None);
         assert_eq!(of(speed, true).len(), 1);
         let for_a_while = finding(Code::SpeedImplausible, None, -2.1, Some(1.0));
