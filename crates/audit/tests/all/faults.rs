@@ -1,7 +1,9 @@
 //! Every code of the audit: one healthy recording, one thing wrong with it, exactly the finding that
 //! belongs to it and no other.
 
-use crate::synthetic::{Noise, Signals, assert_codes, assert_one, audited, each, expectation};
+use crate::synthetic::{
+    Noise, SAMPLES, Signals, assert_codes, assert_one, audited, each, expectation,
+};
 use audit::{Code, Finding, audit};
 use recording::Recording;
 use std::f64::consts::TAU;
@@ -67,6 +69,23 @@ fn a_gap_in_time() {
     });
     // The grid went on, so that the phase jumps as well: nothing else may come of it.
     assert_one(&audit, Code::Gap, "t", 0.0124, 1e-9, "lost packets");
+}
+
+/// Three rows in a hundred are missing and the times say so: nothing else is wrong.
+#[test]
+fn many_gaps_make_no_other_finding() {
+    let mut noise = Noise::new(21);
+    let keeps: Vec<bool> = (0..SAMPLES).map(|_| noise.uniform() > 0.03).collect();
+    let audit = audited(|s| {
+        let kept = |x: &mut Vec<f64>| {
+            let mut keeps = keeps.iter();
+            x.retain(|_| keeps.next().is_some_and(|kept| *kept));
+        };
+        s.v.iter_mut().chain(&mut s.i).for_each(kept);
+        kept(&mut s.t);
+        kept(&mut s.speed);
+    });
+    assert_codes(&audit, &[Code::Gap]);
 }
 
 #[test]

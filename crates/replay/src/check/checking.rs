@@ -1,6 +1,6 @@
 //! A recording that is checked piece by piece, and of which no sample is kept.
 
-use audit::{Audit, Expectation, Finding, Merger, audit};
+use audit::{Audit, Code, Expectation, Finding, Merger, audit};
 use monitor::Monitor;
 use motor::MotorFile;
 use recording::{Channel, Recording};
@@ -168,7 +168,6 @@ impl<'m> Checking<'m> {
             state = VerdictState::NotJudged;
         }
         let is_refused = !shown.supported;
-        let share = |share: &NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
         let clamps = self.clamps.finish();
         let mut answer = Checked {
             state,
@@ -179,7 +178,7 @@ impl<'m> Checking<'m> {
             motion,
             windows: [timeline.judged, timeline.windows],
             not_judged: match clamps.is_empty() {
-                true => timeline.not_judged.iter().map(share).collect(),
+                true => not_judged(&timeline, &shown),
                 false => vec!["three voltages or three currents are needed".to_owned()],
             },
             clamps,
@@ -203,6 +202,21 @@ impl<'m> Checking<'m> {
         answer.told = Told::of(&answer);
         answer
     }
+}
+
+/// Why windows were not judged, or why there are none.
+fn not_judged(timeline: &Timeline, shown: &Audit) -> Vec<String> {
+    let between_gaps = shown.findings.iter().any(|one| one.code == Code::Gap);
+    if timeline.windows == 0 && between_gaps {
+        return vec![
+            "no window fits between two gaps in time: record without lost samples".to_owned(),
+        ];
+    }
+    let share = |share: &NotJudgedShare| match share.windows {
+        1 => format!("{}: 1 window", share.reason),
+        many => format!("{}: {many} windows", share.reason),
+    };
+    timeline.not_judged.iter().map(share).collect()
 }
 
 /// Findings without those of an estimated speed, which is no channel that anybody could mend.
