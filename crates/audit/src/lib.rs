@@ -14,7 +14,7 @@ mod timing;
 mod wiring;
 
 pub use expectation::{Circuit, Expectation};
-pub use finding::{Audit, Code, Finding};
+pub use finding::{Audit, Code, Finding, digits};
 pub use merged::Merger;
 pub use wiring::probes::with_sound_probes;
 
@@ -95,14 +95,21 @@ fn of_wiring(context: &mut Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Proposals of sensors: beside the other findings, or within that of a unit of the same channels.
+/// Proposals of sensors: beside the other findings, or within that of a unit of the same channels, the likelier load first.
 fn propose_sensors(findings: &mut Vec<Finding>, proposals: Vec<Finding>) {
     for proposal in proposals {
         let same = |finding: &&mut Finding| {
             finding.code == Code::Unit && finding.channel == proposal.channel
         };
         match findings.iter_mut().find(same) {
-            Some(unit) => unit.detail = format!("{} Or: {}", unit.detail, proposal.detail),
+            Some(unit) => {
+                let by_unit = sensor::is_usual(&unit.channel, unit::in_its_unit(unit.value));
+                let [first, second] = match by_unit {
+                    true => [&unit.detail, &proposal.detail],
+                    false => [&proposal.detail, &unit.detail],
+                };
+                unit.detail = format!("{first} Or: {second}");
+            }
             None => findings.push(proposal),
         }
     }
