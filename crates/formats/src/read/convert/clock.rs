@@ -1,8 +1,7 @@
 //! The clock of a recording: the `t` column, or a declared sampling rate.
 
-use super::rounded;
 use crate::read::samples::{Raw, Rows};
-use recording::{Column, Error, Mapping, Target};
+use recording::{Column, Error, Mapping, Target, rounded};
 
 /// When the samples were taken.
 pub(in crate::read) struct Clock {

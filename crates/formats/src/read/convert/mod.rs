@@ -3,5 +3,4 @@
 mod clock;
 mod encoder;
 pub(super) mod finish;
-mod rounded;
 mod spikes;

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 /// An even clock behind rounded stamps.
-pub(super) struct Even {
+pub struct Even {
     /// The times on the line, s.
     pub t: Vec<f64>,
     /// Time between two samples, s.
@@ -56,8 +56,8 @@ fn time(decimal_s: f64) -> String {
     format!("{} {unit}", (10.0 * factor * decimal_s).round() / 10.0)
 }
 
-/// The even clock, where one explains every stamp and is not what they say already.
-pub(super) fn even(t: &[f64]) -> Option<Even> {
+/// The even clock of time stamps, s, where one explains each of them and is not what they say already.
+pub fn even(t: &[f64]) -> Option<Even> {
     let (first, last) = (*t.first()?, *t.last()?);
     let mean = (last - first) / (t.len() - 1) as f64;
     let rounding_s = rounding(t, NOTABLE * mean)?;
