@@ -202,6 +202,21 @@ fn a_current_sensor_of_half_its_gain() {
     }
 }
 
+/// A motor that runs backwards has its phases the other way round, and its channels where they are.
+#[test]
+fn a_wrong_gain_is_named_backwards_as_well() {
+    for (k, channel) in [(0, "va"), (1, "vb"), (2, "vc")] {
+        let audit = audited(|s| {
+            s.v.swap(1, 2);
+            s.i.swap(1, 2);
+            s.speed.iter_mut().for_each(|x| *x = -*x);
+            s.v[k].iter_mut().for_each(|x| *x *= 0.97);
+        });
+        assert_codes(&audit, &[Code::ZeroSequence]);
+        assert_eq!(audit.findings[0].suspect.as_deref(), Some(channel));
+    }
+}
+
 /// The flags exchange the pair that is named, whichever it is.
 #[test]
 fn the_flags_exchange_the_pair_that_is_named() {
