@@ -115,8 +115,9 @@ fn wrong(channels: &[Channel], ratio: f64, unit: &str, rated: &str) -> Finding {
     };
     Finding::new(Code::Unit, names(channels), ratio, "x")
         .detail(format!(
-            "{} are {} times the {rated}: {remedy}",
+            "{} {} {} times the {rated}: {remedy}",
             names(channels),
+            if channels.len() == 1 { "is" } else { "are" },
             digits(ratio, 3)
         ))
         .refusing()

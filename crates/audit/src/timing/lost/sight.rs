@@ -34,9 +34,10 @@ pub(super) struct Sight {
     /// The vector from sample `first` of the recording on.
     z: Vec<Complex64>,
     first: usize,
-    amplitude: f64,
     /// Angle from one sample to the next, rad.
-    pub angle: f64,
+    angle: f64,
+    /// Jumps in samples, the first in front of the first sample that `near` reaches.
+    jumps: Vec<f64>,
     near: Weights,
     far: Weights,
 }
@@ -61,18 +62,20 @@ impl Sight {
             })
             .collect();
         let angle = usual_angle(&z, turn)?;
-        let amplitude = three.sequence().main().norm();
-        SIDES.into_iter().find_map(|side| {
+        let scale = 1.0 / (three.sequence().main().norm() * angle);
+        let (side, near, jumps) = SIDES.into_iter().find_map(|side| {
             let fits = side == SIDES[0] || side as f64 * angle < SIDE * TAU;
-            let sight = Sight {
-                near: Weights::new(0, side, angle).filter(|_| fits)?,
-                far: Weights::new(PASSED, side, angle)?,
-                z: z.clone(),
-                first: range.start,
-                amplitude,
-                angle,
-            };
-            sight.is_clear().then_some(sight)
+            let near = Weights::new(0, side, angle).filter(|_| fits)?;
+            let jumps = jumps(&z, &near, scale);
+            is_clear(&jumps).then_some((side, near, jumps))
+        })?;
+        Some(Sight {
+            far: Weights::new(PASSED, side, angle)?,
+            near,
+            jumps,
+            z,
+            first: range.start,
+            angle,
         })
     }
 
@@ -85,10 +88,9 @@ impl Sight {
                 .max(self.first + reach)
     }
 
-    /// Size of the jump in front of a sample, in samples.
+    /// Size of the jump in front of a sample that is [`Sight::inside`], in samples.
     pub fn jump(&self, at: usize) -> f64 {
-        let [before, behind] = self.near.both(&self.z, at - self.first);
-        (behind - before).norm() / (self.amplitude * self.angle)
+        self.jumps[at - self.first - self.near.reach()]
     }
 
     /// Samples by which the vector jumps ahead, where it jumps by whole ones below half a turn and goes on from there.
@@ -107,11 +109,21 @@ impl Sight {
         let [before, behind] = weights.both(&self.z, at - self.first);
         behind / before
     }
+}
 
-    fn is_clear(&self) -> bool {
-        let jumps = self.inside().map(|at| self.jump(at));
-        median(jumps).is_some_and(|size| CLEAR * size / GAUSSIAN < OFF)
-    }
+/// Sizes of the jumps in front of all samples that have enough others on both sides, times a scale.
+fn jumps(z: &[Complex64], near: &Weights, scale: f64) -> Vec<f64> {
+    let inside = near.reach()..(z.len() + 1).saturating_sub(near.reach());
+    let size = |at| {
+        let [before, behind] = near.both(z, at);
+        scale * (behind - before).norm()
+    };
+    inside.map(size).collect()
+}
+
+/// Whether noise leaves a jump by one sample clear.
+fn is_clear(jumps: &[f64]) -> bool {
+    median(jumps.iter().copied()).is_some_and(|size| CLEAR * size / GAUSSIAN < OFF)
 }
 
 /// The angle that the vector mostly turns by from one sample to the next, where it does so evenly and about as fast as `turn`.
