@@ -74,14 +74,16 @@ impl<'r> Context<'r> {
         }
     }
 
-    /// Zero and counter sequence over the main one, each block's in the phase of its main sequence.
+    /// Zero and counter sequence over the main one, each block's in the phase of its main sequence; of phases that follow each
+    /// other as a, c, b conjugated, so that channels b and c stand where they do otherwise.
     pub fn ratios(&self, three: [Channel; 3]) -> Vec<(Complex64, Complex64)> {
         let ratio = |(_, three): &(&Block, &Three)| {
             let sequence = three.sequence();
-            (
-                sequence.zero / sequence.main(),
-                sequence.counter() / sequence.main(),
-            )
+            let over_main = |x: Complex64| match sequence.is_positive() {
+                true => x / sequence.main(),
+                false => (x / sequence.main()).conj(),
+            };
+            (over_main(sequence.zero), over_main(sequence.counter()))
         };
         self.settled(three).iter().map(ratio).collect()
     }

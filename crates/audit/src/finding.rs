@@ -56,6 +56,10 @@ pub enum Code {
     Skew,
     /// Voltages and currents were sampled by two clocks; value: how much faster the currents' runs, ppm.
     ClockDrift,
+    /// Samples are missing though the times go on evenly; value: how often.
+    LostSamples,
+    /// The supply's frequency is not the rated one, by an inverter or a wrong sampling rate; value: the frequency, Hz.
+    SupplyFrequency,
 }
 
 /// One finding.
@@ -146,8 +150,40 @@ impl Finding {
     }
 }
 
+/// A number to so many significant digits, without powers of ten where it is near 1.
+pub fn digits(x: f64, significant: i32) -> String {
+    let decimals = significant - 1 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    let scale = 10_f64.powi(decimals);
+    let rounded = (x * scale).round() / scale;
+    match (1e-4..1e7).contains(&rounded.abs()) {
+        true => format!("{rounded}"),
+        false => format!("{rounded:e}"),
+    }
+}
+
+/// How many of something there are, the word in the singular or with an s.
+pub(super) fn count(many: usize, one: &str) -> String {
+    match many {
+        1 => format!("1 {one}"),
+        _ => format!("{many} {one}s"),
+    }
+}
+
 /// Channel names separated by blanks.
 pub(super) fn names(channels: &[Channel]) -> String {
     let names: Vec<String> = channels.iter().map(Channel::to_string).collect();
     names.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{count, digits};
+
+    #[test]
+    fn numbers_are_short() {
+        let told = [817.2, 0.1192, 1.0, 0.002_004, 12_345.0, 3.2e-9].map(|x| digits(x, 3));
+        assert_eq!(told, ["817", "0.119", "1", "0.002", "12300", "3.2e-9"]);
+        assert_eq!(digits(4.999_999_999_998_863, 6), "5");
+        assert_eq!([count(1, "gap"), count(3, "gap")], ["1 gap", "3 gaps"]);
+    }
 }

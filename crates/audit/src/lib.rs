@@ -14,7 +14,7 @@ mod timing;
 mod wiring;
 
 pub use expectation::{Circuit, Expectation};
-pub use finding::{Audit, Code, Finding};
+pub use finding::{Audit, Code, Finding, digits};
 pub use merged::Merger;
 pub use wiring::probes::with_sound_probes;
 
@@ -22,8 +22,8 @@ use context::Context;
 use levels::{clipping, offset, rms_values, scale, sensor, spikes, unit};
 use recording::Recording;
 use silent::{frozen, held, missing, stuck};
-use timing::{clock, drift, gap, not_locked, skew};
-use wiring::{phases, speed, supply, zero_sequence};
+use timing::{clock, drift, gap, lost, not_locked, skew};
+use wiring::{frequency, phases, speed, supply, zero_sequence};
 
 /// Audits a recording against what the nameplate lets one expect.
 ///
@@ -31,37 +31,13 @@ use wiring::{phases, speed, supply, zero_sequence};
 /// limit is taken from steady blocks of three periods.
 pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
     let mut context = Context::new(recording, expectation);
-    let mut findings = clock::check(&context);
-    findings.extend(gap::check(&context));
-    findings.extend(spikes::check(&context));
-    findings.extend(clipping::check(&context));
-    findings.extend(rms_values::check(&mut context));
-    if findings
+    let mut findings = of_samples(&mut context);
+    // What is said of phases, sums and speed would follow from the missing samples.
+    if !findings
         .iter()
-        .all(|finding| finding.code != Code::RmsValues)
+        .any(|f| f.code == Code::LostSamples && f.refuses)
     {
-        findings.extend(not_locked::check(&context));
-    }
-    if findings.iter().all(|f| f.code != Code::RmsValues) {
-        findings.extend(standing_still(&mut context));
-    }
-    findings.extend(scale::check(&mut context));
-    let drift = drift::check(&mut context);
-    if drift.is_none() {
-        findings.extend(phases::check(&mut context));
-    }
-    findings.extend(drift);
-    findings.extend(unit::check(&mut context));
-    propose_sensors(&mut findings, sensor::check(&context));
-    findings.extend(offset::check(&context));
-    let skew = skew::check(&context);
-    if skew.is_none() {
-        findings.extend(zero_sequence::check(&context));
-    }
-    findings.extend(skew);
-    findings.extend(supply::check(&context));
-    if findings.iter().all(|finding| finding.code != Code::Unit) {
-        findings.extend(speed::check(&mut context));
+        of_wiring(&mut context, &mut findings);
     }
     findings.extend(missing::check(&context));
     Audit {
@@ -72,14 +48,68 @@ pub fn audit(recording: &Recording, expectation: &Expectation) -> Audit {
     }
 }
 
-/// Proposals of sensors: beside the other findings, or within that of a unit of the same channels.
+/// What is wrong with times and samples.
+fn of_samples(context: &mut Context<'_>) -> Vec<Finding> {
+    let mut findings = clock::check(context);
+    findings.extend(gap::check(context));
+    findings.extend(spikes::check(context));
+    findings.extend(clipping::check(context));
+    let effective = rms_values::check(context);
+    if effective.is_empty() {
+        findings.extend(not_locked::check(context));
+        findings.extend(standing_still(context));
+    }
+    findings.extend(effective);
+    if !findings.iter().any(repeats) {
+        findings.extend(lost::check(context));
+    }
+    findings
+}
+
+/// Whether samples are repeated, or are none: what turns then jumps all the time.
+fn repeats(finding: &Finding) -> bool {
+    matches!(finding.code, Code::RmsValues | Code::Held | Code::Frozen)
+        && finding.channel != "speed"
+}
+
+/// What is wrong with scales, phases, sums, supply and speed.
+fn of_wiring(context: &mut Context<'_>, findings: &mut Vec<Finding>) {
+    findings.extend(scale::check(context));
+    findings.extend(frequency::check(context));
+    let drift = drift::check(context);
+    if drift.is_none() {
+        findings.extend(phases::check(context));
+    }
+    findings.extend(drift);
+    findings.extend(unit::check(context));
+    propose_sensors(findings, sensor::check(context));
+    findings.extend(offset::check(context));
+    let skew = skew::check(context);
+    if skew.is_none() {
+        findings.extend(zero_sequence::check(context));
+    }
+    findings.extend(skew);
+    findings.extend(supply::check(context));
+    if findings.iter().all(|finding| finding.code != Code::Unit) {
+        findings.extend(speed::check(context));
+    }
+}
+
+/// Proposals of sensors: beside the other findings, or within that of a unit of the same channels, the likelier load first.
 fn propose_sensors(findings: &mut Vec<Finding>, proposals: Vec<Finding>) {
     for proposal in proposals {
         let same = |finding: &&mut Finding| {
             finding.code == Code::Unit && finding.channel == proposal.channel
         };
         match findings.iter_mut().find(same) {
-            Some(unit) => unit.detail = format!("{} Or: {}", unit.detail, proposal.detail),
+            Some(unit) => {
+                let by_unit = sensor::is_usual(&unit.channel, unit::in_its_unit(unit.value));
+                let [first, second] = match by_unit {
+                    true => [&unit.detail, &proposal.detail],
+                    false => [&proposal.detail, &unit.detail],
+                };
+                unit.detail = format!("{first} Or: {second}");
+            }
             None => findings.push(proposal),
         }
     }

@@ -20,6 +20,7 @@ pub mod delay;
 mod error;
 mod mapping;
 pub mod names;
+pub mod rounded;
 mod suggest;
 
 pub use data::channel::{Channel, Quantity, Signal};

@@ -54,9 +54,10 @@ use recording::{LoadTorque, Recording};
 fn sampled_wrongly(t_sample: f64) -> String {
     let [shortest, longest] = MonitorConfig::SAMPLING_TIMES;
     format!(
-        "it is sampled every {t_sample} s, {} times a second; {:.0} to {:.0} times a second can be judged. Is its clock in another unit? Then say \
+        "it is sampled every {} s, {} times a second; {:.0} to {:.0} times a second can be judged. Is its clock in another unit? Then say \
          --unit t=ms or --unit t=us; otherwise record at 5 to 20 kHz",
-        1.0 / t_sample,
+        audit::digits(t_sample, 6),
+        audit::digits(1.0 / t_sample, 6),
         1.0 / longest,
         1.0 / shortest
     )

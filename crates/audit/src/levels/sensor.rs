@@ -1,7 +1,7 @@
 //! Channels that look like the volts of a sensor: proposed with the evidence, never applied.
 
 use crate::context::Context;
-use crate::finding::{Code, Finding, names};
+use crate::finding::{Code, Finding, digits, names};
 use crate::measure::statistics::median;
 use recording::{Channel, Quantity, Target};
 
@@ -52,6 +52,14 @@ pub(crate) fn check(context: &Context<'_>) -> Vec<Finding> {
     clamps.into_iter().chain(dividers).collect()
 }
 
+/// Whether channels, named as in a finding, usually have this ratio to the rated amplitude.
+pub(crate) fn is_usual(channels: &str, ratio: f64) -> bool {
+    match channels == names(&Channel::VOLTAGES) {
+        true => VOLTAGES.contains(&ratio),
+        false => CURRENTS.contains(&ratio),
+    }
+}
+
 /// Measured over rated amplitude of three channels that are sound and have no sensor yet.
 fn ratio(context: &Context<'_>, three: [Channel; 3], rated: f64) -> Option<f64> {
     let reading = &context.recording.reading;
@@ -97,9 +105,10 @@ fn proposal(
         .collect();
     let flag = format!("--sensor {all}={first}");
     let detail = format!(
-        "{} are {ratio:.2e} times the rated amplitude: they look like the output of {}. Nothing was changed; where the plate \
+        "{} are {} times the rated amplitude: they look like the output of {}. Nothing was changed; where the plate \
          of the sensor says so, add {flag}.",
         names(&three),
+        digits(ratio, 3),
         each.join(" or ")
     );
     Some(Finding::new(Code::SensorScale, names(&three), ratio, "x").detail(detail))

@@ -1,7 +1,7 @@
 //! Units other than the declared ones, and line voltages taken for phase voltages.
 
 use crate::context::Context;
-use crate::finding::{Code, Finding, names};
+use crate::finding::{Code, Finding, digits, names};
 use crate::measure::blocks::Block;
 use crate::measure::statistics::{median, quantile};
 use recording::Channel;
@@ -90,25 +90,35 @@ fn current(context: &Context<'_>) -> Option<Finding> {
     })
 }
 
+/// A ratio far from 1 in the decimal unit that is nearer.
+pub(crate) fn in_its_unit(ratio: f64) -> f64 {
+    match ratio > 1.0 {
+        true => 1e-3 * ratio,
+        false => 1e3 * ratio,
+    }
+}
+
 fn wrong(channels: &[Channel], ratio: f64, unit: &str, rated: &str) -> Finding {
     let flags: Vec<String> = channels
         .iter()
         .map(|channel| format!("--unit {channel}={unit}"))
         .collect();
-    let scaled = if ratio > 1.0 {
-        1e-3 * ratio
-    } else {
-        1e3 * ratio
-    };
+    let scaled = in_its_unit(ratio);
     // A unit that the nameplate contradicts is not proposed.
     let remedy = match PLAUSIBLE.contains(&scaled) || channels == [Channel::TORQUE] {
-        true => format!("the unit is probably {unit}. Add {}.", flags.join(" ")),
+        true => format!(
+            "the unit is probably {unit} (then {} times). Add {}.",
+            digits(scaled, 2),
+            flags.join(" ")
+        ),
         false => "no decimal unit makes it fit. Look at the scale of the sensor (--sensor) and at the nameplate.".to_owned(),
     };
     Finding::new(Code::Unit, names(channels), ratio, "x")
         .detail(format!(
-            "{} are {ratio:.3e} times the {rated}: {remedy}",
-            names(channels)
+            "{} {} {} times the {rated}: {remedy}",
+            names(channels),
+            if channels.len() == 1 { "is" } else { "are" },
+            digits(ratio, 3)
         ))
         .refusing()
 }
@@ -173,7 +183,7 @@ fn clock(context: &Context<'_>) -> Option<Finding> {
         .find(|(_, factor)| (0.5..2.0).contains(&(ratio / factor)))?;
     Some(
         Finding::new(Code::Unit, "t", factor, "x")
-            .detail(format!("The supply has {ratio:.2e} times the rated frequency: t is probably in {unit}; add --unit t={unit}."))
+            .detail(format!("The supply has {} times the rated frequency: t is probably in {unit}; add --unit t={unit}.", digits(ratio, 3)))
             .refusing(),
     )
 }

@@ -1,7 +1,7 @@
 //! Time without samples.
 
 use crate::context::Context;
-use crate::finding::{Code, Finding};
+use crate::finding::{Code, Finding, count};
 use crate::timing::clock::GAP;
 
 pub(crate) fn check(context: &Context<'_>) -> Vec<Finding> {
@@ -22,9 +22,9 @@ pub(crate) fn finding(gaps: &[(f64, f64)], usual: f64) -> Finding {
     let longest = gaps.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
     let longest = longest.unwrap_or_default();
     let detail = format!(
-        "{} gap(s) in time; the longest, {:.6} s, begins at {:.6} s, where samples are {usual:.3e} s apart. \
+        "{} in time; the longest, {:.6} s, begins at {:.6} s, where samples are {usual:.3e} s apart. \
          Nothing is judged across a gap; look for lost packets or a paused recorder.",
-        gaps.len(),
+        count(gaps.len(), "gap"),
         longest.1,
         longest.0
     );

@@ -1,5 +1,6 @@
-//! Checks of what hangs where: phases, polarity, sums, supply, speed against slip, second probes.
+//! Checks of what hangs where: phases, polarity, sums, supply, its frequency, speed against slip, second probes.
 
+pub(crate) mod frequency;
 pub(crate) mod phases;
 pub(crate) mod probes;
 pub(crate) mod speed;

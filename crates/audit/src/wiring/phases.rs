@@ -146,23 +146,41 @@ fn swapped(context: &mut Context<'_>) -> Finding {
     let fits = exchanges
         .iter()
         .filter(|pair| motor_share(context, |i| exchange(i, **pair)) > MOST);
-    let pairs: Vec<String> = fits
-        .map(|(a, b)| format!("{} and {}", Channel::CURRENTS[*a], Channel::CURRENTS[*b]))
+    let pairs: Vec<[Channel; 2]> = fits
+        .map(|(a, b)| [Channel::CURRENTS[*a], Channel::CURRENTS[*b]])
         .collect();
-    let which = if pairs.is_empty() {
-        "two of them".to_owned()
-    } else {
-        pairs.join(", or ")
-    };
     context
         .unsound
         .extend(Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS));
-    Finding::new(Code::SwappedPhases, names(&Channel::CURRENTS), pairs.len() as f64, "candidates")
-        .detail(format!(
-            "Voltages and currents follow each other in opposite orders: exchange {which} (or the voltages \
-             of the same phases), for example --column ib=ic --column ic=ib."
-        ))
-        .refusing()
+    Finding::new(
+        Code::SwappedPhases,
+        names(&Channel::CURRENTS),
+        pairs.len() as f64,
+        "candidates",
+    )
+    .detail(format!(
+        "Voltages and currents follow each other in opposite orders: exchange {} (or the voltages \
+             of the same phases), for example {}.",
+        either(&pairs),
+        exchange_flags(&pairs)
+    ))
+    .refusing()
+}
+
+/// The pairs in words; without one any two may be meant.
+fn either(pairs: &[[Channel; 2]]) -> String {
+    let named: Vec<String> = pairs.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+    match named.is_empty() {
+        true => "two of them".to_owned(),
+        false => named.join(", or "),
+    }
+}
+
+/// The flags that exchange the first of the pairs.
+fn exchange_flags(pairs: &[[Channel; 2]]) -> String {
+    let any = [Channel::CURRENTS[1], Channel::CURRENTS[2]];
+    let [a, b] = pairs.first().unwrap_or(&any);
+    format!("--column {a}={b} --column {b}={a}")
 }
 
 /// The share of settled blocks whose current, rearranged, lags the voltage like a motor's.

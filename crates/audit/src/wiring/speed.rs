@@ -1,7 +1,7 @@
 //! Speeds that cannot be this motor's.
 
 use crate::context::Context;
-use crate::finding::{Code, Finding};
+use crate::finding::{Code, Finding, count};
 use crate::levels::unit::relative_speed;
 use crate::measure::blocks::Block;
 use crate::measure::statistics::median;
@@ -42,9 +42,9 @@ fn gross(context: &Context<'_>) -> Option<Finding> {
         && (1.0..=12.0).contains(&meant.round())
     {
         format!(
-            "It would fit a motor of {:.0} pole pairs instead of {pole_pairs}, or a speed given in electrical \
+            "It would fit a motor of {} instead of {pole_pairs}, or a speed given in electrical \
              rad/s; correct pole_pairs, or the scale with --scale speed=FACTOR (speed=unknown if it is unknown).",
-            meant.round()
+            count(meant.round() as usize, "pole pair")
         )
     } else {
         "Scale and offset of the channel are wrong: correct them with --scale speed=FACTOR and --offset \

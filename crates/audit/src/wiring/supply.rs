@@ -43,14 +43,14 @@ fn unbalance(context: &Context<'_>) -> Option<Finding> {
 }
 
 /// Takes out what a gain error of one channel adds to the negative sequence, if zero and negative
-/// sequence agree that there is one: with a gain `1 + g` in phase a both are `g/3`, in phase b the
-/// negative one is `a g/3`, in phase c `a^2 g/3`.
+/// sequence agree that there is one: over the positive one both are `g/(3 + g)` with a gain `1 + g` in
+/// phase a; in phase b the negative one is turned by `a`, in phase c by `a^2`.
 fn without_gain_error(zero: Complex64, counter: Complex64) -> Complex64 {
-    let Some((k, percent)) = gain_error(zero) else {
+    let Some((k, along)) = gain_error(zero) else {
         return counter;
     };
     let direction = [Complex64::new(1.0, 0.0), a(), a().conj()][k];
-    let rest = counter - direction * percent / 300.0;
+    let rest = counter - direction * along;
     if rest.norm() < AGREES * counter.norm() {
         rest
     } else {

@@ -41,7 +41,7 @@ fn zero(context: &Context<'_>, three: [Channel; 3]) -> Option<Finding> {
             }
             _ => "The supply's neutral is displaced, or a sensor's gain is wrong.",
         };
-        let suspect = gain_error(ratio).map(|(k, gain)| (three[k], gain));
+        let suspect = gain_error(ratio).map(|(k, along)| (three[k], gain_percent(along)));
         Finding::new(Code::ZeroSequence, names(&three), percent, "%")
             .suspecting(suspect.map(|(channel, _)| channel))
             .detail(format!(
@@ -61,16 +61,22 @@ fn in_words(suspect: Option<(Channel, f64)>) -> String {
     }
 }
 
-/// The channel and the gain error, percent, that a zero sequence over positive sequence stands for.
+/// The channel whose gain alone explains a zero sequence over positive sequence, and that ratio along the channel's direction.
 ///
-/// With a gain `1 + g` in phase a the ratio is `g/3`, in phase b `a^2 g/3`, in phase c `a g/3`.
+/// With a gain `1 + g` in phase a the zero sequence is `g/3` and the positive one `1 + g/3`, so that the ratio is
+/// `r = g/(3 + g)`; in phase b it is turned by `a^2`, in phase c by `a`. A dead channel shows -1/2, no gain reaches 1.
 pub(crate) fn gain_error(ratio: Complex64) -> Option<(usize, f64)> {
     let directions = [Complex64::new(1.0, 0.0), a().conj(), a()];
     directions.iter().enumerate().find_map(|(k, direction)| {
         let turned = ratio * direction.conj();
         let off = turned.im.abs().atan2(turned.re.abs()).to_degrees();
-        (off < SAME_DEGREES).then_some((k, 300.0 * turned.re))
+        (off < SAME_DEGREES && turned.re < 1.0).then_some((k, turned.re))
     })
+}
+
+/// The gain error, percent, that a ratio below 1 along a channel's direction stands for.
+fn gain_percent(ratio: f64) -> f64 {
+    300.0 * ratio / (1.0 - ratio)
 }
 
 #[cfg(test)]
@@ -80,14 +86,15 @@ mod tests {
 
     #[test]
     fn a_gain_error_is_traced_to_its_channel() {
-        for (k, gain) in [(0, 0.02), (1, -0.03), (2, 0.05)] {
+        let small = [(0, 0.02), (1, -0.03), (2, 0.05)];
+        for (k, gain) in small.into_iter().chain([(0, -0.9), (1, -0.5), (2, 2.0)]) {
             let mut x = [Complex64::new(1.0, 0.0), a().conj(), a()];
             x[k] *= 1.0 + gain;
             let sequence = Sequence::of(x);
-            let (channel, percent) = gain_error(sequence.zero / sequence.positive).unwrap();
+            let (channel, along) = gain_error(sequence.zero / sequence.positive).unwrap();
+            let percent = gain_percent(along);
             assert_eq!(channel, k);
-            // The positive sequence grows by a third of the gain.
-            assert!((percent - 100.0 * gain).abs() < 0.1, "{percent}");
+            assert!((percent - 100.0 * gain).abs() < 1e-9, "{percent}");
         }
         assert_eq!(gain_error(Complex64::from_polar(0.01, 0.5)), None);
     }

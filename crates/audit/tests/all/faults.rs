@@ -1,7 +1,9 @@
 //! Every code of the audit: one healthy recording, one thing wrong with it, exactly the finding that
 //! belongs to it and no other.
 
-use crate::synthetic::{Noise, Signals, assert_codes, assert_one, audited, each, expectation};
+use crate::synthetic::{
+    Noise, SAMPLES, Signals, assert_codes, assert_one, audited, each, expectation,
+};
 use audit::{Code, Finding, audit};
 use recording::Recording;
 use std::f64::consts::TAU;
@@ -67,6 +69,23 @@ fn a_gap_in_time() {
     });
     // The grid went on, so that the phase jumps as well: nothing else may come of it.
     assert_one(&audit, Code::Gap, "t", 0.0124, 1e-9, "lost packets");
+}
+
+/// Three rows in a hundred are missing and the times say so: nothing else is wrong.
+#[test]
+fn many_gaps_make_no_other_finding() {
+    let mut noise = Noise::new(21);
+    let keeps: Vec<bool> = (0..SAMPLES).map(|_| noise.uniform() > 0.03).collect();
+    let audit = audited(|s| {
+        let kept = |x: &mut Vec<f64>| {
+            let mut keeps = keeps.iter();
+            x.retain(|_| keeps.next().is_some_and(|kept| *kept));
+        };
+        s.v.iter_mut().chain(&mut s.i).for_each(kept);
+        kept(&mut s.t);
+        kept(&mut s.speed);
+    });
+    assert_codes(&audit, &[Code::Gap]);
 }
 
 #[test]
@@ -165,6 +184,56 @@ fn a_voltage_sensor_of_wrong_gain_is_no_unbalance() {
     );
 }
 
+/// Far from 1 a gain moves the positive sequence as well: it is told all the same.
+#[test]
+fn a_current_sensor_of_half_its_gain() {
+    for gain in [0.5, 1.5, 2.5] {
+        let audit = audited(|s| {
+            s.metadata.sensors = recording::Sensors::default();
+            s.i[1].iter_mut().for_each(|x| *x *= gain);
+        });
+        let found = audit.findings.iter().find(|f| f.code == Code::ZeroSequence);
+        let found = found.expect("a zero sequence");
+        assert_eq!(found.suspect.as_deref(), Some("ib"));
+        let told = found.detail.split("A gain error of ").nth(1);
+        let told = told.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+        let off = told.expect("a percentage") - 100.0 * (gain - 1.0);
+        assert!(off.abs() < 0.3, "{}", found.detail);
+    }
+}
+
+/// A motor that runs backwards has its phases the other way round, and its channels where they are.
+#[test]
+fn a_wrong_gain_is_named_backwards_as_well() {
+    for (k, channel) in [(0, "va"), (1, "vb"), (2, "vc")] {
+        let audit = audited(|s| {
+            s.v.swap(1, 2);
+            s.i.swap(1, 2);
+            s.speed.iter_mut().for_each(|x| *x = -*x);
+            s.v[k].iter_mut().for_each(|x| *x *= 0.97);
+        });
+        assert_codes(&audit, &[Code::ZeroSequence]);
+        assert_eq!(audit.findings[0].suspect.as_deref(), Some(channel));
+    }
+}
+
+/// The flags exchange the pair that is named, whichever it is.
+#[test]
+fn the_flags_exchange_the_pair_that_is_named() {
+    for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+        let audit = audited(|s| s.i.swap(a, b));
+        assert_codes(&audit, &[Code::SwappedPhases]);
+        let [a, b] = [a, b].map(|k| ["ia", "ib", "ic"][k]);
+        let detail = &audit.findings[0].detail;
+        let words = format!("exchange {a} and {b} (or");
+        let flags = format!("for example --column {a}={b} --column {b}={a}.");
+        assert!(
+            detail.contains(&words) && detail.contains(&flags),
+            "{detail}"
+        );
+    }
+}
+
 #[test]
 fn a_jittering_clock() {
     let mut noise = Noise::new(9);
@@ -203,6 +272,46 @@ fn a_clock_that_is_too_slow() {
         "record at least 10",
     );
     assert_codes(&thinned(10), &[]);
+}
+
+/// 10 kHz read as 8 and as 5 kHz: the clock is named, not the speed or the pole pairs.
+#[test]
+fn a_wrong_sampling_rate() {
+    for (factor, hz) in [(1.25, 40.0), (2.0, 25.0)] {
+        let audit = audited(|s| s.t.iter_mut().for_each(|t| *t *= factor));
+        assert_one(
+            &audit,
+            Code::SupplyFrequency,
+            "t",
+            hz,
+            0.01,
+            "--sample-rate 10000 the supply has 50 Hz",
+        );
+        assert_eq!(audit.unusable, ["speed"]);
+    }
+}
+
+/// An inverter that nobody told of: it keeps the flux, or weakens it above the rated frequency.
+#[test]
+fn an_inverter_is_no_wrong_sampling_rate() {
+    let kept = audited(|s| {
+        s.t.iter_mut().for_each(|t| *t *= 1.25);
+        each(&mut s.v, |x| 0.8 * x);
+        s.speed.iter_mut().for_each(|x| *x *= 0.8);
+    });
+    assert_codes(&kept, &[]);
+    let weakened = audited(|s| {
+        s.t.iter_mut().for_each(|t| *t *= 0.7);
+        s.speed.iter_mut().for_each(|x| *x /= 0.7);
+    });
+    assert_one(
+        &weakened,
+        Code::SupplyFrequency,
+        "va vb vc",
+        50.0 / 0.7,
+        0.01,
+        "an inverter",
+    );
 }
 
 #[test]
@@ -314,6 +423,8 @@ fn the_json_is_stable() {
         (Code::Held, "held"),
         (Code::Skew, "skew"),
         (Code::ClockDrift, "clock-drift"),
+        (Code::LostSamples, "lost-samples"),
+        (Code::SupplyFrequency, "supply-frequency"),
     ];
     for (code, name) in codes {
         assert_eq!(serde_json::to_value(code).unwrap(), name);

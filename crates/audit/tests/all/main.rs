@@ -4,6 +4,7 @@ mod clipping;
 #[path = "../../../formats/tests/all/common.rs"]
 mod common;
 mod faults;
+mod lost_samples;
 mod mapping;
 mod operation;
 mod real_files;

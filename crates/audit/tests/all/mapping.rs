@@ -234,3 +234,23 @@ fn a_sensor_that_the_nameplate_contradicts_is_not_proposed() {
         unit.detail
     );
 }
+
+/// 0.0076 of the rated current would be 7.6 times it in kA, 0.76 times behind a clamp of 10 mV/A; a thousandth fits both.
+#[test]
+fn the_likelier_load_is_proposed_first() {
+    let clamp = ["10mV/A (then 0.76 times)", "kA (then 7.6 times)"];
+    let kiloampere = ["kA (then 1 times)", "1mV/A (then 1.00 times)"];
+    for (factor, [first, second]) in [(0.0076, clamp), (0.001, kiloampere)] {
+        let amp = factor * 5.0 * f64::sqrt(2.0);
+        let audit = audited(|s| {
+            for (k, x) in s.i.iter_mut().enumerate() {
+                let angle = |t: f64| TAU * (50.0 * t - k as f64 / 3.0) - 0.7;
+                *x = s.t.iter().map(|t| amp * angle(*t).cos()).collect();
+            }
+        });
+        let unit = audit.findings.iter().find(|f| f.code == Code::Unit);
+        let detail = &unit.expect("a unit").detail;
+        let at = |words: &str| detail.find(words).unwrap_or_else(|| panic!("{detail}"));
+        assert!(at(first) < at(second), "{detail}");
+    }
+}

@@ -7,4 +7,5 @@ mod malformed;
 mod pieces;
 mod random_input;
 mod reading_real_files;
+mod rounded_stamps;
 mod writing;

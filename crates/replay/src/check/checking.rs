@@ -1,9 +1,9 @@
 //! A recording that is checked piece by piece, and of which no sample is kept.
 
-use audit::{Audit, Expectation, Merger, audit};
+use audit::{Audit, Code, Expectation, Finding, Merger, audit};
 use monitor::Monitor;
 use motor::MotorFile;
-use recording::Recording;
+use recording::{Channel, Recording};
 
 use super::balance::Balance;
 use super::caveat::caveat;
@@ -160,11 +160,11 @@ impl<'m> Checking<'m> {
             motion = MotionSummary::default();
         }
         let mut state = timeline.state(verdict.state, &motion);
-        let share = |share: &NotJudgedShare| format!("{}: {} windows", share.reason, share.windows);
-        let reasons: Vec<String> = timeline.not_judged.iter().map(share).collect();
+        let reasons = not_judged(&timeline, &shown);
         let calibrated = self.motor.healthy.is_some();
         let jump = self.balance.jump().filter(|_| !calibrated);
-        let mut doubts = doubts(&shown.findings, &timeline.rotor(), jump, calibrated);
+        let about = of_recorded(&shown, speed.is_some());
+        let mut doubts = doubts(&about, &timeline.rotor(), jump, calibrated);
         let is_dark = state != VerdictState::Fault;
         let few = timeline.too_few(&motion).filter(|_| is_dark);
         doubts.extend(few.and_then(|few| hardly_judged(few, &reasons)));
@@ -209,6 +209,29 @@ impl<'m> Checking<'m> {
         answer.told = Told::of(&answer);
         answer
     }
+}
+
+/// Why windows were not judged, or why there are none.
+fn not_judged(timeline: &Timeline, shown: &Audit) -> Vec<String> {
+    let between_gaps = shown.findings.iter().any(|one| one.code == Code::Gap);
+    if timeline.windows == 0 && between_gaps {
+        return vec![
+            "no window fits between two gaps in time: record without lost samples".to_owned(),
+        ];
+    }
+    let share = |share: &NotJudgedShare| match share.windows {
+        1 => format!("{}: 1 window", share.reason),
+        many => format!("{}: {many} windows", share.reason),
+    };
+    timeline.not_judged.iter().map(share).collect()
+}
+
+/// Findings without those of an estimated speed, which is no channel that anybody could mend.
+fn of_recorded(shown: &Audit, is_estimated: bool) -> Vec<Finding> {
+    let speed = Channel::SPEED.to_string();
+    let recorded = shown.findings.iter();
+    let recorded = recorded.filter(|finding| !is_estimated || finding.channel != speed);
+    recorded.cloned().collect()
 }
 
 impl Speed {

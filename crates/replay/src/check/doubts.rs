@@ -37,7 +37,11 @@ pub(super) fn doubts(
             ),
             remedy: format!("check the channel {}: {}", channel(finding), finding.detail),
         });
-    channels
+    let samples = findings.iter().filter_map(lost_samples);
+    let clock = findings.iter().filter_map(wrong_clock);
+    clock
+        .chain(channels)
+        .chain(samples)
         .chain(jump.map(changed))
         .chain(bars(rotor))
         .collect()
@@ -85,6 +89,30 @@ pub(super) fn hardly_visible(visible_percent: [f64; 4]) -> Option<CheckDoubt> {
         remedy: "compare the recording's voltage, frequency and current with the plate; give a plate with all its values, or a recording of the \
                  motor in good order (--healthy)"
             .to_owned(),
+    })
+}
+
+/// Samples that are missing here and there: every phase behind them is another one.
+fn lost_samples(finding: &Finding) -> Option<CheckDoubt> {
+    let is_doubt = finding.code == Code::LostSamples && !finding.refuses;
+    is_doubt.then(|| CheckDoubt {
+        seen: format!(
+            "the audit finds {:.0} places where samples are missing",
+            finding.value
+        ),
+        remedy: format!("record without lost samples: {}", finding.detail),
+    })
+}
+
+/// A supply at a frequency that the plate excludes at this voltage.
+fn wrong_clock(finding: &Finding) -> Option<CheckDoubt> {
+    let is_doubt = finding.code == Code::SupplyFrequency && finding.channel == "t";
+    is_doubt.then(|| CheckDoubt {
+        seen: format!(
+            "the supply has {:.1} Hz by the sampling rate as it was read, at a voltage that does not go with it",
+            finding.value
+        ),
+        remedy: format!("check the sampling rate: {}", finding.detail),
     })
 }
 
@@ -166,6 +194,12 @@ mod tests {
         assert!(of(displaced, false).is_empty());
         let small = finding(Code::ZeroSequence, Some("va"), 2.0, None);
         assert!(of(small, false).is_empty());
+        let lost = finding(Code::LostSamples, None, 3.0, None);
+        assert!(of(lost, true)[0].seen.contains("3 places"));
+        let mut clock = finding(Code::SupplyFrequency, None, 40.0, None);
+        assert!(of(clock.clone(), true).is_empty(), "an inverter");
+        clock.channel = "t".to_owned();
+        assert!(of(clock, true)[0].seen.contains("40.0 Hz"));
         let speed = finding(Code::SpeedImplausible, None, -2.1, None);
         assert_eq!(of(speed, true).len(), 1);
         let for_a_while = finding(Code::SpeedImplausible, None, -2.1, Some(1.0));

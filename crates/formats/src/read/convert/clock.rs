@@ -1,14 +1,18 @@
 //! The clock of a recording: the `t` column, or a declared sampling rate.
 
 use crate::read::samples::{Raw, Rows};
-use recording::{Column, Error, Mapping, Target};
+use recording::{Column, Error, Mapping, Target, rounded};
 
-/// Takes the clock out of the raw columns, in seconds, strictly rising.
-pub(in crate::read) fn clock(
-    file: &str,
-    raw: &mut Raw,
-    mapping: &Mapping,
-) -> Result<Column, Error> {
+/// When the samples were taken.
+pub(in crate::read) struct Clock {
+    /// In seconds, strictly rising.
+    pub t: Column,
+    /// What was assumed to read it.
+    pub assumption: Option<String>,
+}
+
+/// Takes the clock out of the raw columns.
+pub(in crate::read) fn clock(file: &str, raw: &mut Raw, mapping: &Mapping) -> Result<Clock, Error> {
     let column = raw.columns.remove(&Target::Time);
     let rows = raw.rows.len();
     if rows < 2 {
@@ -25,7 +29,10 @@ pub(in crate::read) fn clock(
     if let Some(rate_hz) = mapping.sample_rate_hz {
         #[allow(clippy::cast_precision_loss)]
         let seconds = |k: usize| raw.rows.number(k) as f64 / rate_hz;
-        return Ok((0..rows).map(seconds).collect::<Vec<f64>>().into());
+        return Ok(Clock {
+            t: (0..rows).map(seconds).collect::<Vec<f64>>().into(),
+            assumption: None,
+        });
     }
     let map = mapping
         .columns
@@ -38,8 +45,11 @@ pub(in crate::read) fn clock(
         let readings = t.to_mut().iter_mut();
         readings.for_each(|x| *x = map.to_si(quantity, *x));
     }
+    let even = rounded::even(&t);
+    let assumption = even.as_ref().map(rounded::Even::told);
+    let t = even.map_or(t, |even| even.t.into());
     rises(file, &t, &raw.rows)?;
-    Ok(t)
+    Ok(Clock { t, assumption })
 }
 
 fn rises(file: &str, t: &[f64], rows: &Rows) -> Result<(), Error> {

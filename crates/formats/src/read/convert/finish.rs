@@ -28,9 +28,10 @@ pub(in crate::read) fn recording(
     kept: Range<usize>,
 ) -> Result<Recording, Error> {
     let mapping = &plan.mapping;
-    let t = clock::clock(file, &mut raw, mapping)?;
-    let mut recording = Recording::over(file, t, metadata)?;
+    let clock = clock::clock(file, &mut raw, mapping)?;
+    let mut recording = Recording::over(file, clock.t, metadata)?;
     recording.assumptions = plan.notes;
+    recording.assumptions.extend(clock.assumption);
     recording.reading = Box::new(plan.reading);
     recording.unknown_speed_scale = unknown_speed_scale(file, mapping)?;
     note_clock(&mut recording, &raw, mapping, plan.rate_is_declared);
