@@ -14,6 +14,50 @@ pub(super) struct Direction<'a> {
     pub across: Option<Across<&'a [f32]>>,
 }
 
+/// A departure in white rows.
+#[derive(Clone, Copy)]
+pub(super) struct Departure<'a> {
+    /// The rows.
+    pub white: &'a [f32],
+    /// What they come to.
+    pub total: Total,
+}
+
+/// What all rows of a departure come to.
+#[derive(Clone, Copy)]
+pub(super) struct Total {
+    /// Squared length.
+    pub square: f32,
+    /// How many rows are known.
+    pub known: f32,
+    /// How many of these are of the positive sequence.
+    known_positive: f32,
+}
+
+impl Total {
+    /// Of these rows, of which those are known.
+    pub(super) fn of(white: &[f32], known: &[bool]) -> Self {
+        let count = |known: &[bool]| known.iter().filter(|known| **known).count() as f32;
+        Total {
+            square: dot(white, white),
+            known: count(known),
+            known_positive: count(known.get(..POSITIVE).unwrap_or_default()),
+        }
+    }
+}
+
+impl Departure<'_> {
+    /// What a cause of all phases may leave, which makes no negative and no zero sequence: squared length, and in how many rows.
+    fn positive_beside(&self, along: &[f32], size: f32) -> (f32, f32) {
+        let rows = self.white.iter().zip(along).take(POSITIVE);
+        let left = rows.map(|(x, along)| x - size * along);
+        (left.map(|x| x * x).sum(), self.total.known_positive)
+    }
+}
+
+/// Rows of the positive sequence come first.
+const POSITIVE: usize = Row::Negative as usize;
+
 /// A second direction of a cause.
 #[derive(Clone, Copy)]
 pub(crate) enum Across<T> {
@@ -61,32 +105,46 @@ struct Second {
 }
 
 impl Fit {
-    /// `known`: which rows are known.
-    pub(super) fn of(
-        cause: Cause,
-        direction: &Direction<'_>,
-        departure: &[f32],
-        known: &[bool],
-    ) -> Self {
-        let along = direction.along;
+    /// Of one cause.
+    #[inline(never)]
+    pub(super) fn of(cause: Cause, direction: &Direction<'_>, departure: &Departure<'_>) -> Self {
+        let (along, white) = (direction.along, departure.white);
         let information = dot(along, along);
-        let projected = |rows: &[f32]| dot(rows, along) / information.max(LEAST_INFORMATION);
-        let (rows, is_added) = match direction.across {
-            Some(Across::Turned(rows)) => (rows, false),
-            Some(Across::Added(rows)) => (rows, true),
-            None => (&[][..], false),
+        let both = dot(along, white) / information.max(LEAST_INFORMATION);
+        let first = information * both * both;
+        let Some(across) = direction.across else {
+            let (beside, others) = match cause.phase() {
+                Some(_) => (departure.total.square - first, departure.total.known),
+                None => departure.positive_beside(along, both),
+            };
+            return Fit {
+                information,
+                along: both,
+                first,
+                second: Second::default(),
+                beside: beside.max(0.0),
+                others: (others - 1.0).max(0.0),
+            };
         };
-        let overlap = projected(rows);
-        let aside = |k: usize| {
-            rows.get(k)
-                .map_or(0.0, |row| row - overlap * entry(along, k))
+        let (rows, is_added) = match across {
+            Across::Turned(rows) => (rows, false),
+            Across::Added(rows) => (rows, true),
         };
-        let numbered = || departure.iter().enumerate();
-        let square: f32 = numbered().map(|(k, _)| aside(k) * aside(k)).sum();
-        let found: f32 = numbered().map(|(k, x)| aside(k) * x).sum();
-        let change = found / square.max(LEAST_INFORMATION);
-        let change = if is_added { change.max(0.0) } else { change };
-        let both = projected(departure);
+        let overlap = dot(rows, along) / information.max(LEAST_INFORMATION);
+        let length = dot(rows, rows);
+        let beside = length - overlap * overlap * information;
+        let aside = if beside > LEAST_ASIDE * length {
+            beside
+        } else {
+            0.0
+        };
+        let found = dot(rows, white) - overlap * both * information;
+        let change = found / aside.max(LEAST_INFORMATION);
+        let change = if aside <= 0.0 || is_added && change < 0.0 {
+            0.0
+        } else {
+            change
+        };
         let alone = if is_added {
             both - overlap * change
         } else {
@@ -97,27 +155,19 @@ impl Fit {
                 along: rows,
                 across: None,
             };
-            return Fit::of(cause, &second_alone, departure, known);
+            return Fit::of(cause, &second_alone, departure);
         }
-        let reach = match cause.phase() {
-            Some(_) => departure.len(),
-            None => Row::Negative as usize,
-        };
-        let left = |(k, x): (usize, &f32)| x - both * entry(along, k) - change * aside(k);
-        let beside = numbered().take(reach).map(left).map(|x| x * x).sum();
-        let reached = known.iter().take(reach).filter(|known| **known).count();
-        let directions = if square > 0.0 { 2.0 } else { 1.0 };
         Fit {
             along: alone,
-            first: information * both * both,
+            first,
             information,
             second: Second {
-                information: square,
+                information: aside,
                 change,
                 is_added,
             },
-            beside,
-            others: (reached as f32 - directions).max(0.0),
+            beside: (departure.total.square - first - aside * change * change).max(0.0),
+            others: (departure.total.known - 2.0).max(0.0),
         }
     }
 
@@ -185,14 +235,12 @@ fn wider(more: f32, square: f32) -> f32 {
     0.5 * square * (more / (1.0 + more)) - 0.5 * ln(1.0 + more)
 }
 
-fn entry(rows: &[f32], k: usize) -> f32 {
-    rows.get(k).copied().unwrap_or(0.0)
-}
-
 fn dot(a: &[f32], b: &[f32]) -> f32 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// Share of its length that a second direction must have beside the first: single precision tells no less.
+const LEAST_ASIDE: f32 = 1e-5;
 /// A direction without length says nothing about its cause.
 pub(super) const LEAST_INFORMATION: f32 = 1e-12;
 /// Score of a cause whose sign is impossible.

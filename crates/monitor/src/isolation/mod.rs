@@ -11,6 +11,7 @@ mod evidence;
 mod fit;
 pub mod gauss;
 mod healthy;
+mod negative;
 mod temperature;
 mod weighing;
 
@@ -27,7 +28,7 @@ pub(crate) use evidence::{PositiveEvidence, Rows, rows_of, rows_of_currents};
 use fit::LEAST_INFORMATION;
 use temperature::MOST_APART;
 pub(crate) use temperature::Temperature;
-use weighing::{Weighing, square};
+use weighing::Weighing;
 
 /// What one window says about the causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,11 +68,11 @@ impl Isolation {
         let cholesky = covariance.factorise();
         let departure = evidence.departure_at(&resistances, [expected.rise, apart.rise]);
         let weighing = Weighing::new(evidence, &cholesky, &departure);
-        let (white, known) = (weighing.white(), weighing.known());
+        let judged = weighing.judged();
+        let (square, known) = (judged.total.square, judged.total.known);
         let resistances = resistances.map(|direction| cholesky.whiten(direction));
-        let along = Warmth::new(weighing.judged(&resistances.heating()), white);
-        let parting = Warmth::new(weighing.judged(&resistances.parting()), white);
-        let square = square(white);
+        let along = Warmth::new(&resistances.heating(), judged.white);
+        let parting = Warmth::new(&resistances.parting(), judged.white);
         let mut isolation = Isolation {
             scores: [0.0; CAUSES],
             unknown: weighing.anything(),
@@ -139,16 +140,15 @@ pub fn probabilities(scores: &[f32; CAUSES], unknown: f32) -> ([f32; CAUSES], f3
 const UNKNOWN_SPREAD: f32 = 100.0;
 
 /// Logarithm of the Bayes factor of a departure of this squared length in any direction.
-fn score_of_anything(square: f32, known: usize) -> f32 {
+fn score_of_anything(square: f32, known: f32) -> f32 {
     let k = UNKNOWN_SPREAD * UNKNOWN_SPREAD;
-    0.5 * square * (k / (1.0 + k)) - 0.5 * known as f32 * ln(1.0 + k)
+    0.5 * square * (k / (1.0 + k)) - 0.5 * known * ln(1.0 + k)
 }
 
 /// The squared length as an equally rare standard deviation (Wilson and Hilferty, doi:10.1073/pnas.17.12.684).
 #[inline(never)]
-fn significance_of_anything(square: f32, known: usize) -> f32 {
-    let n = known as f32;
-    if known == 0 {
+fn significance_of_anything(square: f32, n: f32) -> f32 {
+    if n < 1.0 {
         return 0.0;
     }
     let spread = 2.0 / (9.0 * n);
@@ -166,11 +166,12 @@ struct Warmth {
 }
 
 impl Warmth {
-    fn new(direction: &[f32], white: &[f32]) -> Self {
-        let products = direction.iter().zip(white).map(|(d, x)| d * x);
+    /// Over the rows that `white` has.
+    fn new(direction: &Rows, white: &[f32]) -> Self {
+        let rows = direction.iter().zip(white);
         Warmth {
-            information: square(direction),
-            along: products.sum(),
+            information: rows.clone().map(|(d, _)| d * d).sum(),
+            along: rows.map(|(d, x)| d * x).sum(),
         }
     }
 

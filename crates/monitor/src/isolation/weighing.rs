@@ -4,7 +4,7 @@
 //! is the supply's affair, not a fault of the motor: FAULT rests on the other rows. A voltage channel moves `V_0` and the negative
 //! sequence together, and is named by both.
 
-use super::fit::{Across, Direction, Fit};
+use super::fit::{Across, Departure, Direction, Fit, Total};
 use super::gauss::Cholesky;
 use super::{Cause, Evidence, ROWS, Row, Rows, ln, score_of_anything, significance_of_anything};
 
@@ -21,7 +21,8 @@ const MOVED: f32 = 4.0;
 /// A departure in white rows.
 pub(super) struct Weighing {
     white: Rows,
-    known: [bool; ROWS],
+    /// Of all rows, and of those before `V_0`.
+    totals: [Total; 2],
     /// `None` where `V_0` cannot be told from other rows.
     neutral: Option<Neutral>,
 }
@@ -52,42 +53,50 @@ impl Weighing {
         let known = *evidence.known();
         let is_known = |row: Row| known.get(row as usize).copied().unwrap_or(false);
         let both = is_known(Row::ZeroVoltage) && is_known(Row::Negative);
+        let total = |rows: usize| Total::of(first(&white, rows), first(&known, rows));
         Weighing {
             neutral: both.then(|| Neutral::of(cholesky, departure, &white)),
+            totals: [total(ROWS), total(BEFORE_ZERO_VOLTAGE)],
             white,
-            known,
         }
     }
 
-    /// The white rows that speak of motor and instrument.
-    pub fn white(&self) -> &[f32] {
-        self.judged(&self.white)
+    /// The rows that speak of motor and instrument: all of them while the neutral stays, which also tells the channels' gains from
+    /// what the motor does.
+    pub fn judged(&self) -> Departure<'_> {
+        let [all, without] = self.departures();
+        let has_moved = self.neutral.as_ref().is_some_and(|it| it.has_moved);
+        if has_moved { without } else { all }
     }
 
-    /// How many of these are known.
-    pub fn known(&self) -> usize {
-        count(self.judged(&self.known))
-    }
-
-    /// The rows of a white vector that speak of motor and instrument: all of them while the neutral stays, which also tells the
-    /// channels' gains from what the motor does.
-    pub fn judged<'a, T>(&self, rows: &'a [T; ROWS]) -> &'a [T] {
-        let has_moved = self
-            .neutral
-            .as_ref()
-            .is_some_and(|neutral| neutral.has_moved);
-        let judged = if has_moved { BEFORE_ZERO_VOLTAGE } else { ROWS };
-        first(rows, judged)
+    /// All rows, and those before `V_0`.
+    fn departures(&self) -> [Departure<'_>; 2] {
+        let [all, without] = self.totals;
+        let of = |rows: usize, total: Total| Departure {
+            white: first(&self.white, rows),
+            total,
+        };
+        [of(ROWS, all), of(BEFORE_ZERO_VOLTAGE, without)]
     }
 
     /// Weighs one cause by its white directions.
     pub fn weigh(&self, cause: Cause, along: &Rows, across: Option<&Across<Rows>>) -> Weighed {
-        let all = self.fit(cause, along, across, ROWS);
-        let Some(neutral) = &self.neutral else {
-            return Weighed::new(cause, &all, all.possible_square(cause));
+        let fit = |departure: &Departure<'_>| {
+            let rows = departure.white.len();
+            let direction = Direction {
+                along: first(along, rows),
+                across: across.map(|across| across.map(|across| first(across, rows))),
+            };
+            Fit::of(cause, &direction, departure)
         };
-        let without = self.fit(cause, along, across, BEFORE_ZERO_VOLTAGE);
-        let square = neutral.either(all.possible_square(cause), without.possible_square(cause));
+        let [all, without] = self.departures();
+        let all = fit(&all);
+        let square = all.possible_square(cause);
+        let Some(neutral) = self.neutral.as_ref().filter(|it| it.matters(square)) else {
+            return Weighed::new(cause, &all, square);
+        };
+        let without = fit(&without);
+        let square = neutral.either(square, without.possible_square(cause));
         let health = neutral.better.max(0.0);
         let mut weighed = if without.score(cause) + neutral.better > all.score(cause) {
             let mut weighed = Weighed::new(cause, &without, square);
@@ -102,49 +111,24 @@ impl Weighing {
 
     /// Length of the whole departure as a standard deviation that is as rare.
     pub fn significance(&self) -> f32 {
-        let all = significance_of_anything(square(&self.white), count(&self.known));
+        let [all, without] = self
+            .totals
+            .map(|it| significance_of_anything(it.square, it.known));
         let Some(neutral) = &self.neutral else {
             return all;
         };
-        let (square, known) = self.without_neutral();
-        let without = significance_of_anything(square, known);
         // Shorter than most departures is negative.
         let longer = without.max(0.0);
         all.min(libm::sqrtf(neutral.either(f32::INFINITY, longer * longer)))
     }
 
-    /// Least squares over the first rows.
-    fn fit(&self, cause: Cause, along: &Rows, across: Option<&Across<Rows>>, rows: usize) -> Fit {
-        let direction = Direction {
-            along: first(along, rows),
-            across: across.map(|across| across.map(|across| first(across, rows))),
-        };
-        Fit::of(
-            cause,
-            &direction,
-            first(&self.white, rows),
-            first(&self.known, rows),
-        )
-    }
-
     /// Logarithm of the Bayes factor of a departure in any direction.
     pub fn anything(&self) -> f32 {
-        let all = score_of_anything(square(&self.white), count(&self.known));
+        let [all, without] = self.totals.map(|it| score_of_anything(it.square, it.known));
         let Some(neutral) = &self.neutral else {
             return all;
         };
-        let (square, known) = self.without_neutral();
-        let without = score_of_anything(square, known);
         all.max(without + neutral.better) - neutral.better.max(0.0)
-    }
-
-    /// Squared length of the rows before `V_0`, and how many of these are known.
-    fn without_neutral(&self) -> (f32, usize) {
-        let white = first(&self.white, BEFORE_ZERO_VOLTAGE);
-        (
-            square(white),
-            count(first(&self.known, BEFORE_ZERO_VOLTAGE)),
-        )
     }
 }
 
@@ -180,6 +164,12 @@ impl Neutral {
         }
     }
 
+    /// Whether a displaced neutral may change what is said of a departure of this squared length: one that costs more than all of
+    /// it explains nothing.
+    fn matters(&self, square: f32) -> bool {
+        self.has_moved || self.better > 0.0 || square > self.cost
+    }
+
     /// A squared length that a healthy motor may owe to its own neutral or to a displaced one.
     fn either(&self, all: f32, without: f32) -> f32 {
         if self.has_moved {
@@ -197,10 +187,6 @@ pub(super) fn square(rows: &[f32]) -> f32 {
 
 fn first<T>(rows: &[T; ROWS], count: usize) -> &[T] {
     rows.get(..count).unwrap_or_default()
-}
-
-fn count(known: &[bool]) -> usize {
-    known.iter().filter(|known| **known).count()
 }
 
 const _: () = assert!(BEFORE_ZERO_VOLTAGE + 2 == ROWS);

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use super::plant::{Plant, evidence, statistics};
 use crate::checks::sensors::Phase;
-use crate::isolation::fit::{Direction, Fit, IMPOSSIBLE};
+use crate::isolation::fit::{Departure, Direction, Fit, IMPOSSIBLE, Total};
 use crate::isolation::gauss::dot;
 use crate::isolation::{
     ALL_CAUSES, Cause, Heating, Isolation, ROWS, Warmth, probabilities, score_of_anything,
@@ -39,7 +39,11 @@ fn score(direction: &[f32], departure: &[f32], cause: Cause) -> f64 {
         along: &direction,
         across: None,
     };
-    f64::from(Fit::of(cause, &direction, &departure, &known).score(cause))
+    let departure = Departure {
+        white: &departure,
+        total: Total::of(&departure, &known),
+    };
+    f64::from(Fit::of(cause, &direction, &departure).score(cause))
 }
 
 #[test]
@@ -112,7 +116,12 @@ fn a_direction_without_length_explains_nothing() {
         along: &[0.0; ROWS],
         across: None,
     };
-    let fit = Fit::of(Cause::Leakage, &direction, &rows(&[3.0]), &[true; ROWS]);
+    let white = rows(&[3.0]);
+    let departure = Departure {
+        white: &white,
+        total: Total::of(&white, &[true; ROWS]),
+    };
+    let fit = Fit::of(Cause::Leakage, &direction, &departure);
     assert_eq!((fit.size(), fit.square()), (0.0, 0.0));
 }
 
@@ -125,7 +134,7 @@ fn the_score_of_anything_is_that_of_a_wide_normal_distribution() {
             .iter()
             .map(|x| (normal(*x, 1.0 + 1e4) / normal(*x, 1.0)).ln())
             .sum();
-        let got = f64::from(score_of_anything(square as f32, departure.len()));
+        let got = f64::from(score_of_anything(square as f32, departure.len() as f32));
         assert!(
             (got - expected).abs() < 1e-3 * (1.0 + expected.abs()),
             "{got} {expected}"
@@ -168,7 +177,7 @@ fn a_squared_length_becomes_the_standard_deviation_that_is_as_rare() {
             (4.0, 3.167_1e-5),
         ] {
             let square = quantile(chance, half) as f32;
-            let got = f64::from(significance_of_anything(square, 2 * half as usize));
+            let got = f64::from(significance_of_anything(square, 2.0 * half as f32));
             let most = if sigma > 3.0 { 0.15 } else { 0.06 };
             assert!(
                 (got - sigma).abs() < most,
@@ -177,7 +186,7 @@ fn a_squared_length_becomes_the_standard_deviation_that_is_as_rare() {
             );
         }
     }
-    assert_eq!(significance_of_anything(9.0, 0), 0.0);
+    assert_eq!(significance_of_anything(9.0, 0.0), 0.0);
 }
 
 #[test]
