@@ -16,6 +16,7 @@
 //! ```
 
 pub mod alarm;
+mod claim;
 mod clock;
 mod entry;
 pub mod lamp;
@@ -24,6 +25,7 @@ pub mod people;
 mod state;
 mod store;
 
+pub use claim::Claim;
 pub use clock::now_ms;
 pub use entry::{
     BoardEvent, Entry, Gap, GapOf, Link, Numbered, Recording, RecordingKey, Second, Thinned,

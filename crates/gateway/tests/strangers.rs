@@ -39,6 +39,42 @@ fn seconds(store: &Store, motor: &str) -> Vec<u32> {
     .collect()
 }
 
+/// A gateway that somebody starts beside a running one, to try something, takes nothing from it.
+#[tokio::test(flavor = "current_thread")]
+async fn a_second_gateway_is_refused_and_the_first_goes_on() {
+    let plan = Plan {
+        boards: 1,
+        listen: ports::free(),
+        per_port: 200,
+        seed: 4,
+        faulty: 0,
+        faults_within_s: 60,
+        restart_s: None,
+    };
+    let mut plant = Plant::new(&plan, None).expect("a sound plan");
+    listen(&plant, &plan).await.expect("a free port");
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = plan.configuration("plant.db");
+    let first = start(folder.path(), &text);
+    let read = Config::parse(&text, &folder.path().join("plant.toml"), Config::no_outputs);
+    let (config, ()) = read.expect("it is accepted");
+    let second = Gateway::start(&config, &[], |line| eprintln!("{line}"));
+    let why = second.err().expect("it is refused").to_string();
+    assert!(
+        why.contains("plant.db") && why.contains("end it first"),
+        "{why}"
+    );
+    let store = first.store();
+    (0..20).for_each(|_| plant.tick(0, 1).expect("nothing is written"));
+    until("the board's seconds", || {
+        seconds(&store, "m00001").len() == 20
+    })
+    .await;
+    first.end().await.expect("it is written");
+    let third = start(folder.path(), &text);
+    third.end().await.expect("it is written");
+}
+
 /// A second board answers at the address of a motor whose board is known by its serial number.
 #[tokio::test(flavor = "current_thread")]
 async fn a_board_under_a_forged_address_is_refused() {

@@ -33,6 +33,12 @@ pub enum StoreError {
     /// The file is a database of something else.
     #[error("{}: a database of another program; give the store a file of its own", .0.display())]
     Foreign(PathBuf),
+    /// Another program keeps the store.
+    #[error(
+        "{}: another gateway keeps this store and goes on: end it first, or give this one a store of its own ([store] path)",
+        .0.display()
+    )]
+    Claimed(PathBuf),
     /// Another program opened the store for writing after this one.
     #[error("another program writes to this store since: end one of the two")]
     OtherWriter,

@@ -1,10 +1,12 @@
 //! `drivemon gateway`.
 
+use std::collections::BTreeSet;
 use std::future::Future;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use motor::MotorFile;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
@@ -53,6 +55,20 @@ pub enum Ran {
     ToChange,
     /// The gateway ran.
     Gathered(Snapshot),
+}
+
+/// Motor files that are named and cannot be read, each once.
+fn wrong_motor_files(config: &Config) -> Vec<String> {
+    let mut seen = BTreeSet::new();
+    let named = config.motors.iter().filter_map(|motor| {
+        let file = motor.info.motor_file.as_ref()?;
+        seen.insert(file).then_some((motor, file))
+    });
+    let wrong = named.filter_map(|(motor, file)| {
+        let error = MotorFile::read(file).err()?;
+        Some(format!("motor_file of {}: {error}", motor.info.id))
+    });
+    wrong.collect()
 }
 
 impl Gather {
@@ -111,7 +127,7 @@ impl Gather {
             limits.recordings_days
         ));
         outputs.described().iter().for_each(|line| say(line));
-        for wrong in outputs.to_change() {
+        for wrong in wrong_motor_files(config).iter().chain(&outputs.to_change()) {
             sound = false;
             say(&format!("  to change: {wrong}"));
         }
@@ -209,4 +225,37 @@ fn told(now: &Snapshot) -> String {
         "{} of {} motors answer; stored: {} seconds, {} events, {} gaps",
         now.up, now.motors, now.seconds, now.events, now.gaps
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::Plan;
+
+    #[test]
+    fn a_motor_file_that_is_not_there_is_to_change_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let plan = Plan {
+            boards: 3,
+            listen: "127.0.0.1:5020".parse().expect("an address"),
+            per_port: 200,
+            seed: 4,
+            faulty: 0,
+            faults_within_s: 60,
+            restart_s: None,
+        };
+        let text = plan.configuration("plant.db");
+        let config = || {
+            let path = folder.path().join("plant.toml");
+            Config::parse(&text, &path, Config::no_outputs)
+                .expect("accepted")
+                .0
+        };
+        let wrong = wrong_motor_files(&config());
+        assert_eq!(wrong.len(), 1, "{wrong:?}");
+        assert!(wrong[0].starts_with("motor_file of m00001: "), "{wrong:?}");
+        let file = config().motors[0].info.motor_file.clone().expect("named");
+        std::fs::copy("../../motors/peer-2k2.toml", file).expect("copied");
+        assert_eq!(wrong_motor_files(&config()), Vec::<String>::new());
+    }
 }

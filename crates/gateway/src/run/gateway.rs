@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use fleet::alarm::Watch;
 use fleet::people::{People, PeopleError};
-use fleet::{MotorInfo, Store, StoreError};
+use fleet::{Claim, MotorInfo, Store, StoreError};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::JoinSet;
 
@@ -38,6 +38,8 @@ pub enum StartError {
 
 /// A running gateway.
 pub struct Gateway {
+    /// A second gateway is refused, and does not take the store from this one.
+    _claim: Claim,
     store: Arc<Store>,
     watch: Arc<Watch>,
     stored: watch::Receiver<u64>,
@@ -60,6 +62,7 @@ impl Gateway {
         outputs: &[&str],
         say: impl Fn(String) + Send + Sync + 'static,
     ) -> Result<Self, StartError> {
+        let claim = Claim::take(&config.store)?;
         let store = Arc::new(Store::open(&config.store, &config.limits)?);
         let infos: Vec<MotorInfo> = config.motors.iter().map(|m| m.info.clone()).collect();
         store.declare(&infos)?;
@@ -125,6 +128,7 @@ impl Gateway {
             links.spawn(follow(link.clone(), motors, context.clone()));
         }
         Ok(Gateway {
+            _claim: claim,
             store,
             watch,
             stored,

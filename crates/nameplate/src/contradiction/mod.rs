@@ -102,7 +102,7 @@ impl fmt::Display for Contradiction {
             ),
             Contradiction::Unsettled { value, error } => write!(
                 f,
-                "no single value settles it; {} is farthest, {:.0} % off",
+                "no single value settles it; from the circuit that meets all of them best, {} is farthest, {:.0} %",
                 name(*value),
                 100.0 * error.abs()
             ),
