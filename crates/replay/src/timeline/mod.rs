@@ -322,8 +322,7 @@ impl Timeline {
         Verdict::new(state, candidates)
     }
 
-    /// What the recording comes to, with what was judged in motion: as [`MotionSummary::state_with`], and healthy only where enough
-    /// of the running motor was judged.
+    /// What the recording comes to, at rest and in motion; healthy only where enough of the running motor was judged.
     pub fn state(&self, at_rest: VerdictState, motion: &MotionSummary) -> VerdictState {
         let raised_at_rest = self.first_alarm_s.is_some();
         match motion.state_with(at_rest, raised_at_rest) {
