@@ -174,7 +174,8 @@ impl Fit {
     /// Change that explains the departure best.
     pub(super) fn size(&self) -> f32 {
         if self.second.is_added {
-            libm::hypotf(self.along, self.second.change)
+            let (first, second) = (self.along, self.second.change);
+            libm::sqrtf(first * first + second * second)
         } else {
             self.along
         }
