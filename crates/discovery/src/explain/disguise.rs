@@ -14,9 +14,6 @@ use estimation::proof::off::strains;
 
 /// Effects that are refitted.
 const ASKED: usize = 4;
-/// An effect that leaves nothing provable and explains this share of what the law explains is the simpler answer: a curve of a dozen
-/// knots takes up some of what other errors leave.
-const AS_GOOD: f64 = 0.97;
 
 /// The library's effects on top of `base` that a law does not beat, best first.
 pub(super) fn disguised(
@@ -34,15 +31,7 @@ pub(super) fn disguised(
     effects.retain(|effect| {
         let trial = &effect.trial;
         let plain = strain(trial) <= strain(&law.trial) + STRAINED;
-        let as_good = !beats(&law.trial, trial) || share(study, base, &law.trial, trial) > AS_GOOD;
-        plain && adequate(study, trial) && proven(study, base, trial) && as_good
+        plain && adequate(study, trial) && proven(study, base, trial) && !beats(&law.trial, trial)
     });
     effects
-}
-
-/// What an effect takes from the squared error, as a share of what the law takes.
-fn share(study: &Study, base: &Trial, law: &Trial, effect: &Trial) -> f64 {
-    let square = |trial: &Trial| study.proof_error(trial).powi(2);
-    let before = square(base);
-    (before - square(effect)) / (before - square(law)).max(f64::MIN_POSITIVE)
 }
