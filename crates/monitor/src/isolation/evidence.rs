@@ -186,7 +186,7 @@ impl Evidence {
             Cause::StatorResistance => self.all(&d.r_s),
             Cause::RotorResistance => self.all(&d.r_r),
             Cause::MagnetizingInductance => self.all(&d.l_m),
-            Cause::Leakage => self.all(&d.leakage),
+            Cause::Leakage => self.masked(assemble(&d.leakage, n.leakage, [no, no])),
             Cause::Friction => self.all(&d.friction),
             Cause::AllCurrents => self.all(&d.current),
             Cause::AllVoltages => self.all(&d.voltage),

@@ -19,6 +19,8 @@ pub struct Negative {
     pub turns: Complex32,
     /// `Z_2 I_2/V_1`, whose impedance is only roughly known.
     pub drop: Complex32,
+    /// By how much that drop grows with the leakage of all phases, of which it consists for the most part.
+    pub leakage: Complex32,
 }
 
 impl Negative {
@@ -27,7 +29,15 @@ impl Negative {
         let slip = (window.omega_sync + measured.omega_mech * n_p) / window.omega_sync;
         let z_2 = impedance(&measured.params, window.omega_sync, slip);
         let (v_1, i_1) = (window.u_s.positive, window.i_s.positive);
-        let drop = z_2 * window.i_s.negative / v_1;
+        let i_2 = window.i_s.negative / v_1;
+        let drop = z_2 * i_2;
+        let p = measured.params;
+        let leaky = TParams {
+            l_ls: 2.0 * p.l_ls,
+            l_lr: 2.0 * p.l_lr,
+            ..p
+        };
+        let leakage = (impedance(&leaky, window.omega_sync, slip) - z_2) * i_2;
         let current = -z_2 * i_1 / v_1;
         // Per motor current, in phase with the voltage.
         let length = libm::sqrtf(i_1.norm_sqr() / v_1.norm_sqr());
@@ -38,6 +48,7 @@ impl Negative {
             series: i_1 / v_1 * measured.params.r_s,
             turns: -z_2 * length,
             drop,
+            leakage,
         }
     }
 }
