@@ -106,19 +106,19 @@ impl Cause {
         }
     }
 
-    /// The relative change behind a departure of so many directions. A channel's gain moves the positive sequence, to which all rows
-    /// are relative, by a third of itself.
-    pub(super) fn change(self, directions: f32) -> f32 {
+    /// The relative change behind a departure along its direction, as if rows grew in proportion. A gain `1 + g` of one channel
+    /// multiplies the positive sequence, to which all rows are relative, by `1 + g/3`: they show `g/(1 + g/3)`.
+    pub(super) fn change(self, shown: f32) -> f32 {
         match self {
             Cause::CurrentChannel(_) | Cause::VoltageChannel(_) => {
-                directions / (1.0 - directions / 3.0).max(LEAST_SHARE)
+                shown / (1.0 - shown / 3.0).max(LEAST_REST)
             }
-            _ => directions,
+            _ => shown,
         }
     }
 
-    /// How far a real fault's direction may lie off the computed one, as a share of its length: large changes bend it, and
-    /// the current of a short is only nearly in phase with its voltage.
+    /// How far a real fault's direction may lie off the computed one, as a share of its length: large changes bend it, those of
+    /// turns in the loop's current and in the winding that is left.
     pub const fn looseness(self) -> f32 {
         match self {
             Cause::Turns(_) => 0.15,
@@ -132,8 +132,8 @@ impl Cause {
     }
 }
 
-/// A gain three times too large takes two thirds of the positive sequence; beyond it no size is worth telling.
-const LEAST_SHARE: f32 = 0.1;
+/// `1 - s/3` of a gain of 28, which no instrument in use has: a larger size is told as that.
+const LEAST_REST: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {

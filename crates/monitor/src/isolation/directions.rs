@@ -33,10 +33,10 @@ pub struct Directions {
 }
 
 /// Large enough against the rounding of a residual (1e-6), small enough against its curvature.
-const STEP: f32 = 0.01;
+pub(super) const STEP: f32 = 0.01;
 /// Away from rated load leakage shows when it has doubled, and its departure bends on the way: the chord to three times the
 /// leakage instead of the tangent.
-const LEAKAGE_STEP: f32 = 2.0;
+pub(super) const LEAKAGE_STEP: f32 = 2.0;
 
 /// The residuals as a function of everything that they depend on.
 #[derive(Clone, Copy)]

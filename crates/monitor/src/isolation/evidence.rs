@@ -4,10 +4,9 @@ use num_complex::Complex32;
 
 use super::cause::Cause;
 use super::directions::{Directions, Positive};
-use super::fit::Across;
 use super::gauss::Covariance;
 use super::healthy::{Healthy, ROWS, Row};
-use super::negative::{Negative, angle_left_open};
+use super::negative::Negative;
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
@@ -25,9 +24,6 @@ pub struct Evidence {
     scatter: Rows,
     positive: Directions,
     negative: Negative,
-    /// Standard deviation of the angle, rad, that the uncertain impedance of the negative sequence leaves open where a resistance
-    /// in series draws current through it.
-    turn: f32,
     /// `I_2/I_1`.
     unbalance: Complex32,
     /// Rise of the resistances at which all this was computed.
@@ -76,7 +72,6 @@ impl Evidence {
             scatter,
             positive: positive.directions,
             negative,
-            turn: angle_left_open(window, measured, n_p, &healthy.uncertainty),
             unbalance: window.i_s.unbalance(),
             rise: positive.rise,
             backwards: window.backwards,
@@ -122,7 +117,6 @@ impl Evidence {
             scatter,
             positive: Directions::default(),
             negative,
-            turn: 0.0,
             unbalance: window.i_s.unbalance(),
             rise: 0.0,
             backwards: window.backwards,
@@ -172,25 +166,20 @@ impl Evidence {
         &self.known
     }
 
-    /// How many rows are known.
-    pub fn known_rows(&self) -> usize {
-        self.known.iter().filter(|known| **known).count()
-    }
-
     /// Where a cause moves the evidence, per relative change.
     #[inline(never)]
     pub fn direction(&self, cause: Cause) -> Rows {
         let (d, n) = (&self.positive, &self.negative);
         let no = Complex32::ZERO;
         match cause {
-            Cause::StatorResistance => self.all(&d.r_s),
-            Cause::RotorResistance => self.all(&d.r_r),
-            Cause::MagnetizingInductance => self.all(&d.l_m),
-            Cause::Leakage => self.masked(assemble(&d.leakage, n.leakage, [no, no])),
-            Cause::Friction => self.all(&d.friction),
-            Cause::AllCurrents => self.all(&d.current),
-            Cause::AllVoltages => self.all(&d.voltage),
-            Cause::SpeedGain => self.all(&d.speed),
+            Cause::StatorResistance => self.all(&d.r_s, n.grown.r_s),
+            Cause::RotorResistance => self.all(&d.r_r, n.grown.r_r),
+            Cause::MagnetizingInductance => self.all(&d.l_m, n.grown.l_m),
+            Cause::Leakage => self.all(&d.leakage, n.grown.leakage),
+            Cause::Friction => self.all(&d.friction, no),
+            Cause::AllCurrents => self.all(&d.current, -n.drop),
+            Cause::AllVoltages => self.all(&d.voltage, n.drop),
+            Cause::SpeedGain => self.all(&d.speed, no),
             Cause::SeriesResistance(phase) => {
                 let current = self.current_in(phase);
                 self.one(&d.r_s, n.series * current, [no, no])
@@ -212,34 +201,21 @@ impl Evidence {
 
     /// A second direction of a cause, where it has one.
     ///
-    /// `V_2 - Z_2 I_2` shows shorted turns and gains as they are, whatever the believed `Z_2` is. A resistance in series draws
-    /// `I_2 = -R I_1/(3 Z_2)` through the motor's own impedance: its row is turned by the angle between both. The loop of shorted
-    /// turns has a resistance and a leakage: its current lags its voltage by anything up to a quarter of a turn.
-    pub(crate) fn across(&self, cause: Cause) -> Option<Across<Rows>> {
-        let no = [Complex32::ZERO; 2];
-        match cause {
-            Cause::SeriesResistance(phase) => {
-                let by = Complex32::new(0.0, self.turn);
-                let across = self.negative.series * self.current_in(phase) * by;
-                (self.turn > 0.0).then(|| Across::Turned(self.one(&[0.0; 3], across, no)))
-            }
-            Cause::Turns(phase) if self.has_voltages() => {
-                let (axis, _) = axes(phase, self.backwards);
-                let lagging = self.negative.turns * axis * -Complex32::I;
-                Some(Across::Added(self.one(
-                    &self.positive.turns_lagging,
-                    lagging,
-                    no,
-                )))
-            }
-            _ => None,
-        }
+    /// The loop of shorted turns has a resistance and a leakage: its current lags its voltage by anything up to a quarter of a turn.
+    /// Currents alone could put any angle into one phase or another.
+    pub(crate) fn across(&self, cause: Cause) -> Option<Rows> {
+        let Cause::Turns(phase) = cause else {
+            return None;
+        };
+        let (axis, _) = axes(phase, self.backwards);
+        let lagging = self.negative.turns * axis * -Complex32::I;
+        let rows = self.one(&self.positive.turns_lagging, lagging, [Complex32::ZERO; 2]);
+        self.has_voltages().then_some(rows)
     }
 
     #[inline(never)]
-    fn all(&self, positive: &Positive) -> Rows {
-        let no = Complex32::ZERO;
-        self.masked(assemble(positive, no, [no, no]))
+    fn all(&self, positive: &Positive, negative: Complex32) -> Rows {
+        self.masked(assemble(positive, negative, [Complex32::ZERO; 2]))
     }
 
     fn has_voltages(&self) -> bool {

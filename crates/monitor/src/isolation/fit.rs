@@ -3,15 +3,15 @@
 use core::f32::consts::LN_2;
 
 use super::cause::Cause;
+use super::gauss::dot;
 use super::healthy::Row;
 use super::ln;
 
-/// Where a cause moves the white rows.
+/// Where a cause moves the white rows, per relative change.
 pub(super) struct Direction<'a> {
-    /// Per relative change.
     pub along: &'a [f32],
-    /// A second direction, where there is one.
-    pub across: Option<Across<&'a [f32]>>,
+    /// A second part of its own, which only adds.
+    pub across: Option<&'a [f32]>,
 }
 
 /// A departure in white rows.
@@ -58,25 +58,6 @@ impl Departure<'_> {
 /// Rows of the positive sequence come first.
 const POSITIVE: usize = Row::Negative as usize;
 
-/// A second direction of a cause.
-#[derive(Clone, Copy)]
-pub(crate) enum Across<T> {
-    /// Where a standard deviation of what turns the direction moves it sideways, per relative change.
-    Turned(T),
-    /// A part of its own, per relative change, that only adds.
-    Added(T),
-}
-
-impl<T> Across<T> {
-    /// The same kind of direction, passed through `f`.
-    pub(super) fn map<'a, U>(&'a self, f: impl FnOnce(&'a T) -> U) -> Across<U> {
-        match self {
-            Across::Turned(rows) => Across::Turned(f(rows)),
-            Across::Added(rows) => Across::Added(f(rows)),
-        }
-    }
-}
-
 /// Least squares along a cause's directions.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fit {
@@ -85,9 +66,9 @@ pub(super) struct Fit {
     /// Change along the direction, beside the one across it.
     along: f32,
     /// Squared length of the departure along the direction.
-    first: f32,
-    /// The part across it.
-    second: Second,
+    square: f32,
+    /// The part across it, where there is one.
+    across: Option<Across>,
     /// Squared length of the departure that is left over in the rows that a wrong direction may reach.
     beside: f32,
     /// How many those are, beside the directions.
@@ -95,104 +76,87 @@ pub(super) struct Fit {
 }
 
 /// What of a departure lies across a direction.
-#[derive(Clone, Copy, Debug, Default)]
-struct Second {
+#[derive(Clone, Copy, Debug)]
+struct Across {
     /// Squared length of the second direction beside the first, per unit change.
     information: f32,
     change: f32,
-    /// Whether its change is one of the cause's size and not a share of that.
-    is_added: bool,
+    /// How much of the first direction a unit of the second has in it.
+    overlap: f32,
 }
 
 impl Fit {
     /// Of one cause.
     #[inline(never)]
     pub(super) fn of(cause: Cause, direction: &Direction<'_>, departure: &Departure<'_>) -> Self {
-        let (along, white) = (direction.along, departure.white);
-        let information = dot(along, along);
-        let both = dot(along, white) / information.max(LEAST_INFORMATION);
-        let first = information * both * both;
-        let Some(across) = direction.across else {
-            let (beside, others) = match cause.phase() {
-                Some(_) => (departure.total.square - first, departure.total.known),
-                None => departure.positive_beside(along, both),
-            };
-            return Fit {
-                information,
-                along: both,
-                first,
-                second: Second::default(),
-                beside: beside.max(0.0),
-                others: (others - 1.0).max(0.0),
-            };
+        let fit = Fit::along(cause, direction.along, departure);
+        let Some(rows) = direction.across else {
+            return fit;
         };
-        let (rows, is_added) = match across {
-            Across::Turned(rows) => (rows, false),
-            Across::Added(rows) => (rows, true),
-        };
-        let overlap = dot(rows, along) / information.max(LEAST_INFORMATION);
-        let length = dot(rows, rows);
-        let beside = length - overlap * overlap * information;
-        let aside = if beside > LEAST_ASIDE * length {
-            beside
-        } else {
-            0.0
-        };
-        let found = dot(rows, white) - overlap * both * information;
-        let change = found / aside.max(LEAST_INFORMATION);
-        let change = if aside <= 0.0 || is_added && change < 0.0 {
-            0.0
-        } else {
-            change
-        };
-        let alone = if is_added {
-            both - overlap * change
-        } else {
-            both
-        };
-        if alone < 0.0 && change > 0.0 && is_added {
-            let second_alone = Direction {
-                along: rows,
-                across: None,
-            };
-            return Fit::of(cause, &second_alone, departure);
+        let across = fit.across(direction.along, rows, departure);
+        let along = fit.along - across.overlap * across.change;
+        if along < 0.0 && across.change > 0.0 {
+            return Fit::along(cause, rows, departure);
         }
         Fit {
-            along: alone,
-            first,
+            along,
+            beside: (fit.beside - across.square()).max(0.0),
+            others: (fit.others - 1.0).max(0.0),
+            across: Some(across),
+            ..fit
+        }
+    }
+
+    fn along(cause: Cause, direction: &[f32], departure: &Departure<'_>) -> Self {
+        let information = dot(direction, direction);
+        let along = dot(direction, departure.white) / information.max(LEAST_INFORMATION);
+        let square = information * along * along;
+        let (beside, rows) = match cause.phase() {
+            Some(_) => (departure.total.square - square, departure.total.known),
+            None => departure.positive_beside(direction, along),
+        };
+        Fit {
             information,
-            second: Second {
-                information: aside,
-                change,
-                is_added,
-            },
-            beside: (departure.total.square - first - aside * change * change).max(0.0),
-            others: (departure.total.known - 2.0).max(0.0),
+            along,
+            square,
+            across: None,
+            beside: beside.max(0.0),
+            others: (rows - 1.0).max(0.0),
+        }
+    }
+
+    /// Beside this fit along `first`: what only adds is not less than nothing.
+    fn across(&self, first: &[f32], second: &[f32], departure: &Departure<'_>) -> Across {
+        let overlap = dot(second, first) / self.information.max(LEAST_INFORMATION);
+        let length = dot(second, second);
+        let own = length - overlap * overlap * self.information;
+        let information = if own > LEAST_ASIDE * length { own } else { 0.0 };
+        let found = dot(second, departure.white) - overlap * self.along * self.information;
+        let change = if information > 0.0 {
+            found / information
+        } else {
+            0.0
+        };
+        Across {
+            information,
+            change: change.max(0.0),
+            overlap,
         }
     }
 
     /// Change that explains the departure best.
     pub(super) fn size(&self) -> f32 {
-        if self.second.is_added {
-            let (first, second) = (self.along, self.second.change);
-            libm::sqrtf(first * first + second * second)
-        } else {
-            self.along
+        match &self.across {
+            Some(across) => libm::sqrtf(self.along * self.along + across.change * across.change),
+            None => self.along,
         }
     }
 
-    /// Squared length of the departure along the directions.
-    pub(super) fn square(&self) -> f32 {
-        let second = self.second.information * self.second.change * self.second.change;
-        self.first + if self.second.is_added { second } else { 0.0 }
-    }
-
-    /// The same where the sign of the change is possible, else 0.
-    pub(super) fn possible_square(&self, cause: Cause) -> f32 {
-        if self.is_impossible(cause) {
-            0.0
-        } else {
-            self.square()
+    /// Squared length of the departure along the directions, where the sign of the change is possible, else 0.
+    pub(super) fn square(&self, cause: Cause) -> f32 {
+        match self.is_impossible(cause) {
+            true => 0.0,
+            false => self.square + self.across.map_or(0.0, |across| across.square()),
         }
     }
 
@@ -206,27 +170,25 @@ impl Fit {
         if self.is_impossible(cause) {
             return IMPOSSIBLE;
         }
-        let size = self.size().abs();
-        let spread = size.max(cause.typical_size());
+        let spread = self.size().abs().max(cause.typical_size());
         let rarity = ln(spread / cause.typical_size());
-        let first = wider(self.information * spread * spread, self.first);
-        let astray = cause.looseness() * cause.looseness() * self.square();
-        let across = self.second.information * self.second.change * self.second.change;
-        let second = if self.second.information <= 0.0 {
-            0.0
-        } else if self.second.is_added {
-            wider(self.second.information * spread * spread, across)
-        } else {
-            wider(astray + self.second.information * size * size, across)
-        };
+        let square = spread * spread;
+        let along = wider(self.information * square, self.square);
+        let across = self.across.map_or(0.0, |across| {
+            wider(across.information * square, across.square()) + LN_2
+        });
+        let astray = cause.looseness() * cause.looseness() * self.square(cause);
         let straight = 0.5 * self.beside * (astray / (1.0 + astray));
         let beside = straight - 0.5 * self.others * ln(1.0 + astray);
-        let signs = match (cause.only_adds(), self.second.is_added) {
-            (true, true) => 2.0 * LN_2,
-            (true, false) => LN_2,
-            (false, _) => 0.0,
-        };
-        first + second + beside + signs - rarity
+        let sign = if cause.only_adds() { LN_2 } else { 0.0 };
+        along + across + beside + sign - rarity
+    }
+}
+
+impl Across {
+    /// Squared length of the departure along it.
+    fn square(&self) -> f32 {
+        self.information * self.change * self.change
     }
 }
 
@@ -234,10 +196,6 @@ impl Fit {
 fn wider(more: f32, square: f32) -> f32 {
     // The share first: products of lengths may exceed single precision.
     0.5 * square * (more / (1.0 + more)) - 0.5 * ln(1.0 + more)
-}
-
-fn dot(a: &[f32], b: &[f32]) -> f32 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Share of its length that a second direction must have beside the first: single precision tells no less.

@@ -109,12 +109,12 @@ impl<const N: usize> Cholesky<N> {
 /// Scalar product of the first `k` entries.
 #[inline]
 fn dot_of<const N: usize>(k: usize, a: &[f32; N], b: &[f32; N]) -> f32 {
-    let first = a.get(..k).unwrap_or_default();
-    first.iter().zip(b).map(|(x, y)| x * y).sum()
+    dot(a.get(..k).unwrap_or_default(), b)
 }
 
-/// Scalar product.
-pub fn dot<const N: usize>(a: &[f32; N], b: &[f32; N]) -> f32 {
+/// Scalar product over as many entries as the shorter one has.
+#[inline]
+pub fn dot(a: &[f32], b: &[f32]) -> f32 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 

@@ -26,6 +26,7 @@ pub(crate) use directions::{Bench, impedance};
 pub use evidence::Evidence;
 pub(crate) use evidence::{PositiveEvidence, Rows, rows_of, rows_of_currents};
 use fit::LEAST_INFORMATION;
+use gauss::dot;
 use temperature::MOST_APART;
 pub(crate) use temperature::Temperature;
 use weighing::Weighing;
@@ -94,7 +95,7 @@ impl Isolation {
                 other => cholesky.whiten(&evidence.direction(other)),
             };
             let across = evidence.across(cause);
-            let across = across.map(|across| across.map(|rows| cholesky.whiten(rows)));
+            let across = across.map(|rows| cholesky.whiten(&rows));
             let weighed = weighing.weigh(cause, &direction, across.as_ref());
             *score = weighed.score;
             *size = weighed.size;
@@ -168,10 +169,10 @@ struct Warmth {
 impl Warmth {
     /// Over the rows that `white` has.
     fn new(direction: &Rows, white: &[f32]) -> Self {
-        let rows = direction.iter().zip(white);
+        let direction = direction.get(..white.len()).unwrap_or_default();
         Warmth {
-            information: rows.clone().map(|(d, _)| d * d).sum(),
-            along: rows.map(|(d, x)| d * x).sum(),
+            information: dot(direction, direction),
+            along: dot(direction, white),
         }
     }
 

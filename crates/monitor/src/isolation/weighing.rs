@@ -4,18 +4,19 @@
 //! is the supply's affair, not a fault of the motor: FAULT rests on the other rows. A voltage channel moves `V_0` and the negative
 //! sequence together, and is named by both.
 
-use super::fit::{Across, Departure, Direction, Fit, Total};
-use super::gauss::Cholesky;
+use super::fit::{Departure, Direction, Fit, Total};
+use super::gauss::{Cholesky, dot};
 use super::{Cause, Evidence, ROWS, Row, Rows, ln, score_of_anything, significance_of_anything};
 
-/// How often a supply's neutral has moved since the calibration, against all other times.
+/// How often a supply's neutral has moved since the calibration, against all other times: a belief, as the next one.
 const DISPLACED: f32 = 0.1;
-/// A displacement that is usual, as a share of the voltage; a larger one is rare in proportion.
+/// A displacement that is usual, as a share of the voltage; a larger one is rare in proportion. As large as the negative sequence
+/// that EN 50160 allows a public supply; it sets the zero sequence no limit.
 const USUAL_DISPLACEMENT: f32 = 0.02;
 /// The zero sequence of the voltages is the end of the rows: without it a white vector is its beginning.
 const BEFORE_ZERO_VOLTAGE: usize = Row::ZeroVoltage as usize;
 
-/// Beyond so many standard deviations the neutral has moved, whatever else has happened.
+/// Beyond so many standard deviations, one window in 3000, the neutral has moved, whatever else has happened.
 const MOVED: f32 = 4.0;
 
 /// A departure in white rows.
@@ -80,23 +81,23 @@ impl Weighing {
     }
 
     /// Weighs one cause by its white directions.
-    pub fn weigh(&self, cause: Cause, along: &Rows, across: Option<&Across<Rows>>) -> Weighed {
+    pub fn weigh(&self, cause: Cause, along: &Rows, across: Option<&Rows>) -> Weighed {
         let fit = |departure: &Departure<'_>| {
             let rows = departure.white.len();
             let direction = Direction {
                 along: first(along, rows),
-                across: across.map(|across| across.map(|across| first(across, rows))),
+                across: across.map(|across| first(across, rows)),
             };
             Fit::of(cause, &direction, departure)
         };
         let [all, without] = self.departures();
         let all = fit(&all);
-        let square = all.possible_square(cause);
+        let square = all.square(cause);
         let Some(neutral) = self.neutral.as_ref().filter(|it| it.matters(square)) else {
             return Weighed::new(cause, &all, square);
         };
         let without = fit(&without);
-        let square = neutral.either(square, without.possible_square(cause));
+        let square = neutral.either(square, without.square(cause));
         let health = neutral.better.max(0.0);
         let mut weighed = if without.score(cause) + neutral.better > all.score(cause) {
             let mut weighed = Weighed::new(cause, &without, square);
@@ -145,8 +146,11 @@ impl Weighed {
 impl Neutral {
     /// Densities of `V_0`: normal with the spread of a displacement, against that of the healthy motor given the rows before.
     fn of(cholesky: &Cholesky<ROWS>, departure: &Rows, white: &Rows) -> Self {
-        let end = |rows: &Rows| square(rows.get(BEFORE_ZERO_VOLTAGE..).unwrap_or_default());
-        let displacement = end(departure);
+        let square_of_end = |rows: &Rows| {
+            let end = rows.get(BEFORE_ZERO_VOLTAGE..).unwrap_or_default();
+            dot(end, end)
+        };
+        let displacement = square_of_end(departure);
         let spread = libm::sqrtf(displacement).max(USUAL_DISPLACEMENT);
         let rarity = ln(spread / USUAL_DISPLACEMENT);
         let own: f32 = cholesky
@@ -158,7 +162,7 @@ impl Neutral {
         let against = rarity - there - own - ln(DISPLACED);
         let variance: f32 = cholesky.variances().skip(BEFORE_ZERO_VOLTAGE).sum();
         Neutral {
-            better: 0.5 * end(white) - against,
+            better: 0.5 * square_of_end(white) - against,
             cost: 2.0 * against.max(0.0),
             has_moved: displacement > 0.5 * MOVED * MOVED * variance,
         }
@@ -178,11 +182,6 @@ impl Neutral {
             all.min(without + self.cost)
         }
     }
-}
-
-/// Squared length.
-pub(super) fn square(rows: &[f32]) -> f32 {
-    rows.iter().map(|x| x * x).sum()
 }
 
 fn first<T>(rows: &[T; ROWS], count: usize) -> &[T] {

@@ -1,8 +1,9 @@
 //! Directions against the changed motor, and causes named from synthetic windows.
 
-use super::plant::{Plant, evidence, index, statistics};
+use super::plant::{Plant, evidence, evidence_by, index, statistics};
 use crate::checks::sensors::Phase;
 use crate::isolation::{ALL_CAUSES, Cause, Heating, Isolation};
+use num_complex::Complex64;
 
 /// The healthy motor with one quantity changed by a share.
 fn changed(cause: Cause, by: f64) -> Plant {
@@ -75,6 +76,47 @@ fn leakage_departs_along_a_chord() {
     }
 }
 
+/// Beside a supply with 2 % of negative sequence a parameter of all phases moves that row, too, as `Z_2` does: by the derivative, from
+/// which a change of 2 % bends by some 2 % of itself; leakage is nearly all of `Z_2` and goes along its chord. A gain of all
+/// currents or voltages changes the drop by itself.
+#[test]
+fn what_is_in_all_phases_moves_the_drop_of_the_supplys_own_negative_sequence() {
+    let of_all = [
+        (Cause::StatorResistance, 0.02),
+        (Cause::RotorResistance, 0.02),
+        (Cause::MagnetizingInductance, 0.02),
+        (Cause::Leakage, 1.0),
+        (Cause::AllCurrents, 0.02),
+        (Cause::AllVoltages, 0.02),
+    ];
+    for (cause, by) in of_all {
+        let mut plant = changed(cause, by);
+        plant.unbalance = Complex64::new(0.012, -0.016);
+        let evidence = evidence(&plant);
+        let direction = evidence.direction(cause).map(|x| x * by as f32);
+        let [x, y] = [3, 4].map(|row| evidence.departure[row] - direction[row]);
+        let moved = length([direction[3], direction[4]]);
+        assert!(moved > 1e-6, "{cause:?}: {moved:e}");
+        assert!(
+            length([x, y]) < 0.05 * moved,
+            "{cause:?}: {x:e} {y:e} of {moved:e}"
+        );
+    }
+}
+
+/// Negative and zero sequence grow as `g/(1 + g/3)` exactly; the rows of the positive one bend, which leaves some 3 % of a gain of 50 %.
+#[test]
+fn the_size_of_a_large_gain_is_the_gain() {
+    for by in [-0.5, -0.2, 0.2, 0.5] {
+        for cause in of_phases(Cause::CurrentChannel).chain(of_phases(Cause::VoltageChannel)) {
+            let isolation = isolated(&changed(cause, by));
+            let place = ALL_CAUSES.iter().position(|c| *c == cause).expect("listed");
+            let size = f64::from(isolation.sizes[place]);
+            assert!((size / by - 1.0).abs() < 0.03, "{cause:?} {by}: {size}");
+        }
+    }
+}
+
 fn isolated(plant: &Plant) -> Isolation {
     Isolation::of(&evidence(plant), &statistics(), Heating::any(&statistics()))
 }
@@ -135,6 +177,28 @@ fn a_large_series_resistance_is_no_shorted_turn() {
     }
 }
 
+/// A motor whose stator resistance is nearly twice and whose leakage is two thirds of what is believed, as a plate may leave them: the
+/// negative sequence of its contact is turned by the angle between the two impedances.
+#[test]
+fn a_contact_of_a_hardly_known_motor_is_no_shorted_turn() {
+    let mut unlike = Plant::healthy();
+    unlike.params.r_s *= 1.9;
+    unlike.params.l_ls *= 0.65;
+    unlike.params.l_lr *= 0.65;
+    let mut healthy = statistics();
+    healthy.mean = evidence(&unlike).departure;
+    healthy.uncertainty.stator_resistance = 0.3;
+    healthy.uncertainty.leakage = 0.3;
+    for phase in Phase::ALL {
+        let mut faulty = unlike;
+        faulty.series[index(phase)] = 1.5 * unlike.params.r_s;
+        let evidence = evidence_by(&faulty, &healthy);
+        let isolation = Isolation::of(&evidence, &healthy, Heating::any(&healthy));
+        let (named, _) = likeliest(&isolation);
+        assert_eq!(named, Some(Cause::SeriesResistance(phase)), "{isolation:?}");
+    }
+}
+
 /// The loop's resistance and leakage decide on the angle of its current. Where a quarter of a turn is behind, what is in all phases alike
 /// (magnetizing current, leakage) has a share of it, but no negative sequence.
 #[test]
@@ -160,7 +224,7 @@ fn a_displaced_neutral_lights_nothing() {
     for share in [0.002, 0.005, 0.01, 0.03, 0.1, 0.5] {
         for turn in [1.0, 100.0, 200.0_f64] {
             let mut plant = Plant::healthy();
-            plant.neutral = share * num_complex::Complex64::cis(turn.to_radians());
+            plant.neutral = share * Complex64::cis(turn.to_radians());
             let isolation = isolated(&plant);
             assert!(
                 isolation.significance < 0.9 * statistics().significance,
@@ -180,7 +244,7 @@ fn a_displaced_neutral_hides_no_fault() {
         (Cause::VoltageChannel(Phase::A), 0.05),
     ] {
         let mut plant = changed(cause, by);
-        plant.neutral = num_complex::Complex64::new(0.0, 0.01);
+        plant.neutral = Complex64::new(0.0, 0.01);
         let isolation = isolated(&plant);
         assert!(
             isolation.significance > statistics().significance,

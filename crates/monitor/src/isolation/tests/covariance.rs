@@ -127,7 +127,7 @@ fn unknown_rows_say_nothing() {
     let evidence = monitor()
         .evidence(&healthy, &plant.window())
         .expect("all is measured");
-    assert_eq!(evidence.known_rows(), ROWS - 2);
+    assert_eq!(known_rows(&evidence), ROWS - 2);
     assert_eq!(
         evidence.known()[Row::ZeroVoltage as usize..],
         [false, false]
@@ -188,7 +188,7 @@ fn currents_alone_show_their_unbalance() {
     healthy.current_unbalance_scatter = 0.0;
     healthy.scatter = [0.0; ROWS];
     let nothing = Evidence::of_currents(&healthy, &window, &[0.0; ROWS]);
-    assert_eq!(nothing.known_rows(), 0);
+    assert_eq!(known_rows(&nothing), 0);
 }
 
 /// Turns shorted in one phase add a current in phase with that phase's voltage, which leads its current by the load's
@@ -220,4 +220,8 @@ fn currents_alone_name_the_phase_of_shorted_turns() {
         );
         assert!(!isolation.points_to_sensor());
     }
+}
+
+fn known_rows(evidence: &Evidence) -> usize {
+    evidence.known().iter().filter(|known| **known).count()
 }

@@ -31,6 +31,8 @@ pub struct Plant {
     pub lag: f64,
     /// Displacement of the supply's neutral, against which voltages are measured, as a share of the voltage.
     pub neutral: Complex64,
+    /// Negative over positive sequence of the supply.
+    pub unbalance: Complex64,
 }
 
 impl Plant {
@@ -45,6 +47,7 @@ impl Plant {
             shorted: [0.0; 3],
             lag: 0.0,
             neutral: Complex64::ZERO,
+            unbalance: Complex64::ZERO,
         }
     }
 
@@ -69,6 +72,10 @@ impl Plant {
     fn currents(&self, point: &OperatingPoint<f64>) -> [Complex64; 3] {
         let mut currents = phases(point.i_s);
         let impedance = self.negative_impedance(point);
+        let supplied = AMPLITUDE * self.unbalance / impedance;
+        for (m, current) in currents.iter_mut().enumerate() {
+            *current += supplied * TURN.powi(m as i32);
+        }
         for (k, r) in self.series.iter().enumerate() {
             // The unbalanced drop drives a current of negative sequence through the motor.
             let drop = r / 3.0 * currents[k] * TURN.powi(2 * k as i32);
@@ -92,7 +99,9 @@ impl Plant {
 
     pub fn window(&self) -> Window {
         let point = self.point();
-        let [ua, ub, uc] = phases(point.u_s).map(|u| u + AMPLITUDE * self.neutral);
+        let displaced = phases(point.u_s).map(|u| u + AMPLITUDE * self.neutral);
+        let of_phase = |m: usize| AMPLITUDE * self.unbalance * TURN.powi(m as i32);
+        let [ua, ub, uc] = [0, 1, 2].map(|m| displaced[m] + of_phase(m));
         let [ia, ib, ic] = self.currents(&point);
         let mut channels = [ua, ub, uc, ia, ib, ic];
         for (x, gain) in channels.iter_mut().zip(self.gains) {
@@ -157,9 +166,13 @@ fn config() -> MonitorConfig {
 
 /// What the monitor of the healthy motor makes of a plant.
 pub fn evidence(plant: &Plant) -> Evidence {
-    let window = plant.window();
+    evidence_by(plant, &statistics())
+}
+
+/// The same beside other statistics.
+pub fn evidence_by(plant: &Plant, healthy: &Healthy) -> Evidence {
     monitor()
-        .evidence(&statistics(), &window)
+        .evidence(healthy, &plant.window())
         .expect("voltages, currents and speed are there")
 }
 

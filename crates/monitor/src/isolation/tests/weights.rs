@@ -32,18 +32,64 @@ fn rows(values: &[f32]) -> [f32; ROWS] {
     rows
 }
 
-fn score(direction: &[f32], departure: &[f32], cause: Cause) -> f64 {
-    let (direction, departure) = (rows(direction), rows(departure));
+/// Rows that are not 0 are known.
+fn fit(along: &[f32], across: Option<&[f32]>, departure: &[f32], cause: Cause) -> Fit {
+    let (along, departure) = (rows(along), rows(departure));
+    let across = across.map(rows);
     let known = departure.map(|x| x != 0.0);
     let direction = Direction {
-        along: &direction,
-        across: None,
+        along: &along,
+        across: across.as_ref().map(|across| &across[..]),
     };
     let departure = Departure {
         white: &departure,
         total: Total::of(&departure, &known),
     };
-    f64::from(Fit::of(cause, &direction, &departure).score(cause))
+    Fit::of(cause, &direction, &departure)
+}
+
+fn score(direction: &[f32], departure: &[f32], cause: Cause) -> f64 {
+    f64::from(fit(direction, None, departure, cause).score(cause))
+}
+
+/// Two directions at right angles: the product of both Bayes factors, each of a part that only adds.
+#[test]
+fn a_second_direction_has_a_bayes_factor_of_its_own() {
+    let cause = Cause::Turns(Phase::A);
+    let found = fit(&[30.0], Some(&[0.0, 30.0]), &[6.0, 4.0], cause);
+    let typical = f64::from(cause.typical_size());
+    let both = integrated(6.0, 30.0, typical) + integrated(4.0, 30.0, typical);
+    let expected = both + 2.0 * 2.0_f64.ln();
+    let got = f64::from(found.score(cause));
+    assert!((got - expected).abs() < 1e-3 * expected, "{got} {expected}");
+    let size = 6.0_f32.hypot(4.0) / 30.0;
+    assert!((found.size() - size).abs() < 1e-6, "{found:?}");
+    // All of it lies in the plane.
+    assert!((found.square(cause) - 52.0).abs() < 1e-4, "{found:?}");
+}
+
+/// Directions 60 degrees apart, `a = (2, 0)` and `b = (1, sqrt 3)`: what lies outside the quarter between them has one of them alone,
+/// or none.
+#[test]
+fn two_parts_that_only_add_stay_between_their_directions() {
+    let cause = Cause::Turns(Phase::B);
+    let b = [1.0, 3.0_f32.sqrt()];
+    let of = |departure: [f32; 2]| fit(&[2.0, 0.0], Some(&b), &departure, cause);
+    let close =
+        |got: f32, expected: f32| assert!((got - expected).abs() < 1e-5, "{got} {expected}");
+    // 0.5 a + 1.5 b.
+    let between = of([2.5, 1.5 * 3.0_f32.sqrt()]);
+    close(between.size(), 0.5_f32.hypot(1.5));
+    close(between.square(cause), 2.5 * 2.5 + 2.25 * 3.0);
+    // Below a: a alone, which explains (2, 0) of it.
+    let below = of([2.0, -1.0]);
+    close(below.size(), 1.0);
+    close(below.square(cause), 4.0);
+    // Beyond b: b alone; (-1, 3) . b = 3 sqrt 3 - 1 over |b|^2 = 4.
+    let beyond = of([-1.0, 3.0]);
+    close(beyond.size(), (3.0 * 3.0_f32.sqrt() - 1.0) / 4.0);
+    close(beyond.square(cause), 4.0 * beyond.size().powi(2));
+    assert_eq!(of([-1.0, -1.0]).score(cause), IMPOSSIBLE);
 }
 
 #[test]
@@ -59,6 +105,19 @@ fn a_score_in_one_row_is_the_bayes_factor() {
             );
         }
     }
+}
+
+/// What a cause of all phases leaves in the negative sequence counts as nothing explained; of a cause in one phase it may be a
+/// direction that is a little wrong.
+#[test]
+fn a_cause_of_all_phases_does_not_reach_the_negative_sequence() {
+    let cause = Cause::StatorResistance;
+    let departure = [6.0, 1.5, -0.7, 5.0, -4.0];
+    let got = score(&[20.0], &departure, cause);
+    let expected = score(&[20.0], &departure[..3], cause);
+    assert!((got - expected).abs() < 1e-6, "{got} {expected}");
+    let one = Cause::CurrentChannel(Phase::A);
+    assert!(score(&[20.0], &departure, one) > score(&[20.0], &departure[..3], one));
 }
 
 /// A size beyond the typical one is rare in proportion: normal with the scale `s`, of which `1/s^2` is left to larger ones. What the
@@ -112,17 +171,8 @@ fn what_lies_beside_the_direction_costs_as_much_as_its_density() {
 
 #[test]
 fn a_direction_without_length_explains_nothing() {
-    let direction = Direction {
-        along: &[0.0; ROWS],
-        across: None,
-    };
-    let white = rows(&[3.0]);
-    let departure = Departure {
-        white: &white,
-        total: Total::of(&white, &[true; ROWS]),
-    };
-    let fit = Fit::of(Cause::Leakage, &direction, &departure);
-    assert_eq!((fit.size(), fit.square()), (0.0, 0.0));
+    let found = fit(&[], None, &[3.0], Cause::Leakage);
+    assert_eq!((found.size(), found.square(Cause::Leakage)), (0.0, 0.0));
 }
 
 /// Something else: a hundred standard deviations in every row.
