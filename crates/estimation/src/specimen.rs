@@ -302,3 +302,18 @@ pub fn moved(study: &Study, effects: &[(&str, f64)], z: &[(usize, f64)], error: 
     let errors = vec![error; trial.fit.free.len()];
     known_to(&trial, &errors)
 }
+
+/// The same recording with its channels changed, or without them.
+pub fn changed(
+    rec: &Recording,
+    change: impl Fn(Channel, Vec<f64>) -> Option<Vec<f64>>,
+) -> Recording {
+    let empty = Recording::new("changed", rec.t().to_vec(), rec.metadata.clone());
+    rec.channels()
+        .fold(empty.expect("a clock"), |to, (channel, x)| {
+            match change(channel, x.to_vec()) {
+                Some(x) => to.with_channel(channel, x).expect("as long"),
+                None => to,
+            }
+        })
+}

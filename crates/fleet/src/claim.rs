@@ -13,7 +13,8 @@ const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Held while a program keeps a store: nobody else can claim it. The system lets go of it when the program ends, however it ends.
 ///
-/// It is an exclusive lock of SQLite on a file of its own beside the store, so that readers of the store are not disturbed.
+/// It is an exclusive lock of SQLite on a file of its own beside the store, so that readers of the store are not disturbed. Within a
+/// program the last that opens a [`crate::Store`] writes: what an ended gateway still has at work must not keep its successor out.
 #[derive(Debug)]
 pub struct Claim {
     _held: Connection,

@@ -9,15 +9,32 @@ use std::time::{Duration, Instant};
 
 use board::{Frame, MAX_FRAME_BYTES, Shown};
 use fleet::{Entry, Store};
-use gateway::Gateway;
 use gateway::config::Config;
 use gateway::simulate::{Plan, Plant, listen};
+use gateway::{Gateway, StartError};
 use monitor::Report;
 
-fn start(folder: &Path, text: &str) -> Gateway {
+/// Boards of healthy motors.
+fn plan(boards: u32) -> Plan {
+    Plan {
+        boards,
+        listen: ports::free(),
+        per_port: 200,
+        seed: 9,
+        faulty: 0,
+        faults_within_s: 60,
+        restart_s: None,
+    }
+}
+
+fn try_start(folder: &Path, text: &str) -> Result<Gateway, StartError> {
     let read = Config::parse(text, &folder.join("plant.toml"), Config::no_outputs);
     let (config, ()) = read.expect("it is accepted");
-    Gateway::start(&config, &[], |line| eprintln!("{line}")).expect("it starts")
+    Gateway::start(&config, &[], |line| eprintln!("{line}"))
+}
+
+fn start(folder: &Path, text: &str) -> Gateway {
+    try_start(folder, text).expect("it starts")
 }
 
 async fn until(what: &str, mut holds: impl FnMut() -> bool) {
@@ -42,23 +59,13 @@ fn seconds(store: &Store, motor: &str) -> Vec<u32> {
 /// A gateway that somebody starts beside a running one, to try something, takes nothing from it.
 #[tokio::test(flavor = "current_thread")]
 async fn a_second_gateway_is_refused_and_the_first_goes_on() {
-    let plan = Plan {
-        boards: 1,
-        listen: ports::free(),
-        per_port: 200,
-        seed: 4,
-        faulty: 0,
-        faults_within_s: 60,
-        restart_s: None,
-    };
+    let plan = plan(1);
     let mut plant = Plant::new(&plan, None).expect("a sound plan");
     listen(&plant, &plan).await.expect("a free port");
     let folder = tempfile::tempdir().expect("a folder");
     let text = plan.configuration("plant.db");
     let first = start(folder.path(), &text);
-    let read = Config::parse(&text, &folder.path().join("plant.toml"), Config::no_outputs);
-    let (config, ()) = read.expect("it is accepted");
-    let second = Gateway::start(&config, &[], |line| eprintln!("{line}"));
+    let second = try_start(folder.path(), &text);
     let why = second.err().expect("it is refused").to_string();
     assert!(
         why.contains("plant.db") && why.contains("end it first"),
@@ -78,15 +85,7 @@ async fn a_second_gateway_is_refused_and_the_first_goes_on() {
 /// A second board answers at the address of a motor whose board is known by its serial number.
 #[tokio::test(flavor = "current_thread")]
 async fn a_board_under_a_forged_address_is_refused() {
-    let plan = Plan {
-        boards: 2,
-        listen: ports::free(),
-        per_port: 200,
-        seed: 9,
-        faulty: 0,
-        faults_within_s: 60,
-        restart_s: None,
-    };
+    let plan = plan(2);
     let mut plant = Plant::new(&plan, None).expect("a sound plan");
     listen(&plant, &plan).await.expect("a free port");
     let folder = tempfile::tempdir().expect("a folder");

@@ -13,10 +13,10 @@ use crate::model::prior::N_NOMINAL;
 use motor::effect::{EffectConfig, Instrument};
 use motor::effects::{gain_of, offset_of};
 
-/// The instruments whose gains are fitted.
+/// The instruments whose gains and offsets are fitted.
 const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents];
 
-/// The trial refitted beside the gains of the channels; `None` where they cannot be fitted: a load table, or a motor file that
+/// The trial refitted beside gains and offsets of the channels; `None` where they cannot be fitted: a load table, or a motor file that
 /// holds an unbalance of voltages and currents already. Gains that were found are held to their class, too: the data tell
 /// how they differ, and nothing tells what all three have in common from the impedances of another motor.
 pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {

@@ -327,19 +327,20 @@ impl Hypothesis {
         }
         let p = self.parameter(k);
         match p.role {
-            Role::Size if self.is_prior(k) => {
-                let effect = self.effects[self.effect_of(k)].effect;
-                let class = match effect.offset_of() {
-                    Some(_) => CHANNEL_OFFSET,
-                    None => CHANNEL_GAIN,
-                };
-                (class / p.typical, 0.0)
-            }
+            Role::Size if self.is_prior(k) => (self.class_of(k) / p.typical, 0.0),
             Role::Size => (self.size_deviation(k), 0.0),
             _ => (
                 SHAPE_PRIOR,
                 to_coordinate(p, p.typical * p.scale.of(rated), rated),
             ),
+        }
+    }
+
+    /// Class of the instrument that a coordinate is the error of.
+    fn class_of(&self, k: usize) -> f64 {
+        match self.effects[self.effect_of(k)].effect.offset_of() {
+            Some(_) => CHANNEL_OFFSET,
+            None => CHANNEL_GAIN,
         }
     }
 

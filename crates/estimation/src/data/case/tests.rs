@@ -1,5 +1,5 @@
 use super::*;
-use crate::specimen::{self, SIGMA, T_SAMPLE};
+use crate::specimen::{self, SIGMA, T_SAMPLE, changed};
 use recording::{LoadTorque, Metadata};
 use signal::estimated_sigma;
 
@@ -13,18 +13,6 @@ fn case_of(rec: &Recording) -> Case {
 
 fn reason(rec: &Recording) -> String {
     Case::new(rec, &rated()).expect_err("refused").reason
-}
-
-/// The same recording with its channels changed, or without them.
-fn changed(rec: &Recording, change: impl Fn(Channel, Vec<f64>) -> Option<Vec<f64>>) -> Recording {
-    let empty = Recording::new("changed", rec.t().to_vec(), rec.metadata.clone());
-    rec.channels()
-        .fold(empty.expect("a clock"), |to, (channel, x)| {
-            match change(channel, x.to_vec()) {
-                Some(x) => to.with_channel(channel, x).expect("as long"),
-                None => to,
-            }
-        })
 }
 
 #[test]
