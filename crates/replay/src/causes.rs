@@ -66,12 +66,6 @@ fn ranked(load_friction: bool, weigh: &mut dyn FnMut(&mut Tell<'_>)) -> Vec<Cand
 /// Puts broken bars first, as likely as all other causes together: bars shake every window, and what a shaken window says of other
 /// causes may be theirs.
 pub fn suspect_bars(candidates: &mut Vec<Candidate>) {
-    if candidates
-        .iter()
-        .any(|candidate| candidate.fault == FaultId::Bars)
-    {
-        return;
-    }
     for candidate in candidates.iter_mut() {
         candidate.probability *= 0.5;
     }
@@ -243,6 +237,20 @@ mod tests {
         assert!((0.45..0.5).contains(&causes[0].probability));
         report.lamps.fault = Lamp::Off;
         assert!(of_report(&report, &[], true).is_empty());
+    }
+
+    #[test]
+    fn suspected_bars_are_tied_with_the_likeliest_of_the_others() {
+        let mut causes = of_report(&report([3.0, 3.0, 3.0, 0.0]), &[], true);
+        suspect_bars(&mut causes);
+        assert_eq!(causes[0].fault, FaultId::Bars);
+        assert_eq!(
+            (causes[1].fault, tied(&causes)),
+            (FaultId::CurrentSensor, 2)
+        );
+        let sum: f64 = causes.iter().map(|cause| cause.probability).sum();
+        // Ten probabilities in single precision.
+        assert!((sum - 1.0).abs() < 1e-5, "{sum}");
     }
 
     #[test]

@@ -84,6 +84,34 @@ fn what_changes_within_a_recording_is_told_and_not_learnt() {
     assert!(!calibrated.exists());
 }
 
+/// A fifth of the cage's bars at nearly rated load: current and speed swing so far that no window can be judged, and the sidebands are
+/// those of broken bars.
+#[test]
+fn bars_that_shake_every_window_are_a_fault() {
+    let scenario = pump(&fault("bars", 20.0, 0.0))
+        .replace("duration_s = 3.0", "duration_s = 12.0")
+        .replace("constant_percent = 70.0", "constant_percent = 90.0");
+    let folder = workplace("does-not-fit-bars");
+    let recording = simulated(&folder, "today", &scenario, &[]);
+    let plate = folder.join("plate.toml");
+    let arguments = [
+        "check",
+        text(&recording),
+        "--plate",
+        text(&plate),
+        "--json",
+        "-",
+    ];
+    let output = drivemon(&arguments);
+    let one = &json(&output)["recordings"][0];
+    assert_eq!(one["windows"][0], 0, "{}", one["not_judged"]);
+    assert_eq!(
+        (output.status.code(), &one["state"]),
+        (Some(1), &"fault".into())
+    );
+    assert_eq!(one["verdict"]["candidates"][0]["fault"], "bars");
+}
+
 /// The audit finds a speed 5 % too fast: 2 % above the synchronous one while the motor drives.
 #[test]
 fn a_channel_that_the_audit_finds_wrong_is_no_motor_in_good_order() {

@@ -80,6 +80,24 @@ fn a_calibrated_motor_is_written_and_judges_its_recording_healthy() {
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
 }
 
+/// Effective values taken for amplitudes: a rotor resistance a third smaller makes the best of it, and what is left would hide every fault.
+#[test]
+fn what_no_parameter_mends_is_not_calibrated() {
+    let recording = altered("calibrate-rms", |k, line| {
+        let scaled = |(column, cell): (usize, &str)| match cell.parse::<f64>() {
+            Ok(x) if k > 0 && (1..=3).contains(&column) => (x / 2.0_f64.sqrt()).to_string(),
+            _ => cell.to_owned(),
+        };
+        let cells: Vec<String> = line.split(',').enumerate().map(scaled).collect();
+        Some(cells.join(","))
+    });
+    let words = [
+        "remain with the parameters that fit best",
+        "a scale is wrong",
+    ];
+    refused("calibrate-rms", text(&recording), MOTOR, 3, &words);
+}
+
 #[test]
 fn a_load_table_has_no_waveforms() {
     let table = "tests/data/imc_18k5_load_test/load_test.csv";

@@ -326,6 +326,22 @@ fn what_cannot_leave_is_said_with_what_can_be_done() {
     );
 }
 
+/// Three Python files of one motor, none of which takes another's place.
+#[test]
+fn python_files_of_one_motor_have_names_of_their_own() {
+    let folder = bench("export-names", "");
+    for to in ["python", "motulator", "gym-electric-motor"] {
+        exported(&folder, &[to]);
+    }
+    for name in [
+        "motor.py",
+        "motor_motulator.py",
+        "motor_gym_electric_motor.py",
+    ] {
+        assert!(folder.join(name).exists(), "{name}");
+    }
+}
+
 #[test]
 fn parameters_for_other_libraries_say_what_is_lost() {
     let windage = "\n[[effects]]\nname = \"windage\"\nwindage_nm_s2 = 4e-5\n";

@@ -225,3 +225,19 @@ fn a_line_that_cannot_keep_up_is_named_before_it_is_tried() {
     let hall = advice(&config, 0).expect("a link");
     assert_eq!((hall.busy, hall.warnings.len()), (None, 0));
 }
+
+/// A page asks for the store alone, and says what is missing where it is.
+#[test]
+fn a_file_without_a_store_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("plant.toml");
+    let store_of = |text: &str| {
+        std::fs::write(&path, text).expect("written");
+        Config::store_of(&path).map_err(|error| error.to_string())
+    };
+    assert_eq!(store_of(SOUND), Ok(folder.path().join("kept/plant.db")));
+    for text in ["name = \"pump\"\n", "[store]\nsize_gb = 2\n"] {
+        let error = store_of(text).expect_err("no store");
+        assert!(error.contains("store.path: is missing"), "{error}");
+    }
+}

@@ -172,6 +172,20 @@ mod tests {
     }
 
     #[test]
+    fn what_shows_nothing_below_its_scale_and_what_was_hardly_judged_are_doubts() {
+        assert_eq!(hardly_visible([99.0, 400.0, 300.0, 200.0]), None);
+        let blind = hardly_visible([230.0, 400.0, 300.0, 231.0]).expect("a doubt");
+        assert!(blind.seen.contains("below 230 %"), "{blind:?}");
+        let reasons = ["transient: 1080 windows".to_owned()];
+        let few = hardly_judged([113, 1193], &reasons).expect("a doubt");
+        assert!(
+            few.seen.contains("113 of 1193") && few.seen.contains("1080"),
+            "{few:?}"
+        );
+        assert_eq!(hardly_judged([0, 1193], &reasons), None);
+    }
+
+    #[test]
     fn a_channel_that_the_audit_finds_far_off_is_a_doubt() {
         let finding = |code, suspect: Option<&str>, value, to_s| Finding {
             code,

@@ -1,6 +1,6 @@
 //! What recordings of a motor in good order teach before others are checked.
 
-use discovery::{Given, IdentifyReport, Sources};
+use discovery::{Given, IdentifiedParameter, IdentifyReport, Sources};
 use motor::InMotion;
 use motor::MotorFile;
 use schemars::JsonSchema;
@@ -64,9 +64,9 @@ pub fn learn(
 const MOST_DEVIATIONS: f64 = 3.0;
 
 /// The parameter by which the recordings contradict the motor file, in words.
-fn beyond_belief(motor: &MotorFile, report: &IdentifyReport) -> Option<String> {
+fn beyond_belief(motor: &MotorFile, parameters: &[IdentifiedParameter]) -> Option<String> {
     let known = motor.uncertainty.as_ref()?;
-    let found = report.parameters.iter().find(|found| {
+    let found = parameters.iter().find(|found| {
         let deviation = known.log_deviation(&found.name);
         let off = (found.value / found.believed).ln().abs();
         found.told && deviation.is_some_and(|deviation| off > MOST_DEVIATIONS * deviation)
@@ -90,7 +90,7 @@ impl Learnt {
         match discovery::identify(Sources::Given(&given), &self.motor, progress) {
             Ok((report, motor)) => {
                 let error = report.after.held_out_error_over_noise;
-                if let Some(beyond) = beyond_belief(&self.motor, &report) {
+                if let Some(beyond) = beyond_belief(&self.motor, &report.parameters) {
                     self.notes.push(format!("parameters not learnt: {beyond}"));
                 } else if error > FITS {
                     // Its parameters stand for what it misses: a confident wrong answer.
@@ -131,6 +131,47 @@ impl Learnt {
         let is_estimated = references.iter().any(|one| one.head().speed().is_none());
         if let Some(healthy) = self.motor.healthy.as_mut().filter(|_| is_estimated) {
             healthy.in_motion = InMotion::Unseen;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use motor::motor_file::{ParameterInterval, Uncertainty};
+
+    /// An interval of a factor of two to both sides has a standard deviation of `ln 4/3.92 = 0.354`: three of them are a factor of 2.9.
+    #[test]
+    fn a_parameter_far_beyond_its_plate_is_told_and_an_untold_one_is_not() {
+        let mut motor = MotorFile::read("../../motors/peer-2k2.toml").expect("it ships");
+        let name = "stator_resistance_ohm".to_owned();
+        let found = |value: f64, told: bool| IdentifiedParameter {
+            name: name.clone(),
+            unit: "ohm".to_owned(),
+            believed: 2.0,
+            value,
+            low: 0.97 * value,
+            high: 1.03 * value,
+            told,
+            would_tell: None,
+        };
+        assert_eq!(beyond_belief(&motor, &[found(9.0, true)]), None);
+        motor.uncertainty = Some(Uncertainty {
+            intervals: vec![ParameterInterval {
+                key: name.clone(),
+                low: 1.0,
+                high: 4.0,
+            }],
+            correlations: Vec::new(),
+        });
+        for (value, told, is_beyond) in [
+            (5.6, true, false),
+            (6.0, true, true),
+            (0.6, true, true),
+            (6.0, false, false),
+        ] {
+            let said = beyond_belief(&motor, &[found(value, told)]);
+            assert_eq!(said.is_some(), is_beyond, "{value}: {said:?}");
         }
     }
 }

@@ -455,3 +455,6 @@ fn lamp_state(t: f64, report: &Report) -> LampState {
         not_judged: report.not_judged.map(Unjudged::ByCore),
     }
 }
+
+#[cfg(test)]
+mod tests;
