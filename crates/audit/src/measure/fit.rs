@@ -4,6 +4,7 @@
 //! block. Unlike a discrete Fourier sum it needs neither whole periods nor even sampling, and its
 //! slope gives the frequency error and the change of the amplitude.
 
+use crate::measure::normal::{cholesky, normal, solve};
 use crate::measure::turn::Turns;
 use num_complex::Complex64;
 
@@ -48,7 +49,7 @@ impl Basis {
                 [1.0, cos, sin, tau * cos, tau * sin]
             })
             .collect();
-        let factor = cholesky(normal(&rows))?;
+        let factor = cholesky(normal(&rows), INDEPENDENT)?;
         Some(Basis { rows, factor, half })
     }
 
@@ -112,52 +113,8 @@ impl Sums {
     }
 }
 
-fn normal(rows: &[Row]) -> [Row; N] {
-    let mut matrix = [[0.0; N]; N];
-    for row in rows {
-        for (i, line) in matrix.iter_mut().enumerate() {
-            for (j, entry) in line.iter_mut().enumerate().take(i + 1) {
-                *entry += row[i] * row[j];
-            }
-        }
-    }
-    matrix
-}
-
 /// Smallest share of a column that the columns before it may leave: below, the block is too short.
 const INDEPENDENT: f64 = 0.02;
-
-/// Lower factor of a symmetric matrix of which the lower half is given.
-fn cholesky(a: [Row; N]) -> Option<[Row; N]> {
-    let mut l = [[0.0; N]; N];
-    for i in 0..N {
-        for j in 0..=i {
-            let dot: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-            let left = a[i][j] - dot;
-            if i == j {
-                if left.is_nan() || left <= INDEPENDENT * a[i][i] {
-                    return None;
-                }
-                l[i][i] = left.sqrt();
-            } else {
-                l[i][j] = left / l[j][j];
-            }
-        }
-    }
-    Some(l)
-}
-
-fn solve(l: &[Row; N], mut x: Row) -> Row {
-    for i in 0..N {
-        let dot: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i][i];
-    }
-    for i in (0..N).rev() {
-        let dot: f64 = (i + 1..N).map(|k| l[k][i] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i][i];
-    }
-    x
-}
 
 #[cfg(test)]
 mod tests {

@@ -3,6 +3,7 @@
 pub(crate) mod blocks;
 pub(crate) mod fit;
 pub(crate) mod harmonics;
+pub(crate) mod normal;
 pub(crate) mod refresh;
 pub(crate) mod sequence;
 pub(crate) mod statistics;

@@ -117,6 +117,12 @@ impl Cause {
         }
     }
 
+    /// What a second direction of the cause is: a part of its own that only adds (a share of its size in any proportion), or where a
+    /// standard deviation of something uncertain moves the first direction, per relative change.
+    pub(super) fn adds_across(self) -> bool {
+        matches!(self, Cause::Turns(_))
+    }
+
     /// How far a real fault's direction may lie off the computed one, as a share of its length: large changes bend it, those of
     /// turns in the loop's current and in the winding that is left.
     pub const fn looseness(self) -> f32 {

@@ -6,7 +6,7 @@ use super::cause::Cause;
 use super::directions::{Directions, Positive};
 use super::gauss::Covariance;
 use super::healthy::{Healthy, ROWS, Row};
-use super::negative::Negative;
+use super::negative::{Negative, angle_left_open};
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
@@ -24,6 +24,8 @@ pub struct Evidence {
     scatter: Rows,
     positive: Directions,
     negative: Negative,
+    /// Standard deviation of the angle of `Z_2`, rad.
+    turn: f32,
     /// `I_2/I_1`.
     unbalance: Complex32,
     /// Rise of the resistances at which all this was computed.
@@ -72,6 +74,7 @@ impl Evidence {
             scatter,
             positive: positive.directions,
             negative,
+            turn: angle_left_open(window, measured, n_p, &healthy.uncertainty),
             unbalance: window.i_s.unbalance(),
             rise: positive.rise,
             backwards: window.backwards,
@@ -117,6 +120,7 @@ impl Evidence {
             scatter,
             positive: Directions::default(),
             negative,
+            turn: 0.0,
             unbalance: window.i_s.unbalance(),
             rise: 0.0,
             backwards: window.backwards,
@@ -199,17 +203,27 @@ impl Evidence {
         }
     }
 
-    /// A second direction of a cause, where it has one.
+    /// A second direction of a cause, where it has one ([`Cause::adds_across`]).
     ///
     /// The loop of shorted turns has a resistance and a leakage: its current lags its voltage by anything up to a quarter of a turn.
-    /// Currents alone could put any angle into one phase or another.
+    /// Currents alone could put any angle into one phase or another. `V_2 - Z_2 I_2` shows shorted turns and gains as they are,
+    /// whatever the believed `Z_2` is; a resistance in series draws `I_2 = -R I_1/(3 Z_2)` through the motor's own impedance: its row
+    /// is turned by the angle between both.
     pub(crate) fn across(&self, cause: Cause) -> Option<Rows> {
-        let Cause::Turns(phase) = cause else {
-            return None;
+        let (positive, negative) = match cause {
+            Cause::Turns(phase) => {
+                let (axis, _) = axes(phase, self.backwards);
+                let lagging = self.negative.turns * axis * -Complex32::I;
+                (self.positive.turns_lagging, lagging)
+            }
+            Cause::SeriesResistance(phase) => {
+                let turned = Complex32::new(0.0, self.turn);
+                let series = self.negative.series * self.current_in(phase);
+                ([0.0; 3], series * turned)
+            }
+            _ => return None,
         };
-        let (axis, _) = axes(phase, self.backwards);
-        let lagging = self.negative.turns * axis * -Complex32::I;
-        let rows = self.one(&self.positive.turns_lagging, lagging, [Complex32::ZERO; 2]);
+        let rows = self.one(&positive, negative, [Complex32::ZERO; 2]);
         self.has_voltages().then_some(rows)
     }
 

@@ -10,7 +10,7 @@ use super::ln;
 /// Where a cause moves the white rows, per relative change.
 pub(super) struct Direction<'a> {
     pub along: &'a [f32],
-    /// A second part of its own, which only adds.
+    /// A second direction: see [`Cause::adds_across`].
     pub across: Option<&'a [f32]>,
 }
 
@@ -59,8 +59,9 @@ impl Departure<'_> {
 const POSITIVE: usize = Row::Negative as usize;
 
 /// Least squares along a cause's directions.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
+    cause: Cause,
     /// Squared length of the direction per unit change.
     information: f32,
     /// Change along the direction, beside the one across it.
@@ -93,9 +94,13 @@ impl Fit {
         let Some(rows) = direction.across else {
             return fit;
         };
-        let across = fit.across(direction.along, rows, departure);
-        let along = fit.along - across.overlap * across.change;
-        if along < 0.0 && across.change > 0.0 {
+        let mut across = fit.across(direction.along, rows, departure);
+        let mut along = fit.along;
+        if cause.adds_across() {
+            across.change = across.change.max(0.0);
+            along -= across.overlap * across.change;
+        }
+        if along < 0.0 && across.change > 0.0 && cause.adds_across() {
             return Fit::along(cause, rows, departure);
         }
         Fit {
@@ -116,6 +121,7 @@ impl Fit {
             None => departure.positive_beside(direction, along),
         };
         Fit {
+            cause,
             information,
             along,
             square,
@@ -125,7 +131,7 @@ impl Fit {
         }
     }
 
-    /// Beside this fit along `first`: what only adds is not less than nothing.
+    /// Beside this fit along `first`.
     fn across(&self, first: &[f32], second: &[f32], departure: &Departure<'_>) -> Across {
         let overlap = dot(second, first) / self.information.max(LEAST_INFORMATION);
         let length = dot(second, second);
@@ -139,7 +145,7 @@ impl Fit {
         };
         Across {
             information,
-            change: change.max(0.0),
+            change,
             overlap,
         }
     }
@@ -147,40 +153,46 @@ impl Fit {
     /// Change that explains the departure best.
     pub(super) fn size(&self) -> f32 {
         match &self.across {
-            Some(across) => libm::sqrtf(self.along * self.along + across.change * across.change),
-            None => self.along,
+            Some(across) if self.cause.adds_across() => {
+                libm::sqrtf(self.along * self.along + across.change * across.change)
+            }
+            _ => self.along,
         }
     }
 
     /// Squared length of the departure along the directions, where the sign of the change is possible, else 0.
-    pub(super) fn square(&self, cause: Cause) -> f32 {
-        match self.is_impossible(cause) {
+    pub(super) fn square(&self) -> f32 {
+        match self.is_impossible() {
             true => 0.0,
             false => self.square + self.across.map_or(0.0, |across| across.square()),
         }
     }
 
-    fn is_impossible(&self, cause: Cause) -> bool {
-        cause.only_adds() && self.along < 0.0
+    fn is_impossible(&self) -> bool {
+        self.cause.only_adds() && self.along < 0.0
     }
 
     /// Logarithm of the Bayes factor against health for a change of the cause's typical size, normally distributed, or of a
     /// larger one, rare in proportion: a loose contact may have any resistance. The direction is only roughly the computed one.
-    pub(super) fn score(&self, cause: Cause) -> f32 {
-        if self.is_impossible(cause) {
+    pub(super) fn score(&self) -> f32 {
+        if self.is_impossible() {
             return IMPOSSIBLE;
         }
-        let spread = self.size().abs().max(cause.typical_size());
-        let rarity = ln(spread / cause.typical_size());
-        let square = spread * spread;
-        let along = wider(self.information * square, self.square);
+        let size = self.size().abs();
+        let spread = size.max(self.cause.typical_size());
+        let rarity = ln(spread / self.cause.typical_size());
+        let along = wider(self.information * spread * spread, self.square);
         let across = self.across.map_or(0.0, |across| {
-            wider(across.information * square, across.square()) + LN_2
+            if self.cause.adds_across() {
+                wider(across.information * spread * spread, across.square()) + LN_2
+            } else {
+                wider(across.information * size * size, across.square())
+            }
         });
-        let astray = cause.looseness() * cause.looseness() * self.square(cause);
+        let astray = self.cause.looseness() * self.cause.looseness() * self.square();
         let straight = 0.5 * self.beside * (astray / (1.0 + astray));
         let beside = straight - 0.5 * self.others * ln(1.0 + astray);
-        let sign = if cause.only_adds() { LN_2 } else { 0.0 };
+        let sign = if self.cause.only_adds() { LN_2 } else { 0.0 };
         along + across + beside + sign - rarity
     }
 }
@@ -200,7 +212,7 @@ fn wider(more: f32, square: f32) -> f32 {
 
 /// Share of its length that a second direction must have beside the first: single precision tells no less.
 const LEAST_ASIDE: f32 = 1e-5;
-/// A direction without length says nothing about its cause.
+/// A direction without length says nothing about its self.cause.
 pub(super) const LEAST_INFORMATION: f32 = 1e-12;
 /// Score of a cause whose sign is impossible.
 pub(super) const IMPOSSIBLE: f32 = -1e3;

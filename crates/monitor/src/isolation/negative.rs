@@ -3,6 +3,7 @@
 use num_complex::Complex32;
 
 use super::directions::{LEAKAGE_STEP, STEP, impedance};
+use super::healthy::Uncertainty;
 use crate::model::effects::Corrected;
 use crate::window::Window;
 use motor::TParams;
@@ -10,7 +11,8 @@ use motor::TParams;
 /// How the row moves, per relative change in all three phases; one phase gives a third of it, turned by its axis.
 ///
 /// A parameter of all phases makes no negative sequence, but changes what the supply's own one drops: `Z_2 I_2` with the old
-/// parameter is too small by the derivative of `Z_2`.
+/// parameter is too small by the derivative of `Z_2`. The supply's own drop is not larger than `V_2`: current beyond `V_2/Z_2` is
+/// drawn by something that differs from phase to phase, and no belief about `Z_2` takes it away.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Negative {
     pub value: Complex32,
@@ -18,7 +20,7 @@ pub struct Negative {
     pub current: Complex32,
     pub series: Complex32,
     pub turns: Complex32,
-    /// `Z_2 I_2/V_1`, whose impedance is only roughly known.
+    /// `Z_2 I_2/V_1` of the supply's own part, whose impedance is only roughly known.
     pub drop: Complex32,
     /// By how much that drop grows with each parameter of all phases.
     pub grown: ByParameter,
@@ -42,16 +44,18 @@ impl Negative {
         let (v_1, i_1) = (window.u_s.positive, window.i_s.positive);
         let i_2 = window.i_s.negative / v_1;
         let drop = z_2 * i_2;
+        let unbalance = window.u_s.unbalance();
+        let supplied = libm::sqrtf(unbalance.norm_sqr() / drop.norm_sqr()).min(1.0);
         // Per motor current, in phase with the voltage.
         let length = libm::sqrtf(i_1.norm_sqr() / v_1.norm_sqr());
         Negative {
-            value: window.u_s.unbalance() - drop,
+            value: unbalance - drop,
             voltage: Complex32::ONE,
             current: -z_2 * i_1 / v_1,
             series: i_1 / v_1 * p.r_s,
             turns: -z_2 * length,
-            drop,
-            grown: grown(z_2, &p, [window.omega_sync, slip], i_2),
+            drop: drop * supplied,
+            grown: grown(z_2, &p, [window.omega_sync, slip], i_2 * supplied),
         }
     }
 }
@@ -93,4 +97,45 @@ fn grown(
             LEAKAGE_STEP,
         ),
     }
+}
+
+/// Standard deviation of the angle of `Z_2` that the uncertain parameters leave open, rad: to first order, each by itself.
+pub(super) fn angle_left_open(
+    window: &Window,
+    measured: &Corrected,
+    n_p: f32,
+    u: &Uncertainty,
+) -> f32 {
+    let slip = (window.omega_sync + measured.omega_mech * n_p) / window.omega_sync;
+    let p = measured.params;
+    let z_2 = impedance(&p, window.omega_sync, slip);
+    let leakage = 1.0 + u.leakage;
+    let heating = 1.0 + u.heating;
+    let moved = [
+        TParams {
+            r_s: p.r_s * (1.0 + u.stator_resistance),
+            ..p
+        },
+        TParams {
+            r_r: p.r_r * (1.0 + u.rotor_resistance),
+            ..p
+        },
+        TParams {
+            r_s: p.r_s * heating,
+            r_r: p.r_r * heating,
+            ..p
+        },
+        TParams {
+            l_ls: p.l_ls * leakage,
+            l_lr: p.l_lr * leakage,
+            ..p
+        },
+    ];
+    let tangents = moved.map(|moved| {
+        let turned = impedance(&moved, window.omega_sync, slip) / z_2;
+        turned.im / turned.re
+    });
+    let squares: f32 = tangents.iter().map(|tangent| tangent * tangent).sum();
+    let angle = libm::sqrtf(squares + u.negative_impedance * u.negative_impedance);
+    if angle.is_finite() { angle } else { 0.0 }
 }

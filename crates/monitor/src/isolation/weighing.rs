@@ -92,14 +92,14 @@ impl Weighing {
         };
         let [all, without] = self.departures();
         let all = fit(&all);
-        let square = all.square(cause);
+        let square = all.square();
         let Some(neutral) = self.neutral.as_ref().filter(|it| it.matters(square)) else {
             return Weighed::new(cause, &all, square);
         };
         let without = fit(&without);
-        let square = neutral.either(square, without.square(cause));
+        let square = neutral.either(square, without.square());
         let health = neutral.better.max(0.0);
-        let mut weighed = if without.score(cause) + neutral.better > all.score(cause) {
+        let mut weighed = if without.score() + neutral.better > all.score() {
             let mut weighed = Weighed::new(cause, &without, square);
             weighed.score += neutral.better;
             weighed
@@ -136,7 +136,7 @@ impl Weighing {
 impl Weighed {
     fn new(cause: Cause, fit: &Fit, square: f32) -> Self {
         Weighed {
-            score: fit.score(cause),
+            score: fit.score(),
             size: cause.change(fit.size()),
             square,
         }

@@ -3,7 +3,11 @@
 //! Least squares of mean, cosine and sine over some samples tell the value at an instant beside them. The weights of those
 //! samples depend on their distances alone; they are real, and the same on both sides.
 
+use crate::measure::normal::{cholesky, normal, solve};
 use num_complex::Complex64;
+
+/// Share of a column beside the others that rounding leaves: a few samples of a slow supply are nearly a parabola, and told apart.
+const ROUNDING: f64 = 1e-12;
 
 /// Weights of samples at the distances `first`, `first + 1`, ... from an instant.
 pub(super) struct Weights {
@@ -17,14 +21,8 @@ impl Weights {
         let rows: Vec<[f64; 3]> = (first..first + samples)
             .map(|k| row(k as f64 + 0.5, angle, (first + samples) as f64))
             .collect();
-        let mut normal = [[0.0; 3]; 3];
-        for row in &rows {
-            for (line, x) in normal.iter_mut().zip(row) {
-                line.iter_mut().zip(row).for_each(|(sum, y)| *sum += x * y);
-            }
-        }
         // At the instant itself the columns are 1, 0, 0.
-        let at = solved(normal, [1.0, 0.0, 0.0])?;
+        let at = solve(&cholesky(normal(&rows), ROUNDING)?, [1.0, 0.0, 0.0]);
         let dot = |row: &[f64; 3]| row.iter().zip(&at).map(|(x, y)| x * y).sum();
         Some(Weights {
             first,
@@ -58,28 +56,6 @@ fn row(distance: f64, angle: f64, far: f64) -> [f64; 3] {
         versed(angle * distance) / versed((angle * far).min(1.5)),
         sin / far_sin,
     ]
-}
-
-/// Gauss's elimination of a symmetric positive matrix.
-fn solved(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> Option<[f64; 3]> {
-    for i in 0..3 {
-        if a[i][i] <= f64::EPSILON {
-            return None;
-        }
-        for j in i + 1..3 {
-            let share = a[j][i] / a[i][i];
-            let upper = a[i];
-            a[j].iter_mut()
-                .zip(upper)
-                .for_each(|(x, y)| *x -= share * y);
-            b[j] -= share * b[i];
-        }
-    }
-    for i in (0..3).rev() {
-        let known: f64 = (i + 1..3).map(|j| a[i][j] * b[j]).sum();
-        b[i] = (b[i] - known) / a[i][i];
-    }
-    Some(b)
 }
 
 #[cfg(test)]

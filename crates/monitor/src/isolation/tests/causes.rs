@@ -199,6 +199,22 @@ fn a_contact_of_a_hardly_known_motor_is_no_shorted_turn() {
     }
 }
 
+/// However little is known of the motor: current that the supply's negative sequence does not draw is no matter of belief about `Z_2`.
+#[test]
+fn no_belief_about_a_motor_takes_the_unbalance_of_a_contact_away() {
+    let mut healthy = statistics();
+    let u = &mut healthy.uncertainty;
+    (u.stator_resistance, u.rotor_resistance) = (1.0, 1.0);
+    (u.magnetizing_inductance, u.leakage) = (1.0, 1.0);
+    (u.friction, u.speed) = (1.0, 1.0);
+    for cause in of_phases(Cause::SeriesResistance) {
+        let evidence = evidence_by(&changed(cause, 1.0), &healthy);
+        let isolation = Isolation::of(&evidence, &healthy, Heating::any(&healthy));
+        let lights = isolation.significance > 3.0 * healthy.significance;
+        assert!(lights, "{cause:?}: {isolation:?}");
+    }
+}
+
 /// The loop's resistance and leakage decide on the angle of its current. Where a quarter of a turn is behind, what is in all phases alike
 /// (magnetizing current, leakage) has a share of it, but no negative sequence.
 #[test]

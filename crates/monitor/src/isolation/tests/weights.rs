@@ -49,7 +49,7 @@ fn fit(along: &[f32], across: Option<&[f32]>, departure: &[f32], cause: Cause) -
 }
 
 fn score(direction: &[f32], departure: &[f32], cause: Cause) -> f64 {
-    f64::from(fit(direction, None, departure, cause).score(cause))
+    f64::from(fit(direction, None, departure, cause).score())
 }
 
 /// Two directions at right angles: the product of both Bayes factors, each of a part that only adds.
@@ -60,12 +60,27 @@ fn a_second_direction_has_a_bayes_factor_of_its_own() {
     let typical = f64::from(cause.typical_size());
     let both = integrated(6.0, 30.0, typical) + integrated(4.0, 30.0, typical);
     let expected = both + 2.0 * 2.0_f64.ln();
-    let got = f64::from(found.score(cause));
+    let got = f64::from(found.score());
     assert!((got - expected).abs() < 1e-3 * expected, "{got} {expected}");
     let size = 6.0_f32.hypot(4.0) / 30.0;
     assert!((found.size() - size).abs() < 1e-6, "{found:?}");
     // All of it lies in the plane.
-    assert!((found.square(cause) - 52.0).abs() < 1e-4, "{found:?}");
+    assert!((found.square() - 52.0).abs() < 1e-4, "{found:?}");
+}
+
+/// A turn of a standard deviation moves the row sideways by its length: a normal distribution of that width beside the first factor.
+#[test]
+fn a_direction_that_may_be_turned_has_the_bayes_factor_of_the_turn() {
+    let cause = Cause::SeriesResistance(Phase::A);
+    let found = fit(&[30.0], Some(&[0.0, 9.0]), &[6.0, 2.0], cause);
+    let size = 6.0_f32 / 30.0;
+    let turned = integrated(2.0, 9.0 * f64::from(size), 1.0);
+    let expected = integrated(6.0, 30.0, f64::from(cause.typical_size())) + turned + 2.0_f64.ln();
+    let got = f64::from(found.score());
+    assert!((got - expected).abs() < 1e-3 * expected, "{got} {expected}");
+    // The turn is no size.
+    assert!((found.size() - size).abs() < 1e-6, "{found:?}");
+    assert!((found.square() - 40.0).abs() < 1e-4, "{found:?}");
 }
 
 /// Directions 60 degrees apart, `a = (2, 0)` and `b = (1, sqrt 3)`: what lies outside the quarter between them has one of them alone,
@@ -80,16 +95,16 @@ fn two_parts_that_only_add_stay_between_their_directions() {
     // 0.5 a + 1.5 b.
     let between = of([2.5, 1.5 * 3.0_f32.sqrt()]);
     close(between.size(), 0.5_f32.hypot(1.5));
-    close(between.square(cause), 2.5 * 2.5 + 2.25 * 3.0);
+    close(between.square(), 2.5 * 2.5 + 2.25 * 3.0);
     // Below a: a alone, which explains (2, 0) of it.
     let below = of([2.0, -1.0]);
     close(below.size(), 1.0);
-    close(below.square(cause), 4.0);
+    close(below.square(), 4.0);
     // Beyond b: b alone; (-1, 3) . b = 3 sqrt 3 - 1 over |b|^2 = 4.
     let beyond = of([-1.0, 3.0]);
     close(beyond.size(), (3.0 * 3.0_f32.sqrt() - 1.0) / 4.0);
-    close(beyond.square(cause), 4.0 * beyond.size().powi(2));
-    assert_eq!(of([-1.0, -1.0]).score(cause), IMPOSSIBLE);
+    close(beyond.square(), 4.0 * beyond.size().powi(2));
+    assert_eq!(of([-1.0, -1.0]).score(), IMPOSSIBLE);
 }
 
 #[test]
@@ -172,7 +187,7 @@ fn what_lies_beside_the_direction_costs_as_much_as_its_density() {
 #[test]
 fn a_direction_without_length_explains_nothing() {
     let found = fit(&[], None, &[3.0], Cause::Leakage);
-    assert_eq!((found.size(), found.square(Cause::Leakage)), (0.0, 0.0));
+    assert_eq!((found.size(), found.square()), (0.0, 0.0));
 }
 
 /// Something else: a hundred standard deviations in every row.
