@@ -65,6 +65,9 @@ function buildFigures() {
   }
 }
 
+/** Residuals of a window that is not judged. @type {(number | null)[]} */
+const NOTHING = [null, null, null, null];
+
 /**
  * Residuals over their thresholds, from percent.
  * @param {(number | null)[]} percent
@@ -76,8 +79,9 @@ function overThreshold(percent) {
 
 /** @param {WindowMessage} window */
 function takeWindow(window) {
-  // Also what is not compared, as of an undeclared load: the table shows it, and so does the history.
-  const over = overThreshold(window.r_percent ?? [null, null, null, null]);
+  // Also what is not compared, as of an undeclared load: the table shows it, and so does the history. Where nothing is judged, as in a
+  // transient, there is no line.
+  const over = window.not_judged === null ? overThreshold(window.r_percent ?? NOTHING) : NOTHING;
   series.push(window.t_s, [...over, window.operation.slip_percent, window.operation.load_percent]);
   latest = window;
   dirty = true;
@@ -94,7 +98,7 @@ async function takeHistory() {
   series.clear();
   const number = (/** @type {unknown} */ value) => (typeof value === "number" ? value : null);
   for (const row of rows) {
-    const r = ["r1_percent", "r2_percent", "r3_percent", "r4_percent"].map((key) => number(row[key]));
+    const r = row.judged ? ["r1_percent", "r2_percent", "r3_percent", "r4_percent"].map((key) => number(row[key])) : NOTHING;
     series.push(row.t_s, [...overThreshold(r), number(row.slip_percent), number(row.load_percent)]);
   }
   later.forEach(({ t, row }) => series.push(t, row));

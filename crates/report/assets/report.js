@@ -29,6 +29,7 @@ globalThis.drawFigures = (root, result) => {
   /** x and y of one series, after its filter. */
   function points(chart, series) {
     let y = column(series.from);
+    if (series.percent) y = y.map((value) => (value == null ? null : 100 * value));
     let x = chart.x.labels ? y.map((_, row) => row) : column(series.x || chart.x.from);
     if (series.where) {
       const chosen = column(series.where.from).map((value) => value === series.where.is);

@@ -427,6 +427,37 @@ fn parameters_that_stand_for_a_missing_effect_are_not_taken() {
     assert!(out.exists());
 }
 
+/// The plate's rounded speed leaves the rotor resistance a narrow interval that the recording contradicts: no value is shown outside the
+/// interval beside it.
+#[test]
+fn values_that_a_plate_does_not_foresee_have_intervals_of_their_own() {
+    let folder = workplace("check-contradicted");
+    let motor = Path::new(PROJECT).join("motors/imc-18k5.toml");
+    std::fs::copy(motor, folder.join("truth.toml")).unwrap();
+    let plate = "name = \"m\"\npower_kw = 18.5\nvoltage_volt = 400\nfrequency_hz = 50\nspeed_rpm = 1462.5\ncurrent_amp = 32.85\n\
+                 connection = \"delta\"\n";
+    let file = folder.join("plate.toml");
+    std::fs::write(&file, plate).unwrap();
+    let healthy = simulated(&folder, "healthy", STEADY, &[]);
+    let arguments = [
+        "check",
+        text(&healthy),
+        "--plate",
+        text(&file),
+        "--healthy",
+        text(&healthy),
+        "--json",
+        "-",
+    ];
+    let answer = json(&drivemon(&arguments));
+    let shown = answer["parameters"].as_array().expect("listed");
+    assert!(answer["calibrated"].as_bool().unwrap() && !shown.is_empty());
+    for one in shown {
+        let [low, value, high] = ["low", "value", "high"].map(|key| one[key].as_f64().unwrap());
+        assert!(low <= value && value <= high, "{one}");
+    }
+}
+
 /// A plate beside a motor file would be ignored: it is refused, by name.
 #[test]
 fn a_plate_beside_a_motor_file_is_refused() {

@@ -291,6 +291,26 @@ fn intervals_survive_writing_and_reading() {
 }
 
 #[test]
+fn a_value_outside_its_interval_brings_its_own() {
+    let text = format!("{}{INTERVALS}", smallest().to_toml());
+    let mut known = MotorFile::parse(&text, "m.toml")
+        .unwrap()
+        .uncertainty
+        .unwrap();
+    let believed = known.clone();
+    known.replace_outside("stator_resistance_ohm", 3.3, 0.01);
+    known.replace_outside("no_such_key", 3.3, 0.01);
+    assert_eq!(known, believed);
+    known.replace_outside("stator_resistance_ohm", 2.0, 0.05);
+    let own = known.of("stator_resistance_ohm").unwrap();
+    // 1.96 standard deviations of the logarithm to either side.
+    assert!((own.log_deviation() - 0.05).abs() < 1e-12);
+    assert!((own.low * own.high - 4.0).abs() < 1e-12);
+    let keys = ["stator_resistance_ohm", "windage_nm_s2"];
+    assert_eq!(known.correlation(keys), 0.0);
+}
+
+#[test]
 fn wrong_intervals_are_named() {
     let wrong = [
         ("[3.0, 4.5]", "[4.5, 3.0]", "upside down"),

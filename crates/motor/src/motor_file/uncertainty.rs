@@ -45,6 +45,21 @@ impl ParameterInterval {
 }
 
 impl Uncertainty {
+    /// Takes another value for a parameter with its relative standard error, where the value lies outside what was believed: its interval
+    /// is then the value's own, and its correlations go.
+    pub fn replace_outside(&mut self, key: &str, value: f64, error: f64) {
+        let Some(interval) = self.intervals.iter_mut().find(|one| one.key == key) else {
+            return;
+        };
+        if (interval.low..=interval.high).contains(&value) {
+            return;
+        }
+        let factor = (TWO_SIDED_95 * error).exp();
+        (interval.low, interval.high) = (value / factor, value * factor);
+        self.correlations
+            .retain(|one| one.first != key && one.second != key);
+    }
+
     /// The interval of a parameter.
     pub fn of(&self, key: &str) -> Option<&ParameterInterval> {
         self.intervals.iter().find(|interval| interval.key == key)

@@ -93,11 +93,24 @@ function happened(events) {
     make("td", { class: "word" }, moment(event.time_ms / 1000)), make("td", { class: "word" }, event.words), make("td", { class: "word" }, [event.who, event.why].filter(Boolean).join(": ")))));
 }
 
+/**
+ * Shows everything about the motor, or its title alone: nothing of the motor shown before stays under a name that is not known.
+ * @param {boolean} known
+ */
+function only(known) {
+  for (const part of byId("view-motor").children) if (part.id !== "motor-state") show(/** @type {HTMLElement} */ (part), known);
+  if (known) return;
+  byId("motor-state").dataset.group = "stale";
+  say(byId("motor-why"), "");
+  byId("motor-lamps").replaceChildren();
+}
+
 /** Asks for everything about the motor and shows it. */
 export async function refresh() {
   const asked = id;
   const motor = await ask(`motors/${encodeURIComponent(id)}`);
   if (asked !== id) return;
+  only(Boolean(motor.answer));
   if (!motor.answer) return say(byId("motor-title"), motor.problem ?? "");
   now(/** @type {Motor} */ (motor.answer));
   const to_ms = /** @type {Motor} */ (motor.answer).now_ms;

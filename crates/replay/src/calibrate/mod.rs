@@ -146,6 +146,7 @@ pub fn calibrate_pieces(
         ..statistics::healthy(&fitted, &observed, surroundings, &monitor_of)?
     };
     let mut motor = fitted.motor.clone();
+    uncertainty::intervals_follow(&mut motor, &errors);
     motor.healthy = Some(healthy);
     if has_voltages {
         let monitor_of =

@@ -5,7 +5,8 @@
 //! gain. With the covariance of noise and beliefs, the covariance is `H^-1 (J' W J + P S P) H^-1 + sum sigma^2 s s'`.
 
 use discovery::instrument_class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
-use monitor::Window;
+use monitor::{Cause, Window};
+use motor::MotorFile;
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::fit::{Beliefs, FITTED, Fitted, ROWS, evidence};
@@ -65,7 +66,7 @@ pub fn standard_errors(
     observed: &[Observed],
     monitor_of: &MonitorOf<'_>,
 ) -> Result<Vec<f64>, Refusal> {
-    let at = |motor: &motor::MotorFile, observed: &[Observed]| {
+    let at = |motor: &MotorFile, observed: &[Observed]| {
         let evidence = evidence(motor, observed, monitor_of)?;
         let rows = |e: &monitor::Evidence| SVector::from_fn(|row, _| f64::from(e.departure[row]));
         Ok::<Vec<Residual>, Refusal>(evidence.iter().map(|e| e.as_ref().map(rows)).collect())
@@ -94,6 +95,29 @@ pub fn standard_errors(
     let relative = beliefs.relative(&fitted.coordinates);
     let error = |k: usize| relative[k] * covariance[(k, k)].max(0.0).sqrt();
     Ok((0..N).map(error).collect())
+}
+
+/// The motor's intervals where the fit has left them: of values that the file did not foresee.
+pub fn intervals_follow(motor: &mut MotorFile, errors: &[f64]) {
+    let p = motor.parameters;
+    let Some(uncertainty) = &mut motor.uncertainty else {
+        return;
+    };
+    for (cause, error) in Fitted::causes().zip(errors) {
+        let values: &[(&str, f64)] = match cause {
+            Cause::StatorResistance => &[("stator_resistance_ohm", p.r_s)],
+            Cause::RotorResistance => &[("rotor_resistance_ohm", p.r_r)],
+            Cause::MagnetizingInductance => &[("magnetizing_inductance_henry", p.l_m)],
+            Cause::Leakage => &[
+                ("stator_leakage_henry", p.l_ls),
+                ("rotor_leakage_henry", p.l_lr),
+            ],
+            _ => &[],
+        };
+        for (key, value) in values {
+            uncertainty.replace_outside(key, *value, *error);
+        }
+    }
 }
 
 fn covariance(

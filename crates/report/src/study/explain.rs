@@ -78,7 +78,12 @@ impl Explained {
             false => Vec::new(),
         };
         let last = sources.iter().next_back().filter(|_| is_judged);
-        let last = last.and_then(|source| shown(source, scale, furthest_off(&where_it_fails)));
+        // The worst places are the first recording's.
+        let at_s = match names.len() {
+            1 => furthest_off(&where_it_fails),
+            _ => 0.0,
+        };
+        let last = last.and_then(|source| shown(source, scale, at_s));
         let judged = last.as_deref();
         Ok(Explained {
             recordings: names.to_vec(),

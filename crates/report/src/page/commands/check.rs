@@ -155,8 +155,8 @@ fn signals(one: &Place<'_>, k: usize) -> Markup {
                 div.charts.small {
                     @if residuals { @for r in 0..4 { (residual(one, r)) } }
                     @if current {
-                        (operation(one, "current_rms_amp", "Current", ["current", "A rms"], "Positive sequence of the phase currents."))
-                        (operation(one, "i2_over_i1", "Current unbalance", ["ratio", ""], "Negative over positive sequence."))
+                        (over_time(one, Series::line("current", operation(one, "current_rms_amp"), "blue"), "A rms").figure("Current", "Positive sequence of the phase currents."))
+                        (over_time(one, Series::line("share", operation(one, "i2_over_i1"), "blue").percent(), "%").figure("Current unbalance", "Negative over positive sequence."))
                     }
                 }
             }
@@ -191,19 +191,16 @@ fn residual(one: &Place<'_>, r: usize) -> Markup {
     chart.figure(&format!("r{}", r + 1), RESIDUALS[r])
 }
 
-fn operation(
-    one: &Place<'_>,
-    key: &str,
-    heading: &str,
-    [axis, unit]: [&'static str; 2],
-    what: &str,
-) -> Markup {
-    let series = Series::line(axis, one.pointer_to(&format!("operation/*/{key}")), "blue");
+fn operation(one: &Place<'_>, key: &str) -> String {
+    one.pointer_to(&format!("operation/*/{key}"))
+}
+
+fn over_time(one: &Place<'_>, series: Series, unit: &'static str) -> Chart {
+    let label = series.label.clone();
     small("operation", one)
-        .y(axis, unit)
+        .y(&label, unit)
         .starting_at_zero()
         .with(series)
-        .figure(heading, what)
 }
 
 fn small(list: &str, one: &Place<'_>) -> Chart {

@@ -176,10 +176,12 @@ fn where_it_fails(result: &Place<'_>) -> Markup {
     let error = |place: &Place<'_>| place.number("error_over_noise").unwrap_or_default();
     let full = places.iter().map(error).fold(0.0, f64::max);
     let timed = places.iter().any(|place| place.get("from_s").is_some());
+    let recordings = result.items("recordings");
     html! {
         @if !places.is_empty() {
             section aria-labelledby="fails" {
                 h2 id="fails" { "Where the model of the motor file is furthest off" }
+                @if recordings.len() > 1 { p.subtle { "In the first recording, " (recordings[0].as_text()) "." } }
                 div.wide tabindex="0" { table.bars.plain {
                     thead { tr { th scope="col" { "place" } @if timed { th scope="col" { "from, s" } th scope="col" { "to, s" } } th scope="col" { "error, × noise" } th.word scope="col" { "" } } }
                     tbody { @for place in &places { tr {

@@ -319,16 +319,24 @@ const SIGNALS: [(&str, &str, &str, &str); 7] = [
     (
         "i2_over_i1",
         "current unbalance",
-        "1",
+        "%",
         "Negative over positive sequence of the currents.",
     ),
     (
         "v2_over_v1",
         "voltage unbalance",
-        "1",
+        "%",
         "Negative over positive sequence of the voltages.",
     ),
 ];
+
+/// What is shown in percent is a share in the result.
+fn in_unit(unit: &str, series: Series) -> Series {
+    match unit {
+        "%" => series.percent(),
+        _ => series,
+    }
+}
 
 fn operation(result: &Place<'_>) -> Markup {
     let windows = result.items("operation");
@@ -342,7 +350,7 @@ fn operation(result: &Place<'_>) -> Markup {
                         @if measured(key) {
                             (Chart::over("time", "s", result.pointer_to("operation/*/t"))
                                 .y(axis, unit)
-                                .with(Series::line(axis, result.pointer_to(&format!("operation/*/{key}")), "blue"))
+                                .with(in_unit(unit, Series::line(axis, result.pointer_to(&format!("operation/*/{key}")), "blue")))
                                 .group("time")
                                 .figure(axis, what))
                         }

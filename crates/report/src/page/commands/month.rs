@@ -90,15 +90,26 @@ fn causes(result: &Place<'_>) -> Markup {
             h2 { "Alarms by cause" }
             @if causes.is_empty() { p { "None." } } @else {
                 div.wide tabindex="0" { table {
-                    (heads(&[word("cause"), number("alarms"), number("motors"), number("lasted, h"), number("marked as false")]))
+                    (heads(&[word("cause"), number("alarms"), number("motors"), number("lasted"), number("marked as false")]))
                     tbody { @for row in &causes { tr {
                         th scope="row" { (row.text("words")) } td { (shown(row, "alarms", decimals(0))) } td { (shown(row, "motors", decimals(0))) }
-                        td { (shown(row, "hours", decimals(1))) } td { (shown(row, "marked_false", decimals(0))) }
+                        td { (time(row, "hours")) } td { (shown(row, "marked_false", decimals(0))) }
                     } } }
                 } }
             }
         }
     }
+}
+
+/// Hours in the unit that suits them.
+fn time(row: &Place<'_>, path: &str) -> Markup {
+    let hours = row.number(path).unwrap_or_default();
+    let (style, unit) = match hours {
+        _ if hours < 1.0 / 60.0 => (decimals(0).times(3600.0), "s"),
+        _ if hours < 1.0 => (decimals(0).times(60.0), "min"),
+        _ => (decimals(1), "h"),
+    };
+    html! { (shown(row, path, style)) @if row.get(path).is_some() { " " (unit) } }
 }
 
 fn listed(alarms: &[Place<'_>]) -> Markup {
@@ -110,11 +121,11 @@ fn listed(alarms: &[Place<'_>]) -> Markup {
             h2 { "Alarms" }
             @if alarms.len() > MOST_ALARMS { p.subtle { "The first " (MOST_ALARMS) " of them; the embedded result has all." } }
             div.wide tabindex="0" { table {
-                (heads(&[number("number"), word("motor"), word("what"), word("severity"), word("rose"), number("lasted, h"), word("acknowledged by"), number("after, h"), word("comment"), word("false")]))
+                (heads(&[number("number"), word("motor"), word("what"), word("severity"), word("rose"), number("lasted"), word("acknowledged by"), number("after"), word("comment"), word("false")]))
                 tbody { @for row in alarms.iter().take(MOST_ALARMS) { tr {
                     th scope="row" { (shown(row, "number", decimals(0))) } td.word { (row.text("motor")) } td.word { (row.text("words")) } td.word { (row.text("severity")) }
-                    td.word { (row.text("raised")) } td { (shown(row, "hours", decimals(1))) } td.word { (row.text("acknowledged_by")) }
-                    td { (shown(row, "acknowledged_after_hours", decimals(1))) } td.word { (row.text("comment")) } td.word { (if row.is_true("marked_false") { "yes" } else { "" }) }
+                    td.word { (row.text("raised")) } td { (time(row, "hours")) } td.word { (row.text("acknowledged_by")) }
+                    td { (time(row, "acknowledged_after_hours")) } td.word { (row.text("comment")) } td.word { (if row.is_true("marked_false") { "yes" } else { "" }) }
                 } } }
             } }
         }
@@ -127,14 +138,14 @@ fn trends(result: &Place<'_>) -> Markup {
             h2 { "Motors, those whose residuals moved most first" }
             p.subtle { "Means of the first and of the last seven days, percent of scale. A load that changed moves r2 and r3 where it is not declared." }
             div.wide tabindex="0" { table {
-                (heads(&[word("motor"), word("place"), number("moved, %"), number("r1, first"), number("r1, last"), number("r2, first"), number("r2, last"), number("r3, first"), number("r3, last"), number("r4, first"), number("r4, last"), number("data, %"), number("judged, %"), number("alarms"), number("in alarm, h")]))
+                (heads(&[word("motor"), word("place"), number("moved, %"), number("r1, first"), number("r1, last"), number("r2, first"), number("r2, last"), number("r3, first"), number("r3, last"), number("r4, first"), number("r4, last"), number("data, %"), number("judged, %"), number("alarms"), number("in alarm")]))
                 tbody { @for row in result.items("motors") { tr {
                     th scope="row" { (row.text("title")) } td.word { (row.text("place")) } td { (shown(&row, "moved_percent", decimals(2))) }
                     @for k in 0..4 {
                         td { (shown(&row, &format!("first_percent/{k}"), decimals(2))) } td { (shown(&row, &format!("last_percent/{k}"), decimals(2))) }
                     }
                     td { (shown(&row, "availability_percent", decimals(2))) } td { (shown(&row, "judged_percent", decimals(1))) }
-                    td { (shown(&row, "alarms", decimals(0))) } td { (shown(&row, "alarm_hours", decimals(1))) }
+                    td { (shown(&row, "alarms", decimals(0))) } td { (time(&row, "alarm_hours")) }
                 } } }
             } }
         }

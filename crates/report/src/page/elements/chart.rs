@@ -85,6 +85,9 @@ pub struct Series {
     pub rows: Option<Rows>,
     /// Whether the vertical axis may cut it off.
     pub outside_scale: bool,
+    /// A share, drawn in percent.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub percent: bool,
 }
 
 /// How a series is drawn.
@@ -238,6 +241,7 @@ impl Series {
             dash: None,
             rows: None,
             outside_scale: false,
+            percent: false,
         }
     }
 
@@ -272,6 +276,14 @@ impl Series {
             rows.gaps = true;
         }
         series
+    }
+
+    /// A share, drawn in percent.
+    pub fn percent(self) -> Self {
+        Series {
+            percent: true,
+            ..self
+        }
     }
 
     /// Not counted when the vertical axis is chosen.
