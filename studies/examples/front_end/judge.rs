@@ -14,6 +14,8 @@ const DURATION_S: f64 = 0.8;
 /// Noise of the converter, LSB of 12 bits.
 const NOISE_LSB: f64 = 0.7;
 const FULL_SCALE_LSB: f64 = 2048.0;
+/// The same as a share of full scale.
+pub const NOISE: f64 = NOISE_LSB / FULL_SCALE_LSB;
 
 /// What the core said.
 pub struct Judged {
@@ -54,7 +56,7 @@ fn behind(board: &Board, motor: &MotorFile) -> Result<MotorFile, Box<dyn Error>>
     motor.sensors = Sensors {
         voltage_full_scale_volt: board.voltage_full_scale,
         current_full_scale_amp: board.current_headroom * motor.nameplate.current_amplitude(),
-        noise_sigma_fraction_of_full_scale: NOISE_LSB / FULL_SCALE_LSB,
+        noise_sigma_fraction_of_full_scale: NOISE,
         adc_bits: 12,
         conversions: board.chain.conversions,
         voltage_delay_s: [a, b, c],
@@ -85,7 +87,8 @@ fn scenario(board: &Board, motor: &MotorFile) -> Scenario {
     }
 }
 
-fn raw(measured: &Measured) -> RawSample {
+/// What the board's core gets.
+pub fn raw(measured: &Measured) -> RawSample {
     RawSample {
         voltage_codes: measured.voltage_codes,
         current_codes: measured.current_codes,

@@ -3,7 +3,11 @@
 //! `cargo run --release -p studies --example front_end [BOARDS] [SEED]` prints the table of docs/wiring.md: boards drawn
 //! within the tolerances of the bill of materials, a healthy motor at rated load behind each, judged by the core with the
 //! motor file's thresholds, from the converter's codes as on the board. What is known of the chain stands in the motor file.
+//!
+//! `... front_end anywhere [BOARDS] [SEED]` calibrates each board and motor as the pages say, and judges the healthy motor at other
+//! loads, frequencies and temperatures, on a grid or behind an inverter.
 
+mod anywhere;
 mod board;
 mod judge;
 
@@ -12,6 +16,7 @@ use judge::{Judged, judge};
 use motor::MotorFile;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
+use rayon::prelude::*;
 use std::error::Error;
 
 const MOTORS: [(&str, &str); 3] = [
@@ -23,7 +28,10 @@ const BOARDS: u32 = 200;
 const SEED: u64 = 7;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1);
+    let mut arguments = std::env::args().skip(1).peekable();
+    if arguments.next_if(|mode| mode == "anywhere").is_some() {
+        return print_anywhere(arguments);
+    }
     let boards = arguments.next().map_or(Ok(BOARDS), |text| text.parse())?;
     let seed = arguments.next().map_or(Ok(SEED), |text| text.parse())?;
     println!("{boards} boards a row, seed {seed}; r4 in percent of its scale, its limit is 0.3\n");
@@ -65,5 +73,58 @@ fn row(
         share(|x| x.fault),
         share(|x| x.sensor),
     );
+    Ok(())
+}
+
+const CALIBRATED: [&str; 5] = [
+    "assumed-300w",
+    "peer-2k2",
+    "chalmers-4kw",
+    "imc-18k5",
+    "itsc-075hp",
+];
+/// Boards between two lines of progress.
+const PORTION: u64 = 200;
+
+fn print_anywhere(mut arguments: impl Iterator<Item = String>) -> Result<(), Box<dyn Error>> {
+    let boards = arguments
+        .next()
+        .map_or(Ok(u64::from(BOARDS)), |text| text.parse())?;
+    let seed = arguments.next().map_or(Ok(SEED), |text| text.parse())?;
+    let file = |name: &str| format!("{}/../motors/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let motors = CALIBRATED
+        .iter()
+        .map(|name| MotorFile::read(file(name)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut outcomes = Vec::new();
+    for from in (0..boards).step_by(PORTION as usize) {
+        let portion = from..boards.min(from + PORTION);
+        let one = |k| anywhere::judged(&motors, seed, k).map_err(|error| error.to_string());
+        outcomes.extend(
+            portion
+                .into_par_iter()
+                .map(one)
+                .collect::<Result<Vec<_>, _>>()?,
+        );
+        eprintln!("{} of {boards} boards", outcomes.len());
+    }
+    let sum = |of: fn(&anywhere::Outcome) -> usize| outcomes.iter().map(of).sum::<usize>();
+    let judged = boards as usize - sum(|x| usize::from(x.refused));
+    let with = |of: fn(&anywhere::Outcome) -> usize| outcomes.iter().filter(|x| of(x) > 0).count();
+    println!(
+        "{boards} boards, seed {seed}, {} conditions each",
+        anywhere::CONDITIONS
+    );
+    println!("calibration refused: {}", boards as usize - judged);
+    println!("windows judged: {}", sum(|x| x.windows));
+    println!(
+        "boards with FAULT, calibrated: {} of {judged}",
+        with(|x| x.faults)
+    );
+    println!(
+        "boards with FAULT, motor file's thresholds: {} of {judged}",
+        with(|x| x.faults_uncalibrated)
+    );
+    println!("boards with SENSOR: {} of {judged}", with(|x| x.sensors));
     Ok(())
 }
