@@ -4,11 +4,12 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use crate::board::{Board, Variant};
-use crate::judge::{NOISE, raw};
+use crate::judge::{raw, sensors};
+use campaign::T_SAMPLE_S;
 use monitor::{Lamp, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
 use motor::dynamic::Harmonic;
-use motor::motor_file::{LoadKind, Sensors};
+use motor::motor_file::LoadKind;
 use num_complex::Complex64;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -31,13 +32,13 @@ const DEGC: [f64; 2] = [0.0, 50.0];
 const CALIBRATED_DEGC: [f64; 2] = [20.0, 30.0];
 /// Resistances of a motor that is colder or warmer than in its calibration, shares.
 const WARMTH: [f64; 2] = [-0.08, 0.24];
-/// Gain of a voltage channel per kelvin: four and one resistor of the divider as two, the amplifier, the stage's two.
+/// Gain of a voltage channel, ppm/K, of the bill of materials: the divider's high and low side, the amplifier, the stage's two.
 const VOLTAGE_PPM: [f64; 5] = [25.0, 25.0, 45.0, 25.0, 25.0];
-/// The same of a current channel: transducer, the stage's two.
+/// The same of a current channel: the transducer, the stage's two.
 const CURRENT_PPM: [f64; 3] = [40.0, 25.0, 25.0];
-/// Of all channels alike: what the chip's own reference leaves of the supply's drift, ppm/K.
+/// Of all channels alike: what the chip's own reference leaves of the supply's drift, ppm/K; believed, to be checked on silicon.
 const COMMON_PPM: f64 = 50.0;
-/// Offset that a calibration leaves, a share of full scale.
+/// Offset that a calibration leaves, a share of full scale: half a code of 12 bits.
 const OFFSET: f64 = 2e-4;
 /// Largest non-linearity of the converter, LSB.
 const INL_LSB: f64 = 2.0;
@@ -266,7 +267,7 @@ impl<'m> Installed<'m> {
     /// What the board sends of its samples.
     fn recording(&self, at: &Conditions, seed: u64) -> Result<Recording, Box<dyn Error>> {
         let scenario = self.scenario(at, RECORDED_S, seed);
-        let config = MonitorConfig::from_motor_file(&self.told, scenario.t_sample())?;
+        let config = MonitorConfig::from_motor_file(&self.told, T_SAMPLE_S)?;
         let (mut t, mut columns) = (Vec::new(), <[Vec<f64>; 7]>::default());
         for sample in Simulation::new(&scenario)? {
             let shown = config.converter.convert(&raw(&sample.measured));
@@ -281,7 +282,10 @@ impl<'m> Installed<'m> {
             }
         }
         let metadata = Metadata {
-            supply: Supply::Grid,
+            supply: match self.carrier_hz {
+                Some(_) => Supply::Inverter,
+                None => Supply::Grid,
+            },
             load_torque: LoadTorque::Free,
             starts_from: StartsFrom::Running,
             ..Metadata::default()
@@ -301,19 +305,7 @@ impl<'m> Installed<'m> {
 /// What the board is told: the motor without a load of its own, its ranges, and the nominal delays.
 fn told(board: &Board, plant: &MotorFile) -> MotorFile {
     let mut motor = plant.clone();
-    let known = board.known.unwrap_or(crate::board::Known::NOTHING);
-    let [a, b, c, d, e, f] = known.delays_s;
-    motor.sensors = Sensors {
-        voltage_full_scale_volt: board.voltage_full_scale,
-        current_full_scale_amp: board.current_headroom * motor.nameplate.current_amplitude(),
-        noise_sigma_fraction_of_full_scale: NOISE,
-        adc_bits: 12,
-        conversions: board.chain.conversions,
-        voltage_delay_s: [a, b, c],
-        current_delay_s: [d, e, f],
-        roll_off_s: known.roll_off_s,
-        ..motor.sensors
-    };
+    motor.sensors = sensors(board, plant);
     motor.load = LoadKind::Free;
     motor.mechanics.load_friction = 0.0;
     motor
@@ -321,7 +313,7 @@ fn told(board: &Board, plant: &MotorFile) -> MotorFile {
 
 /// Windows with FAULT, with SENSOR, and windows judged.
 fn lit(motor: &MotorFile, samples: &[RawSample]) -> Result<[usize; 3], Box<dyn Error>> {
-    let config = MonitorConfig::from_motor_file(motor, 1e-4)?;
+    let config = MonitorConfig::from_motor_file(motor, T_SAMPLE_S)?;
     let monitor = Monitor::new(config)?;
     let mut state = MonitorState::default();
     let mut counted = [0; 3];

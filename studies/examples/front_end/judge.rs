@@ -47,13 +47,11 @@ pub fn judge(board: &Board, motor: &MotorFile) -> Result<Judged, Box<dyn Error>>
     })
 }
 
-/// The motor file of the board: its ranges, and what is known of its delays. The load is a friction that takes the rated
-/// torque at rated speed, the only kind of load that a board knows.
-fn behind(board: &Board, motor: &MotorFile) -> Result<MotorFile, Box<dyn Error>> {
-    let mut motor = motor.clone();
+/// What the motor file of a board says of it: its ranges, and what is known of its delays.
+pub fn sensors(board: &Board, motor: &MotorFile) -> Sensors {
     let known = board.known.unwrap_or(Known::NOTHING);
     let [a, b, c, d, e, f] = known.delays_s;
-    motor.sensors = Sensors {
+    Sensors {
         voltage_full_scale_volt: board.voltage_full_scale,
         current_full_scale_amp: board.current_headroom * motor.nameplate.current_amplitude(),
         noise_sigma_fraction_of_full_scale: NOISE,
@@ -63,7 +61,14 @@ fn behind(board: &Board, motor: &MotorFile) -> Result<MotorFile, Box<dyn Error>>
         current_delay_s: [d, e, f],
         roll_off_s: known.roll_off_s,
         ..motor.sensors
-    };
+    }
+}
+
+/// The motor file of the board. The load is a friction that takes the rated
+/// torque at rated speed, the only kind of load that a board knows.
+fn behind(board: &Board, motor: &MotorFile) -> Result<MotorFile, Box<dyn Error>> {
+    let mut motor = motor.clone();
+    motor.sensors = sensors(board, &motor);
     motor.load = LoadKind::Friction;
     let plate = &motor.nameplate;
     let rated_speed = plate.synchronous_speed_mech() * (1.0 - plate.rated_slip());

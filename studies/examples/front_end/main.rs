@@ -12,6 +12,7 @@ mod board;
 mod judge;
 
 use board::{Board, Variant};
+use campaign::Share;
 use judge::{Judged, judge};
 use motor::MotorFile;
 use rand::SeedableRng;
@@ -109,22 +110,34 @@ fn print_anywhere(mut arguments: impl Iterator<Item = String>) -> Result<(), Box
         eprintln!("{} of {boards} boards", outcomes.len());
     }
     let sum = |of: fn(&anywhere::Outcome) -> usize| outcomes.iter().map(of).sum::<usize>();
-    let judged = boards as usize - sum(|x| usize::from(x.refused));
-    let with = |of: fn(&anywhere::Outcome) -> usize| outcomes.iter().filter(|x| of(x) > 0).count();
+    let share = |of: fn(&anywhere::Outcome) -> usize| {
+        let judged = outcomes.iter().filter(|x| !x.refused);
+        let share = Share::count(judged.map(|x| of(x) > 0));
+        let most = 100.0 * share.at_most();
+        format!(
+            "{} of {} (at most {most:.2} %, 95 %)",
+            share.count, share.of
+        )
+    };
     println!(
-        "{boards} boards, seed {seed}, {} conditions each",
+        "{boards} boards, seed {seed}, each judged at {} conditions\n",
         anywhere::CONDITIONS
     );
-    println!("calibration refused: {}", boards as usize - judged);
-    println!("windows judged: {}", sum(|x| x.windows));
+    println!("| | boards |");
+    println!("|---|---|");
     println!(
-        "boards with FAULT, calibrated: {} of {judged}",
-        with(|x| x.faults)
+        "| calibration refused | {} |",
+        sum(|x| usize::from(x.refused))
     );
     println!(
-        "boards with FAULT, motor file's thresholds: {} of {judged}",
-        with(|x| x.faults_uncalibrated)
+        "| FAULT in {} judged windows, calibrated | {} |",
+        sum(|x| x.windows),
+        share(|x| x.faults)
     );
-    println!("boards with SENSOR: {} of {judged}", with(|x| x.sensors));
+    println!(
+        "| FAULT by the motor file's own thresholds | {} |",
+        share(|x| x.faults_uncalibrated)
+    );
+    println!("| SENSOR | {} |", share(|x| x.sensors));
     Ok(())
 }

@@ -20,8 +20,13 @@ fn fault(name: &str, percent: f64, from_s: f64) -> String {
 
 /// Exit code and answer of a check by the plate alone.
 fn checked(case: &str, fault: &str) -> (Option<i32>, Value) {
+    checked_in(case, &pump(fault))
+}
+
+/// The same of any scenario.
+fn checked_in(case: &str, scenario: &str) -> (Option<i32>, Value) {
     let folder = workplace(&format!("does-not-fit-{case}"));
-    let recording = simulated(&folder, "today", &pump(fault), &[]);
+    let recording = simulated(&folder, "today", scenario, &[]);
     let plate = folder.join("plate.toml");
     let output = drivemon(&[
         "check",
@@ -91,24 +96,9 @@ fn bars_that_shake_every_window_are_a_fault() {
     let scenario = pump(&fault("bars", 20.0, 0.0))
         .replace("duration_s = 3.0", "duration_s = 12.0")
         .replace("constant_percent = 70.0", "constant_percent = 90.0");
-    let folder = workplace("does-not-fit-bars");
-    let recording = simulated(&folder, "today", &scenario, &[]);
-    let plate = folder.join("plate.toml");
-    let arguments = [
-        "check",
-        text(&recording),
-        "--plate",
-        text(&plate),
-        "--json",
-        "-",
-    ];
-    let output = drivemon(&arguments);
-    let one = &json(&output)["recordings"][0];
+    let (code, one) = checked_in("bars", &scenario);
     assert_eq!(one["windows"][0], 0, "{}", one["not_judged"]);
-    assert_eq!(
-        (output.status.code(), &one["state"]),
-        (Some(1), &"fault".into())
-    );
+    assert_eq!((code, &one["state"]), (Some(1), &"fault".into()));
     assert_eq!(one["verdict"]["candidates"][0]["fault"], "bars");
 }
 

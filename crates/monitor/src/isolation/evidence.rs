@@ -6,7 +6,7 @@ use super::cause::Cause;
 use super::directions::{Directions, Positive};
 use super::gauss::Covariance;
 use super::healthy::{Healthy, ROWS, Row};
-use super::negative::{Negative, angle_left_open};
+use super::negative::Negative;
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
@@ -74,7 +74,7 @@ impl Evidence {
             scatter,
             positive: positive.directions,
             negative,
-            turn: angle_left_open(window, measured, n_p, &healthy.uncertainty),
+            turn: negative.angle_left_open(&healthy.uncertainty),
             unbalance: window.i_s.unbalance(),
             rise: positive.rise,
             backwards: window.backwards,
@@ -176,10 +176,10 @@ impl Evidence {
         let (d, n) = (&self.positive, &self.negative);
         let no = Complex32::ZERO;
         match cause {
-            Cause::StatorResistance => self.all(&d.r_s, n.grown.r_s),
-            Cause::RotorResistance => self.all(&d.r_r, n.grown.r_r),
-            Cause::MagnetizingInductance => self.all(&d.l_m, n.grown.l_m),
-            Cause::Leakage => self.all(&d.leakage, n.grown.leakage),
+            Cause::StatorResistance => self.all(&d.r_s, n.drop * n.growth.r_s),
+            Cause::RotorResistance => self.all(&d.r_r, n.drop * n.growth.r_r),
+            Cause::MagnetizingInductance => self.all(&d.l_m, n.drop * n.growth.l_m),
+            Cause::Leakage => self.all(&d.leakage, n.drop * n.growth.leakage),
             Cause::Friction => self.all(&d.friction, no),
             Cause::AllCurrents => self.all(&d.current, -n.drop),
             Cause::AllVoltages => self.all(&d.voltage, n.drop),

@@ -150,7 +150,12 @@ impl Fit {
         }
     }
 
-    /// Change that explains the departure best.
+    /// Relative change that explains the departure best.
+    pub(super) fn change(&self) -> f32 {
+        self.cause.change(self.size())
+    }
+
+    /// The same along the directions, as if rows grew in proportion.
     pub(super) fn size(&self) -> f32 {
         match &self.across {
             Some(across) if self.cause.adds_across() => {
@@ -212,7 +217,7 @@ fn wider(more: f32, square: f32) -> f32 {
 
 /// Share of its length that a second direction must have beside the first: single precision tells no less.
 const LEAST_ASIDE: f32 = 1e-5;
-/// A direction without length says nothing about its self.cause.
+/// A direction without length says nothing about its cause.
 pub(super) const LEAST_INFORMATION: f32 = 1e-12;
 /// Score of a cause whose sign is impossible.
 pub(super) const IMPOSSIBLE: f32 = -1e3;

@@ -22,11 +22,11 @@ pub struct Negative {
     pub turns: Complex32,
     /// `Z_2 I_2/V_1` of the supply's own part, whose impedance is only roughly known.
     pub drop: Complex32,
-    /// By how much that drop grows with each parameter of all phases.
-    pub grown: ByParameter,
+    /// How `Z_2`, and with it that drop, grows with each parameter of all phases.
+    pub growth: ByParameter,
 }
 
-/// What grows with each parameter that `Z_2` is made of.
+/// Relative change of `Z_2` per relative change of each parameter that it is made of: to first order, but for leakage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ByParameter {
     pub r_s: Complex32,
@@ -55,87 +55,57 @@ impl Negative {
             series: i_1 / v_1 * p.r_s,
             turns: -z_2 * length,
             drop: drop * supplied,
-            grown: grown(z_2, &p, [window.omega_sync, slip], i_2 * supplied),
+            growth: ByParameter::of(z_2, &p, [window.omega_sync, slip]),
         }
     }
-}
 
-/// Change of `Z_2`, times `i_2`, per relative change of each parameter.
-fn grown(
-    z_2: Complex32,
-    p: &TParams<f32>,
-    [omega_sync, slip]: [f32; 2],
-    i_2: Complex32,
-) -> ByParameter {
-    let quotient = |changed: TParams<f32>, step: f32| {
-        (impedance(&changed, omega_sync, slip) - z_2) * i_2 / step
-    };
-    let more = 1.0 + STEP;
-    let leaky = 1.0 + LEAKAGE_STEP;
-    ByParameter {
-        r_s: i_2 * p.r_s,
-        r_r: quotient(
-            TParams {
-                r_r: p.r_r * more,
-                ..*p
-            },
-            STEP,
-        ),
-        l_m: quotient(
-            TParams {
-                l_m: p.l_m * more,
-                ..*p
-            },
-            STEP,
-        ),
-        leakage: quotient(
-            TParams {
-                l_ls: p.l_ls * leaky,
-                l_lr: p.l_lr * leaky,
-                ..*p
-            },
-            LEAKAGE_STEP,
-        ),
+    /// Standard deviation of the angle of `Z_2` that the uncertain parameters leave open, rad: to first order, each by itself.
+    pub(super) fn angle_left_open(&self, u: &Uncertainty) -> f32 {
+        let by = &self.growth;
+        let turned = [
+            by.r_s.im * u.stator_resistance,
+            by.r_r.im * u.rotor_resistance,
+            (by.r_s.im + by.r_r.im) * u.heating,
+            by.l_m.im * u.magnetizing_inductance,
+            by.leakage.im * u.leakage,
+            u.negative_impedance,
+        ];
+        let angle = libm::sqrtf(turned.iter().map(|angle| angle * angle).sum());
+        if angle.is_finite() { angle } else { 0.0 }
     }
 }
 
-/// Standard deviation of the angle of `Z_2` that the uncertain parameters leave open, rad: to first order, each by itself.
-pub(super) fn angle_left_open(
-    window: &Window,
-    measured: &Corrected,
-    n_p: f32,
-    u: &Uncertainty,
-) -> f32 {
-    let slip = (window.omega_sync + measured.omega_mech * n_p) / window.omega_sync;
-    let p = measured.params;
-    let z_2 = impedance(&p, window.omega_sync, slip);
-    let leakage = 1.0 + u.leakage;
-    let heating = 1.0 + u.heating;
-    let moved = [
-        TParams {
-            r_s: p.r_s * (1.0 + u.stator_resistance),
-            ..p
-        },
-        TParams {
-            r_r: p.r_r * (1.0 + u.rotor_resistance),
-            ..p
-        },
-        TParams {
-            r_s: p.r_s * heating,
-            r_r: p.r_r * heating,
-            ..p
-        },
-        TParams {
-            l_ls: p.l_ls * leakage,
-            l_lr: p.l_lr * leakage,
-            ..p
-        },
-    ];
-    let tangents = moved.map(|moved| {
-        let turned = impedance(&moved, window.omega_sync, slip) / z_2;
-        turned.im / turned.re
-    });
-    let squares: f32 = tangents.iter().map(|tangent| tangent * tangent).sum();
-    let angle = libm::sqrtf(squares + u.negative_impedance * u.negative_impedance);
-    if angle.is_finite() { angle } else { 0.0 }
+impl ByParameter {
+    fn of(z_2: Complex32, p: &TParams<f32>, [omega_sync, slip]: [f32; 2]) -> Self {
+        let growth = |changed: TParams<f32>, step: f32| {
+            (impedance(&changed, omega_sync, slip) / z_2 - Complex32::ONE) / step
+        };
+        let more = 1.0 + STEP;
+        let leaky = 1.0 + LEAKAGE_STEP;
+        ByParameter {
+            r_s: Complex32::from(p.r_s) / z_2,
+            r_r: growth(
+                TParams {
+                    r_r: p.r_r * more,
+                    ..*p
+                },
+                STEP,
+            ),
+            l_m: growth(
+                TParams {
+                    l_m: p.l_m * more,
+                    ..*p
+                },
+                STEP,
+            ),
+            leakage: growth(
+                TParams {
+                    l_ls: p.l_ls * leaky,
+                    l_lr: p.l_lr * leaky,
+                    ..*p
+                },
+                LEAKAGE_STEP,
+            ),
+        }
+    }
 }

@@ -94,17 +94,17 @@ impl Weighing {
         let all = fit(&all);
         let square = all.square();
         let Some(neutral) = self.neutral.as_ref().filter(|it| it.matters(square)) else {
-            return Weighed::new(cause, &all, square);
+            return Weighed::new(&all, square);
         };
         let without = fit(&without);
         let square = neutral.either(square, without.square());
         let health = neutral.better.max(0.0);
         let mut weighed = if without.score() + neutral.better > all.score() {
-            let mut weighed = Weighed::new(cause, &without, square);
+            let mut weighed = Weighed::new(&without, square);
             weighed.score += neutral.better;
             weighed
         } else {
-            Weighed::new(cause, &all, square)
+            Weighed::new(&all, square)
         };
         weighed.score -= health;
         weighed
@@ -134,10 +134,10 @@ impl Weighing {
 }
 
 impl Weighed {
-    fn new(cause: Cause, fit: &Fit, square: f32) -> Self {
+    fn new(fit: &Fit, square: f32) -> Self {
         Weighed {
             score: fit.score(),
-            size: cause.change(fit.size()),
+            size: fit.change(),
             square,
         }
     }

@@ -101,6 +101,16 @@ impl Explained {
     }
 }
 
+impl Explained {
+    /// Heading of the worst places, which are those of the first recording.
+    pub fn title_of_the_worst(&self) -> &'static str {
+        match self.recordings.len() {
+            0 | 1 => "The model of the motor file is furthest off",
+            _ => "The model of the motor file is furthest off in the first recording",
+        }
+    }
+}
+
 impl Next {
     fn new(report: &ExplainReport, command: &dyn Fn(&str) -> Option<String>) -> Next {
         let (why, adopt) = match (report.verdict, report.steps.first()) {

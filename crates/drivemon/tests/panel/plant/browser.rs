@@ -41,6 +41,7 @@ fn a_fault_on_one_of_200_boards_is_on_the_wall_acknowledged_by_name_still_so_aft
         page.go(&again.url()).await;
         page.until("the acknowledged alarm", "document.querySelector('#wall li:first-child .tile')?.dataset.alarm === 'acknowledged'").await;
         named_in_the_events(&page).await;
+        nothing_is_shown_of_a_motor_that_nobody_knows(&page).await;
         opens_in_explain(&plant, &again);
         drop(again);
         page.until("what is old is called so", "document.body.classList.contains('stale') && document.querySelector('#connection').textContent.startsWith('no connection')").await;
@@ -137,6 +138,21 @@ async fn named_in_the_events(page: &Page) {
         "document.querySelectorAll('#trends .u-wrap').length === 4",
     )
     .await;
+}
+
+/// What was shown of the motor before goes, and comes back with it.
+async fn nothing_is_shown_of_a_motor_that_nobody_knows(page: &Page) {
+    const SEEN: &str = "document.querySelector('#motor-figures').offsetParent !== null && document.querySelector('#motor-events').offsetParent !== null";
+    page.until("figures", SEEN).await;
+    page.run("window.known_ = location.hash; location.hash = '#motor/nobody'")
+        .await;
+    page.until(
+        "nothing but a title",
+        "[...document.querySelector('#view-motor').children].every((part) => part.id === 'motor-state' || part.offsetParent === null) && document.querySelectorAll('#motor-lamps li').length === 0",
+    )
+    .await;
+    page.run("location.hash = window.known_").await;
+    page.until("the figures again", SEEN).await;
 }
 
 /// Motors of the pictures.

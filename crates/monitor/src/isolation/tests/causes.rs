@@ -200,6 +200,8 @@ fn a_contact_of_a_hardly_known_motor_is_no_shorted_turn() {
 }
 
 /// However little is known of the motor: current that the supply's negative sequence does not draw is no matter of belief about `Z_2`.
+/// Each parameter is as uncertain as it is large: were `Z_2 I_2` as uncertain as that, no departure would be longer than one standard
+/// deviation of it, far below the lamp; three times the lamp's takes it to be known.
 #[test]
 fn no_belief_about_a_motor_takes_the_unbalance_of_a_contact_away() {
     let mut healthy = statistics();

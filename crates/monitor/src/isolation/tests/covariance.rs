@@ -1,13 +1,13 @@
 //! The covariance of the healthy motor, and what is known of it, against sums in double precision.
 
 use nalgebra::{SMatrix, SVector};
-use num_complex::Complex32;
+use num_complex::{Complex32, Complex64};
 
-use super::plant::{Plant, evidence, monitor, statistics};
+use super::plant::{Plant, evidence, evidence_by, monitor, statistics};
 use crate::Evidence;
 use crate::checks::sensors::Phase;
 use crate::frames::Sequence;
-use crate::isolation::{Cause, Healthy, Heating, Isolation, ROWS, Row};
+use crate::isolation::{Cause, Healthy, Heating, Isolation, ROWS, Row, Uncertainty};
 use crate::window::Window;
 
 type Matrix = SMatrix<f64, ROWS, ROWS>;
@@ -219,6 +219,81 @@ fn currents_alone_name_the_phase_of_shorted_turns() {
             isolation.sizes[own]
         );
         assert!(!isolation.points_to_sensor());
+    }
+}
+
+/// A contact's row may turn by the angle of the impedance that its current meets: against the impedances of two motors in double
+/// precision, whose parameters differ by the deviation.
+#[test]
+fn a_contact_turns_by_the_angle_that_uncertain_parameters_leave() {
+    const BY: f64 = 0.01;
+    let nothing = Uncertainty::default();
+    let by = BY as f32;
+    let cases: [(Uncertainty, fn(&mut Plant)); 4] = [
+        (
+            Uncertainty {
+                stator_resistance: by,
+                ..nothing
+            },
+            |plant| plant.params.r_s *= 1.0 + BY,
+        ),
+        (
+            Uncertainty {
+                rotor_resistance: by,
+                ..nothing
+            },
+            |plant| plant.params.r_r *= 1.0 + BY,
+        ),
+        (
+            Uncertainty {
+                leakage: by,
+                ..nothing
+            },
+            |plant| {
+                plant.params.l_ls *= 1.0 + BY;
+                plant.params.l_lr *= 1.0 + BY;
+            },
+        ),
+        (
+            Uncertainty {
+                heating: by,
+                ..nothing
+            },
+            |plant| {
+                plant.params.r_s *= 1.0 + BY;
+                plant.params.r_r *= 1.0 + BY;
+            },
+        ),
+    ];
+    let plant = Plant::healthy();
+    let point = plant.point();
+    let cause = Cause::SeriesResistance(Phase::A);
+    let row = |rows: [f32; ROWS]| {
+        let row = Row::Negative as usize;
+        Complex64::new(rows[row].into(), rows[row + 1].into())
+    };
+    for (uncertainty, change) in cases {
+        let mut changed = plant;
+        change(&mut changed);
+        let turned = changed.negative_impedance(&point) / plant.negative_impedance(&point);
+        let healthy = Healthy {
+            uncertainty,
+            ..statistics()
+        };
+        let evidence = evidence_by(&plant, &healthy);
+        let across = evidence.across(cause).expect("of a contact");
+        let angle = (row(across) / row(evidence.direction(cause))).norm();
+        let expected = turned.arg().abs();
+        // A change of 1 % bends by about as much. Leakage is the chord to three times itself: with a = l_lr/l_m the rotor's part
+        // is 1 - 4 a, the tangent's 1 - 2 a.
+        let chord = match uncertainty.leakage > 0.0 {
+            true => 2.0 * plant.params.l_lr / plant.params.l_m,
+            false => 0.0,
+        };
+        assert!(
+            (angle - expected).abs() < (2.0 * BY + chord) * expected,
+            "{angle} {expected} {uncertainty:?}"
+        );
     }
 }
 

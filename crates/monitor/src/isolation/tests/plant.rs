@@ -63,7 +63,8 @@ impl Plant {
         self.curve().at_friction(self.friction)
     }
 
-    fn negative_impedance(&self, point: &OperatingPoint<f64>) -> Complex64 {
+    /// What the negative sequence meets, ohm.
+    pub fn negative_impedance(&self, point: &OperatingPoint<f64>) -> Complex64 {
         let backwards = OMEGA_SYNC + point.omega_el;
         point.u_s / self.curve().at_slip_speed(backwards).i_s
     }

@@ -168,3 +168,27 @@ fn models(result: &Place<'_>) -> Markup {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn times_have_the_unit_that_suits_them() {
+        let result = json!({ "seconds": 0.01, "minutes": 0.5, "hours": 30.25, "open": null });
+        let result = Place::root(&result);
+        for (path, shown) in [
+            ("seconds", ">36<"),
+            ("minutes", ">30<"),
+            ("hours", ">30.2<"),
+        ] {
+            let cell = time(&result, path).into_string();
+            assert!(cell.contains(shown), "{cell}");
+        }
+        assert!(time(&result, "minutes").into_string().ends_with(" min"));
+        assert!(time(&result, "open").into_string().contains('\u{2013}'));
+        assert!(!time(&result, "open").into_string().ends_with(" s"));
+    }
+}

@@ -113,8 +113,7 @@ fn print(result: &Explained) {
     print_stretches(&report.stretches);
     print_answer(report);
     if !result.where_it_fails.is_empty() {
-        let place = first_of_several(&result.recordings);
-        say!("\nThe model of the motor file is furthest off{place}:");
+        say!("\n{}:", result.title_of_the_worst());
         places::print(&result.where_it_fails);
     }
     print_errors(report);
@@ -132,14 +131,6 @@ fn print(result: &Explained) {
         say!("\n{}", wrapped(&text));
     }
     print_next(&result.next.why, result.next.command.as_deref());
-}
-
-/// Where several recordings were given, the one whose places are shown.
-fn first_of_several(recordings: &[String]) -> &'static str {
-    match recordings {
-        [_, _, ..] => " in the first recording",
-        _ => "",
-    }
 }
 
 fn print_answer(report: &ExplainReport) {
