@@ -6,7 +6,7 @@ use crate::isolation::{ALL_CAUSES, Cause, Heating, Isolation};
 use num_complex::Complex64;
 
 /// The healthy motor with one quantity changed by a share.
-fn changed(cause: Cause, by: f64) -> Plant {
+pub fn changed(cause: Cause, by: f64) -> Plant {
     let mut plant = Plant::healthy();
     let factor = 1.0 + by;
     let p = &mut plant.params;
