@@ -1,0 +1,22 @@
+//! How a program reaches a board over its line.
+//!
+//! The running program receives the new one into the other bank of flash, its place of waiting, and asks for it. At the next
+//! start the loader checks its signature and exchanges both page by page. The new program is on trial: it confirms itself,
+//! or the next start brings the old one back. A journal of single double words, each with its checksum, says at any moment
+//! how far that is, so that power may fail at every one of them.
+#![cfg_attr(not(test), no_std)]
+
+mod exchange;
+mod journal;
+mod key;
+pub mod layout;
+mod loader;
+pub mod package;
+mod refusal;
+mod seal;
+
+pub use journal::{Journal, JournalError, State};
+pub use key::{PublicKey, SIGNATURE_BYTES, SecretKey};
+pub use loader::{MappedFlash, Next, start};
+pub use refusal::Refusal;
+pub use seal::{BOARD_TYPE, SEAL_OFFSET, Seal, Version};
