@@ -9,7 +9,7 @@
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use embedded_storage::nor_flash::{NorFlash, NorFlashError, NorFlashErrorKind};
 
-use crate::layout::{JOURNAL_PAGES, PAGE_BYTES};
+use crate::layout::{JOURNAL_PAGES, PAGE_BYTES, PROGRAM_PAGES};
 use crate::refusal::Refusal;
 
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
@@ -74,6 +74,9 @@ impl State {
     }
 
     fn of_parts([kind, pages, step]: [u8; 3]) -> Option<Self> {
+        if u32::from(pages) > PROGRAM_PAGES {
+            return None;
+        }
         Some(match kind {
             0 => State::Idle,
             1 => State::Requested,
@@ -179,7 +182,12 @@ impl Journal {
         });
         for place in page * PLACES + first..(page + 1) * PLACES {
             if self.read(flash, place)? == BLANK && self.put(flash, place, bytes).is_ok() {
-                return self.took(place, number, state);
+                self.newest = Some(Newest {
+                    place,
+                    number,
+                    state,
+                });
+                return Ok(());
             }
         }
         let other = (page + 1) % JOURNAL_PAGES;
@@ -187,12 +195,8 @@ impl Journal {
         let erased = flash.erase(from, from + PAGE_BYTES);
         erased.map_err(|_| JournalError::Flash)?;
         self.put(flash, other * PLACES, bytes)?;
-        self.took(other * PLACES, number, state)
-    }
-
-    fn took(&mut self, place: u32, number: u32, state: State) -> Result<(), JournalError> {
         self.newest = Some(Newest {
-            place,
+            place: other * PLACES,
             number,
             state,
         });

@@ -4,6 +4,16 @@
 //! start the loader checks its signature and exchanges both page by page. The new program is on trial: it confirms itself,
 //! or the next start brings the old one back. A journal of single double words, each with its checksum, says at any moment
 //! how far that is, so that power may fail at every one of them.
+//!
+//! ```
+//! use update::{SecretKey, Version};
+//!
+//! let owner = SecretKey::from_seed([7; 32]);
+//! let signature = owner.sign(b"a program");
+//! assert!(owner.public().verify(b"a program", &signature).is_ok());
+//! assert!(owner.public().verify(b"another", &signature).is_err());
+//! assert!(Version::parse("1.10.0") > Version::parse("1.9.2"));
+//! ```
 #![cfg_attr(not(test), no_std)]
 
 mod exchange;
