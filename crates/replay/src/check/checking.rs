@@ -5,13 +5,12 @@ use monitor::Monitor;
 use motor::MotorFile;
 use recording::{Channel, Recording};
 
-use super::balance::Balance;
 use super::caveat::caveat;
 use super::clamp::{ClampSignal, clamp_signals};
-use super::doubts::{doubts, hardly_judged, hardly_visible};
+use super::doubts::{Doubting, reasons};
 use super::{BlindSpot, Checked, Told, VerdictState, blind, blind_spots, severity, todo};
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
-use crate::{MotionSummary, NotJudgedShare, Replay, Samples, Timeline, config_for, replay, words};
+use crate::{MotionSummary, Replay, Samples, Timeline, config_for, replay, words};
 
 /// Why a recording without a speed is not judged in motion.
 const SPEED_IS_ESTIMATED: &str =
@@ -31,7 +30,7 @@ pub struct Checking<'m> {
     speed: Option<Speed>,
     clamps: Clamps,
     blind: Vec<BlindSpot>,
-    balance: Balance,
+    doubting: Doubting,
     pieces: u64,
 }
 
@@ -66,7 +65,7 @@ impl<'m> Checking<'m> {
             speed: None,
             clamps: Clamps::default(),
             blind: Vec::new(),
-            balance: Balance::default(),
+            doubting: Doubting::new(motor),
             pieces: 0,
         }
     }
@@ -118,9 +117,9 @@ impl<'m> Checking<'m> {
         let samples = Samples::new(shown, audit);
         if is_usable {
             let replay = self.replay.get_or_insert_with(|| Replay::new(monitor));
-            let (balance, config) = (&mut self.balance, monitor.config());
+            let (doubting, config) = (&mut self.doubting, monitor.config());
             replay.follow(samples, &mut |done, t, report| {
-                balance.add(t, report, config);
+                doubting.add(t, report, config);
                 progress(done);
             });
         } else if self.pieces == 1 {
@@ -159,21 +158,10 @@ impl<'m> Checking<'m> {
         if motion.not_possible.is_some() && !timeline.something_moved() {
             motion = MotionSummary::default();
         }
-        let mut state = timeline.state(verdict.state, &motion);
+        let state = timeline.state(verdict.state, &motion);
         let reasons = not_judged(&timeline, &shown);
-        let calibrated = self.motor.healthy.is_some();
-        let jump = self.balance.jump().filter(|_| !calibrated);
         let about = of_recorded(&shown, speed.is_some());
-        let mut doubts = doubts(&about, &timeline.rotor(), jump, calibrated);
-        let is_dark = state != VerdictState::Fault;
-        let few = timeline.too_few(&motion).filter(|_| is_dark);
-        doubts.extend(few.and_then(|few| hardly_judged(few, &reasons)));
-        if let Some(visible) = timeline.visible_percent().filter(|_| is_dark) {
-            doubts.extend(hardly_visible(visible));
-        }
-        if state == VerdictState::Healthy && !doubts.is_empty() {
-            state = VerdictState::NotJudged;
-        }
+        let (state, doubts) = self.doubting.finish(&timeline, &motion, state, &about);
         let is_refused = !shown.supported;
         let clamps = self.clamps.finish();
         let mut answer = Checked {
@@ -219,11 +207,7 @@ fn not_judged(timeline: &Timeline, shown: &Audit) -> Vec<String> {
             "no window fits between two gaps in time: record without lost samples".to_owned(),
         ];
     }
-    let share = |share: &NotJudgedShare| match share.windows {
-        1 => format!("{}: 1 window", share.reason),
-        many => format!("{}: {many} windows", share.reason),
-    };
-    timeline.not_judged.iter().map(share).collect()
+    reasons(timeline)
 }
 
 /// Findings without those of an estimated speed, which is no channel that anybody could mend.

@@ -1,11 +1,14 @@
 //! What contradicts a motor in good order although no lamp lights: then the answer is not "in good order".
 
 use audit::{Code, Finding};
+use monitor::{MonitorConfig, Report};
+use motor::MotorFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::balance::Jump;
+use super::balance::{Balance, Jump};
 use crate::rotor::RotorSummary;
+use crate::{MotionSummary, NotJudgedShare, Timeline, VerdictState};
 
 /// Something that does not fit a motor in good order.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -16,12 +19,65 @@ pub struct CheckDoubt {
     pub remedy: String,
 }
 
+/// Gathers over the windows of a recording what contradicts a motor in good order.
+pub struct Doubting {
+    /// Zero sequences and unbalance of the motor in good order are known, and the lamps hold them.
+    calibrated: bool,
+    balance: Balance,
+}
+
+impl Doubting {
+    /// Before the first window.
+    pub fn new(motor: &MotorFile) -> Doubting {
+        Doubting {
+            calibrated: motor.healthy.is_some(),
+            balance: Balance::default(),
+        }
+    }
+
+    /// Adds a window that ended at time `t`, s.
+    pub fn add(&mut self, t: f64, report: &Report, config: &MonitorConfig) {
+        self.balance.add(t, report, config);
+    }
+
+    /// What does not fit, and the recording's state with it: with a doubt a dark answer is no answer.
+    pub fn finish(
+        &self,
+        timeline: &Timeline,
+        motion: &MotionSummary,
+        state: VerdictState,
+        findings: &[Finding],
+    ) -> (VerdictState, Vec<CheckDoubt>) {
+        let jump = self.balance.jump().filter(|_| !self.calibrated);
+        let mut found = doubts(findings, &timeline.rotor(), jump, self.calibrated);
+        if state != VerdictState::Fault {
+            let few = timeline.too_few(motion);
+            let reasons = reasons(timeline);
+            found.extend(few.and_then(|few| hardly_judged(few, &reasons)));
+            found.extend(timeline.visible_percent().and_then(hardly_visible));
+        }
+        match state {
+            VerdictState::Healthy if !found.is_empty() => (VerdictState::NotJudged, found),
+            state => (state, found),
+        }
+    }
+}
+
+/// Why windows were not judged, with how many.
+pub(super) fn reasons(timeline: &Timeline) -> Vec<String> {
+    let share = |share: &NotJudgedShare| match share.windows {
+        1 => format!("{}: 1 window", share.reason),
+        many => format!("{}: {many} windows", share.reason),
+    };
+    timeline.not_judged.iter().map(share).collect()
+}
+
 /// Zero sequence from which on a channel that it names is as far off as no sensor in good order is, percent of the positive
 /// sequence: a gain that is 10 % wrong.
 const WRONG_GAIN_PERCENT: f64 = 100.0 / 30.0;
 
 /// What does not fit; `calibrated`: the zero sequences of the motor in good order are known, and the lamps hold them.
-pub(super) fn doubts(
+fn doubts(
     findings: &[Finding],
     rotor: &RotorSummary,
     jump: Option<Jump>,
@@ -64,7 +120,7 @@ fn channel(finding: &Finding) -> &str {
 }
 
 /// Too little was judged for a dark answer; `None` where nothing was, which is an answer of its own.
-pub(super) fn hardly_judged([judged, running]: [u64; 2], reasons: &[String]) -> Option<CheckDoubt> {
+fn hardly_judged([judged, running]: [u64; 2], reasons: &[String]) -> Option<CheckDoubt> {
     let why = reasons
         .first()
         .map_or(String::new(), |why| format!(" ({why})"));
@@ -79,7 +135,7 @@ pub(super) fn hardly_judged([judged, running]: [u64; 2], reasons: &[String]) -> 
 }
 
 /// What the lamps could have shown, percent of their scales, is larger than whatever a motor that still runs has.
-pub(super) fn hardly_visible(visible_percent: [f64; 4]) -> Option<CheckDoubt> {
+fn hardly_visible(visible_percent: [f64; 4]) -> Option<CheckDoubt> {
     let least = visible_percent.into_iter().fold(f64::INFINITY, f64::min);
     (least >= 100.0).then(|| CheckDoubt {
         seen: format!(

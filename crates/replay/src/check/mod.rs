@@ -17,7 +17,7 @@ pub use blind::{BlindSpot, blind_spots, channels_missing};
 pub use checking::Checking;
 pub use clamp::{ClampSignal, clamp_signals};
 pub use clamp_bars::{BesideSupply, SupplySideband};
-pub use doubts::CheckDoubt;
+pub use doubts::{CheckDoubt, Doubting};
 pub use knowledge::{Knowledge, Learnt, learn};
 pub use reference::{Reference, begins_like};
 pub use severity::Severity;

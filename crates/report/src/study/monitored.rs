@@ -6,6 +6,7 @@ use audit::{Audit, Expectation, Merger, audit};
 use monitor::{ConfigError, Monitor, MonitorConfig, Report};
 use motor::{FileError, MotorFile};
 use recording::Recording;
+use replay::check::{CheckDoubt, Doubting};
 use replay::{
     Direction, LampState, MotionSummary, NotJudgedShare, Replay, RotorSummary, Samples,
     SequenceSummary, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
@@ -30,6 +31,10 @@ pub struct Monitored {
     pub timeline: Timeline,
     /// The verdict on the windows at rest.
     pub verdict: Verdict,
+    /// What the recording comes to, at rest and in motion together.
+    pub state: VerdictState,
+    /// What does not fit a motor in good order although no lamp lit.
+    pub doubts: Vec<CheckDoubt>,
     /// Thresholds of the motor file, percent of each residual's scale.
     pub threshold_percent: Option<[f64; 4]>,
 }
@@ -54,6 +59,8 @@ struct MonitorJson<'a> {
     audit: &'a Audit,
     /// What the recording comes to, at rest and in motion together.
     state: VerdictState,
+    /// What does not fit a motor in good order although no lamp lit.
+    doubts: &'a [CheckDoubt],
     /// Windows of the replay.
     windows: u64,
     /// Of these judged: the motor was at rest and every sensor was trusted.
@@ -126,6 +133,7 @@ pub struct Monitoring<'m> {
     /// As the motor file and the first piece say.
     config: Option<MonitorConfig>,
     replay: Option<Replay>,
+    doubting: Option<Doubting>,
     first: Option<First>,
     end_s: f64,
 }
@@ -147,6 +155,7 @@ impl<'m> Monitoring<'m> {
             merger: Merger::default(),
             config: None,
             replay: None,
+            doubting: motor.map(Doubting::new),
             first: None,
             end_s: 0.0,
         }
@@ -201,7 +210,13 @@ impl<'m> Monitoring<'m> {
                 none.insert(Replay::new(monitor))
             }
         };
-        replay.follow(samples, look);
+        let doubting = &mut self.doubting;
+        replay.follow(samples, &mut |done, t, report| {
+            if let Some(doubting) = doubting {
+                doubting.add(t, report, &config);
+            }
+            look(done, t, report);
+        });
         Ok(())
     }
 
@@ -221,25 +236,24 @@ impl<'m> Monitoring<'m> {
         if self.motor.is_none() && audit.supported {
             timeline.blame_missing_motor_file();
         }
+        let verdict = timeline.verdict(&audit.findings);
+        let state = timeline.state(verdict.state, &timeline.motion);
+        let doubting = self.doubting.filter(|_| audit.supported);
+        let (state, doubts) = doubting.map_or((state, Vec::new()), |doubting| {
+            doubting.finish(&timeline, &timeline.motion, state, &audit.findings)
+        });
         Monitored {
             recording: first.name,
             duration_s: self.end_s - first.begin_s,
             t_sample: first.t_sample,
             assumptions: audit.assumptions.clone(),
-            verdict: timeline.verdict(&audit.findings),
+            verdict,
+            state,
+            doubts,
             audit,
             timeline,
             threshold_percent: self.motor.map(|motor| motor.monitor.threshold_percent),
         }
-    }
-}
-
-impl Monitored {
-    /// What the recording comes to: FAULT at rest or in motion; healthy where a fifth of the running motor was judged and neither lit;
-    /// not judged where something came that no fault explains.
-    pub fn state(&self) -> VerdictState {
-        self.timeline
-            .state(self.verdict.state, &self.timeline.motion)
     }
 }
 
@@ -261,7 +275,8 @@ impl Serialize for Monitored {
             recording: &self.recording,
             assumptions: &self.assumptions,
             audit: &self.audit,
-            state: self.state(),
+            state: self.state,
+            doubts: &self.doubts,
             windows: timeline.windows,
             judged: timeline.judged,
             not_judged: &timeline.not_judged,

@@ -162,7 +162,7 @@ impl MonitorArgs {
 }
 
 fn told(result: &Monitored, answers: &mut Answers<'_>) -> Result<Finding, Failure> {
-    let finding = match (result.audit.supported, result.state()) {
+    let finding = match (result.audit.supported, result.state) {
         (true, VerdictState::Fault) => Finding::Something,
         (true, VerdictState::Healthy) => Finding::Nothing,
         (false, _) | (true, VerdictState::NotJudged) => Finding::Unsupported,
@@ -188,6 +188,9 @@ const ONE_TRACE: &str = "--trace writes the windows of one recording, and severa
 const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board sends none: fetch its samples with \
     --motor M --capture FILE.csv, then run drivemon monitor FILE.csv --motor M --report FILE.html";
 
+/// A dark answer that something contradicts.
+const DOES_NOT_FIT: &str = "not judged: no fault was lit, and something does not fit";
+
 /// More lamp changes than this are left to the JSON.
 const LONGEST_TIMELINE: usize = 40;
 
@@ -209,7 +212,16 @@ fn print(result: &Monitored) {
     if timeline.motion.not_possible.is_none() || timeline.something_moved() {
         print_motion(&timeline.motion, "");
     }
-    print_verdict(timeline, &result.verdict);
+    match result.verdict.state {
+        VerdictState::Healthy if !result.doubts.is_empty() => {
+            say!("{}", paint::caution(DOES_NOT_FIT));
+        }
+        _ => print_verdict(timeline, &result.verdict),
+    }
+    for doubt in &result.doubts {
+        say!("  {} {}", paint::caution("does not fit:"), doubt.seen);
+        say!("    - {}", doubt.remedy);
+    }
 }
 
 pub(crate) fn print_lamps(timeline: &Timeline) {

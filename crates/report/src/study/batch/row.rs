@@ -45,7 +45,7 @@ pub struct Row {
     pub windows: u32,
     /// Windows judged.
     pub judged_windows: u32,
-    /// Why most of the windows that were not judged were not.
+    /// What does not fit, where that is why it is not judged; else why most of the windows that were not judged were not.
     pub not_judged: String,
     /// Codes of the audit's findings, a blank between them.
     pub findings: String,
@@ -161,7 +161,7 @@ impl Row {
 
     fn take(&mut self, monitored: &Monitored) {
         let (timeline, verdict) = (&monitored.timeline, &monitored.verdict);
-        self.state = match monitored.state() {
+        self.state = match monitored.state {
             VerdictState::Healthy => HEALTHY,
             VerdictState::Fault => FAULT,
             VerdictState::NotJudged => NOT_JUDGED,
@@ -181,7 +181,10 @@ impl Row {
         self.windows = timeline.windows as u32;
         self.judged_windows = timeline.judged as u32;
         let most = timeline.not_judged.first();
-        self.not_judged = most.map_or_else(String::new, |share| share.reason.to_string());
+        self.not_judged = match monitored.doubts.first() {
+            Some(doubt) if self.state == NOT_JUDGED => format!("does not fit: {}", doubt.seen),
+            _ => most.map_or_else(String::new, |share| share.reason.to_string()),
+        };
         let codes = monitored.audit.findings.iter();
         self.findings = codes
             .filter_map(|finding| word(&finding.code))
