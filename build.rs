@@ -44,7 +44,9 @@ fn prepare() -> Result<(), Box<dyn Error>> {
 
 fn link(here: &Path) {
     println!("cargo::rerun-if-changed=memory.x");
+    println!("cargo::rerun-if-changed=src/regions.x");
     println!("cargo::rustc-link-search={}", here.display());
+    println!("cargo::rustc-link-search={}", here.join("src").display());
     for script in ["link.x", "defmt.x"] {
         println!("cargo::rustc-link-arg-bins=-T{script}");
     }

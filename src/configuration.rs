@@ -72,9 +72,11 @@ impl Settings {
                 let ended = self.configurator.discard(self.holds);
                 ended.then_some(Change::HoldsAgain)
             }
-            Command::Acknowledge | Command::Learn | Command::Prepare | Command::ReleaseCapture => {
-                None
-            }
+            Command::Acknowledge
+            | Command::Learn
+            | Command::Prepare
+            | Command::ReleaseCapture
+            | Command::Install => None,
         }
     }
 
@@ -97,6 +99,11 @@ impl Settings {
     /// Stores what is on trial; whether it is stored.
     pub fn confirm(&mut self) -> bool {
         self.configurator.confirm(self.holds)
+    }
+
+    /// Whether a configuration is on trial.
+    pub fn is_on_trial(&self) -> bool {
+        self.configurator.seconds_left(now_s()).is_some()
     }
 
     /// Writes what Modbus tells about it.

@@ -45,25 +45,27 @@ impl Events {
         self.note(EventCause::SamplesMissing, number);
     }
 
-    /// Notes what has changed, and writes one event if there is one and time for it: four double words take 0.4 ms.
+    /// Notes what has changed, and writes one event if there is one and time for it: four double words take 0.4 ms. Whether
+    /// there is time left.
     #[inline(never)]
-    pub fn step(&mut self, now: &Situation, has_time: bool) {
+    pub fn step(&mut self, now: &Situation, has_time: bool) -> bool {
         self.journal.look(now);
         if !has_time || !self.journal.is_waiting() {
-            return;
+            return has_time;
         }
         let now_s = Instant::now().as_secs() as u32;
         let Some(event) = self.journal.due(now_s) else {
-            return;
+            return true;
         };
         match self.log.as_mut().map(|log| log.append(&event)) {
-            Some(Appended::Wait) => {}
+            Some(Appended::Wait) => return true,
             Some(Appended::Written) => self.journal.settle(event.cause, now_s),
             Some(Appended::Lost) | None => {
                 defmt::warn!("event lost: {=str}", event.cause.label());
                 self.journal.settle(event.cause, now_s);
             }
         }
+        false
     }
 
     /// Number of the newest event in flash.

@@ -27,6 +27,7 @@ use crate::safety::protection::{self, StackMark};
 use crate::safety::selftest::SelfTest;
 use crate::safety::watchdog::Watchdog;
 use crate::safety::{Start, marks, marks::Mark, options};
+use crate::updates::Updates;
 
 include!(concat!(env!("OUT_DIR"), "/motor.rs"));
 
@@ -54,13 +55,14 @@ async fn main(spawner: Spawner) -> ! {
         revision: REVISION,
         serial: housekeeping::serial_number(),
     };
-    let (calibration, log, stored) = match flash_store::open(board.flash) {
+    let (calibration, log, stored, updater) = match flash_store::open(board.flash) {
         Some(stored) => (
             Some(stored.calibration),
             Some(stored.events),
             Some(stored.configuration),
+            Some(stored.updates),
         ),
-        None => (None, None, None),
+        None => (None, None, None, None),
     };
     let compiled = Compiled {
         name: NAME,
@@ -96,6 +98,7 @@ async fn main(spawner: Spawner) -> ! {
         ),
         commissioning: Commissioning::new(calibration),
         events,
+        updates: Updates::new(updater),
         display: Display::default(),
         selftest: SelfTest::at_start(),
         channels: StuckChannels::default(),
@@ -183,12 +186,14 @@ async fn run(
                 defmt::warn!("samples are missing: {}", gap);
                 panel.record.interrupt();
                 panel.events.note_gap(gap);
+                panel.updates.disturb();
                 panel.watchdog.starve();
             }
             Pause::Learnt(calibration) => {
                 panel.commissioning.store(&calibration);
                 renew(monitor, companion, panel);
             }
+            Pause::Update => panel.updates.settle(),
             Pause::Configured(change) => {
                 if panel.configure(change) {
                     renew(monitor, companion, panel);
@@ -215,6 +220,7 @@ enum Pause {
     Gap(Gap),
     Learnt(Calibration),
     Configured(Change),
+    Update,
 }
 
 /// Judges block after block until samples are missing or something was learnt.
@@ -244,6 +250,9 @@ async fn watch(
         panel.after_block(lamps);
         if let Some(change) = panel.change.take() {
             return Pause::Configured(change);
+        }
+        if panel.updates.is_due() {
+            return Pause::Update;
         }
     }
 }

@@ -17,6 +17,8 @@ mod panel;
 mod record;
 #[cfg(target_os = "none")]
 mod safety;
+#[cfg(target_os = "none")]
+mod updates;
 
 #[cfg(not(target_os = "none"))]
 fn main() {

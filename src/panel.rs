@@ -2,24 +2,26 @@
 
 use board::modbus::Command;
 use board::{
-    Button, Calibration, Display, Doubt, Doubts, EventCause, Press, Relay, Shown, Situation,
-    StuckChannels, levels,
+    Button, Calibration, Display, Doubt, Doubts, EventCause, LearnState, Press, Relay, Shown,
+    Situation, StuckChannels, levels,
 };
 use embassy_stm32::gpio::Input;
 use embassy_time::{Duration, Instant, Timer};
 use monitor::{Lamp, Lamps, Monitor, Report};
+use update::Refusal;
 
 use crate::commissioning::Commissioning;
 use crate::configuration::{Change, Settings};
 use crate::events::Events;
 use crate::hardware::housekeeping::{self, Housekeeping, is_vdda_credible};
 use crate::hardware::lamps::{Lamps as LampWires, RelayWires};
-use crate::hardware::serial;
+use crate::hardware::{flash_store, serial};
 use crate::record::Record;
 use crate::safety::protection::StackMark;
 use crate::safety::selftest::SelfTest;
 use crate::safety::watchdog::Watchdog;
 use crate::safety::{options, retained};
+use crate::updates::Updates;
 
 /// Blocks between two looks at the converters' supply: about a second.
 const SECOND_BLOCKS: u32 = 312;
@@ -31,6 +33,7 @@ const QUIET_BLOCKS: u32 = 60 * SECOND_BLOCKS;
 const ANSWER_BLOCKS: u32 = 32;
 /// While nothing is computed.
 const IDLE: Duration = Duration::from_millis(100);
+const IDLES_A_SECOND: u32 = 10;
 
 /// The door, and the board's own health.
 pub struct Panel {
@@ -60,6 +63,8 @@ pub struct Panel {
     pub change: Option<Change>,
     /// What is kept in flash of everything that happens.
     pub events: Events,
+    /// Programs that come over the line.
+    pub updates: Updates,
     /// Lamps that stay.
     pub display: Display,
     /// Tests of the board by itself.
@@ -127,11 +132,34 @@ impl Panel {
         let (doubts, energised) = (self.all_doubts(), self.relay.is_energised());
         self.tell(doubts);
         self.record.note_health(doubts, energised);
-        self.events.step(&self.situation(&shown, doubts), has_time);
+        let has_time = self.events.step(&self.situation(&shown, doubts), has_time);
+        self.step_update(has_time);
         self.record.note_event(self.events.newest());
         self.record.note_settings(&self.settings);
         self.record.refresh(&shown, &self.commissioning);
         self.wires.set(levels(&shown.lamps, bright));
+    }
+
+    /// At most one of event and update takes its time in a block.
+    fn step_update(&mut self, has_time: bool) {
+        if has_time {
+            self.updates.step(self.obstacle());
+        }
+        if let Some((cause, values)) = self.updates.take_event() {
+            self.events.note_values(cause, values);
+        }
+        self.record.note_update(self.updates.status());
+    }
+
+    /// Why no program may be installed now.
+    fn obstacle(&self) -> Option<Refusal> {
+        if self.commissioning.learning() == LearnState::Learning {
+            return Some(Refusal::Learning);
+        }
+        if self.settings.is_on_trial() {
+            return Some(Refusal::Configuration);
+        }
+        flash_store::is_supply_low().then_some(Refusal::Supply)
     }
 
     fn situation(&self, shown: &Shown, doubts: Doubts) -> Situation {
@@ -201,6 +229,7 @@ impl Panel {
             self.change = Some(change);
         }
         self.look_after_supply();
+        self.updates.second(self.all_doubts());
         self.stack.look();
         self.doubts.set(Doubt::Stack, self.stack.is_nearly_full());
         if self.blocks >= QUIET_BLOCKS {
@@ -234,6 +263,7 @@ impl Panel {
         match command {
             Some(Command::Acknowledge) => self.acknowledge(),
             Some(Command::ReleaseCapture) => self.record.release(),
+            Some(Command::Install) => self.updates.install(self.obstacle()),
             Some(Command::Learn) => self.commissioning.begin(self.all_doubts()),
             Some(Command::Prepare) => {
                 self.events.note(EventCause::Prepared, 0);
@@ -288,7 +318,15 @@ impl Panel {
             self.blocks = self.blocks.wrapping_add(1);
             self.put_out(&Lamps::default());
             self.watchdog.feed_while_waiting();
+            if self.blocks.is_multiple_of(IDLES_A_SECOND) {
+                // A new program that ends here gives itself up after a while.
+                self.updates.second(self.all_doubts());
+                self.updates.settle();
+            }
             let command = serial::take_command();
+            if command == Some(Command::Install) {
+                self.updates.install(self.obstacle());
+            }
             Timer::after(IDLE).await;
             if command == Some(Command::Prepare) {
                 options::prepare();

@@ -1,6 +1,6 @@
 //! What is kept and told about every window: frames, registers, and the samples around an alarm.
 
-use board::modbus::{BoardStatus, Image, SecondCollector, Status};
+use board::modbus::{BoardStatus, Image, SecondCollector, Status, UpdateStatus};
 use board::{CAPTURE_EVERY, Capture, CaptureAlarm, Doubts, Shown};
 use monitor::{Lamp, Monitor, RawSample, Report};
 
@@ -9,6 +9,7 @@ use crate::configuration::Settings;
 use crate::hardware::serial;
 use crate::hardware::telemetry::Telemetry;
 use crate::safety::{self, Start};
+use crate::updates;
 
 /// Frames, registers and capture.
 pub struct Record {
@@ -33,6 +34,7 @@ impl Record {
             program: safety::program(),
             serial,
             start_number,
+            version: updates::VERSION.0,
             ..BoardStatus::default()
         };
         let (shown, status) = (Shown::default(), Status::default());
@@ -72,6 +74,12 @@ impl Record {
         let before = (self.board.configuration, self.board.refused);
         settings.describe(&mut self.board);
         self.stale |= before != (self.board.configuration, self.board.refused);
+    }
+
+    /// Notes how an update stands. That bytes have come a master learns within a second.
+    pub fn note_update(&mut self, update: UpdateStatus) {
+        let before = core::mem::replace(&mut self.board.update, update);
+        self.stale |= (before.state, before.refused) != (update.state, update.refused);
     }
 
     /// Number and probability, per mille, of the likeliest fault of the last window.

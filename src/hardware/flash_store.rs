@@ -1,9 +1,10 @@
 //! What the board stores: the calibration in the last two pages of bank 2, the event log in the eight before, the
-//! configuration in the four before those, away from the program, which runs on from bank 1.
+//! configuration in the four before those, and a new program from its beginning on, away from the one that runs in bank 1.
+//! Only the journal of updates lies in bank 1.
 
 use board::{
     CONFIGURATION_PAGES, ConfigurationStore, EVENT_BYTES, EventLog, LOG_EVENTS, LOG_PAGES,
-    LogFlash, PAGE_BYTES, PAGES, Store,
+    PAGE_BYTES, PAGES, Store,
 };
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Error, Flash};
@@ -12,6 +13,7 @@ use embassy_stm32::peripherals::FLASH;
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
+use update::{BackgroundFlash, Updater};
 
 /// Bytes of the chip's flash.
 const FLASH_BYTES: u32 = 512 * 1024;
@@ -42,9 +44,11 @@ pub struct Stored {
     pub events: FlashLog,
     /// What was configured.
     pub configuration: ConfigurationStore<GuardedFlash>,
+    /// A new program, and how far it is.
+    pub updates: Updater<GuardedFlash>,
 }
 
-/// Opens all three. `None` on a chip whose option bytes join the banks: its pages are others, and the driver would panic.
+/// Opens all of it. `None` on a chip whose option bytes join the banks: its pages are others, and the driver would panic.
 #[allow(unsafe_code)]
 pub fn open(flash: Peri<'static, FLASH>) -> Option<Stored> {
     pac::PWR.cr2().modify(|w| {
@@ -55,13 +59,14 @@ pub fn open(flash: Peri<'static, FLASH>) -> Option<Stored> {
     two_banks.then(|| {
         // Safety: all handles stay in the task of the samples, none is kept across a wait, and each waits for the others'
         // erasure.
-        let handles = unsafe { [flash.clone_unchecked(), flash.clone_unchecked(), flash] };
-        let [calibration, events, configuration] =
+        let handles = [(); 5].map(|()| unsafe { flash.clone_unchecked() });
+        let [calibration, events, configuration, waiting, journal] =
             handles.map(|flash| GuardedFlash(Flash::new_blocking(flash)));
         Stored {
             configuration: ConfigurationStore::new(configuration, CONFIGURATION),
             calibration: Store::new(calibration, CALIBRATION),
             events: EventLog::open(events, EVENTS),
+            updates: Updater::open(waiting, journal),
         }
     })
 }
@@ -111,14 +116,19 @@ pub fn is_supply_low() -> bool {
     pac::PWR.sr2().read().pvdo()
 }
 
-fn supplied() -> Result<(), FlashError> {
+/// Waits for what is being erased in the background; the driver does not. Then the supply has to be good.
+fn settle() -> Result<(), FlashError> {
+    while is_erasing() {}
+    if pac::FLASH.cr().read().per() {
+        end_erase();
+    }
     match is_supply_low() {
         true => Err(FlashError::LowSupply),
         false => Ok(()),
     }
 }
 
-impl LogFlash for GuardedFlash {
+impl BackgroundFlash for GuardedFlash {
     fn is_ready(&mut self) -> bool {
         if is_erasing() {
             return false;
@@ -177,12 +187,12 @@ impl NorFlash for GuardedFlash {
     const ERASE_SIZE: usize = <Flash<'static, Blocking> as NorFlash>::ERASE_SIZE;
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
-        supplied()?;
+        settle()?;
         NorFlash::erase(&mut self.0, from, to).map_err(FlashError::Driver)
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        supplied()?;
+        settle()?;
         NorFlash::write(&mut self.0, offset, bytes).map_err(FlashError::Driver)
     }
 }

@@ -23,6 +23,7 @@ use crate::safety::marks::{self, Mark};
 use embedded_io_async::{Read, Write};
 use heapless::Vec;
 use static_cell::ConstStaticCell;
+use update::Tray;
 
 /// Bit/s of the frames; some 8 kB/s are sent while a capture is handed over.
 const FRAMES_BAUD: u32 = 115_200;
@@ -164,6 +165,11 @@ fn copy(which: fn(&Desk) -> &Configuration, into: &mut Configuration) {
 /// What a master has asked for since the last look.
 pub fn take_command() -> Option<Command> {
     COMMAND.lock(Cell::take)
+}
+
+/// Does something with the piece of a program that came last; with interrupts off, for some microseconds at most.
+pub fn with_tray<T>(work: impl FnOnce(&mut Tray) -> T) -> Option<T> {
+    DESK.lock(|desk| Some(work(desk.try_borrow_mut().ok()?.tray())))
 }
 
 #[embassy_executor::task]

@@ -11,12 +11,12 @@ use board::{FaultCause, FaultRecord};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::exception;
 use embassy_stm32::pac;
+use update::layout::{BANK_BYTES, FLASH_BASE, JOURNAL, JOURNAL_PAGES, PAGE_BYTES};
 
 use super::{marks, retained};
 
-/// Bytes of a bank of flash, and where the first one begins.
-const BANK_BYTES: u32 = 256 * 1024;
-const FLASH_BASE: u32 = 0x0800_0000;
+/// Where words may be torn in bank 1: the journal of updates.
+const JOURNAL_BYTES: core::ops::Range<u32> = JOURNAL..JOURNAL + JOURNAL_PAGES * PAGE_BYTES;
 /// Errors in stored data since the start, and corrected ones.
 static STORED_DATA_ERRORS: AtomicU32 = AtomicU32::new(0);
 
@@ -121,13 +121,13 @@ unsafe fn NonMaskableInt() {
 }
 
 /// A double word whose programming a reset cut off fails its error correction, and reading it raises this. In bank 2, where
-/// data are stored, the value that was read is wrong and a checksum finds it; without clearing the flag this would come for
-/// ever. The program lies in bank 1, and is not executed with wrong bits.
+/// data are stored, and in the journal of updates the value that was read is wrong and a checksum finds it; without clearing
+/// the flag this would come for ever. The program lies in bank 1, and is not executed with wrong bits.
 fn forgive_stored_data(error: pac::flash::regs::Eccr) {
-    let in_bank = error.addr_ecc();
-    if !error.bk_ecc() {
+    let in_bank = error.addr_ecc() % BANK_BYTES;
+    if !error.bk_ecc() && !JOURNAL_BYTES.contains(&in_bank) {
         end(FaultRecord {
-            address: FLASH_BASE + in_bank % BANK_BYTES,
+            address: FLASH_BASE + in_bank,
             ..FaultRecord::of(FaultCause::FlashError)
         });
     }

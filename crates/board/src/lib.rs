@@ -40,8 +40,8 @@ pub use door::button::{Button, Press};
 pub use door::display::{Display, LAMP_NAMES, LAMPS, Overrides, Shown, levels};
 pub use door::relay::{Relay, RelayMode};
 pub use events::{
-    Appended, EVENT_BYTES, Event, EventCause, EventLog, Journal, LOG_EVENTS, LOG_PAGES, LogFlash,
-    Situation, place_of,
+    Appended, EVENT_BYTES, Event, EventCause, EventLog, Journal, LOG_EVENTS, LOG_PAGES, Situation,
+    place_of,
 };
 pub use frames::capture::{
     CAPTURE_BYTES, CAPTURE_EVERY, CAPTURE_HEAD_BYTES, CAPTURE_INSTANTS, Capture, CaptureAlarm,

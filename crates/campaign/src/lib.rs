@@ -17,6 +17,7 @@ pub mod hours;
 mod planned;
 mod results;
 mod runs;
+pub mod slurm;
 
 pub use planned::axis::{AXES, Axis, Conditions, Grid};
 pub use planned::fault::{FAULTS, FaultKind};

@@ -67,9 +67,34 @@ fn exception(code: u8) -> String {
     }
 }
 
+/// What the bytes of a line go through: a serial port, or what stands for one.
+pub trait Wire: Read + Write + Send {
+    /// Forgets what came and was not read.
+    ///
+    /// # Errors
+    /// The connection is gone.
+    fn forget(&mut self) -> std::io::Result<()>;
+
+    /// How long a read waits for bytes.
+    ///
+    /// # Errors
+    /// The connection is gone.
+    fn set_patience(&mut self, patience: Duration) -> std::io::Result<()>;
+}
+
+impl Wire for Box<dyn SerialPort> {
+    fn forget(&mut self) -> std::io::Result<()> {
+        Ok(self.clear(ClearBuffer::Input)?)
+    }
+
+    fn set_patience(&mut self, patience: Duration) -> std::io::Result<()> {
+        Ok(self.set_timeout(patience)?)
+    }
+}
+
 /// A line with one board on it.
 pub struct ModbusLine {
-    port: Box<dyn SerialPort>,
+    wire: Box<dyn Wire>,
     settings: Line,
     patience: Duration,
 }
@@ -92,11 +117,16 @@ impl ModbusLine {
             .timeout(PATIENCE)
             .open();
         let port = opened.map_err(|error| port_error(name, error))?;
-        Ok(ModbusLine {
-            port,
+        Ok(ModbusLine::over(Box::new(port), settings))
+    }
+
+    /// Over a wire that is set up as `settings` say.
+    pub fn over(wire: Box<dyn Wire>, settings: Line) -> Self {
+        ModbusLine {
+            wire,
             settings,
             patience: PATIENCE,
-        })
+        }
     }
 
     /// Asks another board of the same line from now on.
@@ -183,10 +213,9 @@ impl ModbusLine {
         request.extend(data);
         request.extend(CRC.checksum(&request).to_le_bytes());
         let ended = |error| ModbusError::Port(SourceError::Ended(error));
-        let cleared = self.port.clear(ClearBuffer::Input);
-        cleared.map_err(|error| ended(error.into()))?;
-        self.port.write_all(&request).map_err(ended)?;
-        self.port.flush().map_err(ended)?;
+        self.wire.forget().map_err(ended)?;
+        self.wire.write_all(&request).map_err(ended)?;
+        self.wire.flush().map_err(ended)?;
         let answer = self.collect().map_err(ended)?;
         self.unwrap(function, &answer)
     }
@@ -199,8 +228,8 @@ impl ModbusLine {
         let end = Instant::now() + self.patience + Duration::from_secs(2);
         while Instant::now() < end && bytes.len() < FRAME_BYTES && !is_whole(&bytes) {
             let patience = if bytes.is_empty() { self.patience } else { GAP };
-            self.port.set_timeout(patience)?;
-            match self.port.read(&mut piece) {
+            self.wire.set_patience(patience)?;
+            match self.wire.read(&mut piece) {
                 Ok(0) => break,
                 Ok(length) => bytes.extend(&piece[..length]),
                 Err(error) if error.kind() == ErrorKind::TimedOut => break,
@@ -250,7 +279,7 @@ impl ModbusLine {
 fn is_whole(bytes: &[u8]) -> bool {
     let length = match bytes {
         [_, function, ..] if function & 0x80 != 0 => 5,
-        [_, 3 | 4 | 20, count, ..] => 5 + usize::from(*count),
+        [_, 3 | 4 | 20 | 21, count, ..] => 5 + usize::from(*count),
         [_, 6 | 16, ..] => 8,
         _ => return false,
     };

@@ -104,10 +104,11 @@ impl State {
 
     fn of_bytes(bytes: [u8; 8]) -> Option<(u32, Self)> {
         let [a, b, c, d, checksum @ ..] = bytes;
-        let whole = CRC.checksum(&[a, b, c, d]) == u32::from_le_bytes(checksum);
         let content = u32::from_le_bytes([a, b, c, d]);
         let parts = [content >> 16 & 0xF, content >> 8 & 0xFF, content & 0xFF];
+        // A blank word is none already here: an ordinary start does not wait for five hundred checksums.
         let state = State::of_parts(parts.map(|part| part as u8))?;
+        let whole = CRC.checksum(&[a, b, c, d]) == u32::from_le_bytes(checksum);
         whole.then_some((content >> 20, state))
     }
 }

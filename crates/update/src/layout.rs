@@ -1,4 +1,4 @@
-//! Who lies where in flash; bytes from its beginning, 0x0800_0000. memory.x and the loader's linker script say the same.
+//! Who lies where in flash; bytes from its beginning, 0x0800_0000. memory.x and tools/seal say the same.
 
 /// Where flash is read.
 pub const FLASH_BASE: u32 = 0x0800_0000;

@@ -22,11 +22,19 @@ mod key;
 pub mod layout;
 mod loader;
 pub mod package;
+mod receiving;
 mod refusal;
 mod seal;
 
 pub use journal::{Journal, JournalError, State};
 pub use key::{PublicKey, SIGNATURE_BYTES, SecretKey};
 pub use loader::{MappedFlash, Next, start};
+pub use receiving::background::BackgroundFlash;
+pub use receiving::state::UpdateState;
+pub use receiving::tray::{
+    NotLaid, PIECE_BYTES, PORTION_BYTES, Portion, STEP_BYTES, Settled, Tray,
+};
+pub use receiving::updater::{Due, News, Updater};
+pub use receiving::waiting::{Checked, Taken, Waiting};
 pub use refusal::Refusal;
-pub use seal::{BOARD_TYPE, SEAL_OFFSET, Seal, Version};
+pub use seal::{BOARD_TYPE, SEAL_BYTES, SEAL_MAGIC, SEAL_OFFSET, Seal, Tally, Version};

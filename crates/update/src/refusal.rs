@@ -18,11 +18,19 @@ pub enum Refusal {
     Incomplete = 6,
     /// Flash refuses to be erased or written.
     Flash = 7,
+    /// The program that runs is on trial itself: the one before it waits where another would be received.
+    Trial = 8,
+    /// The board is learning.
+    Learning = 9,
+    /// A configuration is on trial.
+    Configuration = 10,
+    /// The supply is low.
+    Supply = 11,
 }
 
 impl Refusal {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Refusal; 7] = [
+    pub const ALL: [Refusal; 11] = [
         Refusal::NoProgram,
         Refusal::Board,
         Refusal::Older,
@@ -30,6 +38,10 @@ impl Refusal {
         Refusal::Signature,
         Refusal::Incomplete,
         Refusal::Flash,
+        Refusal::Trial,
+        Refusal::Learning,
+        Refusal::Configuration,
+        Refusal::Supply,
     ];
 
     /// By its number.
@@ -49,6 +61,10 @@ impl Refusal {
             Refusal::Signature => "not signed with this board's key",
             Refusal::Incomplete => "the transfer is incomplete",
             Refusal::Flash => "flash was not written",
+            Refusal::Trial => "the program that runs is on trial itself",
+            Refusal::Learning => "the board is learning",
+            Refusal::Configuration => "a configuration is on trial",
+            Refusal::Supply => "the supply is low",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a program says of itself, behind its vector table: length, checksum, version and board. tools/seal writes the first two.
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use crc::{CRC_32_ISO_HDLC, Crc, Digest, NoTable};
 
 use crate::layout::{PAGE_BYTES, PROGRAM_PAGES};
 use crate::refusal::Refusal;
@@ -13,8 +13,9 @@ pub const SEAL_MAGIC: u32 = 0x4C41_4553;
 pub const BOARD_TYPE: u32 = 0x444D_0001;
 /// The two words that the checksum leaves out: length and checksum.
 const LEFT_OUT: core::ops::Range<usize> = SEAL_OFFSET + 4..SEAL_OFFSET + 12;
-const SEAL_BYTES: usize = 20;
-const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+/// Bytes of the seal.
+pub const SEAL_BYTES: usize = 20;
+static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// Version of a program: two numbers of 8 bits and one of 16, the greatest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,8 +68,16 @@ impl Seal {
     /// # Errors
     /// [`Refusal::NoProgram`] without a seal or with an impossible length.
     pub fn read(program: &[u8]) -> Result<Self, Refusal> {
-        let bytes = program.get(SEAL_OFFSET..SEAL_OFFSET + SEAL_BYTES);
-        let (words, _) = bytes.ok_or(Refusal::NoProgram)?.as_chunks::<4>();
+        let bytes = program.get(SEAL_OFFSET..).and_then(<[u8]>::first_chunk);
+        Self::of_bytes(bytes.ok_or(Refusal::NoProgram)?)
+    }
+
+    /// From the seal's own bytes.
+    ///
+    /// # Errors
+    /// As [`Seal::read`].
+    pub fn of_bytes(bytes: &[u8; SEAL_BYTES]) -> Result<Self, Refusal> {
+        let (words, _) = bytes.as_chunks::<4>();
         let [magic, length, checksum, version, board] = words else {
             return Err(Refusal::NoProgram);
         };
@@ -91,11 +100,9 @@ impl Seal {
         let program = program
             .get(..self.length as usize)
             .ok_or(Refusal::Incomplete)?;
-        let mut digest = CRC.digest();
-        digest.update(&program[..LEFT_OUT.start]);
-        digest.update(&program[LEFT_OUT.end..]);
-        let holds = digest.finalize() == self.checksum;
-        holds.then_some(()).ok_or(Refusal::Checksum)
+        let mut tally = Tally::default();
+        tally.update(program);
+        tally.check(self)
     }
 
     /// Whether a program may take the place of the one that runs: for this board, and not older.
@@ -108,5 +115,48 @@ impl Seal {
         }
         let older = running.is_some_and(|running| self.version < running.version);
         (!older).then_some(()).ok_or(Refusal::Older)
+    }
+}
+
+/// The checksum of a program, of whose bytes some come after the others.
+#[derive(Clone)]
+pub struct Tally {
+    digest: Digest<'static, u32, NoTable>,
+    bytes: usize,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Tally {
+            digest: CRC.digest(),
+            bytes: 0,
+        }
+    }
+}
+
+impl Tally {
+    /// Bytes that were taken.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// Takes the next bytes; length and checksum themselves are left out.
+    pub fn update(&mut self, bytes: &[u8]) {
+        let before = LEFT_OUT.start.saturating_sub(self.bytes);
+        let until = LEFT_OUT.end.saturating_sub(self.bytes);
+        let (head, _) = bytes.split_at(before.min(bytes.len()));
+        let (_, tail) = bytes.split_at(until.min(bytes.len()));
+        self.digest.update(head);
+        self.digest.update(tail);
+        self.bytes += bytes.len();
+    }
+
+    /// Whether these were the bytes that were sealed.
+    ///
+    /// # Errors
+    /// [`Refusal::Checksum`].
+    pub fn check(self, seal: &Seal) -> Result<(), Refusal> {
+        let holds = self.digest.finalize() == seal.checksum;
+        holds.then_some(()).ok_or(Refusal::Checksum)
     }
 }

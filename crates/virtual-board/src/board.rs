@@ -1,10 +1,12 @@
 //! The whole board: power, time, lamps, button, and faults of the board itself.
 
 use monitor::RawSample;
+use update::layout::PROGRAM;
 
 use crate::TICK_HZ;
 use crate::error::BoardError;
 use crate::firmware::elf::Firmware;
+use crate::firmware::loader;
 use crate::firmware::log::Log;
 use crate::machine::relay::Contact;
 use crate::machine::{Inputs, Machine, Port, Tally};
@@ -45,14 +47,16 @@ pub struct VirtualBoard {
 }
 
 impl VirtualBoard {
-    /// Flashes `elf` and applies power.
+    /// Flashes the loader and the program `elf` and applies power. The loader is the file that `DRIVE_MONITOR_LOADER` names, or
+    /// `loader` beside the program of `DRIVE_MONITOR_ELF`, or what `tools/thumb` built last.
     ///
     /// # Errors
-    /// A file that is no firmware for this chip.
+    /// A file that is no firmware for this chip; no loader.
     pub fn new(elf: &[u8], inputs: Box<dyn Inputs>) -> Result<Self, BoardError> {
         let firmware = Firmware::parse(elf)?;
+        let loader = Firmware::parse(&loader::read()?)?;
         let mut cpu = Cpu::new(Machine::new(inputs))?;
-        for (address, bytes) in &firmware.segments {
+        for (address, bytes) in loader.segments.iter().chain(&firmware.segments) {
             cpu.core.mem_write(u64::from(*address), bytes)?;
         }
         cpu.reset()?;
@@ -107,7 +111,8 @@ impl VirtualBoard {
         self.cpu.reset()
     }
 
-    /// Resets the chip for `cause` within a step of flash (a word programmed, a page erased), after `steps` whole ones.
+    /// Resets the chip for `cause` within a step of flash (a word programmed, two of a double word; a page erased), after
+    /// `steps` whole ones.
     pub fn reset_within_flash_step(&mut self, steps: u32, cause: Cause) {
         let machine = self.cpu.machine();
         machine.flash_failure = cause;
@@ -400,7 +405,7 @@ impl VirtualBoard {
         self.log.take(&bytes.unwrap_or_default());
     }
 
-    /// Bytes of stack used at most since power-up: from its beginning, the vector table's first word, down to the deepest
+    /// Bytes of stack that the program used at most since power-up: from its beginning, its vector table's first word, down to the deepest
     /// word that was written. It ends where the program's variables end.
     ///
     /// # Errors
@@ -408,7 +413,7 @@ impl VirtualBoard {
     pub fn stack_used(&mut self) -> Result<u32, BoardError> {
         let no_symbol = || BoardError::Elf("no symbol _stack_end".into());
         let end = self.symbol("_stack_end").ok_or_else(no_symbol)?;
-        let length = self.cpu.word(FLASH)? - end;
+        let length = self.cpu.word(FLASH + PROGRAM)? - end;
         let stack = self
             .cpu
             .core

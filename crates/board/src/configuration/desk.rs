@@ -1,4 +1,7 @@
-//! Two configurations as registers: the one that holds, and the one that a master is writing.
+//! What a master writes: two configurations as registers, the one that holds and the one that is being written, and the tray
+//! for the pieces of a program.
+
+use update::Tray;
 
 use super::{CONFIGURATION_REGISTERS, Configuration};
 
@@ -7,11 +10,12 @@ pub const STAGED: u16 = 1_000;
 /// Holding register of the first word that holds; these are only read.
 pub const ACTIVE: u16 = 2_000;
 
-/// What holds, and what is being written.
+/// What holds, what is being written, and the piece of a program that came last.
 #[derive(Clone, Debug)]
 pub struct Desk {
     staged: Configuration,
     active: Configuration,
+    tray: Tray,
 }
 
 impl Desk {
@@ -20,6 +24,7 @@ impl Desk {
         Desk {
             staged: Configuration::BLANK,
             active: Configuration::BLANK,
+            tray: Tray::closed(),
         }
     }
 
@@ -37,6 +42,11 @@ impl Desk {
     /// What holds.
     pub fn active(&self) -> &Configuration {
         &self.active
+    }
+
+    /// Where pieces of a program are laid down.
+    pub fn tray(&mut self) -> &mut Tray {
+        &mut self.tray
     }
 
     /// The holding register at `address`; `None` where there is none.

@@ -36,6 +36,14 @@ pub enum EventCause {
     Configured = 15,
     /// A configuration on trial was given up.
     TrialEnded = 16,
+    /// A new program runs for the first time.
+    UpdateInstalled = 17,
+    /// The new program confirmed itself.
+    UpdateConfirmed = 18,
+    /// The new program did not confirm itself, and the one before runs again.
+    UpdateReverted = 19,
+    /// A program that was received is not taken.
+    UpdateRefused = 20,
 }
 
 /// Number of causes.
@@ -43,7 +51,7 @@ pub(super) const CAUSES: usize = EventCause::ALL.len();
 
 impl EventCause {
     /// All of them, in the order of their numbers.
-    pub const ALL: [EventCause; 16] = [
+    pub const ALL: [EventCause; 20] = [
         EventCause::Crash,
         EventCause::Start,
         EventCause::FaultOn,
@@ -60,6 +68,10 @@ impl EventCause {
         EventCause::Prepared,
         EventCause::Configured,
         EventCause::TrialEnded,
+        EventCause::UpdateInstalled,
+        EventCause::UpdateConfirmed,
+        EventCause::UpdateReverted,
+        EventCause::UpdateRefused,
     ];
 
     /// By its number.
@@ -91,6 +103,10 @@ impl EventCause {
             EventCause::Prepared => "option bytes",
             EventCause::Configured => "configured",
             EventCause::TrialEnded => "trial of a configuration given up",
+            EventCause::UpdateInstalled => "new program on trial",
+            EventCause::UpdateConfirmed => "new program confirmed",
+            EventCause::UpdateReverted => "program brought back",
+            EventCause::UpdateRefused => "program refused",
         }
     }
 
@@ -111,6 +127,10 @@ impl EventCause {
             EventCause::SamplesMissing => {
                 ["1 none came, 2 overrun, 3 channels and encoder apart", ""]
             }
+            EventCause::UpdateInstalled
+            | EventCause::UpdateConfirmed
+            | EventCause::UpdateReverted => ["ProgramVersion", "ProgramChecksum"],
+            EventCause::UpdateRefused => ["UpdateRefused", ""],
             EventCause::FaultOff
             | EventCause::SensorOff
             | EventCause::LearnBegun

@@ -1,6 +1,6 @@
 //! The ring in flash. Events are appended; the page that the ring enters is erased before, in the background.
 
-use embedded_storage::nor_flash::NorFlash;
+use update::BackgroundFlash;
 
 use super::event::{EVENT_BYTES, Event};
 use crate::calibration::PAGE_BYTES;
@@ -16,15 +16,6 @@ const MOST_FAILURES: u32 = 3;
 /// Place of the event with this number in the ring, from 0.
 pub fn place_of(number: u32) -> u32 {
     number.wrapping_sub(1) % LOG_EVENTS
-}
-
-/// Flash that erases while the program goes on.
-pub trait LogFlash: NorFlash {
-    /// Whether something can be erased or programmed now: nothing is being erased, and the supply is good.
-    fn is_ready(&mut self) -> bool;
-
-    /// Begins to erase the page at `offset`.
-    fn begin_erase(&mut self, offset: u32);
 }
 
 /// What became of an event.
@@ -48,7 +39,7 @@ pub struct EventLog<F> {
     failures: u32,
 }
 
-impl<F: LogFlash> EventLog<F> {
+impl<F: BackgroundFlash> EventLog<F> {
     /// Looks for the newest event.
     #[inline(never)]
     pub fn open(flash: F, first: u32) -> Self {

@@ -14,4 +14,4 @@ mod words;
 pub use cause::EventCause;
 pub use event::{EVENT_BYTES, Event};
 pub use journal::{Journal, Situation};
-pub use log::{Appended, EventLog, LOG_EVENTS, LOG_PAGES, LogFlash, place_of};
+pub use log::{Appended, EventLog, LOG_EVENTS, LOG_PAGES, place_of};

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use monitor::{FaultId, Reason};
+use update::Version;
 
 use super::cause::EventCause;
 use super::event::Event;
@@ -31,6 +32,12 @@ impl fmt::Display for Event {
             EventCause::LearnRefused => refusal(f, first, second),
             EventCause::CalibrationIgnored => calibration(f, first),
             EventCause::SamplesMissing => gap(f, first),
+            EventCause::UpdateInstalled
+            | EventCause::UpdateConfirmed
+            | EventCause::UpdateReverted => {
+                write!(f, ": version {}, program {second:08x}", Version(first))
+            }
+            EventCause::UpdateRefused => update(f, first),
             EventCause::FaultOff
             | EventCause::SensorOff
             | EventCause::LearnBegun
@@ -120,6 +127,14 @@ fn gap(f: &mut fmt::Formatter<'_>, kind: u32) -> fmt::Result {
     })
 }
 
+fn update(f: &mut fmt::Formatter<'_>, number: u32) -> fmt::Result {
+    let number = u8::try_from(number).unwrap_or_default();
+    match update::Refusal::by_number(number) {
+        Some(refusal) => write!(f, ": {refusal}"),
+        None => f.write_str(": unknown"),
+    }
+}
+
 fn doubts(f: &mut fmt::Formatter<'_>, bits: u32) -> fmt::Result {
     for (k, doubt) in Doubts::from_bits(bits).iter().enumerate() {
         let before = if k == 0 { ": " } else { ", " };
@@ -175,6 +190,16 @@ mod tests {
                 EventCause::LearnRefused,
                 [24, 1],
                 "learning refused: the board doubts itself: converters' supply".to_owned(),
+            ),
+            (
+                EventCause::UpdateReverted,
+                [0x0102_0003, 0xABC],
+                "program brought back: version 1.2.3, program 00000abc".to_owned(),
+            ),
+            (
+                EventCause::UpdateRefused,
+                [5, 0],
+                "program refused: not signed with this board's key".to_owned(),
             ),
             (EventCause::FaultOff, [0, 0], "FAULT off".to_owned()),
         ] {

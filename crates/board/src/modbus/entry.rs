@@ -3,6 +3,7 @@
 use core::fmt;
 
 use monitor::{FaultId, MotionWord, Reason};
+use update::UpdateState;
 
 use crate::configuration::Refused;
 use crate::health::doubt::Doubt;
@@ -77,10 +78,15 @@ pub enum Field {
     StartNumber,
     LastSecond,
     Motion,
+    Update,
+    UpdateRefused,
+    UpdateBytes,
+    UpdateTrial,
+    ProgramVersion,
 }
 
 /// Number of values.
-pub(super) const FIELDS: usize = Field::Motion as usize + 1;
+pub(super) const FIELDS: usize = Field::ProgramVersion as usize + 1;
 
 /// How a value lies in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,6 +139,10 @@ pub enum Meaning {
     Crashes,
     /// Number of a [`Refused`].
     Refusals,
+    /// Number of an [`UpdateState`].
+    Updates,
+    /// Number of an [`update::Refusal`].
+    UpdateRefusals,
 }
 
 impl fmt::Display for Meaning {
@@ -165,6 +175,17 @@ impl fmt::Display for Meaning {
                 list(
                     f,
                     Refused::ALL.map(|refused| (refused as usize, refused.label())),
+                )
+            }
+            Meaning::Updates => list(
+                f,
+                UpdateState::ALL.map(|state| (state as usize, state.label())),
+            ),
+            Meaning::UpdateRefusals => {
+                f.write_str("why a program was not taken: 0 none was refused, ")?;
+                list(
+                    f,
+                    update::Refusal::ALL.map(|refusal| (refusal as usize, refusal.label())),
                 )
             }
             Meaning::Crashes => {

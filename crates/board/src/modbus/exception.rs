@@ -8,6 +8,8 @@ pub(super) enum Exception {
     Function = 1,
     Address = 2,
     Value = 3,
-    /// Flash is being erased.
+    /// The transfer of a program has failed.
+    Failure = 4,
+    /// Not now: flash is being erased, or the piece of a program before this one is being written.
     Busy = 6,
 }

@@ -1,4 +1,7 @@
-//! Function 20: event log, seconds and the samples around an alarm as files of records, which the protocol counts in words of 16 bits.
+//! Functions 20 and 21: event log, seconds and the samples around an alarm as files of records to be read, a program as one to
+//! be written. The protocol counts words of 16 bits.
+
+use update::{NotLaid, PIECE_BYTES, Tray};
 
 use super::answer::Answer;
 use super::exception::Exception;
@@ -13,6 +16,14 @@ pub const EVENT_FILE: u16 = 1;
 pub const SECONDS_FILE: u16 = 2;
 /// Number of the file that holds the samples around an alarm.
 pub const CAPTURE_FILE: u16 = 3;
+/// Number of the file that takes the first 128 KiB of a program: a record's number has 16 bits.
+pub const PROGRAM_FILE: u16 = 4;
+/// Number of the file that takes the rest.
+pub const PROGRAM_REST_FILE: u16 = 5;
+/// Words of a program in one request at most.
+pub const MOST_PROGRAM_WORDS: u16 = PIECE_BYTES as u16 / 2;
+/// Words of a file at most.
+const MOST_RECORDS: u32 = 1 << 16;
 /// Words of one answer at most: six seconds, or seven events.
 pub const MOST_FILE_WORDS: u16 = 6 * SECOND_BYTES as u16 / 2;
 const EVENT_WORDS: u32 = LOG_EVENTS * EVENT_BYTES as u32 / 2;
@@ -70,6 +81,55 @@ fn read_part(
         answer.push_all(&two);
     }
     Ok(())
+}
+
+/// A piece of a program, and where it goes.
+pub(super) struct Piece<'a> {
+    offset: u32,
+    bytes: &'a [u8],
+}
+
+impl<'a> Piece<'a> {
+    /// From a request to write one part of one of the program's files.
+    pub fn of_request(data: &'a [u8]) -> Result<Self, Exception> {
+        let [bytes, group @ ..] = data else {
+            return Err(Exception::Value);
+        };
+        let [reference, file @ .., a, b, c, d] =
+            group.first_chunk::<GROUP_BYTES>().ok_or(Exception::Value)?;
+        let (first, words) = (u16::from_be_bytes([*a, *b]), u16::from_be_bytes([*c, *d]));
+        let file = u16::from_be_bytes(*file);
+        let inside = u32::from(first) + u32::from(words) <= MOST_RECORDS;
+        if *reference != REFERENCE || !(PROGRAM_FILE..=PROGRAM_REST_FILE).contains(&file) || !inside
+        {
+            return Err(Exception::Address);
+        }
+        let piece = group.get(GROUP_BYTES..).unwrap_or_default();
+        let whole = usize::from(*bytes) == group.len() && piece.len() == 2 * usize::from(words);
+        if !whole || words == 0 || words > MOST_PROGRAM_WORDS {
+            return Err(Exception::Value);
+        }
+        let before = u32::from(file - PROGRAM_FILE) * MOST_RECORDS;
+        Ok(Piece {
+            offset: 2 * (before + u32::from(first)),
+            bytes: piece,
+        })
+    }
+
+    /// Whether a transfer begins with it.
+    pub fn is_first(&self) -> bool {
+        self.offset == 0
+    }
+
+    /// Lays it down for the task that owns flash.
+    pub fn lay(&self, tray: &mut Tray) -> Result<(), Exception> {
+        tray.lay(self.offset, self.bytes).map_err(|why| match why {
+            NotLaid::Busy => Exception::Busy,
+            NotLaid::Gap => Exception::Address,
+            NotLaid::Shape => Exception::Value,
+            NotLaid::Failed => Exception::Failure,
+        })
+    }
 }
 
 /// A file, and how many words it has.

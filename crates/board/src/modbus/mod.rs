@@ -17,11 +17,14 @@ mod table;
 
 pub use answer::MAX_RESPONSE_BYTES;
 pub use entry::{Entry, Field, Kind, Meaning};
-pub use file::{CAPTURE_FILE, EVENT_FILE, MOST_FILE_WORDS, SECONDS_FILE};
+pub use file::{
+    CAPTURE_FILE, EVENT_FILE, MOST_FILE_WORDS, MOST_PROGRAM_WORDS, PROGRAM_FILE, PROGRAM_REST_FILE,
+    SECONDS_FILE,
+};
 pub use identity::Object;
 pub use map::{Image, MAP_VERSION, WORDS, address};
 pub use memory::{File, Files, Identity, Memory};
 pub use second_collector::SecondCollector;
 pub use slave::{Collector, Command, MAX_REQUEST_BYTES, Slave, UNLOCK_KEY};
-pub use status::{BoardStatus, Status};
+pub use status::{BoardStatus, Status, UpdateStatus};
 pub use table::MAP;

@@ -5,8 +5,9 @@ use heapless::Vec;
 
 use super::answer::{Answer, MAX_RESPONSE_BYTES};
 use super::exception::Exception;
+use super::file::{self, Piece};
+use super::identity;
 use super::memory::Memory;
-use super::{file, identity};
 use crate::configuration::Desk;
 
 const CRC: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_MODBUS);
@@ -16,6 +17,8 @@ pub const MAX_REQUEST_BYTES: usize = 256;
 pub const UNLOCK_KEY: u16 = 0x4D4D;
 /// How long a command may follow the key, ms.
 const UNLOCK_MS: u32 = 10_000;
+/// How long a piece of a program may follow the one before, ms.
+const PIECE_MS: u32 = 10_000;
 const KEY_REGISTER: u16 = 0;
 const COMMAND_REGISTER: u16 = 1;
 const HOLDING_REGISTERS: u16 = 2;
@@ -25,6 +28,7 @@ const READ_INPUT: u8 = 4;
 const WRITE_ONE: u8 = 6;
 const WRITE_MANY: u8 = 16;
 const READ_FILE: u8 = 20;
+const WRITE_FILE: u8 = 21;
 const IDENTIFY: u8 = 43;
 
 /// What a master may ask for beside reading.
@@ -47,11 +51,13 @@ pub enum Command {
     CommitCompiled = 7,
     /// The samples around an alarm are fetched: wait for the next one.
     ReleaseCapture = 8,
+    /// Check the program that was received, and let the loader exchange it for the one that runs.
+    Install = 9,
 }
 
 impl Command {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Command; 8] = [
+    pub const ALL: [Command; 9] = [
         Command::Acknowledge,
         Command::Learn,
         Command::Prepare,
@@ -60,6 +66,7 @@ impl Command {
         Command::Discard,
         Command::CommitCompiled,
         Command::ReleaseCapture,
+        Command::Install,
     ];
 
     fn by_number(number: u16) -> Option<Self> {
@@ -73,6 +80,8 @@ impl Command {
 pub struct Slave {
     unit: u8,
     unlocked_at_ms: Option<u32>,
+    /// When the last piece of a program came whose first one came under the key.
+    piece_at_ms: Option<u32>,
 }
 
 impl Slave {
@@ -86,6 +95,7 @@ impl Slave {
         Slave {
             unit,
             unlocked_at_ms: None,
+            piece_at_ms: None,
         }
     }
 
@@ -108,6 +118,7 @@ impl Slave {
         let mut command = None;
         let outcome = match function {
             READ_FILE => file::read(data, memory.files, &mut answer),
+            WRITE_FILE => self.write_file(now_ms, data, memory.desk, &mut answer),
             IDENTIFY => identity::read(data, memory, &mut answer),
             _ => self.execute(now_ms, function, data, memory, &mut answer, &mut command),
         };
@@ -172,6 +183,31 @@ impl Slave {
         }
     }
 
+    /// A piece of a program: the first one needs the key, the others the one before.
+    fn write_file(
+        &mut self,
+        now_ms: u32,
+        data: &[u8],
+        desk: &mut Desk,
+        answer: &mut Answer<'_>,
+    ) -> Result<(), Exception> {
+        let piece = Piece::of_request(data)?;
+        let goes_on = is_within(now_ms, self.piece_at_ms, PIECE_MS);
+        let begins = piece.is_first() && self.is_unlocked(now_ms);
+        if !goes_on && !begins {
+            return Err(Exception::Function);
+        }
+        let laid = piece.lay(desk.tray());
+        if !goes_on && laid.is_ok() {
+            self.unlocked_at_ms = None;
+        }
+        if goes_on || laid.is_ok() {
+            self.piece_at_ms = Some(now_ms);
+        }
+        answer.push_all(data);
+        laid
+    }
+
     fn read_holding(
         &self,
         now_ms: u32,
@@ -194,8 +230,7 @@ impl Slave {
     }
 
     fn is_unlocked(&self, now_ms: u32) -> bool {
-        self.unlocked_at_ms
-            .is_some_and(|since| now_ms.wrapping_sub(since) <= UNLOCK_MS)
+        is_within(now_ms, self.unlocked_at_ms, UNLOCK_MS)
     }
 
     fn write(
@@ -248,6 +283,11 @@ impl Slave {
         }
         Ok(command)
     }
+}
+
+/// Whether `since` was at most so long ago.
+fn is_within(now_ms: u32, since: Option<u32>, most_ms: u32) -> bool {
+    since.is_some_and(|since| now_ms.wrapping_sub(since) <= most_ms)
 }
 
 /// Every function here begins with two words.

@@ -4,6 +4,7 @@ use core::f32::consts::{SQRT_2, TAU};
 
 use micromath::F32Ext;
 use monitor::{CHANNELS, Lamp, Reason, Report, Suspicion, Window, likely, magnitude};
+use update::UpdateState;
 
 use super::entry::Field;
 use super::map::{Image, MAP_VERSION};
@@ -90,6 +91,23 @@ pub struct BoardStatus {
     /// What of the last one was refused.
     pub refused: Option<Refused>,
     /// Until the end of a trial, s; 0 where there is none.
+    pub trial_s: u16,
+    /// The update of the program.
+    pub update: UpdateStatus,
+    /// Version of the program, as [`update::Version`] packs it.
+    pub version: u32,
+}
+
+/// How the update of the program stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UpdateStatus {
+    /// How far it is.
+    pub state: UpdateState,
+    /// Why the last one was not taken.
+    pub refused: Option<update::Refusal>,
+    /// Bytes that were received.
+    pub bytes: u32,
+    /// Until the new program confirms itself, s; 0 without a trial.
     pub trial_s: u16,
 }
 
@@ -229,6 +247,16 @@ fn put_board(image: &mut Image, board: &BoardStatus) {
     image.set_long(Field::ProgramLength, length);
     image.set_long(Field::ProgramChecksum, checksum);
     put_identity(image, board);
+    put_update(image, &board.update);
+    image.set_long(Field::ProgramVersion, board.version);
+}
+
+fn put_update(image: &mut Image, update: &UpdateStatus) {
+    image.set_word(Field::Update, update.state as u16);
+    let refused = update.refused.map_or(0, |refused| refused as u16);
+    image.set_word(Field::UpdateRefused, refused);
+    image.set_long(Field::UpdateBytes, update.bytes);
+    image.set_word(Field::UpdateTrial, update.trial_s);
 }
 
 fn put_identity(image: &mut Image, board: &BoardStatus) {

@@ -230,5 +230,25 @@ pub const MAP: [Entry; FIELDS] = {
             "number of the newest second of this run; they count from 1; 0: no second yet",
         ),
         numbered(Motion, Meaning::Motion),
+        numbered(Update, Meaning::Updates),
+        numbered(UpdateRefused, Meaning::UpdateRefusals),
+        entry(
+            UpdateBytes,
+            Long,
+            "byte",
+            "of a program received since the last first piece; 0 after a start",
+        ),
+        entry(
+            UpdateTrial,
+            Word,
+            "s",
+            "until the new program confirms itself if nothing happens, 0 without a trial",
+        ),
+        entry(
+            ProgramVersion,
+            Long,
+            "",
+            "of the program: two numbers of 8 bits, the third of 16, the first in the highest",
+        ),
     ]
 };

@@ -15,7 +15,7 @@ pub struct Fault {
 }
 
 /// What is seen of a fault, by the name of the patch that takes its handling out.
-const SEEN: [(&str, &str); 56] = [
+const SEEN: [(&str, &str); 59] = [
     (
         "block-overwritten",
         "the gap is logged; the lamps stay as they are; no reset",
@@ -81,12 +81,21 @@ const SEEN: [(&str, &str); 56] = [
         "flash-nmi",
         "the old or the new calibration, never half of one",
     ),
+    (
+        "journal-nmi",
+        "the old or the new program, and the exchange goes on",
+    ),
     ("lamp-wires", "SENSOR blinks; nothing is learnt"),
     ("idle-conversion", "nothing: the supply reads right"),
     (
         "learn-doubted",
         "refused with the reason; the old values stay",
     ),
+    (
+        "loader-low-supply",
+        "nothing is erased; the exchange goes on afterwards",
+    ),
+    ("loader-watchdog", "the new program is checked and runs"),
     ("low-supply", "nothing is written; learning says so"),
     ("mean-single", "nothing: the voltage reads right"),
     ("modbus-damaged", "no answer; nothing changes"),
@@ -324,7 +333,7 @@ fn of_patch(path: &Path) -> Fault {
     let (place, name) = test.split_once(' ').expect("file and test");
     let file = match place {
         "board" | "monitor" => format!("crates/{place}"),
-        "safety" => "crates/virtual-board/tests/safety".to_owned(),
+        "safety" | "update" => format!("crates/virtual-board/tests/{place}"),
         file => format!("crates/virtual-board/tests/{file}.rs"),
     };
     Fault {

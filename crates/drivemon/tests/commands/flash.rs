@@ -27,14 +27,22 @@ impl Place {
         let path = self.root.join(path);
         let log = self.root.join("log");
         let text = format!(
-            "#!/bin/sh\necho \"$(basename \"$0\") $* motor=$DRIVE_MONITOR_MOTOR\" >> '{}'\nexit {code}\n",
+            "#!/bin/sh\necho \"$(basename \"$0\") $* motor=$DRIVE_MONITOR_MOTOR key=$DRIVE_MONITOR_UPDATE_KEY\" >> '{}'\nexit {code}\n",
             log.display()
         );
         fs::write(&path, text).expect("a file");
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("a mode");
     }
 
+    /// With a key of its own.
     fn run(&self, motor: &Path, more: &[&str]) -> Output {
+        let key = self.root.join("own.pub");
+        let text = format!("# drive-monitor, public key own: x\n{}\n", "5a".repeat(32));
+        fs::write(&key, text).expect("a file");
+        self.run_with(motor, more, key.to_str().expect("a path"))
+    }
+
+    fn run_with(&self, motor: &Path, more: &[&str], key: &str) -> Output {
         Command::new(env!("CARGO_BIN_EXE_drivemon"))
             .args(["flash", "--motor"])
             .arg(motor)
@@ -45,6 +53,8 @@ impl Place {
                 format!("{}:/usr/bin:/bin", self.root.join("bin").display()),
             )
             .env_remove("CARGO_TARGET_DIR")
+            .env_remove("DRIVE_MONITOR_MOTOR")
+            .env("DRIVE_MONITOR_UPDATE_KEY", key)
             .output()
             .expect("drivemon runs")
     }
@@ -78,22 +88,58 @@ fn it_builds_with_the_motor_then_writes_then_starts() {
     let output = place.run(&motor(), &[]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let log = place.log();
-    assert_eq!(log.len(), 3, "{log:?}");
+    assert_eq!(log.len(), 5, "{log:?}");
+    let begin = [
+        "thumb build --release -p loader motor= key=/",
+        "thumb build --release -p drive-monitor motor=/",
+        "probe-rs download --chip STM32G474RETx /",
+        "probe-rs download --chip STM32G474RETx /",
+        "probe-rs reset --chip STM32G474RETx",
+    ];
+    let contain = [
+        "own.pub",
+        "peer-2k2.toml ",
+        "target/thumbv7em-none-eabihf/release/loader ",
+        "target/thumbv7em-none-eabihf/release/drive-monitor ",
+        "",
+    ];
+    for ((line, begin), contained) in log.iter().zip(begin).zip(contain) {
+        assert!(
+            line.starts_with(begin) && line.contains(contained),
+            "{log:?}"
+        );
+    }
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("key of updates: /"), "{said}");
+}
+
+#[test]
+fn the_demo_key_goes_in_only_where_it_is_asked_for() {
+    let place = Place::new("demo-key");
+    place.program("tree/tools/thumb", 0);
+    place.program("bin/probe-rs", 0);
+    let message = error(&place.run_with(&motor(), &[], ""));
     assert!(
-        log[0].starts_with("thumb build --release -p drive-monitor motor=/"),
-        "{log:?}"
+        message.contains("drivemon board key new") && message.contains("--demo-key"),
+        "{message}"
     );
-    assert!(log[0].ends_with("peer-2k2.toml"), "{log:?}");
-    assert!(
-        log[1].starts_with("probe-rs download --chip STM32G474RETx /"),
-        "{log:?}"
-    );
-    assert!(
-        log[1].contains("target/thumbv7em-none-eabihf/release/drive-monitor "),
-        "{log:?}"
-    );
-    assert!(
-        log[2].starts_with("probe-rs reset --chip STM32G474RETx"),
+    let message = error(&place.run_with(&motor(), &[], "nowhere.pub"));
+    assert!(message.contains("nowhere.pub: cannot be read"), "{message}");
+    // In the environment by its file it is the demo key all the same, and a secret half is no key for a board.
+    let keys = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../keys");
+    let at = |name: &str| keys.join(name).display().to_string();
+    let message = error(&place.run_with(&motor(), &[], &at("demo.pub")));
+    assert!(message.contains("--demo-key"), "{message}");
+    let message = error(&place.run_with(&motor(), &[], &at("demo.key")));
+    assert!(message.contains("is the secret half"), "{message}");
+    assert!(place.log().is_empty());
+    let output = place.run(&motor(), &["--demo-key"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("key of updates: demo"), "{said}");
+    let log = place.log();
+    assert_eq!(
+        log[0], "thumb build --release -p loader motor= key=",
         "{log:?}"
     );
 }
@@ -105,7 +151,7 @@ fn a_dry_run_runs_nothing() {
     let output = place.run(&motor(), &["--dry-run"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert_eq!(said.matches("would run: ").count(), 3, "{said}");
+    assert_eq!(said.matches("would run: ").count(), 5, "{said}");
     assert!(place.log().is_empty());
 }
 

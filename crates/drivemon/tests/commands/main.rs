@@ -13,4 +13,5 @@ mod full_disk;
 mod import;
 mod live;
 mod outputs;
+mod programs;
 mod same_bytes;

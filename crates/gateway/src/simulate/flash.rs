@@ -2,10 +2,11 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use board::{LOG_PAGES, LogFlash, PAGE_BYTES};
+use board::{LOG_PAGES, PAGE_BYTES};
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
+use update::BackgroundFlash;
 
 /// The pages of the event log; every clone is the same flash.
 #[derive(Clone, Debug)]
@@ -88,7 +89,7 @@ impl NorFlash for Flash {
     }
 }
 
-impl LogFlash for Flash {
+impl BackgroundFlash for Flash {
     fn is_ready(&mut self) -> bool {
         true
     }

@@ -8,7 +8,7 @@ use recording::{Channel, Recording};
 use super::caveat::caveat;
 use super::clamp::{ClampSignal, clamp_signals};
 use super::doubts::{Doubting, reasons};
-use super::{BlindSpot, Checked, Told, VerdictState, blind, blind_spots, severity, todo};
+use super::{BlindSpot, Checked, Told, blind, blind_spots, severity, todo};
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
 use crate::{MotionSummary, Replay, Samples, Timeline, config_for, replay, words};
 

@@ -1,6 +1,8 @@
 //! The flash interface: access control, unlocking, erasing pages and programming double words; and power that fails
 //! while it does.
 
+use std::ops::Range;
+
 use crate::TICK_HZ;
 use crate::peripherals::registers::{Registers, Unmodelled};
 
@@ -30,10 +32,15 @@ const PROGRAM: u32 = 1;
 const PAGE_ERASE: u32 = 1 << 1;
 const START: u32 = 1 << 16;
 const END_OF_OPERATION: u32 = 1;
-/// SR: a page is being erased.
+/// SR: a double word was not blank; its second word came without the first.
+const PROGRAM_ERROR: u32 = 1 << 3;
+const SEQUENCE_ERROR: u32 = 1 << 7;
+/// SR: a page is being erased, or a double word programmed.
 const BUSY: u32 = 1 << 16;
-/// ms that a page takes (data sheet of the STM32G474, typical).
-const ERASE_MS: u64 = 22;
+/// What a page and a double word take (data sheet of the STM32G474, typical).
+const ERASE_TICKS: u64 = 22 * (TICK_HZ / 1_000);
+const PROGRAM_TICKS: u64 = 85 * (TICK_HZ / 1_000_000);
+const BLANK: [u8; 8] = [0xFF; 8];
 const RESET: &[(u32, u32)] = &[
     (0x00, 0x0004_0600), // ACR
     (CR, 0xC000_0000),
@@ -48,13 +55,17 @@ const PAGES_PER_BANK: u32 = 128;
 pub struct Flash {
     registers: Registers,
     status: u32,
-    /// The page that is being erased is blank then.
+    /// What is being erased or programmed is done then.
     busy_until: u64,
+    /// The double word whose first word was taken, and whether it was blank.
+    begun: Option<(u32, bool)>,
     key: u32,
     /// Steps (words programmed, pages erased) until power fails within one.
     steps_left: Option<u32>,
     /// Power has failed within a step.
     pub has_failed: bool,
+    /// Pages that were erased: what was translated of them before is no more what lies there.
+    pub erasures: u32,
     /// Double words whose programming was cut off: their error correction does not hold.
     broken: Vec<u32>,
     /// ECCR.
@@ -85,9 +96,11 @@ impl Flash {
             registers: Registers::new("FLASH", RESET),
             status: 0,
             busy_until: 0,
+            begun: None,
             key: 0,
             steps_left: None,
             has_failed: false,
+            erasures: 0,
             broken: Vec::new(),
             ecc: 0,
             option_key: 0,
@@ -181,9 +194,9 @@ impl Flash {
             .retain(|broken| !(address..address + PAGE).contains(broken));
     }
 
-    /// Whether any double word is broken.
-    pub fn has_broken(&self) -> bool {
-        !self.broken.is_empty()
+    /// Whether any double word of these addresses is broken.
+    pub fn has_broken(&self, addresses: &Range<u32>) -> bool {
+        self.broken.iter().any(|broken| addresses.contains(broken))
     }
 
     /// A read of the array; whether it raises the non-maskable interrupt. The emulator shows only the first read of each
@@ -208,14 +221,44 @@ impl Flash {
         cr & LOCK == 0 && cr & PROGRAM != 0
     }
 
-    /// Whether a page is being erased: nothing may be programmed, and a read of its bank would stall.
+    /// Whether a page is being erased or a double word programmed: nothing else may be, and a read of its bank would stall.
     pub fn is_busy(&self, now: u64) -> bool {
         now < self.busy_until
     }
 
-    /// Records a finished double word.
-    pub fn programmed(&mut self) {
-        self.status |= END_OF_OPERATION;
+    /// When it ends.
+    pub fn busy_until(&self) -> u64 {
+        self.busy_until
+    }
+
+    /// Whether the chip takes the word for `address`: the first and then the second of a double word that is blank, and no
+    /// other, but for zeros. `old` is the double word as it is.
+    pub fn takes(&mut self, address: u32, old: [u8; 8], new: [u8; 4]) -> bool {
+        let first = address & !7;
+        let begun = self.begun.take();
+        let blank = match begun {
+            _ if address == first => old == BLANK && !self.broken.contains(&first),
+            Some((begun, blank)) if begun == first => blank,
+            _ => {
+                self.status |= SEQUENCE_ERROR;
+                return false;
+            }
+        };
+        let taken = blank || new == [0; 4];
+        if !taken {
+            self.status |= PROGRAM_ERROR;
+        } else if address == first {
+            self.begun = Some((first, blank));
+        }
+        taken
+    }
+
+    /// Records a word; with the second one the double word is programmed.
+    pub fn programmed(&mut self, address: u32, now: u64) {
+        if !address.is_multiple_of(8) {
+            self.status |= END_OF_OPERATION;
+            self.busy_until = now + PROGRAM_TICKS;
+        }
     }
 
     /// A bus read.
@@ -231,7 +274,7 @@ impl Flash {
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Result<Option<u32>, Unmodelled> {
         match offset {
             CR if self.is_busy(now) => {
-                let access = format!("write of {value:#x} while a page is being erased");
+                let access = format!("write of {value:#x} while it is busy");
                 return Err(self.registers.unmodelled(access, offset));
             }
             KEYR => {
@@ -284,7 +327,7 @@ impl Flash {
             return None;
         }
         self.status |= END_OF_OPERATION;
-        self.busy_until = now + ERASE_MS * (TICK_HZ / 1_000);
+        self.busy_until = now + ERASE_TICKS;
         let (page, bank) = (command >> 3 & 0x7F, command >> 11 & 1);
         Some((bank * PAGES_PER_BANK + page) * PAGE)
     }

@@ -56,6 +56,8 @@ pub(crate) struct Cpu {
     pub stacks_floats: bool,
     /// Address of the WFE at which the program sleeps.
     asleep: Option<u32>,
+    /// Pages of flash that were erased when the translation was forgotten last.
+    erasures: u32,
     /// A fault within the handler of a fault: nothing runs until a reset.
     pub locked_up: bool,
 }
@@ -72,6 +74,7 @@ impl Cpu {
             core,
             stacks_floats: true,
             asleep: None,
+            erasures: 0,
             locked_up: false,
         })
     }
@@ -189,6 +192,10 @@ impl Cpu {
         }
         for (address, bytes) in std::mem::take(&mut self.machine().writes).0 {
             self.core.mem_write(u64::from(address), &bytes)?;
+        }
+        let erasures = self.machine().flash.erasures;
+        if std::mem::replace(&mut self.erasures, erasures) != erasures {
+            self.core.ctl_flush_tb()?;
         }
         self.feed()
     }

@@ -17,8 +17,9 @@ use virtual_board::{Inputs, VirtualBoard};
 
 /// Blocks of 32 samples that the firmware throws away after power-up: one after every start, 31 after this one.
 pub const INHIBITED: usize = 32 * 32;
-/// The lamp test lasts nine times 0.15 s; the test of the RAM comes before it, that of the flash behind. Sampling begins then.
-pub const LAMP_TEST_S: f64 = 1.445;
+/// The lamp test lasts nine times 0.15 s; the loader (5 ms) and the test of the RAM come before it, that of the flash behind.
+/// Sampling begins then.
+pub const LAMP_TEST_S: f64 = 1.45;
 /// Two windows of a 60 Hz supply and a block, in instants: the lag that the lamps may have.
 const LAG: usize = 2 * 167 + 32;
 

@@ -49,7 +49,7 @@ impl NorFlash for Background {
     }
 }
 
-impl LogFlash for Background {
+impl BackgroundFlash for Background {
     fn is_ready(&mut self) -> bool {
         match &mut self.erasing {
             None => true,

@@ -16,6 +16,7 @@ use crate::image::{IMAGE_WORDS, MotorImage};
 
 mod configuration;
 mod objects;
+mod program;
 
 const UNIT: u8 = 17;
 
@@ -253,6 +254,11 @@ fn others_broadcasts_and_damage_are_met_with_silence() {
 #[derive(Default)]
 struct Law {
     unlocked: bool,
+    /// The first piece of a program came under the key.
+    receives: bool,
+    /// Where a piece lies that nobody has taken yet, and where the next one begins.
+    lies: Option<(u32, Vec<u8>)>,
+    next: u32,
 }
 
 impl Law {
@@ -275,7 +281,7 @@ impl Law {
                     self.unlocked = false;
                     return None;
                 }
-                (1, [0, code @ (1..=7)]) if self.unlocked => {
+                (1, [0, code @ (1..=9)]) if self.unlocked => {
                     self.unlocked = false;
                     command = Some(Command::ALL[usize::from(code) - 1]);
                 }
@@ -284,12 +290,47 @@ impl Law {
         }
         command
     }
+
+    /// A piece that may be laid down now: of a sealed frame that says what it is.
+    fn lays(&mut self, frame: &[u8]) -> Option<(u32, Vec<u8>)> {
+        let body = frame.get(..frame.len().checked_sub(2)?)?;
+        if sealed(body) != frame {
+            return None;
+        }
+        let [
+            UNIT,
+            21,
+            bytes,
+            6,
+            0,
+            file @ (4 | 5),
+            a,
+            b,
+            0,
+            words @ 1..=120,
+            piece @ ..,
+        ] = body
+        else {
+            return None;
+        };
+        let offset = (u32::from(*file) - 4) * 131_072 + 2 * u32::from(u16::from_be_bytes([*a, *b]));
+        let shape =
+            piece.len() == 2 * usize::from(*words) && usize::from(*bytes) == 7 + piece.len();
+        let may = self.receives || offset == 0 && self.unlocked;
+        let place = self.lies.is_none() && offset <= self.next && offset % 8 == 0;
+        if !shape || !may || !place {
+            return None;
+        }
+        self.unlocked &= self.receives;
+        self.receives = true;
+        Some((offset, piece.to_vec()))
+    }
 }
 
 fn random_frame(random: &mut Pcg64Mcg) -> Vec<u8> {
     let length = random.random_range(0..=MAX_REQUEST_BYTES + 8);
     let mut bytes: Vec<u8> = (0..length).map(|_| random.random()).collect();
-    let values = [0, 1, 2, 3, 0x4D, 0x4D, random.random()];
+    let values = [0, 1, 2, 3, 9, 0x4D, 0x4D, random.random()];
     let mut pick = || values[random.random_range(0..values.len())];
     match pick() % 4 {
         0 => bytes,
@@ -302,15 +343,39 @@ fn random_frame(random: &mut Pcg64Mcg) -> Vec<u8> {
     }
 }
 
+/// A piece of at most one portion that lies in the tray.
+fn lying(tray: &update::Tray) -> Option<(u32, Vec<u8>)> {
+    let portion = tray.portion()?;
+    let length = (portion.end() - portion.offset) as usize;
+    Some((portion.offset, portion.padded()[..length].to_vec()))
+}
+
 /// Of the right shape or nearly so.
 fn near_request(mut pick: impl FnMut() -> u8) -> Vec<u8> {
-    match pick() % 3 {
+    match pick() % 4 {
         0 => vec![UNIT, 3 + pick() % 2, 0, pick(), 0, pick()],
         1 => vec![UNIT, 6, 0, pick() % 2, pick(), pick()],
-        _ => {
+        2 => {
             let count = 1 + pick() % 2;
             let mut frame = vec![UNIT, 16, 0, pick() % 2, 0, count, 2 * count];
             frame.extend((0..2 * count + pick() % 2).map(|_| pick()));
+            frame
+        }
+        _ => {
+            let words = pick() % 4;
+            let mut frame = vec![
+                UNIT,
+                21,
+                7 + 2 * words,
+                6,
+                0,
+                4 + pick() % 2,
+                0,
+                4 * (pick() % 3),
+                0,
+                words,
+            ];
+            frame.extend((0..2 * words + pick() % 2).map(|_| pick()));
             frame
         }
     }
@@ -322,7 +387,8 @@ fn a_million_random_frames_change_nothing_that_they_may_not_and_a_good_one_is_an
     let mut slave = Slave::new(UNIT);
     let (mut law, mut desk) = (Law::default(), desk());
     let active = desk.active().clone();
-    let mut commands = 0;
+    let (mut commands, mut pieces) = (0, 0);
+    desk.tray().set_open(true);
     for round in 0..1_000_000 {
         let frame = random_frame(&mut random);
         let mut collector = Collector::default();
@@ -335,11 +401,23 @@ fn a_million_random_frames_change_nothing_that_they_may_not_and_a_good_one_is_an
         };
         assert_eq!(command, law.allows(received), "frame {round}: {frame:02x?}");
         commands += u32::from(command.is_some());
+        if let Some((offset, piece)) = law.lays(received) {
+            law.lies = Some((offset, piece));
+            pieces += 1;
+        }
+        assert_eq!(lying(desk.tray()), law.lies, "frame {round}: {frame:02x?}");
+        if round % 3 == 0
+            && let Some((offset, piece)) = law.lies.take()
+        {
+            law.next = offset + piece.len() as u32;
+            desk.tray().settle(law.next);
+        }
     }
     assert!(
         commands > 100,
         "only {commands} commands: the frames are too far from real ones"
     );
+    assert!(pieces > 100, "only {pieces} pieces of a program");
     assert_eq!(desk.active(), &active);
     assert_alive(&mut slave);
 }

@@ -4,13 +4,14 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use campaign::slurm::{Array, in_shell};
 use clap::Args;
 use recording::{Flags, quoted};
 use report::study::batch::{self as rows_of, Row, Store, StoreError, read_table};
 
 use crate::cli::arguments::files::Files;
 use crate::cli::arguments::input::InputArgs;
-use crate::cli::commands::engine::{Array, Engine, EngineArgs, absolute, in_shell, program};
+use crate::cli::commands::engine::{Engine, EngineArgs, absolute, program};
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::terminal::{complain, say};
 use crate::cli::printing::{paint, progress};

@@ -2,7 +2,7 @@
 
 /// Until Ctrl-C is pressed or the system asks the process to end. Without such signals a server lives until its
 /// process is ended.
-pub(super) async fn told_to_end() {
+pub(crate) async fn told_to_end() {
     let pressed = async {
         if tokio::signal::ctrl_c().await.is_err() {
             std::future::pending::<()>().await;

@@ -1,26 +1,31 @@
 //! `drivemon flash`: a motor file onto the board.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus};
 
 use clap::Args;
+use program::flashing::{BUILD_SCRIPT, build, restart, write};
+use program::{Half, KeyFile};
 
 use super::board::motor;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::paint;
 use crate::cli::printing::terminal::say;
 
-/// Build the firmware for one motor and write it to a board.
+/// Build loader and firmware for one motor and write them to a board.
 ///
-/// The motor file is checked first, as every command checks it; then `tools/thumb` builds the firmware with its constants
-/// and probe-rs writes it through the debugger of the NUCLEO. What the board has learnt stays in its flash, but holds only
-/// for the motor constants that it was learnt with.
+/// The motor file is checked first, as every command checks it; then `tools/thumb` builds the loader with the public key of
+/// DRIVE_MONITOR_UPDATE_KEY and the firmware with the motor's constants, and probe-rs writes both through the debugger of the
+/// NUCLEO. From then on the board takes programs over its line that were signed with that key. What the board has learnt stays
+/// in its flash, but holds only for the motor constants that it was learnt with.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Flash {
     /// Motor file
     #[arg(long, value_name = "M")]
     motor: PathBuf,
+    /// Let the board take programs that were signed with the demo key, which everybody has
+    #[arg(long)]
+    demo_key: bool,
     /// Check the motor file and say what would be done; build and write nothing
     #[arg(long)]
     dry_run: bool,
@@ -33,14 +38,15 @@ const EXAMPLES: &str = "\
 Examples:
   drivemon flash --motor motors/mine.toml --dry-run      is the file fit for the board, and what would be run?
   drivemon flash --motor motors/mine.toml                build, write, start
+  drivemon flash --motor motors/mine.toml --demo-key     the same for a board on a desk
+DRIVE_MONITOR_UPDATE_KEY names the file of the public key, 64 hexadecimal digits; `drivemon board key new` makes one.
 Needs: the source tree; a compiler for the board (tools/thumb says which); probe-rs (cargo install probe-rs-tools);
 the NUCLEO-G474RE on USB. Afterwards: docs/firmware.md, first power-up; `drivemon monitor --serial PORT` shows its lamps.
-Exit codes: 0 done, 2 the motor file, the build, probe-rs or the board.";
+Exit codes: 0 done, 2 the motor file, the key, the build, probe-rs or the board.";
 
-const CHIP: &str = "STM32G474RETx";
 const TARGET: &str = "thumbv7em-none-eabihf";
-/// What tells the source tree from any other folder.
-const BUILD_SCRIPT: &str = "tools/thumb";
+const FIRMWARE: &str = "drive-monitor";
+const KEY_VARIABLE: &str = "DRIVE_MONITOR_UPDATE_KEY";
 
 impl Flash {
     /// Runs the command.
@@ -49,23 +55,51 @@ impl Flash {
         let (name, _) = motor::read(&self.motor)?;
         let tree = self.source_tree()?;
         let motor = absolute(&self.motor)?;
-        let elf = target_folder(&tree)
-            .join(TARGET)
-            .join("release/drive-monitor");
+        let key = self.key()?;
         say!(
             "{}  {name}",
             paint::strong(&self.motor.display().to_string())
         );
-        let steps = [build(&tree, &motor), write(&elf), restart()];
+        say!("{}", told(key.as_deref()));
+        let built = target_folder(&tree).join(TARGET).join("release");
+        let steps = [
+            build(&tree, "loader", (KEY_VARIABLE, key.as_deref())),
+            build(&tree, FIRMWARE, ("DRIVE_MONITOR_MOTOR", Some(&motor))),
+            write(&built.join("loader")),
+            write(&built.join(FIRMWARE)),
+            restart(),
+        ];
         if self.dry_run {
             for step in &steps {
-                say!("would run: {}", step.shown);
+                say!("would run: {}", step.shown());
             }
             return Ok(Finding::Nothing);
         }
-        steps.into_iter().try_for_each(Step::run)?;
+        for step in steps {
+            say!("{} {}", paint::faint("running"), step.shown());
+            step.run()?;
+        }
         say!("{}", paint::good("written and started"));
         Ok(Finding::Nothing)
+    }
+
+    /// The file of the public key that goes into the loader; `None` for the demo key.
+    fn key(&self) -> Result<Option<PathBuf>, Failure> {
+        if self.demo_key {
+            return Ok(None);
+        }
+        let named = std::env::var_os(KEY_VARIABLE).filter(|path| !path.is_empty());
+        let path = named.map(|path| absolute(Path::new(&path))).transpose()?;
+        let key = path
+            .as_deref()
+            .map(|path| KeyFile::read(path, Half::Public));
+        match key.transpose()? {
+            Some(key) if !key.is_demo() => Ok(path),
+            _ => Err(Failure::Usage(format!(
+                "{KEY_VARIABLE} names no key of your own, so the board would take programs from everybody who has the demo key; \
+                 make one with `drivemon board key new` and name its public half there, or say --demo-key"
+            ))),
+        }
     }
 
     fn source_tree(&self) -> Result<PathBuf, Failure> {
@@ -100,78 +134,10 @@ fn target_folder(tree: &Path) -> PathBuf {
         .map_or_else(|| tree.join("target"), |folder| tree.join(folder))
 }
 
-/// One program to run.
-struct Step {
-    command: Command,
-    shown: String,
-    absent: &'static str,
-    failed: &'static str,
-}
-
-fn build(tree: &Path, motor: &Path) -> Step {
-    let mut command = Command::new(tree.join(BUILD_SCRIPT));
-    let arguments = ["build", "--release", "-p", "drive-monitor"];
-    command
-        .current_dir(tree)
-        .args(arguments)
-        .env("DRIVE_MONITOR_MOTOR", motor);
-    Step {
-        command,
-        shown: format!(
-            "DRIVE_MONITOR_MOTOR={} {BUILD_SCRIPT} {}",
-            motor.display(),
-            arguments.join(" ")
-        ),
-        absent: "it needs bash; on Windows use WSL",
-        failed: "the firmware was not built; the compiler's messages above say why",
-    }
-}
-
-fn write(elf: &Path) -> Step {
-    probe_rs(
-        &["download", "--chip", CHIP],
-        Some(elf),
-        "the board was not written: is the NUCLEO on USB, and no other debugger open? `probe-rs list` shows the probes",
-    )
-}
-
-fn restart() -> Step {
-    probe_rs(
-        &["reset", "--chip", CHIP],
-        None,
-        "the board is written but was not started: press its reset button",
-    )
-}
-
-fn probe_rs(arguments: &[&str], file: Option<&Path>, failed: &'static str) -> Step {
-    let mut command = Command::new("probe-rs");
-    command.args(arguments).args(file);
-    let file = file.map_or(String::new(), |file| format!(" {}", file.display()));
-    Step {
-        command,
-        shown: format!("probe-rs {}{file}", arguments.join(" ")),
-        absent: "install it: cargo install probe-rs-tools --locked, or see https://probe.rs",
-        failed,
-    }
-}
-
-impl Step {
-    fn run(mut self) -> Result<(), Failure> {
-        say!("{} {}", paint::faint("running"), self.shown);
-        let status = self.command.status().map_err(|error| {
-            let (shown, remedy) = (&self.shown, self.absent);
-            Failure::Usage(format!("{shown}: cannot be run: {error}; {remedy}"))
-        })?;
-        self.judge(status)
-    }
-
-    fn judge(&self, status: ExitStatus) -> Result<(), Failure> {
-        if status.success() {
-            return Ok(());
-        }
-        Err(Failure::Usage(format!(
-            "{}: {status}; {}",
-            self.shown, self.failed
-        )))
+/// Which key goes in.
+fn told(key: Option<&Path>) -> String {
+    match key {
+        Some(path) => format!("key of updates: {}", path.display()),
+        None => "key of updates: demo; everybody has its secret half, so anybody on the line can give this board a program".into(),
     }
 }

@@ -5,7 +5,6 @@ pub(crate) mod board;
 pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod completions;
-#[cfg(any(feature = "panel", feature = "gateway"))]
 mod ending;
 mod engine;
 pub(crate) mod export;

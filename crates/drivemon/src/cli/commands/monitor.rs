@@ -188,9 +188,6 @@ const ONE_TRACE: &str = "--trace writes the windows of one recording, and severa
 const NO_LIVE_REPORT: &str = "--report draws a recording, and a running board sends none: fetch its samples with \
     --motor M --capture FILE.csv, then run drivemon monitor FILE.csv --motor M --report FILE.html";
 
-/// A dark answer that something contradicts.
-const DOES_NOT_FIT: &str = "not judged: no fault was lit, and something does not fit";
-
 /// More lamp changes than this are left to the JSON.
 const LONGEST_TIMELINE: usize = 40;
 
@@ -214,7 +211,10 @@ fn print(result: &Monitored) {
     }
     match result.verdict.state {
         VerdictState::Healthy if !result.doubts.is_empty() => {
-            say!("{}", paint::caution(DOES_NOT_FIT));
+            say!(
+                "{}",
+                paint::caution("not judged: no fault was lit, and something does not fit")
+            );
         }
         _ => print_verdict(timeline, &result.verdict),
     }

@@ -69,6 +69,15 @@ pub enum Failure {
     /// A board on its Modbus line.
     #[error(transparent)]
     Board(#[from] live::ModbusError),
+    /// Its registers.
+    #[error(transparent)]
+    Registers(#[from] live::RegistersError),
+    /// A program, its key or its package.
+    #[error(transparent)]
+    Program(#[from] program::Error),
+    /// A program that did not reach a board.
+    #[error(transparent)]
+    Sending(#[from] program::sending::SendError),
     /// The data do not support an answer.
     #[error("{0}")]
     Unsupported(String),

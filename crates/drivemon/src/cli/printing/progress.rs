@@ -13,6 +13,13 @@ pub fn bar(title: &'static str, length: u64) -> ProgressBar {
     bar
 }
 
+/// Says what is being waited for; invisible when stderr is no terminal.
+pub fn spinner() -> ProgressBar {
+    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    spinner.enable_steady_tick(std::time::Duration::from_millis(120));
+    spinner
+}
+
 /// Follows the reading of a file with a bar.
 pub fn reading(bar: &ProgressBar) -> impl FnMut(Progress) + '_ {
     |progress| {

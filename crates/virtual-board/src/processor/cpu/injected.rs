@@ -1,14 +1,21 @@
 //! What a test does to the processor and its memory from outside: faults, calls, broken flash.
 
+use std::ops::Range;
+
 use unicorn_engine::{Prot, Unicorn};
+use update::layout::{JOURNAL, PROGRAM, WAITING};
 
 use super::{Cpu, FLASH, FLASH_SIZE, R, RAM, RAM_SIZE};
 use crate::error::BoardError;
 use crate::machine::Machine;
 
-/// The last pages, which the program erases and programs: configuration, event log and calibration.
-const STORED_SIZE: u32 = 14 * crate::peripherals::flash::PAGE;
-const STORED: u32 = FLASH + FLASH_SIZE - STORED_SIZE;
+/// What is erased and programmed, and what may go on unseen beside a broken double word: the journal of updates, the program,
+/// which runs; in bank 2 what waits, configuration, event log and calibration.
+const CHANGED: [(Range<u32>, Prot); 3] = [
+    (FLASH + JOURNAL..FLASH + PROGRAM, Prot::NONE),
+    (FLASH + PROGRAM..FLASH + WAITING, Prot::EXEC),
+    (FLASH + WAITING..FLASH + FLASH_SIZE, Prot::NONE),
+];
 const CORE_REGISTERS: [R; 13] = [
     R::R0,
     R::R1,
@@ -110,16 +117,17 @@ impl Cpu {
         self.asleep = None;
     }
 
-    /// Makes reads of the pages of configuration, event log and calibration visible while a double word in flash is broken: a hook on every read would
-    /// slow all of them down.
+    /// Makes reads of flash visible beside double words that are broken: a hook on every read would slow all of them down.
     pub fn guard_flash(&mut self) -> Result<(), BoardError> {
-        let readable = if self.machine().flash.has_broken() {
-            Prot::NONE
-        } else {
-            Prot::READ
-        };
-        self.core
-            .mem_protect(u64::from(STORED), u64::from(STORED_SIZE), readable)?;
+        for (places, beside) in CHANGED {
+            let allowed = match self.machine().flash.has_broken(&places) {
+                true => beside,
+                false => beside | Prot::READ,
+            };
+            let size = u64::from(places.end - places.start);
+            self.core
+                .mem_protect(u64::from(places.start), size, allowed)?;
+        }
         Ok(())
     }
 }

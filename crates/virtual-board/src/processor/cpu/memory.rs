@@ -1,6 +1,7 @@
 //! The memory map, and what happens when the program reads, writes or executes there.
 
 use unicorn_engine::{Prot, Unicorn, uc_error};
+use update::layout::BANK_BYTES;
 
 use super::{Core, FLASH, FLASH_SIZE, R, RAM, RAM_SIZE, RETURNS};
 use crate::machine::Machine;
@@ -99,16 +100,18 @@ fn erase(core: &mut Unicorn<'_, Machine>, page: u32) {
             core.mem_write(u64::from(address), &bytes)
         });
     let machine = core.get_data_mut();
+    machine.flash.erasures = machine.flash.erasures.wrapping_add(1);
     match (erased, kept) {
         (Err(error), _) => machine.failure = Some(format!("erasing at {page:#x}: {error:?}")),
         (Ok(()), 0) => machine.flash.mend_page(address),
         (Ok(()), _) => {}
     }
+    stall(core, address);
 }
 
 /// Counts time, and leaves the emulation when something is due, before the block runs.
 pub(super) fn hook_blocks(core: &mut Core) -> Result<(), uc_error> {
-    let mut known = std::collections::HashMap::new();
+    let (mut known, mut erasures) = (std::collections::HashMap::new(), 0);
     let mut conditions = Conditions::default();
     let hook = move |core: &mut Unicorn<'_, Machine>, address: u64, size: u32| {
         let waiting = core.get_data().nvic.is_waiting();
@@ -125,6 +128,10 @@ pub(super) fn hook_blocks(core: &mut Core) -> Result<(), uc_error> {
             machine.executed_forbidden = true;
             let _ = core.emu_stop();
             return;
+        }
+        if machine.flash.erasures != erasures {
+            erasures = machine.flash.erasures;
+            known.clear();
         }
         let block = known.entry((address, size)).or_insert_with(|| {
             let bytes = core.mem_read_as_vec(address, size as usize);
@@ -155,10 +162,16 @@ pub(super) fn hook_flash(core: &mut Core) -> Result<(), uc_error> {
             }
             let machine = core.get_data_mut();
             if machine.flash.is_busy(machine.now) {
-                machine.failure = Some(format!("{address:#x} programmed while a page is erased"));
+                machine.failure = Some(format!("{address:#x} programmed while flash is busy"));
                 return false;
             }
-            program(core, address, &value.to_le_bytes()[..size.min(8)]).is_ok()
+            match (size, address % 4) {
+                (4, 0) => program(core, address, (value as u32).to_le_bytes()).is_ok(),
+                _ => {
+                    machine.failure = Some(format!("{size} bytes programmed at {address:#x}"));
+                    false
+                }
+            }
         };
     core.add_mem_hook(HookType::MEM_WRITE_PROT, 1, 0, write)?;
     let unreachable =
@@ -178,7 +191,23 @@ pub(super) fn hook_flash(core: &mut Core) -> Result<(), uc_error> {
         .map(|_| ())
 }
 
-fn program(core: &mut Unicorn<'_, Machine>, address: u64, new: &[u8]) -> Result<(), uc_error> {
+/// Code stands still while its own bank is erased or programmed.
+fn stall(core: &mut Unicorn<'_, Machine>, address: u32) {
+    let pc = core.reg_read(R::PC).unwrap_or(0) as u32;
+    let bank = |address: u32| address.wrapping_sub(FLASH) / BANK_BYTES;
+    let machine = core.get_data_mut();
+    if bank(pc) == bank(address) && machine.flash.is_busy(machine.now) {
+        machine.now = machine.flash.busy_until();
+        machine.next_event = machine.now;
+    }
+}
+
+fn program(core: &mut Unicorn<'_, Machine>, address: u64, new: [u8; 4]) -> Result<(), uc_error> {
+    let mut double = [0; 8];
+    core.mem_read(address & !7, &mut double)?;
+    if !core.get_data_mut().flash.takes(address as u32, double, new) {
+        return Ok(());
+    }
     let old = core.mem_read_as_vec(address, new.len())?;
     let kept = match core.get_data_mut().flash.step() {
         Step::Whole => 0,
@@ -190,10 +219,12 @@ fn program(core: &mut Unicorn<'_, Machine>, address: u64, new: &[u8]) -> Result<
         .map(|(k, (old, new))| old & (new | kept.rotate_left(8 * k as u32) as u8))
         .collect();
     let machine = core.get_data_mut();
-    machine.flash.programmed();
+    machine.flash.programmed(address as u32, machine.now);
     if machine.flash.has_failed {
         machine.flash.break_word(address as u32);
         machine.next_event = machine.now;
     }
-    core.mem_write(address, &result)
+    core.mem_write(address, &result)?;
+    stall(core, address as u32);
+    Ok(())
 }

@@ -114,7 +114,7 @@ fn the_samples_around_an_alarm_are_the_third_file() {
 #[test]
 fn parts_of_files_that_do_not_exist_get_an_exception() {
     let end = (LOG_EVENTS * EVENT_BYTES as u32 / 2) as u16;
-    assert_eq!(refused(&file_request(&[(4, 0, 1)])), 2, "no such file");
+    assert_eq!(refused(&file_request(&[(9, 0, 1)])), 2, "no such file");
     assert_eq!(refused(&file_request(&[(EVENT_FILE, end, 1)])), 2);
     assert_eq!(refused(&file_request(&[(EVENT_FILE, end - 1, 2)])), 2);
     assert_eq!(refused(&file_request(&[(EVENT_FILE, 0, 0)])), 3);

@@ -10,7 +10,7 @@ use board::{
     RelayMode, STAGED,
 };
 use clap::{Args, ValueEnum};
-use live::ModbusLine;
+use live::{ModbusLine, Registers};
 use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,7 +18,6 @@ use serde::Serialize;
 use super::line::{LineArgs, Parity};
 use super::motor::{self, T_SAMPLE};
 use super::order::order;
-use super::registers::Registers;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::JsonArgs;
 use crate::cli::printing::terminal::say;

@@ -3,12 +3,12 @@
 use board::modbus::Field;
 use board::{Event, EventCause, LOG_EVENTS};
 use clap::Args;
+use live::Registers;
 use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::LineArgs;
-use super::registers::Registers;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::JsonArgs;
 use crate::cli::printing::terminal::say;

@@ -3,13 +3,14 @@
 mod configure;
 mod events;
 mod identify;
+mod key;
 mod line;
 pub(super) mod motor;
 mod order;
-mod places;
+mod package;
 mod read;
 mod record;
-mod registers;
+mod update;
 
 use clap::{Args, Subcommand};
 
@@ -34,6 +35,7 @@ Examples:
   drivemon board identify --serial /dev/ttyUSB0          which board it is: program, serial number, motor, calibration
   drivemon board record --serial /dev/ttyUSB0 --elf drive-monitor     the same with function, file and line
   drivemon board prepare --serial COM4                   a new board: write its option bytes, once
+  drivemon board update new.dmu --serial /dev/ttyUSB0    another program, signed with your key (board key, board package)
 Needs: an RS-485 adapter on the board's A and B (docs/wiring.md). Factory settings: 19200 bit/s, even parity, unit 1.
 Exit codes: 0 done and nothing found, 1 a doubt or a crash, 2 bad usage, no answer, or a refusal.";
 
@@ -47,6 +49,9 @@ enum Command {
     Prepare(order::Prepare),
     Acknowledge(order::Acknowledge),
     Learn(order::Learn),
+    Key(key::Key),
+    Package(package::MakePackage),
+    Update(update::Update),
 }
 
 impl Board {
@@ -61,6 +66,9 @@ impl Board {
             Command::Prepare(prepare) => prepare.run(),
             Command::Acknowledge(acknowledge) => acknowledge.run(),
             Command::Learn(learn) => learn.run(),
+            Command::Key(key) => key.run(),
+            Command::Package(package) => package.run(),
+            Command::Update(update) => update.run(),
         }
     }
 }

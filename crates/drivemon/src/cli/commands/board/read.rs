@@ -1,12 +1,12 @@
 //! `drivemon board read`: the whole register map.
 
 use clap::Args;
+use live::Registers;
 use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::LineArgs;
-use super::registers::Registers;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::JsonArgs;
 use crate::cli::printing::paint;

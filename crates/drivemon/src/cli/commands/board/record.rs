@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use board::modbus::Field;
 use board::{Doubts, FaultCause, FaultRecord};
 use clap::Args;
+use live::Registers;
+use program::Places;
 use report::json::Answer;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::line::LineArgs;
-use super::places::Program;
-use super::registers::{self, Registers};
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::JsonArgs;
 use crate::cli::printing::paint;
@@ -63,7 +63,7 @@ impl Record {
     /// Runs the command.
     pub fn run(&self) -> Result<Finding, Failure> {
         // A wrong file is told before the line is asked.
-        let program = self.elf.as_deref().map(Program::read).transpose()?;
+        let program = self.elf.as_deref().map(Places::read).transpose()?;
         let registers = Registers::read(&mut self.line.open()?)?;
         if let Some(program) = &program {
             check_seal(program, &registers)?;
@@ -81,7 +81,7 @@ impl Record {
 }
 
 /// Another program's lines would be wrong ones.
-fn check_seal(program: &Program, registers: &Registers) -> Result<(), Failure> {
+fn check_seal(program: &Places, registers: &Registers) -> Result<(), Failure> {
     let board = (
         registers.long(Field::ProgramLength),
         registers.long(Field::ProgramChecksum),
@@ -95,7 +95,7 @@ fn check_seal(program: &Program, registers: &Registers) -> Result<(), Failure> {
     }
 }
 
-fn tell(registers: &Registers, program: Option<&Program>) -> RecordJson {
+fn tell(registers: &Registers, program: Option<&Places>) -> RecordJson {
     let crash = registers.crash();
     let place = |address: fn(&FaultRecord) -> u32| match (program, &crash) {
         (Some(program), Some(crash)) if address(crash) != 0 => program.place(address(crash)),
@@ -131,7 +131,7 @@ fn print(told: &RecordJson, doubts: Doubts, has_program: bool) {
             told.crashes
         );
     }
-    say!("doubts     {}", registers::doubts(doubts));
+    say!("doubts     {}", live::doubts_in_words(doubts));
     say!("stack      {} byte at most", told.stack_bytes);
     say!("running    for {} s", told.uptime_s);
 }
@@ -140,7 +140,7 @@ fn print_crash(told: &RecordJson, crash: &FaultRecord, has_program: bool) {
     let after = f64::from(crash.uptime_ms) / 1_000.0;
     say!("{} after {after:.1} s", paint::error(crash.cause.label()));
     match crash.cause {
-        FaultCause::Watchdog => say!("missing    {}", marks(crash.address)),
+        FaultCause::Watchdog => say!("missing    {}", live::missing_marks(crash.address)),
         FaultCause::Panic => {
             let file = told.panicked_in.clone();
             let file = file.unwrap_or_else(|| format!("file at {:#010x}", crash.address));
@@ -168,49 +168,11 @@ fn print_registers(told: &RecordJson, crash: &FaultRecord) {
     if crash.address != 0 {
         say!("address    {:#010x}", crash.address);
     }
-    let faults = fault_status(crash.cfsr);
+    let faults = live::fault_status(crash.cfsr);
     if !faults.is_empty() {
         say!("because    {}", faults.join(", "));
     }
     if crash.sp != 0 {
         say!("stack at   {:#010x}", crash.sp);
     }
-}
-
-fn marks(missing: u32) -> String {
-    let names = ["blocks of samples", "the Modbus task", "the self-test"];
-    let named = names
-        .into_iter()
-        .enumerate()
-        .filter(|(k, _)| missing >> k & 1 == 1);
-    let named: Vec<&str> = named.map(|(_, name)| name).collect();
-    match named.len() {
-        0 => "nothing that was noted".into(),
-        3 => format!("{}: the program stood", named.join(", ")),
-        _ => named.join(", "),
-    }
-}
-
-/// Bits of the fault status register in words (ARMv7-M, B3.2.15).
-fn fault_status(cfsr: u32) -> Vec<&'static str> {
-    let bits = [
-        (0, "executed where memory protection forbids it"),
-        (1, "reached where memory protection forbids it"),
-        (4, "stack beyond its memory (protection)"),
-        (8, "fetched an instruction from where nothing is"),
-        (9, "reached an address where nothing is"),
-        (
-            10,
-            "reached an address where nothing is, some instructions before",
-        ),
-        (12, "stack beyond its memory"),
-        (16, "undefined instruction"),
-        (17, "branched to an address of another instruction set"),
-        (18, "wrong return from an exception"),
-        (19, "no coprocessor"),
-        (24, "unaligned access"),
-        (25, "division by zero"),
-    ];
-    let set = bits.into_iter().filter(|(bit, _)| cfsr >> bit & 1 == 1);
-    set.map(|(_, words)| words).collect()
 }

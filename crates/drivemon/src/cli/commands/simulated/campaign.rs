@@ -10,12 +10,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::arguments::files::{Files, spare_what_is_no_sidecar};
-use crate::cli::commands::engine::{Array, Engine, EngineArgs, absolute, in_shell, program};
+use crate::cli::commands::engine::{Engine, EngineArgs, absolute, program};
 use crate::cli::commands::monitor;
 use crate::cli::printing::failure::{Failure, Finding};
 use crate::cli::printing::output::{OutputArgs, write_text};
 use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
+use campaign::slurm::{Array, in_shell};
 use campaign::{self, Plan, Results, Row, Run, Table};
 use recording::{Channel, Recording};
 use replay::Timeline;

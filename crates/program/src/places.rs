@@ -5,30 +5,28 @@ use std::path::Path;
 use addr2line::Loader;
 use object::{Object, ObjectSegment};
 
-use crate::cli::printing::failure::Failure;
+use update::SEAL_OFFSET;
+use update::layout::{FLASH_BASE, PROGRAM};
 
-/// The program's file.
-pub struct Program {
+use crate::error::{self, Error};
+
+/// What lies where in a program's file.
+pub struct Places {
     loader: Loader,
     bytes: Vec<u8>,
 }
 
-impl Program {
+impl Places {
     /// Reads an ELF file.
     ///
     /// # Errors
     /// It cannot be read, or is no program with line tables.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
-        let shown = path.display();
-        let unreadable = |error: &dyn std::fmt::Display| {
-            Failure::Usage(format!(
-                "{shown}: {error}; name the ELF file that was flashed, target/thumbv7em-none-eabihf/release/drive-monitor"
-            ))
-        };
-        let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let unreadable = |error: &dyn std::fmt::Display| Error::new(path, error, REMEDY);
+        let bytes = error::read(path, REMEDY)?;
         object::File::parse(&bytes[..]).map_err(|error| unreadable(&error))?;
         let loader = Loader::new(path).map_err(|error| unreadable(&error))?;
-        Ok(Program { loader, bytes })
+        Ok(Places { loader, bytes })
     }
 
     /// Function, file and line of an address; inlined functions innermost first.
@@ -82,5 +80,7 @@ impl Program {
     }
 }
 
-/// Where the seal lies in flash (memory.x).
-const SEAL: u64 = 0x0800_01E0;
+const REMEDY: &str =
+    "name the ELF file that was flashed, target/thumbv7em-none-eabihf/release/drive-monitor";
+/// Where the seal lies in flash (src/regions.x).
+const SEAL: u64 = FLASH_BASE as u64 + PROGRAM as u64 + SEAL_OFFSET as u64;

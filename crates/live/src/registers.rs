@@ -2,9 +2,24 @@
 
 use board::modbus::{Entry, Field, Kind, MAP, MAP_VERSION, WORDS, address};
 use board::{Doubts, FaultCause, FaultRecord, LAMP_NAMES, LAMPS};
-use live::ModbusLine;
 
-use crate::cli::printing::failure::Failure;
+use crate::modbus::{ModbusError, ModbusLine};
+
+/// Why there are no registers.
+#[derive(Debug, thiserror::Error)]
+pub enum RegistersError {
+    /// The line.
+    #[error(transparent)]
+    Line(#[from] ModbusError),
+    /// They have other meanings.
+    #[error(
+        "the board's register map has version {version}, this drivemon knows {MAP_VERSION}: use the drivemon of the firmware's version"
+    )]
+    Map {
+        /// Which one the board has.
+        version: u16,
+    },
+}
 
 /// All input registers.
 pub struct Registers(Vec<u16>);
@@ -14,14 +29,12 @@ impl Registers {
     ///
     /// # Errors
     /// No answer, or a map of another version.
-    pub fn read(line: &mut ModbusLine) -> Result<Self, Failure> {
+    pub fn read(line: &mut ModbusLine) -> Result<Self, RegistersError> {
         let [version] = line.read_inputs(0, 1)?[..] else {
-            return Err(Failure::Usage("the board sent no register".into()));
+            return Err(line.damaged().into());
         };
         if version != MAP_VERSION {
-            return Err(Failure::Usage(format!(
-                "the board's register map has version {version}, this drivemon knows {MAP_VERSION}: use the drivemon of the firmware's version"
-            )));
+            return Err(RegistersError::Map { version });
         }
         Ok(Registers(line.read_inputs(0, WORDS as u16)?))
     }
@@ -79,7 +92,7 @@ impl Registers {
     fn told(&self, entry: &Entry) -> String {
         match (entry.field, entry.kind) {
             (Field::Lamps, _) => lamps(self.long(Field::Lamps)),
-            (Field::Doubts, _) => doubts(self.doubts()),
+            (Field::Doubts, _) => doubts_in_words(self.doubts()),
             (Field::CrashCause, _) => self
                 .crash()
                 .map_or("none", |crash| crash.cause.label())
@@ -124,8 +137,8 @@ fn lamps(word: u32) -> String {
     joined(lit.collect())
 }
 
-/// Doubts in words.
-pub fn doubts(doubts: Doubts) -> String {
+/// Doubts in words; "none" without any.
+pub fn doubts_in_words(doubts: Doubts) -> String {
     joined(doubts.iter().map(|doubt| doubt.label().into()).collect())
 }
 
