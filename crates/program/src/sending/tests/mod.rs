@@ -147,7 +147,7 @@ fn a_line_that_dies_ends_it_and_nothing_changes() {
 }
 
 #[test]
-fn whoever_stops_it_is_told_that_nothing_changed() {
+fn a_person_who_stops_it_is_told_that_nothing_changed() {
     let shared = board(Faults {
         stop_at: 60,
         ..Faults::default()

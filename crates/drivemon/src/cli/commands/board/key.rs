@@ -38,7 +38,7 @@ Examples:
   DRIVE_MONITOR_UPDATE_KEY=plant-7.pub drivemon flash --motor M        a board whose loader checks with it, once
   drivemon board package ELF --key plant-7.key -o new.dmu              a program that such a board takes
 Keep NAME.key where no other person reads it, and a copy in a second place, e.g. printed in a safe. Lost: the boards take no
-new program over the line any more, only by a debugger. Leaked: whoever has it can sign programs that they take.";
+new program over the line any more, only by a debugger. Leaked: anybody who has it can sign programs that they take.";
 
 impl Key {
     /// Runs the command.
@@ -55,7 +55,7 @@ impl Key {
             paint::strong(&public)
         );
         say!(
-            "Lost: your boards can only be written with a debugger. Leaked: whoever has {secret} can sign programs for them."
+            "Lost: your boards can only be written with a debugger. Leaked: anybody who has {secret} can sign programs for them."
         );
         Ok(Finding::Nothing)
     }
