@@ -481,14 +481,7 @@ impl VirtualBoard {
     /// Instructions by function since [`VirtualBoard::start_profile`], most first; function names are mangled.
     pub fn profile(&mut self) -> Vec<(String, u64)> {
         let blocks = self.cpu.machine().profile.take().unwrap_or_default();
-        let mut functions = std::collections::HashMap::<String, u64>::new();
-        for (address, instructions) in blocks {
-            let name = self.firmware.function(address as u32).to_owned();
-            *functions.entry(name).or_default() += instructions;
-        }
-        let mut sorted: Vec<_> = functions.into_iter().collect();
-        sorted.sort_by_key(|(_, instructions)| std::cmp::Reverse(*instructions));
-        sorted
+        self.firmware.by_function(blocks)
     }
 
     /// Interrupts the program every `cycles` of 80 MHz for nothing, with the DMA channel of the converter.

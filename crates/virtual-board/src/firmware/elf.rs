@@ -49,6 +49,21 @@ impl Firmware {
             .map_or("?", |(name, _)| name)
     }
 
+    /// Instructions by the name of the function that they lie in, most first; of addresses with their instructions.
+    pub fn by_function(
+        &self,
+        instructions: impl IntoIterator<Item = (u64, u64)>,
+    ) -> Vec<(String, u64)> {
+        let mut functions = std::collections::HashMap::<String, u64>::new();
+        for (address, count) in instructions {
+            let name = self.function(address as u32).to_owned();
+            *functions.entry(name).or_default() += count;
+        }
+        let mut sorted: Vec<_> = functions.into_iter().collect();
+        sorted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        sorted
+    }
+
     /// All symbols whose name contains `part`.
     pub fn symbols(&self, part: &str) -> Vec<(String, u32)> {
         let found = self.symbols.iter().filter(|(name, _)| name.contains(part));
