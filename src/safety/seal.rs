@@ -3,14 +3,14 @@
 #![allow(unsafe_code)]
 
 use update::layout;
-use update::{BOARD_TYPE, SEAL_MAGIC, SEAL_OFFSET, Version};
+use update::{BOARD_TYPE, SEAL_MAGIC, Version};
 
 /// Not written yet.
 const BLANK: u32 = 0xFFFF_FFFF;
 /// Where the program begins, and where the two words lie that its checksum leaves out.
 pub const PROGRAM: u32 = layout::FLASH_BASE + layout::PROGRAM;
-const SEAL_AT: u32 = PROGRAM + SEAL_OFFSET as u32;
-pub const LEFT_OUT: core::ops::Range<u32> = SEAL_AT + 4..SEAL_AT + 12;
+pub const LEFT_OUT: core::ops::Range<u32> =
+    PROGRAM + update::LEFT_OUT.start as u32..PROGRAM + update::LEFT_OUT.end as u32;
 
 /// Behind the vector table (src/regions.x): magic, length, checksum, version, board. The loader reads it as `update::Seal` does.
 #[used]

@@ -19,14 +19,15 @@ pub fn start() -> ! {
         let table = VECTOR_TABLE as *const u32;
         let (stack, beginning) = (table.read_volatile(), table.add(1).read_volatile());
         asm!(
-            "msr control, {zero}",
+            "msr control, r2",
             "isb",
-            "msr msp, {stack}",
-            "mvn lr, {zero}",
-            "bx {beginning}",
-            zero = in(reg) 0,
-            stack = in(reg) stack,
-            beginning = in(reg) beginning,
+            "msr msp, r0",
+            "mvn lr, r2",
+            "bx r1",
+            // Named, so that none of them is `lr`, which is written before the jump.
+            in("r0") stack,
+            in("r1") beginning,
+            in("r2") 0,
             options(noreturn, nomem, nostack),
         )
     }

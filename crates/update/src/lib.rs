@@ -37,4 +37,4 @@ pub use receiving::tray::{
 pub use receiving::updater::{Due, News, Updater};
 pub use receiving::waiting::{Checked, Taken, Waiting};
 pub use refusal::Refusal;
-pub use seal::{BOARD_TYPE, SEAL_BYTES, SEAL_MAGIC, SEAL_OFFSET, Seal, Tally, Version};
+pub use seal::{BOARD_TYPE, LEFT_OUT, SEAL_BYTES, SEAL_MAGIC, SEAL_OFFSET, Seal, Tally, Version};

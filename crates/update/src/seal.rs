@@ -11,8 +11,8 @@ pub const SEAL_OFFSET: usize = 0x1E0;
 pub const SEAL_MAGIC: u32 = 0x4C41_4553;
 /// The board that this program is for: STM32G474RE with the front end of docs/wiring.md.
 pub const BOARD_TYPE: u32 = 0x444D_0001;
-/// The two words that the checksum leaves out: length and checksum.
-const LEFT_OUT: core::ops::Range<usize> = SEAL_OFFSET + 4..SEAL_OFFSET + 12;
+/// The two words that the checksum leaves out, length and checksum themselves: bytes from the program's beginning.
+pub const LEFT_OUT: core::ops::Range<usize> = SEAL_OFFSET + 4..SEAL_OFFSET + 12;
 /// Bytes of the seal.
 pub const SEAL_BYTES: usize = 20;
 static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);

@@ -1,6 +1,8 @@
 //! What contradicts a motor in good order without a lamp of r1..r4: an unbalance that the supply does not explain, a change within the
 //! recording, bars in few blocks, a channel that the audit finds wrong.
 
+use std::path::Path;
+
 use serde_json::Value;
 
 use super::common::{drivemon, stderr, text};
@@ -71,6 +73,7 @@ fn what_changes_within_a_recording_is_told_and_not_learnt() {
     let folder = workplace("does-not-fit-reference");
     let recording = simulated(&folder, "today", &pump(&coming), &[]);
     let truth = folder.join("truth.toml");
+    monitored_alike(&recording, &truth);
     let calibrated = folder.join("calibrated.toml");
     let output = drivemon(&[
         "calibrate",
@@ -87,6 +90,53 @@ fn what_changes_within_a_recording_is_told_and_not_learnt() {
         stderr(&output)
     );
     assert!(!calibrated.exists());
+}
+
+/// `monitor` and `batch` call it healthy as little as `check` does.
+fn monitored_alike(recording: &Path, motor: &Path) {
+    let folder = recording.parent().expect("a folder");
+    let page = folder.join("monitored.html");
+    let output = drivemon(&[
+        "monitor",
+        text(recording),
+        "--motor",
+        text(motor),
+        "--json",
+        "-",
+        "--report",
+        text(&page),
+    ]);
+    let answer = json(&output);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert_eq!(answer["verdict"]["state"], "healthy", "no lamp lit");
+    assert_eq!(answer["state"], "not-judged");
+    let seen = answer["doubts"][0]["seen"].as_str().expect("a doubt");
+    let page = std::fs::read_to_string(&page).expect("a page");
+    assert!(page.contains(seen), "{seen}");
+    assert!(!page.contains("Healthy"), "{seen}");
+    let map = folder.join("map.toml");
+    let entry = format!(
+        "[[motors]]\nrecordings = \"{}\"\nmotor = \"{}\"\n",
+        recording
+            .file_name()
+            .and_then(|name| name.to_str())
+            .expect("a name"),
+        motor
+            .file_name()
+            .and_then(|name| name.to_str())
+            .expect("a name"),
+    );
+    std::fs::write(&map, entry).expect("written");
+    let table = folder.join("rows.parquet");
+    let output = drivemon(&[
+        "batch",
+        text(folder),
+        "--motor-map",
+        text(&map),
+        "-o",
+        text(&table),
+    ]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
 }
 
 /// A fifth of the cage's bars at nearly rated load: current and speed swing so far that no window can be judged, and the sidebands are

@@ -78,7 +78,9 @@ impl<F: BackgroundFlash> Updater<F> {
 
     fn look_up(&mut self) {
         match self.journal.as_ref().map_or(State::Idle, Journal::state) {
-            State::OnTrial { .. } => {
+            // `Installed`: the loader could not note the trial, which the next start makes good. The program before lies where
+            // pieces would go all the same.
+            State::OnTrial { .. } | State::Installed { .. } => {
                 self.trial = Some(Trial::default());
                 self.state = UpdateState::OnTrial;
                 self.news = Some(News::Installed);

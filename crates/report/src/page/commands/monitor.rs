@@ -15,6 +15,7 @@ pub fn content(result: &Place<'_>) -> Markup {
     html! {
         (answer(result))
         (cards(&summary(result)))
+        (doubts(result))
         (candidates(result))
         (motion::section(result, "motion"))
         (lamps(result))
@@ -49,6 +50,10 @@ fn answer(result: &Place<'_>) -> Markup {
         (true, VerdictState::NotJudged) if !result.items("motion/unexplained").is_empty() => (
             Mood::Caution,
             html! { "Not judged: something in motion does not fit, and no fault explains it" },
+        ),
+        (true, VerdictState::NotJudged) if !result.items("doubts").is_empty() => (
+            Mood::Caution,
+            html! { "Not judged: no fault was lit, and something does not fit" },
         ),
         (true, VerdictState::NotJudged) => (
             Mood::Caution,
@@ -97,6 +102,22 @@ fn rotor(result: &Place<'_>) -> Option<(Markup, Markup)> {
             }
         },
     ))
+}
+
+/// What contradicts a motor in good order, and what settles it.
+fn doubts(result: &Place<'_>) -> Markup {
+    let rows = result.items("doubts");
+    html! {
+        @if !rows.is_empty() {
+            section aria-labelledby="doubts" {
+                h2 id="doubts" { "What does not fit" }
+                table {
+                    thead { tr { th.word scope="col" { "seen" } th.word scope="col" { "what settles it" } } }
+                    tbody { @for row in &rows { tr { td.word { (row.text("seen")) } td.word { (row.text("remedy")) } } } }
+                }
+            }
+        }
+    }
 }
 
 fn candidates(result: &Place<'_>) -> Markup {

@@ -213,6 +213,16 @@ fn what_is_in_the_way_refuses_before_the_check_and_behind_it() {
 }
 
 #[test]
+fn a_trial_that_the_loader_could_not_note_takes_no_pieces_either() {
+    let chip = Chip::with(State::Installed { pages: 2 });
+    let mut board = Board::of(&chip);
+    assert_eq!(board.stands().0, UpdateState::OnTrial);
+    assert!(board.tray.lay(0, &[0; 8]).is_err());
+    board.updater.confirm();
+    assert_eq!(chip.journal(), State::Confirmed);
+}
+
+#[test]
 fn a_trial_takes_no_pieces_and_confirms_itself_after_a_quiet_minute() {
     let chip = Chip::with(State::OnTrial { pages: 2 });
     let before = chip.0.borrow().1.bytes.clone();
