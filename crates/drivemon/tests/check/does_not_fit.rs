@@ -73,7 +73,10 @@ fn what_changes_within_a_recording_is_told_and_not_learnt() {
     let folder = workplace("does-not-fit-reference");
     let recording = simulated(&folder, "today", &pump(&coming), &[]);
     let truth = folder.join("truth.toml");
-    monitored_alike(&recording, &truth);
+    let (plate, known) = (folder.join("plate.toml"), folder.join("known.toml"));
+    let made = drivemon(&["motor", "new", "--plate", text(&plate), "-o", text(&known)]);
+    assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
+    monitored_alike(&recording, &known);
     let calibrated = folder.join("calibrated.toml");
     let output = drivemon(&[
         "calibrate",
