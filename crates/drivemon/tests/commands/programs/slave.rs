@@ -172,7 +172,7 @@ fn a_refusal_ends_with_2_and_what_to_do() {
 }
 
 #[test]
-fn whoever_does_not_wait_is_told_where_to_look() {
+fn a_person_who_does_not_wait_is_told_where_to_look() {
     let place = packaged("no-wait");
     let board = Board::new("1.2.0", UpdateState::Refused);
     let (code, said, received) = update(board, &place, &["--no-wait"]);
