@@ -382,6 +382,12 @@ impl VirtualBoard {
         self.cpu.machine().taken.as_deref().unwrap_or_default()
     }
 
+    /// Takes the samples that were made since the last call.
+    pub fn drain_taken(&mut self) -> Vec<RawSample> {
+        let taken = self.cpu.machine().taken.as_mut();
+        taken.map(std::mem::take).unwrap_or_default()
+    }
+
     /// Keeps no samples from here on: an hour of them is half a gigabyte.
     pub fn forget_taken(&mut self) {
         self.cpu.machine().taken = None;

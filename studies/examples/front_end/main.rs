@@ -4,15 +4,21 @@
 //! within the tolerances of the bill of materials, a healthy motor at rated load behind each, judged by the core with the
 //! motor file's thresholds, from the converter's codes as on the board. What is known of the chain stands in the motor file.
 //!
-//! `... front_end anywhere [BOARDS] [SEED]` calibrates each board and motor as the pages say, and judges the healthy motor at other
-//! loads, frequencies and temperatures, on a grid or behind an inverter.
+//! `... front_end anywhere [BOARDS] [SEED] [FIRST]` calibrates each board and motor as the pages say, and judges the healthy motor at other
+//! loads, frequencies and temperatures, on a grid or behind an inverter. A board depends on the seed and its number alone: what was
+//! cut off goes on from board FIRST, and the counts of both runs are added.
+//!
+//! `... front_end channels [BOARDS] [SEED]` shows how small a channel's fault may be behind such boards.
 
 mod anywhere;
 mod board;
+mod channels;
+mod counts;
+mod installed;
 mod judge;
 
 use board::{Board, Variant};
-use campaign::Share;
+use counts::Counts;
 use judge::{Judged, judge};
 use motor::MotorFile;
 use rand::SeedableRng;
@@ -33,6 +39,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     if arguments.next_if(|mode| mode == "anywhere").is_some() {
         return print_anywhere(arguments);
     }
+    if arguments.next_if(|mode| mode == "channels").is_some() {
+        return print_channels(arguments);
+    }
     let boards = arguments.next().map_or(Ok(BOARDS), |text| text.parse())?;
     let seed = arguments.next().map_or(Ok(SEED), |text| text.parse())?;
     println!("{boards} boards a row, seed {seed}; r4 in percent of its scale, its limit is 0.3\n");
@@ -40,8 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|---|---|---|---|");
     for variant in Variant::ALL {
         for (name, file) in MOTORS {
-            let path = format!("{}/../motors/{file}.toml", env!("CARGO_MANIFEST_DIR"));
-            let motor = MotorFile::read(path)?;
+            let motor = shipped(file)?;
             row(variant, name, &motor, boards, seed)?;
         }
     }
@@ -84,6 +92,8 @@ const CALIBRATED: [&str; 5] = [
     "imc-18k5",
     "itsc-075hp",
 ];
+/// Boards in front of a motor whose channels fail.
+const CHANNEL_BOARDS: u64 = 100;
 /// Boards between two lines of progress.
 const PORTION: u64 = 200;
 
@@ -92,52 +102,42 @@ fn print_anywhere(mut arguments: impl Iterator<Item = String>) -> Result<(), Box
         .next()
         .map_or(Ok(u64::from(BOARDS)), |text| text.parse())?;
     let seed = arguments.next().map_or(Ok(SEED), |text| text.parse())?;
-    let file = |name: &str| format!("{}/../motors/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let first = arguments.next().map_or(Ok(0), |text| text.parse())?;
     let motors = CALIBRATED
         .iter()
-        .map(|name| MotorFile::read(file(name)))
+        .map(|name| shipped(name))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut outcomes = Vec::new();
-    for from in (0..boards).step_by(PORTION as usize) {
+    let mut counts = Counts::default();
+    for from in (first..boards).step_by(PORTION as usize) {
         let portion = from..boards.min(from + PORTION);
         let one = |k| anywhere::judged(&motors, seed, k).map_err(|error| error.to_string());
-        outcomes.extend(
-            portion
-                .into_par_iter()
-                .map(one)
-                .collect::<Result<Vec<_>, _>>()?,
-        );
-        eprintln!("{} of {boards} boards", outcomes.len());
+        let outcomes: Vec<_> = portion.into_par_iter().map(one).collect::<Result<_, _>>()?;
+        outcomes.iter().for_each(|outcome| counts.add(outcome));
+        // A run of hours that is cut off has told what it found so far.
+        eprintln!("boards {first} to {boards}: {counts}");
     }
-    let sum = |of: fn(&anywhere::Outcome) -> usize| outcomes.iter().map(of).sum::<usize>();
-    let share = |of: fn(&anywhere::Outcome) -> usize| {
-        let judged = outcomes.iter().filter(|x| !x.refused);
-        let share = Share::count(judged.map(|x| of(x) > 0));
-        let most = 100.0 * share.at_most();
-        format!(
-            "{} of {} (at most {most:.2} %, 95 %)",
-            share.count, share.of
-        )
-    };
     println!(
-        "{boards} boards, seed {seed}, each judged at {} conditions\n",
+        "boards {first} to {boards}, seed {seed}, each judged at {} conditions\n",
         anywhere::CONDITIONS
     );
-    println!("| | boards |");
-    println!("|---|---|");
-    println!(
-        "| calibration refused | {} |",
-        sum(|x| usize::from(x.refused))
-    );
-    println!(
-        "| FAULT in {} judged windows, calibrated | {} |",
-        sum(|x| x.windows),
-        share(|x| x.faults)
-    );
-    println!(
-        "| FAULT by the motor file's own thresholds | {} |",
-        share(|x| x.faults_uncalibrated)
-    );
-    println!("| SENSOR | {} |", share(|x| x.sensors));
+    print!("{}", counts.table());
     Ok(())
+}
+
+fn print_channels(mut arguments: impl Iterator<Item = String>) -> Result<(), Box<dyn Error>> {
+    let boards = arguments
+        .next()
+        .map_or(Ok(CHANNEL_BOARDS), |text| text.parse())?;
+    let seed = arguments.next().map_or(Ok(SEED), |text| text.parse())?;
+    let motors = [
+        ("300 W", shipped("assumed-300w")?),
+        ("2.2 kW", shipped("peer-2k2")?),
+    ];
+    channels::print(&motors, boards, seed)
+}
+
+/// A shipped motor file.
+fn shipped(name: &str) -> Result<MotorFile, Box<dyn Error>> {
+    let path = format!("{}/../motors/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    Ok(MotorFile::read(path)?)
 }

@@ -3,6 +3,7 @@
 
 pub mod flash_image;
 pub mod master;
+pub mod packages;
 pub mod wire;
 
 use std::path::{Path, PathBuf};

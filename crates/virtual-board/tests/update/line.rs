@@ -1,13 +1,14 @@
 //! A program that comes over the board's line while it samples.
 
-use board::modbus::{Command, Field, MOST_PROGRAM_WORDS, PROGRAM_FILE, UNLOCK_KEY};
+use board::modbus::{Command, Field, UNLOCK_KEY};
 use board::{Event, EventCause};
 use update::layout::{FLASH_BASE, WAITING};
 use update::{Refusal, UpdateState, Version};
 
-use super::common::master::{Master, UNIT, ask, bytes, sealed};
+use super::common::master::{Master, UNIT};
+use super::common::packages::{installed, offer, package, send, signed, with_version};
 use super::common::{LAMP_TEST_S, board as board_of, logged, scenario};
-use super::programs::{installed, marking, package, signed, state, with_version};
+use super::programs::{marking, state};
 use super::{HEALTHY, MARK_AT, NEW_MARK, assert_installed, is_on_trial, settle};
 use update::State;
 use virtual_board::{Cause, VirtualBoard};
@@ -20,47 +21,6 @@ fn judging(seconds: f64) -> VirtualBoard {
     board.run(LAMP_TEST_S + 1.0).expect("a run");
     assert_eq!(board.lamps(), HEALTHY);
     board
-}
-
-/// A piece of a package as function 21 has it: in file 4, or in file 5 from 128 KiB on.
-fn request(from: usize, piece: &[u8]) -> Vec<u8> {
-    let mut request = vec![UNIT, 21, 7 + piece.len() as u8, 6];
-    let file = PROGRAM_FILE + (from >> 17) as u16;
-    for word in [file, (from % (1 << 17) / 2) as u16, piece.len() as u16 / 2] {
-        request.extend(word.to_be_bytes());
-    }
-    sealed(&[&request, piece].concat())
-}
-
-/// The code of the exception; 0 where the request came back.
-fn offer(board: &mut VirtualBoard, from: usize, piece: &[u8]) -> u8 {
-    let request = request(from, piece);
-    let answer = bytes(&ask(board, &request));
-    if answer == request {
-        return 0;
-    }
-    assert_eq!(answer[..2], [UNIT, 0x95], "{answer:02x?}");
-    answer[2]
-}
-
-/// Sends all of it as a master does that repeats a piece for which the board is busy; how often it was.
-fn send(board: &mut VirtualBoard, package: &[u8]) -> u32 {
-    assert!(MASTER().write(board, 0, UNLOCK_KEY));
-    let (mut from, mut busy) = (0, 0);
-    while from < package.len() {
-        let file_end = (from / (1 << 17) + 1) << 17;
-        let end = (from + 2 * usize::from(MOST_PROGRAM_WORDS))
-            .min(package.len())
-            .min(file_end);
-        match offer(board, from, &package[from..end]) {
-            0 => from = end,
-            6 => busy += 1,
-            code => panic!("exception {code} at {from}"),
-        }
-        assert!(busy < 100, "always busy");
-    }
-    board.run(0.1).expect("a run");
-    busy
 }
 
 fn told(board: &mut VirtualBoard) -> (u16, u16) {

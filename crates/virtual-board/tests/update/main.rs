@@ -7,11 +7,9 @@ mod programs;
 
 use board::modbus::Field;
 use common::master::{Master, UNIT};
+use common::packages::{area, installed, package, signed, with_version};
 use common::{LAMP_TEST_S, board as board_of, firmware, scenario};
-use programs::{
-    Still, area, install, installed, marking, package, request, signed, state, with_board,
-    with_version, write_journal,
-};
+use programs::{Still, install, marking, request, state, with_board, write_journal};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use update::{Refusal, Seal, State};

@@ -1,9 +1,7 @@
 //! Programs to be exchanged, what the loader's program does about them, and what the journal says.
 
 use std::convert::Infallible;
-use std::path::Path;
 
-use board::crc32;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use monitor::RawSample;
 use rand::{RngCore, SeedableRng};
@@ -11,12 +9,14 @@ use rand_pcg::Pcg32;
 use update::layout::{
     FLASH_BASE, JOURNAL, PAGE_BYTES, PROGRAM, PROGRAM_PAGES, WAITING, WAITING_PAGES,
 };
-use update::{BOARD_TYPE, Journal, Seal, SecretKey, State, Version};
+use update::{BOARD_TYPE, Journal, State, Version};
 use virtual_board::{Inputs, VirtualBoard};
 
-/// Where the seal lies in a program, and its first word: written down here once more.
-const SEAL: usize = 0x1E0;
+use super::common::packages::{SEAL, put, sealed};
+
+/// First word of a seal, written down here once more.
 const MAGIC: u32 = 0x4C41_4553;
+
 /// Behind the vector table and the seal.
 const BEGINNING: usize = 0x200;
 const FLASH_BYTES: usize = 512 * 1024;
@@ -28,19 +28,6 @@ impl Inputs for Still {
     fn at(&mut self, _: u64) -> RawSample {
         RawSample::default()
     }
-}
-
-fn put(program: &mut [u8], at: usize, word: u32) {
-    program[at..at + 4].copy_from_slice(&word.to_le_bytes());
-}
-
-/// The program with length and checksum of its bytes in its seal.
-fn sealed(mut program: Vec<u8>) -> Vec<u8> {
-    let length = program.len() as u32;
-    put(&mut program, SEAL + 4, length);
-    let covered = [&program[..SEAL + 4], &program[SEAL + 12..]].concat();
-    put(&mut program, SEAL + 8, crc32(&covered));
-    program
 }
 
 /// A program of random bytes but for its beginning, which leaves `mark` in RAM and feeds the watchdog for ever.
@@ -66,46 +53,10 @@ pub fn marking(length: usize, version: &str, mark: u32) -> Vec<u8> {
     sealed(program)
 }
 
-/// The program with another version.
-pub fn with_version(mut program: Vec<u8>, version: &str) -> Vec<u8> {
-    put(&mut program, SEAL + 12, Version::parse(version).0);
-    sealed(program)
-}
-
 /// The program for another board.
 pub fn with_board(mut program: Vec<u8>, board: u32) -> Vec<u8> {
     put(&mut program, SEAL + 16, board);
     sealed(program)
-}
-
-/// Program and its signature with the demo key.
-pub fn package(program: &[u8]) -> Vec<u8> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../keys/demo.key");
-    let text = std::fs::read_to_string(path).expect("the demo key");
-    let digits = text.lines().last().expect("a line of digits");
-    let digit = |at: usize| u8::from_str_radix(&digits[at..at + 2], 16).expect("digits");
-    let seed = std::array::from_fn(|k| digit(2 * k));
-    signed(program, seed)
-}
-
-/// Program and its signature with any key.
-pub fn signed(program: &[u8], seed: [u8; 32]) -> Vec<u8> {
-    let signature = SecretKey::from_seed(seed).sign(program);
-    [program, &signature].concat()
-}
-
-/// Everything that belongs to the program in flash.
-pub fn area(board: &mut VirtualBoard) -> Vec<u8> {
-    let size = (PROGRAM_PAGES * PAGE_BYTES) as usize;
-    board.read_flash(FLASH_BASE + PROGRAM, size).expect("flash")
-}
-
-/// The program in flash, as long as its seal says.
-pub fn installed(board: &mut VirtualBoard) -> Vec<u8> {
-    let mut program = area(board);
-    let seal = Seal::read(&program).expect("a sealed program");
-    program.truncate(seal.length as usize);
-    program
 }
 
 /// Puts a program in its place as a programmer does.

@@ -31,22 +31,30 @@ pub(in crate::simulate) struct Instruments {
 struct Channel {
     full_scale: f64,
     bits: u32,
+    /// One code, V or A.
+    step: f64,
     gain: f64,
     offset: f64,
 }
 
 impl Channel {
-    fn step(&self) -> f64 {
-        2.0 * self.full_scale / f64::from(1_u32 << self.bits)
+    fn new(full_scale: f64, bits: u32, gain: f64, offset: f64) -> Channel {
+        Channel {
+            full_scale,
+            bits,
+            step: 2.0 * full_scale / f64::from(1_u32 << bits),
+            gain,
+            offset,
+        }
     }
 
     /// The ADC code of a raw value: 0 V or 0 A is the middle code.
     fn code(&self, raw: f64) -> u16 {
         let middle = f64::from(1_u32 << (self.bits - 1));
-        let code = (raw / self.step() + middle).round();
         let largest = f64::from((1_u32 << self.bits) - 1);
-        // Clamped into the codes of at most 16 bits.
-        code.clamp(0.0, largest) as u16
+        let code = (raw / self.step + middle).clamp(0.0, largest);
+        // Rounded, and within the codes of at most 16 bits.
+        (code + 0.5) as u16
     }
 
     /// As the core sees it: within a code of either end.
@@ -56,7 +64,7 @@ impl Channel {
 
     fn raw_of(&self, code: u16) -> f64 {
         let middle = f64::from(1_u32 << (self.bits - 1));
-        (f64::from(code) - middle) * self.step()
+        (f64::from(code) - middle) * self.step
     }
 }
 
@@ -152,12 +160,7 @@ impl Instruments {
                 own.current_offset_amp[phase],
             ),
         };
-        Channel {
-            full_scale,
-            bits: own.adc_bits,
-            gain,
-            offset,
-        }
+        Channel::new(full_scale, own.adc_bits, gain, offset)
     }
 
     /// All channels of a sample: one conversion, or the mean of those that the chain asks for.
@@ -200,7 +203,7 @@ impl Instruments {
     fn convert(&mut self, channel: &Channel, raw: f64) -> Shown {
         let raw = raw + self.noise(channel.full_scale);
         let bent = match &self.chain {
-            Some(chain) => raw + chain.inl_lsb(raw / channel.full_scale) * channel.step(),
+            Some(chain) => raw + chain.inl_lsb(raw / channel.full_scale) * channel.step,
             None => raw,
         };
         self.shown(channel, bent)
@@ -223,12 +226,7 @@ impl Instruments {
 
     /// A channel without calibration, such as the tachometer.
     fn plain(&mut self, x: f64, full_scale: f64) -> f64 {
-        let channel = Channel {
-            full_scale,
-            bits: self.spec.instrument.adc_bits,
-            gain: 1.0,
-            offset: 0.0,
-        };
+        let channel = Channel::new(full_scale, self.spec.instrument.adc_bits, 1.0, 0.0);
         let raw = x + self.noise(full_scale);
         self.shown(&channel, raw).value
     }

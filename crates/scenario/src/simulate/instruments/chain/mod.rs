@@ -13,6 +13,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 pub(super) struct Chain {
     spec: SignalChain,
     lines: [Line; CHANNELS],
+    /// The carrier's ripple behind each channel's filter and delay: a phasor at t = 0.
+    ripples: [Complex64; CHANNELS],
     linearity: Linearity,
     /// From one conversion of a channel to the next, s.
     apart_s: f64,
@@ -29,6 +31,7 @@ impl Chain {
         Chain {
             apart_s: apart,
             lines: spec.channels.map(|channel| Line::new(channel, span)),
+            ripples: std::array::from_fn(|k| ripple(spec, k)),
             linearity: Linearity::new(&spec.inl, seed),
             spec: spec.clone(),
             last_t: None,
@@ -54,7 +57,12 @@ impl Chain {
 
     /// What stands behind the filters and delays at `t`, one of the times of a sample's conversions, with the carrier's ripple: V, A.
     pub(super) fn filtered(&self, t: f64) -> [f64; CHANNELS] {
-        std::array::from_fn(|k| self.lines[k].at(t) + self.ripple(k, t))
+        let carrier = &self.spec.carrier;
+        let turned = match carrier.voltage_volt == 0.0 && carrier.current_amp == 0.0 {
+            true => Complex64::ZERO,
+            false => Complex64::cis(TAU * carrier.frequency_hz * t),
+        };
+        std::array::from_fn(|k| self.lines[k].at(t) + (self.ripples[k] * turned).re)
     }
 
     /// Gain, offset, neighbour and reference: from values at the pins, V, A, to what is converted.
@@ -80,22 +88,18 @@ impl Chain {
     pub(super) fn inl_lsb(&self, share: f64) -> f64 {
         self.linearity.lsb(share)
     }
+}
 
-    /// A carrier does not change, so that its filtered and delayed sinusoid is known without steps.
-    fn ripple(&self, k: usize, t: f64) -> f64 {
-        let carrier = &self.spec.carrier;
-        let (amplitude, lag) = match k < 3 {
-            true => (carrier.voltage_volt, 0.0),
-            false => (carrier.current_amp, FRAC_PI_2),
-        };
-        if amplitude == 0.0 {
-            return 0.0;
-        }
-        let channel = &self.spec.channels[k];
-        let omega = TAU * carrier.frequency_hz;
-        let angle = omega * (t - channel.delay_s) - lag - TAU / 3.0 * (k % 3) as f64;
-        (response(channel, omega) * Complex64::from_polar(amplitude, angle)).re
-    }
+/// A carrier does not change, so that its filtered and delayed sinusoid is known without steps.
+fn ripple(spec: &SignalChain, k: usize) -> Complex64 {
+    let (carrier, channel) = (&spec.carrier, &spec.channels[k]);
+    let (amplitude, lag) = match k < 3 {
+        true => (carrier.voltage_volt, 0.0),
+        false => (carrier.current_amp, FRAC_PI_2),
+    };
+    let omega = TAU * carrier.frequency_hz;
+    let angle = -omega * channel.delay_s - lag - TAU / 3.0 * (k % 3) as f64;
+    response(channel, omega) * Complex64::from_polar(amplitude, angle)
 }
 
 /// Frequency response of a channel's filter.

@@ -1,0 +1,184 @@
+//! How small a fault of a channel may be to be seen through a board of the documented parts.
+
+use std::error::Error;
+
+use crate::anywhere::lit;
+use crate::installed::{Conditions, DEGC, Installed, WARMTH, between};
+use motor::MotorFile;
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+use scenario::{Fault, Probe, Target};
+
+/// Loads, shares of rated torque, as in the detection campaign.
+const LOAD: [f64; 2] = [0.5, 1.2];
+/// When the fault comes, and how long it is judged, s.
+const FAULT_FROM_S: f64 = 0.6;
+const JUDGED_S: f64 = 1.6;
+/// Sizes in percent of campaigns/detection.toml and one more, and what they are of: one channel, or all three of a kind.
+const ONE_CURRENT: &[f64] = &[1.0, 2.0, 3.0, 6.0];
+const ONE_VOLTAGE: &[f64] = &[1.0, 2.0, 4.0];
+const ALL_CURRENTS: &[f64] = &[2.0, 3.0, 6.0, 12.0, 24.0];
+const ALL_VOLTAGES: &[f64] = &[1.0, 2.0, 3.0, 4.0, 8.0, 16.0];
+/// Runs of a hundred that must be seen.
+const SEEN: f64 = 0.99;
+
+/// A kind of fault and its sizes.
+#[derive(Clone, Copy)]
+struct Kind {
+    name: &'static str,
+    sizes: &'static [f64],
+    probe: fn(usize) -> Probe,
+    all: bool,
+}
+
+const KINDS: [Kind; 4] = [
+    Kind {
+        name: "`i`",
+        sizes: ONE_CURRENT,
+        probe: Probe::Current,
+        all: false,
+    },
+    Kind {
+        name: "`v`",
+        sizes: ONE_VOLTAGE,
+        probe: Probe::Voltage,
+        all: false,
+    },
+    Kind {
+        name: "`i-all`",
+        sizes: ALL_CURRENTS,
+        probe: Probe::Current,
+        all: true,
+    },
+    Kind {
+        name: "`v-all`",
+        sizes: ALL_VOLTAGES,
+        probe: Probe::Voltage,
+        all: true,
+    },
+];
+
+impl Kind {
+    /// The fault with a change of so many percent, from its time on.
+    fn faults(&self, percent: f64, phase: usize) -> Vec<Fault> {
+        let phases = if self.all { 0..3 } else { phase..phase + 1 };
+        let fault = |phase| Fault {
+            from_s: FAULT_FROM_S,
+            ..Fault::of(Target::Probe((self.probe)(phase)), percent)
+        };
+        phases.map(fault).collect()
+    }
+}
+
+/// Kinds, directions and their sizes, one after another.
+fn plan() -> Vec<(Kind, f64)> {
+    let signed = |kind: Kind| {
+        let up = kind.sizes.iter().copied();
+        let down = kind.sizes.iter().map(|size| -size);
+        up.chain(down).map(move |percent| (kind, percent))
+    };
+    KINDS.into_iter().flat_map(signed).collect()
+}
+
+/// Whether FAULT lights, for each line of the plan; `None` where calibration refuses the board.
+fn seen(
+    motor: &MotorFile,
+    ideal: bool,
+    seed: u64,
+    k: u64,
+) -> Result<Option<Vec<bool>>, Box<dyn Error>> {
+    let mut random = Pcg64::seed_from_u64(seed ^ k << 20);
+    let drawn = Installed::draw(motor, &mut random);
+    let installed = if ideal { drawn.without_errors() } else { drawn };
+    let Some(calibrated) = installed.calibrated(&mut random, k)? else {
+        return Ok(None);
+    };
+    let mut lights = Vec::new();
+    for (kind, percent) in plan() {
+        let at = Conditions {
+            load: between(LOAD, &mut random),
+            hertz: motor.nameplate.frequency_hz,
+            warmth: between(WARMTH, &mut random),
+            degc: between(DEGC, &mut random),
+        };
+        let faults = kind.faults(percent, random.random_range(0..3));
+        let samples = installed.samples(&at, JUDGED_S, random.random(), &faults)?;
+        let [fault, ..] = lit(&calibrated, &samples)?;
+        lights.push(fault > 0);
+    }
+    Ok(Some(lights))
+}
+
+/// Prints the table of docs/wiring.md.
+///
+/// # Errors
+/// Motor files or conditions that cannot be simulated.
+pub fn print(motors: &[(&str, MotorFile)], boards: u64, seed: u64) -> Result<(), Box<dyn Error>> {
+    println!("{boards} boards a motor, seed {seed}\n");
+    println!("| motor | fault | smallest | instruments without errors | seen at each size |");
+    println!("|---|---|---|---|---|");
+    for (name, motor) in motors {
+        let [real, ideal] = [false, true].map(|ideal| judged(motor, ideal, boards, seed));
+        let (real, ideal) = (real?, ideal?);
+        eprintln!("{name}: {} of {boards} boards calibrated", real.len());
+        let mut from = 0;
+        for (kind, sign) in KINDS.iter().flat_map(|kind| [(kind, "+"), (kind, "-")]) {
+            let lines = from..from + kind.sizes.len();
+            let row = |judged: &[Vec<bool>]| Row {
+                kind,
+                sign,
+                shares: lines.clone().map(|line| share(judged, line)).collect(),
+            };
+            let (row, ideal) = (row(&real), row(&ideal));
+            let [smallest, without] = [row.smallest(), ideal.smallest()];
+            println!(
+                "| {name} | {} | {smallest} | {without} | {} |",
+                kind.name,
+                row.all()
+            );
+            from = lines.end;
+        }
+    }
+    Ok(())
+}
+
+/// What is seen of every board whose recordings calibrate it.
+fn judged(
+    motor: &MotorFile,
+    ideal: bool,
+    boards: u64,
+    seed: u64,
+) -> Result<Vec<Vec<bool>>, Box<dyn Error>> {
+    let one = |k| seen(motor, ideal, seed, k).map_err(|error| error.to_string());
+    let all: Result<Vec<_>, _> = (0..boards).into_par_iter().map(one).collect();
+    Ok(all?.into_iter().flatten().collect())
+}
+
+fn share(judged: &[Vec<bool>], line: usize) -> f64 {
+    let lit = judged.iter().filter(|lights| lights[line]).count();
+    lit as f64 / judged.len().max(1) as f64
+}
+
+struct Row<'a> {
+    kind: &'a Kind,
+    sign: &'a str,
+    shares: Vec<f64>,
+}
+
+impl Row<'_> {
+    /// The smallest size from which on enough are seen.
+    fn smallest(&self) -> String {
+        let missed = self.shares.iter().rposition(|share| *share < SEEN);
+        match self.kind.sizes.get(missed.map_or(0, |last| last + 1)) {
+            Some(size) => format!("{}{size} %", self.sign),
+            None => "none".into(),
+        }
+    }
+
+    fn all(&self) -> String {
+        let one = |(size, share): (&f64, &f64)| format!("{size} %: {:.0} %", 100.0 * share);
+        let all: Vec<String> = self.kind.sizes.iter().zip(&self.shares).map(one).collect();
+        all.join(", ")
+    }
+}
