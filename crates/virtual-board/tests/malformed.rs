@@ -6,19 +6,16 @@
 
 mod common;
 
-use board::modbus::{Command, Field, UNLOCK_KEY, WORDS, address};
-use board::{Configuration, Line, MotorImage};
-use common::master::{Master, UNIT, sealed};
-use common::{LAMP_TEST_S, board as board_of, motor, scenario};
-use monitor::MonitorConfig;
+use board::modbus::{Field, UNLOCK_KEY, WORDS, address};
+use common::master::{FAST_BAUD, UNIT, quicken, sealed};
+use common::{LAMP_TEST_S, board as board_of, scenario};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use virtual_board::{Port, Quality, VirtualBoard};
 
 const DEFAULT_FRAMES: u32 = 2_000;
-/// Bits per second, and a character of 11 bits, s.
-const BAUD: u32 = 115_200;
-const CHARACTER_S: f64 = 11.0 / BAUD as f64;
+/// A character of 11 bits, s.
+const CHARACTER_S: f64 = 11.0 / FAST_BAUD as f64;
 /// Register `Configuration`.
 const CONFIRMED: u16 = 1;
 /// The silence that ends a frame (1.75 ms), and until the sample loop lets the slave answer (a block's work, 0.1 ms).
@@ -135,23 +132,12 @@ fn assert_nothing_happened(board: &mut VirtualBoard, missed: u64, after: u32) {
     assert_eq!(troubles, (0, missed), "{tally:?}");
 }
 
-/// A board that judges, with its line at [`BAUD`].
+/// A board that judges, on a fast line.
 fn fast_board(seconds: f64) -> VirtualBoard {
-    let (mut board, master) = (board_of(&scenario(seconds)), Master::new(UNIT));
+    let mut board = board_of(&scenario(seconds));
     board.forget_taken();
     board.run(LAMP_TEST_S + 0.8).expect("a run");
-    let config = MonitorConfig::of_board(&motor()).expect("shipped");
-    let mut wanted = Configuration::of("on a fast line", &MotorImage::new(&config));
-    wanted.set_line(Line {
-        baud: BAUD,
-        ..Line::default()
-    });
-    master.stage(&mut board, &wanted);
-    master.command(&mut board, Command::Commit as u16);
-    board.set_peer_speed(Port::Modbus, BAUD);
-    board.run(0.1).expect("a run");
-    master.command(&mut board, Command::Confirm as u16);
-    board.run(1.0).expect("a run");
+    quicken(&mut board);
     board
 }
 

@@ -5,7 +5,7 @@ use board::{Event, EventCause};
 use update::layout::{FLASH_BASE, WAITING};
 use update::{Refusal, UpdateState, Version};
 
-use super::common::master::{Master, UNIT};
+use super::common::master::{Master, UNIT, quicken};
 use super::common::packages::{installed, offer, package, send, signed, with_version};
 use super::common::{LAMP_TEST_S, board as board_of, logged, scenario};
 use super::programs::{marking, state};
@@ -111,7 +111,8 @@ fn a_program_comes_over_the_line_without_a_lost_sample_and_runs() {
 
 #[test]
 fn the_firmware_receives_another_version_of_itself_which_confirms_itself() {
-    let mut board = judging(420.0);
+    let mut board = judging(240.0);
+    quicken(&mut board);
     let new = with_version(installed(&mut board), "0.77.3");
     let judged = Judged::so_far(&mut board);
     let busy = send(&mut board, &package(&new));
