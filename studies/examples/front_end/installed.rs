@@ -132,7 +132,7 @@ impl<'m> Installed<'m> {
     pub fn without_errors(self) -> Self {
         let conversions = self.board.chain.conversions;
         // A sample is the mean of its conversions: half their distance late.
-        let late_s = 0.5 * T_SAMPLE_S as f64 * f64::from(conversions - 1) / f64::from(conversions);
+        let late_s = 0.5 * T_SAMPLE_S * f64::from(conversions - 1) / f64::from(conversions);
         let board = Board {
             chain: SignalChain {
                 conversions,

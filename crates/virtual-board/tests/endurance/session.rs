@@ -33,7 +33,7 @@ pub struct Session {
 
 impl Session {
     pub fn new(config: &MonitorConfig, before: u64) -> Self {
-        let monitor = Monitor::new(config.clone()).expect("a valid configuration");
+        let monitor = Monitor::new(*config).expect("a valid configuration");
         let companion = Companion::new(monitor.config());
         Session {
             monitor,
