@@ -6,6 +6,7 @@ pub mod flash_store;
 pub mod housekeeping;
 mod interrupts;
 pub mod lamps;
+mod memory;
 mod ring;
 pub mod sampling;
 pub mod serial;
