@@ -308,10 +308,11 @@ fn score(prior: Option<&Symmetric>, factor: &Factor<'_>, x: &Vector, k: &Vector)
         // `v' P v` and `v' u`.
         let mut along = [[0.0; 2]; ABREAST];
         for ((n, hypothesis), along) in hypotheses.iter().enumerate().zip(&mut along) {
-            let column = match prior {
-                Some(prior) => prior.columns(hypothesis.first, hypothesis.count),
-                None => hypothesis.direction(),
-            };
+            let mut column = [0.0; UNKNOWNS];
+            match prior {
+                Some(prior) => prior.add_columns(hypothesis.first, hypothesis.count, &mut column),
+                None => hypothesis.add_direction(&mut column),
+            }
             for (row, p) in columns.iter_mut().zip(column) {
                 set(row, n, p);
             }
@@ -325,7 +326,7 @@ fn score(prior: Option<&Symmetric>, factor: &Factor<'_>, x: &Vector, k: &Vector)
             Some(_) => 0,
             None => firsts.min().unwrap_or_default(),
         };
-        let explained = factor.squared_lengths(&columns, first);
+        let explained = factor.squared_lengths(&mut columns, first);
         let places = statistics.iter_mut().zip(weights);
         let all = hypotheses.iter().zip(explained).zip(along).zip(places);
         for (((hypothesis, explained), [believed, shown]), (statistic, weight)) in all {

@@ -178,12 +178,10 @@ impl Hypothesis {
         of.iter().skip(self.first).take(self.count).sum()
     }
 
-    /// Direction among the departures, each in units of its prior.
-    pub fn direction(&self) -> [f32; UNKNOWNS] {
-        let mut direction = [0.0; UNKNOWNS];
-        for x in direction.iter_mut().skip(self.first).take(self.count) {
-            *x = 1.0;
+    /// Adds its direction among the departures, each in units of its prior.
+    pub fn add_direction(&self, sum: &mut [f32; UNKNOWNS]) {
+        for x in sum.iter_mut().skip(self.first).take(self.count) {
+            *x += 1.0;
         }
-        direction
     }
 }

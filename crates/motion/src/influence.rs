@@ -170,6 +170,10 @@ impl Response {
 impl Direct {
     /// Adds what the iron makes of it.
     fn with_iron(mut self, magnetizing: &Direct, iron: f32) -> Direct {
+        // Iron that does not saturate takes nothing back.
+        if iron == 0.0 {
+            return self;
+        }
         self.driven += magnetizing.driven * iron;
         self.linkage += magnetizing.linkage * iron;
         self.share += magnetizing.share * iron;

@@ -9,8 +9,8 @@ use crate::departures::UNKNOWNS;
 pub const ROWS: usize = 9;
 const PACKED: usize = UNKNOWNS * (UNKNOWNS + 1) / 2;
 
-/// Vectors that are whitened at once.
-pub const ABREAST: usize = 4;
+/// Vectors that are whitened at once: all causes in three turns, and the processor's registers hold them.
+pub const ABREAST: usize = 6;
 
 /// A vector of departures.
 pub type Vector = [f32; UNKNOWNS];
@@ -112,20 +112,20 @@ impl Symmetric {
         }
     }
 
-    /// Sum of some columns that follow each other: the product with a vector of ones there and noughts elsewhere.
+    /// Adds some columns that follow each other: the product with a vector of ones there and noughts elsewhere.
     #[inline(never)]
-    pub fn columns(&self, first: usize, count: usize) -> Vector {
-        let mut sum = [0.0; UNKNOWNS];
+    pub fn add_columns(&self, first: usize, count: usize, sum: &mut Vector) {
         for column in first..first + count {
-            let (above, below) = sum.split_at_mut_checked(column).unwrap_or_default();
-            for (x, h) in above.iter_mut().zip(self.row(column)) {
+            for (x, h) in sum.iter_mut().zip(self.row(column)) {
                 *x += h;
             }
-            for (x, i) in below.iter_mut().zip(column..) {
-                *x += at(self.row(i), column);
+            // Below the diagonal, each a row further on.
+            let mut place = (column + 1) * (column + 2) / 2 + column;
+            for (i, x) in sum.iter_mut().enumerate().skip(column + 1) {
+                *x += at(&self.0, place);
+                place += i + 1;
             }
         }
-        sum
     }
 
     /// Cholesky factor of a positive definite matrix; where rounding leaves nothing of a diagonal it keeps a rounding's share.
@@ -175,35 +175,36 @@ impl Factor<'_> {
     }
 
     /// Squared lengths of `L^-1 x` of vectors side by side, whose entries before the `first` are nought: each entry of the
-    /// factor is fetched once for all of them.
+    /// factor is fetched once for all of them. The vectors become `L^-1 x`.
     #[inline(never)]
     pub fn squared_lengths(
         &self,
-        side_by_side: &[[f32; ABREAST]; UNKNOWNS],
+        side_by_side: &mut [[f32; ABREAST]; UNKNOWNS],
         first: usize,
     ) -> [f32; ABREAST] {
-        let mut white = [[0.0_f32; ABREAST]; UNKNOWNS];
         let mut squares = [0.0; ABREAST];
-        for (i, x) in side_by_side.iter().enumerate().skip(first) {
-            let Some((diagonal, row)) = self.0.row(i).split_last() else {
+        for i in first..UNKNOWNS {
+            let (earlier, rest) = side_by_side.split_at_mut_checked(i).unwrap_or_default();
+            let (Some((diagonal, row)), Some(x)) = (self.0.row(i).split_last(), rest.first_mut())
+            else {
                 continue;
             };
             // One by one, so that they stay in registers.
-            let [mut a, mut b, mut c, mut d] = *x;
-            let earlier = white.get(first..).unwrap_or_default();
-            for (l, [p, q, r, s]) in row.get(first..).unwrap_or_default().iter().zip(earlier) {
+            let [mut a, mut b, mut c, mut d, mut e, mut f] = *x;
+            let earlier = earlier.get(first..).unwrap_or_default();
+            for (l, [p, q, r, s, t, u]) in row.get(first..).unwrap_or_default().iter().zip(earlier)
+            {
                 a -= l * p;
                 b -= l * q;
                 c -= l * r;
                 d -= l * s;
+                e -= l * t;
+                f -= l * u;
             }
             let per = 1.0 / diagonal;
-            let own = [a * per, b * per, c * per, d * per];
-            for (square, x) in squares.iter_mut().zip(own) {
+            *x = [a, b, c, d, e, f].map(|x| x * per);
+            for (square, x) in squares.iter_mut().zip(*x) {
                 *square += x * x;
-            }
-            if let Some(place) = white.get_mut(i) {
-                *place = own;
             }
         }
         squares
@@ -260,7 +261,9 @@ impl Information {
 
     /// What it would have been had departure `k` been counted from a point `delta` further on.
     pub fn shift(&mut self, k: usize, delta: f32) {
-        for (b, moved) in self.vector.iter_mut().zip(self.matrix.columns(k, 1)) {
+        let mut column = [0.0; UNKNOWNS];
+        self.matrix.add_columns(k, 1, &mut column);
+        for (b, moved) in self.vector.iter_mut().zip(column) {
             *b -= delta * moved;
         }
     }

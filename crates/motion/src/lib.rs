@@ -181,22 +181,24 @@ impl Motion {
         state.seen.clipped |= clipped;
         state.seen.unlocked |= omega.is_none();
         state.omega_supply = omega.unwrap_or(state.omega_supply);
-        let c = *state
+        let c = state
             .coefficients
             .get_or_insert_with(|| self.circuit.at(0.0, 0.0));
         let t_sample = self.circuit.t_sample;
         let vectors = [instant.u, instant.i].map(observer::vector);
         state.scatter.add(vectors[0], vectors[1]);
-        let Some(interval) = state.observer.step(&c, t_sample, &instant) else {
+        let Some(interval) = state.observer.step(c, t_sample, &instant) else {
             state.seen.first_current = magnitude(vectors[1]);
             return None;
         };
-        state.sums.add(&self.circuit, &c, &instant, &interval);
+        state.sums.add(&self.circuit, c, &instant, &interval);
         state.influences.add(&interval, instant.turned);
         let ends = state.sums.samples >= self.samples;
-        if ends || state.influences.samples() >= self.part {
-            self.end_part(state, &c, &interval);
+        if !ends && state.influences.samples() < self.part {
+            return None;
         }
+        let c = *c;
+        self.end_part(state, &c, &interval);
         ends.then(|| self.end_cycle(state, &c))
     }
 

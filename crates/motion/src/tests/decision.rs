@@ -9,7 +9,7 @@ use super::plant::{Plant, press_torque};
 use super::rows::INSTRUMENT;
 use super::{MotionCycle, MotionState, believed, cycles};
 use crate::decision::{Decision, Limits};
-use crate::departures::{ALL, UNKNOWNS};
+use crate::departures::{ALL, Hypothesis, UNKNOWNS};
 use crate::information::{Information, ROWS, White};
 use crate::{MotionSample, Named};
 use monitor::{Cause, MovingCause, Phase, SensorFinding};
@@ -57,13 +57,13 @@ fn statistics(p: &DMatrix<f64>, m: &DVector<f64>, h: &DMatrix<f64>, b: &DVector<
     let e = b - h * m;
     let u = &e - h * &inverse * &e;
     let w = h - h * &inverse * h;
-    let of = |direction: [f32; UNKNOWNS]| {
+    let of = |hypothesis: &Hypothesis| {
+        let mut direction = [0.0; UNKNOWNS];
+        hypothesis.add_direction(&mut direction);
         let v = wide(&direction);
         (v.transpose() * &u)[0] / (v.transpose() * &w * &v)[0].sqrt()
     };
-    ALL.iter()
-        .map(|hypothesis| of(hypothesis.direction()))
-        .collect()
+    ALL.iter().map(of).collect()
 }
 
 /// Single precision, four roundings of sums over some hundred terms: 1e-3 of a statistic near the limit.
