@@ -29,9 +29,9 @@ const AT_REST: Most = Most {
 /// One that is judged in motion as well. At two cycles per instruction its longest window and the block that it ends in
 /// still take less than a block's time, 256 000 cycles.
 const IN_MOTION: Most = Most {
-    per_sample: 2_600.0,
-    per_window: 80_000.0,
-    load: 32.5,
+    per_sample: 2_400.0,
+    per_window: 73_000.0,
+    load: 30.0,
 };
 /// Cycles that an instruction may take on average.
 const CYCLES: [f64; 3] = [1.0, 1.5, 2.0];
