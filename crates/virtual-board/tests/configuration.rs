@@ -5,8 +5,8 @@ mod common;
 
 use board::modbus::{Command, Field, UNLOCK_KEY};
 use board::{Configuration, Frame, Line, LineParity, MotorImage, Refused, STAGED, Shown, TRIAL_S};
-use common::master::{Master, UNIT};
-use common::{INHIBITED, LAMP_TEST_S, board as board_of, board_to_restore, motor, scenario};
+use common::master::{CONFIRMED, Master, UNIT};
+use common::{INHIBITED, LAMP_TEST_S, board as board_of, board_to_restore, less_touchy, scenario};
 use monitor::{Monitor, MonitorConfig, MonitorState};
 use motor::MotorFile;
 use virtual_board::{Cause, VirtualBoard};
@@ -14,7 +14,6 @@ use virtual_board::{Cause, VirtualBoard};
 const HEALTHY: [bool; 9] = [true, false, false, false, false, false, false, false, false];
 /// Register `Configuration`.
 const COMPILED_IN: u16 = 0;
-const CONFIRMED: u16 = 1;
 const TRIAL: u16 = 2;
 
 fn running() -> VirtualBoard {
@@ -24,15 +23,11 @@ fn running() -> VirtualBoard {
     board
 }
 
-/// The motor of the simulation, with thresholds a tenth larger.
-fn config() -> MonitorConfig {
-    let mut config = MonitorConfig::of_board(&motor()).expect("shipped");
-    config.thresholds = config.thresholds.map(|threshold| 1.1 * threshold);
-    config
-}
-
 fn configuration() -> Configuration {
-    Configuration::of("the same motor, less touchy", &MotorImage::new(&config()))
+    Configuration::of(
+        "the same motor, less touchy",
+        &MotorImage::new(&less_touchy()),
+    )
 }
 
 fn source(master: &Master, board: &mut VirtualBoard) -> u16 {
@@ -65,7 +60,7 @@ fn a_configured_board_judges_bit_for_bit_as_the_host_does_with_that_motor() {
         .split_inclusive(|byte| *byte == 0)
         .map(|bytes| Frame::decode(bytes).expect("an undamaged frame"))
         .collect();
-    let monitor = Monitor::new(config()).expect("a valid configuration");
+    let monitor = Monitor::new(less_touchy()).expect("a valid configuration");
     let mut state = MonitorState::default();
     let taken = board.taken()[before..].iter().skip(INHIBITED);
     let reports = taken.filter_map(|raw| monitor.update_raw(&mut state, raw));
@@ -207,7 +202,7 @@ fn power_that_fails_at_any_step_of_storing_leaves_the_old_or_the_new() {
     let (mut board, master) = (board_to_restore(&scenario(200.0)), Master::new(UNIT));
     board.run(LAMP_TEST_S + 0.8).expect("a run");
     let mut old = configuration();
-    old.set_motor("the old one", &MotorImage::new(&config()));
+    old.set_motor("the old one", &MotorImage::new(&less_touchy()));
     // Nothing else is to be written to flash while the power is cut: events of the same cause wait for a minute.
     for configuration in [&configuration(), &old] {
         master.stage(&mut board, configuration);
@@ -217,7 +212,7 @@ fn power_that_fails_at_any_step_of_storing_leaves_the_old_or_the_new() {
         assert_eq!(source(&master, &mut board), CONFIRMED);
     }
     let mut new = old.clone();
-    new.set_motor("the new one", &MotorImage::new(&config()));
+    new.set_motor("the new one", &MotorImage::new(&less_touchy()));
     master.stage(&mut board, &new);
     master.command(&mut board, Command::Commit as u16);
     let name = |board: &mut VirtualBoard| {

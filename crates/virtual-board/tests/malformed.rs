@@ -7,7 +7,7 @@
 mod common;
 
 use board::modbus::{Field, UNLOCK_KEY, WORDS, address};
-use common::master::{FAST_BAUD, UNIT, quicken, sealed};
+use common::master::{CONFIRMED, FAST_BAUD, UNIT, quicken, sealed};
 use common::{LAMP_TEST_S, board as board_of, scenario};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -16,8 +16,6 @@ use virtual_board::{Port, Quality, VirtualBoard};
 const DEFAULT_FRAMES: u32 = 2_000;
 /// A character of 11 bits, s.
 const CHARACTER_S: f64 = 11.0 / FAST_BAUD as f64;
-/// Register `Configuration`.
-const CONFIRMED: u16 = 1;
 /// The silence that ends a frame (1.75 ms), and until the sample loop lets the slave answer (a block's work, 0.1 ms).
 const PATIENCE_S: f64 = 0.004;
 /// Frames between two looks at the registers.

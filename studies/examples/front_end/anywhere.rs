@@ -2,12 +2,11 @@
 
 use std::error::Error;
 
-use crate::installed::{Conditions, DEGC, Installed, WARMTH, between};
+use crate::installed::{Conditions, DEGC, Installed, WARMTH, between, random_of};
 use campaign::T_SAMPLE_S;
 use monitor::{Lamp, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
 use rand::Rng;
-use rand_pcg::Pcg64;
 
 /// Loads, shares of rated torque.
 const LOAD: [f64; 2] = [0.25, 1.3];
@@ -37,7 +36,7 @@ pub struct Outcome {
 /// # Errors
 /// Motor files or conditions that cannot be simulated.
 pub fn judged(motors: &[MotorFile], seed: u64, k: u64) -> Result<Outcome, Box<dyn Error>> {
-    let mut random = Pcg64::new(u128::from(seed) << 64 | u128::from(k), 0xA02_BDBF_7BB3_C0A7);
+    let mut random = random_of(seed, k);
     let plant = &motors[random.random_range(0..motors.len())];
     let installed = Installed::draw(plant, &mut random);
     let Some(calibrated) = installed.calibrated(&mut random, k)? else {

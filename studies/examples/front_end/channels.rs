@@ -3,10 +3,9 @@
 use std::error::Error;
 
 use crate::anywhere::lit;
-use crate::installed::{Conditions, DEGC, Installed, WARMTH, between};
+use crate::installed::{Conditions, DEGC, Installed, WARMTH, between, random_of};
 use motor::MotorFile;
-use rand::{Rng, SeedableRng};
-use rand_pcg::Pcg64;
+use rand::Rng;
 use rayon::prelude::*;
 use scenario::{Fault, Probe, Target};
 
@@ -16,8 +15,8 @@ const LOAD: [f64; 2] = [0.5, 1.2];
 const FAULT_FROM_S: f64 = 0.6;
 const JUDGED_S: f64 = 1.6;
 /// Sizes in percent of campaigns/detection.toml and one more, and what they are of: one channel, or all three of a kind.
-const ONE_CURRENT: &[f64] = &[1.0, 2.0, 3.0, 6.0];
-const ONE_VOLTAGE: &[f64] = &[1.0, 2.0, 4.0];
+const ONE_CURRENT: &[f64] = &[1.0, 2.0, 3.0, 6.0, 12.0];
+const ONE_VOLTAGE: &[f64] = &[1.0, 2.0, 4.0, 8.0];
 const ALL_CURRENTS: &[f64] = &[2.0, 3.0, 6.0, 12.0, 24.0];
 const ALL_VOLTAGES: &[f64] = &[1.0, 2.0, 3.0, 4.0, 8.0, 16.0];
 /// Runs of a hundred that must be seen.
@@ -88,7 +87,7 @@ fn seen(
     seed: u64,
     k: u64,
 ) -> Result<Option<Vec<bool>>, Box<dyn Error>> {
-    let mut random = Pcg64::seed_from_u64(seed ^ k << 20);
+    let mut random = random_of(seed, k);
     let drawn = Installed::draw(motor, &mut random);
     let installed = if ideal { drawn.without_errors() } else { drawn };
     let Some(calibrated) = installed.calibrated(&mut random, k)? else {

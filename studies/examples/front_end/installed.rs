@@ -71,6 +71,11 @@ pub struct Installed<'m> {
     grid: Vec<Harmonic>,
 }
 
+/// What draws board number `k` of a seed, the same whichever boards are drawn besides.
+pub fn random_of(seed: u64, k: u64) -> Pcg64 {
+    Pcg64::new(u128::from(seed) << 64 | u128::from(k), 0xA02_BDBF_7BB3_C0A7)
+}
+
 impl<'m> Installed<'m> {
     /// Draws a board's parts and where it hangs.
     pub fn draw(plant: &'m MotorFile, random: &mut Pcg64) -> Self {

@@ -167,6 +167,8 @@ pub fn ask(board: &mut VirtualBoard, request: &[u8]) -> Vec<Sent> {
     answer
 }
 
+/// Register `Configuration` of constants that a master sent and confirmed.
+pub const CONFIRMED: u16 = 1;
 /// The fastest line that a board can be given, bit/s.
 pub const FAST_BAUD: u32 = 115_200;
 

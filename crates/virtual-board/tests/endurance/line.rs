@@ -2,34 +2,24 @@
 
 use board::modbus::{Command, Field};
 use board::{Configuration, MotorImage};
-use monitor::MonitorConfig;
 use update::UpdateState;
 use virtual_board::Cause;
 
-use super::common::master::{Master, UNIT};
-use super::common::motor;
+use super::common::less_touchy;
+use super::common::master::{CONFIRMED, Master, UNIT};
 use super::common::packages::{installed, package, send, with_version};
 use super::watch::Watch;
 
-/// Register `Configuration`.
-const CONFIRMED: u16 = 1;
 /// Seconds in a row without trouble after which a program is confirmed: shortly before, and from before to well behind it.
 const TRIAL_S: u32 = 57;
 const CONFIRMED_S: f64 = 8.0;
 /// From the command until the board starts anew, s.
 const LATEST_START_S: f64 = 10.0;
 
-/// The motor of the simulation, with thresholds a tenth larger.
-fn config() -> MonitorConfig {
-    let mut config = MonitorConfig::of_board(&motor()).expect("shipped");
-    config.thresholds = config.thresholds.map(|threshold| 1.1 * threshold);
-    config
-}
-
 /// Motor constants are staged, committed and confirmed; then the power is switched off and on, as at commissioning.
 pub fn bring_constants(watch: &mut Watch) {
     let master = Master::new(UNIT);
-    let config = config();
+    let config = less_touchy();
     let wanted = Configuration::of("the same motor, less touchy", &MotorImage::new(&config));
     master.stage(&mut watch.board, &wanted);
     watch.look();

@@ -12,8 +12,10 @@ use super::watch::{Counts, SAMPLES_PER_SECOND};
 
 /// The sampling clock against the supply's: a window is a cycle of 60 Hz.
 const SAMPLES_PER_FRAME: f64 = SAMPLES_PER_SECOND / 60.0;
-/// Two windows and a block, and a cycle until the frame is through the line: what a frame may be behind the converter.
-const FRAME_LAG: u64 = 3 * 167 + 32;
+/// Two windows and a block: what a frame may be behind the converter.
+const FRAME_LAG: u64 = 2 * 167 + 32;
+/// Two blocks, in one of which the first sample of a start comes: what samples may differ from the time that passed.
+const CLOCK_LAG: f64 = 200.0;
 
 /// The host's core on the samples of one start, and the frames that have come since.
 pub struct Session {
@@ -23,6 +25,9 @@ pub struct Session {
     /// Samples before this start.
     before: u64,
     samples: u64,
+    /// Emulated time of the first look that found samples, and how many those were.
+    began: Option<(f64, u64)>,
+    latest_s: f64,
     /// What the board's frames are still to say.
     reports: VecDeque<Report>,
     /// Bytes of a frame that is under way.
@@ -41,6 +46,8 @@ impl Session {
             companion,
             before,
             samples: 0,
+            began: None,
+            latest_s: 0.0,
             reports: VecDeque::new(),
             rest: Vec::new(),
             frames: 0,
@@ -48,8 +55,12 @@ impl Session {
         }
     }
 
-    /// What the host says of samples.
-    pub fn judge(&mut self, taken: &[RawSample]) {
+    /// What the host says of samples that had come at `now_s`.
+    pub fn judge(&mut self, taken: &[RawSample], now_s: f64) {
+        if !taken.is_empty() {
+            self.began = self.began.or(Some((now_s, taken.len() as u64)));
+            self.latest_s = now_s;
+        }
         for raw in taken {
             self.samples += 1;
             if self.samples > INHIBITED as u64 {
@@ -116,6 +127,10 @@ impl Session {
 
     /// A frame for every cycle; what is under way at the end does not count.
     pub fn assert_whole(&self) {
+        let (began_s, first) = self.began.expect("samples");
+        let passed = (self.latest_s - began_s) * SAMPLES_PER_SECOND;
+        let taken = (self.samples - first) as f64;
+        assert!((taken - passed).abs() < CLOCK_LAG, "{taken} of {passed}");
         let judged = self.samples.saturating_sub(INHIBITED as u64) as f64;
         let expected = judged / SAMPLES_PER_FRAME;
         let frames = f64::from(self.frames);

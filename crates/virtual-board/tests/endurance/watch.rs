@@ -115,7 +115,7 @@ impl Watch {
         let Some(session) = &mut self.session else {
             return;
         };
-        session.judge(&taken);
+        session.judge(&taken, self.sampled_s);
         let now = (self.conversions, self.sampled_s - origin_s);
         let bytes = sent.iter().map(|sent| sent.byte);
         session.take(bytes, now, &mut self.counts);
