@@ -38,8 +38,8 @@ pub struct Truth {
     pub tau_load: f64,
     /// Angle of the d axis of the voltage frame (a quarter turn behind the positive sequence), rad.
     pub theta_voltage: f64,
-    /// Angle of the d axis of the rotor-flux frame, rad.
-    pub theta_flux: f64,
+    /// Vector along the d axis of the rotor-flux frame; of the linear plant, which has no such flux, of length 1.
+    pub rotor_flux: Complex64,
 }
 
 /// What the instruments showed at one instant.
@@ -98,7 +98,7 @@ impl Truth {
     pub fn theta(&self, frame: Frame) -> f64 {
         match frame {
             Frame::Voltage => self.theta_voltage,
-            Frame::RotorFlux => self.theta_flux,
+            Frame::RotorFlux => self.rotor_flux.arg(),
         }
     }
 }

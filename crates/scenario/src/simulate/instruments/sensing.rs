@@ -1,10 +1,11 @@
 //! The instruments: faults, noise, resolution and limits between the truth and the sample.
 
-use super::chain::Chain;
+use super::chain::{Chain, Range};
 use crate::chain::CHANNELS;
 use crate::simulate::{Measured, Truth};
 use crate::{Change, DqSignal, Fault, Probe, Scenario, SensorSpec, SpeedSensor, Target};
 use motor::dynamic::{clarke, phases};
+use motor::motor_file::Sensors;
 use num_complex::Complex64;
 use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
@@ -20,74 +21,122 @@ const COUNTS_PER_PULSE: f64 = 4.0;
 pub(in crate::simulate) struct Instruments {
     spec: SensorSpec,
     t_sample: f64,
+    /// Voltages a, b, c, then currents a, b, c.
+    channels: [Channel; CHANNELS],
+    tachometer: Channel,
+    torque_meter: Channel,
     random: Pcg64,
     last_theta: Option<f64>,
     encoder_angle: f64,
     counts: VecDeque<i64>,
-    chain: Option<Chain>,
+    chain: Option<Box<Chain>>,
 }
 
 /// One analogue channel; corrected value = (raw - offset) * gain.
+#[derive(Clone, Copy, Debug)]
 struct Channel {
     full_scale: f64,
-    bits: u32,
-    /// One code, V or A.
+    /// One code, V or A, and its inverse: a sample may have a hundred conversions, and a division takes the longest.
     step: f64,
+    per_step: f64,
+    middle: f64,
+    largest: u32,
+    /// Standard deviation, V or A.
+    noise: f64,
     gain: f64,
     offset: f64,
 }
 
 impl Channel {
-    fn new(full_scale: f64, bits: u32, gain: f64, offset: f64) -> Channel {
+    fn new(own: &Sensors, full_scale: f64, gain: f64, offset: f64) -> Channel {
+        let codes = 1_u32 << own.adc_bits;
+        let step = 2.0 * full_scale / f64::from(codes);
         Channel {
             full_scale,
-            bits,
-            step: 2.0 * full_scale / f64::from(1_u32 << bits),
+            per_step: 1.0 / step,
+            step,
+            middle: f64::from(codes / 2),
+            largest: codes - 1,
+            noise: own.noise_sigma_fraction_of_full_scale * full_scale,
             gain,
             offset,
         }
     }
 
+    /// A channel without calibration, such as the tachometer.
+    fn plain(own: &Sensors, full_scale: f64) -> Channel {
+        Channel::new(own, full_scale, 1.0, 0.0)
+    }
+
+    /// Channel `k`: voltages a, b, c, then currents a, b, c.
+    fn of(own: &Sensors, k: usize) -> Channel {
+        let phase = k % 3;
+        let (full_scale, gain, offset) = match k < 3 {
+            true => (
+                own.voltage_full_scale_volt,
+                own.voltage_gain[phase],
+                own.voltage_offset_volt[phase],
+            ),
+            false => (
+                own.current_full_scale_amp,
+                own.current_gain[phase],
+                own.current_offset_amp[phase],
+            ),
+        };
+        Channel::new(own, full_scale, gain, offset)
+    }
+
+    fn range(&self) -> Range {
+        Range {
+            full_scale: self.full_scale,
+            step: self.step,
+        }
+    }
+
     /// The ADC code of a raw value: 0 V or 0 A is the middle code.
     fn code(&self, raw: f64) -> u16 {
-        let middle = f64::from(1_u32 << (self.bits - 1));
-        let largest = f64::from((1_u32 << self.bits) - 1);
-        let code = (raw / self.step + middle).clamp(0.0, largest);
+        let code = (raw * self.per_step + self.middle).clamp(0.0, f64::from(self.largest));
         // Rounded, and within the codes of at most 16 bits.
         (code + 0.5) as u16
     }
 
     /// As the core sees it: within a code of either end.
     fn is_at_rail(&self, code: u16) -> bool {
-        u32::from(code) <= 1 || u32::from(code) + 2 >= 1_u32 << self.bits
+        u32::from(code) <= 1 || u32::from(code) + 1 >= self.largest
     }
 
-    fn raw_of(&self, code: u16) -> f64 {
-        let middle = f64::from(1_u32 << (self.bits - 1));
-        (f64::from(code) - middle) * self.step
+    /// The calibrated value: of a code, or of what there is where nothing is rounded.
+    fn value(&self, raw: f64, code: u16, quantise: bool) -> f64 {
+        let shown = match quantise {
+            true => (f64::from(code) - self.middle) * self.step,
+            false => raw,
+        };
+        (shown - self.offset) * self.gain
     }
 }
 
-/// What one channel shows: value, code, and whether any conversion of it was at a rail.
+/// What the channels show: values, codes, and whether any conversion was at a rail.
 #[derive(Clone, Copy, Default)]
 struct Shown {
-    value: f64,
-    code: u16,
-    clipped: bool,
+    values: [f64; CHANNELS],
+    codes: [u16; CHANNELS],
+    clipped: [bool; CHANNELS],
 }
 
 impl Shown {
     /// Adds a conversion. The scenario's reader sees to it that the codes of all fit into 16 bits.
-    fn add(&mut self, one: Shown) {
-        self.value += one.value;
-        self.code = self.code.saturating_add(one.code);
-        self.clipped |= one.clipped;
+    fn add(&mut self, one: &Shown) {
+        for k in 0..CHANNELS {
+            self.values[k] += one.values[k];
+            self.codes[k] = self.codes[k].saturating_add(one.codes[k]);
+            self.clipped[k] |= one.clipped[k];
+        }
     }
 
     /// The mean of so many conversions; the codes stay a sum.
     fn of(self, number: f64) -> Shown {
         Shown {
-            value: self.value / number,
+            values: self.values.map(|value| value / number),
             ..self
         }
     }
@@ -101,14 +150,21 @@ fn uncorrected(x: [f64; CHANNELS], channels: &[Channel; CHANNELS]) -> [f64; CHAN
 impl Instruments {
     pub(in crate::simulate) fn new(scenario: &Scenario) -> Instruments {
         let chain = scenario.sensors.chain.as_ref();
+        let own = &scenario.sensors.instrument;
+        let channels = std::array::from_fn(|k| Channel::of(own, k));
+        let ranges = channels.map(|channel: Channel| channel.range());
+        let (seed, t_sample) = (scenario.seed, scenario.t_sample());
         Instruments {
+            channels,
+            tachometer: Channel::plain(own, own.speed_full_scale_rad_s),
+            torque_meter: Channel::plain(own, own.torque_full_scale_nm),
             spec: scenario.sensors.clone(),
-            t_sample: scenario.t_sample(),
-            random: Pcg64::seed_from_u64(scenario.seed),
+            t_sample,
+            random: Pcg64::seed_from_u64(seed),
             last_theta: None,
             encoder_angle: 0.0,
             counts: VecDeque::new(),
-            chain: chain.map(|chain| Chain::new(chain, scenario.seed, scenario.t_sample())),
+            chain: chain.map(|chain| Box::new(Chain::new(chain, seed, t_sample, ranges))),
         }
     }
 
@@ -126,118 +182,65 @@ impl Instruments {
         faults: &[Fault],
     ) -> Measured {
         let active = active(faults, t);
-        let channels: [Channel; CHANNELS] = std::array::from_fn(|k| self.channel(k));
-        let shown = self.sample(t, sensed(truth, &active), &channels);
-        let [a, b, c, d, e, f] = shown;
-        let (u, i) = ([a, b, c], [d, e, f]);
+        let shown = self.sample(t, sensed(truth, &active));
+        let (u_s_abc, i_s_abc) = halves(shown.values);
+        let (voltage_codes, current_codes) = halves(shown.codes);
         let count = self.count(truth, &active);
         Measured {
-            u_s_abc: u.map(|one| one.value),
-            i_s_abc: i.map(|one| one.value),
+            u_s_abc,
+            i_s_abc,
             omega_mech: self.speed(truth, count, &active),
-            tau_load: self.plain(truth.tau_load, self.spec.instrument.torque_full_scale_nm),
-            voltage_codes: u.map(|one| one.code),
-            current_codes: i.map(|one| one.code),
-            clipped: shown.map(|one| one.clipped),
+            tau_load: self.plain(self.torque_meter, truth.tau_load),
+            voltage_codes,
+            current_codes,
+            clipped: shown.clipped,
             // The hardware counter has 16 bits and wraps.
             encoder_count: count as u16,
         }
     }
 
-    /// Channel `k`: voltages a, b, c, then currents a, b, c.
-    fn channel(&self, k: usize) -> Channel {
-        let own = &self.spec.instrument;
-        let phase = k % 3;
-        let (full_scale, gain, offset) = match k < 3 {
-            true => (
-                own.voltage_full_scale_volt,
-                own.voltage_gain[phase],
-                own.voltage_offset_volt[phase],
-            ),
-            false => (
-                own.current_full_scale_amp,
-                own.current_gain[phase],
-                own.current_offset_amp[phase],
-            ),
-        };
-        Channel::new(full_scale, own.adc_bits, gain, offset)
-    }
-
-    /// All channels of a sample: one conversion, or the mean of those that the chain asks for.
-    fn sample(
-        &mut self,
-        t: f64,
-        sensed: [f64; CHANNELS],
-        channels: &[Channel; CHANNELS],
-    ) -> [Shown; CHANNELS] {
-        let Some(chain) = &mut self.chain else {
-            let raw = uncorrected(sensed, channels);
-            return std::array::from_fn(|k| self.convert(&channels[k], raw[k]));
+    /// A sample: one conversion of each channel, or the mean of those that the chain asks for.
+    fn sample(&mut self, t: f64, sensed: [f64; CHANNELS]) -> Shown {
+        let Some(mut chain) = self.chain.take() else {
+            let mut raw = uncorrected(sensed, &self.channels);
+            self.add_noise(&mut raw);
+            return self.shown(&raw);
         };
         chain.observe(t, sensed);
-        let times = chain.conversions(t);
-        let (mut sums, mut number) = ([Shown::default(); CHANNELS], 0.0);
-        for t in times {
-            let raw = self.raw(t, channels);
-            for (k, sum) in sums.iter_mut().enumerate() {
-                sum.add(self.convert(&channels[k], raw[k]));
-            }
+        let (mut sum, mut number) = (Shown::default(), 0.0);
+        for t in chain.conversions(t) {
+            let pins = uncorrected(chain.filtered(t), &self.channels);
+            let mut raw = chain.distorted(t, pins);
+            self.add_noise(&mut raw);
+            chain.bend(&mut raw);
+            sum.add(&self.shown(&raw));
             number += 1.0;
         }
-        sums.map(|sum| sum.of(number))
+        self.chain = Some(chain);
+        sum.of(number)
     }
 
-    /// What reaches the converter's pins at `t`, s, before the motor file's correction.
-    fn raw(&mut self, t: f64, channels: &[Channel; CHANNELS]) -> [f64; CHANNELS] {
-        let full_scales = std::array::from_fn(|k| channels[k].full_scale);
-        match &mut self.chain {
-            Some(chain) => {
-                let pins = uncorrected(chain.filtered(t), channels);
-                chain.distorted(t, pins, full_scales)
-            }
-            None => [0.0; CHANNELS],
-        }
-    }
-
-    /// The calibrated value and the code of what reaches the pin.
-    fn convert(&mut self, channel: &Channel, raw: f64) -> Shown {
-        let raw = raw + self.noise(channel.full_scale);
-        let bent = match &self.chain {
-            Some(chain) => raw + chain.inl_lsb(raw / channel.full_scale) * channel.step,
-            None => raw,
-        };
-        self.shown(channel, bent)
-    }
-
-    /// The calibrated value and the code.
-    fn shown(&self, channel: &Channel, raw: f64) -> Shown {
-        let code = channel.code(raw);
-        let shown = if self.spec.quantise {
-            channel.raw_of(code)
-        } else {
-            raw
-        };
+    fn shown(&self, raw: &[f64; CHANNELS]) -> Shown {
+        let channels = &self.channels;
+        let codes = std::array::from_fn(|k| channels[k].code(raw[k]));
+        let quantise = self.spec.quantise;
         Shown {
-            value: (shown - channel.offset) * channel.gain,
-            code,
-            clipped: channel.is_at_rail(code),
+            values: std::array::from_fn(|k| channels[k].value(raw[k], codes[k], quantise)),
+            clipped: std::array::from_fn(|k| channels[k].is_at_rail(codes[k])),
+            codes,
         }
     }
 
-    /// A channel without calibration, such as the tachometer.
-    fn plain(&mut self, x: f64, full_scale: f64) -> f64 {
-        let channel = Channel::new(full_scale, self.spec.instrument.adc_bits, 1.0, 0.0);
-        let raw = x + self.noise(full_scale);
-        self.shown(&channel, raw).value
+    /// What an instrument of its own shows, such as the tachometer.
+    fn plain(&mut self, channel: Channel, x: f64) -> f64 {
+        let raw = x + noise(&channel, &mut self.random);
+        channel.value(raw, channel.code(raw), self.spec.quantise)
     }
 
-    fn noise(&mut self, full_scale: f64) -> f64 {
-        let sigma = self.spec.instrument.noise_sigma_fraction_of_full_scale * full_scale;
-        if sigma == 0.0 {
-            return 0.0;
+    fn add_noise(&mut self, raw: &mut [f64; CHANNELS]) {
+        for (raw, channel) in raw.iter_mut().zip(&self.channels) {
+            *raw += noise(channel, &mut self.random);
         }
-        let normal: f64 = self.random.sample(StandardNormal);
-        sigma * normal
     }
 
     /// Counts of the encoder since the beginning, four per pulse.
@@ -255,9 +258,7 @@ impl Instruments {
         match self.spec.speed {
             SpeedSensor::None => 0.0,
             SpeedSensor::Encoder => self.encoder_speed(count, omega),
-            SpeedSensor::Tachometer => {
-                self.plain(omega, self.spec.instrument.speed_full_scale_rad_s)
-            }
+            SpeedSensor::Tachometer => self.plain(self.tachometer, omega),
         }
     }
 
@@ -281,6 +282,19 @@ impl Instruments {
         let pulses = f64::from(self.spec.instrument.encoder_pulses_per_revolution);
         COUNTS_PER_PULSE * pulses / TAU
     }
+}
+
+fn noise(channel: &Channel, random: &mut Pcg64) -> f64 {
+    if channel.noise == 0.0 {
+        return 0.0;
+    }
+    let normal: f64 = random.sample(StandardNormal);
+    channel.noise * normal
+}
+
+/// Voltages, and currents.
+fn halves<T: Copy>([a, b, c, d, e, f]: [T; CHANNELS]) -> ([T; 3], [T; 3]) {
+    ([a, b, c], [d, e, f])
 }
 
 fn active(faults: &[Fault], t: f64) -> Vec<&Fault> {

@@ -110,7 +110,7 @@ impl<H: Hooks> Full<H> {
             tau_em: flow.tau_em,
             tau_load: tau_load + self.now.1.load_friction * omega_mech,
             theta_voltage: self.waveform.d_axis(t),
-            theta_flux: self.state.psi_r.arg(),
+            rotor_flux: self.state.psi_r,
         }
     }
 

@@ -71,7 +71,7 @@ impl Linear {
             tau_em: self.params.k_f() * self.state.i_q,
             tau_load: self.params.load_friction * omega_mech,
             theta_voltage: d_axis,
-            theta_flux: d_axis,
+            rotor_flux: turn,
         }
     }
 

@@ -9,8 +9,18 @@ pub(super) struct Line {
     delay_s: f64,
     /// How long before the last quantity a value may be asked for, s.
     span_s: f64,
-    /// Times, s, and filtered values, no older than delay and span need.
-    past: VecDeque<(f64, f64)>,
+    /// No older than delay and span need.
+    past: VecDeque<Point>,
+    /// The last of them before the time asked for last, or the first: the next one asked for is near.
+    before: usize,
+}
+
+/// A filtered value, and how it goes on to the next one; flat while there is none.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    t: f64,
+    value: f64,
+    slope: f64,
 }
 
 impl Line {
@@ -20,28 +30,44 @@ impl Line {
             delay_s: channel.delay_s,
             span_s,
             past: VecDeque::new(),
+            before: 0,
         }
     }
 
-    /// Takes the quantity at `t`, `step` after the last one, s.
-    pub(super) fn observe(&mut self, t: f64, step: f64, x: f64) {
-        let filtered = self.poles.iter_mut().fold(x, |x, pole| pole.next(step, x));
-        self.past.push_back((t, filtered));
+    /// Takes the quantity at `t`, `step` after the last one, s; `rate` is its inverse, the same for all channels.
+    pub(super) fn observe(&mut self, t: f64, step: f64, rate: f64, x: f64) {
+        let value = self.poles.iter_mut().fold(x, |x, pole| pole.next(step, x));
+        if let Some(last) = self.past.back_mut() {
+            last.slope = (value - last.value) * rate;
+        }
+        self.past.push_back(Point {
+            t,
+            value,
+            slope: 0.0,
+        });
         let wanted = t - self.span_s - self.delay_s;
-        while self.past.get(1).is_some_and(|(time, _)| *time <= wanted) {
+        while self.past.get(1).is_some_and(|point| point.t <= wanted) {
             self.past.pop_front();
+            self.before = self.before.saturating_sub(1);
         }
     }
 
     /// The value at `t`, at most the span before the last quantity, s; the first value before there was one.
-    pub(super) fn at(&self, t: f64) -> f64 {
+    pub(super) fn at(&mut self, t: f64) -> f64 {
         let wanted = t - self.delay_s;
-        let after = self.past.partition_point(|(time, _)| *time < wanted);
-        let before = after.checked_sub(1).and_then(|k| self.past.get(k));
-        match (before, self.past.get(after)) {
-            (Some((t0, y0)), Some((t1, y1))) => y0 + (y1 - y0) * (wanted - t0) / (t1 - t0),
-            (Some((_, edge)), None) | (None, Some((_, edge))) => *edge,
-            (None, None) => 0.0,
+        self.seek(wanted);
+        self.past.get(self.before).map_or(0.0, |point| {
+            point.value + point.slope * (wanted - point.t).max(0.0)
+        })
+    }
+
+    fn seek(&mut self, wanted: f64) {
+        let is_before = |point: &Point| point.t < wanted;
+        while self.past.get(self.before + 1).is_some_and(is_before) {
+            self.before += 1;
+        }
+        while self.before > 0 && !self.past.get(self.before).is_some_and(is_before) {
+            self.before -= 1;
         }
     }
 }
@@ -127,7 +153,7 @@ mod tests {
     fn output(mut line: Line, h: f64, t_end: f64, input: impl Fn(f64) -> f64) -> f64 {
         let steps = (t_end / h).round() as u32;
         for k in 0..=steps {
-            line.observe(f64::from(k) * h, h, input(f64::from(k) * h));
+            line.observe(f64::from(k) * h, h, h.recip(), input(f64::from(k) * h));
         }
         line.at(f64::from(steps) * h)
     }
@@ -154,7 +180,7 @@ mod tests {
     #[test]
     fn values_of_the_whole_span_can_be_asked_for() {
         let mut line = spanning([0.0; 2], 23.5e-6, 93.75e-6);
-        (0..=50).for_each(|k| line.observe(f64::from(k) * 1e-5, 1e-5, f64::from(k) * 1e-5));
+        (0..=50).for_each(|k| line.observe(f64::from(k) * 1e-5, 1e-5, 1e5, f64::from(k) * 1e-5));
         for k in 0..16 {
             let t = 5e-4 - f64::from(k) * 6.25e-6;
             assert!((line.at(t) - (t - 23.5e-6)).abs() < 1e-12, "{k}");

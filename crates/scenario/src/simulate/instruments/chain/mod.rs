@@ -9,13 +9,49 @@ use line::Line;
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+/// A channel's range.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    /// V, A.
+    pub(super) full_scale: f64,
+    /// One code, V, A.
+    pub(super) step: f64,
+}
+
+/// What turns a value at the pin into a share of full scale, and back: the inverses once, not at every conversion.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    full: f64,
+    per_full: f64,
+    step: f64,
+    factor: f64,
+    offset: f64,
+}
+
+impl Scale {
+    fn new(channel: &ChannelChain, range: Range) -> Scale {
+        let per_full = range.full_scale.recip();
+        Scale {
+            full: range.full_scale,
+            per_full,
+            step: range.step,
+            factor: (1.0 + channel.gain_error) * per_full,
+            offset: channel.offset * per_full,
+        }
+    }
+}
+
 #[derive(Debug)]
 pub(super) struct Chain {
     spec: SignalChain,
     lines: [Line; CHANNELS],
     /// The carrier's ripple behind each channel's filter and delay: a phasor at t = 0.
     ripples: [Complex64; CHANNELS],
+    /// How far the carrier is at the next conversion, and how far it turns from one to the next.
+    turned: Complex64,
+    turn: Complex64,
     linearity: Linearity,
+    scales: [Scale; CHANNELS],
     /// From one conversion of a channel to the next, s.
     apart_s: f64,
     last_t: Option<f64>,
@@ -25,68 +61,76 @@ pub(super) struct Chain {
 
 impl Chain {
     /// `t_sample` is the time, s, over which the conversions of a sample lie.
-    pub(super) fn new(spec: &SignalChain, seed: u64, t_sample: f64) -> Chain {
+    pub(super) fn new(
+        spec: &SignalChain,
+        seed: u64,
+        t_sample: f64,
+        ranges: [Range; CHANNELS],
+    ) -> Chain {
         let apart = t_sample / f64::from(spec.conversions.max(1));
         let span = t_sample - apart;
         Chain {
             apart_s: apart,
             lines: spec.channels.map(|channel| Line::new(channel, span)),
             ripples: std::array::from_fn(|k| ripple(spec, k)),
+            turned: Complex64::ZERO,
+            turn: Complex64::cis(TAU * spec.carrier.frequency_hz * apart),
             linearity: Linearity::new(&spec.inl, seed),
+            scales: std::array::from_fn(|k| Scale::new(&spec.channels[k], ranges[k])),
             spec: spec.clone(),
             last_t: None,
             last_share: 0.0,
         }
     }
 
-    /// Times of the conversions of the sample at `t`, s, the last of them.
-    pub(super) fn conversions(&self, t: f64) -> impl Iterator<Item = f64> + use<> {
+    /// Times of the conversions of the sample at `t`, s, the last of them: each is asked for in turn.
+    pub(super) fn conversions(&mut self, t: f64) -> impl Iterator<Item = f64> + use<> {
         let apart = self.apart_s;
         let number = self.spec.conversions.max(1);
+        let carrier = &self.spec.carrier;
+        if carrier.voltage_volt != 0.0 || carrier.current_amp != 0.0 {
+            let first = t - f64::from(number - 1) * apart;
+            self.turned = Complex64::cis(TAU * carrier.frequency_hz * first);
+        }
         (0..number).rev().map(move |k| t - f64::from(k) * apart)
     }
 
     /// Takes the six quantities at `t`, s, later than the last ones: V, A.
     pub(super) fn observe(&mut self, t: f64, quantities: [f64; CHANNELS]) {
         let step = self.last_t.map_or(0.0, |last| t - last);
+        let rate = step.recip();
         self.last_t = Some(t);
         for (line, x) in self.lines.iter_mut().zip(quantities) {
-            line.observe(t, step, x);
+            line.observe(t, step, rate, x);
         }
     }
 
-    /// What stands behind the filters and delays at `t`, one of the times of a sample's conversions, with the carrier's ripple: V, A.
-    pub(super) fn filtered(&self, t: f64) -> [f64; CHANNELS] {
-        let carrier = &self.spec.carrier;
-        let turned = match carrier.voltage_volt == 0.0 && carrier.current_amp == 0.0 {
-            true => Complex64::ZERO,
-            false => Complex64::cis(TAU * carrier.frequency_hz * t),
-        };
+    /// What is behind the filters and delays at `t`, the next of the conversions' times, with the carrier's ripple: V, A.
+    pub(super) fn filtered(&mut self, t: f64) -> [f64; CHANNELS] {
+        let turned = self.turned;
+        self.turned *= self.turn;
         std::array::from_fn(|k| self.lines[k].at(t) + (self.ripples[k] * turned).re)
     }
 
     /// Gain, offset, neighbour and reference: from values at the pins, V, A, to what is converted.
-    pub(super) fn distorted(
-        &mut self,
-        t: f64,
-        values: [f64; CHANNELS],
-        full_scales: [f64; CHANNELS],
-    ) -> [f64; CHANNELS] {
-        let channels = &self.spec.channels;
-        let mut shares: [f64; CHANNELS] = std::array::from_fn(|k| {
-            (values[k] * (1.0 + channels[k].gain_error) + channels[k].offset) / full_scales[k]
-        });
+    pub(super) fn distorted(&mut self, t: f64, values: [f64; CHANNELS]) -> [f64; CHANNELS] {
+        let scales = &self.scales;
+        let mut shares: [f64; CHANNELS] =
+            std::array::from_fn(|k| values[k] * scales[k].factor + scales[k].offset);
         self.last_share = converter::crosstalk(&mut shares, self.last_share, self.spec.crosstalk);
         let factor = self.spec.reference.factor(t);
         std::array::from_fn(|k| {
-            let factor = if channels[k].ratiometric { 1.0 } else { factor };
-            shares[k] * factor * full_scales[k]
+            let ratiometric = self.spec.channels[k].ratiometric;
+            let factor = if ratiometric { 1.0 } else { factor };
+            shares[k] * factor * scales[k].full
         })
     }
 
-    /// Deviation of the code of a share of full scale, LSB.
-    pub(super) fn inl_lsb(&self, share: f64) -> f64 {
-        self.linearity.lsb(share)
+    /// The converter's deviation from the straight line, V, A.
+    pub(super) fn bend(&self, values: &mut [f64; CHANNELS]) {
+        for (value, scale) in values.iter_mut().zip(&self.scales) {
+            *value += self.linearity.lsb(*value * scale.per_full) * scale.step;
+        }
     }
 }
 
