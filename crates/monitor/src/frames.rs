@@ -181,7 +181,7 @@ fn ratio(numerator: Complex32, denominator: Complex32) -> Complex32 {
 
 /// Length of a phasor; `Complex::norm` would go through a double-precision `hypot` on the board.
 pub fn magnitude(x: Complex32) -> f32 {
-    libm::sqrtf(x.norm_sqr())
+    processor::sqrtf(x.norm_sqr())
 }
 
 #[cfg(test)]

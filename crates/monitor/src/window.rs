@@ -213,7 +213,7 @@ impl Window {
         let of = |first: usize| {
             let three = self.channels.iter().skip(first).take(3);
             let mean = three.map(beside).sum::<f32>() / 3.0;
-            libm::sqrtf(mean.max(0.0) * share)
+            processor::sqrtf(mean.max(0.0) * share)
         };
         CycleNoise {
             voltage: of(0),

@@ -202,7 +202,7 @@ impl Decision {
         set(&mut unit, place::HEATING, 1.0);
         let white = factor.whiten(&unit, place::HEATING);
         let mean = entry(&estimate, place::HEATING);
-        let deviation = libm::sqrtf(dot(&white, &white));
+        let deviation = processor::sqrtf(dot(&white, &white));
         let scores = score(None, &factor, &estimate, &known);
         (scores, [mean, deviation])
     }
@@ -332,7 +332,7 @@ fn score(prior: Option<&Symmetric>, factor: &Factor<'_>, x: &Vector, k: &Vector)
         for (((hypothesis, explained), [believed, shown]), (statistic, weight)) in all {
             let information = believed - explained;
             if information > LEAST_INFORMATION * believed {
-                *weight = libm::sqrtf(information);
+                *weight = processor::sqrtf(information);
                 *statistic = admitted(hypothesis, shown / *weight);
             }
         }

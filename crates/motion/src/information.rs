@@ -150,7 +150,7 @@ impl Symmetric {
             }
             if let Some((diagonal, before)) = row.split_last_mut() {
                 let least = LEAST_SHARE * *diagonal + f32::MIN_POSITIVE;
-                *diagonal = libm::sqrtf((*diagonal - dot(before, before)).max(least));
+                *diagonal = processor::sqrtf((*diagonal - dot(before, before)).max(least));
             }
         }
         Factor(self)

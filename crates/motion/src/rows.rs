@@ -156,7 +156,7 @@ impl Sums {
 
     /// Length of the current vector, root mean square, A.
     pub fn current(&self) -> f32 {
-        libm::sqrtf(self.square / self.samples.max(1.0))
+        processor::sqrtf(self.square / self.samples.max(1.0))
     }
 
     /// Angle that the rotor turned, electrical rad.

@@ -126,7 +126,7 @@ impl Scatter {
         // A component of the space vector has two thirds of a channel's variance, a zero sequence a third, and the
         // demodulated one half of that.
         let zero =
-            |variance: f32, scale: f32| libm::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
+            |variance: f32, scale: f32| processor::sqrtf(0.25 * variance / n) / scale + ZERO_FLOOR;
         let [of_u, of_i] = noise;
         let i_0 = zero(of_i, circuit.rated.current);
         let v_0 = zero(of_u, circuit.rated.voltage);
@@ -155,14 +155,14 @@ impl Scatter {
         let rated = &circuit.rated;
         let [slip, _] = now.slip;
         let z = circuit.impedance(if slip > 0.0 { slip.min(2.0) } else { 0.0 });
-        let end = libm::sqrtf(2.0 * of_i) * circuit.params.l_a() / (n * circuit.t_sample);
+        let end = processor::sqrtf(2.0 * of_i) * circuit.params.l_a() / (n * circuit.t_sample);
         let turn = rows.acceleration * n * circuit.t_sample * circuit.mechanics.n_p / rated.omega;
         let length = |k: usize| {
             let squares = (0..Q).map(|row| sensitivity(rows, row, k));
-            libm::sqrtf(0.5 * squares.map(|x| x * x).sum::<f32>())
+            processor::sqrtf(0.5 * squares.map(|x| x * x).sum::<f32>())
         };
         norm(&[
-            libm::sqrtf((of_u + z * z * of_i) / n) / rated.voltage,
+            processor::sqrtf((of_u + z * z * of_i) / n) / rated.voltage,
             // What the ends of the cycle leave of the current's noise.
             end / rated.voltage,
             VOLTAGE_FLOOR,
@@ -199,7 +199,7 @@ impl Scatter {
         SQRT_3
             * norm(&[
                 STEP_SHARE,
-                lever * libm::sqrtf(of_i / now.samples.max(1.0)),
+                lever * processor::sqrtf(of_i / now.samples.max(1.0)),
                 ACCELERATION_SHARE * inertia,
                 HIGH_CURRENT_SHARE * self.high * current,
                 HIGH_CURRENT_SHARE * self.high * leakage,
@@ -233,5 +233,5 @@ fn skin_of(slip: f32) -> f32 {
 }
 
 fn norm(parts: &[f32]) -> f32 {
-    libm::sqrtf(parts.iter().map(|x| x * x).sum())
+    processor::sqrtf(parts.iter().map(|x| x * x).sum())
 }

@@ -66,7 +66,7 @@ const DIAGONAL: [usize; RESIDUALS] = [0, 4, 7, 9];
 impl Healthy {
     /// Standard deviations of r1..r4.
     pub fn deviation(&self) -> [f32; RESIDUALS] {
-        DIAGONAL.map(|place| libm::sqrtf(self.covariance[place].max(0.0)))
+        DIAGONAL.map(|place| processor::sqrtf(self.covariance[place].max(0.0)))
     }
 }
 

@@ -161,7 +161,7 @@ impl RotorState {
         let from_speed = driven.mirrored(upper, mean, step / (2.0 * TAU));
         // The mean of two cycles of a turn is short by `sin(x)/x cos(x)`, `x` half a step: to second order.
         let per_active = (1.0 + step * step / 6.0) / mean.re.abs();
-        let amplitude = |square: f32| libm::sqrtf(square.max(0.0)) * per_active;
+        let amplitude = |square: f32| processor::sqrtf(square.max(0.0)) * per_active;
         Sidebands {
             lower: amplitude(lower.norm_sqr()),
             upper: amplitude(upper.norm_sqr()),

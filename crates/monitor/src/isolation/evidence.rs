@@ -66,7 +66,7 @@ impl Evidence {
             *scatter = scatter.max(*noise);
         }
         for (scatter, unsteady) in scatter.iter_mut().zip(positive.unsteadiness) {
-            *scatter = libm::sqrtf(*scatter * *scatter + unsteady * unsteady);
+            *scatter = processor::sqrtf(*scatter * *scatter + unsteady * unsteady);
         }
         let evidence = Evidence {
             departure: rows_with(window, &positive.residuals, negative.value),
@@ -152,7 +152,7 @@ impl Evidence {
         };
         let square = re * re + im * im;
         for scatter in self.scatter.iter_mut().skip(row).take(2) {
-            *scatter = libm::sqrtf(*scatter * *scatter + square);
+            *scatter = processor::sqrtf(*scatter * *scatter + square);
         }
     }
 

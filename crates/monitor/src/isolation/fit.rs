@@ -159,7 +159,7 @@ impl Fit {
     pub(super) fn size(&self) -> f32 {
         match &self.across {
             Some(across) if self.cause.adds_across() => {
-                libm::sqrtf(self.along * self.along + across.change * across.change)
+                processor::sqrtf(self.along * self.along + across.change * across.change)
             }
             _ => self.along,
         }

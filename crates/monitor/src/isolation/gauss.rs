@@ -65,7 +65,7 @@ fn factor_row<const N: usize>(lower: &[[f32; N]; N], i: usize, variances: &[f32;
     let variance = entry(variances, i);
     let least = LEAST_SHARE * variance + f32::MIN_POSITIVE;
     let own = (variance - dot(&row, &row)).max(least);
-    set(&mut row, i, libm::sqrtf(own));
+    set(&mut row, i, processor::sqrtf(own));
     row
 }
 

@@ -101,7 +101,7 @@ impl Isolation {
             *size = weighed.size;
             longest = weighed.square.max(longest);
         }
-        isolation.significance = libm::sqrtf(longest).max(isolation.significance);
+        isolation.significance = processor::sqrtf(longest).max(isolation.significance);
         isolation
     }
 
@@ -155,7 +155,7 @@ fn significance_of_anything(square: f32, n: f32) -> f32 {
     let spread = 2.0 / (9.0 * n);
     let mean_square = (square / n).max(f32::MIN_POSITIVE);
     let cube_root = exp(ln(mean_square) / 3.0);
-    (cube_root - (1.0 - spread)) / libm::sqrtf(spread)
+    (cube_root - (1.0 - spread)) / processor::sqrtf(spread)
 }
 
 /// The departure along the direction of heating, in units of a covariance that holds heating's deviation already.
@@ -183,7 +183,7 @@ impl Warmth {
         let own = self.information / (1.0 - variance * self.information).max(LEAST_INFORMATION);
         Heating {
             rise: expected.rise + variance * self.along,
-            deviation: any / libm::sqrtf(1.0 + any * any * own),
+            deviation: any / processor::sqrtf(1.0 + any * any * own),
         }
     }
 

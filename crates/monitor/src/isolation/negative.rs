@@ -45,9 +45,9 @@ impl Negative {
         let i_2 = window.i_s.negative / v_1;
         let drop = z_2 * i_2;
         let unbalance = window.u_s.unbalance();
-        let supplied = libm::sqrtf(unbalance.norm_sqr() / drop.norm_sqr()).min(1.0);
+        let supplied = processor::sqrtf(unbalance.norm_sqr() / drop.norm_sqr()).min(1.0);
         // Per motor current, in phase with the voltage.
-        let length = libm::sqrtf(i_1.norm_sqr() / v_1.norm_sqr());
+        let length = processor::sqrtf(i_1.norm_sqr() / v_1.norm_sqr());
         Negative {
             value: unbalance - drop,
             voltage: Complex32::ONE,
@@ -70,7 +70,7 @@ impl Negative {
             by.leakage.im * u.leakage,
             u.negative_impedance,
         ];
-        let angle = libm::sqrtf(turned.iter().map(|angle| angle * angle).sum());
+        let angle = processor::sqrtf(turned.iter().map(|angle| angle * angle).sum());
         if angle.is_finite() { angle } else { 0.0 }
     }
 }

@@ -77,7 +77,7 @@ impl Followed {
     /// What is known by now; no more is open than `most`.
     fn expected(&self, most: f32) -> Heating {
         let Heating { rise, deviation } = self.known;
-        let wider = libm::sqrtf(deviation * deviation + self.slack * self.slack);
+        let wider = processor::sqrtf(deviation * deviation + self.slack * self.slack);
         Heating {
             rise,
             deviation: wider.min(most),

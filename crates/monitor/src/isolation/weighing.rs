@@ -120,7 +120,9 @@ impl Weighing {
         };
         // Shorter than most departures is negative.
         let longer = without.max(0.0);
-        all.min(libm::sqrtf(neutral.either(f32::INFINITY, longer * longer)))
+        all.min(processor::sqrtf(
+            neutral.either(f32::INFINITY, longer * longer),
+        ))
     }
 
     /// Logarithm of the Bayes factor of a departure in any direction.
@@ -151,7 +153,7 @@ impl Neutral {
             dot(end, end)
         };
         let displacement = square_of_end(departure);
-        let spread = libm::sqrtf(displacement).max(USUAL_DISPLACEMENT);
+        let spread = processor::sqrtf(displacement).max(USUAL_DISPLACEMENT);
         let rarity = ln(spread / USUAL_DISPLACEMENT);
         let own: f32 = cholesky
             .deviations()

@@ -61,7 +61,7 @@ impl Monitor {
                 );
             }
         }
-        squares.map(libm::sqrtf)
+        squares.map(processor::sqrtf)
     }
 
     fn circuit_moved(&self, k: usize, log: f32) -> Candidate {

@@ -233,7 +233,7 @@ mod tests {
         OperatingPoint {
             u_s_dq: Dq { d: -40.0, q: u_q },
             i_s_dq: Dq { d: FIELD, q: i_q },
-            u_amplitude: libm::sqrtf(40.0 * 40.0 + u_q * u_q),
+            u_amplitude: processor::sqrtf(40.0 * 40.0 + u_q * u_q),
             psi_r: PARAMS.l_m * FIELD,
             params: PARAMS,
             tau_extra: 0.0,

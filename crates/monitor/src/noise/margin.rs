@@ -53,7 +53,7 @@ impl Monitor {
     /// Standard deviations of single cycles before any was compared with another: what the samples beside their
     /// fundamentals let expect, but no less than what thresholds and calibration hold.
     fn believed(&self, window: &Window) -> [f32; FOLLOWED] {
-        let root = libm::sqrtf(self.config.window_cycles as f32);
+        let root = processor::sqrtf(self.config.window_cycles as f32);
         let mut believed = self.expected(window);
         for (sigma, threshold) in believed.iter_mut().zip(self.config.thresholds) {
             *sigma = sigma.max(root * BELIEVED * threshold);
@@ -74,7 +74,7 @@ impl Monitor {
         let (u, i) = (noise.voltage * ONE_PART, noise.current * ONE_PART);
         let (omega, volt) = (window.omega_sync, magnitude(window.u_s.positive));
         let ampere = magnitude(window.i_s.positive);
-        let root = |a: f32, b: f32| libm::sqrtf(a * a + b * b);
+        let root = |a: f32, b: f32| processor::sqrtf(a * a + b * b);
         let flux = share(root(u, omega * p.l_s() * i), volt);
         let psi = share(volt, omega);
         let torque = 1.5 * mechanics.n_p * psi * root(i, i);
@@ -163,7 +163,7 @@ impl Monitor {
 
     fn allowed(&self, noise: &Noise<FOLLOWED>, window: &Window) -> Allowance {
         let length = self.config.window_cycles;
-        let share = 1.0 / libm::sqrtf(length as f32);
+        let share = 1.0 / processor::sqrtf(length as f32);
         let mut allowance = Allowance::default();
         let mut cycles = noise.cycle.iter().map(|sigma| sigma * share);
         let places = allowance.residuals.iter_mut().chain(&mut allowance.rows);
@@ -184,7 +184,7 @@ impl Monitor {
             (r3, speeding),
             (torque, speeding),
         ] {
-            *x = libm::sqrtf(*x * *x + more * more);
+            *x = processor::sqrtf(*x * *x + more * more);
         }
         let far = DEVIATIONS * noise.doubt(DEVIATIONS);
         allowance.residuals.iter_mut().for_each(|x| *x *= far);

@@ -103,7 +103,7 @@ impl<const N: usize> ScatterState<N> {
         let mut cycle = *believed;
         for (sigma, variance) in cycle.iter_mut().zip(self.variance) {
             let sum = BELIEF * *sigma * *sigma + seen * variance;
-            *sigma = libm::sqrtf(sum / (BELIEF + seen));
+            *sigma = processor::sqrtf(sum / (BELIEF + seen));
         }
         Noise {
             cycle,
@@ -118,7 +118,7 @@ impl<const N: usize> Noise<N> {
     pub fn doubt(&self, deviations: f32) -> f32 {
         let nu = self.freedom;
         let z = deviations * (8.0 * nu + 3.0) / (8.0 * nu + 1.0);
-        libm::sqrtf(nu * libm::expm1f(z * z / nu)) / deviations
+        processor::sqrtf(nu * libm::expm1f(z * z / nu)) / deviations
     }
 }
 

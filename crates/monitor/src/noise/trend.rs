@@ -15,7 +15,7 @@ pub struct Trend {
 /// which the first and the last lie `span` seconds apart.
 pub fn rate_noise(length: usize, span: f32) -> f32 {
     let n = length as f32;
-    (n - 1.0) / span * libm::sqrtf(12.0 / (n * (n * n - 1.0)))
+    (n - 1.0) / span * processor::sqrtf(12.0 / (n * (n * n - 1.0)))
 }
 
 /// Standard deviation of the rate of a frequency over that of a single cycle's angle, in 1/s2: the line through the
@@ -27,7 +27,7 @@ pub fn frequency_rate_noise(length: usize, span: f32) -> f32 {
     }
     let square = differences * differences;
     let per_second = differences / span;
-    libm::sqrtf(72.0 / (square * (square - 1.0))) * per_second * per_second
+    processor::sqrtf(72.0 / (square * (square - 1.0))) * per_second * per_second
 }
 
 impl Trend {
@@ -45,7 +45,7 @@ impl Trend {
         let farthest = values.enumerate().map(off).fold(0.0, f32::max);
         Trend {
             slope,
-            bend: libm::sqrtf(farthest),
+            bend: processor::sqrtf(farthest),
         }
     }
 }
@@ -78,7 +78,7 @@ mod tests {
     /// Five angles: differences weighed -3, -1, 1, 3 tenths are angles weighed 3, -2, -2, -2, 3 tenths: root of 0.3.
     #[test]
     fn the_rate_of_a_frequency_is_as_uncertain_as_its_line() {
-        let expected = libm::sqrtf(0.3) / (0.02 * 0.02);
+        let expected = processor::sqrtf(0.3) / (0.02 * 0.02);
         assert!((frequency_rate_noise(5, 0.08) / expected - 1.0).abs() < 1e-6);
         assert_eq!(frequency_rate_noise(2, 0.02), 0.0);
     }
@@ -86,7 +86,7 @@ mod tests {
     /// The textbook's `sigma/(T sqrt(sum x^2))` for five values 20 ms apart.
     #[test]
     fn a_rate_is_as_uncertain_as_its_line() {
-        let expected = 1.0 / (0.02 * libm::sqrtf(10.0));
+        let expected = 1.0 / (0.02 * processor::sqrtf(10.0));
         assert!((rate_noise(5, 0.08) / expected - 1.0).abs() < 1e-6);
     }
 }

@@ -141,7 +141,7 @@ fn measured_noise(state: &EncoderState) -> f32 {
     }
     let n = state.measured as f32;
     let mean = state.sum / n;
-    libm::sqrtf((state.square / n - mean * mean).max(0.0) / (n - 1.0))
+    processor::sqrtf((state.square / n - mean * mean).max(0.0) / (n - 1.0))
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub fn changed(cause: Cause, by: f64) -> Plant {
 }
 
 fn length(rows: impl IntoIterator<Item = f32>) -> f32 {
-    libm::sqrtf(rows.into_iter().map(|x| x * x).sum())
+    processor::sqrtf(rows.into_iter().map(|x| x * x).sum())
 }
 
 #[test]

@@ -361,7 +361,7 @@ fn significance_is_the_longer_of_both() {
         )
         .factorise()
         .whiten(&evidence.departure);
-    let length = libm::sqrtf(dot(&white, &white));
+    let length = processor::sqrtf(dot(&white, &white));
     // One current channel explains nearly all of it.
     assert!(
         isolation.significance <= length * 1.001,
