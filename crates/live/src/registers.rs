@@ -2,6 +2,7 @@
 
 use board::modbus::{Entry, Field, Kind, MAP, MAP_VERSION, WORDS, address};
 use board::{Doubts, FaultCause, FaultRecord, LAMP_NAMES, LAMPS};
+use update::Version;
 
 use crate::modbus::{ModbusError, ModbusLine};
 
@@ -93,12 +94,15 @@ impl Registers {
         match (entry.field, entry.kind) {
             (Field::Lamps, _) => lamps(self.long(Field::Lamps)),
             (Field::Doubts, _) => doubts_in_words(self.doubts()),
-            (Field::CrashCause, _) => self
-                .crash()
-                .map_or("none", |crash| crash.cause.label())
-                .into(),
             (field, _) if is_code(field) => format!("{:#010x}", self.long(field)),
-            (field, Kind::Word) => self.word(field).to_string(),
+            (Field::ProgramVersion, _) => Version(self.long(Field::ProgramVersion)).to_string(),
+            (field, Kind::Word) => {
+                let number = self.word(field);
+                match entry.meaning.label(number) {
+                    Some(label) => format!("{number} {label}"),
+                    None => number.to_string(),
+                }
+            }
             (field, Kind::Long) => self.long(field).to_string(),
             (field, Kind::Float) => self
                 .number(field)
@@ -146,5 +150,34 @@ fn joined(words: Vec<String>) -> String {
     match words.is_empty() {
         true => "none".into(),
         false => words.join(", "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use board::modbus::Image;
+
+    #[test]
+    fn numbers_are_told_with_their_words_and_a_version_as_one() {
+        let mut image = Image::default();
+        image.set_word(Field::Update, 4);
+        image.set_word(Field::Stack, 4);
+        image.set_long(Field::ProgramVersion, 0x0102_0003);
+        let words = image.range(0, WORDS as u16).expect("the whole map");
+        let rows = Registers(words.to_vec()).rows();
+        for (name, expected) in [
+            ("Update", "4 new program on trial"),
+            ("Stack", "4"),
+            ("ProgramVersion", "1.2.3"),
+            ("CrashCause", "0 nothing"),
+        ] {
+            let row = rows.iter().find(|(field, ..)| field == name);
+            assert_eq!(
+                row.map(|(_, value, _)| value.as_str()),
+                Some(expected),
+                "{name}"
+            );
+        }
     }
 }

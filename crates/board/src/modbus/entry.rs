@@ -127,6 +127,8 @@ pub struct Entry {
 pub enum Meaning {
     /// In words.
     Words(&'static str),
+    /// One of some numbers, each with its words.
+    Numbers(&'static [(u16, &'static str)]),
     /// Number of a [`Reason`].
     Reasons,
     /// Number of a [`MotionWord`].
@@ -145,67 +147,102 @@ pub enum Meaning {
     UpdateRefusals,
 }
 
-impl fmt::Display for Meaning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Meaning {
+    /// What a number stands for; `None` where it is none of a list.
+    pub fn label(&self, number: u16) -> Option<&'static str> {
+        let mut found = None;
+        self.each(&mut |listed, label| {
+            if listed == number {
+                found = Some(label);
+            }
+        });
+        found
+    }
+
+    fn each(&self, tell: &mut dyn FnMut(u16, &'static str)) {
         match self {
-            Meaning::Words(words) => f.write_str(words),
+            Meaning::Words(_) | Meaning::Doubts => {}
+            Meaning::Numbers(list) => list.iter().for_each(|(number, label)| tell(*number, label)),
             Meaning::Reasons => {
-                f.write_str("0 judged")?;
-                let mut all = Reason::ALL.into_iter();
-                all.try_for_each(|why| write!(f, ", {} {}", why.number(), why.label()))
-            }
-            Meaning::Motion => list(f, MotionWord::ALL.map(|word| (word as usize, word.label()))),
-            Meaning::Faults => {
-                f.write_str("likeliest cause while FAULT is lit: ")?;
-                let named = FaultId::ALL.into_iter().filter(|fault| fault.number() > 0);
-                for fault in named {
-                    let before = if fault.number() > 1 { ", " } else { "" };
-                    write!(f, "{before}{} {fault}", fault.number())?;
+                tell(0, "judged");
+                for why in Reason::ALL {
+                    tell(u16::from(why.number()), why.label());
                 }
-                f.write_str(
-                    "; 0 none of them; causes of the same pattern are tied, the first is named",
-                )
             }
-            Meaning::Doubts => {
-                f.write_str("what the board doubts about itself, a bit each from the lowest: ")?;
-                list(f, Doubt::ALL.map(|doubt| (doubt as usize, doubt.label())))
+            Meaning::Motion => {
+                MotionWord::ALL
+                    .into_iter()
+                    .for_each(|word| tell(word as u16, word.label()));
             }
-            Meaning::Refusals => {
-                f.write_str("what of the last configuration was refused: 0 nothing, ")?;
-                list(
-                    f,
-                    Refused::ALL.map(|refused| (refused as usize, refused.label())),
-                )
-            }
-            Meaning::Updates => list(
-                f,
-                UpdateState::ALL.map(|state| (state as usize, state.label())),
-            ),
-            Meaning::UpdateRefusals => {
-                f.write_str("why a program was not taken: 0 none was refused, ")?;
-                list(
-                    f,
-                    update::Refusal::ALL.map(|refusal| (refusal as usize, refusal.label())),
-                )
+            Meaning::Faults => {
+                tell(0, "none of them");
+                let named = FaultId::ALL.into_iter().filter(|fault| fault.number() > 0);
+                named.for_each(|fault| tell(fault.number(), fault.name()));
             }
             Meaning::Crashes => {
-                f.write_str("what ended the program before its last start: 0 nothing, ")?;
-                list(
-                    f,
-                    FaultCause::ALL.map(|cause| (cause as usize, cause.label())),
-                )
+                tell(0, "nothing");
+                FaultCause::ALL
+                    .into_iter()
+                    .for_each(|cause| tell(cause as u16, cause.label()));
             }
+            Meaning::Refusals => {
+                tell(0, "nothing");
+                Refused::ALL
+                    .into_iter()
+                    .for_each(|refused| tell(refused as u16, refused.label()));
+            }
+            Meaning::Updates => {
+                UpdateState::ALL
+                    .into_iter()
+                    .for_each(|state| tell(state as u16, state.label()));
+            }
+            Meaning::UpdateRefusals => {
+                tell(0, "none was refused");
+                update::Refusal::ALL
+                    .into_iter()
+                    .for_each(|refusal| tell(refusal as u16, refusal.label()));
+            }
+        }
+    }
+
+    fn before_and_behind(&self) -> [&'static str; 2] {
+        match self {
+            Meaning::Words(words) => [words, ""],
+            Meaning::Doubts => [
+                "what the board doubts about itself, a bit each from the lowest: ",
+                "",
+            ],
+            Meaning::Faults => [
+                "likeliest cause while FAULT is lit: ",
+                "; causes of the same pattern are tied, the first is named",
+            ],
+            Meaning::Refusals => ["what of the last configuration was refused: ", ""],
+            Meaning::UpdateRefusals => ["why a program was not taken: ", ""],
+            Meaning::Crashes => ["what ended the program before its last start: ", ""],
+            Meaning::Numbers(_) | Meaning::Reasons | Meaning::Motion | Meaning::Updates => ["", ""],
         }
     }
 }
 
-fn list<const N: usize>(
-    f: &mut fmt::Formatter<'_>,
-    numbered: [(usize, &'static str); N],
-) -> fmt::Result {
-    for (k, (number, label)) in numbered.into_iter().enumerate() {
-        let before = if k > 0 { ", " } else { "" };
-        write!(f, "{before}{number} {label}")?;
+impl fmt::Display for Meaning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [before, behind] = self.before_and_behind();
+        f.write_str(before)?;
+        let (mut first, mut written) = (true, Ok(()));
+        let mut tell = |number: usize, label: &'static str| {
+            let comma = if first { "" } else { ", " };
+            first = false;
+            written = written.and_then(|()| write!(f, "{comma}{number} {label}"));
+        };
+        match self {
+            Meaning::Doubts => {
+                Doubt::ALL
+                    .into_iter()
+                    .for_each(|doubt| tell(doubt as usize, doubt.label()));
+            }
+            _ => self.each(&mut |number, label| tell(usize::from(number), label)),
+        }
+        written?;
+        f.write_str(behind)
     }
-    Ok(())
 }

@@ -121,4 +121,21 @@ mod tests {
         assert_eq!(image.range(first, 2), Some(&[0x1234, 0x5678][..]));
         assert_eq!(image.long(Field::Windows), 0x1234_5678);
     }
+
+    #[test]
+    fn a_number_of_a_list_has_its_words() {
+        let told = |field: Field, number| MAP[field as usize].meaning.label(number);
+        assert_eq!(told(Field::Verdict, 2), Some("FAULT lit"));
+        assert_eq!(told(Field::NotJudged, 0), Some("judged"));
+        assert_eq!(told(Field::LikelyFault, 1), Some("Rs"));
+        assert_eq!(told(Field::Update, 4), Some("new program on trial"));
+        assert_eq!(
+            told(Field::UpdateRefused, 3),
+            Some("older than the program that runs")
+        );
+        assert_eq!(told(Field::CrashCause, 2), Some("panic"));
+        for (field, number) in [(Field::Update, 999), (Field::Stack, 1), (Field::Doubts, 1)] {
+            assert_eq!(told(field, number), None, "{field:?}");
+        }
+    }
 }

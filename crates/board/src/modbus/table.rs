@@ -37,11 +37,15 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "checksum of the motor constants in flash",
         ),
-        entry(
+        numbered(
             ResetCause,
-            Word,
-            "",
-            "1 power or brown-out, 2 watchdog, 3 program, 4 reset pin, 5 other",
+            Meaning::Numbers(&[
+                (1, "power or brown-out"),
+                (2, "watchdog"),
+                (3, "program"),
+                (4, "reset pin"),
+                (5, "other"),
+            ]),
         ),
         entry(
             Lamps,
@@ -50,11 +54,16 @@ pub const MAP: [Entry; FIELDS] = {
             "two bits per lamp from the lowest, in the order RUN r1 r2 r3 r4 SENSOR LINE LOAD FAULT: 0 off, 1 on, 2 blinking",
         ),
         numbered(NotJudged, Meaning::Reasons),
-        entry(
+        numbered(
             Verdict,
-            Word,
-            "",
-            "0 not judged yet, SENSOR lit or something does not fit in motion, 1 healthy, 2 FAULT lit",
+            Meaning::Numbers(&[
+                (
+                    0,
+                    "not judged yet, SENSOR lit or something does not fit in motion",
+                ),
+                (1, "healthy"),
+                (2, "FAULT lit"),
+            ]),
         ),
         numbered(LikelyFault, Meaning::Faults),
         entry(FaultProbability, Word, "per mille", "its probability"),
@@ -90,17 +99,31 @@ pub const MAP: [Entry; FIELDS] = {
             "mV",
             "supply of the converters, 3300 is nominal",
         ),
-        entry(
+        numbered(
             Calibration,
-            Word,
-            "",
-            "0 motor file's values, 1 learnt ones, 2 learnt ones lost, 3 learnt ones are another motor's",
+            Meaning::Numbers(&[
+                (0, "motor file's values"),
+                (1, "learnt ones"),
+                (2, "learnt ones lost"),
+                (3, "learnt ones are another motor's"),
+            ]),
         ),
-        entry(
+        numbered(
             Learning,
-            Word,
-            "",
-            "0 idle, 1 learning, 2 stored; refused: 17 sensor, 18 line, 19 unsteady, 20 too few windows, 21 offset, 22 residuals too large, 23 flash, 24 instrument, 25 unbalanced currents",
+            Meaning::Numbers(&[
+                (0, "idle"),
+                (1, "learning"),
+                (2, "stored"),
+                (17, "refused: sensor"),
+                (18, "refused: line"),
+                (19, "refused: unsteady"),
+                (20, "refused: too few windows"),
+                (21, "refused: offset"),
+                (22, "refused: residuals too large"),
+                (23, "refused: flash"),
+                (24, "refused: instrument"),
+                (25, "refused: unbalanced currents"),
+            ]),
         ),
         entry(
             LearnedWindows,
@@ -108,11 +131,13 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "windows judged while learning, 600 are needed",
         ),
-        entry(
+        numbered(
             Capture,
-            Word,
-            "",
-            "0 waiting for an alarm, 1 taking the samples around it, 2 complete",
+            Meaning::Numbers(&[
+                (0, "waiting for an alarm"),
+                (1, "taking the samples around it"),
+                (2, "complete"),
+            ]),
         ),
         entry(
             CurrentLag,
@@ -126,7 +151,7 @@ pub const MAP: [Entry; FIELDS] = {
             unit: "",
             meaning: Meaning::Doubts,
         },
-        entry(Relay, Word, "", "1 energised, 0 open"),
+        numbered(Relay, Meaning::Numbers(&[(0, "open"), (1, "energised")])),
         entry(Uptime, Long, "s", "since the start"),
         entry(
             Stack,
@@ -204,11 +229,18 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "number of the newest event of the log; they count from 1; 0: no event yet",
         ),
-        entry(
+        numbered(
             Configuration,
-            Word,
-            "",
-            "0 compiled in, 1 confirmed, 2 on trial, 3 line as confirmed and motor as compiled in, because the program was flashed with another motor since or cannot compute with the confirmed one, 4 compiled in, because the confirmed one is lost",
+            Meaning::Numbers(&[
+                (0, "compiled in"),
+                (1, "confirmed"),
+                (2, "on trial"),
+                (
+                    3,
+                    "line as confirmed and motor as compiled in, because the program was flashed with another motor since or cannot compute with the confirmed one",
+                ),
+                (4, "compiled in, because the confirmed one is lost"),
+            ]),
         ),
         numbered(ConfigurationRefused, Meaning::Refusals),
         entry(
