@@ -156,6 +156,26 @@ fn a_program_comes_over_as_it_was_packaged_and_is_waited_for() {
 }
 
 #[test]
+fn a_program_reads_what_became_of_it() {
+    let place = packaged("json");
+    let board = Board::new("1.2.0", UpdateState::Confirmed);
+    let (code, said, _) = update(board, &place, &["--json", "-"]);
+    assert_eq!(code, Some(0), "{said}");
+    let told: serde_json::Value = serde_json::from_str(&said).expect("JSON and nothing else");
+    for (key, value) in [
+        ("format", "board-update/1"),
+        ("board_version", "1.2.0"),
+        ("package_version", "1.3.0"),
+    ] {
+        assert_eq!(told[key], value, "{said}");
+    }
+    assert_eq!(told["demo_key"], false, "{said}");
+    for key in ["sent", "confirmed"] {
+        assert_eq!(told[key], true, "{key}: {said}");
+    }
+}
+
+#[test]
 fn a_refusal_ends_with_2_and_what_to_do() {
     let place = packaged("refused");
     let board = Board::new("1.2.0", UpdateState::Refused);

@@ -81,5 +81,6 @@ pub fn formats() -> Vec<Format> {
         Format::of::<events::EventsJson>(),
         Format::of::<record::RecordJson>(),
         Format::of::<configure::ConfigurationJson>(),
+        Format::of::<update::UpdateJson>(),
     ]
 }

@@ -7,10 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Args;
 use program::sending::{self, Clock, Pace, Running, Stage};
 use program::{Half, KeyFile, Package};
+use report::json::Answer;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::line::LineArgs;
 use crate::cli::commands::ending::told_to_end;
 use crate::cli::printing::failure::{Failure, Finding};
+use crate::cli::printing::output::JsonArgs;
 use crate::cli::printing::terminal::say;
 use crate::cli::printing::{paint, progress};
 
@@ -35,6 +39,46 @@ pub struct Update {
     /// End as soon as the board has been told to install it
     #[arg(long)]
     no_wait: bool,
+    #[command(flatten)]
+    json: JsonArgs,
+}
+
+/// What became of a new program.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct UpdateJson {
+    /// Version of the program that the board ran.
+    board_version: String,
+    /// Checksum of the program that the board ran, in hexadecimal digits.
+    board_checksum: String,
+    /// Version of the program in the package.
+    package_version: String,
+    /// Checksum of the program in the package, in hexadecimal digits.
+    package_checksum: String,
+    /// The package is signed with the demo key, which everybody has.
+    demo_key: bool,
+    /// It was sent; the board did not run it already.
+    sent: bool,
+    /// The board runs it for good; false where nobody waited for it (`--no-wait`).
+    confirmed: bool,
+}
+
+impl Answer for UpdateJson {
+    const FORMAT: &'static str = "board-update/1";
+}
+
+impl UpdateJson {
+    fn new(package: &Package, runs: &Running) -> Self {
+        let seal = package.seal();
+        UpdateJson {
+            board_version: runs.version.to_string(),
+            board_checksum: format!("{:08x}", runs.checksum),
+            package_version: seal.version.to_string(),
+            package_checksum: format!("{:08x}", seal.checksum),
+            demo_key: package.is_demo(),
+            sent: runs.checksum != seal.checksum,
+            confirmed: false,
+        }
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -52,27 +96,51 @@ impl Update {
         let package = self.package()?;
         let mut line = self.line.open()?;
         let runs = sending::running(&mut line)?;
-        print(&package, &runs);
+        let mut told = UpdateJson::new(&package, &runs);
+        self.json.show(|| print(&told));
         let mut pace = Clock::new(stop_signal()?);
-        if runs.checksum == package.seal().checksum {
-            say!("The board runs this program already.");
+        match told.sent {
+            true => self.send(&mut line, &package, &runs, &mut pace)?,
+            false => self.say("The board runs this program already."),
+        }
+        if !self.no_wait {
+            self.wait(&mut line, &package, &mut pace)?;
+            told.confirmed = true;
+        }
+        self.json.give(&told, || self.print_end(&told))?;
+        Ok(Finding::Nothing)
+    }
+
+    fn say(&self, words: &str) {
+        self.json.show(|| say!("{words}"));
+    }
+
+    fn print_end(&self, told: &UpdateJson) {
+        if told.confirmed {
+            let version = &told.package_version;
+            let words = format!("version {version} runs and has confirmed itself");
+            say!("{}", paint::good(words));
         } else {
-            runs.may_be_followed_by(&package)?;
-            let bar = progress::bar("sending", package.bytes().len() as u64);
-            let mut follow = |bytes: usize| bar.set_position(bytes as u64);
-            let sent = sending::send(&mut line, &package, &mut pace, &mut follow);
-            bar.finish_and_clear();
-            sent?;
-            sending::install(&mut line, &mut pace)?;
-            say!("Sent; the board checks it and starts again.");
+            say!("`drivemon board read` shows Update, and what was refused.");
         }
-        if self.no_wait {
-            say!(
-                "`drivemon board read` shows Update: 4 on trial, 5 confirmed, 6 brought back, 7 refused."
-            );
-            return Ok(Finding::Nothing);
-        }
-        self.wait(&mut line, &package, &mut pace)
+    }
+
+    fn send(
+        &self,
+        line: &mut live::ModbusLine,
+        package: &Package,
+        runs: &Running,
+        pace: &mut dyn Pace,
+    ) -> Result<(), Failure> {
+        runs.may_be_followed_by(package)?;
+        let bar = progress::bar("sending", package.bytes().len() as u64);
+        let mut follow = |bytes: usize| bar.set_position(bytes as u64);
+        let sent = sending::send(line, package, pace, &mut follow);
+        bar.finish_and_clear();
+        sent?;
+        sending::install(line, pace)?;
+        self.say("Sent; the board checks it and starts again.");
+        Ok(())
     }
 
     fn package(&self) -> Result<Package, Failure> {
@@ -96,32 +164,23 @@ impl Update {
         line: &mut live::ModbusLine,
         package: &Package,
         pace: &mut dyn Pace,
-    ) -> Result<Finding, Failure> {
+    ) -> Result<(), Failure> {
         let bar = progress::spinner();
         let mut tell = |stage: Stage| bar.set_message(stage.to_string());
         let done = sending::wait(line, package, pace, &mut tell);
         bar.finish_and_clear();
-        done?;
-        let version = package.seal().version;
-        say!(
-            "{}",
-            paint::good(format!("version {version} runs and has confirmed itself"))
-        );
-        Ok(Finding::Nothing)
+        Ok(done?)
     }
 }
 
-fn print(package: &Package, runs: &Running) {
-    let seal = package.seal();
-    let row = |name: &str, version: program::Version, checksum: u32| {
-        say!(
-            "{}  version {version}, checksum {checksum:08x}",
-            paint::strong(format!("{name:11}"))
-        );
+fn print(told: &UpdateJson) {
+    let row = |name: &str, version: &str, checksum: &str| {
+        let name = paint::strong(format!("{name:11}"));
+        say!("{name}  version {version}, checksum {checksum}");
     };
-    row("board runs", runs.version, runs.checksum);
-    row("package", seal.version, seal.checksum);
-    if package.is_demo() {
+    row("board runs", &told.board_version, &told.board_checksum);
+    row("package", &told.package_version, &told.package_checksum);
+    if told.demo_key {
         say!(
             "{}",
             paint::caution(
