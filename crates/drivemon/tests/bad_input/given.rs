@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common::{PROJECT, scratch, stderr};
+use crate::firmware::{elf, program};
 use crate::malformed::{bad_motors, bad_recordings};
 use crate::{Case, comtrade_cases, files, motor_cases, scenario_cases, sidecars};
 
@@ -47,6 +48,7 @@ pub fn sections() -> Vec<(&'static str, Vec<Given>)> {
         ("Load-test tables", recordings(sidecars::tables())),
         ("COMTRADE", comtrade()),
         ("Parquet and MAT", binary()),
+        ("Keys and packages", programs()),
     ]
 }
 
@@ -287,6 +289,87 @@ fn binary() -> Vec<Given> {
             2,
             &["version 5"],
             MAT,
+        ),
+    ]
+}
+
+fn programs() -> Vec<Given> {
+    const PACKAGE: [&[&str]; 2] = [&["board", "package"], &["--demo-key", "-o", "new.dmu"]];
+    const KEY: [&[&str]; 2] = [
+        &["board", "package", "firmware", "-o", "new.dmu", "--key"],
+        &[],
+    ];
+    const UPDATE: [&[&str]; 2] = [&["board", "update"], &["--serial", "/dev/no-such-port"]];
+    const TEST: &str = "crates/drivemon/tests/commands/programs/mod.rs::what_is_no_program_or_no_key_is_told_with_what_helps";
+    const DAMAGED: &str = "crates/program/src/package/tests.rs::damage_at_any_place_is_told_and_so_is_what_is_no_package";
+    const KEYS: &str = "crates/program/src/key_file/tests.rs::the_other_half_damaged_text_and_strange_names_are_told";
+    let key = |half: &str| {
+        let path = Path::new(PROJECT).join("keys").join(half);
+        std::fs::read_to_string(path).expect("it ships")
+    };
+    let given = |what: &str, file: &str, content: &str, command, words: &[&str], test| Given {
+        what: what.to_owned(),
+        files: vec![
+            (file.to_owned(), content.as_bytes().to_vec()),
+            ("firmware".to_owned(), elf(&program("1.3.0"))),
+        ],
+        command,
+        words: owned(words),
+        exit_code: Some(2),
+        test,
+    };
+    let cut = key("demo.key")
+        .trim_end()
+        .trim_end_matches(|c: char| c != '\n')
+        .to_owned();
+    vec![
+        given(
+            "program that is no ELF file",
+            "x",
+            "MZ",
+            PACKAGE,
+            &["x: is no ELF file"],
+            TEST,
+        ),
+        given(
+            "public half of a key where the secret one is asked for",
+            "own.pub",
+            &key("demo.pub"),
+            KEY,
+            &["own.pub: is the public half"],
+            TEST,
+        ),
+        given(
+            "text that is called .key",
+            "own.key",
+            "hello\n",
+            KEY,
+            &["own.key: "],
+            KEYS,
+        ),
+        given(
+            "key without its last line",
+            "own.key",
+            &cut,
+            KEY,
+            &["own.key: "],
+            KEYS,
+        ),
+        given(
+            "text that is called .dmu",
+            "x.dmu",
+            "hello\n",
+            UPDATE,
+            &["x.dmu: is no package"],
+            DAMAGED,
+        ),
+        given(
+            "empty package",
+            "x.dmu",
+            "",
+            UPDATE,
+            &["x.dmu: is no package"],
+            DAMAGED,
         ),
     ]
 }

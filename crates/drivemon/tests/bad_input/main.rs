@@ -10,6 +10,8 @@ mod board;
 mod comtrade_cases;
 #[path = "../../../../crates/formats/tests/all/malformed/files.rs"]
 mod files;
+#[path = "../commands/programs/firmware.rs"]
+mod firmware;
 mod given;
 mod malformed;
 #[path = "../../../../crates/motor/src/motor_file/malformed_cases.rs"]
