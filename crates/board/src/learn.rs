@@ -44,6 +44,36 @@ pub enum Refusal {
     Unbalanced = 9,
 }
 
+impl Refusal {
+    /// All of them.
+    pub const ALL: [Refusal; 9] = [
+        Refusal::Sensor,
+        Refusal::Line,
+        Refusal::Unsteady,
+        Refusal::TooFew,
+        Refusal::Offset,
+        Refusal::TooLarge,
+        Refusal::Store,
+        Refusal::Instrument,
+        Refusal::Unbalanced,
+    ];
+
+    /// In words, beginning with "refused".
+    pub const fn label(self) -> &'static str {
+        match self {
+            Refusal::Sensor => "refused: SENSOR is lit",
+            Refusal::Line => "refused: LINE is lit",
+            Refusal::Unsteady => "refused: not steady",
+            Refusal::TooFew => "refused: too few windows judged",
+            Refusal::Offset => "refused: an offset too large",
+            Refusal::TooLarge => "refused: residuals too large",
+            Refusal::Store => "refused: flash could not be written",
+            Refusal::Instrument => "refused: the board doubts itself",
+            Refusal::Unbalanced => "refused: unbalanced currents",
+        }
+    }
+}
+
 /// How learning stands, as a number for Modbus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LearnState {
@@ -59,6 +89,23 @@ pub enum LearnState {
 }
 
 impl LearnState {
+    /// All of them, in the order of their numbers.
+    pub fn all() -> impl Iterator<Item = LearnState> {
+        let others = [LearnState::Idle, LearnState::Learning, LearnState::Stored];
+        let refused = Refusal::ALL.into_iter().map(LearnState::Refused);
+        others.into_iter().chain(refused)
+    }
+
+    /// In words.
+    pub const fn label(self) -> &'static str {
+        match self {
+            LearnState::Idle => "idle",
+            LearnState::Learning => "learning",
+            LearnState::Stored => "stored",
+            LearnState::Refused(refusal) => refusal.label(),
+        }
+    }
+
     /// 0 idle, 1 learning, 2 stored, 16 and the refusal's number where it was refused.
     pub fn code(self) -> u16 {
         match self {

@@ -7,6 +7,13 @@ use monitor::{
 };
 use motor::{Mechanics, TParams};
 
+/// Numbers from all of single precision, subnormal ones, infinities and NaN among them.
+pub fn roots(mut tell: impl FnMut(u32, f32)) {
+    for bits in (0..=u32::MAX).step_by(0x10_003F) {
+        tell(bits, processor::sqrtf(f32::from_bits(bits)));
+    }
+}
+
 /// An assumed 300 W motor.
 pub const CONFIG: MonitorConfig = MonitorConfig {
     t_sample: 1e-4,

@@ -9,6 +9,8 @@ use super::cause::EventCause;
 use super::event::Event;
 use crate::health::doubt::Doubts;
 use crate::health::fault_record::FaultCause;
+use crate::health::reset::RESET_CAUSES;
+use crate::learn::LearnState;
 
 /// What happened, without number and time: `FAULT on: stator resistance, 93 %`.
 impl fmt::Display for Event {
@@ -52,13 +54,10 @@ impl fmt::Display for Event {
 }
 
 fn start(f: &mut fmt::Formatter<'_>, cause: u32, program: u32) -> fmt::Result {
-    let why = match cause {
-        1 => "power or brown-out",
-        2 => "watchdog",
-        3 => "the program itself",
-        4 => "reset pin",
-        _ => "another cause",
-    };
+    let known = RESET_CAUSES
+        .iter()
+        .find(|(number, _)| u32::from(*number) == cause);
+    let why = known.map_or("an unknown cause", |(_, label)| *label);
     write!(f, ": reset by {why}")?;
     match program {
         0 => f.write_str(", program not sealed"),
@@ -96,17 +95,11 @@ fn sensor(f: &mut fmt::Formatter<'_>, reason: u32, doubted: u32) -> fmt::Result 
 }
 
 fn refusal(f: &mut fmt::Formatter<'_>, code: u32, doubted: u32) -> fmt::Result {
-    let why = match code {
-        17 => "a sensor",
-        18 => "the supply",
-        19 => "not steady",
-        20 => "too few windows judged",
-        21 => "an offset too large",
-        22 => "residuals too large",
-        23 => "flash",
-        24 => "the board doubts itself",
-        _ => "unknown",
-    };
+    let state = LearnState::all().find(|state| u32::from(state.code()) == code);
+    // The cause says "learning refused" already.
+    let why = state.map_or("unknown", |state| {
+        state.label().trim_start_matches("refused: ")
+    });
     write!(f, ": {why}")?;
     doubts(f, doubted)
 }
@@ -190,6 +183,11 @@ mod tests {
                 EventCause::LearnRefused,
                 [24, 1],
                 "learning refused: the board doubts itself: converters' supply".to_owned(),
+            ),
+            (
+                EventCause::LearnRefused,
+                [25, 0],
+                "learning refused: unbalanced currents".to_owned(),
             ),
             (
                 EventCause::UpdateReverted,

@@ -2,4 +2,5 @@
 
 pub mod doubt;
 pub mod fault_record;
+pub mod reset;
 pub mod stuck;

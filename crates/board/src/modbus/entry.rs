@@ -8,6 +8,7 @@ use update::UpdateState;
 use crate::configuration::Refused;
 use crate::health::doubt::Doubt;
 use crate::health::fault_record::FaultCause;
+use crate::learn::LearnState;
 
 /// Names of the values, in the order of their addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,6 +140,8 @@ pub enum Meaning {
     Doubts,
     /// Number of a [`FaultCause`].
     Crashes,
+    /// Code of a [`LearnState`].
+    Learning,
     /// Number of a [`Refused`].
     Refusals,
     /// Number of an [`UpdateState`].
@@ -185,6 +188,9 @@ impl Meaning {
                     .into_iter()
                     .for_each(|cause| tell(cause as u16, cause.label()));
             }
+            Meaning::Learning => {
+                LearnState::all().for_each(|state| tell(state.code(), state.label()));
+            }
             Meaning::Refusals => {
                 tell(0, "nothing");
                 Refused::ALL
@@ -219,7 +225,11 @@ impl Meaning {
             Meaning::Refusals => ["what of the last configuration was refused: ", ""],
             Meaning::UpdateRefusals => ["why a program was not taken: ", ""],
             Meaning::Crashes => ["what ended the program before its last start: ", ""],
-            Meaning::Numbers(_) | Meaning::Reasons | Meaning::Motion | Meaning::Updates => ["", ""],
+            Meaning::Numbers(_)
+            | Meaning::Reasons
+            | Meaning::Motion
+            | Meaning::Learning
+            | Meaning::Updates => ["", ""],
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The register map itself: addresses and their contents, in order of address.
 
 use super::entry::{Entry, FIELDS, Field, Kind, Meaning};
+use crate::health::reset::RESET_CAUSES;
 
 const fn entry(field: Field, kind: Kind, unit: &'static str, meaning: &'static str) -> Entry {
     Entry {
@@ -37,16 +38,7 @@ pub const MAP: [Entry; FIELDS] = {
             "",
             "checksum of the motor constants in flash",
         ),
-        numbered(
-            ResetCause,
-            Meaning::Numbers(&[
-                (1, "power or brown-out"),
-                (2, "watchdog"),
-                (3, "program"),
-                (4, "reset pin"),
-                (5, "other"),
-            ]),
-        ),
+        numbered(ResetCause, Meaning::Numbers(&RESET_CAUSES)),
         entry(
             Lamps,
             Long,
@@ -108,23 +100,7 @@ pub const MAP: [Entry; FIELDS] = {
                 (3, "learnt ones are another motor's"),
             ]),
         ),
-        numbered(
-            Learning,
-            Meaning::Numbers(&[
-                (0, "idle"),
-                (1, "learning"),
-                (2, "stored"),
-                (17, "refused: sensor"),
-                (18, "refused: line"),
-                (19, "refused: unsteady"),
-                (20, "refused: too few windows"),
-                (21, "refused: offset"),
-                (22, "refused: residuals too large"),
-                (23, "refused: flash"),
-                (24, "refused: instrument"),
-                (25, "refused: unbalanced currents"),
-            ]),
-        ),
+        numbered(Learning, Meaning::Learning),
         entry(
             LearnedWindows,
             Word,

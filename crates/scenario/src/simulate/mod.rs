@@ -38,7 +38,7 @@ pub struct Truth {
     pub tau_load: f64,
     /// Angle of the d axis of the voltage frame (a quarter turn behind the positive sequence), rad.
     pub theta_voltage: f64,
-    /// Vector along the d axis of the rotor-flux frame; of the linear plant, which has no such flux, of length 1.
+    /// Rotor flux, V s: the d axis of the rotor-flux frame lies along it. Of the linear plant, which has none, of length 1.
     pub rotor_flux: Complex64,
 }
 

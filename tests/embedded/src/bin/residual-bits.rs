@@ -20,6 +20,15 @@ macro_rules! print_report {
     }};
 }
 
+/// One line per square root; every NaN is one.
+macro_rules! print_root {
+    ($print:path, $bits:expr, $root:expr) => {{
+        let root: f32 = $root;
+        let shown = if root.is_nan() { f32::NAN } else { root };
+        $print!("root {:08x} {:08x}", $bits, shown.to_bits());
+    }};
+}
+
 #[cfg(target_os = "none")]
 mod target {
     use cortex_m_rt::entry;
@@ -28,6 +37,7 @@ mod target {
     #[entry]
     fn main() -> ! {
         core_on_target::run(|report| print_report!(hprintln, report));
+        core_on_target::roots(|bits, root| print_root!(hprintln, bits, root));
         debug::exit(debug::EXIT_SUCCESS);
         loop {}
     }
@@ -42,4 +52,5 @@ mod target {
 #[cfg(not(target_os = "none"))]
 fn main() {
     core_on_target::run(|report| print_report!(println, report));
+    core_on_target::roots(|bits, root| print_root!(println, bits, root));
 }

@@ -29,7 +29,7 @@ pub(in crate::simulate) struct Instruments {
     last_theta: Option<f64>,
     encoder_angle: f64,
     counts: VecDeque<i64>,
-    chain: Option<Box<Chain>>,
+    chain: Option<Chain>,
 }
 
 /// One analogue channel; corrected value = (raw - offset) * gain.
@@ -124,6 +124,16 @@ struct Shown {
 }
 
 impl Shown {
+    /// What a conversion of each channel shows of what reaches its pin.
+    fn new(raw: &[f64; CHANNELS], channels: &[Channel; CHANNELS], quantise: bool) -> Shown {
+        let codes = std::array::from_fn(|k| channels[k].code(raw[k]));
+        Shown {
+            values: std::array::from_fn(|k| channels[k].value(raw[k], codes[k], quantise)),
+            clipped: std::array::from_fn(|k| channels[k].is_at_rail(codes[k])),
+            codes,
+        }
+    }
+
     /// Adds a conversion. The scenario's reader sees to it that the codes of all fit into 16 bits.
     fn add(&mut self, one: &Shown) {
         for k in 0..CHANNELS {
@@ -164,7 +174,7 @@ impl Instruments {
             last_theta: None,
             encoder_angle: 0.0,
             counts: VecDeque::new(),
-            chain: chain.map(|chain| Box::new(Chain::new(chain, seed, t_sample, ranges))),
+            chain: chain.map(|chain| Chain::new(chain, seed, t_sample, ranges)),
         }
     }
 
@@ -201,46 +211,29 @@ impl Instruments {
 
     /// A sample: one conversion of each channel, or the mean of those that the chain asks for.
     fn sample(&mut self, t: f64, sensed: [f64; CHANNELS]) -> Shown {
-        let Some(mut chain) = self.chain.take() else {
-            let mut raw = uncorrected(sensed, &self.channels);
-            self.add_noise(&mut raw);
-            return self.shown(&raw);
+        let (channels, quantise) = (&self.channels, self.spec.quantise);
+        let Some(chain) = &mut self.chain else {
+            let mut raw = uncorrected(sensed, channels);
+            add_noise(&mut raw, channels, &mut self.random);
+            return Shown::new(&raw, channels, quantise);
         };
         chain.observe(t, sensed);
         let (mut sum, mut number) = (Shown::default(), 0.0);
-        for t in chain.conversions(t) {
-            let pins = uncorrected(chain.filtered(t), &self.channels);
-            let mut raw = chain.distorted(t, pins);
-            self.add_noise(&mut raw);
+        for conversion in chain.conversions(t) {
+            let pins = uncorrected(chain.filtered(conversion), channels);
+            let mut raw = chain.distorted(conversion, pins);
+            add_noise(&mut raw, channels, &mut self.random);
             chain.bend(&mut raw);
-            sum.add(&self.shown(&raw));
+            sum.add(&Shown::new(&raw, channels, quantise));
             number += 1.0;
         }
-        self.chain = Some(chain);
         sum.of(number)
-    }
-
-    fn shown(&self, raw: &[f64; CHANNELS]) -> Shown {
-        let channels = &self.channels;
-        let codes = std::array::from_fn(|k| channels[k].code(raw[k]));
-        let quantise = self.spec.quantise;
-        Shown {
-            values: std::array::from_fn(|k| channels[k].value(raw[k], codes[k], quantise)),
-            clipped: std::array::from_fn(|k| channels[k].is_at_rail(codes[k])),
-            codes,
-        }
     }
 
     /// What an instrument of its own shows, such as the tachometer.
     fn plain(&mut self, channel: Channel, x: f64) -> f64 {
         let raw = x + noise(&channel, &mut self.random);
         channel.value(raw, channel.code(raw), self.spec.quantise)
-    }
-
-    fn add_noise(&mut self, raw: &mut [f64; CHANNELS]) {
-        for (raw, channel) in raw.iter_mut().zip(&self.channels) {
-            *raw += noise(channel, &mut self.random);
-        }
     }
 
     /// Counts of the encoder since the beginning, four per pulse.
@@ -290,6 +283,12 @@ fn noise(channel: &Channel, random: &mut Pcg64) -> f64 {
     }
     let normal: f64 = random.sample(StandardNormal);
     channel.noise * normal
+}
+
+fn add_noise(raw: &mut [f64; CHANNELS], channels: &[Channel; CHANNELS], random: &mut Pcg64) {
+    for (raw, channel) in raw.iter_mut().zip(channels) {
+        *raw += noise(channel, random);
+    }
 }
 
 /// Voltages, and currents.

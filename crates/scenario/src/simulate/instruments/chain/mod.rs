@@ -41,14 +41,22 @@ impl Scale {
     }
 }
 
+/// One of the conversions of a sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Conversion {
+    /// When it is taken, s.
+    t: f64,
+    /// How far the carrier is then: of length 1, or nought without a carrier.
+    carrier: Complex64,
+}
+
 #[derive(Debug)]
 pub(super) struct Chain {
     spec: SignalChain,
     lines: [Line; CHANNELS],
     /// The carrier's ripple behind each channel's filter and delay: a phasor at t = 0.
     ripples: [Complex64; CHANNELS],
-    /// How far the carrier is at the next conversion, and how far it turns from one to the next.
-    turned: Complex64,
+    /// How far the carrier turns from one conversion to the next.
     turn: Complex64,
     linearity: Linearity,
     scales: [Scale; CHANNELS],
@@ -73,7 +81,6 @@ impl Chain {
             apart_s: apart,
             lines: spec.channels.map(|channel| Line::new(channel, span)),
             ripples: std::array::from_fn(|k| ripple(spec, k)),
-            turned: Complex64::ZERO,
             turn: Complex64::cis(TAU * spec.carrier.frequency_hz * apart),
             linearity: Linearity::new(&spec.inl, seed),
             scales: std::array::from_fn(|k| Scale::new(&spec.channels[k], ranges[k])),
@@ -83,16 +90,28 @@ impl Chain {
         }
     }
 
-    /// Times of the conversions of the sample at `t`, s, the last of them: each is asked for in turn.
-    pub(super) fn conversions(&mut self, t: f64) -> impl Iterator<Item = f64> + use<> {
-        let apart = self.apart_s;
+    /// The conversions of the sample at `t`, s, the last of them.
+    pub(super) fn conversions(&self, t: f64) -> impl Iterator<Item = Conversion> + use<> {
+        let (apart, turn) = (self.apart_s, self.turn);
         let number = self.spec.conversions.max(1);
+        let mut carrier = self.carrier_at(t - f64::from(number - 1) * apart);
+        (0..number).rev().map(move |k| {
+            let now = Conversion {
+                t: t - f64::from(k) * apart,
+                carrier,
+            };
+            // A sine for each of them would take a tenth of the whole simulation.
+            carrier *= turn;
+            now
+        })
+    }
+
+    fn carrier_at(&self, t: f64) -> Complex64 {
         let carrier = &self.spec.carrier;
-        if carrier.voltage_volt != 0.0 || carrier.current_amp != 0.0 {
-            let first = t - f64::from(number - 1) * apart;
-            self.turned = Complex64::cis(TAU * carrier.frequency_hz * first);
+        match carrier.voltage_volt == 0.0 && carrier.current_amp == 0.0 {
+            true => Complex64::ZERO,
+            false => Complex64::cis(TAU * carrier.frequency_hz * t),
         }
-        (0..number).rev().map(move |k| t - f64::from(k) * apart)
     }
 
     /// Takes the six quantities at `t`, s, later than the last ones: V, A.
@@ -105,20 +124,18 @@ impl Chain {
         }
     }
 
-    /// What is behind the filters and delays at `t`, the next of the conversions' times, with the carrier's ripple: V, A.
-    pub(super) fn filtered(&mut self, t: f64) -> [f64; CHANNELS] {
-        let turned = self.turned;
-        self.turned *= self.turn;
-        std::array::from_fn(|k| self.lines[k].at(t) + (self.ripples[k] * turned).re)
+    /// What is behind the filters and delays at a conversion, with the carrier's ripple: V, A.
+    pub(super) fn filtered(&mut self, at: Conversion) -> [f64; CHANNELS] {
+        std::array::from_fn(|k| self.lines[k].at(at.t) + (self.ripples[k] * at.carrier).re)
     }
 
     /// Gain, offset, neighbour and reference: from values at the pins, V, A, to what is converted.
-    pub(super) fn distorted(&mut self, t: f64, values: [f64; CHANNELS]) -> [f64; CHANNELS] {
+    pub(super) fn distorted(&mut self, at: Conversion, values: [f64; CHANNELS]) -> [f64; CHANNELS] {
         let scales = &self.scales;
         let mut shares: [f64; CHANNELS] =
             std::array::from_fn(|k| values[k] * scales[k].factor + scales[k].offset);
         self.last_share = converter::crosstalk(&mut shares, self.last_share, self.spec.crosstalk);
-        let factor = self.spec.reference.factor(t);
+        let factor = self.spec.reference.factor(at.t);
         std::array::from_fn(|k| {
             let ratiometric = self.spec.channels[k].ratiometric;
             let factor = if ratiometric { 1.0 } else { factor };
