@@ -115,7 +115,15 @@ globalThis.drawFigures = (root, result) => {
       grid: { stroke: colour("rule"), width: 1 }, ticks: { stroke: colour("rule"), width: 1, size: 5 },
     };
     const rem = parseFloat(font);
-    const ticks = (u, values) => values.map((value) => (value == null ? "" : shown(value)));
+    const ticks = (u, values, axis, space, step) => {
+      const labels = values.map((value) => (value == null ? "" : shown(value)));
+      const told = labels.filter((label) => label !== "");
+      if (new Set(told).size === told.length || !(step > 0)) return labels;
+      const digits = Math.min(9, Math.max(0, Math.ceil(-Math.log10(step))));
+      return values.map((value) => (value == null ? "" : value.toFixed(digits)));
+    };
+    // As wide as its longest label: half an em a digit, beside the axis' own name.
+    const wide = (u, values) => Math.max(4.4, 1.9 + 0.5 * Math.max(0, ...(values ?? []).map((value) => value.length))) * rem;
     const x = { ...base, label: withUnit(chart.x), labelSize: 1.9 * rem, size: 2.4 * rem, values: ticks };
     if (chart.x.labels) {
       Object.assign(x, {
@@ -124,7 +132,7 @@ globalThis.drawFigures = (root, result) => {
       });
       if (x.rotate) x.size = 5.6 * rem;
     }
-    const y = { ...base, label: withUnit(chart.y), labelSize: 1.9 * rem, size: 4.4 * rem, values: ticks };
+    const y = { ...base, label: withUnit(chart.y), labelSize: 1.9 * rem, size: wide, values: ticks };
     if (chart.y.scale === "asinh") y.splits = (u, axis, from, to) => POWERS.filter((power) => power >= from && power <= to);
     return [x, y];
   }
