@@ -43,9 +43,10 @@ const CARRIER_SHARE: f64 = 0.5;
 /// Unbalance and fifth harmonic of a grid at most, shares.
 const UNBALANCE: f64 = 0.01;
 const FIFTH: f64 = 0.03;
-/// Seconds and loads of the recordings that calibrate a motor.
-const RECORDED_S: f64 = 2.0;
-const RECORDED_LOADS: [f64; 2] = [0.5, 1.0];
+/// Seconds and loads of the recordings that calibrate a motor: from idle to rated, as docs/calibrate.md asks.
+const RECORDED_S: f64 = 1.5;
+const RECORDED_LOADS: [f64; 3] = [0.1, 0.5, 1.0];
+
 /// What lies behind the terminals, and where.
 #[derive(Clone, Debug)]
 pub struct Conditions {
@@ -161,7 +162,7 @@ impl<'m> Installed<'m> {
         }
     }
 
-    /// The motor as `drivemon calibrate` makes it of two recordings; `None` where it refuses them. `k` is the board's number.
+    /// The motor as `drivemon calibrate` makes it of three recordings; `None` where it refuses them. `k` is the board's number.
     ///
     /// # Errors
     /// Conditions that cannot be simulated.
