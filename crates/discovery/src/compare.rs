@@ -5,7 +5,7 @@ use crate::report::types::{
     BandReport, CompareReport, Inconclusive, OrderReport, Overall, RegionReport, SignalReport,
 };
 use crate::search::inconclusive;
-use estimation::data::case::Case;
+use estimation::data::case::{Case, Waveform};
 use estimation::data::channels::N_CHANNELS;
 use estimation::data::given::Sources;
 use estimation::data::question::{Error, Question};
@@ -91,10 +91,11 @@ fn scale_of(study: &Study) -> Option<(SpeedScaleReport, Vec<Inconclusive>)> {
 }
 
 fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
-    let judged = |k: usize| case.weight.iter().filter(|w| w[k] > 0.0).count() as f64;
+    let (measured, weight) = (case.measured(), case.weight());
+    let judged = |k: usize| weight.iter().filter(|w| w[k] > 0.0).count() as f64;
     let mean = |k: usize, f: &dyn Fn(usize, f64) -> f64| {
-        let rows = (0..case.weight.len()).filter(|&row| case.weight[row][k] > 0.0);
-        let sum: f64 = rows.map(|row| f(row, 1.0 / case.weight[row][k])).sum();
+        let rows = (0..weight.len()).filter(|&row| weight[row][k] > 0.0);
+        let sum: f64 = rows.map(|row| f(row, 1.0 / weight[row][k])).sum();
         (sum / judged(k)).sqrt()
     };
     let one = |(k, (name, unit)): (usize, (&str, &str))| {
@@ -103,7 +104,7 @@ fn signals(case: &Case, r: &[f64]) -> Vec<SignalReport> {
         SignalReport {
             name: name.to_owned(),
             unit: unit.to_owned(),
-            rms: mean(k, &|row, _| case.measured[row][k].powi(2)),
+            rms: mean(k, &|row, _| measured[row][k].powi(2)),
             error_rms: error,
             noise_floor: mean(k, &|_, sigma| sigma * sigma),
             error_over_noise: ratio,
@@ -128,12 +129,11 @@ fn error_of(study: &Study, r: &[f64], blocks: &[Numbered]) -> f64 {
 }
 
 /// State of the machine in one block: what it does, its load and voltage in percent.
-fn state(study: &Study, rows: &Range<usize>) -> String {
-    let case = &study.fitted.case;
+fn state(study: &Study, waveform: &Waveform, rows: &Range<usize>) -> String {
     let rated = &study.prior.plant.rated;
-    let [load, voltage, slip, _] = percents(study, rows);
-    let stride = case.between.stride() * case.decimation;
-    let part = rows.start * stride..(rows.end * stride).min(case.inputs.u_s.len());
+    let [load, voltage, slip, _] = percents(study, waveform, rows);
+    let stride = waveform.between.stride() * waveform.decimation;
+    let part = rows.start * stride..(rows.end * stride).min(waveform.inputs.u_s.len());
     if voltage < 2.0 {
         return "off".to_owned();
     }
@@ -141,12 +141,14 @@ fn state(study: &Study, rows: &Range<usize>) -> String {
         return "start-up".to_owned();
     }
     let half = rows.start + rows.len() / 2;
-    let step = (load_torque(study, rows.start..half) - load_torque(study, half..rows.end)).abs();
-    let stepped = case
+    let step = (load_torque(study, waveform, rows.start..half)
+        - load_torque(study, waveform, half..rows.end))
+    .abs();
+    let stepped = waveform
         .supply
         .segments
         .iter()
-        .any(|s| part.contains(&s.start) && s.start > 0 && !is_cut(case, s.start));
+        .any(|s| part.contains(&s.start) && s.start > 0 && !is_cut(waveform, s.start));
     if step > 0.1 * rated.torque || stepped {
         return "step".to_owned();
     }
@@ -154,48 +156,47 @@ fn state(study: &Study, rows: &Range<usize>) -> String {
     format!("load {:.0} %, voltage {:.0} %", round(load), round(voltage))
 }
 
-fn is_cut(case: &Case, sample: usize) -> bool {
-    let cuts = &case.timeline.cuts;
+fn is_cut(waveform: &Waveform, sample: usize) -> bool {
+    let cuts = &waveform.timeline.cuts;
     cuts.iter().any(|cut| cut.sample == sample)
 }
 
 /// Mean load torque of some rows, N m: as measured, or that of the air gap (its power over the synchronous speed).
-fn load_torque(study: &Study, rows: Range<usize>) -> f64 {
-    let case = &study.fitted.case;
-    let stride = case.between.stride() * case.decimation;
+fn load_torque(study: &Study, waveform: &Waveform, rows: Range<usize>) -> f64 {
+    let stride = waveform.between.stride() * waveform.decimation;
     let r_s = study.prior.plant.motor.r_s;
     let n_p = study.prior.plant.rated.n_p;
     let torque = |row: usize| {
         let k = row * stride;
-        if case.input_noise.torque > 0.0 {
-            return case.inputs.tau_load[k];
+        if waveform.input_noise.torque > 0.0 {
+            return waveform.inputs.tau_load[k];
         }
-        let [a, b, c, ..] = case.measured[row];
+        let [a, b, c, ..] = waveform.measured[row];
         let i_s = clarke([a, b, c]);
-        let power = 1.5 * ((case.inputs.u_s[k] - i_s * r_s) * i_s.conj()).re;
-        power * n_p / case.timeline.omega_sync[k].abs().max(1.0)
+        let power = 1.5 * ((waveform.inputs.u_s[k] - i_s * r_s) * i_s.conj()).re;
+        power * n_p / waveform.timeline.omega_sync[k].abs().max(1.0)
     };
     let n = rows.len().max(1) as f64;
     rows.map(torque).sum::<f64>() / n
 }
 
 /// Load, voltage, slip and frequency of a block, percent of rated (slip: percent).
-fn percents(study: &Study, rows: &Range<usize>) -> [f64; 4] {
-    let case = &study.fitted.case;
+fn percents(study: &Study, waveform: &Waveform, rows: &Range<usize>) -> [f64; 4] {
     let rated = &study.prior.plant.rated;
-    let stride = case.between.stride() * case.decimation;
+    let stride = waveform.between.stride() * waveform.decimation;
     let mean = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>() / rows.len() as f64;
-    let sync = &case.timeline.omega_sync;
+    let sync = &waveform.timeline.omega_sync;
     let omega = mean(&|row| sync[(row * stride).min(sync.len() - 1)]);
     let speed = mean(&|row| {
-        case.speed
+        waveform
+            .speed
             .get(row * stride)
             .copied()
-            .unwrap_or(case.measured[row][3])
+            .unwrap_or(waveform.measured[row][3])
     });
-    let voltage = mean(&|row| case.inputs.u_s[row * stride].norm());
+    let voltage = mean(&|row| waveform.inputs.u_s[row * stride].norm());
     [
-        100.0 * load_torque(study, rows.clone()) / rated.torque,
+        100.0 * load_torque(study, waveform, rows.clone()) / rated.torque,
         100.0 * voltage / rated.voltage,
         100.0 * (1.0 - rated.n_p * speed / omega),
         100.0 * omega / rated.omega_sync,
@@ -204,13 +205,12 @@ fn percents(study: &Study, rows: &Range<usize>) -> [f64; 4] {
 
 /// Stretches of time in which the machine does the same.
 fn regions(study: &Study, r: &[f64]) -> Vec<RegionReport> {
-    let case = &study.fitted.case;
-    if case.table.is_some() {
+    let Some(waveform) = study.fitted.case.waveform() else {
         return Vec::new();
-    }
+    };
     let mut groups: Vec<(String, Vec<Numbered>)> = Vec::new();
-    for (k, rows) in case.blocks().into_iter().enumerate() {
-        let name = state(study, &rows);
+    for (k, rows) in waveform.blocks().into_iter().enumerate() {
+        let name = state(study, waveform, &rows);
         match groups.last_mut() {
             Some((last, blocks)) if *last == name => blocks.push((k, rows)),
             _ => groups.push((name, vec![(k, rows)])),
@@ -218,22 +218,21 @@ fn regions(study: &Study, r: &[f64]) -> Vec<RegionReport> {
     }
     let report = |(name, blocks): &(String, Vec<Numbered>)| RegionReport {
         name: name.clone(),
-        from_s: case.time_of(blocks[0].1.start),
-        to_s: case.time_of(blocks[blocks.len() - 1].1.end - 1) + case.t_row(),
+        from_s: waveform.time_of(blocks[0].1.start),
+        to_s: waveform.time_of(blocks[blocks.len() - 1].1.end - 1) + waveform.t_row(),
         error_over_noise: error_of(study, r, blocks),
     };
     groups.iter().map(report).collect()
 }
 
 fn bands(study: &Study, r: &[f64]) -> Vec<BandReport> {
-    let case = &study.fitted.case;
-    if case.table.is_some() {
+    let Some(waveform) = study.fitted.case.waveform() else {
         return Vec::new();
-    }
-    let blocks: Vec<_> = case.blocks().into_iter().enumerate().collect();
+    };
+    let blocks: Vec<_> = waveform.blocks().into_iter().enumerate().collect();
     let values: Vec<[f64; 4]> = blocks
         .iter()
-        .map(|(_, rows)| percents(study, rows))
+        .map(|(_, rows)| percents(study, waveform, rows))
         .collect();
     let mut out = Vec::new();
     for (k, quantity) in ["load", "voltage", "slip", "frequency"]
@@ -258,13 +257,13 @@ fn bands(study: &Study, r: &[f64]) -> Vec<BandReport> {
 
 /// Rotating components of the current error.
 fn orders(case: &Case, r: &[f64]) -> Vec<OrderReport> {
-    if case.table.is_some() {
+    let Some(waveform) = case.waveform() else {
         return Vec::new();
-    }
-    let stride = case.between.stride() * case.decimation;
+    };
+    let stride = waveform.between.stride() * waveform.decimation;
     let error = |row: usize| {
         let at = |k: usize| {
-            let w = case.weight[row][k];
+            let w = waveform.weight[row][k];
             if w > 0.0 {
                 r[row * N_CHANNELS + k] / w
             } else {
@@ -275,13 +274,13 @@ fn orders(case: &Case, r: &[f64]) -> Vec<OrderReport> {
     };
     let one = |order: f64| {
         let turned = |row: usize| {
-            let theta = case.supply.theta[(row * stride).min(case.supply.theta.len() - 1)];
+            let theta = waveform.supply.theta[(row * stride).min(waveform.supply.theta.len() - 1)];
             error(row) * Complex64::from_polar(1.0, -order * theta)
         };
-        let sum: Complex64 = (0..case.weight.len()).map(turned).sum();
+        let sum: Complex64 = (0..waveform.weight.len()).map(turned).sum();
         OrderReport {
             order,
-            amplitude_amp: sum.norm() / case.weight.len() as f64,
+            amplitude_amp: sum.norm() / waveform.weight.len() as f64,
         }
     };
     ORDERS.into_iter().map(one).collect()

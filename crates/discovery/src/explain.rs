@@ -188,7 +188,7 @@ fn library(
         base = step.trial.clone();
         steps.push(step);
         // The accuracy of a table is assumed: what little is left over is no evidence.
-        let assumed = study.fitted.case.table.is_some();
+        let assumed = study.fitted.case.is_table();
         if adequate(study, &base) || assumed && explained(study, &baseline, &base) > NAMED_SHARE {
             break;
         }
@@ -231,7 +231,7 @@ fn behind(
 /// Whether something that is no effect may make the model adequate: `rival` does not, and samples over time and a recording
 /// that was not fitted can prove it.
 fn may_decide(study: &Study, rival: &Trial) -> bool {
-    let over_time = study.fitted.case.table.is_none();
+    let over_time = !study.fitted.case.is_table();
     over_time && !study.proofs.is_empty() && !adequate(study, rival)
 }
 
@@ -279,7 +279,7 @@ fn laws_are_asked(study: &Study, found: &Explanation) -> bool {
     let last = found.steps.last().map_or(&found.baseline, |s| &s.trial);
     let settled =
         found.nameable && adequate(study, last) && even(study, last) && !is_strained(study, found);
-    study.fitted.case.table.is_none() && found.laws.is_empty() && !settled
+    !study.fitted.case.is_table() && found.laws.is_empty() && !settled
 }
 
 /// The base once more from where its best candidate ended, if that is better without the candidate too: then the
@@ -305,7 +305,7 @@ fn mostly_explained(study: &Study, baseline: &Trial, last: &Trial) -> bool {
 /// Takes back what only patches the form of an earlier effect: later effects that explain little of what was missing
 /// at first and do not make the model adequate either.
 fn drop_patches(study: &Study, baseline: &Trial, steps: &mut Vec<Step>) {
-    let assumed = study.fitted.case.table.is_some();
+    let assumed = study.fitted.case.is_table();
     while steps.len() > 1 && !assumed {
         let last = &steps[steps.len() - 1];
         let share = explained(study, baseline, &last.trial);

@@ -1,6 +1,7 @@
 //! A small motor for the tests of this crate: its motor file, and recordings of it in steady state in closed form.
 
-use crate::data::case::Case;
+use crate::data::case::{Case, Waveform};
+use crate::data::channels::N_CHANNELS;
 use crate::data::load_table::table_values;
 use crate::data::study::{Study, Subject, Trial};
 use crate::fit::normal_equations::{Block, Penalty};
@@ -134,6 +135,38 @@ pub fn study(seconds: f64, torque: impl Fn(f64) -> f64) -> Study {
     Study::new(prior, case, Vec::new(), None)
 }
 
+/// The measured rows of a case, to be changed.
+pub fn measured_of(case: &mut Case) -> &mut [[f64; N_CHANNELS]] {
+    match case {
+        Case::Waveform(waveform) => &mut waveform.measured,
+        Case::LoadTable(table) => &mut table.measured,
+    }
+}
+
+/// The weights of a case, to be changed.
+pub fn weight_of(case: &mut Case) -> &mut [[f64; N_CHANNELS]] {
+    match case {
+        Case::Waveform(waveform) => &mut waveform.weight,
+        Case::LoadTable(table) => &mut table.weight,
+    }
+}
+
+/// The samples of a study of a recording.
+///
+/// # Panics
+/// With a study of a load table.
+pub fn waveform_of(study: &Study) -> &Waveform {
+    study.fitted.case.waveform().expect("a recording")
+}
+
+/// The same to be changed.
+///
+/// # Panics
+/// With a study of a load table.
+pub fn waveform_mut_of(study: &mut Study) -> &mut Waveform {
+    study.fitted.case.waveform_mut().expect("a recording")
+}
+
 /// The priors of a study as they are, hardly fitted.
 pub fn trial(study: &Study) -> Trial {
     let effort = Effort {
@@ -258,11 +291,11 @@ pub fn scaled_study(seconds: f64, gain: f64) -> Study {
     let rated = &prior.plant.rated;
     let rec = unknown_speed(seconds, gain);
     let scale = FreeScale::start(&[&rec], rated).expect("it runs");
-    let case = Case {
+    let waveform = Waveform {
         speed_scale_is_free: true,
-        ..Case::new(&scale.applied(&rec), rated).expect("judged")
+        ..Waveform::new(&scale.applied(&rec), rated).expect("judged")
     };
-    Study::new(prior, case, Vec::new(), Some(scale))
+    Study::new(prior, waveform.into(), Vec::new(), Some(scale))
 }
 
 /// The recording of such a study, at the torque of 1 N m.

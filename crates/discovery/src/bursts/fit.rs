@@ -4,7 +4,7 @@ use super::pulse::{Pulse, drawn, pulses};
 use super::smoother::{Measured, Smoothed, Wander, smooth};
 use super::trace::{action, trace};
 use crate::laws::sensitivity::Sensitivities;
-use estimation::data::case::Case;
+use estimation::data::case::{Case, Waveform};
 use estimation::data::channels::N_CHANNELS;
 use estimation::fit::normal_equations::{self, Penalty};
 use estimation::fit::output_error::{Effort, Fit, fit};
@@ -32,8 +32,10 @@ const TOGETHER: usize = 10;
 
 /// A recording with the model that explains it but for bursts.
 pub(crate) struct Scene<'a> {
-    /// The recording.
+    /// The recording, as what is fitted ...
     pub case: &'a Case,
+    /// ... and its samples.
+    pub waveform: &'a Waveform,
     /// What is believed.
     pub prior: &'a Prior,
     /// The model without bursts.
@@ -52,11 +54,11 @@ pub(crate) struct Fitted {
 
 impl Scene<'_> {
     fn t_step(&self) -> f64 {
-        self.case.inputs.t_sample * self.case.between.stride() as f64
+        self.waveform.inputs.t_sample * self.waveform.between.stride() as f64
     }
 
     fn count(&self) -> usize {
-        self.case.inputs.u_s.len() / self.case.between.stride() + 1
+        self.waveform.inputs.u_s.len() / self.waveform.between.stride() + 1
     }
 
     fn typical(&self, place: Place) -> f64 {
@@ -83,7 +85,7 @@ impl Scene<'_> {
     /// Where an amount free to wander takes less than `least` of the squared error, bursts take even less.
     pub fn suspected(&self, places: &[Place], count: usize, least: f64) -> Vec<(Place, Wander)> {
         let fit = self.fitted(&self.without, Effort::NONE);
-        let of = Sensitivities::of(self.case, self.prior, &fit);
+        let of = Sensitivities::of(self.waveform, self.prior, &fit);
         let ask = |&place: &Place| (place, self.smoothed(&of, place, self.wander(place, 1)));
         let mut all: Vec<(Place, Smoothed)> = places.iter().map(ask).collect();
         all.sort_by(|a, b| b.1.evidence.total_cmp(&a.1.evidence));
@@ -103,7 +105,7 @@ impl Scene<'_> {
     /// How something wanders at a place, by what suits the recording best.
     pub fn wandering(&self, place: Place) -> Wander {
         let fit = self.fitted(&self.without, Effort::NONE);
-        self.suited(&Sensitivities::of(self.case, self.prior, &fit), place)
+        self.suited(&Sensitivities::of(self.waveform, self.prior, &fit), place)
     }
 
     fn suited(&self, of: &Sensitivities<'_>, place: Place) -> Wander {
@@ -123,11 +125,11 @@ impl Scene<'_> {
     }
 
     fn smoothed(&self, of: &Sensitivities<'_>, place: Place, wander: Wander) -> Smoothed {
-        let (residual, weight) = measured(self.case, of.fit());
+        let (residual, weight) = measured(self.waveform, of.fit());
         let measured = Measured {
             residual: &residual,
             weight: &weight,
-            decimation: self.case.decimation,
+            decimation: self.waveform.decimation,
             t_step: self.t_step(),
         };
         smooth(of.tangent(), &of.push(action(place)), &measured, wander)
@@ -144,7 +146,7 @@ impl Scene<'_> {
                 ..Effort::FULL
             };
             let fit = self.fitted(&there, effort);
-            let sensitivities = Sensitivities::of(self.case, self.prior, &fit);
+            let sensitivities = Sensitivities::of(self.waveform, self.prior, &fit);
             let more = self.smoothed(&sensitivities, place, wander).amount;
             amount.iter_mut().zip(more).for_each(|(a, x)| *a += x);
             amount.iter_mut().for_each(|a| *a = bounded(place, *a));
@@ -206,7 +208,7 @@ impl Scene<'_> {
 
     /// What each burst's size, beginning and end do to the outputs, in prior standard deviations.
     fn columns(&self, place: Place, here: &Fitted) -> Vec<Vec<f64>> {
-        let sensitivities = Sensitivities::of(self.case, self.prior, &here.fit);
+        let sensitivities = Sensitivities::of(self.waveform, self.prior, &here.fit);
         let (push, step) = (sensitivities.push(action(place)), self.t_step());
         let steps = sensitivities.tangent().len();
         let pulses = here.pulses.iter();
@@ -279,7 +281,7 @@ fn bounded(place: Place, amount: f64) -> f64 {
 }
 
 /// Residual and weights of currents and speed, in their units.
-fn measured(case: &Case, fit: &Fit) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
+fn measured(waveform: &Waveform, fit: &Fit) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
     let row = |(r, w): (&[f64], &[f64; N_CHANNELS])| {
         let in_units = |k: usize| if w[k] > 0.0 { r[k] / w[k] } else { 0.0 };
         (
@@ -287,6 +289,6 @@ fn measured(case: &Case, fit: &Fit) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
             core::array::from_fn(|k| w[k]),
         )
     };
-    let rows = fit.residual.chunks_exact(N_CHANNELS).zip(&case.weight);
+    let rows = fit.residual.chunks_exact(N_CHANNELS).zip(&waveform.weight);
     rows.map(row).unzip()
 }

@@ -16,7 +16,8 @@ pub(crate) fn bursts_report(
     let (factor, unit) = in_units(study, place, trial);
     let durations = std::iter::once(&study.fitted).chain(&study.proofs);
     let durations: Vec<f64> = durations
-        .map(|s| s.case.t_row() * s.case.measured.len() as f64)
+        .filter_map(|s| s.case.waveform())
+        .map(|waveform| waveform.t_row() * waveform.measured.len() as f64)
         .collect();
     let of = |(number, pulses): (usize, &Vec<Pulse>)| {
         let one = move |pulse: &Pulse| BurstReport {

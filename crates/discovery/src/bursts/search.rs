@@ -6,6 +6,7 @@ use super::smoother::Wander;
 use super::trace::{action, places};
 use crate::laws::search::{LawStep, Refitted};
 use crate::search::refit::combined;
+use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Subject, Trial};
 use estimation::fit::normal_equations;
 use estimation::model::prior::Hypothesis;
@@ -40,11 +41,14 @@ impl Candidate {
 
 /// What comes and goes on top of a model; `None` where nothing does, or where it is not the same in all recordings.
 pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
-    if !study.fitted.case.timeline.cuts.is_empty() {
+    let waveform = study.fitted.case.waveform()?;
+    if !waveform.timeline.cuts.is_empty() {
         return None;
     }
-    let scene = scene(study, &study.fitted, &base.fit.hypothesis, true);
-    let asked: Vec<Place> = places().filter(|place| is_judged(study, *place)).collect();
+    let scene = scene(study, &study.fitted, &base.fit.hypothesis, true)?;
+    let asked: Vec<Place> = places()
+        .filter(|place| is_judged(waveform, *place))
+        .collect();
     let one = |(place, wander): &(Place, Wander)| {
         let fitted = scene.bursts(*place, *wander)?;
         let folds = fitted.fit.held_out();
@@ -73,20 +77,21 @@ pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
     })
 }
 
-fn scene<'a>(study: &'a Study, of: &'a Subject, h: &Hypothesis, free: bool) -> Scene<'a> {
-    Scene {
+/// A recording with a model; `None` of a load table.
+fn scene<'a>(study: &'a Study, of: &'a Subject, h: &Hypothesis, free: bool) -> Option<Scene<'a>> {
+    Some(Scene {
         case: &of.case,
+        waveform: of.case.waveform()?,
         prior: &study.prior,
         without: h.clone(),
         free,
-    }
+    })
 }
 
-fn is_judged(study: &Study, place: Place) -> bool {
-    let case = &study.fitted.case;
+fn is_judged(waveform: &Waveform, place: Place) -> bool {
     match place {
         Place::Torque | Place::Friction | Place::SensorSpeed => {
-            !case.speed_is_input && !case.speed.is_empty()
+            !waveform.speed_is_input && !waveform.speed.is_empty()
         }
         _ => true,
     }
@@ -99,7 +104,7 @@ fn everywhere(study: &Study, place: Place, fitted: Fitted) -> Option<Candidate> 
     let mut pulses = vec![fitted.pulses];
     let mut proof = Vec::new();
     for subject in &study.proofs {
-        let scene = scene(study, subject, &parameters, false);
+        let scene = scene(study, subject, &parameters, false)?;
         let there = scene.bursts(place, scene.wandering(place))?;
         let rows = subject.case.blocks();
         let blocks = normal_equations::blocks(&rows, &there.fit.residual, &[]);

@@ -248,8 +248,9 @@ mod tests {
         let study = specimen::study(1.0, |_| 1.0);
         let (case, prior) = (&study.fitted.case, &study.prior);
         let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
-        let of = Sensitivities::of(case, prior, &fit);
-        let t_step = case.inputs.t_sample * case.between.stride() as f64;
+        let waveform = specimen::waveform_of(&study);
+        let of = Sensitivities::of(waveform, prior, &fit);
+        let t_step = waveform.inputs.t_sample * waveform.between.stride() as f64;
         let torque = 0.1 * prior.plant.rated.torque;
         let pulse = Pulse {
             from: 0.5,
@@ -267,8 +268,8 @@ mod tests {
                 false => 0.0,
             })
         };
-        let residual: Vec<[f64; 4]> = case.weight.iter().enumerate().map(row).collect();
-        let weight: Vec<[f64; 4]> = case
+        let residual: Vec<[f64; 4]> = waveform.weight.iter().enumerate().map(row).collect();
+        let weight: Vec<[f64; 4]> = waveform
             .weight
             .iter()
             .map(|w| [w[0], w[1], w[2], w[3]])
@@ -276,7 +277,7 @@ mod tests {
         let measured = Measured {
             residual: &residual,
             weight: &weight,
-            decimation: case.decimation,
+            decimation: waveform.decimation,
             t_step,
         };
         let asked = |place: Place, deviation: f64| {
@@ -308,15 +309,16 @@ mod tests {
         let study = specimen::study(0.2, |_| 1.0);
         let (case, prior) = (&study.fitted.case, &study.prior);
         let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
-        let of = Sensitivities::of(case, prior, &fit);
+        let waveform = specimen::waveform_of(&study);
+        let of = Sensitivities::of(waveform, prior, &fit);
         let push = of.push(action(Place::Torque));
-        let rows = case.weight.len();
+        let rows = waveform.weight.len();
         let residual: Vec<[f64; 4]> = (0..rows).map(|k| [(k as f64).sin(); 4]).collect();
         let measured = Measured {
             residual: &residual,
             weight: &vec![[1.0; 4]; rows],
-            decimation: case.decimation,
-            t_step: case.inputs.t_sample * case.between.stride() as f64,
+            decimation: waveform.decimation,
+            t_step: waveform.inputs.t_sample * waveform.between.stride() as f64,
         };
         let wander = Wander {
             deviation: 1.0,

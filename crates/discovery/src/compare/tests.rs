@@ -4,17 +4,22 @@ use recording::Source;
 
 /// A model that is exactly right, but for what `error` adds to a channel in units of its noise.
 fn residual_of(study: &Study, error: impl Fn(usize, usize) -> f64) -> Vec<f64> {
-    let rows = 0..study.fitted.case.measured.len();
+    let rows = 0..study.fitted.case.measured().len();
     rows.flat_map(|row| (0..N_CHANNELS).map(move |k| (row, k)))
         .map(|(row, k)| error(row, k))
         .collect()
+}
+
+fn state_of(study: &Study, rows: &Range<usize>) -> String {
+    state(study, specimen::waveform_of(study), rows)
 }
 
 #[test]
 fn load_voltage_slip_and_frequency_are_percent_of_rated() {
     let study = specimen::study(0.5, |_| 1.0);
     let point = specimen::point(1.0);
-    let [load, voltage, slip, frequency] = percents(&study, &(500..600));
+    let [load, voltage, slip, frequency] =
+        percents(&study, specimen::waveform_of(&study), &(500..600));
     assert!((load - 100.0 / 1.7).abs() < 1e-6, "{load}");
     assert!((voltage - 100.0).abs() < 0.1, "{voltage}");
     let expected = 100.0 * point.omega_slip / point.omega_sync;
@@ -55,27 +60,25 @@ fn regions_follow_what_the_machine_does() {
 #[test]
 fn a_machine_that_is_off_or_starts_is_no_load() {
     let mut study = specimen::study(0.5, |_| 1.0);
-    study.fitted.case.speed.iter_mut().for_each(|w| *w *= 0.7);
-    assert_eq!(state(&study, &(500..600)), "start-up");
-    study
-        .fitted
-        .case
-        .inputs
-        .u_s
+    specimen::waveform_mut_of(&mut study)
+        .speed
         .iter_mut()
-        .for_each(|u| *u *= 0.01);
-    assert_eq!(state(&study, &(500..600)), "off");
+        .for_each(|w| *w *= 0.7);
+    assert_eq!(state_of(&study, &(500..600)), "start-up");
+    let inputs = &mut specimen::waveform_mut_of(&mut study).inputs;
+    inputs.u_s.iter_mut().for_each(|u| *u *= 0.01);
+    assert_eq!(state_of(&study, &(500..600)), "off");
 }
 
 #[test]
 fn a_step_of_the_voltage_is_a_step() {
     let mut study = specimen::study(0.5, |_| 1.0);
-    assert_eq!(state(&study, &(500..600)), "load 60 %, voltage 100 %");
-    study.fitted.case.supply.segments = vec![0..1050, 1050..2500];
-    assert_eq!(state(&study, &(500..600)), "step");
-    assert_eq!(state(&study, &(600..700)), "load 60 %, voltage 100 %");
+    assert_eq!(state_of(&study, &(500..600)), "load 60 %, voltage 100 %");
+    specimen::waveform_mut_of(&mut study).supply.segments = vec![0..1050, 1050..2500];
+    assert_eq!(state_of(&study, &(500..600)), "step");
+    assert_eq!(state_of(&study, &(600..700)), "load 60 %, voltage 100 %");
     assert_eq!(
-        state(&study, &(0..100)),
+        state_of(&study, &(0..100)),
         "load 60 %, voltage 100 %",
         "the beginning is no step"
     );
@@ -85,7 +88,7 @@ fn a_step_of_the_voltage_is_a_step() {
 #[test]
 fn bands_hold_the_blocks_of_their_range() {
     let study = specimen::study(1.0, |t| if t < 0.5 { 0.6 } else { 1.3 });
-    let half = study.fitted.case.measured.len() / 2;
+    let half = study.fitted.case.measured().len() / 2;
     let r = residual_of(&study, |row, _| if row < half { 1.0 } else { 3.0 });
     let bands = bands(&study, &r);
     let of = |quantity: &str| -> Vec<(f64, f64, f64)> {
@@ -134,7 +137,9 @@ fn signals_are_compared_in_their_units() {
     let amplitude = specimen::point(1.0).i_s.norm();
     assert!((current.rms / (amplitude / 2f64.sqrt()) - 1.0).abs() < 1e-3);
     let mut blind = case.clone();
-    blind.weight.iter_mut().for_each(|w| w[3] = 0.0);
+    specimen::weight_of(&mut blind)
+        .iter_mut()
+        .for_each(|w| w[3] = 0.0);
     assert!(signals(&blind, &r).iter().all(|s| s.name != "speed"));
 }
 
@@ -147,9 +152,9 @@ fn a_rotating_error_is_found_at_its_order() {
         if k > 2 {
             return 0.0;
         }
-        let theta = -case.supply.theta[2 * row] + 0.6;
+        let theta = -specimen::waveform_of(&study).supply.theta[2 * row] + 0.6;
         let shift = [0.0, -1.0, 1.0][k] * std::f64::consts::TAU / 3.0;
-        0.1 * (theta + shift).cos() * case.weight[row][k]
+        0.1 * (theta + shift).cos() * case.weight()[row][k]
     };
     let found = orders(case, &residual_of(&study, error));
     let at = |order: f64| {

@@ -4,7 +4,7 @@ use super::family::Family;
 use super::goal::{Goal, Verdict};
 use super::limits::Limits;
 use super::plan::Plan;
-use super::virtual_case::virtual_case;
+use super::virtual_waveform::virtual_waveform;
 use crate::explain::Explanation;
 use estimation::data::study::Study;
 use rayon::prelude::*;
@@ -35,12 +35,10 @@ pub(crate) fn design(
     limits: Limits,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Option<Design> {
-    if study.fitted.case.table.is_some() {
-        return None;
-    }
+    let waveform = study.fitted.case.waveform()?;
     let goal = Goal::of(study, found)?;
     let plant = found.last().fit.hypothesis.plant(&study.prior);
-    let judge = |plan: &Plan| goal.judge(study, &virtual_case(plan, &study.fitted.case, &plant));
+    let judge = |plan: &Plan| goal.judge(study, &virtual_waveform(plan, waveform, &plant).into());
     let mut family = Family::new(limits);
     progress("designing the next experiment", 0.94);
     let judged = |plans: Vec<Plan>| -> Vec<(Plan, Verdict)> {

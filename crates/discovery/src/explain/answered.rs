@@ -37,7 +37,11 @@ impl<'a> Answered<'a> {
     pub fn laws(&mut self, base: &Trial, tell: &mut dyn FnMut(&str)) -> Rc<Laws> {
         match known(&self.laws, base) {
             Some(laws) => laws.clone(),
-            None => self.keep(base, LawSearch::new(self.study, base, tell).refitted(tell)),
+            None => {
+                let search = LawSearch::new(self.study, base, tell);
+                let laws = search.map_or_else(Laws::none, |search| search.refitted(tell));
+                self.keep(base, laws)
+            }
         }
     }
 
@@ -52,7 +56,7 @@ impl<'a> Answered<'a> {
         if let Some(laws) = known(&self.laws, base) {
             return (laws.promised < limit).then(|| laws.clone());
         }
-        let search = LawSearch::new(self.study, base, tell);
+        let search = LawSearch::new(self.study, base, tell)?;
         (search.promised() < limit).then(|| self.keep(base, search.refitted(tell)))
     }
 

@@ -67,7 +67,8 @@ fn on_top(study: &Study, beam: &Trial, excluded: &[&str]) -> Vec<Trial> {
         .map(|candidate| candidate.trial)
         .collect();
     let quiet = &mut |_: &str| {};
-    let laws = LawSearch::new(study, beam, quiet).best_refitted(SECONDS, limit);
+    let laws = LawSearch::new(study, beam, quiet);
+    let laws = laws.map_or_else(Laws::none, |laws| laws.best_refitted(SECONDS, limit));
     let held = |trial: &Trial| actions(trial).len() == actions(beam).len() + 1;
     trials.extend(laws.refitted.into_iter().map(|law| law.trial).filter(held));
     trials

@@ -2,7 +2,7 @@
 
 use crate::laws::modes::Modes;
 use crate::laws::motion::Motion;
-use estimation::data::case::Case;
+use estimation::data::case::Waveform;
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::{EffectConfig, Plant};
 
@@ -18,21 +18,21 @@ const LEAST_VOLTAGE: f64 = 0.1;
 const LEAST_RANGE: f64 = 1e-3;
 
 /// Laws of nothing over what the recording visits.
-pub(crate) fn menu(case: &Case, plant: &Plant, motion: &Motion) -> Vec<EffectConfig> {
+pub(crate) fn menu(waveform: &Waveform, plant: &Plant, motion: &Motion) -> Vec<EffectConfig> {
     let ask = |action: Action| {
         let range = motion.range(action.place, action.coordinate);
-        let asked = is_judged(case, action) && varies(motion, plant, action, range);
+        let asked = is_judged(waveform, action) && varies(motion, plant, action, range);
         asked.then(|| Modes::absent(action, range))
     };
     Action::all().filter_map(ask).collect()
 }
 
 /// Whether the recording can judge this place at all.
-fn is_judged(case: &Case, action: Action) -> bool {
+fn is_judged(waveform: &Waveform, action: Action) -> bool {
     match action.place {
-        Place::Torque | Place::Friction => !case.speed_is_input,
+        Place::Torque | Place::Friction => !waveform.speed_is_input,
         Place::SensorSpeed => {
-            !case.speed_is_input && !case.speed.is_empty() && !case.speed_scale_is_free
+            !waveform.speed_is_input && !waveform.speed.is_empty() && !waveform.speed_scale_is_free
         }
         _ => true,
     }

@@ -1,6 +1,6 @@
 //! What a recording visits: the quantities over which a law may act, as the fitted model has them.
 
-use estimation::data::case::Case;
+use estimation::data::case::Waveform;
 use motor::dynamic::clarke;
 use motor::effect::curve::{Coordinate, Place};
 use motor::effect::tangent::Tangent;
@@ -36,12 +36,12 @@ pub(crate) struct Motion {
 
 impl Motion {
     /// The motion of a plant on what drives a recording, of a linearised run and its true outputs.
-    pub fn of(case: &Case, plant: &Plant, tangent: &Tangent, outputs: &Outputs) -> Self {
-        let stride = case.between.stride();
-        let t_step = case.inputs.t_sample * stride as f64;
+    pub fn of(waveform: &Waveform, plant: &Plant, tangent: &Tangent, outputs: &Outputs) -> Self {
+        let stride = waveform.between.stride();
+        let t_step = waveform.inputs.t_sample * stride as f64;
         let n_p = plant.mechanics.n_p;
         let omega_sync = |k: usize| {
-            let all = &case.timeline.omega_sync;
+            let all = &waveform.timeline.omega_sync;
             all[(k * stride).min(all.len() - 1)]
         };
         let i_s: Vec<Complex64> = outputs.i_s_abc.iter().map(|i| clarke(*i)).collect();
@@ -50,7 +50,7 @@ impl Motion {
         let rotor = |(flux, i): (&Complex64, &Complex64)| (flux / plant.motor.l_m - i).norm();
         let slip = |(k, w): (usize, &f64)| (omega_sync(k) - n_p * w) / TAU;
         let steps = 0..i_s.len();
-        let u_s = |k: usize| case.inputs.u_s[k * stride];
+        let u_s = |k: usize| waveform.inputs.u_s[k * stride];
         Self {
             slip: outputs.omega_mech.iter().enumerate().map(slip).collect(),
             frequency: steps.clone().map(|k| omega_sync(k) / TAU).collect(),
@@ -58,16 +58,16 @@ impl Motion {
             angle_electrical: steps.clone().map(|k| u_s(k).arg()).collect(),
             load: steps
                 .clone()
-                .map(|k| case.inputs.tau_load[k * stride])
+                .map(|k| waveform.inputs.tau_load[k * stride])
                 .collect(),
             time: steps
-                .map(|k| case.timeline.clock(t_step * k as f64))
+                .map(|k| waveform.timeline.clock(t_step * k as f64))
                 .collect(),
             stator: i_s.iter().map(|i| i.norm()).collect(),
             rotor: fluxes.iter().zip(&i_s).map(rotor).collect(),
             flux: fluxes.iter().map(|flux| flux.norm()).collect(),
             phases: [0, 1, 2].map(|p| outputs.i_s_abc.iter().map(|i| i[p]).collect()),
-            duration: case.timeline.clock(t_step * i_s.len() as f64),
+            duration: waveform.timeline.clock(t_step * i_s.len() as f64),
             speed: outputs.omega_mech.clone(),
             angle: outputs.theta_mech.clone(),
             t_step,

@@ -57,8 +57,8 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
 
 /// Time from the first to the last sample of the fitted recording, s.
 fn duration(study: &Study) -> f64 {
-    let case = &study.fitted.case;
-    case.time_of(case.measured.len().saturating_sub(1))
+    let waveform = study.fitted.case.waveform();
+    waveform.map_or(0.0, |one| one.time_of(one.measured.len().saturating_sub(1)))
 }
 
 /// Other places and coordinates, each once: friction and torque over time have one name.

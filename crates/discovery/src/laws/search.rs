@@ -7,6 +7,7 @@ use crate::laws::modes::{self, Modes};
 use crate::laws::screen::{Screened, best_stiffness, screen};
 use crate::laws::sensitivity::Sensitivities;
 use crate::search::refit::combined;
+use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::{Effort, fit, fit_knowing};
 use estimation::model::prediction::SpeedObserver;
@@ -72,6 +73,7 @@ impl LawStep {
 /// Laws on top of a model, screened.
 pub(crate) struct LawSearch<'a> {
     study: &'a Study,
+    waveform: &'a Waveform,
     base: &'a Trial,
     sensitivities: Sensitivities<'a>,
     screened: Vec<Screened>,
@@ -87,18 +89,20 @@ pub(crate) struct Laws {
 }
 
 impl<'a> LawSearch<'a> {
-    /// Screens all laws on top of a model.
-    pub fn new(study: &'a Study, base: &'a Trial, tell: &mut dyn FnMut(&str)) -> Self {
-        tell("screening laws that no library holds");
+    /// Screens all laws on top of a model; `None` of a load table, which shows no samples.
+    pub fn new(study: &'a Study, base: &'a Trial, tell: &mut dyn FnMut(&str)) -> Option<Self> {
         let case = &study.fitted.case;
-        let sensitivities = Sensitivities::of(case, &study.prior, &base.fit);
-        let menu = menu(case, sensitivities.plant(), sensitivities.motion());
-        Self {
+        let waveform = case.waveform()?;
+        tell("screening laws that no library holds");
+        let sensitivities = Sensitivities::of(waveform, &study.prior, &base.fit);
+        let menu = menu(waveform, sensitivities.plant(), sensitivities.motion());
+        Some(Self {
             screened: screen(case, &base.fit, &sensitivities, &menu),
             sensitivities,
             study,
+            waveform,
             base,
-        }
+        })
     }
 
     /// Error over noise (folds) that the screen promises of the best law.
@@ -154,7 +158,7 @@ impl<'a> LawSearch<'a> {
     fn led(&self) -> Vec<Screened> {
         let (case, prior) = (&self.study.fitted.case, &self.study.prior);
         let astray = self.study.fold_error(&self.base.folds) > ASTRAY;
-        if !astray || case.speed.is_empty() || case.speed_is_input {
+        if !astray || self.waveform.speed.is_empty() || self.waveform.speed_is_input {
             return Vec::new();
         }
         let led = Effort {
@@ -163,7 +167,7 @@ impl<'a> LawSearch<'a> {
             abandon_above: f64::INFINITY,
         };
         let observed = fit(case, prior, &self.base.fit.hypothesis, led);
-        let sensitivities = Sensitivities::of(case, prior, &observed);
+        let sensitivities = Sensitivities::of(self.waveform, prior, &observed);
         let menu: Vec<_> = self.screened.iter().map(|s| s.config.clone()).collect();
         let mut all = screen(case, &observed, &sensitivities, &menu);
         all.truncate(REFITTED_ASTRAY);
@@ -172,6 +176,14 @@ impl<'a> LawSearch<'a> {
 }
 
 impl Laws {
+    /// No laws: none was asked about.
+    pub fn none() -> Self {
+        Laws {
+            refitted: Vec::new(),
+            promised: f64::INFINITY,
+        }
+    }
+
     /// The law on top of `base`; `None` where no law explains anything.
     pub fn best(&self, study: &Study, base: &Trial) -> Option<LawStep> {
         let best = self.refitted.first()?;

@@ -4,7 +4,7 @@
 
 use crate::laws::modes::{Modes, SPLINES, TURN_MODES, harmonics, spline_modes};
 use crate::laws::motion::Motion;
-use estimation::data::case::Case;
+use estimation::data::case::Waveform;
 use estimation::data::channels::N_CHANNELS;
 use estimation::fit::output_error::Fit;
 use estimation::model::prediction::{Drive, driven};
@@ -22,7 +22,7 @@ const PASSES: u64 = 7;
 
 /// A fitted model, linearised.
 pub(crate) struct Sensitivities<'a> {
-    case: &'a Case,
+    waveform: &'a Waveform,
     fit: &'a Fit,
     plant: Plant,
     drive: Drive<'a>,
@@ -33,17 +33,17 @@ pub(crate) struct Sensitivities<'a> {
 
 impl<'a> Sensitivities<'a> {
     /// Linearises the model of a fit.
-    pub fn of(case: &'a Case, prior: &Prior, fit: &'a Fit) -> Self {
+    pub fn of(waveform: &'a Waveform, prior: &Prior, fit: &'a Fit) -> Self {
         let plant = fit.hypothesis.plant(prior);
-        let drive = Drive::of(case);
-        let (tangent, outputs) = driven(case, &plant, &drive, fit.observer, PASSES, |run| {
+        let drive = Drive::of(waveform);
+        let (tangent, outputs) = driven(waveform, &plant, &drive, fit.observer, PASSES, |run| {
             let tangent = Tangent::new(&plant, run);
             let outputs = tangent.outputs(run);
             (tangent, outputs)
         });
-        let motion = Motion::of(case, &plant, &tangent, &outputs);
+        let motion = Motion::of(waveform, &plant, &tangent, &outputs);
         Self {
-            case,
+            waveform,
             fit,
             plant,
             drive,
@@ -104,14 +104,14 @@ impl<'a> Sensitivities<'a> {
     /// Responses of what is recorded, one row of the case after the other.
     pub fn shown<const M: usize>(&self, additions: &[Addition<'_, M>]) -> Vec<Response> {
         let sees = |e: &EffectConfig| e.effect.hooks().contains(&Hook::Outputs);
-        let keep = self.case.decimation;
+        let keep = self.waveform.decimation;
         if !self.plant.effects.iter().any(sees) {
             return self.tangent.respond(additions, keep);
         }
-        let (case, plant) = (self.case, &self.plant);
+        let (waveform, plant) = (self.waveform, &self.plant);
         let every = self.tangent.respond(additions, 1);
         let seen = |response: &Response| {
-            driven(case, plant, &self.drive, self.fit.observer, 0, |run| {
+            driven(waveform, plant, &self.drive, self.fit.observer, 0, |run| {
                 let response = self.tangent.through_instruments(plant, run, response);
                 response.into_iter().step_by(keep).collect()
             })
@@ -122,10 +122,10 @@ impl<'a> Sensitivities<'a> {
     /// A response as rows of the case.
     pub fn weighted(&self, response: &Response) -> Vec<f64> {
         let mut column = Vec::with_capacity(response.len() * N_CHANNELS);
-        for ([a, b, c, omega], w) in response.iter().zip(&self.case.weight) {
+        for ([a, b, c, omega], w) in response.iter().zip(&self.waveform.weight) {
             column.extend([a * w[0], b * w[1], c * w[2], omega * w[3], 0.0]);
         }
-        self.case.nuisance.project_out(&mut column);
+        self.waveform.nuisance.project_out(&mut column);
         column
     }
 
@@ -148,7 +148,7 @@ impl<'a> Sensitivities<'a> {
             let range = self.motion.range(part.place, part.coordinate);
             with.effects.push(Modes::constant(part, range, size));
             let observer = self.fit.observer;
-            let push = driven(self.case, &with, &self.drive, observer, 1, |run| {
+            let push = driven(self.waveform, &with, &self.drive, observer, 1, |run| {
                 self.tangent.push(&with, run, size)
             });
             Arc::new(push)
@@ -189,8 +189,9 @@ mod tests {
         let study = specimen::study(1.0, |_| 1.0);
         let (case, prior) = (&study.fitted.case, &study.prior);
         let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
-        let sensitivities = Sensitivities::of(case, prior, &fit);
-        let laws = menu(case, sensitivities.plant(), sensitivities.motion());
+        let waveform = specimen::waveform_of(&study);
+        let sensitivities = Sensitivities::of(waveform, prior, &fit);
+        let laws = menu(waveform, sensitivities.plant(), sensitivities.motion());
         assert!(laws.len() > 20, "{}", laws.len());
         let rated = &prior.plant.rated;
         for law in &laws {

@@ -5,7 +5,7 @@
 //! explain currents and speed it stays near zero in the right frame and grows with the load in the wrong one.
 
 use crate::report::types::{FrameBand, FrameReport};
-use estimation::data::case::{Case, RELATIVE_CURRENT};
+use estimation::data::case::{Case, RELATIVE_CURRENT, Waveform};
 use estimation::model::prior::Prior;
 use estimation::proof::pairs::wilcoxon;
 use motor::dynamic::clarke;
@@ -167,17 +167,19 @@ impl Form {
 
 /// Windows of steady running of a recording.
 fn windows(case: &Case, prior: &Prior) -> Vec<Window> {
-    if case.table.is_some() || case.speed.is_empty() {
+    let with_speed = case.waveform().filter(|one| !one.speed.is_empty());
+    let Some(waveform) = with_speed else {
         return Vec::new();
-    }
+    };
     let rated = &prior.plant.rated;
-    let n = (PERIODS * std::f64::consts::TAU / rated.omega_sync / case.t_row()).round() as usize;
-    let rows = case.measured.len() / n.max(1);
+    let n =
+        (PERIODS * std::f64::consts::TAU / rated.omega_sync / waveform.t_row()).round() as usize;
+    let rows = waveform.measured.len() / n.max(1);
     let one = |k: usize| {
-        let half = |from: usize| Means::of(case, from, n / 2);
+        let half = |from: usize| Means::of(waveform, from, n / 2);
         let (a, b) = (half(k * n)?, half(k * n + n / 2)?);
         let running = a.u.norm() > 0.3 * rated.voltage && a.omega > 0.3 * rated.speed();
-        (running && a.is_like(&b)).then(|| a.window(&b, case, prior, n))
+        (running && a.is_like(&b)).then(|| a.window(&b, waveform, prior, n))
     };
     (0..rows).filter_map(one).collect()
 }
@@ -192,24 +194,24 @@ struct Means {
 
 impl Means {
     /// `None` where something is not judged.
-    fn of(case: &Case, from: usize, n: usize) -> Option<Self> {
-        let stride = case.between.stride() * case.decimation;
+    fn of(waveform: &Waveform, from: usize, n: usize) -> Option<Self> {
+        let stride = waveform.between.stride() * waveform.decimation;
         let (mut u, mut i, mut omega, mut sync) = (Complex64::ZERO, Complex64::ZERO, 0.0, 0.0);
         for row in from..from + n {
-            if case.weight[row][..3].contains(&0.0) {
+            if waveform.weight[row][..3].contains(&0.0) {
                 return None;
             }
             let k = row * stride;
-            let back = Complex64::from_polar(1.0, -case.supply.theta[k]);
-            let [a, b, c, speed, _] = case.measured[row];
-            u += case.supply.u_s[k] * back;
+            let back = Complex64::from_polar(1.0, -waveform.supply.theta[k]);
+            let [a, b, c, speed, _] = waveform.measured[row];
+            u += waveform.supply.u_s[k] * back;
             i += clarke([a, b, c]) * back;
-            omega += if case.speed_is_input {
-                case.speed[k]
+            omega += if waveform.speed_is_input {
+                waveform.speed[k]
             } else {
                 speed
             };
-            sync += case.supply.omega_sync[k];
+            sync += waveform.supply.omega_sync[k];
         }
         let n = n as f64;
         Some(Self {
@@ -228,13 +230,13 @@ impl Means {
             && (self.omega / other.omega - 1.0).abs() < STEADY[1]
     }
 
-    fn window(&self, other: &Self, case: &Case, prior: &Prior, n: usize) -> Window {
+    fn window(&self, other: &Self, waveform: &Waveform, prior: &Prior, n: usize) -> Window {
         let (u, i) = (0.5 * (self.u + other.u), 0.5 * (self.i + other.i));
         let axis = u / u.norm();
         let n_p = prior.plant.mechanics.n_p;
         let rows = (n as f64).sqrt();
         let of_channel = |k: usize| {
-            let w = case.weight.iter().map(|w| w[k]).fold(0.0, f64::max);
+            let w = waveform.weight.iter().map(|w| w[k]).fold(0.0, f64::max);
             if w > 0.0 { 1.0 / w } else { 0.0 }
         };
         // Clarke's transform of three independent noises: sqrt(2/3) of one phase in each axis.
@@ -245,7 +247,7 @@ impl Means {
             omega_sync: 0.5 * (self.omega_sync + other.omega_sync),
             omega_el: n_p * 0.5 * (self.omega + other.omega),
             sigma: [
-                case.input_noise.voltage / rows,
+                waveform.input_noise.voltage / rows,
                 axis_share * of_channel(0) / rows,
                 n_p * of_channel(3) / rows,
             ],

@@ -48,25 +48,25 @@ pub(crate) fn describe(
 fn drivers(study: &Study) -> Vec<(&'static str, Vec<f64>)> {
     let case = &study.fitted.case;
     let blocks = case.blocks();
-    let stride = case.between.stride() * case.decimation;
     let mean = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {
         let one = |r: &std::ops::Range<usize>| r.clone().map(f).sum::<f64>() / r.len() as f64;
         blocks.iter().map(one).collect()
     };
     let n_p = study.prior.plant.mechanics.n_p;
-    let inputs = &case.inputs;
-    let mut all = vec![("time", mean(&|row| case.time_of(row)))];
-    all.push(("current", mean(&|row| case.measured[row][0].abs())));
-    if inputs.u_s.is_empty() {
-        return all;
-    }
-    let sync = &case.timeline.omega_sync;
+    let measured = case.measured();
+    let current = ("current", mean(&|row| measured[row][0].abs()));
+    let Some(waveform) = case.waveform() else {
+        return vec![current];
+    };
+    let stride = waveform.between.stride() * waveform.decimation;
+    let (inputs, sync) = (&waveform.inputs, &waveform.timeline.omega_sync);
+    let mut all = vec![("time", mean(&|row| waveform.time_of(row))), current];
     all.push(("voltage", mean(&|row| inputs.u_s[row * stride].norm())));
     all.push(("load", mean(&|row| inputs.tau_load[row * stride])));
     all.push(("frequency", mean(&|row| sync[row * stride])));
     all.push((
         "slip",
-        mean(&|row| sync[row * stride] - n_p * case.measured[row][3]),
+        mean(&|row| sync[row * stride] - n_p * measured[row][3]),
     ));
     all
 }
@@ -86,7 +86,7 @@ fn correlation(x: &[f64], y: &[f64]) -> f64 {
 fn worst_channel(case: &Case, residual: &[f64]) -> (&'static str, f64) {
     let error = |k: usize| {
         let values = residual.chunks_exact(N_CHANNELS).map(|row| row[k] * row[k]);
-        let judged = case.weight.iter().filter(|w| w[k] > 0.0).count();
+        let judged = case.weight().iter().filter(|w| w[k] > 0.0).count();
         (values.sum::<f64>() / (judged.max(1) as f64)).sqrt()
     };
     let worst = (0..N_CHANNELS).max_by(|&a, &b| error(a).total_cmp(&error(b)));
@@ -100,9 +100,9 @@ fn worst_place(study: &Study, trial: &Trial) -> String {
     let blocks = trial.fit.blocks.iter().enumerate();
     let worst = blocks.max_by(|a, b| a.1.sse.total_cmp(&b.1.sse));
     let block = worst.map_or(0, |(k, _)| k);
-    match case.table {
-        Some(_) => format!("the worst point number {}", block + 1),
-        None => format!("the worst time {:.2} s", case.time_of(block * case.block)),
+    match case {
+        Case::LoadTable(_) => format!("the worst point number {}", block + 1),
+        Case::Waveform(one) => format!("the worst time {:.2} s", one.time_of(block * one.block)),
     }
 }
 
@@ -127,7 +127,7 @@ mod tests {
     fn the_worst_channel_is_the_one_with_the_largest_mean_square() {
         let rated = specimen::prior("").plant.rated;
         let case = Case::new(&specimen::recording(0.5, |_| 1.0), &rated).expect("judged");
-        let mut residual = vec![0.5; case.measured.len() * N_CHANNELS];
+        let mut residual = vec![0.5; case.measured().len() * N_CHANNELS];
         for row in residual.chunks_exact_mut(N_CHANNELS) {
             row[3] = 3.0;
         }
@@ -140,7 +140,7 @@ mod tests {
         let study = specimen::study(2.0, |t| if t < 1.2 { 0.3 } else { 1.5 });
         let mut trial = specimen::trial(&study);
         let blocks = study.fitted.case.blocks();
-        let t_row = study.fitted.case.t_row();
+        let t_row = study.fitted.case.waveform().expect("samples").t_row();
         for (block, rows) in trial.fit.blocks.iter_mut().zip(&blocks) {
             let t = rows.start as f64 * t_row;
             block.sse = if t > 1.6 && t < 1.645 {
@@ -185,7 +185,8 @@ mod tests {
     #[test]
     fn drivers_are_taken_where_the_rows_are() {
         let mut study = specimen::study(0.5, |_| 1.0);
-        let case = &mut study.fitted.case;
+        let case = study.fitted.case.waveform_mut().expect("samples");
+        let t_row = case.t_row();
         let count = |n: usize| (0..n).map(|k| k as f64);
         let n = case.inputs.u_s.len();
         case.inputs.u_s = count(n).map(|k| (-k).into()).collect();
@@ -203,7 +204,7 @@ mod tests {
         for block in [0, 5, 11] {
             let rows = study.fitted.case.blocks()[block].clone();
             let middle = 0.5 * (rows.start + rows.end - 1) as f64;
-            close("time", block, middle * study.fitted.case.t_row());
+            close("time", block, middle * t_row);
             for name in ["voltage", "load", "frequency"] {
                 close(name, block, 2.0 * middle);
             }
@@ -212,7 +213,7 @@ mod tests {
         }
         let table = drivers(&specimen::table_study(|_| ()));
         let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
-        assert_eq!(names, ["time", "current"]);
+        assert_eq!(names, ["current"]);
     }
 
     /// One number per block for each quantity, in its unit.

@@ -188,7 +188,7 @@ fn parameter(uncertainty: &Uncertainty, k: usize) -> Option<Inconclusive> {
 /// The largest slip of steady running, as far as the scale leaves it open.
 fn slip(study: &Study, trial: &Trial, scale_error: f64) -> Option<Inconclusive> {
     let plant = trial.fit.hypothesis.plant(&study.prior);
-    let case = study.fitted.case.as_seen_by(&plant);
+    let case = study.fitted.case.waveform()?.as_seen_by(&plant);
     let stride = case.between.stride() * case.decimation;
     let of_row = |row: usize| {
         let k = (row * stride).min(case.speed.len() - 1);

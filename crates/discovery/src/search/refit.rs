@@ -1,7 +1,7 @@
 //! Refits the best candidates with free shapes.
 
 use crate::search::screen::{Screened, ranked, screen};
-use estimation::data::case::Case;
+use estimation::data::case::{Case, Waveform};
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::{Effort, Fit, fit};
 use estimation::model::prediction::SpeedObserver;
@@ -179,7 +179,8 @@ fn settled(study: &Study, base: &Trial, c: &Candidate) -> bool {
 
 /// Whether a fit with this error may have gone astray, and a measured speed can lead it.
 fn may_be_local_minimum(case: &Case, error: f64) -> bool {
-    error > LOCAL_MINIMUM_ERROR && !case.speed.is_empty() && !case.speed_is_input
+    let can_lead = |waveform: &Waveform| !waveform.speed.is_empty() && !waveform.speed_is_input;
+    error > LOCAL_MINIMUM_ERROR && case.waveform().is_some_and(can_lead)
 }
 
 /// Effects whose linear estimate has an impossible sign: from a base in a local minimum that is no verdict.

@@ -56,8 +56,8 @@ fn askable(case: &Case, prior: &Prior, fit: &Fit, excluded: &[&str]) -> Vec<&'st
     };
     let applies = |e: &&'static dyn Effect| match e.descriptor().applies {
         Applies::Always => true,
-        Applies::Inverter => case.inverter,
-        Applies::Samples => case.table.is_none(),
+        Applies::Inverter => case.waveform().is_some_and(|waveform| waveform.inverter),
+        Applies::Samples => !case.is_table(),
     };
     let all = ALL.iter().chain(&prior.formulas);
     all.copied().filter(|e| !present(e) && applies(e)).collect()

@@ -1,6 +1,6 @@
 //! Several recordings as one case that is fitted: each begins anew.
 
-use crate::data::case::Case;
+use crate::data::case::{Case, Waveform};
 use motor::effect::Cut;
 use signal::append;
 use std::ops::Range;
@@ -29,9 +29,22 @@ pub fn shared(cases: Vec<Case>) -> Option<(Case, Vec<Case>)> {
 }
 
 impl Case {
+    /// This recording and another one behind it; as they are where they do not suit, or where one is a load table.
+    fn joined(self, other: Case) -> Result<Case, Box<(Case, Case)>> {
+        match (self, other) {
+            (Case::Waveform(one), Case::Waveform(other)) => match one.joined(*other) {
+                Ok(both) => Ok(both.into()),
+                Err(apart) => Err(Box::new((apart.0.into(), apart.1.into()))),
+            },
+            apart => Err(Box::new(apart)),
+        }
+    }
+}
+
+impl Waveform {
     /// Whether two recordings can be fitted together: sampled, sampled again and judged alike.
-    fn suits(&self, other: &Case) -> bool {
-        let key = |c: &Case| {
+    fn suits(&self, other: &Waveform) -> bool {
+        let key = |c: &Waveform| {
             (
                 c.between,
                 c.decimation,
@@ -47,15 +60,13 @@ impl Case {
             && alike(self.speed.is_empty(), other.speed.is_empty())
             && alike(self.coarse.is_some(), other.coarse.is_some())
             && alike(self.supply.denoised, other.supply.denoised)
-            && self.table.is_none()
-            && other.table.is_none()
     }
 
     /// This recording and another one behind it, each in whole blocks; the recordings as they are where they do not suit.
     ///
     /// # Errors
     /// The other recording, if it cannot be fitted together with this one.
-    pub fn joined(self, other: Case) -> Result<Case, Box<(Case, Case)>> {
+    pub fn joined(self, other: Waveform) -> Result<Waveform, Box<(Waveform, Waveform)>> {
         let begins = Cut {
             sample: 0,
             t: 0.0,
@@ -66,7 +77,7 @@ impl Case {
 
     /// A stretch that begins at `at` in its recording.
     #[must_use]
-    pub(super) fn beginning(mut self, at: Cut) -> Case {
+    pub(super) fn beginning(mut self, at: Cut) -> Waveform {
         if at.t > 0.0 {
             let timeline = Arc::make_mut(&mut self.timeline);
             timeline.cuts.insert(0, at);
@@ -78,8 +89,12 @@ impl Case {
     /// This case and another one behind it that begins at the time of `begins`.
     ///
     /// # Errors
-    /// As [`Case::joined`].
-    pub(super) fn joined_at(mut self, other: Case, begins: Cut) -> Result<Case, Box<(Case, Case)>> {
+    /// As [`Waveform::joined`].
+    pub(super) fn joined_at(
+        mut self,
+        other: Waveform,
+        begins: Cut,
+    ) -> Result<Waveform, Box<(Waveform, Waveform)>> {
         if !self.suits(&other) {
             return Err(Box::new((self, other)));
         }
@@ -109,7 +124,7 @@ impl Case {
         append(&mut self.measured, &other.measured);
         append(&mut self.weight, &other.weight);
         let coarse = self.coarse.take().zip(other.coarse);
-        Ok(Case {
+        Ok(Waveform {
             coarse: coarse.map(|(a, b)| a.joined(b)),
             supply: std::mem::take(&mut self.supply).joined(other.supply),
             load_windows: std::mem::take(&mut self.load_windows).joined(&other.load_windows),
@@ -148,9 +163,9 @@ mod tests {
     use crate::model::prediction::{SpeedObserver, outputs, residual};
     use crate::specimen;
 
-    fn case(seconds: f64, torque: f64) -> Case {
+    fn waveform(seconds: f64, torque: f64) -> Waveform {
         let rated = specimen::prior("").plant.rated;
-        Case::new(&specimen::recording(seconds, |_| torque), &rated).expect("judged")
+        Waveform::new(&specimen::recording(seconds, |_| torque), &rated).expect("judged")
     }
 
     /// Simulated together or one by one: the same rows. What does not fill a block at the end of the first is left out.
@@ -158,8 +173,9 @@ mod tests {
     fn joined_recordings_are_simulated_as_each_alone() {
         let study = specimen::study(0.5, |_| 1.0);
         let h = study.at_prior();
-        let run = |case: &Case| outputs(case, &study.prior, &h, SpeedObserver::Off);
-        let (one, other) = (case(0.515, 0.5), case(0.4, 1.5));
+        let run =
+            |one: &Waveform| outputs(&one.clone().into(), &study.prior, &h, SpeedObserver::Off);
+        let (one, other) = (waveform(0.515, 0.5), waveform(0.4, 1.5));
         let both = one.clone().joined(other.clone()).expect("alike");
         let (joined, first, second) = (run(&both), run(&one), run(&other));
         let kept = joined.len() - second.len();
@@ -168,24 +184,29 @@ mod tests {
         let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
         assert!(same(&joined[..kept], &first));
         assert!(same(&joined[kept..], &second));
-        assert_eq!(residual(&both, &joined).len(), joined.len());
+        assert_eq!(residual(&both.clone().into(), &joined).len(), joined.len());
         assert_eq!(both.time_of(kept / 5), 0.0);
     }
 
     #[test]
     fn every_second_recording_proves_and_what_does_not_suit_proves_too() {
         let held = || {
-            let mut held = case(0.4, 1.0);
+            let mut held = waveform(0.4, 1.0);
             held.decimation += 1;
-            held
+            Case::from(held)
         };
-        let all = || vec![case(0.4, 0.5), case(0.4, 1.0), case(0.4, 1.5)];
+        let all = || {
+            [0.5, 1.0, 1.5]
+                .map(|torque| Case::from(waveform(0.4, torque)))
+                .to_vec()
+        };
+        let cuts = |case: &Case| case.waveform().map_or(0, |one| one.timeline.cuts.len());
         let (fitted, proofs) = shared(all()).expect("three");
-        assert_eq!((fitted.timeline.cuts.len(), proofs.len()), (1, 1));
+        assert_eq!((cuts(&fitted), proofs.len()), (1, 1));
         let mut odd = all();
         odd[2] = held();
         let (fitted, proofs) = shared(odd).expect("three");
-        assert_eq!((fitted.timeline.cuts.len(), proofs.len()), (0, 2));
+        assert_eq!((cuts(&fitted), proofs.len()), (0, 2));
         assert!(shared(Vec::new()).is_none());
     }
 }

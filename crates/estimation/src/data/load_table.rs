@@ -33,14 +33,22 @@ pub struct Point {
     drive: Drive,
 }
 
-/// Points with their measured rows (current A rms, speed rad/s, power factor, efficiency) and weights.
-pub type Rows = (Vec<Point>, Vec<[f64; N_CHANNELS]>, Vec<[f64; N_CHANNELS]>);
+/// The points of a table with their measured rows: current A rms, speed rad/s, power factor, efficiency.
+#[derive(Clone, Debug, Default)]
+pub struct LoadPoints {
+    /// What drives each point.
+    pub points: Vec<Point>,
+    /// Measured rows.
+    pub measured: Vec<[f64; N_CHANNELS]>,
+    /// One over the standard deviation; zero where not judged.
+    pub weight: Vec<[f64; N_CHANNELS]>,
+}
 
 /// Prepares a table.
 ///
 /// # Errors
 /// With fewer than five points.
-pub fn rows(table: &LoadTable, rated: &Rated<f64>) -> Result<Rows, Unsupported> {
+pub fn load_points(table: &LoadTable, rated: &Rated<f64>) -> Result<LoadPoints, Unsupported> {
     let points = table.points();
     if points.len() < 5 {
         return Err(Unsupported::new(
@@ -48,17 +56,17 @@ pub fn rows(table: &LoadTable, rated: &Rated<f64>) -> Result<Rows, Unsupported> 
             "measure at least five loads between idling and rated load",
         ));
     }
-    let mut out: Rows = Default::default();
+    let mut all = LoadPoints::default();
     for p in &points {
         let Some(point) = point(p, rated) else {
             continue;
         };
-        out.0.push(point);
         let (measured, weight) = row(p, point.drive);
-        out.1.push(measured);
-        out.2.push(weight);
+        all.points.push(point);
+        all.measured.push(measured);
+        all.weight.push(weight);
     }
-    Ok(out)
+    Ok(all)
 }
 
 /// What a plant would show at each point of a table: line current (A rms), speed (rad/s), power factor, efficiency.
@@ -352,7 +360,8 @@ mod tests {
             (Efficiency, &[0.0, 0.5, 0.65, 0.7, 0.75]),
             (Voltage, &[220.0, 220.0, 210.0, 220.0, 220.0]),
         ]);
-        let (points, measured, weight) = rows(&table, &plant().rated).expect("five points");
+        let all = load_points(&table, &plant().rated).expect("five points");
+        let (points, measured, weight) = (all.points, all.measured, all.weight);
         assert_eq!((points.len(), measured.len(), weight.len()), (5, 5, 5));
         assert_eq!(points[2].drive, Drive::Power(150.0));
         assert!((points[2].voltage - 210.0 * (2.0f64 / 3.0).sqrt()).abs() < 1e-9);
@@ -377,7 +386,7 @@ mod tests {
             (Current, &[0.8, 0.9, 1.0, 1.3]),
             (Speed, &[1795.0, 1760.0, 1725.0, 1680.0]),
         ]);
-        let refused = rows(&few, &plant().rated).expect_err("too few");
+        let refused = load_points(&few, &plant().rated).expect_err("too few");
         assert!(refused.reason.contains("4 points"), "{}", refused.reason);
     }
 

@@ -1,6 +1,6 @@
 //! The error that is left when nothing is missing: sensor noise and propagated input noise.
 
-use crate::data::case::Case;
+use crate::data::case::{Case, Waveform};
 use crate::data::channels::N_CHANNELS;
 use crate::model::prediction::{Drive, outputs_on};
 use motor::effect::Plant;
@@ -43,14 +43,14 @@ impl Floor {
 /// Propagates the noise of voltage and torque through the believed plant.
 pub fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
     let rows = case.blocks();
-    if case.table.is_some() {
+    let Case::Waveform(waveform) = case else {
         return Floor {
             block: rows.iter().map(|r| judged(case, r)).collect(),
             mean: 1.0,
             sd: 0.0,
             channel: [1.0; N_CHANNELS],
         };
-    }
+    };
     let squares = |change: Vec<f64>| {
         let error = |r: &Range<usize>| {
             let part = &change[r.start * N_CHANNELS..r.end * N_CHANNELS];
@@ -59,7 +59,7 @@ pub fn floor(case: &Case, plant: &Plant, seed: u64) -> Floor {
         let blocks = rows.iter().map(error).collect::<Vec<f64>>();
         (blocks, by_channel(&change))
     };
-    let (draws, channels): (Vec<_>, Vec<_>) = noise_draws(case, plant, seed, DRAWS, squares)
+    let (draws, channels): (Vec<_>, Vec<_>) = noise_draws(waveform, plant, seed, DRAWS, squares)
         .into_iter()
         .unzip();
     let mut block: Vec<f64> = rows.iter().map(|r| judged(case, r)).collect();
@@ -102,25 +102,25 @@ pub fn by_channel(rows: &[f64]) -> [f64; N_CHANNELS] {
 
 /// Number of judged values of a channel.
 pub fn judged_of(case: &Case, channel: usize) -> f64 {
-    case.weight.iter().filter(|w| w[channel] > 0.0).count() as f64
+    case.weight().iter().filter(|w| w[channel] > 0.0).count() as f64
 }
 
 fn judged(case: &Case, rows: &Range<usize>) -> f64 {
-    let weights = case.weight[rows.clone()].iter().flatten();
+    let weights = case.weight()[rows.clone()].iter().flatten();
     weights.filter(|&&w| w > 0.0).count() as f64
 }
 
 /// What each of `count` draws of the input noise changes in the weighted outputs of a plant, handed to `of`.
 pub fn noise_draws<T: Send>(
-    case: &Case,
+    waveform: &Waveform,
     plant: &Plant,
     seed: u64,
     count: u64,
     of: impl Fn(Vec<f64>) -> T + Sync,
 ) -> Vec<T> {
-    let base = outputs_on(case, plant, &Drive::of(case));
+    let base = outputs_on(waveform, plant, &Drive::of(waveform));
     let draw = |k: u64| {
-        let mut change = outputs_on(case, plant, &disturbed(case, seed.wrapping_add(k)));
+        let mut change = outputs_on(waveform, plant, &disturbed(waveform, seed.wrapping_add(k)));
         change.iter_mut().zip(&base).for_each(|(x, b)| *x -= b);
         of(change)
     };
@@ -128,29 +128,32 @@ pub fn noise_draws<T: Send>(
 }
 
 /// What drives the model, with one more draw of its noise.
-fn disturbed(case: &Case, seed: u64) -> Drive<'_> {
+fn disturbed(waveform: &Waveform, seed: u64) -> Drive<'_> {
     let mut rng = Pcg64::seed_from_u64(seed);
-    let mut drive = Drive::of(case);
-    let noise = case.input_noise;
+    let mut drive = Drive::of(waveform);
+    let noise = waveform.input_noise;
     let mut draw = |sigma: f64| {
         let normal: f64 = StandardNormal.sample(&mut rng);
         sigma * normal
     };
-    let coarse = case.coarse.as_ref().unwrap_or(&case.supply);
+    let coarse = waveform.coarse.as_ref().unwrap_or(&waveform.supply);
     let samples = 0..coarse.theta.len();
     let inputs = drive.inputs.to_mut();
     let voltage = || Complex64::new(draw(noise.voltage), draw(noise.voltage));
-    add(&mut inputs.u_s, supplied(case, drawn(&samples, voltage)));
+    add(
+        &mut inputs.u_s,
+        supplied(waveform, drawn(&samples, voltage)),
+    );
     let torque = drawn(&samples, || draw(noise.torque));
     add(
         &mut inputs.tau_load,
-        smoothed(case, &case.load_windows, torque),
+        smoothed(waveform, &waveform.load_windows, torque),
     );
     if noise.speed > 0.0 {
         let speed = drawn(&samples, || draw(noise.speed));
         add(
             drive.speed.to_mut(),
-            smoothed(case, &case.speed_windows, speed),
+            smoothed(waveform, &waveform.speed_windows, speed),
         );
     }
     drive
@@ -162,18 +165,18 @@ fn drawn<T>(samples: &Range<usize>, mut one: impl FnMut() -> T) -> Vec<T> {
 
 /// What is left of noise of the measured voltage in that which drives the model. A draw is as long as the recording: each step
 /// gives its memory back.
-fn supplied(case: &Case, voltage: Vec<Complex64>) -> Vec<Complex64> {
-    let Some(coarse) = &case.coarse else {
-        return case.supply.filter(&voltage);
+fn supplied(waveform: &Waveform, voltage: Vec<Complex64>) -> Vec<Complex64> {
+    let Some(coarse) = &waveform.coarse else {
+        return waveform.supply.filter(&voltage);
     };
     let filtered = coarse.filter(&voltage);
     drop(voltage);
-    coarse.refined_vector(&filtered, &case.supply.theta, case.finer)
+    coarse.refined_vector(&filtered, &waveform.supply.theta, waveform.finer)
 }
 
 /// The same of a signal of one axis that was smoothed with these windows.
-fn smoothed(case: &Case, windows: &Windows, noise: Vec<f64>) -> Vec<f64> {
-    refined(windows.smooth(&noise), case.finer)
+fn smoothed(waveform: &Waveform, windows: &Windows, noise: Vec<f64>) -> Vec<f64> {
+    refined(windows.smooth(&noise), waveform.finer)
 }
 
 fn add<T: std::ops::AddAssign>(to: &mut [T], what: Vec<T>) {
@@ -186,10 +189,10 @@ mod tests {
     use crate::data::inputs::InputNoise;
     use crate::specimen;
 
-    fn prepared() -> (Case, Plant) {
+    fn prepared() -> (Waveform, Plant) {
         let prior = specimen::prior("");
-        let case = Case::new(&specimen::recording(0.5, |_| 1.0), &prior.plant.rated);
-        (case.expect("judged"), prior.plant)
+        let waveform = Waveform::new(&specimen::recording(0.5, |_| 1.0), &prior.plant.rated);
+        (waveform.expect("judged"), prior.plant)
     }
 
     #[test]
@@ -197,7 +200,7 @@ mod tests {
         let (mut case, plant) = prepared();
         case.input_noise = InputNoise::default();
         case.weight[3] = [0.0; N_CHANNELS];
-        let floor = floor(&case, &plant, 1);
+        let floor = floor(&case.clone().into(), &plant, 1);
         assert!((floor.mean - 1.0).abs() < 1e-12 && floor.sd < 1e-12);
         let rows: Vec<usize> = case.blocks().iter().map(|r| r.len()).collect();
         for (k, (block, rows)) in floor.block.iter().zip(rows).enumerate() {
@@ -249,7 +252,7 @@ mod tests {
     #[test]
     fn propagated_noise_adds_to_the_floor_with_its_square() {
         let (mut case, plant) = prepared();
-        let excess = |case: &Case| floor(case, &plant, 3).mean - 1.0;
+        let excess = |one: &Waveform| floor(&one.clone().into(), &plant, 3).mean - 1.0;
         case.input_noise.torque = 0.5;
         let once = excess(&case);
         case.input_noise.torque = 1.0;

@@ -1,6 +1,6 @@
 //! From files to a study: audit, preparation, errors.
 
-use crate::data::case::Case;
+use crate::data::case::{Case, Waveform};
 use crate::data::given::{One, Sources};
 use crate::data::joined::shared;
 use crate::data::stretches::{Excerpt, Role, StretchReport, cut, stretches, told};
@@ -111,10 +111,7 @@ impl Question {
         if scale.is_some() {
             cases = prepared(scale)?.0;
         }
-        if cases
-            .iter()
-            .any(|c| c.table.is_some() != cases[0].table.is_some())
-        {
+        if cases.iter().any(|c| c.is_table() != cases[0].is_table()) {
             let message = "recordings and load tables cannot prove each other; give one kind";
             return Err(Error::Recordings(message.to_owned()));
         }
@@ -125,7 +122,7 @@ impl Question {
             && excerpt.proves()
         {
             let (proof, proves) = excerpt.case(Role::Proves, rated).map_err(refuse)?;
-            proofs.push(proof);
+            proofs.push(proof.into());
             used.extend(proves);
             used.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
         }
@@ -167,21 +164,24 @@ impl<'a> Ready<'a> {
         rated: &Rated<f64>,
     ) -> Result<(Case, Vec<StretchReport>), Unsupported> {
         let case = match (self, scale) {
-            (Ready::Excerpt(excerpt), _) => return excerpt.case(Role::Fitted, rated),
-            (Ready::LoadTable(table), _) => Case::of_table(table, rated),
-            (Ready::Recording(recording), None) => case_of_recording(recording, rated),
-            (Ready::Recording(recording), Some(scale)) => Ok(Case {
+            (Ready::Excerpt(excerpt), _) => {
+                let (waveform, used) = excerpt.case(Role::Fitted, rated)?;
+                return Ok((waveform.into(), used));
+            }
+            (Ready::LoadTable(table), _) => Case::of_table(table, rated)?,
+            (Ready::Recording(recording), None) => waveform_of(recording, rated)?.into(),
+            (Ready::Recording(recording), Some(scale)) => Case::from(Waveform {
                 speed_scale_is_free: true,
-                ..case_of_recording(&scale.applied(recording), rated)?
+                ..waveform_of(&scale.applied(recording), rated)?
             }),
         };
-        Ok((case?, Vec::new()))
+        Ok((case, Vec::new()))
     }
 }
 
 /// A recording whole, or stretches of a long one.
-fn case_of_recording(recording: &Recording, rated: &Rated<f64>) -> Result<Case, Unsupported> {
-    let whole = Case::new(recording, rated)?;
+fn waveform_of(recording: &Recording, rated: &Rated<f64>) -> Result<Waveform, Unsupported> {
+    let whole = Waveform::new(recording, rated)?;
     Ok(match stretches(recording) {
         None => whole,
         Some(stretches) => cut(&whole, rated, &stretches),

@@ -59,7 +59,9 @@ pub struct Trial {
 
 impl Subject {
     fn new(mut case: Case, prior: &Prior) -> Self {
-        case.nuisance = unknown_state(&case, &prior.plant);
+        if let Some(waveform) = case.waveform_mut() {
+            waveform.nuisance = unknown_state(waveform, &prior.plant);
+        }
         let floor = floor(&case, &prior.plant, SEED);
         Self { case, floor }
     }
@@ -94,9 +96,9 @@ impl Study {
 
     /// Nothing added, priors as they are; an unknown scale of the speed is free from the start.
     pub fn at_prior(&self) -> Hypothesis {
-        let priors = match self.fitted.case.table {
-            Some(_) => Hypothesis::at_prior_of_table(),
-            None => Hypothesis::at_prior(self.fitted.case.speed_is_input),
+        let priors = match &self.fitted.case {
+            Case::LoadTable(_) => Hypothesis::at_prior_of_table(),
+            Case::Waveform(waveform) => Hypothesis::at_prior(waveform.speed_is_input),
         };
         let priors = match self.speed_scale {
             Some(_) => free_scale::free(&priors, &self.prior),

@@ -173,9 +173,9 @@ struct Better {
 
 impl<'a> Search<'a> {
     fn new(case: &'a Case, prior: &'a Prior, start: &Hypothesis, observer: SpeedObserver) -> Self {
-        let limits = match case.table {
-            Some(_) => INFLATION_TABLE,
-            None => INFLATION,
+        let limits = match case {
+            Case::LoadTable(_) => INFLATION_TABLE,
+            Case::Waveform(_) => INFLATION,
         };
         let outputs = outputs(case, prior, start, observer);
         Self {

@@ -22,7 +22,7 @@ const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents
 pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
     let h = &trial.fit.hypothesis;
     let held = h.effects.iter().chain(&study.prior.plant.effects);
-    if study.fitted.case.table.is_some() {
+    if study.fitted.case.is_table() {
         return None;
     }
     let rated = &study.prior.plant.rated;

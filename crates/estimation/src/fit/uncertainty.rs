@@ -5,7 +5,7 @@
 //! sample to sample; noise of the inputs as it passes through the model; instruments that are off by their class; and the
 //! priors, whose pull is not zero where the true motor is not as believed. The covariances of these scores add up.
 
-use crate::data::case::Case;
+use crate::data::case::Waveform;
 use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::data::instrument_class::{CHANNEL_GAIN, SPEED_GAIN, TORQUE_GAIN};
 use crate::data::noise_floor::noise_draws;
@@ -40,16 +40,16 @@ pub fn covariance(study: &Study, fit: &Fit) -> DMatrix<f64> {
         .try_inverse()
         .unwrap_or_else(|| DMatrix::zeros(n, n));
     let mut scores = &all.gram * rows_per_datum(study, fit) + priors(fit);
-    if case.table.is_none() {
+    if let Some(waveform) = case.waveform() {
         let plant = fit.hypothesis.plant(&study.prior);
-        scores += inputs(case, &plant, fit) + instruments(case, &plant, fit);
+        scores += inputs(waveform, &plant, fit) + instruments(waveform, &plant, fit);
     }
     &inverse * scores * &inverse
 }
 
 /// So many values of the residual count as one, because neighbours go together.
 fn rows_per_datum(study: &Study, fit: &Fit) -> f64 {
-    if study.fitted.case.table.is_some() {
+    if study.fitted.case.is_table() {
         return fit.inflation;
     }
     let nominals = fit.free.iter().filter(|&&k| k < N_NOMINAL).count();
@@ -88,27 +88,27 @@ fn outer(score: &DVector<f64>, variance: f64) -> DMatrix<f64> {
 }
 
 /// Noise of the inputs, drawn and passed through the model.
-fn inputs(case: &Case, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
+fn inputs(waveform: &Waveform, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
     let n = fit.free.len();
     let of = |change: Vec<f64>| outer(&score(fit, &change), 1.0 / DRAWS as f64);
-    let draws = noise_draws(case, plant, SEED, DRAWS, of);
+    let draws = noise_draws(waveform, plant, SEED, DRAWS, of);
     draws
         .into_iter()
         .fold(DMatrix::zeros(n, n), |sum, m| sum + m)
 }
 
 /// Gains of the channels, each off by its class.
-fn instruments(case: &Case, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
+fn instruments(waveform: &Waveform, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
     let n = fit.free.len();
     let measured = |channel: usize| {
-        let mut change = vec![0.0; case.measured.len() * N_CHANNELS];
-        for (row, (y, w)) in case.measured.iter().zip(&case.weight).enumerate() {
+        let mut change = vec![0.0; waveform.measured.len() * N_CHANNELS];
+        for (row, (y, w)) in waveform.measured.iter().zip(&waveform.weight).enumerate() {
             change[row * N_CHANNELS + channel] = y[channel] * w[channel];
         }
         score(fit, &change)
     };
     let driven = |drive: Drive<'_>| {
-        let there = outputs_on(case, plant, &drive);
+        let there = outputs_on(waveform, plant, &drive);
         let change = there.iter().zip(&fit.outputs);
         score(
             fit,
@@ -125,37 +125,44 @@ fn instruments(case: &Case, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
     }
     if !fit.hypothesis.holds_instrument(Instrument::Voltages) {
         // What all three share of their gains: the rest is unbalance and zero sequence.
-        sum += outer(&driven(louder_voltage(case)), CHANNEL_GAIN.powi(2) / 3.0);
+        sum += outer(
+            &driven(louder_voltage(waveform)),
+            CHANNEL_GAIN.powi(2) / 3.0,
+        );
     }
-    if case.input_noise.torque > 0.0 {
-        sum += outer(&driven(louder_torque(case)), TORQUE_GAIN.powi(2));
+    if waveform.input_noise.torque > 0.0 {
+        sum += outer(&driven(louder_torque(waveform)), TORQUE_GAIN.powi(2));
     }
-    let speed = match case.speed_is_input {
-        true => driven(faster(case)),
+    let speed = match waveform.speed_is_input {
+        true => driven(faster(waveform)),
         false => measured(SPEED),
     };
     sum + outer(&speed, SPEED_GAIN.powi(2))
 }
 
-fn louder_voltage(case: &Case) -> Drive<'_> {
-    let mut drive = Drive::of(case);
+fn louder_voltage(waveform: &Waveform) -> Drive<'_> {
+    let mut drive = Drive::of(waveform);
     let u_s = &mut drive.inputs.to_mut().u_s;
     u_s.iter_mut().for_each(|u| *u *= 1.0 + GAIN_STEP);
     drive
 }
 
-fn louder_torque(case: &Case) -> Drive<'_> {
-    let mut drive = Drive::of(case);
+fn louder_torque(waveform: &Waveform) -> Drive<'_> {
+    let mut drive = Drive::of(waveform);
     let torque = &mut drive.inputs.to_mut().tau_load;
     torque.iter_mut().for_each(|x| *x *= 1.0 + GAIN_STEP);
     drive
 }
 
-fn faster(case: &Case) -> Drive<'_> {
-    let faster = case.speed.iter().map(|x| x * (1.0 + GAIN_STEP)).collect();
+fn faster(waveform: &Waveform) -> Drive<'_> {
+    let faster = waveform
+        .speed
+        .iter()
+        .map(|x| x * (1.0 + GAIN_STEP))
+        .collect();
     Drive {
         speed: Cow::Owned(faster),
-        ..Drive::of(case)
+        ..Drive::of(waveform)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Weighted residuals of a hypothesis, and their derivatives.
 
-use crate::data::case::Case;
+use crate::data::case::{Case, Waveform};
 use crate::data::channels::{N_CHANNELS, SPEED};
-use crate::data::load_table::{self, Point};
+use crate::data::load_table::{self, LoadPoints, Point};
 use crate::model::prior::{Hypothesis, Prior};
 use motor::dynamic::cycle_components;
 use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, StateOffset, simulate};
@@ -42,23 +42,30 @@ pub struct Drive<'a> {
 
 impl<'a> Drive<'a> {
     /// As the recording has it.
-    pub fn of(case: &'a Case) -> Self {
+    pub fn of(waveform: &'a Waveform) -> Self {
         Self {
-            inputs: Cow::Borrowed(&case.inputs),
-            speed: Cow::Borrowed(&case.speed),
+            inputs: Cow::Borrowed(&waveform.inputs),
+            speed: Cow::Borrowed(&waveform.speed),
             offsets: &[],
         }
     }
 }
 
 /// Simulates a plant on what drives it.
-pub fn run(case: &Case, plant: &Plant, drive: &Drive<'_>, observer: SpeedObserver) -> Outputs {
-    driven(case, plant, drive, observer, 1, |run| simulate(plant, run))
+pub fn run(
+    waveform: &Waveform,
+    plant: &Plant,
+    drive: &Drive<'_>,
+    observer: SpeedObserver,
+) -> Outputs {
+    driven(waveform, plant, drive, observer, 1, |run| {
+        simulate(plant, run)
+    })
 }
 
 /// Does something with the run of a plant that costs as much as so many simulations.
 pub fn driven<T>(
-    case: &Case,
+    waveform: &Waveform,
     plant: &Plant,
     drive: &Drive<'_>,
     observer: SpeedObserver,
@@ -66,15 +73,15 @@ pub fn driven<T>(
     of: impl FnOnce(&Run<'_>) -> T,
 ) -> T {
     SIMULATIONS.fetch_add(simulations, Ordering::Relaxed);
-    let speeds = case.speeds(plant, &drive.speed);
+    let speeds = waveform.speeds(plant, &drive.speed);
     let speed = match observer {
-        _ if case.speed_is_input => SpeedSource::Imposed(&speeds.speed),
+        _ if waveform.speed_is_input => SpeedSource::Imposed(&speeds.speed),
         SpeedObserver::On(rate) if !drive.speed.is_empty() => {
             SpeedSource::Observed(&speeds.speed, rate)
         }
         _ => SpeedSource::Free,
     };
-    let starts = |measured: f64, k: usize| match case.settles {
+    let starts = |measured: f64, k: usize| match waveform.settles {
         true => carried_speed(plant, &drive.inputs, speeds.timeline.omega_sync[k], k)
             .unwrap_or(measured),
         false => measured,
@@ -85,12 +92,12 @@ pub fn driven<T>(
         .collect();
     of(&Run {
         inputs: &drive.inputs,
-        between: case.between,
+        between: waveform.between,
         speed,
         timeline: &speeds.timeline,
         running_at: speeds.running_at.map(|measured| starts(measured, 0)),
         running_at_cuts: &running_at_cuts,
-        open: &case.open,
+        open: &waveform.open,
         offsets: drive.offsets,
     })
 }
@@ -109,17 +116,17 @@ pub fn carried_speed(plant: &Plant, inputs: &Inputs, omega_sync: f64, k: usize) 
 
 /// Weighted model outputs, row after row, without what the unknown state of the motor moves in them. A model that left the
 /// finite numbers counts as infinitely wrong.
-pub fn weighted(case: &Case, outputs: &Outputs) -> Vec<f64> {
-    let mut rows = as_shown(case, outputs);
-    case.nuisance.project_out(&mut rows);
+pub fn weighted(waveform: &Waveform, outputs: &Outputs) -> Vec<f64> {
+    let mut rows = as_shown(waveform, outputs);
+    waveform.nuisance.project_out(&mut rows);
     rows
 }
 
 /// Weighted model outputs, row after row.
-pub(crate) fn as_shown(case: &Case, outputs: &Outputs) -> Vec<f64> {
-    let mut out = Vec::with_capacity(case.measured.len() * N_CHANNELS);
-    for (row, w) in case.weight.iter().enumerate() {
-        let k = row * case.decimation;
+pub(crate) fn as_shown(waveform: &Waveform, outputs: &Outputs) -> Vec<f64> {
+    let mut out = Vec::with_capacity(waveform.measured.len() * N_CHANNELS);
+    for (row, w) in waveform.weight.iter().enumerate() {
+        let k = row * waveform.decimation;
         let [a, b, c] = outputs.i_s_abc[k];
         let values = [a, b, c, outputs.omega_mech[k], outputs.u_zero[k]];
         out.extend(values.iter().zip(w).map(|(x, w)| x * w));
@@ -128,42 +135,50 @@ pub(crate) fn as_shown(case: &Case, outputs: &Outputs) -> Vec<f64> {
 }
 
 /// The weighted speed of each row, of a speed that an instrument shows, rad/s.
-pub(crate) fn speed_shown(case: &Case, omega_mech: &[f64]) -> Vec<f64> {
-    let speeds = omega_mech.iter().step_by(case.decimation);
-    let both = case.weight.iter().zip(speeds);
+pub(crate) fn speed_shown(waveform: &Waveform, omega_mech: &[f64]) -> Vec<f64> {
+    let speeds = omega_mech.iter().step_by(waveform.decimation);
+    let both = waveform.weight.iter().zip(speeds);
     both.map(|(w, omega)| omega * w[SPEED]).collect()
 }
 
 /// Weighted outputs of a load table.
-fn steady(case: &Case, plant: &Plant, points: &[Point]) -> Vec<f64> {
+fn steady(table: &LoadPoints, plant: &Plant) -> Vec<f64> {
     let row = |(point, w): (&Point, &[f64; N_CHANNELS])| {
         let values = load_table::predict(plant, point);
         let weight = *w;
         (0..N_CHANNELS).map(move |k| values[k] * weight[k])
     };
-    points.iter().zip(&case.weight).flat_map(row).collect()
+    table
+        .points
+        .iter()
+        .zip(&table.weight)
+        .flat_map(row)
+        .collect()
 }
 
 /// Weighted outputs of a hypothesis.
 pub fn outputs(case: &Case, prior: &Prior, h: &Hypothesis, observer: SpeedObserver) -> Vec<f64> {
     let plant = h.plant(prior);
-    match &case.table {
-        Some(points) => steady(case, &plant, points),
-        None => weighted(case, &run(case, &plant, &Drive::of(case), observer)),
+    match case {
+        Case::LoadTable(table) => steady(table, &plant),
+        Case::Waveform(waveform) => {
+            let drive = Drive::of(waveform);
+            weighted(waveform, &run(waveform, &plant, &drive, observer))
+        }
     }
 }
 
 /// Weighted outputs of a plant that something else drives (noise propagation).
-pub fn outputs_on(case: &Case, plant: &Plant, drive: &Drive<'_>) -> Vec<f64> {
-    weighted(case, &run(case, plant, drive, SpeedObserver::Off))
+pub fn outputs_on(waveform: &Waveform, plant: &Plant, drive: &Drive<'_>) -> Vec<f64> {
+    weighted(waveform, &run(waveform, plant, drive, SpeedObserver::Off))
 }
 
 /// Residual: weighted measurement minus weighted model ([`weighted`]), both without what nobody knows of the motor's state.
 pub fn residual(case: &Case, model: &[f64]) -> Vec<f64> {
-    let measured = case.measured.iter().zip(&case.weight);
+    let measured = case.measured().iter().zip(case.weight());
     let rows = measured.flat_map(|(y, w)| (0..N_CHANNELS).map(move |k| y[k] * w[k]));
     let mut rows: Vec<f64> = rows.collect();
-    case.nuisance.project_out(&mut rows);
+    case.project_out(&mut rows);
     rows.iter_mut().zip(model).for_each(|(y, m)| *y -= m);
     rows
 }
@@ -208,10 +223,11 @@ mod tests {
         assert!(residual(case, &model).iter().all(|r| r.abs() < 1e-4));
         // In units of the accuracy: one revolution per minute is one.
         let mut slower = study.fitted.case.clone();
-        slower
-            .measured
-            .iter_mut()
-            .for_each(|row| row[1] -= 2.0 * std::f64::consts::TAU / 60.0);
+        let Case::LoadTable(table) = &mut slower else {
+            panic!("a table");
+        };
+        let rows = table.measured.iter_mut();
+        rows.for_each(|row| row[1] -= 2.0 * std::f64::consts::TAU / 60.0);
         for row in residual(&slower, &model).chunks(N_CHANNELS) {
             assert!((row[1] + 2.0).abs() < 1e-3 && row[0].abs() < 1e-3);
         }
@@ -270,14 +286,12 @@ mod tests {
         let before = simulations();
         let model = outputs(case, prior, &study.at_prior(), SpeedObserver::Off);
         assert!(simulations() > before);
-        let row = case.measured.len() - 1;
+        let (measured, weight) = (case.measured(), case.weight());
+        let row = measured.len() - 1;
         for k in 0..N_CHANNELS {
-            let got = model[row * N_CHANNELS + k] / case.weight[row][k];
-            let scale = case.measured[row][k].abs().max(0.1);
-            assert!(
-                (got - case.measured[row][k]).abs() < 0.02 * scale,
-                "{k}: {got}"
-            );
+            let got = model[row * N_CHANNELS + k] / weight[row][k];
+            let scale = measured[row][k].abs().max(0.1);
+            assert!((got - measured[row][k]).abs() < 0.02 * scale, "{k}: {got}");
         }
         // Drawn to the measured speed the start is over sooner.
         let speed_error = |observer| {

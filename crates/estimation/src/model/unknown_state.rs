@@ -11,7 +11,7 @@
 
 mod ripple;
 
-use crate::data::case::Case;
+use crate::data::case::Waveform;
 use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::fit::nuisance::{Nuisance, Strip, length, unfaded};
 use crate::model::prediction::{Drive, SpeedObserver, as_shown, run, speed_shown};
@@ -35,32 +35,32 @@ const CURVED: f64 = 0.05;
 
 /// What unknown states of a motor do to the outputs of a case: fluxes and speed (unless that is given) at running starts, the
 /// stator flux at jumps of the voltage.
-pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
-    let stretches = stretches(case);
-    let mut all = unknowns(&stretches, plant, left_by_a_jump(case, plant));
-    all.extend(trembling(case, plant, &stretches));
+pub fn unknown_state(waveform: &Waveform, plant: &Plant) -> Nuisance {
+    let stretches = stretches(waveform);
+    let mut all = unknowns(&stretches, plant, left_by_a_jump(waveform, plant));
+    all.extend(trembling(waveform, plant, &stretches));
     let mut nuisance = Nuisance::default();
     for strip in stretches
         .iter()
-        .flat_map(|stretch| stretch.trembling_counts(case))
+        .flat_map(|stretch| stretch.trembling_counts(waveform))
     {
         nuisance.add(&strip, strip.length());
     }
     if all.is_empty() {
         return nuisance;
     }
-    let meters = speedometers(case, plant);
+    let meters = speedometers(waveform, plant);
     // As shown, and the shaft's speed: of a long recording no more is kept.
     let shown = |drive: &Drive<'_>| {
-        let outputs = run(case, plant, drive, SpeedObserver::Off);
-        (as_shown(case, &outputs), speed_of(&outputs))
+        let outputs = run(waveform, plant, drive, SpeedObserver::Off);
+        (as_shown(waveform, &outputs), speed_of(&outputs))
     };
-    let (rows_without, without) = shown(&Drive::of(case));
+    let (rows_without, without) = shown(&Drive::of(waveform));
     let response = |unknown: &Unknown| {
-        let (mut rows, mut with) = shown(&unknown.departure.drive(case));
+        let (mut rows, mut with) = shown(&unknown.departure.drive(waveform));
         take(&mut rows, &rows_without);
         if unknown.curved {
-            let (mut other_rows, mut other) = shown(&unknown.departure.opposite().drive(case));
+            let (mut other_rows, mut other) = shown(&unknown.departure.opposite().drive(waveform));
             take(&mut other_rows, &rows_without);
             take(&mut other.omega_mech, &without.omega_mech);
             add(&mut rows, &other_rows);
@@ -69,7 +69,7 @@ pub fn unknown_state(case: &Case, plant: &Plant) -> Nuisance {
         let rows = &rows;
         let lengths = unknown.lengths(&stretches, rows);
         let others = meters.iter().map(|meter| {
-            let read = |speed| speed_shown(case, &read_by(meter, plant, speed));
+            let read = |speed| speed_shown(waveform, &read_by(meter, plant, speed));
             let mut speed = read(&with);
             take(&mut speed, &read(&without));
             let shaft = rows.iter().skip(SPEED).step_by(N_CHANNELS);
@@ -118,14 +118,14 @@ fn add(to: &mut [f64], what: &[f64]) {
 
 /// Stator flux that nobody knows after a jump to the rated voltage, at most, as a share of the rated flux: half a sampling interval
 /// of the recording, during which the voltage was there or not.
-fn left_by_a_jump(case: &Case, plant: &Plant) -> f64 {
-    0.5 * case.inputs.t_sample * case.finer as f64 * plant.rated.omega_sync
+fn left_by_a_jump(waveform: &Waveform, plant: &Plant) -> f64 {
+    0.5 * waveform.inputs.t_sample * waveform.finer as f64 * plant.rated.omega_sync
 }
 
 /// Instruments through which a speed may have been read: the counts of an encoder. Whether that is so is asked
 /// later; until then a start that is unknown looks different through each of them.
-fn speedometers(case: &Case, plant: &Plant) -> Vec<EffectConfig> {
-    let is_judged = case.weight.iter().any(|w| w[SPEED] > 0.0);
+fn speedometers(waveform: &Waveform, plant: &Plant) -> Vec<EffectConfig> {
+    let is_judged = waveform.weight.iter().any(|w| w[SPEED] > 0.0);
     let encoders = motor::effects::ALL.iter().filter(|e| e.averages_speed());
     let late = encoders.filter(|_| is_judged).flat_map(|encoder| {
         let window = &encoder.descriptor().parameters[0];
@@ -169,12 +169,12 @@ struct Stretch {
 
 impl Stretch {
     /// How counts may tremble, from one jump of the voltage to the next: an unbalanced supply's ripple changes there.
-    fn trembling_counts(&self, case: &Case) -> Vec<Strip> {
+    fn trembling_counts(&self, waveform: &Waveform) -> Vec<Strip> {
         let rows = self.values.start / N_CHANNELS..self.values.end / N_CHANNELS;
         let jumps = self
             .jumps
             .iter()
-            .map(|k| k.div_ceil(case.samples_per_row()));
+            .map(|k| k.div_ceil(waveform.samples_per_row()));
         let begins: Vec<usize> = [rows.start]
             .into_iter()
             .chain(jumps)
@@ -182,40 +182,43 @@ impl Stretch {
             .collect();
         let parts = begins.windows(2).map(|ends| ends[0]..ends[1]);
         parts
-            .flat_map(|part| ripple::of_counts(case, part))
+            .flat_map(|part| ripple::of_counts(waveform, part))
             .collect()
     }
 }
 
-fn stretches(case: &Case) -> Vec<Stretch> {
-    if case.table.is_some() {
-        return Vec::new();
-    }
-    let cuts = case.timeline.cuts.iter().map(|cut| cut.sample);
-    let later = cuts.zip(case.running_at_cuts.iter().copied());
-    let starts: Vec<(usize, Option<f64>)> =
-        [(0, case.running_at)].into_iter().chain(later).collect();
+fn stretches(waveform: &Waveform) -> Vec<Stretch> {
+    let cuts = waveform.timeline.cuts.iter().map(|cut| cut.sample);
+    let later = cuts.zip(waveform.running_at_cuts.iter().copied());
+    let starts: Vec<(usize, Option<f64>)> = [(0, waveform.running_at)]
+        .into_iter()
+        .chain(later)
+        .collect();
     let ends = starts
         .iter()
         .skip(1)
         .map(|(sample, _)| *sample)
         .chain([usize::MAX]);
-    let rows = case.measured.len();
-    let value = |sample: usize| sample.div_ceil(case.samples_per_row()).min(rows) * N_CHANNELS;
+    let rows = waveform.measured.len();
+    let value = |sample: usize| sample.div_ceil(waveform.samples_per_row()).min(rows) * N_CHANNELS;
     let one = |(&(sample, running_at), end): (&(usize, Option<f64>), usize)| Stretch {
         sample,
         values: value(sample)..value(end),
         running: running_at.is_some(),
-        jumps: jumps(case, sample + 1..end),
+        jumps: jumps(waveform, sample + 1..end),
     };
     let all = starts.iter().zip(ends).map(one);
     all.filter(|stretch| !stretch.values.is_empty()).collect()
 }
 
 /// Samples in a range at which the amplitude of the voltage has jumped: the first of an integration step.
-fn jumps(case: &Case, within: Range<usize>) -> Vec<usize> {
-    let stride = case.between.stride();
-    let segments = case.supply.segments.iter().filter(|_| case.supply.denoised);
+fn jumps(waveform: &Waveform, within: Range<usize>) -> Vec<usize> {
+    let stride = waveform.between.stride();
+    let segments = waveform
+        .supply
+        .segments
+        .iter()
+        .filter(|_| waveform.supply.denoised);
     let starts = segments
         .map(|segment| segment.start)
         .filter(|k| within.contains(k));
@@ -237,12 +240,12 @@ enum Departure {
 
 impl Departure {
     /// What drives a model that departs so.
-    fn drive<'a>(&'a self, case: &'a Case) -> Drive<'a> {
-        let given = Drive::of(case);
+    fn drive<'a>(&'a self, waveform: &'a Waveform) -> Drive<'a> {
+        let given = Drive::of(waveform);
         match self {
             Self::State(offsets) => Drive { offsets, ..given },
             Self::Ripple(ripple) => Drive {
-                speed: Cow::Owned(ripple.added(case)),
+                speed: Cow::Owned(ripple.added(waveform)),
                 ..given
             },
         }
@@ -336,9 +339,9 @@ fn unknowns(stretches: &[Stretch], plant: &Plant, share: f64) -> Vec<Unknown> {
 }
 
 /// What is unknown of the speed within the stretches where it is given.
-fn trembling(case: &Case, plant: &Plant, stretches: &[Stretch]) -> Vec<Unknown> {
-    let is_given = case.speed_is_input && !stretches.is_empty();
-    let ripples = is_given.then(|| Ripple::expected(case, plant));
+fn trembling(waveform: &Waveform, plant: &Plant, stretches: &[Stretch]) -> Vec<Unknown> {
+    let is_given = waveform.speed_is_input && !stretches.is_empty();
+    let ripples = is_given.then(|| Ripple::expected(waveform, plant));
     let one = |ripple: Ripple| Unknown {
         departure: Departure::Ripple(ripple),
         curved: false,

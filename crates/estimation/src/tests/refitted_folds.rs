@@ -11,6 +11,7 @@ use crate::data::study::{Study, Trial};
 use crate::fit::normal_equations::FOLDS;
 use crate::fit::output_error::{Effort, fit};
 use crate::model::prior::Hypothesis;
+use crate::specimen;
 
 fn question(set: &str) -> Question {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -30,7 +31,7 @@ fn refitted(study: &Study, trial: &Trial) -> f64 {
     let of_fold = |fold: usize| {
         let mut rest = subject.case.clone();
         for rows in rows.iter().skip(fold).step_by(FOLDS) {
-            rest.weight[rows.clone()].fill([0.0; 5]);
+            specimen::weight_of(&mut rest)[rows.clone()].fill([0.0; 5]);
         }
         let left_out = fit(&rest, &study.prior, &trial.fit.hypothesis, Effort::FULL);
         let errors = subject.errors(&study.prior, &left_out.hypothesis);

@@ -225,7 +225,7 @@ fn friction_is_open_in_per_cent_of_rated_torque() {
 #[test]
 fn the_largest_slip_is_that_of_steady_running() {
     let mut study = specimen::scaled_study(0.4, 1.0);
-    let case = &mut study.fitted.case;
+    let case = specimen::waveform_mut_of(&mut study);
     let omega = 120.0 * std::f64::consts::PI;
     let samples = case.speed.len();
     // The last block is a little longer.
@@ -264,7 +264,7 @@ fn the_largest_slip_is_that_of_steady_running() {
     let more = 1.0 - 0.91 / 1.01;
     let percent = slip(&study, &fast, 0.01).and_then(|s| s.std_error_percent);
     close(percent.expect("open"), 100.0 * (1.0 - more) * 0.01 / more);
-    let case = &mut study.fitted.case;
+    let case = specimen::waveform_mut_of(&mut study);
     case.speed[3 * block..4 * block].fill(0.0);
     case.speed[..block].fill(0.75 * omega / 2.0);
     // Without those of 1, 2 and, from the standstill and the start, none: eight are left, the largest is 9 %.
@@ -279,7 +279,7 @@ fn the_largest_slip_is_that_of_steady_running() {
 }
 
 fn case_at_rest(study: &mut Study) {
-    study.fitted.case.speed.fill(0.0);
+    specimen::waveform_mut_of(study).speed.fill(0.0);
 }
 
 /// An effect that a typical size raises the error by these shares of the noise, with the scale free and known.

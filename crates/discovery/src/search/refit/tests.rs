@@ -99,14 +99,15 @@ fn a_candidate_is_settled_when_it_fits_or_explains_nearly_all() {
 
 #[test]
 fn a_local_minimum_shows_in_the_error_and_needs_a_measured_speed() {
-    let mut case = specimen::study(0.3, |_| 1.0).fitted.case;
-    assert!(may_be_local_minimum(&case, 1.6) && !may_be_local_minimum(&case, 1.4));
-    assert!(!may_be_local_minimum(&case, LOCAL_MINIMUM_ERROR));
-    case.speed_is_input = true;
-    assert!(!may_be_local_minimum(&case, 1.6));
-    case.speed_is_input = false;
-    case.speed.clear();
-    assert!(!may_be_local_minimum(&case, 1.6));
+    let mut study = specimen::study(0.3, |_| 1.0);
+    let may = |study: &Study, error: f64| may_be_local_minimum(&study.fitted.case, error);
+    assert!(may(&study, 1.6) && !may(&study, 1.4));
+    assert!(!may(&study, LOCAL_MINIMUM_ERROR));
+    specimen::waveform_mut_of(&mut study).speed_is_input = true;
+    assert!(!may(&study, 1.6));
+    specimen::waveform_mut_of(&mut study).speed_is_input = false;
+    specimen::waveform_mut_of(&mut study).speed.clear();
+    assert!(!may(&study, 1.6));
 }
 
 #[test]
@@ -249,7 +250,8 @@ fn a_fit_with_an_observer_tries_the_rest_where_the_likely_do_not_suffice() {
     };
     let healthy = tried(&study);
     assert!(!healthy.is_empty() && healthy[0].error < SOLVED);
-    for (k, row) in study.fitted.case.measured.iter_mut().enumerate() {
+    let measured = specimen::measured_of(&mut study.fitted.case);
+    for (k, row) in measured.iter_mut().enumerate() {
         row[0] += if k % 2 == 0 { 0.05 } else { -0.05 };
     }
     let lost = tried(&study);
@@ -278,7 +280,7 @@ fn ringing(frequency_hz: f64) -> Study {
     let shaft = vec![shaft(frequency_hz).config];
     let mut plant = study.prior.plant.clone();
     plant.effects = shaft;
-    let case = &mut study.fitted.case;
+    let case = specimen::waveform_mut_of(&mut study);
     let out = estimation::model::prediction::run(
         case,
         &plant,

@@ -188,9 +188,10 @@ fn an_unknown_scale_is_fitted_before_anything_is_asked() {
     let study = &question.study;
     let scale = study.speed_scale.expect("unknown");
     assert!((scale.factor * 0.4 - 1.0).abs() < 1e-3, "{scale:?}");
-    assert!(study.fitted.case.speed_is_input || study.fitted.case.speed_scale_is_free);
+    let waveform = study.fitted.case.waveform().expect("a recording");
+    assert!(waveform.speed_is_input || waveform.speed_scale_is_free);
     let omega = specimen::point(1.0).omega_mech;
-    let seen = study.fitted.case.speed[1000];
+    let seen = waveform.speed[1000];
     assert!((seen / omega - 1.0).abs() < 1e-3, "{seen} {omega}");
 }
 

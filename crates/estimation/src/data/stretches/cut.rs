@@ -4,7 +4,7 @@
 //! parameters that damp it.
 
 use super::Stretch;
-use crate::data::case::Case;
+use crate::data::case::Waveform;
 use crate::data::channels::N_CHANNELS;
 use crate::fit::nuisance::Nuisance;
 use motor::effect::{Cut, Inputs, Rated, Timeline};
@@ -14,14 +14,14 @@ use std::ops::Range;
 const OFF: f64 = 0.02;
 
 /// A case of these stretches of a recording, in whole blocks.
-pub fn cut(whole: &Case, rated: &Rated<f64>, stretches: &[Stretch]) -> Case {
+pub fn cut(whole: &Waveform, rated: &Rated<f64>, stretches: &[Stretch]) -> Waveform {
     let part = |stretch| Part::of(whole, stretch);
     let parts: Vec<Part> = stretches.iter().map(part).collect();
     let samples: Vec<Range<usize>> = parts.iter().map(|part| part.samples.clone()).collect();
     let coarse = |r: &Range<usize>| r.start / whole.finer..r.end / whole.finer;
     let of_recording: Vec<Range<usize>> = samples.iter().map(coarse).collect();
     let rows: Vec<Range<usize>> = parts.iter().map(|part| part.rows.clone()).collect();
-    Case {
+    Waveform {
         inputs: Inputs {
             t_sample: whole.inputs.t_sample,
             u_s: taken(&whole.inputs.u_s, &samples),
@@ -57,7 +57,7 @@ struct Part {
 }
 
 impl Part {
-    fn of(whole: &Case, stretch: &Stretch) -> Self {
+    fn of(whole: &Waveform, stretch: &Stretch) -> Self {
         let per_row = whole.samples_per_row();
         let row = |sample: usize| (sample * whole.finer).div_ceil(per_row);
         let first = row(stretch.samples.start);
@@ -72,7 +72,7 @@ impl Part {
         }
     }
 
-    fn weight<'a>(&self, whole: &'a Case) -> impl Iterator<Item = [f64; N_CHANNELS]> + 'a {
+    fn weight<'a>(&self, whole: &'a Waveform) -> impl Iterator<Item = [f64; N_CHANNELS]> + 'a {
         let settles = self.settles;
         let weight = whole.weight[self.rows.clone()].iter().enumerate();
         weight.map(move |(k, w)| if k < settles { [0.0; N_CHANNELS] } else { *w })
@@ -80,8 +80,8 @@ impl Part {
 }
 
 /// What does not change with the samples that are taken, without copying those.
-fn unchanged(whole: &Case) -> Case {
-    Case {
+fn unchanged(whole: &Waveform) -> Waveform {
+    Waveform {
         inputs: Inputs::default(),
         between: whole.between,
         timeline: whole.timeline.clone(),
@@ -103,7 +103,6 @@ fn unchanged(whole: &Case) -> Case {
         speed_windows: signal::Windows::default(),
         inverter: whole.inverter,
         speed_scale_is_free: whole.speed_scale_is_free,
-        table: None,
         nuisance: Nuisance::default(),
     }
 }
@@ -113,7 +112,7 @@ fn taken<T: Copy>(x: &[T], parts: &[Range<usize>]) -> Vec<T> {
     parts.iter().flat_map(part).copied().collect()
 }
 
-fn timeline(whole: &Case, samples: &[Range<usize>]) -> Timeline {
+fn timeline(whole: &Waveform, samples: &[Range<usize>]) -> Timeline {
     let t_sample = whole.inputs.t_sample;
     let mut sample = 0;
     let mut cuts = Vec::new();
@@ -137,7 +136,7 @@ fn timeline(whole: &Case, samples: &[Range<usize>]) -> Timeline {
 }
 
 /// Speed with which a stretch begins, rad/s.
-fn running_at(whole: &Case, rated: &Rated<f64>, sample: usize) -> f64 {
+fn running_at(whole: &Waveform, rated: &Rated<f64>, sample: usize) -> f64 {
     let supplied = whole.inputs.u_s[sample].norm() > OFF * rated.voltage;
     let unmeasured = if supplied { rated.speed() } else { 0.0 };
     whole.speed.get(sample).copied().unwrap_or(unmeasured)

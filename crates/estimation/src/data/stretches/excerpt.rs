@@ -9,7 +9,7 @@ use super::Stretch;
 use super::cells::Cells;
 use super::chosen::{Budget, Role, StretchReport, Wanted, chosen};
 use super::cut::cut;
-use crate::data::case::Case;
+use crate::data::case::Waveform;
 use crate::data::unsupported::Unsupported;
 
 /// The first look at a recording: its pieces in the order of time, of which none is kept.
@@ -193,14 +193,14 @@ impl Excerpt {
     /// Its stretches of a role as one case, and which of them that are: one that is not made like the first is left out.
     ///
     /// # Errors
-    /// No stretch that can be judged, and what [`Case::new`] refuses.
+    /// No stretch that can be judged, and what [`Waveform::new`] refuses.
     pub fn case(
         &self,
         role: Role,
         rated: &Rated<f64>,
-    ) -> Result<(Case, Vec<StretchReport>), Unsupported> {
+    ) -> Result<(Waveform, Vec<StretchReport>), Unsupported> {
         let mut used: Vec<StretchReport> = Vec::new();
-        let mut all: Option<Case> = None;
+        let mut all: Option<Waveform> = None;
         let mut refused = None;
         for part in self.parts.iter().filter(|part| part.told.role == role) {
             let joined = match (part.case(&self.audit, self.begin_s, rated), all.take()) {
@@ -235,14 +235,14 @@ impl Part {
         audit: &Audit,
         begin_s: f64,
         rated: &Rated<f64>,
-    ) -> Result<(Case, Cut), Unsupported> {
+    ) -> Result<(Waveform, Cut), Unsupported> {
         let mut recording = with_sound_probes(&self.recording, audit);
         let t = recording.t()[self.stretch.samples.start];
         if recording.t()[0] > begin_s {
             // What the recording began with is long past.
             recording.metadata.starts_from = StartsFrom::Unknown;
         }
-        let whole = Case::new(&recording, rated)?;
+        let whole = Waveform::new(&recording, rated)?;
         let mut case = cut(&whole, rated, std::slice::from_ref(&self.stretch));
         if case.measured.is_empty() {
             return Err(Unsupported::new(
@@ -260,7 +260,7 @@ impl Part {
     }
 
     /// Gives the shaft the angle that it has in the recording.
-    fn turn(&self, case: &mut Case) {
+    fn turn(&self, case: &mut Waveform) {
         let timeline = std::sync::Arc::make_mut(&mut case.timeline);
         let judged = self.stretch.settles * case.finer;
         let Some(there) = timeline.theta_mech.get(judged).copied() else {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::data::case::Case;
+use crate::data::case::{Case, Waveform};
 use crate::data::channels::N_CHANNELS;
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::specimen::{self, T_SAMPLE};
@@ -97,9 +97,9 @@ fn two_parts() -> Vec<Stretch> {
     vec![part(0.0, 1.0, 0.0), part(3.0, 4.5, 0.5)]
 }
 
-fn cut_case(torque: impl Fn(f64) -> f64) -> Case {
+fn cut_waveform(torque: impl Fn(f64) -> f64) -> Waveform {
     let rated = specimen::prior("").plant.rated;
-    let whole = Case::new(&specimen::recording(5.0, torque), &rated).expect("judged");
+    let whole = Waveform::new(&specimen::recording(5.0, torque), &rated).expect("judged");
     cut(&whole, &rated, &two_parts())
 }
 
@@ -107,11 +107,12 @@ fn cut_case(torque: impl Fn(f64) -> f64) -> Case {
 #[test]
 fn a_cut_leaves_no_error_and_keeps_the_clock() {
     let prior = specimen::prior("");
-    let case = cut_case(|t| if t < 2.0 { 1.0 } else { 0.4 });
+    let waveform = cut_waveform(|t| if t < 2.0 { 1.0 } else { 0.4 });
+    let case = Case::from(waveform.clone());
     let h = crate::model::prior::Hypothesis::at_prior(false);
     let r = residual(&case, &outputs(&case, &prior, &h, SpeedObserver::Off));
     let judged: Vec<f64> = case
-        .weight
+        .weight()
         .iter()
         .flatten()
         .zip(&r)
@@ -122,19 +123,19 @@ fn a_cut_leaves_no_error_and_keeps_the_clock() {
     let rms = (judged.iter().sum::<f64>() / judged.len() as f64).sqrt();
     // In units of the declared noise, which the samples do not have: what is left is the integration.
     assert!(rms < 0.1, "{rms}");
-    let first = case.time_of(0);
-    let rows = case.measured.len();
-    let step = case.time_of(rows - 1) - case.time_of(0);
+    let first = waveform.time_of(0);
+    let rows = waveform.measured.len();
+    let step = waveform.time_of(rows - 1) - waveform.time_of(0);
     assert!(first == 0.0 && (4.4..4.5).contains(&step), "{step}");
-    let half = case.weight.iter().position(|w| *w == [0.0; N_CHANNELS]);
+    let half = waveform.weight.iter().position(|w| *w == [0.0; N_CHANNELS]);
     let half = half.expect("fluxes settle");
-    assert!((case.time_of(half) - 3.0).abs() < 0.01);
+    assert!((waveform.time_of(half) - 3.0).abs() < 0.01);
 }
 
 /// The shaft goes on turning where a part was left out: 2 s at the speed of the load.
 #[test]
 fn the_shaft_turns_through_a_cut() {
-    let case = cut_case(|_| 1.0);
+    let case = cut_waveform(|_| 1.0);
     let omega = specimen::point(1.0).omega_mech;
     let theta = &case.timeline.theta_mech;
     let cut = case.timeline.cuts[0].sample;
@@ -147,7 +148,7 @@ fn the_shaft_turns_through_a_cut() {
 #[test]
 fn an_effect_over_time_follows_the_clock() {
     let prior = specimen::prior("");
-    let case = cut_case(|_| 1.0);
+    let case = cut_waveform(|_| 1.0);
     let with = |entry: &str| {
         let file = specimen::motor(entry);
         motor::effect::from_motor_file(&file, "specimen.toml").expect("valid effects")

@@ -7,7 +7,7 @@ use crate::specimen;
 #[test]
 fn errors_are_the_squares_of_each_block() {
     let mut study = specimen::table_study(|_| ());
-    for row in &mut study.fitted.case.measured {
+    for row in specimen::measured_of(&mut study.fitted.case) {
         row[1] += 2.0 * std::f64::consts::TAU / 60.0;
     }
     let errors = study.fitted.errors(&study.prior, &study.at_prior());
@@ -27,7 +27,8 @@ fn a_recording_moves_the_mechanics_if_its_speed_is_no_input() {
     let mut study = specimen::study(0.3, |_| 1.0);
     assert_eq!(study.at_prior().free, [true; N_NOMINAL]);
     assert_eq!(study.given_effects(), 0);
-    study.fitted.case.speed_is_input = true;
+    let waveform = study.fitted.case.waveform_mut().expect("a recording");
+    waveform.speed_is_input = true;
     assert_eq!(study.at_prior().free[4..], [false, false]);
 }
 
@@ -45,7 +46,7 @@ fn a_scale_that_nobody_knows_is_free_from_the_start() {
 fn a_trial_holds_folds_and_proof() {
     let mut study = specimen::proven_table_study(|_| ());
     let mut second = study.proofs[0].clone();
-    for row in &mut second.case.measured {
+    for row in specimen::measured_of(&mut second.case) {
         row[1] += std::f64::consts::TAU / 60.0;
     }
     study.proofs.push(second);

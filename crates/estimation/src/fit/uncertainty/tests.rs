@@ -49,13 +49,13 @@ fn a_gain_of_the_currents_moves_the_fit_as_foretold() {
     let case = &truth.fitted.case;
     let all = normal_equations::total(&fit.blocks);
     let curvature = &all.gram + DMatrix::from_diagonal(&fit.penalty.weight);
-    let mut change = vec![0.0; case.measured.len() * N_CHANNELS];
-    for (row, (y, w)) in case.measured.iter().zip(&case.weight).enumerate() {
+    let mut change = vec![0.0; case.measured().len() * N_CHANNELS];
+    for (row, (y, w)) in case.measured().iter().zip(case.weight()).enumerate() {
         (0..3).for_each(|k| change[row * N_CHANNELS + k] = 0.002 * y[k] * w[k]);
     }
     let foretold = curvature.try_inverse().expect("regular") * score(&fit, &change);
     let mut louder = truth.clone();
-    for row in &mut louder.fitted.case.measured {
+    for row in specimen::measured_of(&mut louder.fitted.case) {
         row[..3].iter_mut().for_each(|i| *i *= 1.002);
     }
     let moved = louder.trial(&louder.at_prior(), Effort::FULL).fit;

@@ -4,7 +4,7 @@
 //! `T = 3/2 n_p (psi_1 i_2 + psi_2 i_1)` at most, and that a speed of amplitude `T / (2 omega J)`; a load coupled to the motor makes it
 //! smaller. Its two amounts, cosine and sine, are expected to be as large as that.
 
-use crate::data::case::Case;
+use crate::data::case::Waveform;
 use crate::data::channels::SPEED;
 use crate::fit::nuisance::Strip;
 use motor::dynamic::clarke;
@@ -25,8 +25,8 @@ pub struct Ripple {
 
 impl Ripple {
     /// Its cosine and its sine, each as large as what was measured makes one expect.
-    pub fn expected(case: &Case, plant: &Plant) -> [Self; 2] {
-        let size = size(case, plant);
+    pub fn expected(waveform: &Waveform, plant: &Plant) -> [Self; 2] {
+        let size = size(waveform, plant);
         [0.0, FRAC_PI_2].map(|phase| Self { size, phase })
     }
 
@@ -39,17 +39,18 @@ impl Ripple {
     }
 
     /// The speed that drives a case, rad/s, with the ripple.
-    pub fn added(&self, case: &Case) -> Vec<f64> {
-        let both = case.speed.iter().zip(angles(case));
+    pub fn added(&self, waveform: &Waveform) -> Vec<f64> {
+        let both = waveform.speed.iter().zip(angles(waveform));
         both.map(|(omega, angle)| omega + self.size * (2.0 * angle + self.phase).cos())
             .collect()
     }
 }
 
 /// Angle of the supply at each input sample, rad, from zero at the first.
-fn angles(case: &Case) -> impl Iterator<Item = f64> + '_ {
-    let step = case.inputs.t_sample;
-    case.timeline
+fn angles(waveform: &Waveform) -> impl Iterator<Item = f64> + '_ {
+    let step = waveform.inputs.t_sample;
+    waveform
+        .timeline
         .omega_sync
         .iter()
         .scan(0.0, move |angle, omega| {
@@ -61,17 +62,17 @@ fn angles(case: &Case) -> impl Iterator<Item = f64> + '_ {
 
 /// The cosine and the sine that counts of the speed may show in some rows, whatever the shaft does: a count over one period of the ripple
 /// shows none, a shorter one a part. Nothing where the speed is no output, or no count.
-pub fn of_counts(case: &Case, rows: Range<usize>) -> Vec<Strip> {
-    let speeds: Vec<f64> = case.measured[rows.clone()]
+pub fn of_counts(waveform: &Waveform, rows: Range<usize>) -> Vec<Strip> {
+    let speeds: Vec<f64> = waveform.measured[rows.clone()]
         .iter()
         .map(|row| row[SPEED])
         .collect();
-    if case.speed_is_input || !are_counts(&speeds) {
+    if waveform.speed_is_input || !are_counts(&speeds) {
         return Vec::new();
     }
-    let angles = angles(case).step_by(case.samples_per_row());
+    let angles = angles(waveform).step_by(waveform.samples_per_row());
     let angles: Vec<f64> = angles.skip(rows.start).take(rows.len()).collect();
-    let weights = &case.weight[rows.clone()];
+    let weights = &waveform.weight[rows.clone()];
     let wave = |phase: f64| {
         let both = angles.iter().zip(weights);
         let values = both.map(|(angle, w)| w[SPEED] * (2.0 * angle + phase).cos());
@@ -82,8 +83,8 @@ pub fn of_counts(case: &Case, rows: Range<usize>) -> Vec<Strip> {
 
 /// Amplitude of a ripple, rad/s: the upper quartile of the supply's pairs of cycles. The first ones after a switch hold direct current that
 /// fades, which looks like other sequences.
-fn size(case: &Case, plant: &Plant) -> f64 {
-    let pairs = pairs_of_cycles(case);
+fn size(waveform: &Waveform, plant: &Plant) -> f64 {
+    let pairs = pairs_of_cycles(waveform);
     let mut sizes: Vec<f64> = pairs.iter().map(|pair| pair.ripple(plant)).collect();
     if sizes.is_empty() {
         return 0.0;
@@ -122,11 +123,13 @@ impl Pair {
 }
 
 /// The whole pairs of cycles of a case.
-fn pairs_of_cycles(case: &Case) -> Vec<Pair> {
-    let inputs = angles(case)
-        .zip(&case.timeline.omega_sync)
-        .zip(&case.inputs.u_s);
-    let rows = inputs.step_by(case.samples_per_row()).zip(&case.measured);
+fn pairs_of_cycles(waveform: &Waveform) -> Vec<Pair> {
+    let inputs = angles(waveform)
+        .zip(&waveform.timeline.omega_sync)
+        .zip(&waveform.inputs.u_s);
+    let rows = inputs
+        .step_by(waveform.samples_per_row())
+        .zip(&waveform.measured);
     let (mut all, mut pair, mut number) = (Vec::new(), Pair::default(), 0.0);
     for (((angle, omega_sync), u), [a, b, c, ..]) in rows {
         // A field that turns backwards counts its cycles too.

@@ -3,14 +3,14 @@ use crate::model::prediction::{residual, weighted};
 use crate::specimen;
 
 /// What is left of a recording of a motor that was elsewhere, as a share of what was there before anything was taken out.
-fn left(case: &mut Case, plant: &Plant, elsewhere: StateOffset) -> f64 {
+fn left(case: &mut Waveform, plant: &Plant, elsewhere: StateOffset) -> f64 {
     left_through(None, case, plant, elsewhere)
 }
 
 /// The same where an instrument shows the speed, of the recording and of the model that is held against it.
 fn left_through(
     meter: Option<EffectConfig>,
-    case: &mut Case,
+    case: &mut Waveform,
     plant: &Plant,
     elsewhere: StateOffset,
 ) -> f64 {
@@ -34,19 +34,17 @@ fn left_through(
             [a, b, c, there.omega_mech[k], there.u_zero[k]]
         })
         .collect();
-    let error = |case: &Case| length(&residual(case, &weighted(case, &model)));
+    let error = |case: &Waveform| length(&residual(&case.clone().into(), &weighted(case, &model)));
     let before = error(case);
     case.nuisance = unknown_state(case, plant);
     error(case) / before
 }
 
-fn running() -> (Case, Plant) {
-    let study = specimen::study(1.0, |_| 1.0);
-    let case = Case {
-        nuisance: Nuisance::default(),
-        ..study.fitted.case
-    };
-    (case, study.prior.plant)
+fn running() -> (Waveform, Plant) {
+    let prior = specimen::prior("");
+    let rec = specimen::recording(1.0, |_| 1.0);
+    let waveform = Waveform::new(&rec, &prior.plant.rated).expect("judged");
+    (waveform, prior.plant)
 }
 
 /// The motor's equations are linear but for products of speed, flux and current: what is left is of second order, ten times
@@ -165,7 +163,7 @@ fn a_start_from_rest_leaves_nothing_open() {
 }
 
 /// The case with its speed given, and currents of a negative sequence: amplitude in A.
-fn driven_by_its_speed(negative: f64) -> (Case, Plant) {
+fn driven_by_its_speed(negative: f64) -> (Waveform, Plant) {
     let (mut case, plant) = running();
     case.speed_is_input = true;
     case.running_at = None;
@@ -209,7 +207,7 @@ fn a_field_that_turns_backwards_ripples_as_much() {
         .for_each(|omega| *omega = -*omega);
     swapped.inputs.u_s.iter_mut().for_each(|u| *u = u.conj());
     swapped.measured.iter_mut().for_each(|row| row.swap(1, 2));
-    let largest = |ripple: &Ripple, case: &Case| {
+    let largest = |ripple: &Ripple, case: &Waveform| {
         let moved = ripple.added(case);
         let both = moved.iter().zip(&case.speed);
         both.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()))
@@ -223,7 +221,7 @@ fn a_field_that_turns_backwards_ripples_as_much() {
 }
 
 /// What is left where the motor's shaft trembles beside the speed that is given: 0.01 rad/s at `over` times the supply's frequency.
-fn left_of_a_trembling(over: f64, plant: &Plant, case: &Case) -> f64 {
+fn left_of_a_trembling(over: f64, plant: &Plant, case: &Waveform) -> f64 {
     let (omega, t_sample) = (over * plant.rated.omega_sync, case.inputs.t_sample);
     let trembling =
         |(k, mean): (usize, &f64)| mean + 0.01 * (omega * t_sample * k as f64 + 0.7).cos();
@@ -238,7 +236,7 @@ fn left_of_a_trembling(over: f64, plant: &Plant, case: &Case) -> f64 {
 }
 
 /// Length of what a case's unknowns leave of weighted rows, as a share of theirs.
-fn left_of(case: &Case, plant: &Plant, mut rows: Vec<f64>) -> f64 {
+fn left_of(case: &Waveform, plant: &Plant, mut rows: Vec<f64>) -> f64 {
     let before = length(&rows);
     unknown_state(case, plant).project_out(&mut rows);
     length(&rows) / before

@@ -1,8 +1,10 @@
 use super::*;
+use crate::data::case::Case;
 use crate::data::channels::N_CHANNELS;
 use crate::data::given::Given;
 use crate::data::given::Sources;
 use crate::data::question::Question;
+use crate::data::study::Subject;
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::Hypothesis;
 use crate::specimen::{self, T_SAMPLE};
@@ -31,7 +33,7 @@ fn excerpt(pieces: &[Recording]) -> Excerpt {
     gathering.finish()
 }
 
-fn case(excerpt: &Excerpt, role: Role) -> Case {
+fn waveform(excerpt: &Excerpt, role: Role) -> Waveform {
     let rated = specimen::prior("").plant.rated;
     excerpt.case(role, &rated).expect("judged").0
 }
@@ -48,7 +50,8 @@ fn stretches_leave_no_error_and_keep_clock_and_angle() {
     let prior = specimen::prior("");
     let omega = specimen::point(1.0).omega_mech;
     for role in [Role::Fitted, Role::Proves] {
-        let case = case(&excerpt, role);
+        let waveform = waveform(&excerpt, role);
+        let case = Case::from(waveform.clone());
         let model = outputs(
             &case,
             &prior,
@@ -59,18 +62,18 @@ fn stretches_leave_no_error_and_keep_clock_and_angle() {
         let rms = (r.iter().map(|r| r * r).sum::<f64>() / case.judged()).sqrt();
         // In units of the declared noise, which the samples do not have: what is left is the integration.
         assert!(rms < 0.1, "{role:?}: {rms}");
-        let judged = |row: usize| case.weight[row] != [0.0; N_CHANNELS];
+        let judged = |row: usize| waveform.weight[row] != [0.0; N_CHANNELS];
         let inside = |t: f64| {
             let of = spans(&excerpt, role);
             of.iter().any(|(from, to)| (from - 1e-9..*to).contains(&t))
         };
-        let rows = (0..case.measured.len()).filter(|row| judged(*row));
+        let rows = (0..waveform.measured.len()).filter(|row| judged(*row));
         assert!(
-            rows.clone().all(|row| inside(case.time_of(row))),
+            rows.clone().all(|row| inside(waveform.time_of(row))),
             "{role:?}"
         );
         // Blocks of 40 ms are whole: of each second not more than one is left out.
-        let seconds = rows.count() as f64 * case.t_row();
+        let seconds = rows.count() as f64 * waveform.t_row();
         let told: f64 = spans(&excerpt, role)
             .iter()
             .map(|(from, to)| to - from)
@@ -79,10 +82,13 @@ fn stretches_leave_no_error_and_keep_clock_and_angle() {
             (told - 0.04 * told..told + 1e-6).contains(&seconds),
             "{told} {seconds}"
         );
-        for row in (0..case.measured.len()).step_by(97) {
-            let theta = case.timeline.theta_mech[row * case.samples_per_row()];
+        for row in (0..waveform.measured.len()).step_by(97) {
+            let theta = waveform.timeline.theta_mech[row * waveform.samples_per_row()];
             // A trapezoid sums the speed without error where it is constant.
-            assert!((theta - omega * case.time_of(row)).abs() < 1e-6, "{row}");
+            assert!(
+                (theta - omega * waveform.time_of(row)).abs() < 1e-6,
+                "{row}"
+            );
         }
     }
 }
@@ -98,7 +104,7 @@ fn the_size_of_the_pieces_changes_nothing() {
     );
     assert_eq!(one.stretches, other.stretches);
     for role in [Role::Fitted, Role::Proves] {
-        let (one, other) = (case(&one, role), case(&other, role));
+        let (one, other) = (waveform(&one, role), waveform(&other, role));
         assert_eq!(one.measured, other.measured);
         assert_eq!(one.inputs.u_s, other.inputs.u_s);
         assert_eq!(one.timeline.cuts, other.timeline.cuts);
@@ -200,9 +206,8 @@ fn a_question_about_stretches_has_proofs_of_its_own() {
     ];
     let question = Question::new(Sources::Given(&both), &motor, &mut |_, _| {}).expect("judged");
     assert_eq!(question.study.proofs.len(), 1);
-    assert!(
-        question.study.proofs[0].case.measured.len() > question.study.fitted.case.measured.len()
-    );
+    let rows = |subject: &Subject| subject.case.measured().len();
+    assert!(rows(&question.study.proofs[0]) > rows(&question.study.fitted));
 }
 
 /// A motor that is switched off for a while: its rest is no state that a model could be held against.
@@ -254,8 +259,8 @@ fn stretches_in_a_row_are_more_than_those_that_stand_alone() {
             .map(|(from, to)| to - from)
             .sum();
         assert!((fitted - f64::from(taken)).abs() < 1e-6, "{fitted}");
-        let case = case(&excerpt, Role::Fitted);
-        let simulated = case.measured.len() as f64 * case.t_row();
+        let waveform = waveform(&excerpt, Role::Fitted);
+        let simulated = waveform.measured.len() as f64 * waveform.t_row();
         assert!(simulated < 4.0 * 1.5 + 1e-6, "{simulated}");
     }
 }

@@ -1,7 +1,7 @@
 //! A recording that nobody made yet: what drives it, and how well its instruments would see it.
 
 use super::plan::Plan;
-use estimation::data::case::{Case, RELATIVE_CURRENT};
+use estimation::data::case::{RELATIVE_CURRENT, Waveform};
 use estimation::data::channels::N_CHANNELS;
 use estimation::fit::nuisance::Nuisance;
 use estimation::model::prediction::{Drive, SpeedObserver, run};
@@ -11,7 +11,7 @@ use signal::{Supply, Windows};
 use std::f64::consts::TAU;
 
 /// A run of a plant, recorded as another recording was.
-pub(super) fn virtual_case(plan: &Plan, like: &Case, plant: &Plant) -> Case {
+pub(super) fn virtual_waveform(plan: &Plan, like: &Waveform, plant: &Plant) -> Waveform {
     let t_sample = like.inputs.t_sample;
     let per_row = like.samples_per_row();
     let rows = (plan.duration_s / t_sample) as usize / per_row;
@@ -26,7 +26,7 @@ pub(super) fn virtual_case(plan: &Plan, like: &Case, plant: &Plant) -> Case {
     let u_s: Vec<Complex64> = u_s.collect();
     let load = |k: usize| plan.load(time(k)) * plant.rated.torque;
     let first = TAU * plan.frequency_hz(0.0) / plant.mechanics.n_p;
-    let mut case = Case {
+    let mut waveform = Waveform {
         inputs: Inputs {
             t_sample,
             u_s,
@@ -60,20 +60,19 @@ pub(super) fn virtual_case(plan: &Plan, like: &Case, plant: &Plant) -> Case {
         input_noise: like.input_noise,
         inverter: plan.drive,
         speed_scale_is_free: like.speed_scale_is_free,
-        table: None,
         nuisance: Nuisance::default(),
     };
-    see(&mut case, like, plant, rows);
-    case
+    see(&mut waveform, like, plant, rows);
+    waveform
 }
 
 /// What the instruments would show of the believed plant, and their noise.
-fn see(case: &mut Case, like: &Case, plant: &Plant, rows: usize) {
-    let outputs = run(case, plant, &Drive::of(case), SpeedObserver::Off);
+fn see(waveform: &mut Waveform, like: &Waveform, plant: &Plant, rows: usize) {
+    let outputs = run(waveform, plant, &Drive::of(waveform), SpeedObserver::Off);
     let noise = noise(like);
     let omega: Vec<f64> = outputs.omega_mech.clone();
     for row in 0..rows {
-        let k = row * case.decimation;
+        let k = row * waveform.decimation;
         let [a, b, c] = outputs.i_s_abc[k];
         let measured = [a, b, c, outputs.omega_mech[k], 0.0];
         let weight = |channel: usize| match (noise[channel], channel) {
@@ -81,22 +80,22 @@ fn see(case: &mut Case, like: &Case, plant: &Plant, rows: usize) {
             (sigma, 0..3) => 1.0 / sigma.hypot(RELATIVE_CURRENT * measured[channel]),
             (sigma, _) => 1.0 / sigma,
         };
-        case.measured.push(measured);
-        case.weight.push(core::array::from_fn(weight));
+        waveform.measured.push(measured);
+        waveform.weight.push(core::array::from_fn(weight));
     }
     if like.speed_is_input {
         // What the motor carries is not measured: its speed is.
-        let stride = case.between.stride();
+        let stride = waveform.between.stride();
         let last = omega.len() - 1;
-        case.speed = (0..case.inputs.u_s.len())
+        waveform.speed = (0..waveform.inputs.u_s.len())
             .map(|k| omega[(k / stride).min(last)])
             .collect();
-        case.speed_is_input = true;
+        waveform.speed_is_input = true;
     }
 }
 
 /// Standard deviation of each channel where its value is small; zero where it is not judged.
-fn noise(like: &Case) -> [f64; N_CHANNELS] {
+fn noise(like: &Waveform) -> [f64; N_CHANNELS] {
     let largest = |channel: usize| like.weight.iter().map(|w| w[channel]).fold(0.0, f64::max);
     core::array::from_fn(|channel| match largest(channel) {
         0.0 => 0.0,
