@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use crate::installed::{Conditions, DEGC, Installed, WARMTH, between, random_of};
+use crate::judge::raw;
 use campaign::T_SAMPLE_S;
 use monitor::{Lamp, Monitor, MonitorConfig, MonitorState, RawSample};
 use motor::MotorFile;
@@ -53,7 +54,8 @@ pub fn judged(motors: &[MotorFile], seed: u64, k: u64) -> Result<Outcome, Box<dy
             warmth: between(WARMTH, &mut random),
             degc: between(DEGC, &mut random),
         };
-        let samples = installed.samples(&at, JUDGED_S, random.random(), &[])?;
+        let simulation = installed.simulation(&at, JUDGED_S, random.random())?;
+        let samples: Vec<_> = simulation.map(|sample| raw(&sample.measured)).collect();
         let [fault, sensor, windows] = lit(&calibrated, &samples)?;
         outcome.faults += usize::from(fault > 0);
         outcome.sensors += usize::from(sensor > 0);
@@ -65,7 +67,7 @@ pub fn judged(motors: &[MotorFile], seed: u64, k: u64) -> Result<Outcome, Box<dy
 }
 
 /// Windows with FAULT, with SENSOR, and windows judged.
-pub fn lit(motor: &MotorFile, samples: &[RawSample]) -> Result<[usize; 3], Box<dyn Error>> {
+fn lit(motor: &MotorFile, samples: &[RawSample]) -> Result<[usize; 3], Box<dyn Error>> {
     let config = MonitorConfig::from_motor_file(motor, T_SAMPLE_S)?;
     let monitor = Monitor::new(config)?;
     let mut state = MonitorState::default();

@@ -2,11 +2,14 @@
 
 use std::error::Error;
 
-use crate::anywhere::lit;
 use crate::installed::{Conditions, DEGC, Installed, WARMTH, between, random_of};
+use crate::judge::raw;
+use campaign::T_SAMPLE_S;
+use monitor::{Lamp, Monitor, MonitorConfig, MonitorState};
 use motor::MotorFile;
 use rand::Rng;
 use rayon::prelude::*;
+use scenario::simulate::Simulation;
 use scenario::{Fault, Probe, Target};
 
 /// Loads, shares of rated torque, as in the detection campaign.
@@ -71,17 +74,36 @@ impl Kind {
     }
 }
 
-/// Kinds, directions and their sizes, one after another.
-fn plan() -> Vec<(Kind, f64)> {
-    let signed = |kind: Kind| {
-        let up = kind.sizes.iter().copied();
-        let down = kind.sizes.iter().map(|size| -size);
-        up.chain(down).map(move |percent| (kind, percent))
-    };
-    KINDS.into_iter().flat_map(signed).collect()
+impl Kind {
+    /// Changes of the gain, percent: upwards, then downwards.
+    fn changes(&self) -> impl Iterator<Item = f64> {
+        let up = self.sizes.iter().copied();
+        up.chain(self.sizes.iter().map(|size| -size))
+    }
 }
 
-/// Whether FAULT lights, for each line of the plan; `None` where calibration refuses the board.
+/// A motor behind a board, and what the monitor has learnt of its noise.
+#[derive(Clone)]
+struct Running {
+    simulation: Simulation,
+    state: MonitorState,
+}
+
+impl Running {
+    /// Whether FAULT is lit in any window until a time.
+    fn lights(&mut self, monitor: &Monitor, until_s: f64) -> bool {
+        let mut lit = false;
+        while self.simulation.now() < until_s
+            && let Some(sample) = self.simulation.next()
+        {
+            let report = monitor.update_raw(&mut self.state, &raw(&sample.measured));
+            lit |= report.is_some_and(|report| report.lamps.fault == Lamp::On);
+        }
+        lit
+    }
+}
+
+/// Whether FAULT lights, for each kind and change one after another; `None` where calibration refuses the board.
 fn seen(
     motor: &MotorFile,
     ideal: bool,
@@ -94,18 +116,31 @@ fn seen(
     let Some(calibrated) = installed.calibrated(&mut random, k)? else {
         return Ok(None);
     };
+    let monitor = Monitor::new(MonitorConfig::from_motor_file(&calibrated, T_SAMPLE_S)?)?;
     let mut lights = Vec::new();
-    for (kind, percent) in plan() {
+    for kind in KINDS {
         let at = Conditions {
             load: between(LOAD, &mut random),
             hertz: motor.nameplate.frequency_hz,
             warmth: between(WARMTH, &mut random),
             degc: between(DEGC, &mut random),
         };
-        let faults = kind.faults(percent, random.random_range(0..3));
-        let samples = installed.samples(&at, JUDGED_S, random.random(), &faults)?;
-        let [fault, ..] = lit(&calibrated, &samples)?;
-        lights.push(fault > 0);
+        let phase = random.random_range(0..3);
+        let mut healthy = Running {
+            simulation: installed.simulation(&at, JUDGED_S, random.random())?,
+            state: MonitorState::default(),
+        };
+        if healthy.lights(&monitor, FAULT_FROM_S) {
+            return Err(format!("board {k}, {}: FAULT without a fault", motor.name).into());
+        }
+        // The healthy seconds are the same for each change.
+        for percent in kind.changes() {
+            let mut faulty = healthy.clone();
+            faulty
+                .simulation
+                .switch_faults(kind.faults(percent, phase))?;
+            lights.push(faulty.lights(&monitor, JUDGED_S));
+        }
     }
     Ok(Some(lights))
 }

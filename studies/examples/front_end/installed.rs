@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use crate::board::{Board, Known, Variant};
 use crate::judge::{raw, sensors};
 use campaign::T_SAMPLE_S;
-use monitor::{MonitorConfig, RawSample};
+use monitor::MonitorConfig;
 use motor::MotorFile;
 use motor::dynamic::Harmonic;
 use motor::motor_file::LoadKind;
@@ -17,8 +17,8 @@ use recording::{Channel, LoadTorque, Metadata, Recording, StartsFrom, Supply};
 use replay::calibrate::{Surroundings, calibrate};
 use scenario::simulate::Simulation;
 use scenario::{
-    CHANNELS, Carrier, Fault, Inl, InlShape, Load, LoadSpec, Piecewise, Scenario, SensorSpec,
-    SignalChain, SpeedSensor, SupplySpec,
+    CHANNELS, Carrier, Inl, InlShape, Load, LoadSpec, Piecewise, Scenario, SensorSpec, SignalChain,
+    SpeedSensor, SupplySpec,
 };
 
 /// Carriers of inverters, Hz.
@@ -248,20 +248,14 @@ impl<'m> Installed<'m> {
         }
     }
 
-    /// What the converter makes of the motor at `at`, with a fault or none.
-    pub fn samples(
+    /// The healthy motor at `at`, sample by sample.
+    pub fn simulation(
         &self,
         at: &Conditions,
         seconds: f64,
         seed: u64,
-        faults: &[Fault],
-    ) -> Result<Vec<RawSample>, Box<dyn Error>> {
-        let scenario = Scenario {
-            faults: faults.to_vec(),
-            ..self.scenario(at, seconds, seed)
-        };
-        let simulation = Simulation::new(&scenario)?;
-        Ok(simulation.map(|sample| raw(&sample.measured)).collect())
+    ) -> Result<Simulation, Box<dyn Error>> {
+        Ok(Simulation::new(&self.scenario(at, seconds, seed))?)
     }
 
     /// What the board sends of its samples.

@@ -124,7 +124,7 @@ pub enum SimulationError {
 }
 
 /// A running experiment; an iterator over its samples in the order of time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Simulation {
     scenario: Scenario,
     plant: Plant,

@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 const ENCODER_WINDOW_S: f64 = 0.01;
 const COUNTS_PER_PULSE: f64 = 4.0;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(in crate::simulate) struct Instruments {
     spec: SensorSpec,
     t_sample: f64,

@@ -127,7 +127,7 @@ pub(super) fn factory(
     let rated = rated(&scenario.motor);
     let timeline = Arc::new(timeline(scenario));
     let file = scenario.motor.clone();
-    Box::new(move |motor, mechanics, faults| {
+    Arc::new(move |motor, mechanics, faults| {
         let mut motor = *motor;
         // Checked by `of_faults`. They have no states of their own: those of the others stay where they are.
         let broken = broken_symmetry(faults).into_iter();

@@ -9,6 +9,7 @@ use motor::dynamic::{Dynamic, DynamicState, Extra, Hooks, phases};
 use motor::steady_state::SteadyState;
 use motor::{Mechanics, TParams};
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Largest integration step, s: RK4 then agrees with two other simulators to 1.4e-7.
 const LARGEST_STEP_S: f64 = 100e-6;
@@ -19,8 +20,9 @@ const STANDSTILL_RAD_S: f64 = 0.1;
 
 /// Builds the motor from its parameters and the faults in force, which may bring effects along.
 pub(super) type Make<H> =
-    Box<dyn Fn(&TParams<f64>, &Mechanics<f64>, &[&Fault]) -> Dynamic<H> + Send>;
+    Arc<dyn Fn(&TParams<f64>, &Mechanics<f64>, &[&Fault]) -> Dynamic<H> + Send + Sync>;
 
+#[derive(Clone)]
 pub(in crate::simulate) struct Full<H: Hooks> {
     healthy: (TParams<f64>, Mechanics<f64>),
     make: Make<H>,

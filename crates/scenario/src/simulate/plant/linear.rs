@@ -10,6 +10,7 @@ use motor::dynamic::phases;
 use num_complex::Complex64;
 use parity::linear_plant::{LinearParams, LinearState, LinearStep};
 
+#[derive(Clone)]
 pub(in crate::simulate) struct Linear {
     healthy: LinearParams,
     params: LinearParams,

@@ -15,7 +15,9 @@ use motor::effect::EffectStack;
 use motor::{Mechanics, TParams};
 use presence::EXTRA_STATES;
 use std::fmt;
+use std::sync::Arc;
 
+#[derive(Clone)]
 pub(super) enum Plant {
     Plain(Full<NoEffects>),
     Effects(Box<Full<EffectStack<EXTRA_STATES>>>),
@@ -42,7 +44,7 @@ impl Plant {
             let make = |motor: &TParams<f64>, mechanics: &Mechanics<f64>, _: &[&Fault]| {
                 Dynamic::new(motor, mechanics)
             };
-            return Ok(Plant::Plain(Full::new(scenario, Box::new(make))?));
+            return Ok(Plant::Plain(Full::new(scenario, Arc::new(make))?));
         }
         let make = effects::factory(scenario, effects);
         Ok(Plant::Effects(Box::new(Full::new(scenario, make)?)))

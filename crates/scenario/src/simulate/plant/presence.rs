@@ -6,7 +6,7 @@ use crate::{Asymmetry, Fault, Target};
 pub(super) const EXTRA_STATES: usize = motor::effect::MAX_FILE_STATES;
 
 /// Which faults are present, remembered so that the motor is rebuilt only when that changes.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Presence(Option<Vec<bool>>);
 
 impl Presence {

@@ -25,7 +25,7 @@ pub(super) fn crosstalk(shares: &mut [f64; CHANNELS], last: f64, leak: f64) -> f
 }
 
 /// The integral non-linearity over the range.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Linearity {
     inl: Inl,
     /// LSB per piece, for [`InlShape::Bits`].

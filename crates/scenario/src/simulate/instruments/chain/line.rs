@@ -3,7 +3,7 @@
 use crate::chain::ChannelChain;
 use std::collections::VecDeque;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Line {
     poles: [Pole; 2],
     delay_s: f64,
@@ -77,7 +77,7 @@ impl Line {
 const SAME_STEP: f64 = 2e-6;
 
 /// A first-order low-pass whose input runs straight from one value to the next: exact for such an input.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Pole {
     time_constant_s: f64,
     /// Last input and output.

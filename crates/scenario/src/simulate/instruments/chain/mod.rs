@@ -50,7 +50,7 @@ pub(super) struct Conversion {
     carrier: Complex64,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Chain {
     spec: SignalChain,
     lines: [Line; CHANNELS],
