@@ -40,7 +40,7 @@ pub fn wipe() {
     LEFT.store(0, Ordering::Relaxed);
 }
 
-/// Notes the time for whoever cannot ask the clock any more.
+/// Notes the time for handlers that cannot ask the clock any more.
 pub fn note_time(now: Instant) {
     UPTIME_MS.store(now.as_millis() as u32, Ordering::Relaxed);
 }

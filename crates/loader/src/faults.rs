@@ -1,4 +1,4 @@
-//! The loader's ends, and the one thing that is none: a double word of flash whose programming was cut off.
+//! How the loader ends, and the one fault that it survives: a double word of flash whose programming was cut off.
 // Handlers of the processor.
 #![allow(unsafe_code)]
 

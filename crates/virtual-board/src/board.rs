@@ -324,7 +324,7 @@ impl VirtualBoard {
         machine.port(port).deliver(now, bytes);
     }
 
-    /// Sets the speed of whoever is on the other end of a port's wire, bit/s; without it that end follows the port.
+    /// Sets the speed of the other end of a port's wire, bit/s; without it that end follows the port.
     pub fn set_peer_speed(&mut self, port: Port, baud: u32) {
         self.cpu.machine().port(port).peer_bit = Some(TICK_HZ / u64::from(baud.max(1)));
     }

@@ -1,5 +1,5 @@
 //! The running test of the RAM: a few words at a time, with interrupts off. What DMA uses is left to its parity.
-// Every word of the memory, whoever it belongs to.
+// Every word of the memory, whatever it holds.
 #![allow(unsafe_code)]
 
 use cortex_m::interrupt;

@@ -116,7 +116,7 @@ fn channels_sampled_one_after_the_other_are_healthy_once_their_delays_are_known(
             let recording = in_turn(name, order);
             let (_, timeline) = monitored(&recording, &motor(name));
             if k == 0 {
-                // Currents three steps behind the voltages: what happens to whoever does not say so.
+                // Currents three steps behind the voltages: what happens where nobody says so.
                 assert_eq!(timeline.verdict(&[]).state, VerdictState::Fault, "{name}");
             }
             let mut flags = Mapping::default();

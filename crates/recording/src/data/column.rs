@@ -1,4 +1,4 @@
-//! The numbers of one column: owned, or lent by whoever measured them.
+//! The numbers of one column: owned, or lent by the program that measured them.
 
 use std::fmt;
 use std::ops::{Deref, Range};
@@ -10,7 +10,7 @@ pub type Lent = Arc<dyn AsRef<[f64]> + Send + Sync>;
 /// The numbers of one column.
 ///
 /// A column read from a file owns its numbers. One that comes from a table of another library (Arrow, numpy) may be lent:
-/// the numbers stay where they are, and whoever keeps them lives as long as the column.
+/// the numbers stay where they are, and their owner lives as long as the column.
 #[derive(Clone)]
 pub enum Column {
     /// Numbers of its own.

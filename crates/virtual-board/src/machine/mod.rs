@@ -87,7 +87,7 @@ pub(crate) const VREFINT_CAL: u16 = 1650;
 #[derive(Clone)]
 pub(crate) struct Machine {
     pub now: u64,
-    /// When whoever runs the board wants to look at it.
+    /// When the caller wants to look at it.
     pub until: u64,
     pub rcc: Rcc,
     pub ports: [Gpio; 7],

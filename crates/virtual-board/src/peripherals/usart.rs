@@ -85,7 +85,7 @@ pub struct Usart {
     /// What is on its way here, and the cycle at which each byte has arrived.
     incoming: VecDeque<(u64, u8, Quality)>,
     idle_at: Option<u64>,
-    /// Units of time of a bit of whoever sends to the port; `None` follows the port's own.
+    /// Units of time of a bit of the other end of the wire; `None` follows the port's own.
     pub peer_bit: Option<u64>,
     /// Everything that was sent.
     pub sent: Vec<Sent>,

@@ -4,7 +4,7 @@ use std::io::{self, Cursor, Read};
 
 /// Reads up to `most` bytes and gives them back with a reader of the whole stream.
 ///
-/// An error behind the first bytes is met again by whoever reads that far.
+/// An error behind the first bytes is met again where the file is read that far.
 pub(super) fn peek(mut stream: Box<dyn Read>, most: u64) -> (Vec<u8>, Box<dyn Read>) {
     let mut head = Vec::new();
     let ended = stream.by_ref().take(most).read_to_end(&mut head);
