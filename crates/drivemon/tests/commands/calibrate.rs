@@ -80,6 +80,67 @@ fn a_calibrated_motor_is_written_and_judges_its_recording_healthy() {
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
 }
 
+/// A motor whose load torque is not measured, at these loads for one and a half seconds each: what calibrating it says, and how far it
+/// leaves the stator resistance open, percent.
+fn calibrated_at(folder: &str, loads_percent: [f64; 3]) -> (String, f64) {
+    let folder = scratch(folder);
+    let at = |file: &str| folder.join(file);
+    let motor = std::fs::read_to_string(Path::new(PROJECT).join(MOTOR)).expect("shipped");
+    let free = motor.replace("kind = \"measured\"", "kind = \"free\"");
+    assert_ne!(free, motor);
+    std::fs::write(at("motor.toml"), free).expect("writable");
+    let [first, second, third] = loads_percent;
+    let scenario = format!(
+        "name = \"Two loads\"\nmotor = \"motor.toml\"\nduration_s = 4.5\nstart = \"running\"\nseed = 5\n\
+         [load]\nfriction_percent = 0.0\nactive = true\ninterpolation = \"step\"\n\
+         profile = [{{ at_s = 0.0, torque_percent = {first} }}, {{ at_s = 1.5, torque_percent = {second} }}, {{ at_s = 3.0, torque_percent = {third} }}]\n\
+         [sensors]\nnoise_sigma_fraction_of_full_scale = 0.002\n"
+    );
+    std::fs::write(at("loads.toml"), scenario).expect("writable");
+    let files = [
+        "loads.toml",
+        "recorded.csv.gz",
+        "motor.toml",
+        "mine.toml",
+        "mine.json",
+    ]
+    .map(at);
+    let [scenario, recording, motor, mine, json] = files.each_ref().map(|file| text(file));
+    let simulated = drivemon(&["simulate", scenario, "-o", recording]);
+    assert_eq!(simulated.status.code(), Some(0), "{}", stderr(&simulated));
+    let output = drivemon(&[
+        "calibrate",
+        recording,
+        "--motor",
+        motor,
+        "-o",
+        mine,
+        "--json",
+        json,
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = std::fs::read_to_string(json).expect("the JSON was written");
+    let told: serde_json::Value = serde_json::from_str(&told).expect("it is JSON");
+    let open = told["healthy"]["stator_resistance_percent"].as_f64();
+    (stdout(&output), open.expect("a number"))
+}
+
+/// Stator resistance, magnetizing inductance and leakage are three, and each load gives one equation for them: two loads leave them open,
+/// however different they are.
+#[test]
+fn loads_that_are_too_few_or_too_alike_are_told() {
+    for two in [[50.0, 100.0, 100.0], [10.0, 100.0, 100.0]] {
+        let (said, open) = calibrated_at("calibrate-two", two);
+        let told = said.contains("too few or too alike") && said.contains("Record three loads");
+        assert!((10.0..20.0).contains(&open) && told, "{open}: {said}");
+    }
+    let (said, open) = calibrated_at("calibrate-three", [10.0, 50.0, 100.0]);
+    assert!(
+        open < 3.0 && !said.contains("too few or too alike"),
+        "{open}: {said}"
+    );
+}
+
 /// Effective values taken for amplitudes: a rotor resistance a third smaller makes the best of it, and what is left would hide every fault.
 #[test]
 fn what_no_parameter_mends_is_not_calibrated() {

@@ -94,6 +94,8 @@ pub struct HealthyStatistics {
     pub i2_over_i1_percent: [f64; 2],
     /// Its scatter, percent.
     pub i2_over_i1_scatter_percent: f64,
+    /// How far the stator resistance may be off as FAULT sees it, percent: large where the recordings' loads are alike.
+    pub stator_resistance_percent: f64,
     /// Sidebands of the cage at a light and at a heavy load; absent where the recordings show too few blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotor: Option<HealthyCage>,
@@ -175,6 +177,7 @@ fn healthy(settings: &HealthySettings) -> HealthyStatistics {
         mean_percent: settings.mean_percent,
         i2_over_i1_percent: settings.current_unbalance_percent,
         i2_over_i1_scatter_percent: settings.current_unbalance_scatter_percent,
+        stator_resistance_percent: settings.stator_resistance_percent,
         rotor: settings.rotor.map(|rotor| HealthyCage {
             active_percent: rotor.active_percent,
             sideband_percent: rotor.sideband_percent,

@@ -61,6 +61,10 @@ pub struct Calibrate {
 const NO_WAVEFORMS: &str =
     "has no waveforms to calibrate from; its parameters come from `drivemon explain`";
 
+/// Uncertainty of the stator resistance above which loads are too few or too alike: three from idle to rated leave 1 to 2 %, two
+/// 12 to 16 %.
+const LOADS_ALIKE_PERCENT: f64 = 5.0;
+
 const EXAMPLES: &str = "\
 Example:
   drivemon calibrate idle.csv.gz half.csv.gz full.csv.gz --motor m.toml -o m-calibrated.toml
@@ -235,10 +239,23 @@ fn print_statistics(result: &Calibration) {
         healthy.significance,
         result.false_alarm_rate
     );
+    if !result.parameters.is_empty() {
+        print_loads(healthy.stator_resistance_percent);
+    }
     print_rotor(healthy.rotor.as_ref());
     print_in_motion(healthy.in_motion);
     let [r1, r2, r3, r4] = result.threshold_percent;
     say!("  thresholds r1 {r1:.2}  r2 {r2:.2}  r3 {r3:.2}  r4 {r4:.2} % of scale");
+}
+
+/// What recordings at loads that are too alike leave open.
+fn print_loads(stator_resistance_percent: f64) {
+    if stator_resistance_percent > LOADS_ALIKE_PERCENT {
+        say!(
+            "  {} too few or too alike: the stator resistance is known to {stator_resistance_percent:.0} % only, and FAULT waits for larger faults. Record three loads from idle to the largest, or two at a second voltage too",
+            paint::caution("loads:")
+        );
+    }
 }
 
 fn print_in_motion(seen: InMotion) {
