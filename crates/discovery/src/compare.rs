@@ -132,7 +132,7 @@ fn error_of(study: &Study, r: &[f64], blocks: &[Numbered]) -> f64 {
 fn state(study: &Study, waveform: &Waveform, rows: &Range<usize>) -> String {
     let rated = &study.prior.plant.rated;
     let [load, voltage, slip, _] = percents(study, waveform, rows);
-    let stride = waveform.between.stride() * waveform.decimation;
+    let stride = waveform.samples_per_row();
     let part = rows.start * stride..(rows.end * stride).min(waveform.inputs.u_s.len());
     if voltage < 2.0 {
         return "off".to_owned();
@@ -163,7 +163,7 @@ fn is_cut(waveform: &Waveform, sample: usize) -> bool {
 
 /// Mean load torque of some rows, N m: as measured, or that of the air gap (its power over the synchronous speed).
 fn load_torque(study: &Study, waveform: &Waveform, rows: Range<usize>) -> f64 {
-    let stride = waveform.between.stride() * waveform.decimation;
+    let stride = waveform.samples_per_row();
     let r_s = study.prior.plant.motor.r_s;
     let n_p = study.prior.plant.rated.n_p;
     let torque = |row: usize| {
@@ -183,7 +183,7 @@ fn load_torque(study: &Study, waveform: &Waveform, rows: Range<usize>) -> f64 {
 /// Load, voltage, slip and frequency of a block, percent of rated (slip: percent).
 fn percents(study: &Study, waveform: &Waveform, rows: &Range<usize>) -> [f64; 4] {
     let rated = &study.prior.plant.rated;
-    let stride = waveform.between.stride() * waveform.decimation;
+    let stride = waveform.samples_per_row();
     let mean = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>() / rows.len() as f64;
     let sync = &waveform.timeline.omega_sync;
     let omega = mean(&|row| sync[(row * stride).min(sync.len() - 1)]);
@@ -260,7 +260,7 @@ fn orders(case: &Case, r: &[f64]) -> Vec<OrderReport> {
     let Some(waveform) = case.waveform() else {
         return Vec::new();
     };
-    let stride = waveform.between.stride() * waveform.decimation;
+    let stride = waveform.samples_per_row();
     let error = |row: usize| {
         let at = |k: usize| {
             let w = waveform.weight[row][k];

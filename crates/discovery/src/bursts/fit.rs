@@ -54,7 +54,7 @@ pub(crate) struct Fitted {
 
 impl Scene<'_> {
     fn t_step(&self) -> f64 {
-        self.waveform.inputs.t_sample * self.waveform.between.stride() as f64
+        self.waveform.t_step()
     }
 
     fn count(&self) -> usize {

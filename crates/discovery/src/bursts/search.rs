@@ -90,9 +90,7 @@ fn scene<'a>(study: &'a Study, of: &'a Subject, h: &Hypothesis, free: bool) -> O
 
 fn is_judged(waveform: &Waveform, place: Place) -> bool {
     match place {
-        Place::Torque | Place::Friction | Place::SensorSpeed => {
-            !waveform.speed_is_input && !waveform.speed.is_empty()
-        }
+        Place::Torque | Place::Friction | Place::SensorSpeed => waveform.judges_speed(),
         _ => true,
     }
 }

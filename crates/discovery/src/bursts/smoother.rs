@@ -250,7 +250,7 @@ mod tests {
         let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
         let waveform = specimen::waveform_of(&study);
         let of = Sensitivities::of(waveform, prior, &fit);
-        let t_step = waveform.inputs.t_sample * waveform.between.stride() as f64;
+        let t_step = waveform.t_step();
         let torque = 0.1 * prior.plant.rated.torque;
         let pulse = Pulse {
             from: 0.5,
@@ -318,7 +318,7 @@ mod tests {
             residual: &residual,
             weight: &vec![[1.0; 4]; rows],
             decimation: waveform.decimation,
-            t_step: waveform.inputs.t_sample * waveform.between.stride() as f64,
+            t_step: waveform.t_step(),
         };
         let wander = Wander {
             deviation: 1.0,

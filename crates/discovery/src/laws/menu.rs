@@ -31,9 +31,7 @@ pub(crate) fn menu(waveform: &Waveform, plant: &Plant, motion: &Motion) -> Vec<E
 fn is_judged(waveform: &Waveform, action: Action) -> bool {
     match action.place {
         Place::Torque | Place::Friction => !waveform.speed_is_input,
-        Place::SensorSpeed => {
-            !waveform.speed_is_input && !waveform.speed.is_empty() && !waveform.speed_scale_is_free
-        }
+        Place::SensorSpeed => waveform.judges_speed() && !waveform.speed_scale_is_free,
         _ => true,
     }
 }

@@ -38,7 +38,7 @@ impl Motion {
     /// The motion of a plant on what drives a recording, of a linearised run and its true outputs.
     pub fn of(waveform: &Waveform, plant: &Plant, tangent: &Tangent, outputs: &Outputs) -> Self {
         let stride = waveform.between.stride();
-        let t_step = waveform.inputs.t_sample * stride as f64;
+        let t_step = waveform.t_step();
         let n_p = plant.mechanics.n_p;
         let omega_sync = |k: usize| {
             let all = &waveform.timeline.omega_sync;

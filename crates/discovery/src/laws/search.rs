@@ -158,7 +158,7 @@ impl<'a> LawSearch<'a> {
     fn led(&self) -> Vec<Screened> {
         let (case, prior) = (&self.study.fitted.case, &self.study.prior);
         let astray = self.study.fold_error(&self.base.folds) > ASTRAY;
-        if !astray || self.waveform.speed.is_empty() || self.waveform.speed_is_input {
+        if !astray || !self.waveform.judges_speed() {
             return Vec::new();
         }
         let led = Effort {

@@ -195,7 +195,7 @@ struct Means {
 impl Means {
     /// `None` where something is not judged.
     fn of(waveform: &Waveform, from: usize, n: usize) -> Option<Self> {
-        let stride = waveform.between.stride() * waveform.decimation;
+        let stride = waveform.samples_per_row();
         let (mut u, mut i, mut omega, mut sync) = (Complex64::ZERO, Complex64::ZERO, 0.0, 0.0);
         for row in from..from + n {
             if waveform.weight[row][..3].contains(&0.0) {

@@ -58,7 +58,7 @@ fn drivers(study: &Study) -> Vec<(&'static str, Vec<f64>)> {
     let Some(waveform) = case.waveform() else {
         return vec![current];
     };
-    let stride = waveform.between.stride() * waveform.decimation;
+    let stride = waveform.samples_per_row();
     let (inputs, sync) = (&waveform.inputs, &waveform.timeline.omega_sync);
     let mut all = vec![("time", mean(&|row| waveform.time_of(row))), current];
     all.push(("voltage", mean(&|row| inputs.u_s[row * stride].norm())));

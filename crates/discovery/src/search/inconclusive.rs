@@ -189,7 +189,7 @@ fn parameter(uncertainty: &Uncertainty, k: usize) -> Option<Inconclusive> {
 fn slip(study: &Study, trial: &Trial, scale_error: f64) -> Option<Inconclusive> {
     let plant = trial.fit.hypothesis.plant(&study.prior);
     let case = study.fitted.case.waveform()?.as_seen_by(&plant);
-    let stride = case.between.stride() * case.decimation;
+    let stride = case.samples_per_row();
     let of_row = |row: usize| {
         let k = (row * stride).min(case.speed.len() - 1);
         1.0 - plant.mechanics.n_p * case.speed[k] / case.timeline.omega_sync[k]

@@ -179,8 +179,7 @@ fn settled(study: &Study, base: &Trial, c: &Candidate) -> bool {
 
 /// Whether a fit with this error may have gone astray, and a measured speed can lead it.
 fn may_be_local_minimum(case: &Case, error: f64) -> bool {
-    let can_lead = |waveform: &Waveform| !waveform.speed.is_empty() && !waveform.speed_is_input;
-    error > LOCAL_MINIMUM_ERROR && case.waveform().is_some_and(can_lead)
+    error > LOCAL_MINIMUM_ERROR && case.waveform().is_some_and(Waveform::judges_speed)
 }
 
 /// Effects whose linear estimate has an impossible sign: from a base in a local minimum that is no verdict.

@@ -80,9 +80,9 @@ fn a_calibrated_motor_is_written_and_judges_its_recording_healthy() {
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
 }
 
-/// A motor whose load torque is not measured, at these loads for one and a half seconds each: what calibrating it says, and how far it
-/// leaves the stator resistance open, percent.
-fn calibrated_at(folder: &str, loads_percent: [f64; 3]) -> (String, f64) {
+/// A motor whose load torque is not measured, at these loads for one and a half seconds each, the last at this voltage: what calibrating
+/// it says, and how far it leaves the stator resistance open, percent.
+fn calibrated_at(folder: &str, loads_percent: [f64; 3], last_volt_percent: f64) -> (String, f64) {
     let folder = scratch(folder);
     let at = |file: &str| folder.join(file);
     let motor = std::fs::read_to_string(Path::new(PROJECT).join(MOTOR)).expect("shipped");
@@ -92,6 +92,7 @@ fn calibrated_at(folder: &str, loads_percent: [f64; 3]) -> (String, f64) {
     let [first, second, third] = loads_percent;
     let scenario = format!(
         "name = \"Two loads\"\nmotor = \"motor.toml\"\nduration_s = 4.5\nstart = \"running\"\nseed = 5\n\
+         [supply]\nsteps = [{{ at_s = 3.0, voltage_percent = {last_volt_percent} }}]\n\
          [load]\nfriction_percent = 0.0\nactive = true\ninterpolation = \"step\"\n\
          profile = [{{ at_s = 0.0, torque_percent = {first} }}, {{ at_s = 1.5, torque_percent = {second} }}, {{ at_s = 3.0, torque_percent = {third} }}]\n\
          [sensors]\nnoise_sigma_fraction_of_full_scale = 0.002\n"
@@ -130,15 +131,19 @@ fn calibrated_at(folder: &str, loads_percent: [f64; 3]) -> (String, f64) {
 #[test]
 fn loads_that_are_too_few_or_too_alike_are_told() {
     for two in [[50.0, 100.0, 100.0], [10.0, 100.0, 100.0]] {
-        let (said, open) = calibrated_at("calibrate-two", two);
+        let (said, open) = calibrated_at("calibrate-two", two, 100.0);
         let told = said.contains("too few or too alike") && said.contains("Record three loads");
         assert!((10.0..20.0).contains(&open) && told, "{open}: {said}");
     }
-    let (said, open) = calibrated_at("calibrate-three", [10.0, 50.0, 100.0]);
-    assert!(
-        open < 3.0 && !said.contains("too few or too alike"),
-        "{open}: {said}"
-    );
+    let enough = [
+        ("calibrate-three", [10.0, 50.0, 100.0], 100.0),
+        ("calibrate-volts", [10.0, 100.0, 100.0], 90.0),
+    ];
+    for (folder, loads, volts) in enough {
+        let (said, open) = calibrated_at(folder, loads, volts);
+        let told = said.contains("too few or too alike");
+        assert!(open < 3.0 && !told, "{open}: {said}");
+    }
 }
 
 /// Effective values taken for amplitudes: a rotor resistance a third smaller makes the best of it, and what is left would hide every fault.

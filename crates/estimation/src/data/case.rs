@@ -28,6 +28,7 @@ const OF_TABLE: [(&str, &str); N_CHANNELS] = [
     ("efficiency", "-"),
     ("", ""),
 ];
+
 /// What a model is held against, made ready.
 #[derive(Clone, Debug)]
 pub enum Case {

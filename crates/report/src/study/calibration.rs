@@ -94,7 +94,8 @@ pub struct HealthyStatistics {
     pub i2_over_i1_percent: [f64; 2],
     /// Its scatter, percent.
     pub i2_over_i1_scatter_percent: f64,
-    /// How far the stator resistance may be off as FAULT sees it, percent: large where the recordings' loads are alike.
+    /// How far the stator resistance may be off as FAULT sees it, percent: large where the recordings' loads are too few
+    /// or too alike; what is believed where currents alone were recorded.
     pub stator_resistance_percent: f64,
     /// Sidebands of the cage at a light and at a heavy load; absent where the recordings show too few blocks.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -181,6 +181,16 @@ impl Waveform {
         self.inputs.t_sample * self.samples_per_row() as f64
     }
 
+    /// Time of an integration step, s.
+    pub fn t_step(&self) -> f64 {
+        self.inputs.t_sample * self.between.stride() as f64
+    }
+
+    /// Whether the speed was measured and the model is judged by it: it is not what drives the model.
+    pub fn judges_speed(&self) -> bool {
+        !self.speed.is_empty() && !self.speed_is_input
+    }
+
     /// Input samples per residual row.
     pub fn samples_per_row(&self) -> usize {
         self.between.stride() * self.decimation
@@ -248,7 +258,7 @@ impl Waveform {
         currents: [&[f64]; 3],
         sigma_u: f64,
     ) {
-        let h = self.inputs.t_sample * self.between.stride() as f64;
+        let h = self.t_step();
         // Every sample of a slow recording is a row.
         let step = match self.finer {
             1 => ((1.0 / ROW_RATE / h).round() as usize).max(1),
@@ -260,7 +270,7 @@ impl Waveform {
         let speed = rec.speed().filter(|_| !self.speed_is_input);
         let w_speed = speed.map_or(0.0, |x| 1.0 / sigma(rec, Channel::SPEED, x));
         let w_zero = 3f64.sqrt() / sigma_u;
-        let stride = self.between.stride() * self.decimation / self.finer;
+        let stride = self.samples_per_row() / self.finer;
         let whole = (self.between.stride() / self.finer).max(1);
         let last = (rec.len() - 1) / whole * whole;
         let limits = [0, 1, 2].map(|k| clip_limit(rec, k, currents[k]));

@@ -61,8 +61,8 @@ pub struct Calibrate {
 const NO_WAVEFORMS: &str =
     "has no waveforms to calibrate from; its parameters come from `drivemon explain`";
 
-/// Uncertainty of the stator resistance above which loads are too few or too alike: three from idle to rated leave 1 to 2 %, two
-/// 12 to 16 %.
+/// Uncertainty of the stator resistance above which loads are too few or too alike: three from idle to rated leave some
+/// 2 %, two 11 to 16 %.
 const LOADS_ALIKE_PERCENT: f64 = 5.0;
 
 const EXAMPLES: &str = "\
