@@ -1,6 +1,7 @@
 //! How small a fault of a channel may be to be seen through a board of the documented parts.
 
 use std::error::Error;
+use std::ops::Range;
 
 use crate::installed::{Conditions, DEGC, Installed, WARMTH, between, random_of};
 use crate::judge::raw;
@@ -25,6 +26,8 @@ const ALL_CURRENTS: &[f64] = &[2.0, 3.0, 6.0, 12.0];
 const ALL_VOLTAGES: &[f64] = &[1.0, 2.0, 3.0, 4.0, 8.0, 16.0];
 /// Runs of a hundred that must be seen.
 const SEEN: f64 = 0.99;
+/// The same from which on the boards that miss it are named.
+const MOST: f64 = 0.95;
 
 /// A kind of fault and its sizes.
 #[derive(Clone, Copy)]
@@ -103,13 +106,19 @@ impl Running {
     }
 }
 
-/// Whether FAULT lights, for each kind and change one after another; `None` where calibration refuses the board.
+/// A board, and whether FAULT lights, for each kind and change one after another.
+struct Judged {
+    board: String,
+    lights: Vec<bool>,
+}
+
+/// What is seen of a board; `None` where calibration refuses it.
 fn seen(
     motor: &MotorFile,
     ideal: bool,
     seed: u64,
     k: u64,
-) -> Result<Option<Vec<bool>>, Box<dyn Error>> {
+) -> Result<Option<Judged>, Box<dyn Error>> {
     let mut random = random_of(seed, k);
     let drawn = Installed::draw(motor, &mut random);
     let installed = if ideal { drawn.without_errors() } else { drawn };
@@ -142,7 +151,10 @@ fn seen(
             lights.push(faulty.lights(&monitor, JUDGED_S));
         }
     }
-    Ok(Some(lights))
+    Ok(Some(Judged {
+        board: format!("board {k}, {}", installed.supply()),
+        lights,
+    }))
 }
 
 /// Prints the table of docs/wiring.md.
@@ -160,7 +172,7 @@ pub fn print(motors: &[(&str, MotorFile)], boards: u64, seed: u64) -> Result<(),
         let mut from = 0;
         for (kind, sign) in KINDS.iter().flat_map(|kind| [(kind, "+"), (kind, "-")]) {
             let lines = from..from + kind.sizes.len();
-            let row = |judged: &[Vec<bool>]| Row {
+            let row = |judged: &[Judged]| Row {
                 kind,
                 sign,
                 shares: lines.clone().map(|line| share(judged, line)).collect(),
@@ -172,6 +184,7 @@ pub fn print(motors: &[(&str, MotorFile)], boards: u64, seed: u64) -> Result<(),
                 kind.name,
                 row.all()
             );
+            tell_few_that_miss(kind, sign, &real, lines.clone());
             from = lines.end;
         }
     }
@@ -184,14 +197,29 @@ fn judged(
     ideal: bool,
     boards: u64,
     seed: u64,
-) -> Result<Vec<Vec<bool>>, Box<dyn Error>> {
+) -> Result<Vec<Judged>, Box<dyn Error>> {
     let one = |k| seen(motor, ideal, seed, k).map_err(|error| error.to_string());
     let all: Result<Vec<_>, _> = (0..boards).into_par_iter().map(one).collect();
     Ok(all?.into_iter().flatten().collect())
 }
 
-fn share(judged: &[Vec<bool>], line: usize) -> f64 {
-    let lit = judged.iter().filter(|lights| lights[line]).count();
+/// Says which boards miss what most see.
+fn tell_few_that_miss(kind: &Kind, sign: &str, judged: &[Judged], lines: Range<usize>) {
+    for (line, size) in lines.zip(kind.sizes) {
+        if share(judged, line) < MOST {
+            continue;
+        }
+        for miss in judged.iter().filter(|one| !one.lights[line]) {
+            eprintln!(
+                "{} {sign}{size} % is missed behind {}",
+                kind.name, miss.board
+            );
+        }
+    }
+}
+
+fn share(judged: &[Judged], line: usize) -> f64 {
+    let lit = judged.iter().filter(|one| one.lights[line]).count();
     lit as f64 / judged.len().max(1) as f64
 }
 

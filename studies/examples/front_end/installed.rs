@@ -134,6 +134,14 @@ impl<'m> Installed<'m> {
         }
     }
 
+    /// What feeds the motor, in words.
+    pub fn supply(&self) -> String {
+        match self.carrier_hz {
+            Some(hertz) => format!("inverter with a carrier of {hertz:.0} Hz"),
+            None => "grid".to_owned(),
+        }
+    }
+
     /// The same without errors of the instruments: what a fault is measured against.
     pub fn without_errors(self) -> Self {
         let conversions = self.board.chain.conversions;
