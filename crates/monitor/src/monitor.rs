@@ -231,11 +231,13 @@ impl Monitor {
     #[inline(never)]
     fn close_cycle(&self, state: &mut MonitorState, phasors: CyclePhasors) -> Report {
         let tally = state.intake.close_cycle();
+        let torque = tally.torque();
         state.measured = tally.measured();
         let cycle = Cycle {
             phasors,
             speed: self.encoder.close_window(&mut state.encoder),
-            tau_load: tally.tau_load(),
+            tau_load: torque.mean,
+            tau_noise: torque.noise,
             clipped: tally.clipped,
             invalid_samples: tally.invalid,
         };

@@ -24,6 +24,8 @@ pub struct Cycle {
     pub speed: SpeedReading,
     /// Mean brake torque over the cycle, N m, where a torque channel exists.
     pub tau_load: Option<f32>,
+    /// Its standard deviation by the noise from sample to sample, N m.
+    pub tau_noise: f32,
     /// Channels that touched a rail.
     pub clipped: ClippedChannels,
     /// Samples that were not finite numbers and were replaced by their predecessor.
@@ -114,6 +116,8 @@ pub struct Window {
     pub speed_bend: f32,
     /// Standard deviation of the speed of a cycle by the scatter of its samples, rad/s.
     pub speed_noise: f32,
+    /// The same of the brake torque by the noise from sample to sample, N m.
+    pub tau_noise: f32,
     /// Time between the middles of the first and the last cycle, s.
     pub span: f32,
     /// Channels that touched a rail anywhere in the window.
@@ -135,6 +139,8 @@ pub struct CycleNoise {
     pub current: f32,
     /// Of the mechanical speed, rad/s.
     pub speed: f32,
+    /// Of the brake torque, N m; 0 where it is not measured.
+    pub torque: f32,
 }
 
 /// Slopes of straight lines through the cycles of a window.
@@ -219,6 +225,7 @@ impl Window {
             voltage: of(0),
             current: of(3),
             speed: self.speed_noise,
+            torque: self.tau_noise,
         }
     }
 
@@ -391,6 +398,7 @@ fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> W
             sum.mean_square += channel.mean_square * share;
         }
         window.speed_noise = window.speed_noise.max(cycle.speed.noise);
+        window.tau_noise = window.tau_noise.max(cycle.tau_noise);
         window.clipped = window.clipped.union(cycle.clipped);
         window.invalid_samples = window.invalid_samples.saturating_add(cycle.invalid_samples);
         window.glitches = window.glitches.saturating_add(cycle.speed.glitches);

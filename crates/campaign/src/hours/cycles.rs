@@ -88,6 +88,7 @@ impl Cycles {
                 ..SpeedReading::default()
             },
             tau_load: None,
+            tau_noise: 0.0,
             clipped: ClippedChannels::NONE,
             invalid_samples: 0,
         }

@@ -5,4 +5,5 @@ pub(crate) mod chain;
 pub(crate) mod codes;
 pub(crate) mod converter;
 pub(crate) mod sample;
+pub(crate) mod torque;
 pub(crate) mod validity;

@@ -2,6 +2,7 @@
 
 use crate::frames::Abc;
 use crate::input::sample::{ClippedChannels, Sample};
+use crate::input::torque::{TorqueReading, TorqueTally};
 
 /// Share of a peak that is forgotten per second.
 pub(crate) const PEAK_DECAY_PER_SECOND: f32 = 5.0;
@@ -31,8 +32,7 @@ pub struct Tally {
     pub invalid: u16,
     /// Channels at a rail.
     pub clipped: ClippedChannels,
-    torque_sum: f32,
-    torque_samples: u16,
+    torque: TorqueTally,
 }
 
 /// One instant fit for arithmetic.
@@ -51,10 +51,9 @@ impl Tally {
             .map(|present| 2 * u32::from(present) > u32::from(self.samples))
     }
 
-    /// Mean brake torque, N m, when every sample carried one.
-    pub fn tau_load(&self) -> Option<f32> {
-        let complete = self.torque_samples > 0 && self.torque_samples == self.samples;
-        complete.then(|| self.torque_sum / f32::from(self.torque_samples))
+    /// Brake torque over the cycle, when every sample carried one.
+    pub fn torque(&self) -> TorqueReading {
+        self.torque.close(self.samples)
     }
 }
 
@@ -76,8 +75,7 @@ impl IntakeState {
         let bad = voltages == Quality::Invalid || currents == Quality::Invalid || torque_bad;
         tally.invalid = tally.invalid.saturating_add(u16::from(bad));
         if let Some(tau) = torque {
-            tally.torque_sum += tau;
-            tally.torque_samples = tally.torque_samples.saturating_add(1);
+            tally.torque.add(tau);
         }
         let repeats = before == (u_s_abc, i_s_abc);
         self.still = if repeats {
@@ -224,9 +222,9 @@ mod tests {
             };
             state.admit(&with_torque);
         }
-        assert_eq!(state.close_cycle().tau_load(), Some(2.0));
+        assert_eq!(state.close_cycle().torque().mean, Some(2.0));
         state.admit(&sample(1.0, 1.0));
-        assert_eq!(state.close_cycle().tau_load(), None);
+        assert_eq!(state.close_cycle().torque().mean, None);
     }
 
     #[test]
@@ -271,7 +269,7 @@ mod tests {
             state.admit(&with(1.0));
             state.admit(&with(bad));
             let tally = state.close_cycle();
-            assert_eq!((tally.invalid, tally.tau_load()), (1, None), "{bad}");
+            assert_eq!((tally.invalid, tally.torque().mean), (1, None), "{bad}");
         }
     }
 

@@ -9,7 +9,7 @@ use crate::model::operating_point::OperatingPoint;
 use crate::model::residuals::{FieldCurrent, RESIDUALS, ResidualModel};
 use crate::monitor::{Monitor, MonitorState};
 use crate::noise::allowance::{Allowance, FLUX, FOLLOWED, SPEED};
-use crate::noise::scatter::Noise;
+use crate::noise::scatter::{Belief, Noise};
 use crate::noise::trend::rate_noise;
 use crate::window::Window;
 
@@ -27,16 +27,16 @@ impl Monitor {
         window: &Window,
         is_steady: bool,
     ) -> Allowance {
-        let believed = self.believed(window);
+        let belief = self.belief(window);
         if is_steady {
-            self.follow_cycles(state, window, &believed);
+            self.follow_cycles(state, window, &belief);
         } else {
             state.scatter.interrupt();
         }
-        self.allowed(&state.scatter.noise(&believed), window)
+        self.allowed(&state.scatter.noise(&belief), window)
     }
 
-    fn follow_cycles(&self, state: &mut MonitorState, window: &Window, believed: &[f32; FOLLOWED]) {
+    fn follow_cycles(&self, state: &mut MonitorState, window: &Window, belief: &Belief<FOLLOWED>) {
         let cycles = match state.scatter.is_interrupted() {
             true => self.config.window_cycles,
             false => 1,
@@ -44,27 +44,29 @@ impl Monitor {
         for age in (0..cycles).rev() {
             let cycle = state.window.single(age, window);
             match cycle.and_then(|cycle| self.shown(&cycle)) {
-                Some(shown) => state.scatter.follow(&shown, believed),
+                Some(shown) => state.scatter.follow(&shown, belief),
                 None => state.scatter.interrupt(),
             }
         }
     }
 
-    /// Standard deviations of single cycles before any was compared with another: what the samples beside their
-    /// fundamentals let expect, but no less than what thresholds and calibration hold.
-    fn believed(&self, window: &Window) -> [f32; FOLLOWED] {
+    /// What the samples beside their fundamentals let expect, but no less than what thresholds and calibration hold.
+    fn belief(&self, window: &Window) -> Belief<FOLLOWED> {
         let root = processor::sqrtf(self.config.window_cycles as f32);
-        let mut believed = self.expected(window);
-        for (sigma, threshold) in believed.iter_mut().zip(self.config.thresholds) {
-            *sigma = sigma.max(root * BELIEVED * threshold);
+        let mut floor = [0.0; FOLLOWED];
+        for (sigma, threshold) in floor.iter_mut().zip(self.config.thresholds) {
+            *sigma = root * BELIEVED * threshold;
         }
         if let Some(healthy) = &self.config.healthy {
-            let rows = believed.iter_mut().skip(RESIDUALS);
+            let rows = floor.iter_mut().skip(RESIDUALS);
             for (sigma, scatter) in rows.zip(healthy.scatter) {
-                *sigma = sigma.max(root * scatter);
+                *sigma = root * scatter;
             }
         }
-        believed
+        Belief {
+            expected: self.expected(window),
+            floor,
+        }
     }
 
     /// What white noise of the samples does to what a cycle shows, in the order of what is followed.
@@ -77,7 +79,8 @@ impl Monitor {
         let root = |a: f32, b: f32| processor::sqrtf(a * a + b * b);
         let flux = share(root(u, omega * p.l_s() * i), volt);
         let psi = share(volt, omega);
-        let torque = 1.5 * mechanics.n_p * psi * root(i, i);
+        let load = self.tau_load(window).map_or(0.0, |_| noise.torque);
+        let torque = root(1.5 * mechanics.n_p * psi * root(i, i), load);
         let torque = self
             .model
             .acceleration_share(omega, torque / mechanics.inertia);

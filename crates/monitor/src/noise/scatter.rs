@@ -4,6 +4,9 @@
 //! straight line and of what changes its sign from cycle to cycle, as a motor of four poles shows its turn: a window takes
 //! the mean of that away. Of white noise of variance `s^2` it has `4 s^2`. Nothing is assumed of the noise's origin, and
 //! what lasts (a fault, harmonics, a ramp) does not count.
+//!
+//! What was seen while the samples were quieter says little about cycles of noisy samples: it counts for as many
+//! differences less as the variance that the samples let expect has grown since.
 
 /// Quantities that are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +16,19 @@ pub struct ScatterState<const N: usize> {
     /// Cycles in a row, up to three.
     in_row: u8,
     variance: [f32; N],
+    /// What was believed of the variance meanwhile.
+    believed: [f32; N],
     /// Differences that `variance` stands for, at most [`MEMORY`].
     seen: f32,
+}
+
+/// What is believed of single cycles before any was compared with another: standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Belief<const N: usize> {
+    /// What the samples beside their fundamentals let expect if they were white noise: an inverter's ripple is none.
+    pub expected: [f32; N],
+    /// No less than this, whatever the samples say.
+    pub floor: [f32; N],
 }
 
 /// Noise of a window.
@@ -22,7 +36,7 @@ pub struct ScatterState<const N: usize> {
 pub struct Noise<const N: usize> {
     /// Standard deviations of single cycles.
     pub cycle: [f32; N],
-    /// Degrees of freedom behind them.
+    /// Degrees of freedom behind the one that is known least.
     pub freedom: f32,
 }
 
@@ -36,6 +50,8 @@ const FREEDOM: f32 = 1.0 / (1.0 + 2.0 * (1.0 / 16.0 + 1.0 / 4.0 + 1.0 / 16.0));
 const LARGEST: f32 = 9.0;
 /// Degrees of freedom with which what is believed beforehand counts.
 const BELIEF: f32 = 16.0;
+/// Deviations to which what was seen must be as certain as what is expected: what a calibrated cause asks for.
+const FARTHEST: f32 = 5.5;
 
 impl<const N: usize> Default for ScatterState<N> {
     fn default() -> Self {
@@ -43,38 +59,35 @@ impl<const N: usize> Default for ScatterState<N> {
             before: [[0.0; N]; 3],
             in_row: 0,
             variance: [0.0; N],
+            believed: [0.0; N],
             seen: 0.0,
         }
     }
 }
 
 impl<const N: usize> ScatterState<N> {
-    /// Takes what one cycle shows; `believed` are the standard deviations of a cycle before anything was seen.
-    pub fn follow(&mut self, cycle: &[f32; N], believed: &[f32; N]) {
+    /// Takes what one cycle shows.
+    pub fn follow(&mut self, cycle: &[f32; N], belief: &Belief<N>) {
         if !cycle.iter().all(|x| x.is_finite()) {
             self.interrupt();
             return;
         }
         if self.in_row >= 3 {
-            self.learn(cycle, believed);
+            self.learn(cycle, belief);
         }
         self.in_row = (self.in_row + 1).min(3);
         let [y, z, _] = self.before;
         self.before = [*cycle, y, z];
     }
 
-    fn learn(&mut self, cycle: &[f32; N], believed: &[f32; N]) {
-        let noise = self.noise(believed);
+    fn learn(&mut self, cycle: &[f32; N], belief: &Belief<N>) {
+        let noise = self.noise(belief);
         self.seen = (self.seen + 1.0).min(MEMORY);
         let [y, z, w] = &self.before;
         let pasts = y.iter().zip(z).zip(w);
-        for (((variance, x), ((y, z), w)), sigma) in self
-            .variance
-            .iter_mut()
-            .zip(cycle)
-            .zip(pasts)
-            .zip(noise.cycle)
-        {
+        let learnt = self.variance.iter_mut().zip(&mut self.believed);
+        let now = cycle.iter().zip(pasts).zip(noise.cycle).zip(belief.all());
+        for ((variance, believed), (((x, ((y, z), w)), sigma), belief)) in learnt.zip(now) {
             let difference = x - y - z + w;
             let square = difference * difference / DIFFERENCE;
             let known = sigma * sigma;
@@ -84,6 +97,7 @@ impl<const N: usize> ScatterState<N> {
                 square
             };
             *variance += (admitted - *variance) / self.seen;
+            *believed += (belief * belief - *believed) / self.seen;
         }
     }
 
@@ -98,28 +112,50 @@ impl<const N: usize> ScatterState<N> {
     }
 
     /// What is known now.
-    pub fn noise(&self, believed: &[f32; N]) -> Noise<N> {
-        let seen = FREEDOM * self.seen;
-        let mut cycle = *believed;
-        for (sigma, variance) in cycle.iter_mut().zip(self.variance) {
-            let sum = BELIEF * *sigma * *sigma + seen * variance;
-            *sigma = processor::sqrtf(sum / (BELIEF + seen));
+    pub fn noise(&self, belief: &Belief<N>) -> Noise<N> {
+        let seen = FREEDOM * self.seen * self.alike(belief);
+        let freedom = BELIEF + seen;
+        let alone = doubt(seen, FARTHEST) / doubt(freedom, FARTHEST);
+        let mut cycle = [0.0; N];
+        let beliefs = belief.expected.iter().zip(&belief.floor);
+        for ((sigma, variance), (expected, floor)) in
+            cycle.iter_mut().zip(self.variance).zip(beliefs)
+        {
+            // Not a number where nothing was seen: what is expected holds.
+            let believed = expected.min(alone * processor::sqrtf(variance)).max(*floor);
+            let sum = BELIEF * believed * believed + seen * variance;
+            *sigma = processor::sqrtf(sum / freedom);
         }
-        Noise {
-            cycle,
-            freedom: BELIEF + seen,
-        }
+        Noise { cycle, freedom }
+    }
+
+    /// Share of what was seen that counts for cycles of which this is believed: the least of all quantities.
+    fn alike(&self, belief: &Belief<N>) -> f32 {
+        let pairs = self.believed.iter().zip(belief.all());
+        let shares = pairs.map(|(before, now)| before / (now * now));
+        shares.fold(1.0, f32::min)
+    }
+}
+
+impl<const N: usize> Belief<N> {
+    fn all(&self) -> impl Iterator<Item = f32> + '_ {
+        let pairs = self.expected.iter().zip(&self.floor);
+        pairs.map(|(expected, floor)| expected.max(*floor))
     }
 }
 
 impl<const N: usize> Noise<N> {
-    /// How much farther than `deviations` of a known one an estimated standard deviation must reach for the same certainty:
-    /// Student's distribution, by Wallace (Ann. Math. Stat. 30 (1959) 1124).
+    /// How much farther than `deviations` of a known one an estimated standard deviation must reach for the same certainty.
     pub fn doubt(&self, deviations: f32) -> f32 {
-        let nu = self.freedom;
-        let z = deviations * (8.0 * nu + 3.0) / (8.0 * nu + 1.0);
-        processor::sqrtf(nu * libm::expm1f(z * z / nu)) / deviations
+        doubt(self.freedom, deviations)
     }
+}
+
+/// Student's distribution with `nu` degrees of freedom over the normal one's `deviations`, by Wallace (Ann. Math. Stat. 30
+/// (1959) 1124).
+fn doubt(nu: f32, deviations: f32) -> f32 {
+    let z = deviations * (8.0 * nu + 3.0) / (8.0 * nu + 1.0);
+    processor::sqrtf(nu * libm::expm1f(z * z / nu)) / deviations
 }
 
 #[cfg(test)]
@@ -131,11 +167,25 @@ mod tests {
         (0..12).map(|_| random.random::<f32>()).sum::<f32>() - 6.0
     }
 
+    fn floor<const N: usize>(floor: [f32; N]) -> Belief<N> {
+        Belief {
+            expected: [0.0; N],
+            floor,
+        }
+    }
+
+    fn white<const N: usize>(expected: [f32; N]) -> Belief<N> {
+        Belief {
+            expected,
+            floor: [0.0; N],
+        }
+    }
+
     #[test]
     fn white_noise_is_measured_whatever_it_rides_on() {
         let mut random = rand_pcg::Pcg64::seed_from_u64(1);
         let (mut state, mut mean) = (ScatterState::<2>::default(), 0.0);
-        let believed = [0.5, 0.0];
+        let believed = floor([0.5, 0.0]);
         for k in 0..6000_u16 {
             let ramp = 3.0 + 0.2 * f32::from(k);
             let cycle = [
@@ -162,9 +212,9 @@ mod tests {
         let mut state = ScatterState::<1>::default();
         for k in 0..500_u16 {
             let turn = if k % 2 == 0 { 10.0 } else { -10.0 };
-            state.follow(&[turn + 0.1 * normal(&mut random)], &[0.1]);
+            state.follow(&[turn + 0.1 * normal(&mut random)], &floor([0.1]));
         }
-        let noise = state.noise(&[0.1]);
+        let noise = state.noise(&floor([0.1]));
         assert!((noise.cycle[0] / 0.1 - 1.0).abs() < 0.45, "{noise:?}");
     }
 
@@ -176,10 +226,55 @@ mod tests {
         let mut largest = 0.0_f32;
         for k in 0..200 {
             let jump = if k < 60 { 0.0 } else { 100.0 };
-            state.follow(&[jump + normal(&mut random)], &[1.0]);
-            largest = largest.max(state.noise(&[1.0]).cycle[0]);
+            state.follow(&[jump + normal(&mut random)], &floor([1.0]));
+            largest = largest.max(state.noise(&floor([1.0])).cycle[0]);
         }
         assert!(largest < 1.5, "{largest}");
+    }
+
+    /// Ten times the noise from one cycle to the next, and the samples say so: nothing may be judged by the quiet past.
+    #[test]
+    fn noise_that_begins_counts_at_once() {
+        let mut random = rand_pcg::Pcg64::seed_from_u64(4);
+        let mut state = ScatterState::<1>::default();
+        let [quiet, noisy] = [white([0.1]), white([1.0])];
+        for _ in 0..500 {
+            state.follow(&[0.1 * normal(&mut random)], &quiet);
+        }
+        let before = state.noise(&quiet);
+        assert!(
+            before.freedom > BELIEF + 0.99 * FREEDOM * MEMORY,
+            "{before:?}"
+        );
+        let first = state.noise(&noisy);
+        // A hundredth of 69 degrees of freedom, beside sixteen of the belief.
+        assert!(first.freedom < BELIEF + 0.7, "{first:?}");
+        for k in 0..500 {
+            // What is cut takes a tenth away, and chance twice the 8 % of 69 degrees of freedom.
+            let noise = state.noise(&noisy);
+            assert!(noise.cycle[0] > 0.7, "{k}: {noise:?}");
+            state.follow(&[normal(&mut random)], &noisy);
+        }
+    }
+
+    /// An inverter's ripple: the samples let expect twenty times what cycles do.
+    #[test]
+    fn ripple_that_moves_no_cycle_is_learnt_within_half_a_second() {
+        let mut random = rand_pcg::Pcg64::seed_from_u64(5);
+        let (mut state, ripple) = (ScatterState::<1>::default(), white([1.0]));
+        for k in 0..500 {
+            state.follow(&[0.05 * normal(&mut random)], &ripple);
+            let sigma = state.noise(&ripple).cycle[0];
+            assert!(k > 2 || sigma == 1.0, "{k}: {sigma}");
+            assert!(k < 25 || sigma < 0.2, "{k}: {sigma}");
+            // Twice the 8 % of 69 degrees of freedom, once they are there.
+            assert!(k < 120 || (0.04..0.065).contains(&sigma), "{k}: {sigma}");
+        }
+        let floored = Belief {
+            floor: [0.1],
+            ..ripple
+        };
+        assert!(state.noise(&floored).cycle[0] > 0.4 * 0.1);
     }
 
     #[test]
@@ -187,10 +282,10 @@ mod tests {
         let mut state = ScatterState::<1>::default();
         for x in [0.0, 100.0, 0.0, 100.0] {
             state.interrupt();
-            state.follow(&[x], &[1.0]);
+            state.follow(&[x], &floor([1.0]));
         }
-        state.follow(&[f32::NAN], &[1.0]);
-        let noise = state.noise(&[1.0]);
+        state.follow(&[f32::NAN], &floor([1.0]));
+        let noise = state.noise(&floor([1.0]));
         assert_eq!((noise.cycle, noise.freedom), ([1.0], BELIEF));
     }
 
@@ -198,13 +293,7 @@ mod tests {
     /// 3.13.
     #[test]
     fn few_degrees_of_freedom_reach_farther() {
-        let doubt = |freedom| {
-            Noise {
-                cycle: [1.0],
-                freedom,
-            }
-            .doubt(3.0)
-        };
+        let doubt = |freedom| super::doubt(freedom, 3.0);
         assert!((doubt(8.0) - 4.28 / 3.0).abs() < 0.02, "{}", doubt(8.0));
         assert!((doubt(60.0) - 3.13 / 3.0).abs() < 0.01, "{}", doubt(60.0));
     }
