@@ -120,6 +120,9 @@ pub struct Window {
     pub tau_noise: f32,
     /// Time between the middles of the first and the last cycle, s.
     pub span: f32,
+    /// How much longer the oscillator's turns are than the supply's, a share: harmonics and ripple do not cancel in such a
+    /// cycle.
+    pub turn_error: f32,
     /// Channels that touched a rail anywhere in the window.
     pub clipped: ClippedChannels,
     /// Samples replaced because they were not finite.
@@ -214,8 +217,7 @@ impl Window {
         let beside = |channel: &ChannelCycle| {
             channel.mean_square - channel.offset * channel.offset - 0.5 * channel.phasor.norm_sqr()
         };
-        // Two parts of a phasor, each of variance 2 s^2/n, of the mean of three; n samples in a turn.
-        let share = 4.0 * self.omega_sync * t_sample / (3.0 * TAU);
+        let share = self.noise_share(t_sample);
         let of = |first: usize| {
             let three = self.channels.iter().skip(first).take(3);
             let mean = three.map(beside).sum::<f32>() / 3.0;
@@ -227,6 +229,18 @@ impl Window {
             speed: self.speed_noise,
             torque: self.tau_noise,
         }
+    }
+
+    /// What a cycle's vector takes of the variance of its samples: two parts of a phasor, each of variance `2 s^2/n`, of the
+    /// mean of three phases; `n` samples in a turn.
+    fn noise_share(&self, t_sample: f32) -> f32 {
+        4.0 * self.omega_sync * t_sample / (3.0 * TAU)
+    }
+
+    /// What harmonics and ripple do to a window whose cycles are no turns of the supply, over what they would do to a cycle
+    /// as white noise: the share of their amplitude, of any order, by which the cycles are too long or too short.
+    pub fn leakage(&self, t_sample: f32) -> f32 {
+        self.turn_error.abs() / processor::sqrtf(self.noise_share(t_sample))
     }
 
     /// A ratio of negative or zero over positive sequence as the channels a, b, c show it: in the mirror the unbalance
@@ -347,6 +361,7 @@ impl Window {
         let all: f32 = cycles.iter().map(|cycle| cycle.samples).sum();
         self.span = (all - 0.5 * (newest.samples + oldest.samples)) * t_sample;
         self.omega_sync = oldest.advance(newest, length - 1) / self.span;
+        self.turn_error = self.omega_sync * all * t_sample / (TAU * length as f32) - 1.0;
         let per_second = (length - 1) as f32 / self.span;
         let real = |x: f32| Complex32::new(x, 0.0);
         let voltages = cycles.iter().map(|cycle| real(cycle.voltage));

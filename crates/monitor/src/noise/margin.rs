@@ -33,7 +33,7 @@ impl Monitor {
         } else {
             state.scatter.interrupt();
         }
-        self.allowed(&state.scatter.noise(&belief), window)
+        self.allowed(&state.scatter.noise(&belief), &belief.expected, window)
     }
 
     fn follow_cycles(&self, state: &mut MonitorState, window: &Window, belief: &Belief<FOLLOWED>) {
@@ -164,13 +164,22 @@ impl Monitor {
         Some(rows_of(cycle, measured, n_p, &bench.residuals()?))
     }
 
-    fn allowed(&self, noise: &Noise<FOLLOWED>, window: &Window) -> Allowance {
+    fn allowed(
+        &self,
+        noise: &Noise<FOLLOWED>,
+        expected: &[f32; FOLLOWED],
+        window: &Window,
+    ) -> Allowance {
         let length = self.config.window_cycles;
-        let share = 1.0 / processor::sqrtf(length as f32);
+        let share = 1.0 / length as f32;
+        // Alike in all cycles of a window: no mean makes it smaller.
+        let leakage = window.leakage(self.config.t_sample);
         let mut allowance = Allowance::default();
-        let mut cycles = noise.cycle.iter().map(|sigma| sigma * share);
         let places = allowance.residuals.iter_mut().chain(&mut allowance.rows);
-        places.zip(&mut cycles).for_each(|(x, sigma)| *x = sigma);
+        for ((x, sigma), expected) in places.zip(noise.cycle).zip(expected) {
+            let leaked = leakage * expected;
+            *x = processor::sqrtf(sigma * sigma * share + leaked * leaked);
+        }
         let rate = rate_noise(length, window.span);
         let of_rate = |k: usize| rate * noise.cycle.get(k).copied().unwrap_or_default();
         let charging = self.charging_share(window, of_rate(FLUX));
