@@ -120,8 +120,7 @@ pub struct Window {
     pub tau_noise: f32,
     /// Time between the middles of the first and the last cycle, s.
     pub span: f32,
-    /// How much longer the oscillator's turns are than the supply's, a share: harmonics and ripple do not cancel in such a
-    /// cycle.
+    /// How much longer the oscillator's turns are than the supply's, a share, while it follows a frequency that changes.
     pub turn_error: f32,
     /// Channels that touched a rail anywhere in the window.
     pub clipped: ClippedChannels,
@@ -249,6 +248,28 @@ impl Window {
         if self.backwards { ratio.conj() } else { ratio }
     }
 
+    /// What `length` cycles would have shown had the oscillator's turns been the supply's. Over `1 + e` turns the mean of
+    /// `2 Re(X e^{j (1 + e) theta}) e^{-j theta}` is `X` and `e/2` of its conjugate, to first order in `e`: in a phase's phasor
+    /// that looks like an unbalance, as the conjugate of a positive sequence is a negative one. And cycles that turn by
+    /// `2 pi e` from one to the next have a mean that is shorter by `(pi e length)^2/6`.
+    fn in_whole_turns(mut self, length: usize) -> Self {
+        let share = 0.5 * self.turn_error;
+        let turned = core::f32::consts::PI * self.turn_error * length as f32;
+        let gain = 1.0 + turned * turned / 6.0;
+        let whole = |x: Complex32, mirror: Complex32| (x - mirror.conj() * share) * gain;
+        for channel in &mut self.channels {
+            channel.phasor = whole(channel.phasor, channel.phasor);
+        }
+        for sequence in [&mut self.u_s, &mut self.i_s] {
+            *sequence = Sequence {
+                positive: whole(sequence.positive, sequence.negative),
+                negative: whole(sequence.negative, sequence.positive),
+                zero: whole(sequence.zero, sequence.zero),
+            };
+        }
+        self
+    }
+
     /// The mirror image of a motor whose field turns backwards, in everything but the channels.
     fn mirrored(mut self) -> Self {
         if self.backwards {
@@ -301,7 +322,7 @@ impl WindowState {
             *turned = Turned::of(cycle);
         }
         window.follow(turned.get(..length)?, t_sample)?;
-        Some(window.mirrored())
+        Some(window.in_whole_turns(length).mirrored())
     }
 
     /// The cycle that came `age` cycles before the newest, as if it were a whole window like `like` without any change.
@@ -309,9 +330,10 @@ impl WindowState {
         let cycle = mean(self.latest(age + 1)?.skip(age), 1);
         let cycle = Window {
             omega_sync: like.omega_sync,
+            turn_error: like.turn_error,
             ..cycle
         };
-        (cycle.backwards == like.backwards).then(|| cycle.mirrored())
+        (cycle.backwards == like.backwards).then(|| cycle.in_whole_turns(1).mirrored())
     }
 }
 

@@ -253,3 +253,59 @@ fn a_channel_gain_corrects_all_that_the_channel_says() {
     assert_eq!((after[4].offset, after[4].mean_square), (9.0, 45.0));
     assert_eq!((after[3], after[5]), (before[3], before[5]));
 }
+
+/// What an oscillator of 200 samples a turn makes of balanced phases whose supply turns by `1 + error` meanwhile: plain sums.
+fn cycles_of_a_faster_supply(error: f64, cycles: usize) -> Vec<Cycle> {
+    let amplitudes = [300.0, 4.0];
+    let turn = |k: usize| core::f64::consts::TAU * k as f64 / 200.0;
+    let phasor = |cycle: usize, amplitude: f64, phase: f64| {
+        let sum = (200 * cycle..200 * (cycle + 1)).fold([0.0; 2], |[re, im], k| {
+            let x = amplitude * ((1.0 + error) * turn(k) - phase).cos();
+            [
+                re + x * turn(k).cos() / 100.0,
+                im - x * turn(k).sin() / 100.0,
+            ]
+        });
+        Complex32::new(sum[0] as f32, sum[1] as f32)
+    };
+    let mut all = Vec::new();
+    for k in 0..cycles {
+        let mut cycle = cycle(Complex32::ZERO, Complex32::ZERO, 200.0, 150.0);
+        for (n, channel) in cycle.phasors.channels.iter_mut().enumerate() {
+            let phase = (n % 3) as f64 * core::f64::consts::TAU / 3.0 + (n / 3) as f64 * 0.5;
+            channel.phasor = phasor(k, amplitudes[n / 3], phase);
+        }
+        all.push(cycle);
+    }
+    all
+}
+
+/// A frequency that has just changed by one per cent: without a correction an unbalance of half a per cent that the motor does
+/// not answer as one, and a voltage that is 0.4 % too low.
+#[test]
+fn a_supply_that_has_outrun_the_oscillator_is_balanced_and_as_high_as_before() {
+    for error in [-0.01_f64, -0.003, 0.001, 0.01] {
+        let cycles = cycles_of_a_faster_supply(error, 5);
+        let of_one = Sequence::from_phases(phases_of(&cycles[0].phasors.channels)[0]);
+        let uncorrected = f64::from(magnitude(of_one.unbalance()));
+        assert!(
+            (uncorrected / (0.5 * error.abs()) - 1.0).abs() < 0.02,
+            "{uncorrected}"
+        );
+        let window = window_of(&cycles);
+        assert!((f64::from(window.turn_error) - error).abs() < 0.02 * error.abs());
+        // Sums begin at a sample, half a step before what an integral would: 2 pi/200 of the image, which is half of the error.
+        // The rest is of second order.
+        let left = 0.016 * error.abs() + 2.0 * error * error + 1e-6;
+        for (sequence, amplitude) in [(&window.u_s, 300.0), (&window.i_s, 4.0)] {
+            let length = f64::from(magnitude(sequence.positive)) / amplitude;
+            assert!((length - 1.0).abs() < left, "{error}: {length}");
+            assert!(
+                f64::from(magnitude(sequence.unbalance())) < left,
+                "{sequence:?}"
+            );
+        }
+        let phase_a = f64::from(magnitude(window.channels[0].phasor));
+        assert!((phase_a / 300.0 - 1.0).abs() < left, "{error}: {phase_a}");
+    }
+}
