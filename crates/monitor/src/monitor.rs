@@ -14,7 +14,7 @@ use crate::input::chain::ConverterSupply;
 use crate::input::codes::{Axes, Codes};
 use crate::input::sample::{CHANNELS, Sample};
 use crate::input::validity::{
-    IntakeState, LEAST_REFERENCE, PEAK_DECAY_PER_SECOND, reference_of, reference_scales,
+    IntakeState, LEAST_REFERENCE, ReferenceFilter, reference_of, reference_scales,
 };
 use crate::isolation::Temperature;
 use crate::lamps::logic::{PanelConfig, PanelState};
@@ -36,8 +36,7 @@ pub struct Monitor {
     pub(crate) codes: Codes,
     /// Turns [`reference_of`] voltages in V and of currents in A into shares of rated.
     reference_per_si: [f32; 2],
-    /// What a peak keeps of itself from one sample to the next.
-    pub(crate) peak_keep: f32,
+    pub(crate) reference_filter: ReferenceFilter,
     pub(crate) model: ResidualModel,
     pub(crate) health: HealthConfig,
     supply: SupplyConfig,
@@ -153,7 +152,7 @@ impl Monitor {
             ),
             codes: Codes::new(&config),
             reference_per_si: reference_scales(config.rated_channels()),
-            peak_keep: 1.0 - PEAK_DECAY_PER_SECOND * config.t_sample,
+            reference_filter: ReferenceFilter::new(config.t_sample),
             model: ResidualModel {
                 mechanics: config.mechanics,
                 field: config.field,
@@ -195,7 +194,7 @@ impl Monitor {
         let (u, i) = (admitted.u_s_abc, admitted.i_s_abc);
         let [per_volt, per_ampere] = self.reference_per_si;
         let shares = [reference_of(u) * per_volt, reference_of(i) * per_ampere];
-        let reference = state.intake.reference(shares, self.peak_keep);
+        let reference = state.intake.reference(shares, &self.reference_filter);
         let tick = self.sync.update(&mut state.sync, reference);
         self.encoder.update(&mut state.encoder, sample.speed);
         let x = [u.a, u.b, u.c, i.a, i.b, i.c];

@@ -192,7 +192,11 @@ impl<'m> Installed<'m> {
         match calibrate(&self.told, &recordings, &Surroundings::default()) {
             Ok(calibrated) => Ok(Some(calibrated.motor)),
             Err(refusal) => {
-                eprintln!("board {k}, {}: {refusal}", self.plant.name);
+                eprintln!(
+                    "board {k}, {}, {}: {refusal}",
+                    self.plant.name,
+                    self.supply()
+                );
                 Ok(None)
             }
         }

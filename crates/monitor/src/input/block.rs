@@ -175,7 +175,7 @@ impl Monitor {
         let [per_voltage_code, per_current_code] = self.codes.reference_per_code;
         let u = (2 * v_a - v_b - v_c) as f32 * per_voltage_code;
         let i = (2 * i_a - i_b - i_c) as f32 * per_current_code;
-        intake.reference([u, i], self.peak_keep)
+        intake.reference([u, i], &self.reference_filter)
     }
 
     #[inline]

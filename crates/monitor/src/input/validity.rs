@@ -1,11 +1,16 @@
 //! The door of the core: bad numbers are kept out, missing and clipped channels are noted.
 
+use core::f32::consts::TAU;
+
 use crate::frames::Abc;
 use crate::input::sample::{ClippedChannels, Sample};
 use crate::input::torque::{TorqueReading, TorqueTally};
 
 /// Share of a peak that is forgotten per second.
 pub(crate) const PEAK_DECAY_PER_SECOND: f32 = 5.0;
+/// Corner of the low pass before the supply's crossings are looked for, Hz: it leaves a tenth of an inverter's ripple at 2 kHz,
+/// which may be half as high as the fundamental.
+const CORNER_HZ: f32 = 200.0;
 /// Share of rated voltage (current, where voltages are missing) that counts as a supply.
 pub(crate) const LEAST_REFERENCE: f32 = 0.05;
 
@@ -18,7 +23,29 @@ pub struct IntakeState {
     still: u32,
     /// Peaks of voltage and current as shares of their rated values, which decay slowly.
     peaks: [f32; 2],
+    /// What the supply is found by, without ripple.
+    smooth: f32,
     tally: Tally,
+}
+
+/// How the supply is looked for from one sample to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReferenceFilter {
+    /// What a peak keeps of itself.
+    keep: f32,
+    /// What the low pass takes of the new sample.
+    share: f32,
+}
+
+impl ReferenceFilter {
+    /// For samples `t_sample` seconds apart.
+    pub fn new(t_sample: f32) -> Self {
+        let per_corner = TAU * CORNER_HZ * t_sample;
+        ReferenceFilter {
+            keep: 1.0 - PEAK_DECAY_PER_SECOND * t_sample,
+            share: per_corner / (1.0 + per_corner),
+        }
+    }
 }
 
 /// Counts over one cycle.
@@ -111,17 +138,19 @@ impl IntakeState {
     }
 
     /// Picks what the supply is found by: the voltage or, where there is none, the current; both as shares of rated.
-    /// `keep` is what a peak keeps of itself from one sample to the next.
+    /// Smoothed: it comes a little late, by the same angle in every turn.
     #[inline(always)]
-    pub fn reference(&mut self, [u, i]: [f32; 2], keep: f32) -> f32 {
+    pub fn reference(&mut self, [u, i]: [f32; 2], filter: &ReferenceFilter) -> f32 {
         let [u_peak, i_peak] = &mut self.peaks;
-        *u_peak = higher(*u_peak * keep, u.abs());
-        *i_peak = higher(*i_peak * keep, i.abs());
-        if *u_peak < LEAST_REFERENCE && *i_peak > LEAST_REFERENCE {
+        *u_peak = higher(*u_peak * filter.keep, u.abs());
+        *i_peak = higher(*i_peak * filter.keep, i.abs());
+        let picked = if *u_peak < LEAST_REFERENCE && *i_peak > LEAST_REFERENCE {
             i
         } else {
             u
-        }
+        };
+        self.smooth += filter.share * (picked - self.smooth);
+        self.smooth
     }
 
     /// Whether neither voltage nor current is worth the name.
@@ -178,6 +207,7 @@ const LARGEST: f32 = 1e6;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sync::pll::{SyncConfig, SyncState};
 
     fn sample(u: f32, i: f32) -> Sample {
         Sample {
@@ -293,20 +323,57 @@ mod tests {
     /// The supply is found by the voltage; by the current only where there is no voltage.
     #[test]
     fn the_current_stands_in_for_a_missing_voltage() {
-        let keep = 0.5;
+        let filter = ReferenceFilter {
+            keep: 0.5,
+            share: 1.0,
+        };
         let mut state = IntakeState::default();
         assert!(state.is_dark());
-        assert_eq!(state.reference([1.0, 0.8], keep), 1.0);
-        assert_eq!(state.reference([-0.2, 0.8], keep), -0.2);
+        assert_eq!(state.reference([1.0, 0.8], &filter), 1.0);
+        assert!((state.reference([-0.2, 0.8], &filter) + 0.2).abs() < 1e-6);
         assert!(!state.is_dark());
         // 1, 0.5, 0.25, ...: after five samples the peak is below a twentieth.
-        let picked: Vec<f32> = (0..5).map(|_| state.reference([0.0, -0.6], keep)).collect();
+        let picked: Vec<f32> = (0..5)
+            .map(|_| state.reference([0.0, -0.6], &filter))
+            .collect();
         assert_eq!(picked, [0.0, 0.0, 0.0, -0.6, -0.6]);
         assert!(!state.is_dark(), "current flows");
         for _ in 0..5 {
-            state.reference([0.0, 0.0], keep);
+            state.reference([0.0, 0.0], &filter);
         }
         assert!(state.is_dark());
+    }
+
+    /// Behind an inverter with a carrier of 2 kHz, whose ripple is half as high as the fundamental.
+    #[test]
+    fn a_supply_is_found_under_ripple() {
+        let t_sample = 1e-4;
+        let sync = SyncConfig {
+            t_sample,
+            omega_min: TAU * 4.5,
+            omega_max: TAU * 110.0,
+            min_amplitude: LEAST_REFERENCE,
+        };
+        let filter = ReferenceFilter::new(t_sample);
+        let mut intake = IntakeState::default();
+        let [mut raw, mut smooth] = [SyncState::default(); 2];
+        let [mut raw_locks, mut smooth_locks] = [0; 2];
+        for k in 0..4000_u16 {
+            let t = f64::from(k) * 1e-4;
+            let turn = |hertz: f64| (core::f64::consts::TAU * hertz * t + 1.0).sin();
+            let x = (turn(50.0) + 0.5 * turn(2008.0)) as f32;
+            sync.update(&mut raw, x);
+            sync.update(&mut smooth, intake.reference([x, 0.0], &filter));
+            raw_locks += u16::from(raw.is_locked());
+            smooth_locks += u16::from(smooth.is_locked());
+        }
+        assert_eq!(raw_locks, 0);
+        assert!(smooth_locks > 3000, "{smooth_locks}");
+        assert!(
+            (smooth.omega() / (TAU * 50.0) - 1.0).abs() < 0.01,
+            "{}",
+            smooth.omega()
+        );
     }
 
     #[test]
