@@ -74,6 +74,7 @@ pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
 pub use input::chain::AnalogueChain;
 pub use input::converter::{ChannelScale, Converter};
 pub use input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
+pub use input::torque::TorqueReading;
 pub use isolation::gauss::{Cholesky, Covariance};
 pub use isolation::{
     ALL_CAUSES, CAUSES, Cause, Evidence, Healthy, Heating, Isolation, ROWS, Row, Uncertainty,

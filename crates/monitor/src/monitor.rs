@@ -230,13 +230,11 @@ impl Monitor {
     #[inline(never)]
     fn close_cycle(&self, state: &mut MonitorState, phasors: CyclePhasors) -> Report {
         let tally = state.intake.close_cycle();
-        let torque = tally.torque();
         state.measured = tally.measured();
         let cycle = Cycle {
             phasors,
             speed: self.encoder.close_window(&mut state.encoder),
-            tau_load: torque.mean,
-            tau_noise: torque.noise,
+            torque: tally.torque(),
             clipped: tally.clipped,
             invalid_samples: tally.invalid,
         };

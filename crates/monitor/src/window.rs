@@ -4,13 +4,14 @@ mod rates;
 
 pub use rates::{RateNoise, Rates};
 
-use core::f32::consts::TAU;
+use core::f32::consts::{PI, TAU};
 
 use num_complex::Complex32;
 
 use crate::frames::{Sequence, magnitude};
 use crate::input::chain::AnalogueChain;
 use crate::input::sample::{CHANNELS, ClippedChannels};
+use crate::input::torque::TorqueReading;
 use crate::noise::trend::Trend;
 use crate::sync::encoder::SpeedReading;
 use crate::sync::phasor::{ChannelCycle, CyclePhasors};
@@ -26,10 +27,8 @@ pub struct Cycle {
     pub phasors: CyclePhasors,
     /// Shaft speed over the cycle.
     pub speed: SpeedReading,
-    /// Mean brake torque over the cycle, N m, where a torque channel exists.
-    pub tau_load: Option<f32>,
-    /// Its standard deviation by the noise from sample to sample, N m.
-    pub tau_noise: f32,
+    /// Brake torque over the cycle.
+    pub torque: TorqueReading,
     /// Channels that touched a rail.
     pub clipped: ClippedChannels,
     /// Samples that were not finite numbers and were replaced by their predecessor.
@@ -212,19 +211,19 @@ impl Window {
     /// `2 pi e` from one to the next have a mean that is shorter by `(pi e length)^2/6`.
     fn in_whole_turns(mut self, length: usize) -> Self {
         let share = 0.5 * self.turn_error;
-        let turned = core::f32::consts::PI * self.turn_error * length as f32;
+        let turned = PI * self.turn_error * length as f32;
         let gain = 1.0 + turned * turned / 6.0;
-        let whole = |x: Complex32, mirror: Complex32| (x - mirror.conj() * share) * gain;
-        for channel in &mut self.channels {
-            channel.phasor = whole(channel.phasor, channel.phasor);
+        for ChannelCycle { phasor, .. } in &mut self.channels {
+            *phasor = (*phasor - phasor.conj() * share) * gain;
         }
-        for sequence in [&mut self.u_s, &mut self.i_s] {
-            *sequence = Sequence {
-                positive: whole(sequence.positive, sequence.negative),
-                negative: whole(sequence.negative, sequence.positive),
-                zero: whole(sequence.zero, sequence.zero),
-            };
-        }
+        self
+    }
+
+    /// With the symmetrical components of what the channels show.
+    fn in_sequences(mut self) -> Self {
+        let phases = phases_of(&self.channels);
+        self.backwards = turn_backwards(&phases);
+        [self.u_s, self.i_s] = phases.map(|phases| components(phases, self.backwards));
         self
     }
 
@@ -280,7 +279,7 @@ impl WindowState {
             *turned = Turned::of(cycle);
         }
         window.follow(turned.get(..length)?, t_sample)?;
-        Some(window.in_whole_turns(length).mirrored())
+        Some(window.in_whole_turns(length).in_sequences().mirrored())
     }
 
     /// The cycle that came `age` cycles before the newest, as if it were a whole window like `like` without any change.
@@ -291,7 +290,8 @@ impl WindowState {
             turn_error: like.turn_error,
             ..cycle
         };
-        (cycle.backwards == like.backwards).then(|| cycle.in_whole_turns(1).mirrored())
+        let cycle = cycle.in_whole_turns(1).in_sequences();
+        (cycle.backwards == like.backwards).then(|| cycle.mirrored())
     }
 }
 
@@ -341,7 +341,9 @@ impl Window {
         let all: f32 = cycles.iter().map(|cycle| cycle.samples).sum();
         self.span = (all - 0.5 * (newest.samples + oldest.samples)) * t_sample;
         self.omega_sync = oldest.advance(newest, length - 1) / self.span;
-        self.turn_error = self.omega_sync * all * t_sample / (TAU * length as f32) - 1.0;
+        let missing: f32 = cycles.iter().map(|cycle| cycle.missing).sum();
+        let turned = TAU * length as f32 - missing;
+        self.turn_error = self.omega_sync * all * t_sample / turned - 1.0;
         let per_second = (length - 1) as f32 / self.span;
         let real = |x: f32| Complex32::new(x, 0.0);
         let voltages = cycles.iter().map(|cycle| real(cycle.voltage));
@@ -381,7 +383,7 @@ fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> W
     let mut window = Window {
         encoder_silent: cycles.clone().all(|cycle| cycle.speed.silent),
         omega_mech: mean_of(cycles.clone(), |cycle| cycle.speed.omega_mech),
-        tau_load: mean_of(cycles.clone(), |cycle| cycle.tau_load),
+        tau_load: mean_of(cycles.clone(), |cycle| cycle.torque.mean),
         reverses: reverses(cycles.clone()),
         ..Window::default()
     };
@@ -393,14 +395,11 @@ fn mean<'a>(cycles: impl Iterator<Item = &'a Cycle> + Clone, length: usize) -> W
             sum.mean_square += channel.mean_square * share;
         }
         window.speed_noise = window.speed_noise.max(cycle.speed.noise);
-        window.tau_noise = window.tau_noise.max(cycle.tau_noise);
+        window.tau_noise = window.tau_noise.max(cycle.torque.noise);
         window.clipped = window.clipped.union(cycle.clipped);
         window.invalid_samples = window.invalid_samples.saturating_add(cycle.invalid_samples);
         window.glitches = window.glitches.saturating_add(cycle.speed.glitches);
     }
-    let phases = phases_of(&window.channels);
-    window.backwards = turn_backwards(&phases);
-    [window.u_s, window.i_s] = phases.map(|phases| components(phases, window.backwards));
     window
 }
 

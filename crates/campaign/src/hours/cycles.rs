@@ -2,6 +2,7 @@
 
 use monitor::{
     CHANNELS, ChannelCycle, ClippedChannels, Cycle, CyclePhasors, MonitorConfig, SpeedReading,
+    TorqueReading,
 };
 use num_complex::{Complex32, Complex64};
 use rand::Rng;
@@ -87,8 +88,7 @@ impl Cycles {
                 omega_mech: Some(omega_mech as f32),
                 ..SpeedReading::default()
             },
-            tau_load: None,
-            tau_noise: 0.0,
+            torque: TorqueReading::default(),
             clipped: ClippedChannels::NONE,
             invalid_samples: 0,
         }

@@ -62,7 +62,7 @@ mod tests {
         tally.close(samples)
     }
 
-    /// Noise of 0.5 N m on 200 samples moves their mean by 0.0354; a load that pulsates by 5 N m twice a turn does not count.
+    /// Noise of 0.5 N m on 200 samples moves their mean by 0.0354; a load that pulsates by 5 N m once a cycle hardly counts.
     #[test]
     fn noise_counts_and_a_pulsating_load_does_not() {
         let mut random = rand_pcg::Pcg64::seed_from_u64(1);
@@ -72,13 +72,13 @@ mod tests {
         let expected = 0.5 / 200.0_f64.sqrt();
         for _ in 0..20 {
             let noisy = reading((0..200).map(|k| pulsating(k) + normal.sample(&mut random)));
-            // The standard deviation of a deviation of 200 samples is some 6 %.
+            // Of 200 samples' differences a deviation is known to sqrt(3/800), 6 %: four times that.
             assert!((f64::from(noisy.noise) / expected - 1.0).abs() < 0.25);
         }
-        // 5 N m times a step of a turn, over 200 samples: a hundredth of 5 N m.
+        // Steps of `2 pi 5/200 cos`: root mean square 0.111 N m, over sqrt(2) and sqrt(200).
         let clean = reading((0..200).map(pulsating));
         assert!((clean.mean.unwrap_or(0.0) - 20.0).abs() < 1e-4);
-        assert!(clean.noise < 0.01, "{clean:?}");
+        assert!((clean.noise - 0.00555).abs() < 1e-4, "{clean:?}");
     }
 
     #[test]

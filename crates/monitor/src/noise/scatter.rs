@@ -267,6 +267,18 @@ mod tests {
         }
     }
 
+    /// Samples without any noise, and then some: the past says nothing.
+    #[test]
+    fn noise_after_none_is_as_the_samples_show_it() {
+        let mut state = ScatterState::<1>::default();
+        for _ in 0..300 {
+            state.follow(&[0.0], &white([0.0]));
+        }
+        let noise = state.noise(&white([1.0]));
+        assert!((noise.cycle[0] - 1.0).abs() < 1e-3, "{noise:?}");
+        assert!((noise.freedom - BELIEF).abs() < 1e-3, "{noise:?}");
+    }
+
     /// An inverter's ripple: the samples let expect twenty times what cycles do.
     #[test]
     fn ripple_that_moves_no_cycle_is_learnt_within_half_a_second() {

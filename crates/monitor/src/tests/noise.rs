@@ -6,6 +6,7 @@ use std::cell::RefCell;
 
 use super::calibrated::calibrated;
 use super::drive::{Bench, Drive, config};
+use crate::frames::magnitude;
 use crate::{Abc, Lamp, MonitorConfig, NotJudged, Report, Sample, SpeedSample};
 
 /// Two seconds of a drive whose channels have noise: standard deviations of `share` of 600 V, 60 A and 200 rad/s.
@@ -93,7 +94,7 @@ fn what_is_too_noisy_is_not_judged() {
 }
 
 /// The oscillator is set at the sample after a crossing, up to a twentieth of a turn late at 1 kHz: the first cycle lacks
-/// that angle, and no frequency may come of it.
+/// that angle, and no frequency and no unbalance may come of it.
 #[test]
 fn the_first_window_has_the_frequency_of_the_others() {
     for late in [0.0, 2e-4, 5e-4, 9e-4] {
@@ -104,8 +105,14 @@ fn the_first_window_has_the_frequency_of_the_others() {
         let drive = Drive::healthy();
         let samples = (0..400).map(|k| drive.sample(f64::from(k) * 1e-3 + late));
         let reports = samples.filter_map(|sample| monitor.update(&mut state, &sample));
-        let omegas: Vec<f32> = reports.filter_map(|r| Some(r.window?.omega_sync)).collect();
+        let windows: Vec<_> = reports.filter_map(|r| r.window).collect();
+        let omegas: Vec<f32> = windows.iter().map(|window| window.omega_sync).collect();
         assert!(omegas.len() > 5);
+        for window in &windows {
+            // A turn that begins late is no turn of another length: nothing is taken for an unbalance.
+            let unbalance = magnitude(window.u_s.unbalance());
+            assert!(unbalance < 1e-4, "{late}: {unbalance}");
+        }
         for omega in &omegas {
             let off = omega / super::drive::OMEGA_SYNC as f32 - 1.0;
             assert!(off.abs() < 2e-4, "{late}: {omegas:?}");

@@ -91,7 +91,7 @@ fn speed_and_torque_are_weighted_by_time() {
     let u = Complex32::new(300.0, 0.0);
     let mut cycles = [100.0, 300.0].map(|samples| cycle(u, Complex32::ONE, samples, samples));
     for (cycle, tau) in cycles.iter_mut().zip([2.0, 6.0]) {
-        cycle.tau_load = Some(tau);
+        cycle.torque.mean = Some(tau);
     }
     let window = window_of(&cycles);
     assert_eq!(
@@ -103,7 +103,7 @@ fn speed_and_torque_are_weighted_by_time() {
         (window.span - 200.0 * T_SAMPLE).abs() < 1e-7,
         "middle to middle"
     );
-    cycles[0].tau_load = None;
+    cycles[0].torque.mean = None;
     assert_eq!(window_of(&cycles).tau_load, None);
 }
 
@@ -254,30 +254,54 @@ fn a_channel_gain_corrects_all_that_the_channel_says() {
     assert_eq!((after[3], after[5]), (before[3], before[5]));
 }
 
-/// What an oscillator of 200 samples a turn makes of balanced phases whose supply turns by `1 + error` meanwhile: plain sums.
-fn cycles_of_a_faster_supply(error: f64, cycles: usize) -> Vec<Cycle> {
-    let amplitudes = [300.0, 4.0];
+/// What an oscillator of 200 samples a turn makes of phases whose supply turns by `1 + error` meanwhile, by plain sums:
+/// a balanced fundamental of 300 V and 4 A and a harmonic of an order whose sign is its sequence, a share of it.
+fn cycles_of_a_faster_supply(error: f64, cycles: usize, [order, share]: [f64; 2]) -> Vec<Cycle> {
     let turn = |k: usize| core::f64::consts::TAU * k as f64 / 200.0;
-    let phasor = |cycle: usize, amplitude: f64, phase: f64| {
-        let sum = (200 * cycle..200 * (cycle + 1)).fold([0.0; 2], |[re, im], k| {
-            let x = amplitude * ((1.0 + error) * turn(k) - phase).cos();
-            [
-                re + x * turn(k).cos() / 100.0,
-                im - x * turn(k).sin() / 100.0,
-            ]
-        });
-        Complex32::new(sum[0] as f32, sum[1] as f32)
+    let wave = |k: usize, phase: f64| {
+        let theta = (1.0 + error) * turn(k) - phase;
+        let harmonic = order.abs() * (1.0 + error) * turn(k) - order.signum() * phase;
+        theta.cos() + share * harmonic.cos()
+    };
+    let of = |cycle: usize, amplitude: f64, phase: f64| {
+        let mut channel = ChannelCycle::default();
+        for k in 200 * cycle..200 * (cycle + 1) {
+            let x = amplitude * wave(k, phase);
+            let axis = Complex32::new(turn(k).cos() as f32, -turn(k).sin() as f32);
+            channel.phasor += axis * (x / 100.0) as f32;
+            channel.mean_square += (x * x / 200.0) as f32;
+        }
+        channel
     };
     let mut all = Vec::new();
     for k in 0..cycles {
         let mut cycle = cycle(Complex32::ZERO, Complex32::ZERO, 200.0, 150.0);
         for (n, channel) in cycle.phasors.channels.iter_mut().enumerate() {
-            let phase = (n % 3) as f64 * core::f64::consts::TAU / 3.0 + (n / 3) as f64 * 0.5;
-            channel.phasor = phasor(k, amplitudes[n / 3], phase);
+            let phase = (n % 3) as f64 * core::f64::consts::TAU / 3.0;
+            *channel = of(k, [300.0, 4.0][n / 3], phase + (n / 3) as f64 * 0.5);
         }
         all.push(cycle);
     }
     all
+}
+
+/// The space vector of a harmonic of order `h` leaves `h/(h - 1) e` of itself in the positive and `h/(h + 1) e` in the negative
+/// sequence: 0.8 to 1.3 times the share of the cycle's error, and the noise that it counts as is that share over sqrt(2).
+#[test]
+fn harmonics_leak_by_no_more_than_twice_the_noise_that_they_count_as() {
+    let error = 0.005;
+    for order in [-5.0, 7.0, -11.0, 13.0] {
+        let clean = window_of(&cycles_of_a_faster_supply(error, 5, [order, 0.0]));
+        let window = window_of(&cycles_of_a_faster_supply(error, 5, [order, 0.05]));
+        let counted = window.leakage(T_SAMPLE) * window.cycle_noise(T_SAMPLE).voltage;
+        for leaked in [
+            window.u_s.positive - clean.u_s.positive,
+            window.u_s.negative - clean.u_s.negative,
+        ] {
+            let ratio = magnitude(leaked) / counted;
+            assert!((0.8..2.0).contains(&ratio), "{order}: {ratio}");
+        }
+    }
 }
 
 /// A frequency that has just changed by one per cent: without a correction an unbalance of half a per cent that the motor does
@@ -285,7 +309,7 @@ fn cycles_of_a_faster_supply(error: f64, cycles: usize) -> Vec<Cycle> {
 #[test]
 fn a_supply_that_has_outrun_the_oscillator_is_balanced_and_as_high_as_before() {
     for error in [-0.01_f64, -0.003, 0.001, 0.01] {
-        let cycles = cycles_of_a_faster_supply(error, 5);
+        let cycles = cycles_of_a_faster_supply(error, 5, [5.0, 0.0]);
         let of_one = Sequence::from_phases(phases_of(&cycles[0].phasors.channels)[0]);
         let uncorrected = f64::from(magnitude(of_one.unbalance()));
         assert!(

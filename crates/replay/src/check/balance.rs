@@ -24,12 +24,15 @@ pub(crate) struct Jump {
 }
 
 impl Balance {
-    /// Adds a window.
+    /// Adds a window that ended at `t`, s.
     pub fn add(&mut self, t: f64, report: &Report, config: &MonitorConfig) {
-        let window = report.window.filter(|_| report.is_judged());
-        let current = window.and_then(|window| unexplained_current(config, &window));
-        if let Some(current) = current {
-            self.windows.push((t, current / config.rated_current));
+        let Some(window) = report.window.filter(|_| report.is_judged()) else {
+            return;
+        };
+        if let Some(current) = unexplained_current(config, &window) {
+            // A window tells of its middle, not of its end.
+            let middle = t - 0.5 * f64::from(window.span);
+            self.windows.push((middle, current / config.rated_current));
         }
     }
 
