@@ -123,9 +123,15 @@ impl Cpu {
         match ended {
             Ok(()) => Ok(()),
             // The emulator gives up behind the instruction.
-            Err(_) if self.halfword(pc - 2)? == WFE => self.wait_for_event(pc - 2),
+            Err(_) if self.is_wait(pc - 2) => self.wait_for_event(pc - 2),
             Err(error) => self.fault(error),
         }
+    }
+
+    /// Whether the program waits for an event at `pc`. What went astray may have no memory there.
+    fn is_wait(&self, pc: u32) -> bool {
+        self.halfword(pc)
+            .is_ok_and(|instruction| instruction == WFE)
     }
 
     /// An instruction that cannot be executed: a hard fault, because no other handler is enabled.
