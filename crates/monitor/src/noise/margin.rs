@@ -52,20 +52,20 @@ impl Monitor {
 
     /// What the samples beside their fundamentals let expect, but no less than what thresholds and calibration hold.
     fn belief(&self, window: &Window) -> Belief<FOLLOWED> {
-        let root = processor::sqrtf(self.config.window_cycles as f32);
+        let length = self.config.window_cycles as f32;
         let mut floor = [0.0; FOLLOWED];
         for (sigma, threshold) in floor.iter_mut().zip(self.config.thresholds) {
-            *sigma = root * BELIEVED * threshold;
+            *sigma = BELIEVED * threshold;
         }
         if let Some(healthy) = &self.config.healthy {
             let rows = floor.iter_mut().skip(RESIDUALS);
             for (sigma, scatter) in rows.zip(healthy.scatter) {
-                *sigma = root * scatter;
+                *sigma = scatter;
             }
         }
         Belief {
-            expected: self.expected(window),
-            floor,
+            expected: self.expected(window).map(|sigma| sigma * sigma),
+            floor: floor.map(|sigma| length * sigma * sigma),
         }
     }
 
@@ -174,14 +174,17 @@ impl Monitor {
         let share = 1.0 / length as f32;
         // Alike in all cycles of a window: no mean makes it smaller.
         let leakage = window.leakage(self.config.t_sample);
+        let leakage = leakage * leakage;
         let mut allowance = Allowance::default();
         let places = allowance.residuals.iter_mut().chain(&mut allowance.rows);
-        for ((x, sigma), expected) in places.zip(noise.cycle).zip(expected) {
-            let leaked = leakage * expected;
-            *x = processor::sqrtf(sigma * sigma * share + leaked * leaked);
+        for ((x, variance), expected) in places.zip(noise.variance).zip(expected) {
+            *x = processor::sqrtf(variance * share + leakage * expected);
         }
         let rate = rate_noise(length, window.span);
-        let of_rate = |k: usize| rate * noise.cycle.get(k).copied().unwrap_or_default();
+        let of_rate = |k: usize| {
+            let variance = noise.variance.get(k).copied().unwrap_or_default();
+            rate * processor::sqrtf(variance)
+        };
         let charging = self.charging_share(window, of_rate(FLUX));
         let speeding = self
             .model

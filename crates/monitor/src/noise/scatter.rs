@@ -22,7 +22,7 @@ pub struct ScatterState<const N: usize> {
     seen: f32,
 }
 
-/// What is believed of single cycles before any was compared with another: standard deviations.
+/// What is believed of single cycles before any was compared with another: variances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Belief<const N: usize> {
     /// What the samples beside their fundamentals let expect if they were white noise: an inverter's ripple is none.
@@ -34,8 +34,8 @@ pub struct Belief<const N: usize> {
 /// Noise of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise<const N: usize> {
-    /// Standard deviations of single cycles.
-    pub cycle: [f32; N],
+    /// Variances of single cycles.
+    pub variance: [f32; N],
     /// Degrees of freedom behind the one that is known least.
     pub freedom: f32,
 }
@@ -88,18 +88,21 @@ impl<const N: usize> ScatterState<N> {
         let [y, z, w] = &self.before;
         let pasts = y.iter().zip(z).zip(w);
         let learnt = self.variance.iter_mut().zip(&mut self.believed);
-        let now = cycle.iter().zip(pasts).zip(noise.cycle).zip(belief.all());
-        for ((variance, believed), (((x, ((y, z), w)), sigma), belief)) in learnt.zip(now) {
+        let now = cycle
+            .iter()
+            .zip(pasts)
+            .zip(noise.variance)
+            .zip(belief.all());
+        for ((variance, believed), (((x, ((y, z), w)), known), belief)) in learnt.zip(now) {
             let difference = x - y - z + w;
             let square = difference * difference / DIFFERENCE;
-            let known = sigma * sigma;
             let admitted = if known > 0.0 {
                 square.min(LARGEST * known)
             } else {
                 square
             };
             *variance += (admitted - *variance) / self.seen;
-            *believed += (belief * belief - *believed) / self.seen;
+            *believed += (belief - *believed) / self.seen;
         }
     }
 
@@ -115,44 +118,52 @@ impl<const N: usize> ScatterState<N> {
 
     /// What is known now.
     pub fn noise(&self, belief: &Belief<N>) -> Noise<N> {
-        let grown = self.grown(belief);
-        let most = grown.iter().copied().fold(1.0, f32::max);
-        let seen = FREEDOM * self.seen / most;
+        let (seen_variance, grown) = self.scaled(belief);
+        let seen = FREEDOM * self.seen / grown;
         let freedom = BELIEF + seen;
-        let alone = doubt(seen, FARTHEST) / doubt(freedom, FARTHEST);
-        let mut cycle = [0.0; N];
-        let past = self.variance.iter().zip(grown);
-        let beliefs = belief.expected.iter().zip(&belief.floor);
-        for ((sigma, (variance, grown)), (expected, floor)) in
-            cycle.iter_mut().zip(past).zip(beliefs)
-        {
-            let variance = variance * grown;
+        let alone = match belief.is_more_than(&seen_variance) {
+            true => doubt(seen, FARTHEST) / doubt(freedom, FARTHEST),
+            false => 1.0,
+        };
+        let mut variance = seen_variance;
+        for (variance, (expected, floor)) in variance.iter_mut().zip(belief.pairs()) {
             // Not a number where nothing was seen: what is expected holds.
-            let believed = expected.min(alone * processor::sqrtf(variance)).max(*floor);
-            let sum = BELIEF * believed * believed + seen * variance;
-            *sigma = processor::sqrtf(sum / freedom);
+            let believed = expected.min(alone * alone * *variance).max(floor);
+            *variance = (BELIEF * believed + seen * *variance) / freedom;
         }
-        Noise { cycle, freedom }
+        Noise { variance, freedom }
     }
 
-    /// Variances that are believed now over those that were while `variance` was seen, at least 1.
-    fn grown(&self, belief: &Belief<N>) -> [f32; N] {
-        let mut grown = [1.0; N];
+    /// The variances that were seen, each scaled as what is believed of it has grown since, and the largest such growth, at
+    /// least 1.
+    fn scaled(&self, belief: &Belief<N>) -> ([f32; N], f32) {
+        let (mut scaled, mut most) = (self.variance, 1.0_f32);
         let pairs = self.believed.iter().zip(belief.all());
-        for (grown, (before, now)) in grown.iter_mut().zip(pairs) {
-            let square = now * now;
-            if square > *before {
-                *grown = (square / before).min(BEYOND_COMPARISON);
+        for (variance, (before, now)) in scaled.iter_mut().zip(pairs) {
+            if now > *before {
+                let grown = (now / before).min(BEYOND_COMPARISON);
+                *variance *= grown;
+                most = most.max(grown);
             }
         }
-        grown
+        (scaled, most)
     }
 }
 
 impl<const N: usize> Belief<N> {
+    fn pairs(&self) -> impl Iterator<Item = (f32, f32)> + '_ {
+        self.expected.iter().copied().zip(self.floor)
+    }
+
     fn all(&self) -> impl Iterator<Item = f32> + '_ {
-        let pairs = self.expected.iter().zip(&self.floor);
-        pairs.map(|(expected, floor)| expected.max(*floor))
+        self.pairs().map(|(expected, floor)| expected.max(floor))
+    }
+
+    /// Whether the samples let expect more of any quantity than its floor and what was seen of it: elsewhere it does not matter
+    /// how surely that was seen.
+    fn is_more_than(&self, seen: &[f32; N]) -> bool {
+        let mut all = self.pairs().zip(seen);
+        all.any(|((expected, floor), seen)| expected > floor && expected > *seen)
     }
 }
 
@@ -182,13 +193,13 @@ mod tests {
     fn floor<const N: usize>(floor: [f32; N]) -> Belief<N> {
         Belief {
             expected: [0.0; N],
-            floor,
+            floor: floor.map(|sigma| sigma * sigma),
         }
     }
 
     fn white<const N: usize>(expected: [f32; N]) -> Belief<N> {
         Belief {
-            expected,
+            expected: expected.map(|sigma| sigma * sigma),
             floor: [0.0; N],
         }
     }
@@ -207,9 +218,12 @@ mod tests {
             state.follow(&cycle, &believed);
             if k >= 500 {
                 let noise = state.noise(&believed);
-                mean += noise.cycle[0] / 5500.0;
+                mean += noise.variance[0].sqrt() / 5500.0;
                 // One standard deviation of a deviation with 70 degrees of freedom is 8.5 %.
-                assert!((noise.cycle[1] / 0.1 - 1.0).abs() < 0.45, "{noise:?}");
+                assert!(
+                    (noise.variance[1].sqrt() / 0.1 - 1.0).abs() < 0.45,
+                    "{noise:?}"
+                );
             }
         }
         // What exceeds three standard deviations is cut, and the belief of a quarter pulls by a tenth.
@@ -227,7 +241,10 @@ mod tests {
             state.follow(&[turn + 0.1 * normal(&mut random)], &floor([0.1]));
         }
         let noise = state.noise(&floor([0.1]));
-        assert!((noise.cycle[0] / 0.1 - 1.0).abs() < 0.45, "{noise:?}");
+        assert!(
+            (noise.variance[0].sqrt() / 0.1 - 1.0).abs() < 0.45,
+            "{noise:?}"
+        );
     }
 
     /// A fault that comes at once: the noise that is known hardly grows.
@@ -239,7 +256,7 @@ mod tests {
         for k in 0..200 {
             let jump = if k < 60 { 0.0 } else { 100.0 };
             state.follow(&[jump + normal(&mut random)], &floor([1.0]));
-            largest = largest.max(state.noise(&floor([1.0])).cycle[0]);
+            largest = largest.max(state.noise(&floor([1.0])).variance[0].sqrt());
         }
         assert!(largest < 1.5, "{largest}");
     }
@@ -260,7 +277,7 @@ mod tests {
             for k in 0..300 {
                 // Four true deviations at the least, in 60 000 cycles, where 5.5 are asked.
                 let noise = state.noise(&noisy);
-                let reach = noise.cycle[0] * noise.doubt(FARTHEST);
+                let reach = noise.variance[0].sqrt() * noise.doubt(FARTHEST);
                 assert!(reach > 0.7, "{seed}, {k}: {noise:?}");
                 state.follow(&[normal(&mut random)], &noisy);
             }
@@ -275,7 +292,7 @@ mod tests {
             state.follow(&[0.0], &white([0.0]));
         }
         let noise = state.noise(&white([1.0]));
-        assert!((noise.cycle[0] - 1.0).abs() < 1e-3, "{noise:?}");
+        assert!((noise.variance[0] - 1.0).abs() < 1e-3, "{noise:?}");
         assert!((noise.freedom - BELIEF).abs() < 1e-3, "{noise:?}");
     }
 
@@ -286,17 +303,17 @@ mod tests {
         let (mut state, ripple) = (ScatterState::<1>::default(), white([1.0]));
         for k in 0..500 {
             state.follow(&[0.05 * normal(&mut random)], &ripple);
-            let sigma = state.noise(&ripple).cycle[0];
+            let sigma = state.noise(&ripple).variance[0].sqrt();
             assert!(k > 2 || sigma == 1.0, "{k}: {sigma}");
             assert!(k < 25 || sigma < 0.2, "{k}: {sigma}");
             // Twice the 8 % of 69 degrees of freedom, once they are there.
             assert!(k < 120 || (0.04..0.065).contains(&sigma), "{k}: {sigma}");
         }
         let floored = Belief {
-            floor: [0.1],
+            floor: [0.01],
             ..ripple
         };
-        assert!(state.noise(&floored).cycle[0] > 0.4 * 0.1);
+        assert!(state.noise(&floored).variance[0].sqrt() > 0.4 * 0.1);
     }
 
     #[test]
@@ -308,7 +325,7 @@ mod tests {
         }
         state.follow(&[f32::NAN], &floor([1.0]));
         let noise = state.noise(&floor([1.0]));
-        assert_eq!((noise.cycle, noise.freedom), ([1.0], BELIEF));
+        assert_eq!((noise.variance, noise.freedom), ([1.0], BELIEF));
     }
 
     /// Tables of Student's distribution: two-sided 0.0027 (three normal deviations) at 8 and 60 degrees of freedom are 4.28 and
