@@ -209,32 +209,32 @@ impl Window {
     /// `2 Re(X e^{j (1 + e) theta}) e^{-j theta}` is `X` and `e/2` of its conjugate, to first order in `e`: in a phase's phasor
     /// that looks like an unbalance, as the conjugate of a positive sequence is a negative one. And cycles that turn by
     /// `2 pi e` from one to the next have a mean that is shorter by `(pi e length)^2/6`.
-    fn in_whole_turns(mut self, length: usize) -> Self {
+    fn count_whole_turns(&mut self, length: usize) {
         let share = 0.5 * self.turn_error;
         let turned = PI * self.turn_error * length as f32;
         let gain = 1.0 + turned * turned / 6.0;
         for ChannelCycle { phasor, .. } in &mut self.channels {
             *phasor = (*phasor - phasor.conj() * share) * gain;
         }
-        self
     }
 
-    /// With the symmetrical components of what the channels show.
-    fn in_sequences(mut self) -> Self {
+    /// What follows from the channels of `length` cycles, in the mirror where the field turns backwards.
+    #[inline]
+    fn finish(&mut self, length: usize) {
+        self.count_whole_turns(length);
         let phases = phases_of(&self.channels);
         self.backwards = turn_backwards(&phases);
         [self.u_s, self.i_s] = phases.map(|phases| components(phases, self.backwards));
-        self
+        self.mirror();
     }
 
     /// The mirror image of a motor whose field turns backwards, in everything but the channels.
-    fn mirrored(mut self) -> Self {
+    fn mirror(&mut self) {
         if self.backwards {
             self.omega_mech = self.omega_mech.map(|omega| -omega);
             self.tau_load = self.tau_load.map(|tau| -tau);
             self.rates.speed = -self.rates.speed;
         }
-        self
     }
 }
 
@@ -279,19 +279,17 @@ impl WindowState {
             *turned = Turned::of(cycle);
         }
         window.follow(turned.get(..length)?, t_sample)?;
-        Some(window.in_whole_turns(length).in_sequences().mirrored())
+        window.finish(length);
+        Some(window)
     }
 
     /// The cycle that came `age` cycles before the newest, as if it were a whole window like `like` without any change.
     pub fn single(&self, age: usize, like: &Window) -> Option<Window> {
-        let cycle = mean(self.latest(age + 1)?.skip(age), 1);
-        let cycle = Window {
-            omega_sync: like.omega_sync,
-            turn_error: like.turn_error,
-            ..cycle
-        };
-        let cycle = cycle.in_whole_turns(1).in_sequences();
-        (cycle.backwards == like.backwards).then(|| cycle.mirrored())
+        let mut cycle = mean(self.latest(age + 1)?.skip(age), 1);
+        cycle.omega_sync = like.omega_sync;
+        cycle.turn_error = like.turn_error;
+        cycle.finish(1);
+        (cycle.backwards == like.backwards).then_some(cycle)
     }
 }
 

@@ -180,6 +180,12 @@ pub(crate) fn higher(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
+/// The same of the other one; `b` if `a` is no number.
+#[inline(always)]
+pub(crate) fn lower(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Quality {
     Good,

@@ -64,31 +64,36 @@ impl Monitor {
             }
         }
         Belief {
-            expected: self.expected(window).map(|sigma| sigma * sigma),
+            expected: self.expected(window),
             floor: floor.map(|sigma| length * sigma * sigma),
         }
     }
 
-    /// What white noise of the samples does to what a cycle shows, in the order of what is followed.
+    /// What white noise of the samples does to what a cycle shows, in the order of what is followed: variances.
     fn expected(&self, window: &Window) -> [f32; FOLLOWED] {
         let (p, mechanics) = (&self.config.params, &self.config.mechanics);
         let noise = window.cycle_noise(self.config.t_sample);
-        let (u, i) = (noise.voltage * ONE_PART, noise.current * ONE_PART);
-        let (omega, volt) = (window.omega_sync, magnitude(window.u_s.positive));
-        let ampere = magnitude(window.i_s.positive);
-        let root = |a: f32, b: f32| processor::sqrtf(a * a + b * b);
-        let flux = share(root(u, omega * p.l_s() * i), volt);
-        let psi = share(volt, omega);
+        let (u, i) = (one_part(noise.voltage), one_part(noise.current));
+        let omega = window.omega_sync;
+        let (volt, ampere) = (
+            window.u_s.positive.norm_sqr(),
+            window.i_s.positive.norm_sqr(),
+        );
+        let square = |x: f32| x * x;
+        let psi = share(volt, square(omega));
+        let flux = share(u + square(omega * p.l_s()) * i, volt);
         let load = self.tau_load(window).map_or(0.0, |_| noise.torque);
-        let torque = root(1.5 * mechanics.n_p * psi * root(i, i), load);
-        let torque = self
+        let air_gap = square(1.5 * mechanics.n_p) * psi * 2.0 * i;
+        let per_torque = self
             .model
-            .acceleration_share(omega, torque / mechanics.inertia);
-        let slip = share(root(p.r_r * i, psi * mechanics.n_p * noise.speed), volt);
-        let leakage = root(p.r_s + p.r_r, omega * p.l_a());
-        let negative = share(root(u, leakage * i), volt);
+            .acceleration_share(omega, 1.0 / mechanics.inertia);
+        let torque = square(per_torque) * (air_gap + square(load));
+        let turned = psi * square(mechanics.n_p * noise.speed);
+        let slip = share(square(p.r_r) * i + turned, volt);
+        let leakage = square(p.r_s + p.r_r) + square(omega * p.l_a());
+        let negative = share(u + leakage * i, volt);
         let (zero_i, zero_u) = (share(i, ampere), share(u, volt));
-        let flux_rate = root(share(u, omega), p.l_a() * i);
+        let flux_rate = share(u, square(omega)) + square(p.l_a()) * i;
         [
             flux,
             torque,
@@ -104,7 +109,7 @@ impl Monitor {
             zero_u,
             zero_u,
             flux_rate,
-            noise.speed,
+            square(noise.speed),
         ]
     }
 
@@ -226,8 +231,10 @@ impl Monitor {
     }
 }
 
-/// One part of a complex number whose parts scatter alike.
-const ONE_PART: f32 = core::f32::consts::FRAC_1_SQRT_2;
+/// Variance of one part of a complex number whose parts scatter alike; of the standard deviation of both.
+fn one_part(sigma: f32) -> f32 {
+    0.5 * sigma * sigma
+}
 
 fn share(x: f32, of: f32) -> f32 {
     if of > f32::MIN_POSITIVE { x / of } else { 0.0 }

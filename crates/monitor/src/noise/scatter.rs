@@ -8,6 +8,8 @@
 //! Noise that begins: what was seen while the samples were quieter is scaled as what the samples let expect has grown
 //! since, and counts for as many differences less.
 
+use crate::input::validity::{higher, lower};
+
 /// Quantities that are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatterState<const N: usize> {
@@ -97,7 +99,7 @@ impl<const N: usize> ScatterState<N> {
             let difference = x - y - z + w;
             let square = difference * difference / DIFFERENCE;
             let admitted = if known > 0.0 {
-                square.min(LARGEST * known)
+                lower(square, LARGEST * known)
             } else {
                 square
             };
@@ -127,8 +129,8 @@ impl<const N: usize> ScatterState<N> {
         };
         let mut variance = seen_variance;
         for (variance, (expected, floor)) in variance.iter_mut().zip(belief.pairs()) {
-            // Not a number where nothing was seen: what is expected holds.
-            let believed = expected.min(alone * alone * *variance).max(floor);
+            // `alone` is no number where nothing was seen: what is expected holds.
+            let believed = higher(lower(alone * alone * *variance, expected), floor);
             *variance = (BELIEF * believed + seen * *variance) / freedom;
         }
         Noise { variance, freedom }
@@ -141,9 +143,9 @@ impl<const N: usize> ScatterState<N> {
         let pairs = self.believed.iter().zip(belief.all());
         for (variance, (before, now)) in scaled.iter_mut().zip(pairs) {
             if now > *before {
-                let grown = (now / before).min(BEYOND_COMPARISON);
+                let grown = lower(now / before, BEYOND_COMPARISON);
                 *variance *= grown;
-                most = most.max(grown);
+                most = higher(most, grown);
             }
         }
         (scaled, most)
@@ -156,7 +158,8 @@ impl<const N: usize> Belief<N> {
     }
 
     fn all(&self) -> impl Iterator<Item = f32> + '_ {
-        self.pairs().map(|(expected, floor)| expected.max(floor))
+        self.pairs()
+            .map(|(expected, floor)| higher(expected, floor))
     }
 
     /// Whether the samples let expect more of any quantity than its floor and what was seen of it: elsewhere it does not matter

@@ -159,7 +159,9 @@ impl SyncConfig {
         state.since_crossing += 1.0;
         let previous = core::mem::replace(&mut state.previous, x);
         if x < 0.0 {
-            state.armed |= x < -ARM_SHARE * state.peak && state.peak > self.min_amplitude;
+            if !state.armed {
+                state.armed = x < -ARM_SHARE * state.peak && state.peak > self.min_amplitude;
+            }
             return None;
         }
         if !state.armed || previous >= 0.0 {
