@@ -92,7 +92,11 @@ impl Machine {
     }
 
     /// The machine at a load, share of the rated torque.
-    fn recorded(&self, [load, volt, hertz]: [f64; 3], seed: u64) -> Result<Recording, Box<dyn Error>> {
+    fn recorded(
+        &self,
+        [load, volt, hertz]: [f64; 3],
+        seed: u64,
+    ) -> Result<Recording, Box<dyn Error>> {
         let mut motor = self.motor.clone();
         motor.parameters.r_s *= 1.0 + self.warmth * (load * load).min(1.6);
         motor.parameters.r_r *= 1.0 + self.warmth * (load * load).min(1.6);
@@ -126,19 +130,30 @@ impl Machine {
             },
             ..Scenario::of(motor, SECONDS)
         };
-        let r = record(&scenario, |_| ())?; if std::env::var("DBG").is_ok() { for (c, v) in r.channels() { let m = v.iter().fold(0.0f64, |a, b| a.max(b.abs())); eprintln!("{c:?} {m}"); } } Ok(r)
+        let r = record(&scenario, |_| ())?;
+        if std::env::var("DBG").is_ok() {
+            for (c, v) in r.channels() {
+                let m = v.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+                eprintln!("{c:?} {m}");
+            }
+        }
+        Ok(r)
     }
 
     fn calibrated(&self, random: &mut Pcg64) -> Result<Option<MotorFile>, Box<dyn Error>> {
         let mut recordings = Vec::new();
         for share in CALIBRATED {
-            let Ok(recording) = self.recorded([share * self.highest, 1.0, 1.0], random.random()) else {
+            let Ok(recording) = self.recorded([share * self.highest, 1.0, 1.0], random.random())
+            else {
                 return Ok(None);
             };
             recordings.push(recording);
         }
         let calibrated = calibrate(&self.motor, &recordings, &Surroundings::default());
-        Ok(calibrated.map_err(|e| eprintln!("{e}")).ok().map(|calibrated| calibrated.motor))
+        Ok(calibrated
+            .map_err(|e| eprintln!("{e}"))
+            .ok()
+            .map(|calibrated| calibrated.motor))
     }
 
     fn names(&self) -> String {
@@ -228,7 +243,12 @@ fn judged(seed: u64) -> Result<(Machine, Option<Vec<Judged>>), Box<dyn Error>> {
             at,
             state: verdict.state,
             first: first.map_or_else(String::new, |c| {
-                format!("{:?} {:?} {:.1} %", c.fault, c.phase, c.size_percent.unwrap_or(f64::NAN))
+                format!(
+                    "{:?} {:?} {:.1} %",
+                    c.fault,
+                    c.phase,
+                    c.size_percent.unwrap_or(f64::NAN)
+                )
             }),
         });
     }
@@ -237,7 +257,8 @@ fn judged(seed: u64) -> Result<(Machine, Option<Vec<Judged>>), Box<dyn Error>> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let number = |k: usize, default: u64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(default);
+    let number =
+        |k: usize, default: u64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(default);
     let (machines, seed): (u64, u64) = (number(0, 60), number(1, 1));
     let list = words.iter().any(|word| word == "list");
     let one = |k| judged(1_000_003 * seed + k).map_err(|error| error.to_string());
@@ -245,7 +266,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let all = all?;
     let refused = all.iter().filter(|(_, judged)| judged.is_none()).count();
     println!("{machines} machines, calibration refused {refused}\n");
-    println!("| load, of the largest calibrated | voltage | frequency | healthy | FAULT | not judged |\n|---|---|---|---|---|---|");
+    println!(
+        "| load, of the largest calibrated | voltage | frequency | healthy | FAULT | not judged |\n|---|---|---|---|---|---|"
+    );
     let said = || all.iter().flat_map(|(_, judged)| judged).flatten();
     for at in JUDGED {
         let count = |state| said().filter(|j| j.at == at && j.state == state).count();
@@ -258,10 +281,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     for (machine, judged) in all.iter().filter(|_| list) {
-        for j in judged.iter().flatten().filter(|j| j.state == VerdictState::Fault) {
+        for j in judged
+            .iter()
+            .flatten()
+            .filter(|j| j.state == VerdictState::Fault)
+        {
             println!(
                 "{}, {:?}, hidden {}, calibrated to {}: at {:?} {}",
-                machine.motor.name, machine.motor.load, machine.names(), machine.highest, j.at, j.first
+                machine.motor.name,
+                machine.motor.load,
+                machine.names(),
+                machine.highest,
+                j.at,
+                j.first
             );
         }
     }

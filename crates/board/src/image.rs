@@ -4,9 +4,9 @@
 use heapless::Vec;
 use monitor::{
     Abc, ActiveEffect, ActiveEffects, ActiveLaws, AnalogueChain, CHANNELS, CIRCUIT, Cage,
-    ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, Healthy, HealthySidebands,
-    InMotion, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS, MonitorConfig,
-    ParameterDoubt, ROWS, Uncertainty,
+    CalibratedRange, ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, Healthy,
+    HealthySidebands, InMotion, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS,
+    MonitorConfig, ParameterDoubt, ROWS, Uncertainty,
 };
 use motor::effect::SteadyEffect;
 use motor::effect::curve::{Action, BOARD_KNOTS, SteadyCurve};
@@ -29,7 +29,10 @@ pub const IMAGE_WORDS: usize = 42
 const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 
 /// Words of the healthy motor's statistics.
-const HEALTHY_WORDS: usize = 7 + 2 * ROWS + 10;
+const HEALTHY_WORDS: usize = 7 + 2 * ROWS + 10 + RANGE_WORDS;
+
+/// Words of where the calibration saw the motor: current, voltage over frequency, frequency.
+const RANGE_WORDS: usize = 5;
 
 /// Words of the analogue chain: delays and roll-off.
 const CHAIN_WORDS: usize = CHANNELS + 1;
@@ -38,7 +41,7 @@ const CHAIN_WORDS: usize = CHANNELS + 1;
 const CAGE_WORDS: usize = 6;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_000A;
+const SCHEMA: u32 = 0x444D_000B;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -204,6 +207,7 @@ fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
     w.numbers(&[u.magnetizing_inductance, u.leakage, u.friction]);
     w.numbers(&[u.current_gain, u.voltage_gain, u.speed]);
     w.number(u.negative_impedance);
+    write_range(w, h.range.as_ref());
     w.word(match h.in_motion {
         InMotion::Unseen => 0,
         InMotion::Fits => 1,
@@ -231,6 +235,7 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
             speed: r.number(),
             negative_impedance: r.number(),
         },
+        range: read_range(r),
         significance,
         in_motion: match r.word() {
             1 => InMotion::Fits,
@@ -240,6 +245,27 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
         },
     };
     (significance > 0.0).then_some(healthy)
+}
+
+/// A motor runs at a frequency above 0, so 0 stands for a calibration that does not say what it saw.
+fn write_range(w: &mut Writer, range: Option<&CalibratedRange>) {
+    let Some(range) = range else {
+        w.numbers(&[0.0; RANGE_WORDS]);
+        return;
+    };
+    w.number(range.current);
+    w.numbers(&range.volt_per_hertz);
+    w.numbers(&range.frequency);
+}
+
+fn read_range(r: &mut Reader<'_>) -> Option<CalibratedRange> {
+    let range = CalibratedRange {
+        current: r.number(),
+        volt_per_hertz: r.numbers(),
+        frequency: r.numbers(),
+    };
+    let [_, highest] = range.frequency;
+    (highest > 0.0).then_some(range)
 }
 
 /// A healthy load is positive, so 0 stands for sidebands that were not calibrated.

@@ -16,7 +16,7 @@ use crate::frames::Abc;
 use crate::input::chain::AnalogueChain;
 use crate::input::converter::{ChannelScale, Converter};
 use crate::input::sample::CHANNELS;
-use crate::isolation::{Healthy, Uncertainty};
+use crate::isolation::{CalibratedRange, Healthy, Uncertainty};
 use crate::lamps::threshold::ComparatorConfig;
 use crate::model::doubt::{CIRCUIT, DEVIATIONS, ParameterDoubt};
 use crate::model::effects::{
@@ -245,6 +245,11 @@ fn healthy(settings: &HealthySettings) -> Healthy {
             speed: share(settings.speed_percent),
             negative_impedance: share(settings.negative_impedance_percent),
         },
+        range: settings.range.as_ref().map(|range| CalibratedRange {
+            current: share(range.current_percent),
+            volt_per_hertz: range.volt_per_hertz_percent.map(share),
+            frequency: range.frequency_percent.map(share),
+        }),
         significance: settings.significance as f32,
         in_motion: settings.in_motion,
     }

@@ -77,8 +77,8 @@ pub use input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, 
 pub use input::torque::TorqueReading;
 pub use isolation::gauss::{Cholesky, Covariance};
 pub use isolation::{
-    ALL_CAUSES, CAUSES, Cause, Evidence, Healthy, Heating, Isolation, ROWS, Row, Uncertainty,
-    probabilities,
+    ALL_CAUSES, Beyond, CAUSES, CalibratedRange, Cause, Conditions, Evidence, Healthy, Heating,
+    Isolation, ROWS, Row, Uncertainty, probabilities,
 };
 pub use lamps::lamp::{Lamp, Lamps};
 pub use lamps::likely_cause::{Channel, Known, Suspect, Suspicion, TIE_RATIO, Witness, likely};

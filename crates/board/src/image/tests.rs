@@ -119,6 +119,11 @@ fn calibrated() -> MonitorConfig {
             speed: number(),
             negative_impedance: number(),
         },
+        range: Some(CalibratedRange {
+            current: number(),
+            volt_per_hertz: [number(), number()],
+            frequency: [number(), number()],
+        }),
         significance: 5.5,
         in_motion: InMotion::Differs,
     };

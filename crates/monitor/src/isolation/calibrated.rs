@@ -2,7 +2,10 @@
 
 use crate::config::LoadKind;
 use crate::frames::magnitude;
-use crate::isolation::{Bench, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS};
+use crate::isolation::{
+    Bench, Beyond, Conditions, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS,
+};
+use crate::model::effects::Corrected;
 use crate::model::movement::DERIVATIVE_DOUBT;
 use crate::model::residuals::{FieldCurrent, ResidualModel, Residuals};
 use crate::monitor::{Monitor, MonitorState};
@@ -82,6 +85,29 @@ impl Monitor {
         Some(residuals)
     }
 
+    /// Current, flux and frequency of a window; `None` without voltages and speed.
+    pub fn conditions(&self, window: &Window) -> Option<Conditions> {
+        let measured = self.corrected_at(0.0, window)?;
+        (window.u_s.positive.norm_sqr() > 0.0)
+            .then(|| self.conditions_of(&measured, window.omega_sync))
+    }
+
+    /// How far a window lies beyond what the calibration saw; `None` where nothing says what it saw.
+    pub fn beyond(&self, window: &Window) -> Option<Beyond> {
+        let range = self.config.healthy.as_ref()?.range.as_ref()?;
+        self.conditions(window).map(|at| range.beyond(&at))
+    }
+
+    fn conditions_of(&self, measured: &Corrected, omega_sync: f32) -> Conditions {
+        let config = &self.config;
+        let rated = [
+            config.rated_voltage,
+            config.rated_current,
+            config.rated_omega,
+        ];
+        Conditions::of(measured, omega_sync, rated)
+    }
+
     /// `near`: the rise of the resistances around which residuals are taken for straight lines.
     #[inline(never)]
     fn evidence_of_all(
@@ -122,9 +148,15 @@ impl Monitor {
             rise: near,
             torque_known: self.config.load == LoadKind::Friction || tau_load.is_some(),
         };
+        let at = self.conditions_of(&measured, window.omega_sync);
         let n_p = self.config.mechanics.n_p;
-        Some(Evidence::new(
-            healthy, window, &measured, n_p, &positive, noise,
-        ))
+        let evidence = Evidence::new(healthy, window, &measured, n_p, &positive, noise);
+        Some(match &healthy.range {
+            Some(range) => {
+                let saturating = measured.params.l_m != self.config.params.l_m;
+                evidence.beyond(range, &range.beyond(&at), saturating)
+            }
+            None => evidence,
+        })
     }
 }

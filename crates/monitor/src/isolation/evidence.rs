@@ -5,8 +5,9 @@ use num_complex::Complex32;
 use super::cause::Cause;
 use super::directions::{Directions, Positive};
 use super::gauss::Covariance;
-use super::healthy::{Healthy, ROWS, Row};
+use super::healthy::{Healthy, ROWS, Row, Uncertainty};
 use super::negative::Negative;
+use super::range::{Beyond, CalibratedRange};
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
@@ -22,6 +23,10 @@ pub struct Evidence {
     /// Whether each row is known.
     known: [bool; ROWS],
     scatter: Rows,
+    /// What is uncertain about the motor where the window lies.
+    uncertainty: Uncertainty,
+    /// Standard deviation of the current in phase with the voltage that the iron's losses take, a share of the motor's.
+    iron_loss: f32,
     positive: Directions,
     negative: Negative,
     /// Standard deviation of the angle of `Z_2`, rad.
@@ -72,6 +77,8 @@ impl Evidence {
             departure: rows_with(window, &positive.residuals, negative.value),
             known,
             scatter,
+            uncertainty: healthy.uncertainty,
+            iron_loss: 0.0,
             positive: positive.directions,
             negative,
             turn: negative.angle_left_open(&healthy.uncertainty),
@@ -118,6 +125,8 @@ impl Evidence {
             departure: rows_of_currents(window),
             known,
             scatter,
+            uncertainty: healthy.uncertainty,
+            iron_loss: 0.0,
             positive: Directions::default(),
             negative,
             turn: 0.0,
@@ -126,6 +135,25 @@ impl Evidence {
             backwards: window.backwards,
         };
         evidence.less(&mean)
+    }
+
+    /// The same where the calibration saw nothing of the kind.
+    #[must_use]
+    pub(crate) fn beyond(
+        mut self,
+        range: &CalibratedRange,
+        beyond: &Beyond,
+        saturating: bool,
+    ) -> Self {
+        if beyond.is_within() {
+            return self;
+        }
+        self.uncertainty = beyond.widened(&self.uncertainty, saturating);
+        self.iron_loss = beyond.iron_loss();
+        let [torque, ..] = &mut self.scatter;
+        let more = beyond.torque(range.current);
+        *torque = processor::sqrtf(*torque * *torque + more * more);
+        self
     }
 
     /// Takes off what the healthy motor shows, as its channels a, b, c showed it when it was calibrated.
@@ -288,7 +316,6 @@ impl Evidence {
     #[inline(never)]
     pub(crate) fn covariance(
         &self,
-        healthy: &Healthy,
         along: &Resistances,
         [heating, parting]: [f32; 2],
     ) -> Covariance<ROWS> {
@@ -297,7 +324,7 @@ impl Evidence {
             *scatter = if *known { *scatter } else { 1.0 };
         }
         let mut covariance = Covariance::of_independent(&own);
-        let u = &healthy.uncertainty;
+        let u = &self.uncertainty;
         let of_all = [
             (Cause::MagnetizingInductance, u.magnetizing_inductance),
             (Cause::Leakage, u.leakage),
@@ -321,6 +348,14 @@ impl Evidence {
                 u.voltage_gain,
             );
         }
+        covariance.add(
+            &self.masked(assemble(
+                &self.positive.turns,
+                Complex32::ZERO,
+                [Complex32::ZERO; 2],
+            )),
+            self.iron_loss,
+        );
         self.add_negative_impedance(&mut covariance, u.negative_impedance);
         covariance
     }

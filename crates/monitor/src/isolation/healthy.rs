@@ -2,6 +2,7 @@
 
 use motor::InMotion;
 
+use super::range::CalibratedRange;
 use crate::config::{ConfigError, check_range};
 
 /// Rows of evidence.
@@ -67,6 +68,8 @@ pub struct Healthy {
     pub turns_axis: [f32; 2],
     /// What remains uncertain.
     pub uncertainty: Uncertainty,
+    /// Where the calibration saw the motor; `None` where the motor file does not say.
+    pub range: Option<CalibratedRange>,
     /// Standard deviations at which FAULT lights, > 0.
     pub significance: f32,
     /// How the motor in good order moved, beside how its file says.
@@ -116,7 +119,9 @@ impl Healthy {
                 .iter()
                 .try_for_each(|value| check_range((name, *value, range)))?;
         }
-        Ok(())
+        self.range
+            .as_ref()
+            .map_or(Ok(()), CalibratedRange::validate)
     }
 }
 
@@ -130,6 +135,7 @@ impl Healthy {
             current_unbalance_scatter: 1.0,
             turns_axis: [1.0, 0.0],
             uncertainty: Uncertainty::default(),
+            range: None,
             significance: 1000.0,
             in_motion: InMotion::Unseen,
         }

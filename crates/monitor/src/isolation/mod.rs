@@ -12,6 +12,7 @@ mod fit;
 pub mod gauss;
 mod healthy;
 mod negative;
+mod range;
 mod temperature;
 mod weighing;
 
@@ -20,6 +21,7 @@ mod tests;
 
 pub use cause::{ALL_CAUSES, CAUSES, Cause};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
+pub use range::{Beyond, CalibratedRange, Conditions};
 pub use temperature::Heating;
 
 pub(crate) use directions::{Bench, impedance};
@@ -65,7 +67,7 @@ impl Isolation {
     ) -> Self {
         let resistances = evidence.resistances();
         let deviations = [expected.deviation, apart.deviation];
-        let covariance = evidence.covariance(healthy, &resistances, deviations);
+        let covariance = evidence.covariance(&resistances, deviations);
         let cholesky = covariance.factorise();
         let departure = evidence.departure_at(&resistances, [expected.rise, apart.rise]);
         let weighing = Weighing::new(evidence, &cholesky, &departure);

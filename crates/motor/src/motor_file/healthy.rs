@@ -19,6 +19,17 @@ pub struct HealthyRotor {
     pub scatter_percent: f64,
 }
 
+/// Where the windows of a calibration lay; what is known of the motor holds there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CalibratedRange {
+    /// Largest positive-sequence current, percent of the rated one.
+    pub current_percent: f64,
+    /// Smallest and largest voltage over frequency, percent of the rated ones.
+    pub volt_per_hertz_percent: [f64; 2],
+    /// Lowest and highest supply frequency, percent of the rated one.
+    pub frequency_percent: [f64; 2],
+}
+
 /// Statistics of the healthy motor, percent of each row's scale or of each quantity's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HealthySettings {
@@ -52,6 +63,8 @@ pub struct HealthySettings {
     pub speed_percent: f64,
     /// Standard uncertainty of the negative sequence's impedance.
     pub negative_impedance_percent: f64,
+    /// Where the calibration saw the motor; `None`: nothing says.
+    pub range: Option<CalibratedRange>,
     /// Standard deviations at which FAULT lights.
     pub significance: f64,
     /// Sidebands of the rotor's bars; `None`: not calibrated.
@@ -80,6 +93,7 @@ impl Default for HealthySettings {
             voltage_gain_percent: 0.2,
             speed_percent: 0.01,
             negative_impedance_percent: 10.0,
+            range: None,
             significance: 5.5,
             rotor: None,
             in_motion: InMotion::Unseen,
@@ -121,6 +135,7 @@ fn read_values(section: &Section<'_>) -> Option<HealthySettings> {
     let angle = section.number_or("turns_angle_deg", &ANGLE, base.turns_angle_deg);
     let significance = section.number_or("significance", &SIGNIFICANCE, base.significance);
     let rotor = read_rotor(section);
+    let range = read_range(section);
     let in_motion = section.choice_or("in_motion", &InMotion::CHOICE, base.in_motion);
     let mut settings = HealthySettings {
         mean_percent: mean?,
@@ -129,6 +144,7 @@ fn read_values(section: &Section<'_>) -> Option<HealthySettings> {
         turns_angle_deg: angle?,
         significance: significance?,
         rotor: rotor?,
+        range: range?,
         in_motion: in_motion?,
         ..base
     };
@@ -158,6 +174,48 @@ fn read_rotor(section: &Section<'_>) -> Option<Option<HealthyRotor>> {
         }
     }))
 }
+
+fn read_range(section: &Section<'_>) -> Option<Option<CalibratedRange>> {
+    let [current, volt_per_hertz, frequency] = RANGE_KEYS;
+    let current_percent = section.optional_number(current, &SHARE);
+    let volt_per_hertz_percent = section.optional_numbers::<2>(volt_per_hertz, &SHARE);
+    let frequency_percent = section.optional_numbers::<2>(frequency, &SHARE);
+    let ordered = |[low, high]: [f64; 2]| [low.min(high), low.max(high)];
+    match (
+        current_percent?,
+        volt_per_hertz_percent?,
+        frequency_percent?,
+    ) {
+        (None, None, None) => Some(None),
+        (Some(current_percent), Some(volt_per_hertz), Some(frequency)) => {
+            Some(Some(CalibratedRange {
+                current_percent,
+                volt_per_hertz_percent: ordered(volt_per_hertz),
+                frequency_percent: ordered(frequency),
+            }))
+        }
+        _ => {
+            let there = RANGE_KEYS.into_iter().find(|key| section.has(key));
+            let lacking = RANGE_KEYS.into_iter().filter(|key| !section.has(key));
+            let lacking: Vec<&str> = lacking.collect();
+            section.report(
+                there.unwrap_or(current),
+                format!(
+                    "also write {}: the three belong together",
+                    lacking.join(" and ")
+                ),
+            );
+            None
+        }
+    }
+}
+
+/// Keys of [`CalibratedRange`].
+pub(super) const RANGE_KEYS: [&str; 3] = [
+    "calibrated_current_percent",
+    "calibrated_volt_per_hertz_percent",
+    "calibrated_frequency_percent",
+];
 
 /// How many plain shares there are.
 const SHARES: usize = 11;

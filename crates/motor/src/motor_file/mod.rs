@@ -19,7 +19,7 @@ mod malformed_cases;
 mod tests;
 
 pub use effects::{EffectEntry, EffectParameter, EffectValue};
-pub use healthy::{EVIDENCE_ROWS, HealthyRotor, HealthySettings};
+pub use healthy::{CalibratedRange, EVIDENCE_ROWS, HealthyRotor, HealthySettings};
 pub use monitor::{FieldCurrent, Frame, LoadKind, MonitorSettings};
 pub use nameplate::{Connection, Nameplate};
 pub use sensors::Sensors;

@@ -25,6 +25,9 @@ current_gain_percent = 3.7
 voltage_gain_percent = 3.8
 speed_percent = 3.9
 negative_impedance_percent = 4.1
+calibrated_current_percent = 102.0
+calibrated_volt_per_hertz_percent = [91.0, 96.0]
+calibrated_frequency_percent = [80.0, 100.0]
 significance = 6.5
 rotor_active_percent = [90.0, 40.0]
 rotor_sideband_percent = [0.5, 0.3]
@@ -164,6 +167,11 @@ fn a_healthy_section_is_read_key_by_key() {
         voltage_gain_percent: 3.8,
         speed_percent: 3.9,
         negative_impedance_percent: 4.1,
+        range: Some(CalibratedRange {
+            current_percent: 102.0,
+            volt_per_hertz_percent: [91.0, 96.0],
+            frequency_percent: [80.0, 100.0],
+        }),
         significance: 6.5,
         rotor: Some(HealthyRotor {
             active_percent: [40.0, 90.0],

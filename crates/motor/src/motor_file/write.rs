@@ -1,5 +1,6 @@
 //! A motor as the text of a motor file.
 
+use super::healthy::RANGE_KEYS;
 use super::monitor::{FIELD_CURRENTS, FRAMES, LOADS};
 use super::sensors::MICROSECOND;
 use super::{
@@ -168,6 +169,12 @@ fn healthy(text: &mut Text, settings: &HealthySettings) {
     );
     for (key, share) in settings.shares() {
         text.number(key, share);
+    }
+    if let Some(range) = &settings.range {
+        let [current, volt_per_hertz, frequency] = RANGE_KEYS;
+        text.number(current, range.current_percent);
+        text.numbers(volt_per_hertz, &range.volt_per_hertz_percent);
+        text.numbers(frequency, &range.frequency_percent);
     }
     text.number("turns_angle_deg", settings.turns_angle_deg);
     text.number("significance", settings.significance);

@@ -1,8 +1,8 @@
 //! What the calibrated motor still shows: means, scatter, thresholds.
 
-use monitor::{Evidence, Healthy, Monitor, ROWS, Rehearsal, Row};
+use monitor::{Conditions, Evidence, Healthy, Monitor, ROWS, Rehearsal, Row};
 use motor::MotorFile;
-use motor::motor_file::HealthySettings;
+use motor::motor_file::{CalibratedRange, HealthySettings};
 use num_complex::Complex64;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -62,6 +62,7 @@ pub fn healthy(
         .iter()
         .all(|o| o.window.u_s.positive.norm_sqr() > 0.0);
     let (mean, scatter) = moments(&evidence);
+    let conditions = |o: &Observed| monitors[o.recording].conditions(&o.window);
     let mut settings = HealthySettings {
         significance: significance(surroundings.false_alarm_rate),
         heating_percent: 100.0 * surroundings.winding_kelvin * COPPER_PER_KELVIN,
@@ -71,6 +72,7 @@ pub fn healthy(
         settings.mean_percent = mean;
         settings.scatter_percent = scatter;
         take_uncertainty(&mut settings, fitted);
+        settings.range = range(observed.iter().filter_map(conditions));
     } else {
         let zero = Row::ZeroCurrent as usize;
         for row in [zero, zero + 1] {
@@ -81,6 +83,25 @@ pub fn healthy(
     }
     set_current_unbalance(&mut settings, observed);
     Ok(settings)
+}
+
+/// The smallest range that holds them all; `None` without any.
+fn range(all: impl Iterator<Item = Conditions>) -> Option<CalibratedRange> {
+    let of_one = |at: Conditions| {
+        let [current, volt_per_hertz, frequency] =
+            [at.current, at.volt_per_hertz, at.frequency].map(|share| 100.0 * f64::from(share));
+        CalibratedRange {
+            current_percent: current,
+            volt_per_hertz_percent: [volt_per_hertz; 2],
+            frequency_percent: [frequency; 2],
+        }
+    };
+    let both = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    all.map(of_one).reduce(|a, b| CalibratedRange {
+        current_percent: a.current_percent.max(b.current_percent),
+        volt_per_hertz_percent: both(a.volt_per_hertz_percent, b.volt_per_hertz_percent),
+        frequency_percent: both(a.frequency_percent, b.frequency_percent),
+    })
 }
 
 /// Relative change of copper's resistance per kelvin at 20 degC (IEC 60028).

@@ -148,6 +148,7 @@ pub fn statistics() -> Healthy {
             speed: 1e-4,
             negative_impedance: 0.1,
         },
+        range: None,
         significance: 5.5,
         in_motion: motor::InMotion::Unseen,
     }
