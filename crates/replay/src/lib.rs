@@ -39,8 +39,8 @@ pub use rotor::{RotorCage, RotorSummary};
 pub use run::{Replay, replay};
 pub use samples::{Before, Samples, Timed};
 pub use timeline::{
-    LampState, SequenceSummary, Timeline, Trace, Verdict, VerdictState, WindowOperation,
-    WindowResiduals,
+    BeyondCalibration, LampState, SequenceSummary, Timeline, Trace, Verdict, VerdictState,
+    WindowOperation, WindowResiduals,
 };
 
 use monitor::{

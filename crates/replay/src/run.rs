@@ -51,10 +51,19 @@ impl Replay {
                 self.follower.window(&report);
                 report.moving = self.follower.moving();
                 self.timeline.add(timed.t, &report);
+                self.note_beyond(&report);
                 look(k + 1, timed.t, &report);
             }
         }
         self.before = samples.end();
+    }
+
+    fn note_beyond(&mut self, report: &Report) {
+        let judged = report.window.filter(|_| report.is_judged());
+        let beyond = judged.and_then(|window| self.monitor.beyond(&window));
+        if let Some(beyond) = beyond {
+            self.timeline.add_beyond(&beyond);
+        }
     }
 
     /// What all samples came to.

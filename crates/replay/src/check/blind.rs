@@ -31,6 +31,12 @@ pub(super) const NOT_CALIBRATED: BlindSpot = BlindSpot {
     needs: "a recording of the motor in good order",
 };
 
+/// A fit holds where it was made.
+pub(super) const BEYOND: BlindSpot = BlindSpot {
+    unseen: "small faults where current, voltage or frequency lie beyond what the recording in good order shows",
+    needs: "the motor in good order there, too",
+};
+
 /// Both resistances rise as the motor warms: by some 40 % over 100 K.
 const WARM: BlindSpot = BlindSpot {
     unseen: "a resistance of all phases or of the rotor that has grown by as much as heat makes it grow, up to some 40 %",

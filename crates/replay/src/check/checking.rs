@@ -10,7 +10,9 @@ use super::clamp::{ClampSignal, clamp_signals};
 use super::doubts::{Doubting, reasons};
 use super::{BlindSpot, Checked, Told, blind, blind_spots, severity, todo};
 use crate::speed::{EstimatedSpeed, with_estimated_speed};
-use crate::{MotionSummary, Replay, Samples, Timeline, config_for, replay, words};
+use crate::{
+    BeyondCalibration, MotionSummary, Replay, Samples, Timeline, config_for, replay, words,
+};
 
 /// Why a recording without a speed is not judged in motion.
 const SPEED_IS_ESTIMATED: &str =
@@ -180,7 +182,8 @@ impl<'m> Checking<'m> {
             visible_percent: timeline.visible_percent(),
             rotor: words::rotor(&timeline.rotor()),
             current_unbalance_percent: timeline.sequence().i2_over_i1.map(|x| 100.0 * x),
-            blind: self.blind,
+            beyond_calibration: timeline.beyond,
+            blind: with_beyond(self.blind, &timeline.beyond),
             verdict,
             audit: match speed {
                 Some(_) => self.recorded.finish(),
@@ -197,6 +200,14 @@ impl<'m> Checking<'m> {
         answer.told = Told::of(&answer);
         answer
     }
+}
+
+/// What cannot be seen, where the motor ran beyond what is known of it too.
+fn with_beyond(mut blind: Vec<BlindSpot>, beyond: &BeyondCalibration) -> Vec<BlindSpot> {
+    if beyond.windows > 0 {
+        blind.push(blind::BEYOND);
+    }
+    blind
 }
 
 /// Why windows were not judged, or why there are none.

@@ -31,8 +31,8 @@ use serde::Serialize;
 
 use crate::speed::EstimatedSpeed;
 use crate::{
-    MotionFault, MotionSummary, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
-    causes, words,
+    BeyondCalibration, MotionFault, MotionSummary, Timeline, Verdict, VerdictState,
+    WindowOperation, WindowResiduals, causes, words,
 };
 
 /// What one recording says of a motor.
@@ -68,6 +68,8 @@ pub struct Checked {
     pub current_unbalance_percent: Option<f64>,
     /// What single channels say, where there are no three of a kind.
     pub clamps: Vec<ClampSignal>,
+    /// Judged windows beyond what the calibration, or the recording in good order, saw.
+    pub beyond_calibration: BeyondCalibration,
     /// What cannot be seen.
     pub blind: Vec<BlindSpot>,
     /// State, cause, certainty and severity in words.

@@ -1,13 +1,14 @@
 //! What a whole recording came to: lamp changes, verdict, sequence components.
 
+mod beyond;
 mod sequences;
 mod thinned;
 mod trace;
 
 use audit::Finding;
 use monitor::{
-    Candidates, Channel, FAULTS, Known, Lamp, Lamps, LoadKind, MonitorConfig, NotJudged, Report,
-    Witness,
+    Beyond, Candidates, Channel, FAULTS, Known, Lamp, Lamps, LoadKind, MonitorConfig, NotJudged,
+    Report, Witness,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,7 @@ use crate::causes::{self, Candidate};
 use crate::judgement::{Direction, NotJudgedShare, Reasons, Unjudged};
 use crate::moving::MotionSummary;
 use crate::rotor::{RotorHistory, RotorSummary};
+pub use beyond::BeyondCalibration;
 pub use sequences::SequenceSummary;
 use sequences::Sequences;
 pub(crate) use thinned::Thinned;
@@ -139,6 +141,8 @@ pub struct Timeline {
     pub trace: Trace,
     /// What was judged while something changed.
     pub motion: MotionSummary,
+    /// Judged windows beyond what the calibration saw.
+    pub beyond: BeyondCalibration,
     reasons: Reasons,
     shown: Option<(Lamps, Option<NotJudged>)>,
     moments: Moments,
@@ -190,6 +194,11 @@ impl Timeline {
         self.note_causes(t, report);
         self.sequences.add(t, report);
         self.trace.add(t, report);
+    }
+
+    /// Adds how far a judged window lies beyond the calibration.
+    pub fn add_beyond(&mut self, beyond: &Beyond) {
+        self.beyond.add(beyond);
     }
 
     /// Sorts what has been collected.

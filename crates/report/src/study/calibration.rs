@@ -100,10 +100,24 @@ pub struct HealthyStatistics {
     /// Sidebands of the cage at a light and at a heavy load; absent where the recordings show too few blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotor: Option<HealthyCage>,
+    /// Where the recordings lie; beyond, less is known. Absent without voltages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<CalibrationRange>,
     /// How the motor in good order moved, beside how its file says: `fits`, `differs` (it is not judged in motion), or `unseen`.
     #[serde(serialize_with = "by_word")]
     #[schemars(with = "String")]
     pub in_motion: InMotion,
+}
+
+/// Where the windows of a calibration lie, percent of the rated values.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct CalibrationRange {
+    /// Largest positive-sequence current.
+    pub current_percent: f64,
+    /// Smallest and largest voltage over frequency.
+    pub volt_per_hertz_percent: [f64; 2],
+    /// Lowest and highest supply frequency.
+    pub frequency_percent: [f64; 2],
 }
 
 /// The healthy cage, percent of the active current; loads in percent of the rated current.
@@ -183,6 +197,11 @@ fn healthy(settings: &HealthySettings) -> HealthyStatistics {
             active_percent: rotor.active_percent,
             sideband_percent: rotor.sideband_percent,
             scatter_percent: rotor.scatter_percent,
+        }),
+        range: settings.range.map(|range| CalibrationRange {
+            current_percent: range.current_percent,
+            volt_per_hertz_percent: range.volt_per_hertz_percent,
+            frequency_percent: range.frequency_percent,
         }),
         in_motion: settings.in_motion,
     }

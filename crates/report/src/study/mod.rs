@@ -15,8 +15,8 @@ mod typed;
 
 pub use adopt::Adopted;
 pub use calibration::{
-    CalibratedParameter, Calibration, ChannelGains, FALSE_ALARM_RATES, HealthyCage,
-    HealthyStatistics, MisfitPercent, WINDING_KELVINS,
+    CalibratedParameter, Calibration, CalibrationRange, ChannelGains, FALSE_ALARM_RATES,
+    HealthyCage, HealthyStatistics, MisfitPercent, WINDING_KELVINS,
 };
 pub use check::{CheckedRecording, Checkup, Taken};
 pub use compare::Compared;

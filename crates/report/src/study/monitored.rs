@@ -8,8 +8,8 @@ use motor::{FileError, MotorFile};
 use recording::Recording;
 use replay::check::{CheckDoubt, Doubting};
 use replay::{
-    Direction, LampState, MotionSummary, NotJudgedShare, Replay, RotorSummary, Samples,
-    SequenceSummary, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
+    BeyondCalibration, Direction, LampState, MotionSummary, NotJudgedShare, Replay, RotorSummary,
+    Samples, SequenceSummary, Timeline, Verdict, VerdictState, WindowOperation, WindowResiduals,
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
@@ -74,6 +74,8 @@ struct MonitorJson<'a> {
     /// Changes of the lamps that are not in `lamps`; absent where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     further_lamp_changes: Option<u64>,
+    /// Judged windows beyond the currents, voltages and frequencies of the motor's calibration.
+    beyond_calibration: BeyondCalibration,
     /// The verdict on the windows at rest, and the likely causes.
     verdict: &'a Verdict,
     /// Sense of rotation of the supply; `null` where it was not seen.
@@ -280,6 +282,7 @@ impl Serialize for Monitored {
             windows: timeline.windows,
             judged: timeline.judged,
             not_judged: &timeline.not_judged,
+            beyond_calibration: timeline.beyond,
             residual_percent: residual_percent.map(|(mean, standard_deviation)| ResidualPercent {
                 mean,
                 standard_deviation,

@@ -275,6 +275,7 @@ pub(crate) fn print_windows(timeline: &Timeline) {
     for share in &timeline.not_judged {
         say!("  {} not judged: {}", share.windows, share.reason);
     }
+    print_beyond(timeline);
     if let Some((mean, deviation)) = timeline.residual_percent() {
         for (k, (mean, deviation)) in mean.iter().zip(deviation).enumerate() {
             say!(
@@ -286,6 +287,16 @@ pub(crate) fn print_windows(timeline: &Timeline) {
     if let Some([r1, r2, r3, r4]) = timeline.visible_percent() {
         say!(
             "  smallest that lights a lamp here: r1 {r1:.2}, r2 {r2:.2}, r3 {r3:.2}, r4 {r4:.2} % of scale"
+        );
+    }
+}
+
+fn print_beyond(timeline: &Timeline) {
+    if let Some(words) = timeline.beyond.words() {
+        say!(
+            "  {} {} of them lie beyond the calibration ({words}): small faults stay dark there. Record the motor in good order there, and calibrate with it",
+            paint::caution("less is known:"),
+            timeline.beyond.windows
         );
     }
 }

@@ -21,7 +21,9 @@ use channels::ChannelArgs;
 use replay::calibrate::{Pieces, Refusal, Surroundings};
 use report::json::Format;
 use report::motor_text;
-use report::study::{Calibration, FALSE_ALARM_RATES, HealthyCage, WINDING_KELVINS};
+use report::study::{
+    Calibration, CalibrationRange, FALSE_ALARM_RATES, HealthyCage, WINDING_KELVINS,
+};
 
 /// Learn a healthy motor: parameters, gains of the channels, statistics, thresholds.
 ///
@@ -242,6 +244,9 @@ fn print_statistics(result: &Calibration) {
     if !result.parameters.is_empty() {
         print_loads(healthy.stator_resistance_percent);
     }
+    if let Some(range) = &healthy.range {
+        print_range(range);
+    }
     print_rotor(healthy.rotor.as_ref());
     print_in_motion(healthy.in_motion);
     let [r1, r2, r3, r4] = result.threshold_percent;
@@ -256,6 +261,16 @@ fn print_loads(stator_resistance_percent: f64) {
             paint::caution("loads:")
         );
     }
+}
+
+/// Where the calibration holds.
+fn print_range(range: &CalibrationRange) {
+    let [low, high] = range.volt_per_hertz_percent;
+    let [slow, fast] = range.frequency_percent;
+    say!(
+        "  seen up to {:.0} % of the rated current, at {low:.0} to {high:.0} % of the rated voltage over frequency and {slow:.0} to {fast:.0} % of the rated frequency; beyond, small faults stay dark",
+        range.current_percent
+    );
 }
 
 fn print_in_motion(seen: InMotion) {

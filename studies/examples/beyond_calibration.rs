@@ -1,7 +1,9 @@
-//! Healthy motors beyond the loads of their calibration, with effects that their motor files do not know: how often FAULT lights.
+//! Motors beyond what their calibration saw, with effects that their motor files do not know: how often FAULT lights.
 //!
-//! `cargo run --release -p studies --example beyond_loads -- MACHINES SEED [list]` draws motors around those that ship, hides up to two effects in
-//! each, calibrates it as docs/calibrate.md asks at three loads up to a part of the rated one, and judges it at more.
+//! `cargo run --release -p studies --example beyond_calibration -- MACHINES SEED [one] [without] [faults] [list]` draws motors around those that
+//! ship, hides up to two effects in each, calibrates it as docs/calibrate.md asks at three loads up to a part of the rated one, and judges
+//! it at other loads, voltages and frequencies. `one`: one recording at the largest load is all that the calibration gets. `without`: the motor file forgets
+//! what the calibration saw. `faults`: the motors have faults, and FAULT is right. `list`: every FAULT.
 
 use audit::{Expectation, audit};
 use monitor::Monitor;
@@ -17,7 +19,10 @@ use recording::Recording;
 use replay::calibrate::{Surroundings, calibrate};
 use replay::{Samples, VerdictState};
 use scenario::simulate::record;
-use scenario::{Load, LoadSpec, Piecewise, Scenario, SensorSpec, Start, SupplySpec};
+use scenario::{
+    Asymmetry, Change, Fault, Load, LoadSpec, Parameter, Piecewise, Probe, Scenario, SensorSpec,
+    Start, SupplySpec, Target,
+};
 use std::error::Error;
 
 const MOTORS: [&str; 5] = [
@@ -60,7 +65,7 @@ struct Machine {
     motor: MotorFile,
     hidden: Vec<EffectEntry>,
     highest: f64,
-    /// Standard uncertainty of what the winding's warmth does to its resistance at the rated load, share.
+    /// How much the resistances rise by the warmth of the rated load, share.
     warmth: f64,
 }
 
@@ -95,6 +100,7 @@ impl Machine {
     fn recorded(
         &self,
         [load, volt, hertz]: [f64; 3],
+        fault: Option<&Broken>,
         seed: u64,
     ) -> Result<Recording, Box<dyn Error>> {
         let mut motor = self.motor.clone();
@@ -122,6 +128,7 @@ impl Machine {
                 },
             },
             effects: self.hidden.clone(),
+            faults: fault.map(|broken| broken.1.clone()).into_iter().collect(),
             sample_rate_hz: 5000.0,
             start: Start::Running,
             sensors: SensorSpec {
@@ -130,30 +137,27 @@ impl Machine {
             },
             ..Scenario::of(motor, SECONDS)
         };
-        let r = record(&scenario, |_| ())?;
-        if std::env::var("DBG").is_ok() {
-            for (c, v) in r.channels() {
-                let m = v.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-                eprintln!("{c:?} {m}");
-            }
-        }
-        Ok(r)
+        Ok(record(&scenario, |_| ())?)
     }
 
-    fn calibrated(&self, random: &mut Pcg64) -> Result<Option<MotorFile>, Box<dyn Error>> {
-        let mut recordings = Vec::new();
-        for share in CALIBRATED {
-            let Ok(recording) = self.recorded([share * self.highest, 1.0, 1.0], random.random())
-            else {
-                return Ok(None);
-            };
-            recordings.push(recording);
+    /// `None` where a recording is not possible or the calibration refuses.
+    fn calibrated(&self, asked: &Asked, random: &mut Pcg64) -> Option<MotorFile> {
+        let shares = if asked.one {
+            &CALIBRATED[2..]
+        } else {
+            &CALIBRATED
+        };
+        let recorded = |share| {
+            let at = [share * self.highest, 1.0, 1.0];
+            self.recorded(at, None, random.random()).ok()
+        };
+        let recordings: Option<Vec<Recording>> = shares.iter().map(recorded).collect();
+        let calibrated = calibrate(&self.motor, &recordings?, &Surroundings::default());
+        let mut motor = calibrated.ok()?.motor;
+        if asked.without {
+            motor.healthy.as_mut()?.range = None;
         }
-        let calibrated = calibrate(&self.motor, &recordings, &Surroundings::default());
-        Ok(calibrated
-            .map_err(|e| eprintln!("{e}"))
-            .ok()
-            .map(|calibrated| calibrated.motor))
+        Some(motor)
     }
 
     fn names(&self) -> String {
@@ -212,90 +216,148 @@ fn hidden(motor: &MotorFile, random: &mut Pcg64) -> Vec<EffectEntry> {
     all
 }
 
-/// What was said of a machine at a load.
+/// A fault and its name; from the first sample on.
+struct Broken(&'static str, Fault);
+
+fn faults() -> Vec<Broken> {
+    let one = |name, target, factor| {
+        let change = Change::Factor(factor);
+        let (from_s, to_s) = (0.0, f64::INFINITY);
+        let fault = Fault {
+            target,
+            change,
+            from_s,
+            to_s,
+        };
+        Broken(name, fault)
+    };
+    vec![
+        one("one current +5 %", Target::Probe(Probe::Current(0)), 1.05),
+        one("one voltage +5 %", Target::Probe(Probe::Voltage(0)), 1.05),
+        one("speed -2 %", Target::Probe(Probe::Speed), 0.98),
+        one(
+            "resistance in phase b +50 %",
+            Target::Asymmetry(Asymmetry::Series(1)),
+            1.5,
+        ),
+        one("Lm -30 %", Target::Parameter(Parameter::Lm), 0.7),
+    ]
+}
+
+/// What is asked.
+#[derive(Clone, Copy)]
+struct Asked {
+    one: bool,
+    without: bool,
+    faults: bool,
+    list: bool,
+}
+
+/// What was said of a machine under a condition.
 struct Judged {
     at: [f64; 3],
+    fault: &'static str,
     state: VerdictState,
     first: String,
 }
 
 /// What was said of a machine; nothing where its calibration is refused.
-fn judged(seed: u64) -> Result<(Machine, Option<Vec<Judged>>), Box<dyn Error>> {
+fn judged(seed: u64, asked: &Asked) -> Result<(Machine, Option<Vec<Judged>>), Box<dyn Error>> {
     let mut random = Pcg64::seed_from_u64(seed);
     let machine = Machine::draw(&mut random)?;
-    let Some(calibrated) = machine.calibrated(&mut random)? else {
+    let Some(calibrated) = machine.calibrated(asked, &mut random) else {
         return Ok((machine, None));
+    };
+    let broken: Vec<Option<Broken>> = match asked.faults {
+        true => faults().into_iter().map(Some).collect(),
+        false => vec![None],
     };
     let mut all = Vec::new();
     for at in JUDGED {
-        let [ratio, volt, hertz] = at;
-        let load = ratio * machine.highest;
-        // Beyond the breakdown torque no motor runs.
-        let Ok(recording) = machine.recorded([load, volt, hertz], random.random()) else {
-            continue;
-        };
-        let audit = audit(&recording, &Expectation::from(&calibrated));
-        let monitor = Monitor::new(replay::config_for(&calibrated, &recording)?)?;
-        let timeline = replay::replay(&monitor, &Samples::new(&recording, &audit), &mut |_| {});
-        let verdict = timeline.verdict(&[]);
-        let first = verdict.candidates.first();
-        all.push(Judged {
-            at,
-            state: verdict.state,
-            first: first.map_or_else(String::new, |c| {
-                format!(
-                    "{:?} {:?} {:.1} %",
-                    c.fault,
-                    c.phase,
-                    c.size_percent.unwrap_or(f64::NAN)
-                )
-            }),
-        });
+        for broken in &broken {
+            let [ratio, volt, hertz] = at;
+            let real = [ratio * machine.highest, volt, hertz];
+            // Beyond the breakdown torque no motor runs.
+            let Ok(recording) = machine.recorded(real, broken.as_ref(), random.random()) else {
+                continue;
+            };
+            let audit = audit(&recording, &Expectation::from(&calibrated));
+            let monitor = Monitor::new(replay::config_for(&calibrated, &recording)?)?;
+            let samples = Samples::new(&recording, &audit);
+            let timeline = replay::replay(&monitor, &samples, &mut |_| {});
+            let verdict = timeline.verdict(&[]);
+            let first = verdict.candidates.first().map(|first| {
+                let size = first.size_percent.unwrap_or(f64::NAN);
+                format!("{:?} {:?} {size:.1} %", first.fault, first.phase)
+            });
+            all.push(Judged {
+                at,
+                fault: broken.as_ref().map_or("healthy", |broken| broken.0),
+                state: verdict.state,
+                first: first.unwrap_or_default(),
+            });
+        }
     }
     Ok((machine, Some(all)))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let number =
-        |k: usize, default: u64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(default);
-    let (machines, seed): (u64, u64) = (number(0, 60), number(1, 1));
-    let list = words.iter().any(|word| word == "list");
-    let one = |k| judged(1_000_003 * seed + k).map_err(|error| error.to_string());
+    let number = |k: usize, default: u64| {
+        let word = words.get(k).and_then(|word| word.parse().ok());
+        word.unwrap_or(default)
+    };
+    let (machines, seed) = (number(0, 60), number(1, 1));
+    let has = |word: &str| words.iter().any(|given| given == word);
+    let asked = Asked {
+        one: has("one"),
+        without: has("without"),
+        faults: has("faults"),
+        list: has("list"),
+    };
+    let one = |k| judged(1_000_003 * seed + k, &asked).map_err(|error| error.to_string());
     let all: Result<Vec<_>, String> = (0..machines).into_par_iter().map(one).collect();
     let all = all?;
     let refused = all.iter().filter(|(_, judged)| judged.is_none()).count();
-    println!("{machines} machines, calibration refused {refused}\n");
+    println!("{machines} machines, {refused} not calibrated\n");
+    print(&all, &asked);
+    Ok(())
+}
+
+fn print(all: &[(Machine, Option<Vec<Judged>>)], asked: &Asked) {
+    let names: Vec<&str> = match asked.faults {
+        true => faults().into_iter().map(|broken| broken.0).collect(),
+        false => vec!["healthy"],
+    };
     println!(
-        "| load, of the largest calibrated | voltage | frequency | healthy | FAULT | not judged |\n|---|---|---|---|---|---|"
+        "| load, of the largest calibrated | voltage | frequency | FAULT: {} |",
+        names.join(" | ")
     );
+    println!("|---|---|---|{}", "---|".repeat(names.len()));
     let said = || all.iter().flat_map(|(_, judged)| judged).flatten();
     for at in JUDGED {
-        let count = |state| said().filter(|j| j.at == at && j.state == state).count();
         let [ratio, volt, hertz] = at;
-        println!(
-            "| {ratio} | {volt} | {hertz} | {} | {} | {} |",
-            count(VerdictState::Healthy),
-            count(VerdictState::Fault),
-            count(VerdictState::NotJudged)
-        );
+        print!("| {ratio} | {volt} | {hertz} |");
+        for name in &names {
+            let here = || said().filter(|j| j.at == at && j.fault == *name);
+            let lit = here().filter(|j| j.state == VerdictState::Fault);
+            print!(" {} of {} |", lit.count(), here().count());
+        }
+        println!();
     }
-    for (machine, judged) in all.iter().filter(|_| list) {
-        for j in judged
-            .iter()
-            .flatten()
-            .filter(|j| j.state == VerdictState::Fault)
-        {
+    let lit = |j: &&Judged| asked.list && j.state == VerdictState::Fault;
+    for (machine, judged) in all {
+        for j in judged.iter().flatten().filter(lit) {
             println!(
-                "{}, {:?}, hidden {}, calibrated to {}: at {:?} {}",
+                "{}, {:?}, hidden {}, calibrated to {}: {} at {:?}: {}",
                 machine.motor.name,
                 machine.motor.load,
                 machine.names(),
                 machine.highest,
+                j.fault,
                 j.at,
                 j.first
             );
         }
     }
-    Ok(())
 }
