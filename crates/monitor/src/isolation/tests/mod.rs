@@ -4,5 +4,6 @@ mod causes;
 mod covariance;
 mod degenerate;
 mod plant;
+mod range;
 mod temperature;
 mod weights;

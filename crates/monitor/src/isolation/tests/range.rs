@@ -1,0 +1,123 @@
+//! Beyond what the calibration saw.
+
+use motor::TParams;
+
+use super::plant::{Plant, monitor, statistics};
+use crate::isolation::{Beyond, CalibratedRange, Conditions, Healthy, Heating, Isolation};
+use crate::tests::motor_2200_watt::PARAMS;
+use crate::{Cause, Monitor, MonitorConfig};
+
+/// What the healthy motor runs at.
+fn conditions() -> Conditions {
+    let window = Plant::healthy().window();
+    monitor().conditions(&window).expect("voltages and speed")
+}
+
+/// A calibration that saw half as much current again, the same frequency, and `voltage` times the voltage.
+fn seen(voltage: f32) -> CalibratedRange {
+    let at = conditions();
+    CalibratedRange {
+        current: 1.5 * at.current,
+        volt_per_hertz: [voltage * at.volt_per_hertz; 2],
+        frequency: [at.frequency; 2],
+    }
+}
+
+fn isolation(plant: &Plant, range: Option<CalibratedRange>) -> Isolation {
+    let healthy = Healthy {
+        range,
+        ..statistics()
+    };
+    let monitor = Monitor::new(MonitorConfig {
+        healthy: Some(healthy),
+        ..*monitor().config()
+    });
+    let evidence = monitor
+        .expect("a valid range")
+        .evidence(&healthy, &plant.window());
+    Isolation::of(&evidence.expect("speed"), &healthy, Heating::default())
+}
+
+/// Iron that saturates: 5 % more voltage leave 10 % less inductance, d ln L_m/d ln psi = -2.
+fn saturated() -> Plant {
+    Plant {
+        params: TParams {
+            l_m: 0.9 * PARAMS.l_m,
+            ..PARAMS
+        },
+        ..Plant::healthy()
+    }
+}
+
+#[test]
+fn within_its_range_a_calibration_says_what_it_said() {
+    for plant in [Plant::healthy(), saturated()] {
+        assert_eq!(isolation(&plant, Some(seen(1.0))), isolation(&plant, None));
+    }
+}
+
+#[test]
+fn saturation_at_a_higher_voltage_is_no_fault() {
+    let lights = statistics().significance;
+    let within = isolation(&saturated(), Some(seen(1.0)));
+    assert!(within.significance > 2.0 * lights, "{within:?}");
+    let beyond = isolation(&saturated(), Some(seen(0.95)));
+    assert!(beyond.significance < 0.7 * lights, "{beyond:?}");
+}
+
+/// One channel moves the negative and the zero sequence, of which voltage and load say nothing.
+#[test]
+fn a_channel_that_is_wrong_is_found_beyond_as_well() {
+    let mut plant = saturated();
+    plant.gains[3] = 1.05;
+    let beyond = isolation(&plant, Some(seen(0.95)));
+    assert!(beyond.significance > statistics().significance);
+    let best = beyond.scores.iter().copied().fold(f32::MIN, f32::max);
+    let place = crate::ALL_CAUSES.iter().position(
+        |cause| matches!(cause, Cause::CurrentChannel(phase) if *phase == crate::checks::sensors::Phase::A),
+    );
+    assert_eq!(beyond.scores[place.expect("a cause")], best, "{beyond:?}");
+}
+
+/// Distances from the nearer end, as shares of it.
+#[test]
+fn distances_are_shares_of_the_nearer_end() {
+    let range = CalibratedRange {
+        current: 0.8,
+        volt_per_hertz: [0.95, 1.0],
+        frequency: [0.5, 1.0],
+    };
+    let at = |current, volt_per_hertz, frequency| {
+        range.beyond(&Conditions {
+            current,
+            volt_per_hertz,
+            frequency,
+        })
+    };
+    assert!(at(0.0, 0.95, 1.0).is_within() && at(0.8, 1.0, 0.5).is_within());
+    let Beyond {
+        current,
+        volt_per_hertz,
+        frequency,
+    } = at(1.2, 0.76, 1.5);
+    let near = |x: f32, y: f32| assert!((x - y).abs() < 1e-6, "{x} {y}");
+    near(current, 0.5);
+    near(volt_per_hertz, 0.2);
+    near(frequency, 0.5);
+}
+
+#[test]
+fn ranges_that_are_none_are_refused() {
+    let refused = |change: fn(&mut CalibratedRange)| {
+        let mut range = seen(1.0);
+        change(&mut range);
+        let healthy = Healthy {
+            range: Some(range),
+            ..statistics()
+        };
+        assert!(healthy.validate().is_err(), "{range:?}");
+    };
+    refused(|range| range.current = f32::NAN);
+    refused(|range| range.volt_per_hertz = [1.0, 0.9]);
+    refused(|range| range.frequency = [-0.1, 1.0]);
+}
