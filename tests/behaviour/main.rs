@@ -1,6 +1,7 @@
 //! Behaviour across crates: simulated and real motors through core, replay and discovery. One program, because each program
 //! links all of them.
 
+mod beyond_calibration;
 mod calibrate;
 mod common;
 mod constant_load;

@@ -150,13 +150,13 @@ impl Monitor {
         };
         let at = self.conditions_of(&measured, window.omega_sync);
         let n_p = self.config.mechanics.n_p;
-        let evidence = Evidence::new(healthy, window, &measured, n_p, &positive, noise);
-        Some(match &healthy.range {
-            Some(range) => {
-                let saturating = measured.params.l_m != self.config.params.l_m;
-                evidence.beyond(range, &range.beyond(&at), saturating)
-            }
-            None => evidence,
-        })
+        let mut evidence = Evidence::new(healthy, window, &measured, n_p, &positive, noise);
+        let range = healthy.range.as_ref();
+        let beyond = range.map_or(Beyond::default(), |range| range.beyond(&at));
+        if !beyond.is_within() {
+            let saturating = measured.params.l_m != self.config.params.l_m;
+            evidence.go_beyond(&beyond, saturating);
+        }
+        Some(evidence)
     }
 }

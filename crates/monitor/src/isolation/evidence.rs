@@ -7,7 +7,7 @@ use super::directions::{Directions, Positive};
 use super::gauss::Covariance;
 use super::healthy::{Healthy, ROWS, Row, Uncertainty};
 use super::negative::Negative;
-use super::range::{Beyond, CalibratedRange};
+use super::range::Beyond;
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
@@ -138,22 +138,22 @@ impl Evidence {
     }
 
     /// The same where the calibration saw nothing of the kind.
-    #[must_use]
-    pub(crate) fn beyond(
-        mut self,
-        range: &CalibratedRange,
-        beyond: &Beyond,
-        saturating: bool,
-    ) -> Self {
-        if beyond.is_within() {
-            return self;
-        }
-        self.uncertainty = beyond.widened(&self.uncertainty, saturating);
+    ///
+    /// `saturating`: the motor file's inductance follows the flux, so none of its saturation is to be expected.
+    #[inline(never)]
+    pub(crate) fn go_beyond(&mut self, beyond: &Beyond, saturating: bool) {
+        self.uncertainty = beyond.widened(&self.uncertainty);
         self.iron_loss = beyond.iron_loss();
         let [torque, ..] = &mut self.scatter;
-        let more = beyond.torque(range.current);
+        let more = beyond.torque();
         *torque = processor::sqrtf(*torque * *torque + more * more);
-        self
+        if !saturating {
+            let expected = beyond.saturation();
+            let moved = self.direction(Cause::MagnetizingInductance);
+            for (x, per_share) in self.departure.iter_mut().zip(moved) {
+                *x -= expected * per_share;
+            }
+        }
     }
 
     /// Takes off what the healthy motor shows, as its channels a, b, c showed it when it was calibrated.
@@ -348,14 +348,16 @@ impl Evidence {
                 u.voltage_gain,
             );
         }
-        covariance.add(
-            &self.masked(assemble(
-                &self.positive.turns,
-                Complex32::ZERO,
-                [Complex32::ZERO; 2],
-            )),
-            self.iron_loss,
-        );
+        if self.iron_loss > 0.0 {
+            covariance.add(
+                &self.masked(assemble(
+                    &self.positive.turns,
+                    Complex32::ZERO,
+                    [Complex32::ZERO; 2],
+                )),
+                self.iron_loss,
+            );
+        }
         self.add_negative_impedance(&mut covariance, u.negative_impedance);
         covariance
     }

@@ -31,10 +31,10 @@ pub struct Conditions {
     pub frequency: f32,
 }
 
-/// How far a window lies beyond the calibration, 0 within: 0.1 is a tenth more than the largest or a tenth less than the smallest.
+/// How far a window lies beyond the calibration, 0 within: 0.1 is a tenth more than the largest, -0.1 a tenth less than the smallest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Beyond {
-    /// Current.
+    /// Current, never below 0: a motor without load has less of everything that current makes.
     pub current: f32,
     /// Voltage over frequency.
     pub volt_per_hertz: f32,
@@ -42,25 +42,26 @@ pub struct Beyond {
     pub frequency: f32,
 }
 
-/// What stator resistance and leakage take of the main flux at rated current, a share of it: 0.05 to 0.15; at a lower frequency the
-/// resistance takes more.
-const DROPS: f32 = 0.1;
-/// Standard deviation of the magnetizing inductance per flux beyond: the magnetizing current of a saturated motor grows with the
-/// second to third power of the flux, so that `d ln L_m/d ln psi` is -1 to -2; that of one in the straight part not at all.
-const MAGNETIZING_PER_FLUX: f32 = 1.0;
-/// The same where an effect or a law of the motor file makes the inductance follow the flux.
-const KNOWN_SATURATION: f32 = 0.3;
-/// Standard deviation of the leakage inductances per current beyond: closed slots lose a tenth to a quarter up to several times
-/// the rated current.
+/// The magnetizing current of a saturated motor grows with the second to third power of the flux, that of one in the straight part
+/// with the first: `d ln L_m/d ln psi` lies between -2 and 0.
+const SATURATION: f32 = -1.0;
+/// Its standard deviation; where an effect or a law of the motor file makes the inductance follow the flux, that of what is left.
+const SATURATION_DEVIATION: f32 = 0.3;
+/// Standard deviation of the magnetizing inductance per square of the current beyond, and per frequency: resistance and leakage take
+/// 0.05 to 0.15 of the main flux at rated current, of which the calibration has seen the straight part; at half the frequency the
+/// resistance takes twice as much.
+const MAGNETIZING_PER_DROP: f32 = 0.1;
+/// Standard deviation of the leakage inductances per square of the current beyond: closed slots lose a tenth to a quarter up to
+/// several times the rated current.
 const LEAKAGE_PER_CURRENT: f32 = 0.1;
-/// Standard deviation of each resistance per current beyond: deep bars, at a slip that grows with the load, and a cage that warms
-/// more than its winding.
+/// Standard deviation of each resistance per square of the current beyond: deep bars, at a slip that grows with the load, and a cage
+/// that warms more than its winding.
 const RESISTANCE_PER_CURRENT: f32 = 0.03;
 /// Standard deviation of the torque balance per square of the current beyond, of rated torque: stray-load loss is 0.5 to 2 % of
 /// the rated power (IEC 60034-2-1) and follows the square of the current.
-const TORQUE_PER_CURRENT: f32 = 0.01;
-/// Standard deviation of the current in phase with the voltage, a share of the motor's, per frequency or flux beyond: iron losses are 1 to 3 % of
-/// the rated power.
+const TORQUE_PER_CURRENT: f32 = 0.03;
+/// Standard deviation of the current in phase with the voltage, a share of the motor's, per voltage over frequency or frequency beyond:
+/// iron losses are 1 to 3 % of the rated power.
 const IRON_LOSS: f32 = 0.015;
 
 impl Conditions {
@@ -68,9 +69,16 @@ impl Conditions {
     pub(crate) fn of(measured: &Corrected, omega_sync: f32, rated: [f32; 3]) -> Self {
         let [voltage, current, omega] = rated;
         let frequency = omega_sync / omega;
+        // Of the drop over the resistance a share that a voltage at rated frequency holds too: a drive raises its voltage by the rest.
+        let raised = if frequency < 1.0 {
+            1.0 - frequency
+        } else {
+            0.0
+        };
+        let drop = measured.i_s * (measured.params.r_s * raised);
         Conditions {
             current: magnitude(measured.i_s) / current,
-            volt_per_hertz: magnitude(measured.u_s) / (voltage * frequency),
+            volt_per_hertz: magnitude(measured.u_s - drop) / (voltage * frequency),
             frequency,
         }
     }
@@ -80,7 +88,6 @@ impl CalibratedRange {
     /// How far `at` lies beyond.
     pub fn beyond(&self, at: &Conditions) -> Beyond {
         Beyond {
-            // A motor without load has less of everything that current makes.
             current: farther(at.current, [0.0, self.current]),
             volt_per_hertz: farther(at.volt_per_hertz, self.volt_per_hertz),
             frequency: farther(at.frequency, self.frequency),
@@ -104,15 +111,15 @@ impl CalibratedRange {
 
 /// 0 between `low` and `high`, else the distance as a share of the nearer of both.
 fn farther(x: f32, [low, high]: [f32; 2]) -> f32 {
-    let (limit, distance) = if x > high {
-        (high, x - high)
+    let limit = if x > high {
+        high
     } else if x < low {
-        (low, low - x)
+        low
     } else {
         return 0.0;
     };
     if limit > f32::MIN_POSITIVE {
-        distance / limit
+        (x - limit) / limit
     } else {
         0.0
     }
@@ -124,45 +131,37 @@ impl Beyond {
         *self == Beyond::default()
     }
 
-    /// The uncertainties out there; `saturating`: the motor file's inductance follows the flux.
-    pub(super) fn widened(&self, known: &Uncertainty, saturating: bool) -> Uncertainty {
-        let slope = if saturating {
-            MAGNETIZING_PER_FLUX * KNOWN_SATURATION
-        } else {
-            MAGNETIZING_PER_FLUX
-        };
-        let resistance = RESISTANCE_PER_CURRENT * self.current;
+    /// The uncertainties out there.
+    pub(super) fn widened(&self, known: &Uncertainty) -> Uncertainty {
+        let current = self.current * self.current;
+        let saturation = SATURATION_DEVIATION * self.volt_per_hertz;
+        let drop = MAGNETIZING_PER_DROP * (current + self.frequency.abs());
+        let resistance = RESISTANCE_PER_CURRENT * current;
         Uncertainty {
-            stator_resistance: root_of_squares(known.stator_resistance, resistance),
-            rotor_resistance: root_of_squares(known.rotor_resistance, resistance),
-            magnetizing_inductance: root_of_squares(
-                known.magnetizing_inductance,
-                slope * self.flux(),
-            ),
-            leakage: root_of_squares(known.leakage, LEAKAGE_PER_CURRENT * self.current),
+            stator_resistance: length([known.stator_resistance, resistance, 0.0]),
+            rotor_resistance: length([known.rotor_resistance, resistance, 0.0]),
+            magnetizing_inductance: length([known.magnetizing_inductance, saturation, drop]),
+            leakage: length([known.leakage, LEAKAGE_PER_CURRENT * current, 0.0]),
             ..*known
         }
     }
 
-    /// Standard deviation of the main flux beyond: its own, and what the drops over resistance and leakage take of it.
-    fn flux(&self) -> f32 {
-        let drops = DROPS * root_of_squares(self.current, self.frequency);
-        root_of_squares(self.volt_per_hertz, drops)
+    /// By how much the magnetizing inductance is expected to differ where nothing in the motor file makes it follow the flux, a share.
+    pub(super) fn saturation(&self) -> f32 {
+        SATURATION * self.volt_per_hertz
     }
 
-    /// Standard deviation that the square of the current adds to the torque balance, of rated torque; `largest`: the largest current of
-    /// the calibration, a share of the rated one.
-    pub(super) fn torque(&self, largest: f32) -> f32 {
-        let more = self.current * (2.0 + self.current);
-        TORQUE_PER_CURRENT * largest * largest * more
+    /// Standard deviation of the torque balance, of rated torque.
+    pub(super) fn torque(&self) -> f32 {
+        TORQUE_PER_CURRENT * self.current * self.current
     }
 
     /// Standard deviation of the current that feeds the iron's losses, a share of the motor's.
     pub(super) fn iron_loss(&self) -> f32 {
-        IRON_LOSS * root_of_squares(self.volt_per_hertz, self.frequency)
+        IRON_LOSS * (self.volt_per_hertz.abs() + self.frequency.abs())
     }
 }
 
-fn root_of_squares(x: f32, y: f32) -> f32 {
-    processor::sqrtf(x * x + y * y)
+fn length([x, y, z]: [f32; 3]) -> f32 {
+    processor::sqrtf(x * x + y * y + z * z)
 }

@@ -25,7 +25,7 @@ impl BeyondCalibration {
     pub(super) fn add(&mut self, beyond: &Beyond) {
         let [current, volt_per_hertz, frequency] =
             [beyond.current, beyond.volt_per_hertz, beyond.frequency]
-                .map(|share| 100.0 * f64::from(share));
+                .map(|share| 100.0 * f64::from(share).abs());
         let farthest = current.max(volt_per_hertz).max(frequency);
         if farthest < TOLD_PERCENT {
             return;
