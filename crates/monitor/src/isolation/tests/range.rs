@@ -102,7 +102,7 @@ fn distances_are_shares_of_the_nearer_end() {
     } = at(1.2, 0.76, 1.5);
     let near = |x: f32, y: f32| assert!((x - y).abs() < 1e-6, "{x} {y}");
     near(current, 0.5);
-    near(volt_per_hertz, 0.2);
+    near(volt_per_hertz, -0.2);
     near(frequency, 0.5);
 }
 
