@@ -5,7 +5,7 @@ use num_complex::Complex32;
 use super::cause::Cause;
 use super::directions::{Directions, Positive};
 use super::gauss::Covariance;
-use super::healthy::{Healthy, ROWS, Row, Uncertainty};
+use super::healthy::{Healthy, ROWS, Row};
 use super::negative::Negative;
 use super::range::Beyond;
 use crate::checks::sensors::Phase;
@@ -23,10 +23,8 @@ pub struct Evidence {
     /// Whether each row is known.
     known: [bool; ROWS],
     scatter: Rows,
-    /// What is uncertain about the motor where the window lies.
-    uncertainty: Uncertainty,
-    /// Standard deviation of the current in phase with the voltage that the iron's losses take, a share of the motor's.
-    iron_loss: f32,
+    /// How far the window lies beyond what the calibration saw.
+    beyond: Beyond,
     positive: Directions,
     negative: Negative,
     /// Standard deviation of the angle of `Z_2`, rad.
@@ -73,12 +71,11 @@ impl Evidence {
         for (scatter, unsteady) in scatter.iter_mut().zip(positive.unsteadiness) {
             *scatter = processor::sqrtf(*scatter * *scatter + unsteady * unsteady);
         }
-        let evidence = Evidence {
+        let mut evidence = Evidence {
             departure: rows_with(window, &positive.residuals, negative.value),
             known,
             scatter,
-            uncertainty: healthy.uncertainty,
-            iron_loss: 0.0,
+            beyond: Beyond::default(),
             positive: positive.directions,
             negative,
             turn: negative.angle_left_open(&healthy.uncertainty),
@@ -86,7 +83,8 @@ impl Evidence {
             rise: positive.rise,
             backwards: window.backwards,
         };
-        evidence.less(&healthy.mean)
+        evidence.less(&healthy.mean);
+        evidence
     }
 
     /// From currents alone: their negative and zero sequence.
@@ -121,12 +119,11 @@ impl Evidence {
         for row in [Row::ZeroCurrent as usize, Row::ZeroCurrent as usize + 1] {
             set(&mut known, row, scatter.get(row).is_some_and(|s| *s > 0.0));
         }
-        let evidence = Evidence {
+        let mut evidence = Evidence {
             departure: rows_of_currents(window),
             known,
             scatter,
-            uncertainty: healthy.uncertainty,
-            iron_loss: 0.0,
+            beyond: Beyond::default(),
             positive: Directions::default(),
             negative,
             turn: 0.0,
@@ -134,7 +131,8 @@ impl Evidence {
             rise: 0.0,
             backwards: window.backwards,
         };
-        evidence.less(&mean)
+        evidence.less(&mean);
+        evidence
     }
 
     /// The same where the calibration saw nothing of the kind.
@@ -142,8 +140,7 @@ impl Evidence {
     /// `saturating`: the motor file's inductance follows the flux, so none of its saturation is to be expected.
     #[inline(never)]
     pub(crate) fn go_beyond(&mut self, beyond: &Beyond, saturating: bool) {
-        self.uncertainty = beyond.widened(&self.uncertainty);
-        self.iron_loss = beyond.iron_loss();
+        self.beyond = *beyond;
         let [torque, ..] = &mut self.scatter;
         let more = beyond.torque();
         *torque = processor::sqrtf(*torque * *torque + more * more);
@@ -157,7 +154,7 @@ impl Evidence {
     }
 
     /// Takes off what the healthy motor shows, as its channels a, b, c showed it when it was calibrated.
-    fn less(mut self, mean: &Rows) -> Self {
+    fn less(&mut self, mean: &Rows) {
         let mean = if self.backwards {
             self.widen_negative(mean);
             mirrored(*mean)
@@ -168,7 +165,6 @@ impl Evidence {
         for ((x, mean), known) in departure {
             *x = if *known { *x - mean } else { 0.0 };
         }
-        self
     }
 
     /// What turns in the mirror is known in size only: the impedance of the negative sequence stands between a channel's
@@ -316,6 +312,7 @@ impl Evidence {
     #[inline(never)]
     pub(crate) fn covariance(
         &self,
+        healthy: &Healthy,
         along: &Resistances,
         [heating, parting]: [f32; 2],
     ) -> Covariance<ROWS> {
@@ -324,7 +321,13 @@ impl Evidence {
             *scatter = if *known { *scatter } else { 1.0 };
         }
         let mut covariance = Covariance::of_independent(&own);
-        let u = &self.uncertainty;
+        let widened;
+        let u = if self.beyond.is_within() {
+            &healthy.uncertainty
+        } else {
+            widened = self.beyond.widened(&healthy.uncertainty);
+            &widened
+        };
         let of_all = [
             (Cause::MagnetizingInductance, u.magnetizing_inductance),
             (Cause::Leakage, u.leakage),
@@ -348,15 +351,10 @@ impl Evidence {
                 u.voltage_gain,
             );
         }
-        if self.iron_loss > 0.0 {
-            covariance.add(
-                &self.masked(assemble(
-                    &self.positive.turns,
-                    Complex32::ZERO,
-                    [Complex32::ZERO; 2],
-                )),
-                self.iron_loss,
-            );
+        if !self.beyond.is_within() {
+            let no = Complex32::ZERO;
+            let in_phase = self.masked(assemble(&self.positive.turns, no, [no, no]));
+            covariance.add(&in_phase, self.beyond.iron_loss());
         }
         self.add_negative_impedance(&mut covariance, u.negative_impedance);
         covariance

@@ -67,7 +67,7 @@ impl Isolation {
     ) -> Self {
         let resistances = evidence.resistances();
         let deviations = [expected.deviation, apart.deviation];
-        let covariance = evidence.covariance(&resistances, deviations);
+        let covariance = evidence.covariance(healthy, &resistances, deviations);
         let cholesky = covariance.factorise();
         let departure = evidence.departure_at(&resistances, [expected.rise, apart.rise]);
         let weighing = Weighing::new(evidence, &cholesky, &departure);

@@ -87,7 +87,7 @@ fn every_uncertainty_widens_its_own_direction() {
             .expect("all is measured");
         for heating in [0.0, 0.05] {
             let white = evidence
-                .covariance(&evidence.resistances(), [heating, 0.0])
+                .covariance(&healthy, &evidence.resistances(), [heating, 0.0])
                 .factorise()
                 .whiten(&evidence.departure);
             let got: f64 = white.iter().map(|x| f64::from(*x).powi(2)).sum();

@@ -355,6 +355,7 @@ fn significance_is_the_longer_of_both() {
     let isolation = Isolation::of(&evidence, &statistics(), Heating::any(&statistics()));
     let white = evidence
         .covariance(
+            &statistics(),
             &evidence.resistances(),
             [statistics().uncertainty.heating, 0.0],
         )
