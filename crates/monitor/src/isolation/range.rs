@@ -109,8 +109,12 @@ impl CalibratedRange {
     }
 }
 
-/// 0 between `low` and `high`, else the distance as a share of the nearer of both.
+/// What a grid wanders by, a share: no other conditions.
+const WANDERING: f32 = 0.005;
+
+/// 0 between `low` and `high`, else the distance from the nearer of both as a share of it.
 fn farther(x: f32, [low, high]: [f32; 2]) -> f32 {
+    let (low, high) = (low * (1.0 - WANDERING), high * (1.0 + WANDERING));
     let limit = if x > high {
         high
     } else if x < low {

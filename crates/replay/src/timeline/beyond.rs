@@ -18,7 +18,7 @@ pub struct BeyondCalibration {
     pub frequency_percent: f64,
 }
 
-/// Less than this is noise or the grid's own wandering.
+/// Less than this is not worth a word.
 const TOLD_PERCENT: f64 = 1.0;
 
 impl BeyondCalibration {
