@@ -12,7 +12,6 @@ use motor::{Mechanics, TParams};
 
 use crate::checks::cage::{Cage, HealthySidebands};
 use crate::config::{LoadKind, MonitorConfig};
-use crate::frames::Abc;
 use crate::input::chain::AnalogueChain;
 use crate::input::converter::{ChannelScale, Converter};
 use crate::input::sample::CHANNELS;
@@ -24,6 +23,7 @@ use crate::model::effects::{
 };
 use crate::model::operating_point::Frame;
 use crate::model::residuals::FieldCurrent;
+use frames::Abc;
 
 /// Quadrature counts per encoder pulse.
 const COUNTS_PER_PULSE: f32 = 4.0;

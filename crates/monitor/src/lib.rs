@@ -43,7 +43,6 @@ mod beside;
 mod by_cycle;
 mod checks;
 mod config;
-mod frames;
 #[cfg(feature = "motor-file")]
 mod from_motor_file;
 mod input;

@@ -8,7 +8,6 @@ use core::f32::consts::{PI, TAU};
 
 use num_complex::Complex32;
 
-use crate::frames::{Sequence, magnitude};
 use crate::input::chain::AnalogueChain;
 use crate::input::sample::{CHANNELS, ClippedChannels};
 use crate::input::torque::TorqueReading;
@@ -16,6 +15,7 @@ use crate::noise::trend::Trend;
 use crate::sync::encoder::SpeedReading;
 use crate::sync::phasor::{ChannelCycle, CyclePhasors};
 use crate::sync::rotation::arcsine;
+use frames::{Sequence, magnitude};
 
 /// Longest window, in supply cycles.
 pub const MAX_WINDOW_CYCLES: usize = 10;

@@ -1,7 +1,7 @@
 //! Plausibility of the measured channels themselves: dead, clipped or contradicting sensors.
 
-use crate::frames::magnitude;
 use crate::window::Window;
+use frames::magnitude;
 
 /// A phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,7 +166,7 @@ pub fn dead_channel([a, b, c]: &[f32; 3]) -> Option<Phase> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frames::Sequence;
+    use frames::Sequence;
     use num_complex::Complex32;
 
     const CONFIG: HealthConfig = HealthConfig {

@@ -8,8 +8,8 @@
 use motor::TParams;
 use num_complex::Complex32;
 
-use crate::frames::magnitude;
 use crate::window::Window;
+use frames::magnitude;
 
 /// The motor on its supply, while the speed swings by little.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! What the supply looks like: the LINE lamp.
 
-use crate::frames::magnitude;
 use crate::window::Window;
+use frames::magnitude;
 
 /// Limits of a supply under which the motor may be judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ mod tests {
     use num_complex::Complex32;
 
     use super::*;
-    use crate::frames::Sequence;
+    use frames::Sequence;
 
     const CONFIG: SupplyConfig = SupplyConfig {
         rated_voltage: 300.0,

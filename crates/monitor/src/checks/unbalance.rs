@@ -7,9 +7,9 @@ use motor::TParams;
 use num_complex::Complex32;
 
 use crate::config::MonitorConfig;
-use crate::frames::magnitude;
 use crate::isolation::impedance;
 use crate::window::Window;
+use frames::magnitude;
 
 /// Share of the current that the channels' tolerances leave open: gains that are 15 % apart.
 const OF_CURRENT: f32 = 0.05;
@@ -56,7 +56,7 @@ pub fn unexplained_current(config: &MonitorConfig, window: &Window) -> Option<Co
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frames::Sequence;
+    use frames::Sequence;
     use num_complex::Complex64;
 
     /// The 2.2 kW motor.

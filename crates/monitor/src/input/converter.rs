@@ -1,9 +1,9 @@
 //! From ADC codes to SI units: the one place where codes become volts and amperes.
 
-use crate::frames::Abc;
 use crate::input::chain::AnalogueChain;
 use crate::input::sample::{CHANNELS, ClippedChannels, RawSample, Sample, SpeedSample};
 use crate::sync::phasor::{CodeRange, Unit};
+use frames::Abc;
 
 /// Codes within this distance of a rail count as clipped: a converter's last code is reached
 /// before its input stops rising.

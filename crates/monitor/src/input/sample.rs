@@ -1,6 +1,6 @@
 //! What arrives at the core: one instant of the six analogue channels and the speed sensor.
 
-use crate::frames::Abc;
+use frames::Abc;
 
 /// Channels: voltages a, b, c, then currents a, b, c.
 pub const CHANNELS: usize = 6;

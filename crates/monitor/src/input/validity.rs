@@ -2,9 +2,9 @@
 
 use core::f32::consts::TAU;
 
-use crate::frames::Abc;
 use crate::input::sample::{ClippedChannels, Sample};
 use crate::input::torque::{TorqueReading, TorqueTally};
+use frames::Abc;
 
 /// Share of a peak that is forgotten per second.
 pub(crate) const PEAK_DECAY_PER_SECOND: f32 = 5.0;
@@ -389,7 +389,7 @@ mod tests {
             b: 1.0,
             c: -2.0,
         };
-        let alpha = crate::frames::AlphaBeta::from(x).alpha;
+        let alpha = frames::AlphaBeta::from(x).alpha;
         assert!((reference_of(x) / 3.0 - alpha).abs() < 1e-6);
         assert_eq!(
             reference_of(Abc::splat(7.0)),

@@ -1,7 +1,6 @@
 //! What a calibrated monitor does with a window beyond the residuals: the cause behind it, and the winding's temperature.
 
 use crate::config::LoadKind;
-use crate::frames::magnitude;
 use crate::isolation::{
     Bench, Beyond, Conditions, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS,
 };
@@ -13,6 +12,7 @@ use crate::noise::allowance::Allowance;
 use crate::rehearsal::Rehearsal;
 use crate::report::Report;
 use crate::window::Window;
+use frames::magnitude;
 
 impl Monitor {
     /// Time has passed since the last report, and current has heated the winding.

@@ -7,10 +7,10 @@
 use motor::TParams;
 use num_complex::Complex32;
 
-use crate::frames::magnitude;
 use crate::model::effects::Corrected;
 use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::ResidualModel;
+use frames::magnitude;
 
 /// Residuals of the positive sequence: torque balance, `e_d`, `e_q`.
 pub type Positive = [f32; 3];

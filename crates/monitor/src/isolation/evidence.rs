@@ -325,7 +325,7 @@ impl Evidence {
         let u = if self.beyond.is_within() {
             &healthy.uncertainty
         } else {
-            widened = self.beyond.widened(&healthy.uncertainty);
+            widened = healthy.uncertainty.and(&self.beyond.added());
             &widened
         };
         let of_all = [

@@ -2,7 +2,7 @@
 
 use motor::InMotion;
 
-use super::range::CalibratedRange;
+use super::range::{Added, CalibratedRange, length};
 use crate::config::{ConfigError, check_range};
 
 /// Rows of evidence.
@@ -77,6 +77,21 @@ pub struct Healthy {
 }
 
 impl Uncertainty {
+    /// The same where more is uncertain.
+    pub(super) fn and(&self, added: &Added) -> Self {
+        let resistance = |known| length([known, added.resistance]);
+        Uncertainty {
+            stator_resistance: resistance(self.stator_resistance),
+            rotor_resistance: resistance(self.rotor_resistance),
+            magnetizing_inductance: length([
+                self.magnetizing_inductance,
+                added.magnetizing_inductance,
+            ]),
+            leakage: length([self.leakage, added.leakage]),
+            ..*self
+        }
+    }
+
     fn shares(&self) -> [f32; 10] {
         [
             self.stator_resistance,

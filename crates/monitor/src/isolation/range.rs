@@ -4,10 +4,9 @@
 //! main flux follows voltage over frequency and sinks with the load; leakage paths saturate and bars deepen with the current; losses
 //! of the iron follow flux and frequency. Recordings of one voltage and light loads show none of that.
 
-use super::healthy::Uncertainty;
 use crate::config::{ConfigError, check_range};
-use crate::frames::magnitude;
 use crate::model::effects::Corrected;
+use frames::magnitude;
 
 /// Where the windows of a calibration lay, shares of the rated values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,18 +134,15 @@ impl Beyond {
         *self == Beyond::default()
     }
 
-    /// The uncertainties out there.
-    pub(super) fn widened(&self, known: &Uncertainty) -> Uncertainty {
+    /// What is to be added to the uncertainties of the calibration.
+    pub(super) fn added(&self) -> Added {
         let current = self.current * self.current;
         let saturation = SATURATION_DEVIATION * self.volt_per_hertz;
         let drop = MAGNETIZING_PER_DROP * (current + self.frequency.abs());
-        let resistance = RESISTANCE_PER_CURRENT * current;
-        Uncertainty {
-            stator_resistance: length([known.stator_resistance, resistance, 0.0]),
-            rotor_resistance: length([known.rotor_resistance, resistance, 0.0]),
-            magnetizing_inductance: length([known.magnetizing_inductance, saturation, drop]),
-            leakage: length([known.leakage, LEAKAGE_PER_CURRENT * current, 0.0]),
-            ..*known
+        Added {
+            resistance: RESISTANCE_PER_CURRENT * current,
+            magnetizing_inductance: length([saturation, drop]),
+            leakage: LEAKAGE_PER_CURRENT * current,
         }
     }
 
@@ -166,6 +162,18 @@ impl Beyond {
     }
 }
 
-fn length([x, y, z]: [f32; 3]) -> f32 {
-    processor::sqrtf(x * x + y * y + z * z)
+/// Standard deviations beside those of a calibration, shares.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Added {
+    /// Each resistance.
+    pub resistance: f32,
+    /// Magnetizing inductance.
+    pub magnetizing_inductance: f32,
+    /// Leakage inductances.
+    pub leakage: f32,
+}
+
+/// Root of the sum of squares.
+pub(super) fn length([x, y]: [f32; 2]) -> f32 {
+    processor::sqrtf(x * x + y * y)
 }

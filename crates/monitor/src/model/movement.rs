@@ -1,6 +1,5 @@
 //! How a window changes: what that leaves in doubt of the residuals, and whether the window may be judged.
 
-use crate::frames::magnitude;
 use crate::model::effects::Corrected;
 use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::RESIDUALS;
@@ -9,6 +8,7 @@ use crate::monitor::Monitor;
 use crate::noise::trend::{frequency_rate_noise, rate_noise};
 use crate::rehearsal::Rehearsal;
 use crate::window::{CycleNoise, RateNoise, Rates, Window};
+use frames::magnitude;
 
 /// Share of synchronous speed that voltages and currents of a running motor imply at the least: a braked one's imply none.
 const LEAST_RUNNING: f32 = 0.5;

@@ -4,9 +4,9 @@ use motor::TParams;
 use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 
-use crate::frames::{Dq, magnitude};
 use crate::model::effects::Corrected;
 use crate::rehearsal::Rehearsal;
+use frames::{Dq, magnitude};
 
 /// Where the d axis lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -181,7 +181,7 @@ mod tests {
     use motor::TParams;
 
     use super::*;
-    use crate::frames::Dq;
+    use frames::Dq;
 
     const PARAMS: TParams<f32> = TParams {
         r_s: 8.0,

@@ -16,9 +16,9 @@ use motor::Mechanics;
 use motor::steady_state::rotor_flux;
 use num_complex::Complex32;
 
-use crate::frames::magnitude;
 use crate::model::effects::Corrected;
 use crate::window::Rates;
+use frames::magnitude;
 
 /// The point at rest that a moving one stands for.
 pub fn settled(

@@ -2,7 +2,6 @@
 
 use motor::steady_state::rotor_flux;
 
-use crate::frames::magnitude;
 use crate::isolation::{Bench, ROWS, rows_of, rows_of_currents};
 use crate::model::effects::Corrected;
 use crate::model::operating_point::OperatingPoint;
@@ -12,6 +11,7 @@ use crate::noise::allowance::{Allowance, FLUX, FOLLOWED, SPEED};
 use crate::noise::scatter::{Belief, Noise};
 use crate::noise::trend::rate_noise;
 use crate::window::Window;
+use frames::magnitude;
 
 /// Standard deviations that noise may reach: once in 150 000 windows, and a lamp wants three in a row.
 const DEVIATIONS: f32 = 4.5;

@@ -6,8 +6,8 @@ use std::cell::RefCell;
 
 use super::calibrated::calibrated;
 use super::drive::{Bench, Drive, config};
-use crate::frames::magnitude;
 use crate::{Abc, Lamp, MonitorConfig, NotJudged, Report, Sample, SpeedSample};
+use frames::magnitude;
 
 /// Two seconds of a drive whose channels have noise: standard deviations of `share` of 600 V, 60 A and 200 rad/s.
 fn noisy(config: MonitorConfig, drive: Drive, share: f64, seed: u64) -> Vec<Report> {

@@ -2,7 +2,7 @@
 
 use num_complex::Complex32;
 
-use crate::frames::magnitude;
+use frames::magnitude;
 
 /// Slopes of straight lines through the cycles of a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,9 +7,9 @@ use super::causes::changed;
 use super::plant::{Plant, evidence, evidence_by, monitor, statistics};
 use crate::Evidence;
 use crate::checks::sensors::Phase;
-use crate::frames::Sequence;
 use crate::isolation::{Cause, Healthy, Heating, Isolation, ROWS, Row, Uncertainty};
 use crate::window::Window;
+use frames::Sequence;
 
 type Matrix = SMatrix<f64, ROWS, ROWS>;
 

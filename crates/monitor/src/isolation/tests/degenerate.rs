@@ -4,9 +4,9 @@ use num_complex::Complex32;
 use proptest::prelude::*;
 
 use super::plant::{monitor, statistics};
-use crate::frames::Sequence;
 use crate::isolation::{CAUSES, Heating, Isolation, probabilities};
 use crate::window::Window;
+use frames::Sequence;
 
 /// Nothing, hardly anything, and more than any motor has.
 fn amplitude() -> impl Strategy<Value = f32> {

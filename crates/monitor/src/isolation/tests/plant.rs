@@ -6,13 +6,13 @@ use num_complex::{Complex32, Complex64};
 
 use crate::checks::sensors::Phase;
 use crate::config::{LoadKind, MonitorConfig};
-use crate::frames::Sequence;
 use crate::input::sample::CHANNELS;
 use crate::isolation::{Healthy, ROWS, Uncertainty};
 pub use crate::tests::motor_2200_watt::OMEGA_SYNC;
 use crate::tests::motor_2200_watt::{self, AMPLITUDE, FRICTION, PARAMS};
 use crate::window::Window;
 use crate::{Evidence, Monitor};
+use frames::Sequence;
 
 /// The difference between two perfect descriptions of one motor.
 #[derive(Clone, Copy, Debug)]

@@ -1,12 +1,12 @@
 //! The effect behind `name = "curve"`.
 
-use super::spline::Spline;
 use super::steady::{BOARD_KNOTS, SteadyCurve};
 use super::{Action, Law, NAME, tabulated};
 use crate::effect::{
     Applies, Descriptor, EffectConfig, EffectError, MAX_PARAMETERS, Parameter, Rated, Role, Scale,
     SteadyEffect, SteadyPoint, Written,
 };
+use spline::Spline;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 

@@ -20,10 +20,7 @@ mod entry;
 mod hooks;
 #[cfg(feature = "file")]
 mod law;
-mod piece;
 mod place;
-#[cfg(feature = "file")]
-mod spline;
 mod steady;
 #[cfg(feature = "file")]
 mod table;

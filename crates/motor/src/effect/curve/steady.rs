@@ -1,11 +1,11 @@
 //! A law in steady state: what the lamps need, without allocation.
 
-use super::piece::piece;
 use super::{Action, Coordinate, Place};
 use crate::effect::SteadyPoint;
 use crate::effect::steady::lit;
 use num_complex::Complex;
 use num_traits::Float;
+use spline::piece;
 
 /// Cosines of the odd multiples of 5.625 degrees: where the voltage drop of a phase is taken over a quarter of a cycle (Gauss and
 /// Chebyshev).
@@ -54,7 +54,7 @@ impl<F: Float> SteadyCurve<F> {
             }
             array
         };
-        let second = super::spline::bends(x, y);
+        let second = spline::bends(x, y);
         let words = [narrow(x), narrow(y), narrow(&second)];
         Some(Self::of_words(action, x.len(), F::zero(), words))
     }

@@ -65,8 +65,28 @@ fn answer(result: &Place<'_>) -> Markup {
             (result.text("recording")) ": " (shown(result, "judged", decimals(0))) " of "
             (shown(result, "windows", decimals(0))) " windows were judged."
         }
+        (beyond(result))
     };
     verdict(mood, &text, &judged)
+}
+
+/// How much lies beyond the calibration, where little is known.
+fn beyond(result: &Place<'_>) -> Markup {
+    let windows = result.number("beyond_calibration/windows");
+    let percent = |key: &str| {
+        let path = format!("beyond_calibration/{key}_percent");
+        shown(result, &path, decimals(0))
+    };
+    html! {
+        @if windows.is_some_and(|windows| windows > 0.0) {
+            p.subtle {
+                (shown(result, "beyond_calibration/windows", decimals(0))) " of them lie beyond the calibration (at most "
+                (percent("current")) " % above its largest current, " (percent("volt_per_hertz")) " % off its voltages over frequency, "
+                (percent("frequency")) " % off its frequencies): small faults stay dark there. Record the motor in good order there, and "
+                "calibrate with it."
+            }
+        }
+    }
 }
 
 fn summary(result: &Place<'_>) -> Vec<(Markup, Markup)> {

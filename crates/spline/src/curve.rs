@@ -1,12 +1,16 @@
-//! Cubic splines through knots.
+//! Whole curves: second derivatives at the knots, and the curve between them.
 
-use super::piece::piece;
+use super::piece;
 use core::f64::consts::TAU;
 
 /// Second derivatives of the cubic spline through `(x, y)`; `x` ascends and has at least three knots. The first two and the last
 /// two pieces are one cubic each (not-a-knot; de Boor, A Practical Guide to Splines, chapter IV), so that a curve that
 /// bends at its ends is met there too.
-pub(super) fn bends(x: &[f64], y: &[f64]) -> Vec<f64> {
+///
+/// # Panics
+/// With fewer than three knots, or fewer values than knots.
+#[must_use]
+pub fn bends(x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = x.len();
     let width = |k: usize| x[k + 1] - x[k];
     let slope = |k: usize| (y[k + 1] - y[k]) / width(k);
@@ -43,7 +47,7 @@ pub(super) fn bends(x: &[f64], y: &[f64]) -> Vec<f64> {
 
 /// A curve that can be evaluated.
 #[derive(Clone, Debug)]
-pub(super) struct Spline {
+pub struct Spline {
     x: Vec<f64>,
     y: Vec<f64>,
     second: Vec<f64>,
@@ -55,6 +59,7 @@ const OVERLAP: usize = 12;
 
 impl Spline {
     /// Through knots that ascend; beyond them the curve stays.
+    #[must_use]
     pub fn open(x: &[f64], y: &[f64]) -> Self {
         Self {
             second: bends(x, y),
@@ -64,6 +69,7 @@ impl Spline {
     }
 
     /// Through knots within one turn (rad), repeating.
+    #[must_use]
     pub fn periodic(x: &[f64], y: &[f64]) -> Self {
         let n = x.len() as i64;
         let overlap = OVERLAP as i64;
@@ -77,6 +83,7 @@ impl Spline {
     }
 
     /// Value at `x`.
+    #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
         let x = x.clamp(self.x[0], self.x[last]);

@@ -2,6 +2,8 @@
 //!
 //! Amplitude-invariant throughout: a balanced set of amplitude `X` is a space vector of length `X`.
 
+#![cfg_attr(not(test), no_std)]
+
 use num_complex::Complex32;
 
 /// One value per phase: instantaneous V or A, or a gain or an offset per channel.
@@ -38,6 +40,7 @@ const SQRT_3_OVER_2: f32 = 0.866_025_4;
 
 impl Abc {
     /// The same value in every phase.
+    #[inline]
     pub const fn splat(value: f32) -> Self {
         Abc {
             a: value,
@@ -47,16 +50,19 @@ impl Abc {
     }
 
     /// The three values as an array in the order a, b, c.
+    #[inline]
     pub const fn to_array(self) -> [f32; 3] {
         [self.a, self.b, self.c]
     }
 
     /// From an array in the order a, b, c.
+    #[inline]
     pub const fn from_array([a, b, c]: [f32; 3]) -> Self {
         Abc { a, b, c }
     }
 
     /// Combines two sets phase by phase.
+    #[inline]
     pub fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
         Abc {
             a: f(self.a, other.a),
@@ -66,11 +72,13 @@ impl Abc {
     }
 
     /// Zero-sequence component `(a + b + c)/3`, the part that Clarke's transform drops.
+    #[inline]
     pub fn zero(self) -> f32 {
         (self.a + self.b + self.c) / 3.0
     }
 
     /// Whether all three are finite numbers.
+    #[inline]
     pub fn is_finite(self) -> bool {
         self.a.is_finite() && self.b.is_finite() && self.c.is_finite()
     }
@@ -78,6 +86,7 @@ impl Abc {
 
 impl From<Abc> for AlphaBeta {
     /// Amplitude-invariant Clarke transform.
+    #[inline]
     fn from(x: Abc) -> Self {
         AlphaBeta {
             alpha: (2.0 * x.a - x.b - x.c) / 3.0,
@@ -88,6 +97,7 @@ impl From<Abc> for AlphaBeta {
 
 impl From<AlphaBeta> for Abc {
     /// Inverse Clarke transform of a set without zero sequence.
+    #[inline]
     fn from(x: AlphaBeta) -> Self {
         Abc {
             a: x.alpha,
@@ -99,6 +109,7 @@ impl From<AlphaBeta> for Abc {
 
 impl AlphaBeta {
     /// Park transform into the frame whose d axis points along `axis` (a unit vector `e^{j theta}`).
+    #[inline]
     pub fn to_dq(self, axis: Complex32) -> Dq {
         let x = Complex32::new(self.alpha, self.beta) * axis.conj();
         Dq { d: x.re, q: x.im }
@@ -107,6 +118,7 @@ impl AlphaBeta {
 
 impl Dq {
     /// Inverse Park transform from the frame whose d axis points along `axis` (a unit vector).
+    #[inline]
     pub fn to_alpha_beta(self, axis: Complex32) -> AlphaBeta {
         let x = Complex32::new(self.d, self.q) * axis;
         AlphaBeta {
@@ -132,22 +144,26 @@ const TURN: Complex32 = Complex32::new(-0.5, SQRT_3_OVER_2);
 
 impl Sequence {
     /// The positive sequence alone of the phasors of phases a, b and c.
+    #[inline]
     pub fn positive_of([a, b, c]: [Complex32; 3]) -> Complex32 {
         (a + TURN * b + TURN.conj() * c) / 3.0
     }
 
     /// Whether the phases follow each other as a, c, b: the field turns backwards.
+    #[inline]
     pub fn is_backwards(phases: [Complex32; 3]) -> bool {
         let forwards = Sequence::positive_of(phases).norm_sqr();
         Sequence::positive_of(Sequence::mirrored(phases)).norm_sqr() > forwards
     }
 
     /// Phases b and c exchanged: a motor that runs backwards, seen in the mirror, runs forwards.
+    #[inline]
     pub const fn mirrored([a, b, c]: [Complex32; 3]) -> [Complex32; 3] {
         [a, c, b]
     }
 
     /// Splits the phasors of phases a, b and c.
+    #[inline]
     pub fn from_phases(phases: [Complex32; 3]) -> Self {
         let [a, b, c] = phases;
         Sequence {
@@ -160,16 +176,19 @@ impl Sequence {
     /// Negative over positive sequence as a complex ratio; zero when there is no positive sequence.
     ///
     /// The ratio does not depend on where the window starts, so it can be averaged over windows.
+    #[inline]
     pub fn unbalance(&self) -> Complex32 {
         ratio(self.negative, self.positive)
     }
 
     /// Zero over positive sequence as a complex ratio; zero when there is no positive sequence.
+    #[inline]
     pub fn zero_ratio(&self) -> Complex32 {
         ratio(self.zero, self.positive)
     }
 }
 
+#[inline]
 fn ratio(numerator: Complex32, denominator: Complex32) -> Complex32 {
     let square = denominator.norm_sqr();
     if square > f32::MIN_POSITIVE {
@@ -180,6 +199,7 @@ fn ratio(numerator: Complex32, denominator: Complex32) -> Complex32 {
 }
 
 /// Length of a phasor; `Complex::norm` would go through a double-precision `hypot` on the board.
+#[inline]
 pub fn magnitude(x: Complex32) -> f32 {
     processor::sqrtf(x.norm_sqr())
 }
