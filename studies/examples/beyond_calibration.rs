@@ -261,8 +261,10 @@ struct Judged {
     first: String,
 }
 
-/// What was said of a machine; nothing where its calibration is refused.
-fn judged(seed: u64, asked: &Asked) -> Result<(Machine, Option<Vec<Judged>>), Box<dyn Error>> {
+/// A machine, and what was said of it; nothing where its calibration is refused.
+type Told = (Machine, Option<Vec<Judged>>);
+
+fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
     let mut random = Pcg64::seed_from_u64(seed);
     let machine = Machine::draw(&mut random)?;
     let Some(calibrated) = machine.calibrated(asked, &mut random) else {
@@ -316,7 +318,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         list: has("list"),
     };
     let one = |k| judged(1_000_003 * seed + k, &asked).map_err(|error| error.to_string());
-    let all: Result<Vec<_>, String> = (0..machines).into_par_iter().map(one).collect();
+    let all: Result<Vec<Told>, String> = (0..machines).into_par_iter().map(one).collect();
     let all = all?;
     let refused = all.iter().filter(|(_, judged)| judged.is_none()).count();
     println!("{machines} machines, {refused} not calibrated\n");
@@ -324,7 +326,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn print(all: &[(Machine, Option<Vec<Judged>>)], asked: &Asked) {
+fn print(all: &[Told], asked: &Asked) {
     let names: Vec<&str> = match asked.faults {
         true => faults().into_iter().map(|broken| broken.0).collect(),
         false => vec!["healthy"],
