@@ -30,7 +30,11 @@ pub struct Conditions {
     pub frequency: f32,
 }
 
-/// How far a window lies beyond the calibration, 0 within: 0.1 is a tenth more than the largest, -0.1 a tenth less than the smallest.
+/// What a grid wanders by, a share: no other conditions.
+const WANDERING: f32 = 0.005;
+
+/// How far a window lies beyond the calibration and what a grid wanders by, 0 within: 0.1 is a tenth more than the largest, -0.1 a tenth
+/// less than the smallest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Beyond {
     /// Current, never below 0: a motor without load has less of everything that current makes.
@@ -108,9 +112,6 @@ impl CalibratedRange {
     }
 }
 
-/// What a grid wanders by, a share: no other conditions.
-const WANDERING: f32 = 0.005;
-
 /// 0 between `low` and `high`, else the distance from the nearer of both as a share of it.
 fn farther(x: f32, [low, high]: [f32; 2]) -> f32 {
     let (low, high) = (low * (1.0 - WANDERING), high * (1.0 + WANDERING));
@@ -132,6 +133,18 @@ impl Beyond {
     /// Whether the window lies within what the calibration saw.
     pub fn is_within(&self) -> bool {
         *self == Beyond::default()
+    }
+
+    /// How far the window lies from what the calibration saw itself: current, voltage over frequency and frequency, shares.
+    pub fn from_seen(&self) -> [f32; 3] {
+        [self.current, self.volt_per_hertz, self.frequency].map(|share| {
+            let wandering = if share > 0.0 { WANDERING } else { -WANDERING };
+            if share != 0.0 {
+                (1.0 + share) * (1.0 + wandering) - 1.0
+            } else {
+                0.0
+            }
+        })
     }
 
     /// What is to be added to the uncertainties of the calibration.

@@ -23,9 +23,8 @@ const TOLD_PERCENT: f64 = 1.0;
 
 impl BeyondCalibration {
     pub(super) fn add(&mut self, beyond: &Beyond) {
-        let [current, volt_per_hertz, frequency] =
-            [beyond.current, beyond.volt_per_hertz, beyond.frequency]
-                .map(|share| 100.0 * f64::from(share).abs());
+        let seen = beyond.from_seen();
+        let [current, volt_per_hertz, frequency] = seen.map(|share| 100.0 * f64::from(share).abs());
         let farthest = current.max(volt_per_hertz).max(frequency);
         if farthest < TOLD_PERCENT {
             return;
@@ -65,7 +64,7 @@ mod tests {
     fn only_what_lies_beyond_is_told() {
         let mut beyond = BeyondCalibration::default();
         beyond.add(&Beyond {
-            current: 0.004,
+            current: 0.003,
             ..Beyond::default()
         });
         assert_eq!(beyond.words(), None, "noise");

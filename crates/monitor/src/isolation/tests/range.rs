@@ -104,6 +104,11 @@ fn distances_are_shares_of_the_nearer_end() {
     near(current, 1.2 / (0.8 * 1.005) - 1.0);
     near(volt_per_hertz, 0.76 / (0.95 * 0.995) - 1.0);
     near(frequency, 1.5 / 1.005 - 1.0);
+    let [current, volt_per_hertz, frequency] = at(1.2, 0.76, 1.5).from_seen();
+    near(current, 0.5);
+    near(volt_per_hertz, -0.2);
+    near(frequency, 0.5);
+    assert_eq!(at(0.8, 1.0, 1.0).from_seen(), [0.0; 3]);
 }
 
 #[test]
