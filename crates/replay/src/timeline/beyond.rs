@@ -69,7 +69,7 @@ mod tests {
         });
         assert_eq!(beyond.words(), None, "noise");
         beyond.add(&Beyond {
-            volt_per_hertz: 0.05,
+            volt_per_hertz: -0.05,
             ..Beyond::default()
         });
         beyond.add(&Beyond {
@@ -80,7 +80,8 @@ mod tests {
         assert_eq!(beyond.windows, 2);
         assert_eq!(
             beyond.words().as_deref(),
-            Some("current up to 50 % above, voltage over frequency up to 5 % off")
+            Some("current up to 51 % above, voltage over frequency up to 5 % off"),
+            "beside half a per cent that a grid wanders by"
         );
     }
 }
