@@ -57,6 +57,7 @@ fn a_healthy_motor_is_healthy_where_its_calibration_saw_nothing_and_that_is_told
         assert_eq!(verdict.state, VerdictState::Healthy, "{volt} {load}");
         assert_eq!(timeline.beyond.windows, timeline.judged, "{volt} {load}");
         if volt != 100.0 {
+            // The farthest of some hundred windows: noise as above, and the calibration's own.
             let off = (volt - 100.0).abs();
             assert!((timeline.beyond.volt_per_hertz_percent - off).abs() < 0.3);
         }

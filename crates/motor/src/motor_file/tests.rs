@@ -203,6 +203,8 @@ fn a_healthy_section_out_of_range_is_refused_with_its_line() {
         ("scatter_percent", "[1.0, 2.0]"),
         ("mean_percent", "[0, 0, 0, 0, 0, 0, 0, 0, 1001]"),
         ("stator_percent", "1.0"),
+        ("calibrated_current_percent", "100.0"),
+        ("calibrated_frequency_percent", "[100.0, 100.0]"),
     ] {
         let text = format!("{SMALLEST}[healthy]\n{key} = {bad}\n");
         let error = MotorFile::parse(&text, "motor.toml").expect_err(key);
