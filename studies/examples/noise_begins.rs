@@ -12,7 +12,7 @@ use motor::MotorFile;
 use motor::motor_file::LoadKind;
 use rayon::prelude::*;
 use scenario::simulate::{Measured, Simulation};
-use scenario::{Load, LoadSpec, Scenario, SensorSpec, SpeedSensor};
+use scenario::{LoadSpec, Scenario, SensorSpec, SpeedSensor};
 use std::error::Error;
 
 const MOTORS: [&str; 3] = ["assumed-300w", "peer-2k2", "chalmers-4kw"];
@@ -106,13 +106,7 @@ fn scenario(plant: &MotorFile, recorded: bool, noise: f64, seed: u64) -> Scenari
     let torque = (0.3 + 0.07 * seed as f64) * motor.nameplate.torque_nm;
     Scenario {
         seed,
-        load: LoadSpec {
-            friction_factor: 1.0,
-            other: Load::Constant {
-                torque,
-                active: true,
-            },
-        },
+        load: LoadSpec::constant(torque, true),
         sensors: SensorSpec {
             speed: match recorded {
                 true => SpeedSensor::Tachometer,

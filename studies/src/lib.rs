@@ -1,1 +1,6 @@
-//! The studies are the examples of this package: `cargo run --release -p studies --example evidence`.
+//! The studies are the examples of this package: `cargo run --release -p studies --example evidence`. What several of them share is here.
+
+#![allow(missing_docs)]
+
+pub mod drive;
+pub mod hidden;

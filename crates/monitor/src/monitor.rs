@@ -387,6 +387,10 @@ impl Monitor {
             (!currents, NotJudged::NoCurrents),
             (window.invalid_samples > 0, NotJudged::Invalid),
             (window.clipped.any(), NotJudged::Clipped),
+            (
+                voltages && self.health.is_astray(window),
+                NotJudged::NotLocked,
+            ),
         ];
         let plain = reasons
             .into_iter()

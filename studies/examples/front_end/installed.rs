@@ -17,7 +17,7 @@ use recording::{Channel, LoadTorque, Metadata, Recording, StartsFrom, Supply};
 use replay::calibrate::{Surroundings, calibrate};
 use scenario::simulate::Simulation;
 use scenario::{
-    CHANNELS, Carrier, Inl, InlShape, Load, LoadSpec, Piecewise, Scenario, SensorSpec, SignalChain,
+    CHANNELS, Carrier, Inl, InlShape, LoadSpec, Piecewise, Scenario, SensorSpec, SignalChain,
     SpeedSensor, SupplySpec,
 };
 
@@ -244,13 +244,7 @@ impl<'m> Installed<'m> {
         Scenario {
             seed,
             supply,
-            load: LoadSpec {
-                friction_factor: 1.0,
-                other: Load::Constant {
-                    torque,
-                    active: true,
-                },
-            },
+            load: LoadSpec::constant(torque, true),
             sensors: SensorSpec {
                 speed: SpeedSensor::Encoder,
                 chain: Some(self.chain(at)),

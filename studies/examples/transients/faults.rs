@@ -5,9 +5,9 @@ use motion::Named;
 use rayon::prelude::*;
 use scenario::{Asymmetry, Parameter, Probe, Target};
 
-use crate::drive::{Break, DURING_S, Doubts, Drive, run};
 use crate::judge::{Outcome, judge};
 use crate::{MOTORS, motor};
+use studies::drive::{Break, DURING_S, Doubts, Drive, run};
 
 struct Fault {
     label: &'static str,

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use crate::drive::{DRIVES, Doubts, Drive, run};
 use crate::judge::{Outcome, judge};
 use crate::{MOTORS, motor};
+use studies::drive::{DRIVES, Doubts, Drive, run};
 
 /// What all draws of one motor and drive came to.
 #[derive(Default)]

@@ -5,7 +5,7 @@ use motion::{Motion, MotionCycle, MotionSample, MotionState, Named};
 use motor::MotorFile;
 use scenario::simulate::{SimSample, Simulation};
 
-use crate::drive::{Doubts, Run};
+use studies::drive::{Doubts, Run};
 
 /// What a run came to.
 #[derive(Clone, Debug, Default)]

@@ -3,7 +3,6 @@
 //! `cargo run --release -p studies --example transients -- PART DRAWS` prints the tables of `docs/transients.md`; PART is
 //! `printed`, `healthy`, `doubts`, `press` or `start`.
 
-mod drive;
 mod faults;
 mod healthy;
 mod judge;
@@ -12,7 +11,7 @@ mod printed;
 use motor::MotorFile;
 use motor::motor_file::LoadKind;
 
-use drive::{Doubts, Drive};
+use studies::drive::{Doubts, Drive};
 
 /// The motors that ship, but for those that differ only in what a window at rest is told.
 const MOTORS: [&str; 6] = [

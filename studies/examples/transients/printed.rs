@@ -4,9 +4,9 @@ use motor::MotorFile;
 use motor::motor_file::Frame;
 use scenario::simulate::Simulation;
 
-use crate::drive::{Doubts, Drive, Run, run};
 use crate::judge::judge;
 use crate::motor;
+use studies::drive::{Doubts, Drive, Run, run};
 
 /// Steady threshold of r1, share of the voltage.
 const THRESHOLD: f64 = 0.006;

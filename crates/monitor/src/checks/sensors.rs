@@ -96,14 +96,21 @@ impl HealthConfig {
     /// Checks the voltage channels.
     pub fn check_voltages(&self, window: &Window) -> Option<SensorFinding> {
         let voltages = amplitudes(window, 0);
-        if voltages
-            .iter()
-            .all(|&u| u < SILENT_SHARE * self.rated_voltage)
-        {
-            let flowing = self.has_current(window);
-            return flowing.then_some(SensorFinding::VoltagesMissing);
+        if self.are_silent(&voltages) {
+            let missing = self.are_silent(&swings(window)) && self.has_current(window);
+            return missing.then_some(SensorFinding::VoltagesMissing);
         }
         dead_channel(&voltages).map(SensorFinding::DeadVoltage)
+    }
+
+    /// Whether the voltages swing, but not at the frequency of the window: the oscillator does not follow them.
+    pub fn is_astray(&self, window: &Window) -> bool {
+        self.are_silent(&amplitudes(window, 0)) && !self.are_silent(&swings(window))
+    }
+
+    fn are_silent(&self, voltages: &[f32; 3]) -> bool {
+        let silent = SILENT_SHARE * self.rated_voltage;
+        voltages.iter().all(|&u| u < silent)
     }
 
     /// Checks the current channels.
@@ -151,6 +158,15 @@ fn amplitudes(window: &Window, first: usize) -> [f32; 3] {
         *amplitude = magnitude(channel.phasor);
     }
     result
+}
+
+/// Amplitudes of the voltages were they sines of any frequency, V.
+fn swings(window: &Window) -> [f32; 3] {
+    let [a, b, c, ..] = window.channels;
+    [a, b, c].map(|channel| {
+        let square = channel.mean_square - channel.offset * channel.offset;
+        libm::sqrtf(2.0 * square.max(0.0))
+    })
 }
 
 /// The channel of three, by their amplitudes, that shows next to nothing while its neighbours do.
@@ -251,6 +267,18 @@ mod tests {
             Some(SensorFinding::VoltagesMissing)
         );
         assert_eq!(CONFIG.check_voltages(&window([0.0; 3], [0.0; 3])), None);
+    }
+
+    /// An oscillator that stays behind on a ramp: 100 V at another frequency leave 2 V at its own.
+    #[test]
+    fn voltages_of_another_frequency_are_not_missing() {
+        let mut window = window([0.006; 3], [1.0; 3]);
+        assert!(!CONFIG.is_astray(&window));
+        for channel in &mut window.channels[..3] {
+            channel.mean_square = 0.5 * 100.0 * 100.0;
+        }
+        assert_eq!(CONFIG.check_voltages(&window), None);
+        assert!(CONFIG.is_astray(&window));
     }
 
     #[test]

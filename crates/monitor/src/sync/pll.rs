@@ -34,6 +34,11 @@ const PHASE_GAIN: f32 = 0.4;
 const FREQUENCY_GAIN: f32 = 0.06;
 /// Consecutive good crossings before the lock is declared.
 const LOCK_AFTER: u8 = 3;
+/// Good crossings that count at most, and how many of them a crossing outside the capture range takes back: three such in a row end
+/// any lock. An oscillator that stays behind on a ramp of the frequency still meets a quarter of the crossings by chance.
+const GOOD_AT_MOST: u8 = 12;
+/// See [`GOOD_AT_MOST`].
+const STRAY_TAKES: u8 = 4;
 /// Turns without a usable crossing that the oscillator bridges before the lock is given up.
 const HOLDOVER_TURNS: u8 = 3;
 /// A new crossing is accepted only after the signal was below this share of its amplitude.
@@ -202,7 +207,7 @@ impl SyncConfig {
     }
 
     fn track(&self, state: &mut SyncState, fraction: f32) {
-        let Mode::Tracking { good, .. } = state.mode else {
+        let Mode::Tracking { good, missed } = state.mode else {
             return;
         };
         let at_crossing = state.theta - fraction * state.omega_oscillator * self.t_sample;
@@ -212,6 +217,10 @@ impl SyncConfig {
             at_crossing
         };
         if error.abs() > CAPTURE_RANGE {
+            state.mode = match good.saturating_sub(STRAY_TAKES) {
+                0 => Mode::Searching,
+                good => Mode::Tracking { good, missed },
+            };
             return;
         }
         let turn = TAU / state.omega;
@@ -219,7 +228,7 @@ impl SyncConfig {
         // Not `clamp`: it panics when the limits are the wrong way round.
         state.omega = omega.max(self.omega_min).min(self.omega_max);
         state.mode = Mode::Tracking {
-            good: good.saturating_add(1),
+            good: (good + 1).min(GOOD_AT_MOST),
             missed: 0,
         };
         self.set_oscillator(state, state.omega - PHASE_GAIN * error / turn);

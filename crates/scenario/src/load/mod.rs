@@ -27,6 +27,14 @@ impl Default for LoadSpec {
 }
 
 impl LoadSpec {
+    /// A constant torque, N m, beside the motor file's friction; `active`: it may drive the motor, as a lowered weight does.
+    pub fn constant(torque: f64, active: bool) -> LoadSpec {
+        LoadSpec {
+            other: Load::Constant { torque, active },
+            ..LoadSpec::default()
+        }
+    }
+
     /// Whether the load is friction only.
     pub fn is_linear(&self) -> bool {
         self.other == Load::None

@@ -135,6 +135,33 @@ fn a_frequency_step_is_followed() {
     assert!((state.omega() / (TAU * 51.0) - 1.0).abs() < 1e-4);
 }
 
+/// A drive's ramp is too fast for the loop at low frequency: it does not stay behind and call that a lock.
+#[test]
+fn a_ramp_that_is_too_fast_is_not_followed_and_then_found_again() {
+    for hertz_per_second in [5.0, 10.0, 26.0, 60.0] {
+        let mut state = SyncState::default();
+        let (mut phase, mut hertz) = (0.0_f64, 8.0_f64);
+        let mut wrong_s = 0.0;
+        for k in 0..200_000 {
+            if k > 10_000 {
+                hertz = (hertz + hertz_per_second * 1e-4).min(60.0);
+            }
+            phase += core::f64::consts::TAU * hertz * 1e-4;
+            config().update(&mut state, (100.0 * phase.sin()) as f32);
+            let off = f64::from(state.omega()) / core::f64::consts::TAU / hertz - 1.0;
+            wrong_s += if state.is_locked() && off.abs() > 0.3 {
+                1e-4
+            } else {
+                0.0
+            };
+        }
+        assert!(state.is_locked());
+        assert!((state.omega() / (TAU * 60.0) - 1.0).abs() < 1e-4);
+        // The crossings that it takes to notice, five periods of 8 Hz at the most.
+        assert!(wrong_s < 5.0 / 8.0, "{hertz_per_second} Hz/s: {wrong_s} s");
+    }
+}
+
 fn sine(hertz: f64, amplitude: f64) -> impl Fn(u64) -> f32 {
     move |k| (amplitude * (core::f64::consts::TAU * hertz * k as f64 * 1e-4 - 1.0).sin()) as f32
 }

@@ -17,18 +17,29 @@ use scenario::{
 /// What happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {
+    /// At full voltage.
     DirectStart,
+    /// At a star's voltage, then at full voltage.
     StarDelta,
+    /// From 10 to 70 % of the load.
     LoadStep,
+    /// From 10 to 80 % of the load in a second.
     LoadRamp,
+    /// Strokes of eight cycles of the supply.
     Press,
+    /// To 60 % of the voltage for 0.2 s.
     Dip,
+    /// The voltage falls by a tenth.
     SupplyRamp,
+    /// A start at an inverter.
     FrequencyRamp,
+    /// A weight, lifted and lowered.
     Hoist,
+    /// No voltage for 0.3 s.
     Interruption,
 }
 
+/// All of them.
 pub const DRIVES: [Drive; 10] = [
     Drive::DirectStart,
     Drive::StarDelta,
@@ -43,6 +54,7 @@ pub const DRIVES: [Drive; 10] = [
 ];
 
 impl Drive {
+    /// As tables show it.
     pub fn name(self) -> &'static str {
         match self {
             Drive::DirectStart => "direct start",
@@ -99,9 +111,12 @@ pub struct Doubts {
     pub warm_k: f64,
     /// Phases b and c exchanged, the shaft turning the other way.
     pub backwards: bool,
+    /// Voltage of the supply, share of the rated one.
+    pub volt: f64,
 }
 
 impl Doubts {
+    /// What a calibration leaves, and what its circuit lacks.
     pub const USUAL: Doubts = Doubts {
         wrong: 1.0,
         bends: true,
@@ -111,14 +126,18 @@ impl Doubts {
         noise: 0.002,
         warm_k: 0.0,
         backwards: false,
+        volt: 1.0,
     };
 }
 
 /// A fault, where it begins: at once, or while the machine moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Break {
+    /// What changes.
     pub targets: &'static [Target],
+    /// By how much.
     pub percent: f64,
+    /// After the drive began, s; `None`: at once.
     pub from_s: Option<f64>,
 }
 
@@ -127,6 +146,7 @@ pub const DURING_S: f64 = 1.5;
 
 /// One run.
 pub struct Run {
+    /// The motor and what happens to it.
     pub scenario: Scenario,
     /// Gain of the torque channel.
     pub torque_gain: f64,
@@ -162,7 +182,7 @@ pub fn run(
     };
     s.supply = supply(
         drive,
-        plate.phase_voltage_amplitude(),
+        doubts.volt * plate.phase_voltage_amplitude(),
         hertz,
         before,
         &mut rng,

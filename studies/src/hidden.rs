@@ -1,0 +1,229 @@
+//! Motors around those that ship, with effects that their motor files do not know, and what a calibration makes of them.
+
+use std::error::Error;
+
+use motor::MotorFile;
+use motor::dynamic::Harmonic;
+use motor::motor_file::{EffectEntry, LoadKind};
+use num_complex::Complex64;
+use rand::Rng;
+use rand::seq::{IndexedRandom, SliceRandom};
+use rand_pcg::Pcg64;
+use recording::Recording;
+use replay::calibrate::{Surroundings, calibrate};
+use scenario::simulate::record;
+use scenario::{Fault, LoadSpec, Piecewise, Scenario, SensorSpec, Start, SupplySpec};
+
+use crate::drive::{self, Doubts, Drive};
+
+const MOTORS: [&str; 5] = [
+    "assumed-300w",
+    "itsc-075hp",
+    "peer-2k2",
+    "chalmers-4kw",
+    "imc-18k5",
+];
+/// The largest load of the calibration, share of the rated torque.
+const HIGHEST: [f64; 3] = [0.5, 0.75, 1.0];
+/// Loads of the calibration, shares of the largest.
+const CALIBRATED: [f64; 3] = [0.1, 0.5, 1.0];
+/// A motor that runs; longer than FAULT needs.
+const SECONDS: f64 = 1.6;
+/// Negative over positive sequence of the supply.
+const UNBALANCE: f64 = 0.007;
+/// Of full scale.
+const NOISE: f64 = 0.001;
+
+/// A machine, and what its motor file does not know.
+pub struct Machine {
+    /// What its motor file says, which is the machine but for what is hidden.
+    pub motor: MotorFile,
+    /// The effects that the file does not know.
+    pub hidden: Vec<EffectEntry>,
+    /// The largest load of its calibration, share of the rated torque.
+    pub highest: f64,
+    /// How much the resistances rise by the warmth of the rated load, share.
+    warmth: f64,
+}
+
+impl Machine {
+    /// One of the motors that ship with another circuit and up to two effects; `hard`: larger ones than motors commonly have.
+    ///
+    /// # Errors
+    ///
+    /// Where a motor file cannot be read.
+    pub fn draw(random: &mut Pcg64, hard: bool) -> Result<Self, Box<dyn Error>> {
+        let name = MOTORS.choose(random).expect("not empty");
+        let path = format!("{}/../motors/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut motor = MotorFile::read(path)?;
+        let p = &mut motor.parameters;
+        for value in [&mut p.r_s, &mut p.r_r, &mut p.l_m, &mut p.l_ls, &mut p.l_lr] {
+            *value *= random.random_range(0.8..1.25);
+        }
+        motor.load = match random.random_bool(0.3) {
+            true => LoadKind::Measured,
+            false => LoadKind::Free,
+        };
+        motor.mechanics.load_friction = 0.0;
+        motor.sensors.noise_sigma_fraction_of_full_scale = NOISE;
+        // A recorder's ranges hold what the motor takes at twice its load.
+        motor.sensors.current_full_scale_amp = 4.0 * motor.nameplate.current_amplitude();
+        motor.effects.clear();
+        motor.healthy = None;
+        Ok(Machine {
+            hidden: hidden(&motor, random, hard),
+            highest: *HIGHEST.choose(random).expect("not empty"),
+            warmth: random.random_range(0.0..0.15),
+            motor,
+        })
+    }
+
+    /// Recorded while it runs at a load, voltage and frequency, shares of the rated ones.
+    ///
+    /// # Errors
+    ///
+    /// Where the machine cannot carry the load.
+    pub fn recorded(
+        &self,
+        [load, volt, hertz]: [f64; 3],
+        fault: Option<Fault>,
+        seed: u64,
+    ) -> Result<Recording, Box<dyn Error>> {
+        let mut motor = self.motor.clone();
+        motor.parameters.r_s *= 1.0 + self.warmth * (load * load).min(1.6);
+        motor.parameters.r_r *= 1.0 + self.warmth * (load * load).min(1.6);
+        let torque = load * motor.nameplate.torque_nm;
+        let unbalance = Harmonic {
+            order: -1.0,
+            amplitude: Complex64::from_polar(UNBALANCE, 1.0),
+        };
+        let supply = SupplySpec {
+            components: vec![unbalance],
+            amplitude_volt: Piecewise::constant(volt * motor.nameplate.phase_voltage_amplitude()),
+            frequency_hz: Piecewise::constant(hertz * motor.nameplate.frequency_hz),
+            ..SupplySpec::rated(&motor.nameplate)
+        };
+        let scenario = Scenario {
+            seed,
+            supply,
+            load: LoadSpec::constant(torque, true),
+            effects: self.hidden.clone(),
+            faults: fault.into_iter().collect(),
+            sample_rate_hz: 5000.0,
+            start: Start::Running,
+            sensors: SensorSpec {
+                ..SensorSpec::of(&motor)
+            },
+            ..Scenario::of(motor, SECONDS)
+        };
+        Ok(record(&scenario, |_| ())?)
+    }
+
+    /// Recorded while it starts, is loaded or slowed; `volt`: share of the rated voltage.
+    ///
+    /// # Errors
+    ///
+    /// Where the scenario cannot be simulated.
+    pub fn moved(
+        &self,
+        drive: Drive,
+        volt: f64,
+        fault: Option<Fault>,
+        seed: u64,
+    ) -> Result<Recording, Box<dyn Error>> {
+        let doubts = Doubts {
+            wrong: 0.0,
+            bends: false,
+            noise: NOISE,
+            volt,
+            ..Doubts::USUAL
+        };
+        let mut scenario = drive::run(&self.motor, drive, &doubts, None, seed).scenario;
+        scenario.effects = self.hidden.clone();
+        scenario.faults = fault.into_iter().collect();
+        scenario.sample_rate_hz = 5000.0;
+        Ok(record(&scenario, |_| ())?)
+    }
+
+    /// What a calibration makes of the motor file: at three loads or (`one`) the largest alone, and (`start`) at a start.
+    /// `None` where a recording is not possible or the calibration refuses.
+    pub fn calibrated(&self, one: bool, start: bool, random: &mut Pcg64) -> Option<MotorFile> {
+        let shares = if one { &CALIBRATED[2..] } else { &CALIBRATED };
+        let recorded = |share| {
+            let at = [share * self.highest, 1.0, 1.0];
+            self.recorded(at, None, random.random()).ok()
+        };
+        let mut recordings = shares.iter().map(recorded).collect::<Option<Vec<_>>>()?;
+        if start {
+            recordings.push(
+                self.moved(Drive::DirectStart, 1.0, None, random.random())
+                    .ok()?,
+            );
+        }
+        let calibrated = calibrate(&self.motor, &recordings, &Surroundings::default());
+        Some(calibrated.ok()?.motor)
+    }
+
+    /// What is hidden.
+    pub fn names(&self) -> String {
+        let names: Vec<&str> = self.hidden.iter().map(|e| e.name.as_str()).collect();
+        match names.is_empty() {
+            true => "nothing".to_owned(),
+            false => names.join(" "),
+        }
+    }
+}
+
+/// Up to two effects, as small or large as they are in motors.
+fn hidden(motor: &MotorFile, random: &mut Pcg64, hard: bool) -> Vec<EffectEntry> {
+    let drop = if hard { 0.25..0.4 } else { 0.02..0.25 };
+    let iron = if hard { 0.25..0.45 } else { 0.02..0.25 };
+    let exponent = if hard {
+        random.random_range(4.0..9.0)
+    } else {
+        7.0
+    };
+    let plate = &motor.nameplate;
+    let volt = plate.phase_voltage_amplitude();
+    let mut all = vec![
+        EffectEntry::with_numbers(
+            "leakage-saturation",
+            [
+                ("leakage_drop", random.random_range(drop)),
+                ("reference_current_amp", 3.0 * plate.current_amplitude()),
+            ],
+        ),
+        EffectEntry::with_numbers(
+            "magnetizing-saturation",
+            [
+                ("saturation", random.random_range(iron)),
+                ("saturation_exponent", exponent),
+            ],
+        ),
+        EffectEntry::with_numbers(
+            "core-loss",
+            [(
+                "core_loss_resistance_ohm",
+                1.5 * volt * volt / (random.random_range(0.003..0.03) * plate.power_watt),
+            )],
+        ),
+        EffectEntry::with_numbers(
+            "stray-load-loss",
+            [(
+                "stray_load_torque_nm",
+                random.random_range(0.002..0.02) * plate.torque_nm,
+            )],
+        ),
+        EffectEntry::with_numbers(
+            "deep-bar",
+            [
+                ("resistance_rise", random.random_range(0.05..0.6)),
+                ("leakage_drop", random.random_range(0.02..0.2)),
+                ("slip_exponent", 1.0),
+            ],
+        ),
+    ];
+    all.shuffle(random);
+    all.truncate(random.random_range(0..3));
+    all
+}
