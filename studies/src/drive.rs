@@ -37,10 +37,12 @@ pub enum Drive {
     Hoist,
     /// No voltage for 0.3 s.
     Interruption,
+    /// At full voltage against a load that holds the shaft.
+    Stall,
 }
 
 /// All of them.
-pub const DRIVES: [Drive; 10] = [
+pub const DRIVES: [Drive; 11] = [
     Drive::DirectStart,
     Drive::StarDelta,
     Drive::LoadStep,
@@ -51,6 +53,7 @@ pub const DRIVES: [Drive; 10] = [
     Drive::FrequencyRamp,
     Drive::Hoist,
     Drive::Interruption,
+    Drive::Stall,
 ];
 
 impl Drive {
@@ -67,13 +70,14 @@ impl Drive {
             Drive::FrequencyRamp => "V/Hz ramp, 8 Hz to rated in 2 s",
             Drive::Hoist => "hoist, lifting and lowering",
             Drive::Interruption => "interruption of 0.3 s",
+            Drive::Stall => "start with the shaft held",
         }
     }
 
     /// Length, s.
     fn duration(self) -> f64 {
         match self {
-            Drive::DirectStart => 1.2,
+            Drive::DirectStart | Drive::Stall => 1.2,
             Drive::StarDelta => 1.5,
             Drive::LoadStep | Drive::Dip => 1.2,
             Drive::LoadRamp | Drive::Interruption => 1.8,
@@ -87,7 +91,7 @@ impl Drive {
     fn starts(self) -> bool {
         matches!(
             self,
-            Drive::DirectStart | Drive::StarDelta | Drive::FrequencyRamp
+            Drive::DirectStart | Drive::StarDelta | Drive::FrequencyRamp | Drive::Stall
         )
     }
 }
@@ -280,7 +284,7 @@ fn supply(drive: Drive, rated: f64, hertz: f64, before: f64, rng: &mut Pcg64) ->
     let mut switch_on_s = 0.0;
     let mut components = vec![(-1.0, 0.01), (-5.0, 0.02), (7.0, 0.015)];
     match drive {
-        Drive::DirectStart => switch_on_s = before,
+        Drive::DirectStart | Drive::Stall => switch_on_s = before,
         Drive::StarDelta => {
             switch_on_s = before;
             volts = Piecewise::constant(amplitude / 3.0_f64.sqrt());
@@ -322,6 +326,9 @@ fn supply(drive: Drive, rated: f64, hertz: f64, before: f64, rng: &mut Pcg64) ->
     }
 }
 
+/// No motor starts against so many times its rated torque.
+const HELD: f64 = 8.0;
+
 fn load(drive: Drive, rated: f64, hertz: f64, before: f64, rng: &mut Pcg64) -> LoadSpec {
     let size = rated * rng.random_range(0.8..1.0);
     let points = match drive {
@@ -330,6 +337,7 @@ fn load(drive: Drive, rated: f64, hertz: f64, before: f64, rng: &mut Pcg64) -> L
         Drive::Press => press(before, hertz),
         Drive::Hoist => hoist(before),
         Drive::DirectStart | Drive::StarDelta => vec![(0.0, 0.2)],
+        Drive::Stall => vec![(0.0, HELD)],
         _ => vec![(0.0, 0.5)],
     };
     let points = points.into_iter().map(|(t, x)| (t, x * size)).collect();

@@ -34,6 +34,7 @@ const UNBALANCE: f64 = 0.007;
 /// Of full scale.
 const NOISE: f64 = 0.001;
 
+#[derive(Debug)]
 /// A machine, and what its motor file does not know.
 pub struct Machine {
     /// What its motor file says, which is the machine but for what is hidden.
@@ -42,8 +43,8 @@ pub struct Machine {
     pub hidden: Vec<EffectEntry>,
     /// The largest load of its calibration, share of the rated torque.
     pub highest: f64,
-    /// How much the resistances rise by the warmth of the rated load, share.
-    warmth: f64,
+    /// How much the resistances of stator and rotor rise by the warmth of the rated load, shares.
+    warmth: [f64; 2],
 }
 
 impl Machine {
@@ -73,7 +74,7 @@ impl Machine {
         Ok(Machine {
             hidden: hidden(&motor, random, hard),
             highest: *HIGHEST.choose(random).expect("not empty"),
-            warmth: random.random_range(0.0..0.15),
+            warmth: [(); 2].map(|()| random.random_range(0.0..0.15)),
             motor,
         })
     }
@@ -90,8 +91,9 @@ impl Machine {
         seed: u64,
     ) -> Result<Recording, Box<dyn Error>> {
         let mut motor = self.motor.clone();
-        motor.parameters.r_s *= 1.0 + self.warmth * (load * load).min(1.6);
-        motor.parameters.r_r *= 1.0 + self.warmth * (load * load).min(1.6);
+        let warmed = self.warmth.map(|rise| 1.0 + rise * (load * load).min(1.6));
+        motor.parameters.r_s *= warmed[0];
+        motor.parameters.r_r *= warmed[1];
         let torque = load * motor.nameplate.torque_nm;
         let unbalance = Harmonic {
             order: -1.0,

@@ -22,7 +22,7 @@ use studies::drive::{DRIVES, Drive};
 use studies::hidden::Machine;
 
 /// What is judged at rest: load, share of the largest of the calibration, and voltage and frequency, shares of the rated ones.
-const AT_REST: [[f64; 3]; 14] = [
+const AT_REST: [[f64; 3]; 18] = [
     [0.3, 1.0, 1.0],
     [0.9, 1.0, 1.0],
     [1.1, 1.0, 1.0],
@@ -37,6 +37,10 @@ const AT_REST: [[f64; 3]; 14] = [
     [0.8, 1.1, 1.0],
     [0.8, 0.8, 0.8],
     [0.8, 0.5, 0.5],
+    [-0.1, 1.0, 1.0],
+    [-0.5, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+    [-0.5, 1.05, 1.0],
 ];
 /// What is judged in motion: voltages, shares of the rated one.
 const VOLTAGES: [f64; 3] = [0.93, 1.0, 1.07];
@@ -163,6 +167,12 @@ fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
         false => vec![None],
     };
     let mut all = Vec::new();
+    if std::env::var("DBG").is_ok() {
+        eprintln!(
+            "{seed} warmth {:?}\n{:?}\n{:?}",
+            machine, machine.motor.parameters, calibrated.parameters
+        );
+    }
     for at in Condition::all(asked.moving) {
         for broken in &broken {
             let fault = broken.as_ref().map(|broken| broken.1.clone());

@@ -1,12 +1,14 @@
 //! The parameters that make the monitor's own residuals vanish over all healthy windows.
 //!
 //! Gauss-Newton on the torque balance, `e_d` and `e_q`, with the very directions that the monitor isolates faults by:
-//! what remains after it is what the lamps will see of the healthy motor.
+//! what remains after it is what the lamps will see of the healthy motor. Winding and cage of each recording have a temperature of
+//! their own, as the monitor lets them.
 
 use monitor::{Cause, Evidence, Healthy, LoadKind, Monitor};
 use motor::MotorFile;
 use nalgebra::{DMatrix, DVector};
 
+use super::warmth::Warmths;
 use super::windows::Observed;
 use super::{MonitorOf, Refusal};
 
@@ -47,8 +49,10 @@ pub(super) struct Beliefs<'a> {
 pub struct Fitted {
     /// The motor with its new parameters.
     pub motor: MotorFile,
-    /// The fitted coordinates.
+    /// The fitted coordinates: those of [`FITTED`], then those of `warmths`.
     pub(super) coordinates: Vec<f64>,
+    /// Whose temperatures the last coordinates are.
+    pub(super) warmths: Warmths,
     /// Change of each of [`Fitted::causes`], a share of the believed value.
     pub changes: Vec<f64>,
     /// How far each may be off, a share of the fitted value, seen through the instruments that it was fitted with: their
@@ -63,6 +67,15 @@ impl Fitted {
     pub fn causes() -> impl Iterator<Item = Cause> {
         FITTED.iter().map(|(cause, _)| *cause)
     }
+
+    /// The motor as warm as it was in a recording.
+    pub(super) fn warmed(&self, recording: usize) -> MotorFile {
+        let mut motor = self.motor.clone();
+        let z = self.coordinates.get(FITTED.len()..).unwrap_or_default();
+        let warmth = self.warmths.read(z, recording);
+        warmth.applied(&mut motor.parameters);
+        motor
+    }
 }
 
 /// Fits; `monitor_of` gives the monitor for a recording's number.
@@ -74,15 +87,19 @@ pub(super) fn fit(
     observed: &[Observed],
     monitor_of: &MonitorOf<'_>,
 ) -> Result<Fitted, Refusal> {
-    let mut z = DVector::<f64>::zeros(FITTED.len());
+    let warmths = Warmths::of(observed);
+    let priors = priors(&warmths);
+    let n = priors.len();
+    let mut z = DVector::<f64>::zeros(n);
     let mut misfit = [0.01; ROWS];
-    let mut covariance = DMatrix::identity(FITTED.len(), FITTED.len());
+    let mut covariance = DMatrix::identity(n, n);
     for _ in 0..ITERATIONS {
-        let motor = beliefs.changed(z.as_slice());
-        let evidence = evidence(&motor, observed, monitor_of)?;
+        let motor_of = |k: usize| beliefs.warmed(z.as_slice(), &warmths, k);
+        let evidence = evidence(&motor_of, observed, monitor_of)?;
         misfit = root_mean_square(&evidence, observed);
         let relative = beliefs.relative(z.as_slice());
-        let (step, posterior) = step(&evidence, observed, &misfit, &z, &relative);
+        let along = |(e, o): (&Evidence, &Observed)| directions(e, o, &relative, &warmths);
+        let (step, posterior) = step(&evidence, observed, &misfit, &z, &along, &priors);
         z += &step;
         covariance = posterior;
         if step.amax() < 1e-6 {
@@ -97,6 +114,7 @@ pub(super) fn fit(
         changes: beliefs.factors(&coordinates).map(|x| x - 1.0).to_vec(),
         seen_through: (0..FITTED.len()).map(error).collect(),
         coordinates,
+        warmths,
         misfit,
     })
 }
@@ -146,7 +164,15 @@ impl<'a> Beliefs<'a> {
         })
     }
 
-    /// The motor at these coordinates.
+    /// The motor at these coordinates, as warm as in a recording.
+    pub(super) fn warmed(&self, z: &[f64], warmths: &Warmths, recording: usize) -> MotorFile {
+        let mut motor = self.changed(z);
+        let warmth = warmths.read(&z[FITTED.len()..], recording);
+        warmth.applied(&mut motor.parameters);
+        motor
+    }
+
+    /// The motor at these coordinates, as warm as in the recording of the largest current.
     pub(super) fn changed(&self, z: &[f64]) -> MotorFile {
         let mut motor = self.motor.clone();
         let (p, m) = (&mut motor.parameters, &mut motor.mechanics);
@@ -169,18 +195,44 @@ impl<'a> Beliefs<'a> {
     }
 }
 
-/// The evidence of each window against a motor about which nothing is known.
+/// The evidence of each window against the motor of its recording, about which nothing is known.
 pub(super) fn evidence(
-    motor: &MotorFile,
+    motor_of: &dyn Fn(usize) -> MotorFile,
     observed: &[Observed],
     monitor_of: &MonitorOf<'_>,
 ) -> Result<Vec<Option<Evidence>>, Refusal> {
     let last = observed.iter().map(|o| o.recording).max().unwrap_or(0);
-    let monitors = (0..=last).map(|k| monitor_of(motor, k));
+    let monitors = (0..=last).map(|k| monitor_of(&motor_of(k), k));
     let monitors = monitors.collect::<Result<Vec<Monitor>, _>>()?;
     let unknown = Healthy::unknown();
     let one = |o: &Observed| monitors[o.recording].evidence(&unknown, &o.window);
     Ok(observed.iter().map(one).collect())
+}
+
+/// Standard deviation of the prior of each coordinate.
+pub(super) fn priors(warmths: &Warmths) -> Vec<f64> {
+    let fitted = FITTED.iter().map(|(_, prior)| *prior);
+    fitted.chain(warmths.priors()).collect()
+}
+
+/// How the rows of a window move per coordinate; `relative` as [`Beliefs::relative`].
+fn directions(
+    evidence: &Evidence,
+    o: &Observed,
+    relative: &[f64],
+    warmths: &Warmths,
+) -> Vec<DVector<f64>> {
+    let of_row = |row: usize| {
+        let direction = |cause| f64::from(evidence.direction(cause)[row]);
+        let fitted = FITTED.iter().zip(relative);
+        let fitted = fitted.map(|((cause, _), per)| direction(*cause) * per);
+        let resistances = [Cause::StatorResistance, Cause::RotorResistance].map(direction);
+        let along: Vec<f64> = fitted
+            .chain(warmths.directions(resistances, o.recording))
+            .collect();
+        DVector::from_vec(along)
+    };
+    (0..ROWS).map(of_row).collect()
 }
 
 fn root_mean_square(evidence: &[Option<Evidence>], observed: &[Observed]) -> [f64; ROWS] {
@@ -196,28 +248,27 @@ fn root_mean_square(evidence: &[Option<Evidence>], observed: &[Observed]) -> [f6
     sum.map(|sum| (sum / votes.max(f64::MIN_POSITIVE)).sqrt().max(FLOOR))
 }
 
-/// One step in the coordinates, and their posterior covariance; `relative` as [`Beliefs::relative`].
+/// One step in the coordinates, and their posterior covariance; `along` gives [`directions`].
 fn step(
     evidence: &[Option<Evidence>],
     observed: &[Observed],
     misfit: &[f64; ROWS],
     z: &DVector<f64>,
-    relative: &[f64],
+    along: &dyn Fn((&Evidence, &Observed)) -> Vec<DVector<f64>>,
+    priors: &[f64],
 ) -> (DVector<f64>, DMatrix<f64>) {
-    let n = FITTED.len();
+    let n = z.len();
     let mut normal = DMatrix::zeros(n, n);
     let mut right = DVector::zeros(n);
-    for (k, (_, prior)) in FITTED.iter().enumerate() {
+    for (k, prior) in priors.iter().enumerate() {
         normal[(k, k)] = 1.0 / (prior * prior);
         right[k] = -z[k] / (prior * prior);
     }
     for (evidence, o) in evidence.iter().zip(observed) {
         let Some(evidence) = evidence else { continue };
-        let directions = FITTED.map(|(cause, _)| evidence.direction(cause));
-        for (row, misfit) in misfit.iter().enumerate() {
+        let rows = along((evidence, o)).into_iter().zip(misfit);
+        for (row, (along, misfit)) in rows.enumerate() {
             let weight = o.weight / (misfit * misfit);
-            let along = directions.iter().zip(relative);
-            let along = DVector::from_iterator(n, along.map(|(d, per)| f64::from(d[row]) * per));
             right += &along * (weight * f64::from(evidence.departure[row]));
             normal += &along * along.transpose() * weight;
         }

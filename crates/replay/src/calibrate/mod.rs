@@ -10,6 +10,7 @@ mod refuse;
 mod rotor;
 mod statistics;
 mod uncertainty;
+mod warmth;
 mod windows;
 
 use audit::Audit;
@@ -24,6 +25,7 @@ pub use pieces::Pieces;
 pub use statistics::Surroundings;
 
 use crate::config_for;
+use warmth::Warmths;
 use windows::{Healthily, Observed};
 
 /// Why recordings cannot calibrate a motor.
@@ -135,6 +137,7 @@ pub fn calibrate_pieces(
         let nothing = fit::Fitted {
             motor: believed,
             coordinates: Vec::new(),
+            warmths: Warmths::of(&observed),
             changes: Vec::new(),
             seen_through: Vec::new(),
             misfit: [0.0; 3],

@@ -49,7 +49,7 @@ pub fn healthy(
     surroundings: &Surroundings,
     monitor_of: &MonitorOf<'_>,
 ) -> Result<HealthySettings, Refusal> {
-    let monitors = monitors(&fitted.motor, observed, monitor_of)?;
+    let monitors = monitors(&|k| fitted.warmed(k), observed, monitor_of)?;
     let unknown = Healthy::unknown();
     let one = |o: &Observed| {
         Some((
@@ -108,12 +108,12 @@ fn range(all: impl Iterator<Item = Conditions>) -> Option<CalibratedRange> {
 const COPPER_PER_KELVIN: f64 = 0.003_93;
 
 fn monitors(
-    motor: &MotorFile,
+    motor_of: &dyn Fn(usize) -> MotorFile,
     observed: &[Observed],
     monitor_of: &MonitorOf<'_>,
 ) -> Result<Vec<Monitor>, Refusal> {
     let last = observed.iter().map(|o| o.recording).max().unwrap_or(0);
-    (0..=last).map(|k| monitor_of(motor, k)).collect()
+    (0..=last).map(|k| monitor_of(&motor_of(k), k)).collect()
 }
 
 /// Mean and scatter of every row, percent; 0 where a row is not known.
@@ -189,7 +189,7 @@ pub fn thresholds(
     observed: &[Observed],
     monitor_of: &MonitorOf<'_>,
 ) -> Result<[f64; 4], Refusal> {
-    let monitors = monitors(motor, observed, monitor_of)?;
+    let monitors = monitors(&|_| motor.clone(), observed, monitor_of)?;
     let mut largest = [0.0_f64; 4];
     for gains in drifted() {
         for o in observed {

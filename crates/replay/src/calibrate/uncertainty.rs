@@ -9,14 +9,14 @@ use monitor::{Cause, Window};
 use motor::MotorFile;
 use nalgebra::{DMatrix, DVector, SVector};
 
-use super::fit::{Beliefs, FITTED, Fitted, ROWS, evidence};
+use super::fit::{Beliefs, FITTED, Fitted, ROWS, evidence, priors};
 use super::windows::Observed;
 use super::{MonitorOf, Refusal};
 
 const N: usize = FITTED.len();
 /// Step of a coordinate or a gain: large against single precision (1e-6), small against the curvature of a residual.
 const STEP: f64 = 0.01;
-/// Standard deviations of the beliefs in the fit's coordinates: data sheets are right within a tenth.
+/// Standard deviations of the beliefs in the fit's first coordinates: data sheets are right within a tenth. Those of temperatures are the priors.
 const BELIEVED: [f64; N] = [0.1, 0.1, 0.1, 0.1, 1.0];
 
 /// Residuals of one window; `None` where it says nothing.
@@ -66,21 +66,22 @@ pub fn standard_errors(
     observed: &[Observed],
     monitor_of: &MonitorOf<'_>,
 ) -> Result<Vec<f64>, Refusal> {
-    let at = |motor: &MotorFile, observed: &[Observed]| {
-        let evidence = evidence(motor, observed, monitor_of)?;
+    let at = |z: &[f64], observed: &[Observed]| {
+        let motor_of = |k: usize| beliefs.warmed(z, &fitted.warmths, k);
+        let evidence = evidence(&motor_of, observed, monitor_of)?;
         let rows = |e: &monitor::Evidence| SVector::from_fn(|row, _| f64::from(e.departure[row]));
         Ok::<Vec<Residual>, Refusal>(evidence.iter().map(|e| e.as_ref().map(rows)).collect())
     };
-    let here = at(&fitted.motor, observed)?;
+    let here = at(&fitted.coordinates, observed)?;
     let quotient = |there: Vec<Residual>| {
         let one = |(there, here): (Residual, &Residual)| Some((there? - (*here)?) / STEP);
         there.into_iter().zip(&here).map(one).collect()
     };
     let mut parameters: Vec<Vec<Residual>> = Vec::new();
-    for k in 0..N {
+    for k in 0..fitted.coordinates.len() {
         let mut there = fitted.coordinates.clone();
         there[k] += STEP;
-        parameters.push(quotient(at(&beliefs.changed(&there), observed)?));
+        parameters.push(quotient(at(&there, observed)?));
     }
     let mut gains: Vec<(f64, Vec<Residual>)> = Vec::new();
     for instrument in instruments() {
@@ -89,9 +90,12 @@ pub fn standard_errors(
             ..*o
         };
         let scaled: Vec<Observed> = observed.iter().map(scaled).collect();
-        gains.push((instrument.deviation, quotient(at(&fitted.motor, &scaled)?)));
+        gains.push((
+            instrument.deviation,
+            quotient(at(&fitted.coordinates, &scaled)?),
+        ));
     }
-    let covariance = covariance(&parameters, &gains, observed, &fitted.misfit);
+    let covariance = covariance(&parameters, &gains, observed, fitted);
     let relative = beliefs.relative(&fitted.coordinates);
     let error = |k: usize| relative[k] * covariance[(k, k)].max(0.0).sqrt();
     Ok((0..N).map(error).collect())
@@ -124,28 +128,31 @@ fn covariance(
     parameters: &[Vec<Residual>],
     gains: &[(f64, Vec<Residual>)],
     observed: &[Observed],
-    misfit: &[f64; ROWS],
+    fitted: &Fitted,
 ) -> DMatrix<f64> {
+    let n = parameters.len();
     let inner = |a: &[Residual], b: &[Residual]| -> f64 {
         let one = |((a, b), o): ((&Residual, &Residual), &Observed)| {
             let product = a.as_ref()?.component_mul(b.as_ref()?);
-            let rows = product.iter().zip(misfit).map(|(x, s)| x / (s * s));
+            let rows = product.iter().zip(&fitted.misfit).map(|(x, s)| x / (s * s));
             Some(o.weight * rows.sum::<f64>())
         };
         a.iter().zip(b).zip(observed).filter_map(one).sum()
     };
-    let data = DMatrix::from_fn(N, N, |j, k| inner(&parameters[j], &parameters[k]));
-    let prior = DVector::from_fn(N, |k, _| FITTED[k].1.powi(-2));
-    let beliefs = DVector::from_fn(N, |k, _| (prior[k] * BELIEVED[k]).powi(2));
+    let data = DMatrix::from_fn(n, n, |j, k| inner(&parameters[j], &parameters[k]));
+    let priors = priors(&fitted.warmths);
+    let prior = DVector::from_fn(n, |k, _| priors[k].powi(-2));
+    let believed = |k: usize| BELIEVED.get(k).copied().unwrap_or(priors[k]);
+    let beliefs = DVector::from_fn(n, |k, _| (prior[k] * believed(k)).powi(2));
     let curvature = &data + DMatrix::from_diagonal(&prior);
     let mut scores = data + DMatrix::from_diagonal(&beliefs);
     for (deviation, moved) in gains {
-        let score = DVector::from_fn(N, |k, _| inner(&parameters[k], moved));
+        let score = DVector::from_fn(n, |k, _| inner(&parameters[k], moved));
         scores += &score * score.transpose() * deviation.powi(2);
     }
     // A prior on every parameter keeps the curvature positive definite.
     let inverse = curvature
         .try_inverse()
-        .unwrap_or_else(|| DMatrix::zeros(N, N));
+        .unwrap_or_else(|| DMatrix::zeros(n, n));
     &inverse * scores * &inverse
 }
