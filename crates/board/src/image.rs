@@ -32,7 +32,7 @@ const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 const HEALTHY_WORDS: usize = 7 + 2 * ROWS + 10 + RANGE_WORDS;
 
 /// Words of where the calibration saw the motor: current, voltage over frequency, frequency.
-const RANGE_WORDS: usize = 5;
+const RANGE_WORDS: usize = 6;
 
 /// Words of the analogue chain: delays and roll-off.
 const CHAIN_WORDS: usize = CHANNELS + 1;
@@ -41,7 +41,7 @@ const CHAIN_WORDS: usize = CHANNELS + 1;
 const CAGE_WORDS: usize = 6;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_000B;
+const SCHEMA: u32 = 0x444D_000C;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -256,6 +256,7 @@ fn write_range(w: &mut Writer, range: Option<&CalibratedRange>) {
     w.number(range.current);
     w.numbers(&range.volt_per_hertz);
     w.numbers(&range.frequency);
+    w.number(range.fed_back);
 }
 
 fn read_range(r: &mut Reader<'_>) -> Option<CalibratedRange> {
@@ -263,6 +264,7 @@ fn read_range(r: &mut Reader<'_>) -> Option<CalibratedRange> {
         current: r.number(),
         volt_per_hertz: r.numbers(),
         frequency: r.numbers(),
+        fed_back: r.number(),
     };
     let [_, highest] = range.frequency;
     (highest > 0.0).then_some(range)

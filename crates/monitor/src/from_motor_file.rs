@@ -249,6 +249,7 @@ fn healthy(settings: &HealthySettings) -> Healthy {
             current: share(range.current_percent),
             volt_per_hertz: range.volt_per_hertz_percent.map(share),
             frequency: range.frequency_percent.map(share),
+            fed_back: share(range.fed_back_percent),
         }),
         significance: settings.significance as f32,
         in_motion: settings.in_motion,

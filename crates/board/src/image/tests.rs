@@ -123,6 +123,7 @@ fn calibrated() -> MonitorConfig {
             current: number(),
             volt_per_hertz: [number(), number()],
             frequency: [number(), number()],
+            fed_back: number(),
         }),
         significance: 5.5,
         in_motion: InMotion::Differs,

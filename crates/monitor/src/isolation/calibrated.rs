@@ -104,6 +104,7 @@ impl Monitor {
             config.rated_voltage,
             config.rated_current,
             config.rated_omega,
+            config.mechanics.n_p,
         ];
         Conditions::of(measured, omega_sync, rated)
     }

@@ -79,10 +79,9 @@ pub struct Healthy {
 impl Uncertainty {
     /// The same where more is uncertain.
     pub(super) fn and(&self, added: &Added) -> Self {
-        let resistance = |known| length([known, added.resistance]);
         Uncertainty {
-            stator_resistance: resistance(self.stator_resistance),
-            rotor_resistance: resistance(self.rotor_resistance),
+            stator_resistance: length([self.stator_resistance, added.stator_resistance]),
+            rotor_resistance: length([self.rotor_resistance, added.rotor_resistance]),
             magnetizing_inductance: length([
                 self.magnetizing_inductance,
                 added.magnetizing_inductance,

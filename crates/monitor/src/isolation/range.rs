@@ -17,6 +17,8 @@ pub struct CalibratedRange {
     pub volt_per_hertz: [f32; 2],
     /// Lowest and highest supply frequency.
     pub frequency: [f32; 2],
+    /// Largest active current that the motor fed back, as a hoist does when it lowers; 0 where the motor always drove.
+    pub fed_back: f32,
 }
 
 /// What a window was measured at, shares of the rated values as in [`CalibratedRange`].
@@ -28,7 +30,15 @@ pub struct Conditions {
     pub volt_per_hertz: f32,
     /// Supply frequency.
     pub frequency: f32,
+    /// Active current that the motor feeds back, 0 where it drives.
+    pub fed_back: f32,
+    /// Frequency in the cage: the slip's.
+    pub slip: f32,
 }
+
+/// Largest frequency in the cage that steady loads have shown, a share of the rated one: twice the rated slip of a small motor. Below it
+/// (5 Hz) the current fills bars of copper as deep as 30 mm.
+const SLIP_OF_LOADS: f32 = 0.1;
 
 /// What counts as the same conditions, a share: the standard band of a large grid is 50 Hz within 0.2 Hz, 0.4 %. The same for the voltage is an
 /// assumption: by half a per cent of flux even a saturated motor's `L_m` moves by 1 % at most.
@@ -44,6 +54,10 @@ pub struct Beyond {
     pub volt_per_hertz: f32,
     /// Supply frequency.
     pub frequency: f32,
+    /// Active current fed back beyond what the calibration saw, of rated current; never below 0.
+    pub fed_back: f32,
+    /// Frequency in the cage beyond that of any load, of the rated frequency: nearly 1 where a motor stands; never below 0.
+    pub slip: f32,
 }
 
 /// The magnetizing current of a saturated motor grows with the second to third power of the flux, that of one in the straight part
@@ -68,10 +82,31 @@ const TORQUE_PER_CURRENT: f32 = 0.03;
 /// iron losses are 1 to 3 % of the rated power.
 const IRON_LOSS: f32 = 0.015;
 
+/// Standard deviation of the magnetizing inductance per rated active current fed back: the drop over the resistance, 0.03 to 0.08 of the
+/// voltage, now adds to the flux what it took, and a saturated inductance falls by up to twice as much.
+const MAGNETIZING_PER_FED_BACK: f32 = 0.05;
+/// Of the leakage inductances and of each resistance: what the fit has put down to them while the power came from the supply.
+const LEAKAGE_PER_FED_BACK: f32 = 0.05;
+/// See [`LEAKAGE_PER_FED_BACK`].
+const RESISTANCE_PER_FED_BACK: f32 = 0.03;
+/// Of the torque balance, of rated torque, and of the current in phase with the voltage, a share of the motor's: losses keep their sign where
+/// everything else changes it, so twice what the fit has absorbed of them appears.
+const TORQUE_PER_FED_BACK: f32 = 0.02;
+/// See [`TORQUE_PER_FED_BACK`].
+const IRON_LOSS_PER_FED_BACK: f32 = 0.03;
+/// Standard deviation of the rotor's resistance per frequency in the cage beyond that of loads: the current crowds to the top of deep
+/// bars, whose resistance at standstill is 1.2 to 3 times that of a load.
+const ROTOR_RESISTANCE_PER_SLIP: f32 = 0.5;
+/// Of the leakage inductances: the same crowding takes a tenth to a third of the bars' own.
+const LEAKAGE_PER_SLIP: f32 = 0.2;
+/// Of the torque balance, of rated torque: harmonics of the field brake and drive a slow cage.
+const TORQUE_PER_SLIP: f32 = 0.1;
+
 impl Conditions {
-    /// From a window's corrected measurements; `rated`: amplitudes of phase voltage, V, and current, A, and angular frequency, rad/s.
-    pub(crate) fn of(measured: &Corrected, omega_sync: f32, rated: [f32; 3]) -> Self {
-        let [voltage, current, omega] = rated;
+    /// From a window's corrected measurements; `rated`: amplitudes of phase voltage, V, and current, A, angular frequency, rad/s, and pairs
+    /// of poles.
+    pub(crate) fn of(measured: &Corrected, omega_sync: f32, rated: [f32; 4]) -> Self {
+        let [voltage, current, omega, n_p] = rated;
         let frequency = omega_sync / omega;
         // Of the drop over the resistance a share that a voltage at rated frequency holds too: a drive raises its voltage by the rest.
         let raised = if frequency < 1.0 {
@@ -80,10 +115,19 @@ impl Conditions {
             0.0
         };
         let drop = measured.i_s * (measured.params.r_s * raised);
+        let voltage_amplitude = magnitude(measured.u_s);
+        let active = measured.i_s.re * measured.u_s.re + measured.i_s.im * measured.u_s.im;
+        let fed_back = if active < 0.0 && voltage_amplitude > 0.0 {
+            -active / (voltage_amplitude * current)
+        } else {
+            0.0
+        };
         Conditions {
             current: magnitude(measured.i_s) / current,
             volt_per_hertz: magnitude(measured.u_s - drop) / (voltage * frequency),
             frequency,
+            fed_back,
+            slip: (omega_sync - n_p * measured.omega_mech).abs() / omega,
         }
     }
 }
@@ -95,6 +139,8 @@ impl CalibratedRange {
             current: farther(at.current, [0.0, self.current]),
             volt_per_hertz: farther(at.volt_per_hertz, self.volt_per_hertz),
             frequency: farther(at.frequency, self.frequency),
+            fed_back: more(at.fed_back, self.fed_back + WANDERING),
+            slip: more(at.slip, SLIP_OF_LOADS),
         }
     }
 
@@ -102,6 +148,7 @@ impl CalibratedRange {
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
         let share = [0.0, 100.0];
         check_range(("healthy.range.current", self.current, share))?;
+        check_range(("healthy.range.fed_back", self.fed_back, share))?;
         for (name, [low, high]) in [
             ("healthy.range.volt_per_hertz", self.volt_per_hertz),
             ("healthy.range.frequency", self.frequency),
@@ -111,6 +158,11 @@ impl CalibratedRange {
         }
         Ok(())
     }
+}
+
+/// By how much `x` is larger than `limit`, else 0.
+fn more(x: f32, limit: f32) -> f32 {
+    if x > limit { x - limit } else { 0.0 }
 }
 
 /// 0 between `low` and `high`, else the distance from the nearer of both as a share of it.
@@ -136,27 +188,45 @@ impl Beyond {
         *self == Beyond::default()
     }
 
-    /// How far the window lies from what the calibration saw itself: current, voltage over frequency and frequency, shares.
-    pub fn from_seen(&self) -> [f32; 3] {
-        [self.current, self.volt_per_hertz, self.frequency].map(|share| {
+    /// How far the window lies from what the calibration saw itself: current, voltage over frequency and frequency as shares of it; what is
+    /// fed back and the slip as they are.
+    pub fn from_seen(&self) -> Beyond {
+        let seen = |share: f32| {
             let wandering = if share > 0.0 { WANDERING } else { -WANDERING };
             if share != 0.0 {
                 (1.0 + share) * (1.0 + wandering) - 1.0
             } else {
                 0.0
             }
-        })
+        };
+        let fed_back = if self.fed_back > 0.0 {
+            self.fed_back + WANDERING
+        } else {
+            0.0
+        };
+        Beyond {
+            current: seen(self.current),
+            volt_per_hertz: seen(self.volt_per_hertz),
+            frequency: seen(self.frequency),
+            fed_back,
+            slip: self.slip,
+        }
     }
 
     /// What is to be added to the uncertainties of the calibration.
     pub(super) fn added(&self) -> Added {
         let current = self.current * self.current;
         let saturation = SATURATION_DEVIATION * self.volt_per_hertz;
-        let drop = MAGNETIZING_PER_DROP * (current + self.frequency.abs());
+        let drop = MAGNETIZING_PER_DROP * (current + self.frequency.abs())
+            + MAGNETIZING_PER_FED_BACK * self.fed_back;
+        let resistance = RESISTANCE_PER_CURRENT * current + RESISTANCE_PER_FED_BACK * self.fed_back;
         Added {
-            resistance: RESISTANCE_PER_CURRENT * current,
+            stator_resistance: resistance,
+            rotor_resistance: resistance + ROTOR_RESISTANCE_PER_SLIP * self.slip,
             magnetizing_inductance: length([saturation, drop]),
-            leakage: LEAKAGE_PER_CURRENT * current,
+            leakage: LEAKAGE_PER_CURRENT * current
+                + LEAKAGE_PER_FED_BACK * self.fed_back
+                + LEAKAGE_PER_SLIP * self.slip,
         }
     }
 
@@ -168,19 +238,24 @@ impl Beyond {
     /// Standard deviation of the torque balance, of rated torque.
     pub(super) fn torque(&self) -> f32 {
         TORQUE_PER_CURRENT * self.current * self.current
+            + TORQUE_PER_FED_BACK * self.fed_back
+            + TORQUE_PER_SLIP * self.slip
     }
 
     /// Standard deviation of the current that feeds the iron's losses, a share of the motor's.
     pub(super) fn iron_loss(&self) -> f32 {
         IRON_LOSS * (self.volt_per_hertz.abs() + self.frequency.abs())
+            + IRON_LOSS_PER_FED_BACK * self.fed_back
     }
 }
 
 /// Standard deviations beside those of a calibration, shares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Added {
-    /// Each resistance.
-    pub resistance: f32,
+    /// Resistance of the stator.
+    pub stator_resistance: f32,
+    /// Resistance of the rotor.
+    pub rotor_resistance: f32,
     /// Magnetizing inductance.
     pub magnetizing_inductance: f32,
     /// Leakage inductances.

@@ -28,6 +28,8 @@ pub struct CalibratedRange {
     pub volt_per_hertz_percent: [f64; 2],
     /// Lowest and highest supply frequency, percent of the rated one.
     pub frequency_percent: [f64; 2],
+    /// Largest active current that the motor fed back, percent of the rated current; 0 where it always drove.
+    pub fed_back_percent: f64,
 }
 
 /// Statistics of the healthy motor, percent of each row's scale or of each quantity's value.
@@ -180,6 +182,9 @@ fn read_range(section: &Section<'_>) -> Option<Option<CalibratedRange>> {
     let current_percent = section.optional_number(current, &SHARE);
     let volt_per_hertz_percent = section.optional_numbers::<2>(volt_per_hertz, &SHARE);
     let frequency_percent = section.optional_numbers::<2>(frequency, &SHARE);
+    let fed_back_percent = section
+        .optional_number(FED_BACK_KEY, &SHARE)?
+        .unwrap_or(0.0);
     let ordered = |[low, high]: [f64; 2]| [low.min(high), low.max(high)];
     match (
         current_percent?,
@@ -192,6 +197,7 @@ fn read_range(section: &Section<'_>) -> Option<Option<CalibratedRange>> {
                 current_percent,
                 volt_per_hertz_percent: ordered(volt_per_hertz),
                 frequency_percent: ordered(frequency),
+                fed_back_percent,
             }))
         }
         _ => {
@@ -216,6 +222,9 @@ pub(super) const RANGE_KEYS: [&str; 3] = [
     "calibrated_volt_per_hertz_percent",
     "calibrated_frequency_percent",
 ];
+
+/// Key of what a motor fed back, which may be absent.
+pub(super) const FED_BACK_KEY: &str = "calibrated_fed_back_percent";
 
 /// How many plain shares there are.
 const SHARES: usize = 11;

@@ -27,6 +27,7 @@ speed_percent = 3.9
 negative_impedance_percent = 4.1
 calibrated_current_percent = 102.0
 calibrated_volt_per_hertz_percent = [91.0, 96.0]
+calibrated_fed_back_percent = 37.0
 calibrated_frequency_percent = [80.0, 100.0]
 significance = 6.5
 rotor_active_percent = [90.0, 40.0]
@@ -171,6 +172,7 @@ fn a_healthy_section_is_read_key_by_key() {
             current_percent: 102.0,
             volt_per_hertz_percent: [91.0, 96.0],
             frequency_percent: [80.0, 100.0],
+            fed_back_percent: 37.0,
         }),
         significance: 6.5,
         rotor: Some(HealthyRotor {

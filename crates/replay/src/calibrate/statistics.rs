@@ -94,6 +94,7 @@ fn range(all: impl Iterator<Item = Conditions>) -> Option<CalibratedRange> {
             current_percent: current,
             volt_per_hertz_percent: [volt_per_hertz; 2],
             frequency_percent: [frequency; 2],
+            fed_back_percent: 100.0 * f64::from(at.fed_back),
         }
     };
     let both = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
@@ -101,6 +102,7 @@ fn range(all: impl Iterator<Item = Conditions>) -> Option<CalibratedRange> {
         current_percent: a.current_percent.max(b.current_percent),
         volt_per_hertz_percent: both(a.volt_per_hertz_percent, b.volt_per_hertz_percent),
         frequency_percent: both(a.frequency_percent, b.frequency_percent),
+        fed_back_percent: a.fed_back_percent.max(b.fed_back_percent),
     })
 }
 

@@ -4,7 +4,7 @@ use monitor::Beyond;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Windows beyond the currents, voltages and frequencies of the calibration; there less is known of the motor, and smaller faults
+/// Windows beyond the currents, voltages, frequencies and slips of the calibration, or feeding back where it always drove; there less is known of the motor, and smaller faults
 /// stay dark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct BeyondCalibration {
@@ -16,6 +16,10 @@ pub struct BeyondCalibration {
     pub volt_per_hertz_percent: f64,
     /// Farthest supply frequency from those of the calibration, percent of the nearest.
     pub frequency_percent: f64,
+    /// Largest active current fed back beyond the calibration, percent of the rated current.
+    pub fed_back_percent: f64,
+    /// Highest frequency in the cage beyond that of loads, percent of the rated frequency.
+    pub slip_percent: f64,
 }
 
 /// Less than this is not worth a word.
@@ -24,15 +28,28 @@ const TOLD_PERCENT: f64 = 1.0;
 impl BeyondCalibration {
     pub(super) fn add(&mut self, beyond: &Beyond) {
         let seen = beyond.from_seen();
-        let [current, volt_per_hertz, frequency] = seen.map(|share| 100.0 * f64::from(share).abs());
-        let farthest = current.max(volt_per_hertz).max(frequency);
-        if farthest < TOLD_PERCENT {
+        let percent = [
+            seen.current,
+            seen.volt_per_hertz,
+            seen.frequency,
+            seen.fed_back,
+            seen.slip,
+        ]
+        .map(|share| 100.0 * f64::from(share).abs());
+        if percent.iter().all(|percent| *percent < TOLD_PERCENT) {
             return;
         }
         self.windows += 1;
-        self.current_percent = self.current_percent.max(current);
-        self.volt_per_hertz_percent = self.volt_per_hertz_percent.max(volt_per_hertz);
-        self.frequency_percent = self.frequency_percent.max(frequency);
+        let farthest = [
+            &mut self.current_percent,
+            &mut self.volt_per_hertz_percent,
+            &mut self.frequency_percent,
+            &mut self.fed_back_percent,
+            &mut self.slip_percent,
+        ];
+        for (farthest, percent) in farthest.into_iter().zip(percent) {
+            *farthest = farthest.max(percent);
+        }
     }
 
     /// What lies beyond, in words; `None` where nothing does.
@@ -45,6 +62,12 @@ impl BeyondCalibration {
                 "off",
             ),
             ("frequency up to", self.frequency_percent, "off"),
+            (
+                "fed back up to",
+                self.fed_back_percent,
+                "of the rated current",
+            ),
+            ("frequency in the cage up to", self.slip_percent, "above"),
         ];
         let told = parts
             .iter()

@@ -20,6 +20,7 @@ fn seen(voltage: f32) -> CalibratedRange {
         current: 1.5 * at.current,
         volt_per_hertz: [voltage * at.volt_per_hertz; 2],
         frequency: [at.frequency; 2],
+        fed_back: 0.0,
     }
 }
 
@@ -86,12 +87,15 @@ fn distances_are_shares_of_the_nearer_end() {
         current: 0.8,
         volt_per_hertz: [0.95, 1.0],
         frequency: [0.5, 1.0],
+        fed_back: 0.2,
     };
     let at = |current, volt_per_hertz, frequency| {
         range.beyond(&Conditions {
             current,
             volt_per_hertz,
             frequency,
+            fed_back: 0.2,
+            slip: 0.1,
         })
     };
     assert!(at(0.0, 0.95, 1.004).is_within() && at(0.803, 1.0, 0.499).is_within());
@@ -99,16 +103,58 @@ fn distances_are_shares_of_the_nearer_end() {
         current,
         volt_per_hertz,
         frequency,
+        ..
     } = at(1.2, 0.76, 1.5);
     let near = |x: f32, y: f32| assert!((x - y).abs() < 1e-6, "{x} {y}");
     near(current, 1.2 / (0.8 * 1.005) - 1.0);
     near(volt_per_hertz, 0.76 / (0.95 * 0.995) - 1.0);
     near(frequency, 1.5 / 1.005 - 1.0);
-    let [current, volt_per_hertz, frequency] = at(1.2, 0.76, 1.5).from_seen();
-    near(current, 0.5);
-    near(volt_per_hertz, -0.2);
-    near(frequency, 0.5);
-    assert_eq!(at(0.8, 1.0, 1.0).from_seen(), [0.0; 3]);
+    let seen = at(1.2, 0.76, 1.5).from_seen();
+    near(seen.current, 0.5);
+    near(seen.volt_per_hertz, -0.2);
+    near(seen.frequency, 0.5);
+    assert_eq!(at(0.8, 1.0, 1.0).from_seen(), Beyond::default());
+}
+
+/// What is fed back and the slip count as they are: a motor that only drove has seen nothing of either.
+#[test]
+fn what_is_fed_back_and_the_slip_count_from_where_loads_end() {
+    let range = seen(1.0);
+    let at = |fed_back, slip| {
+        range.beyond(&Conditions {
+            fed_back,
+            slip,
+            ..conditions()
+        })
+    };
+    assert!(at(0.004, 0.09).is_within());
+    let beyond = at(0.6, 1.0);
+    let near = |x: f32, y: f32| assert!((x - y).abs() < 1e-6, "{x} {y}");
+    near(beyond.fed_back, 0.595);
+    near(beyond.slip, 0.9);
+    near(beyond.from_seen().fed_back, 0.6);
+    let lowering = Conditions {
+        fed_back: 0.6,
+        ..conditions()
+    };
+    let learnt = CalibratedRange {
+        fed_back: 0.6,
+        ..range
+    };
+    assert!(learnt.beyond(&lowering).is_within());
+}
+
+/// A window of a motor that drives feeds nothing back; the same motor with its currents turned round does.
+#[test]
+fn what_is_fed_back_is_the_active_current() {
+    let driven = Plant::healthy().window();
+    let at = |window| monitor().conditions(window).expect("voltages and speed");
+    assert_eq!(at(&driven).fed_back, 0.0);
+    let mut driving = driven;
+    driving.i_s.positive = -driving.i_s.positive;
+    let (u, i) = (driven.u_s.positive, driven.i_s.positive);
+    let active = (u.conj() * i).re / u.norm() / monitor().config().rated_current;
+    assert!((at(&driving).fed_back - active).abs() < 1e-5, "{active}");
 }
 
 #[test]
@@ -125,4 +171,5 @@ fn ranges_that_are_none_are_refused() {
     refused(|range| range.current = f32::NAN);
     refused(|range| range.volt_per_hertz = [1.0, 0.9]);
     refused(|range| range.frequency = [-0.1, 1.0]);
+    refused(|range| range.fed_back = -0.1);
 }

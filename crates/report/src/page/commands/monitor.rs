@@ -82,7 +82,8 @@ fn beyond(result: &Place<'_>) -> Markup {
             p.subtle {
                 (shown(result, "beyond_calibration/windows", decimals(0))) " of them lie beyond the calibration (at most "
                 (percent("current")) " % above its largest current, " (percent("volt_per_hertz")) " % off its voltages over frequency, "
-                (percent("frequency")) " % off its frequencies): small faults stay dark there. Record the motor in good order there, and "
+                (percent("frequency")) " % off its frequencies, " (percent("fed_back")) " % of the rated current fed back, "
+                (percent("slip")) " % more frequency in the cage than loads bring): small faults stay dark there. Record the motor in good order there, and "
                 "calibrate with it."
             }
         }
