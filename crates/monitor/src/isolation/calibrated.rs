@@ -41,6 +41,7 @@ impl Monitor {
     ) -> f32 {
         let calibrated = self.config.healthy.as_ref();
         let Some(healthy) = calibrated.filter(|_| report.not_judged.is_none()) else {
+            state.temperature.interrupt(self.config.window_cycles);
             return 0.0;
         };
         let [voltages, currents] = state.measured;

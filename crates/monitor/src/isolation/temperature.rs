@@ -10,6 +10,9 @@
 //! What a window leaves open is mostly what the calibration left open, and thousands of windows at the same load leave it open
 //! in the same way. So they are not averaged: a window that tells less than what is known teaches nothing, and time widens what
 //! was known until it tells as much. An hour at light load says little of the winding, which cools meanwhile.
+//!
+//! The first windows after a change count as steady while the rotor's flux still settles, and would show a temperature of their own: only
+//! a window that was judged as long as it is teaches.
 
 use super::Isolation;
 use super::healthy::Healthy;
@@ -54,6 +57,8 @@ pub struct Temperature {
     apart: Followed,
     /// FAULT is lit.
     is_lit: bool,
+    /// Windows that are still to be judged before one teaches.
+    settling: usize,
 }
 
 /// Fastest relative rise of a winding's resistance at rated current, 1/s. Without cooling 7 A/mm2 heat copper by 0.3 K/s
@@ -133,13 +138,20 @@ impl Temperature {
         self.latest
     }
 
+    /// A window of so many cycles was not judged: the next ones hold what came before.
+    pub fn interrupt(&mut self, cycles: usize) {
+        self.settling = cycles;
+    }
+
     /// Follows a window that was judged; `fault`: FAULT was lit when it came.
     pub fn follow(&mut self, isolation: &Isolation, healthy: &Healthy, fault: bool) {
         let most = healthy.uncertainty.heating;
         self.latest = within(isolation.heating.rise, FARTHEST * most);
         self.is_frozen = fault && isolation.at_any_temperature < healthy.significance;
         self.is_lit = fault;
-        if self.is_frozen || isolation.significance > LEARNABLE * healthy.significance {
+        let settles = self.settling > 0;
+        self.settling = self.settling.saturating_sub(1);
+        if settles || self.is_frozen || isolation.significance > LEARNABLE * healthy.significance {
             return;
         }
         match &mut self.both {
