@@ -1,13 +1,14 @@
 //! Motors around those that ship, with effects that their motor files do not know, and what a calibration makes of them.
 
 use std::error::Error;
+use std::f64::consts::TAU;
 
 use motor::MotorFile;
 use motor::dynamic::Harmonic;
 use motor::motor_file::{EffectEntry, LoadKind};
 use num_complex::Complex64;
-use rand::Rng;
 use rand::seq::{IndexedRandom, SliceRandom};
+use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use recording::Recording;
 use replay::calibrate::{Surroundings, calibrate};
@@ -29,8 +30,8 @@ const HIGHEST: [f64; 3] = [0.5, 0.75, 1.0];
 const CALIBRATED: [f64; 3] = [0.1, 0.5, 1.0];
 /// A motor that runs; longer than FAULT needs.
 const SECONDS: f64 = 1.6;
-/// Negative over positive sequence of the supply.
-const UNBALANCE: f64 = 0.007;
+/// Largest negative over positive sequence of the supply; it wanders from recording to recording.
+const UNBALANCE: f64 = 0.01;
 /// Of full scale.
 const NOISE: f64 = 0.001;
 
@@ -95,9 +96,13 @@ impl Machine {
         motor.parameters.r_s *= warmed[0];
         motor.parameters.r_r *= warmed[1];
         let torque = load * motor.nameplate.torque_nm;
+        let mut random = Pcg64::seed_from_u64(seed);
         let unbalance = Harmonic {
             order: -1.0,
-            amplitude: Complex64::from_polar(UNBALANCE, 1.0),
+            amplitude: Complex64::from_polar(
+                random.random_range(0.0..UNBALANCE),
+                random.random_range(0.0..TAU),
+            ),
         };
         let supply = SupplySpec {
             components: vec![unbalance],

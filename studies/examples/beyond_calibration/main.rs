@@ -22,7 +22,7 @@ use studies::drive::{DRIVES, Drive};
 use studies::hidden::Machine;
 
 /// What is judged at rest: load, share of the largest of the calibration, and voltage and frequency, shares of the rated ones.
-const AT_REST: [[f64; 3]; 18] = [
+const AT_REST: [[f64; 3]; 20] = [
     [0.3, 1.0, 1.0],
     [0.9, 1.0, 1.0],
     [1.1, 1.0, 1.0],
@@ -35,6 +35,8 @@ const AT_REST: [[f64; 3]; 18] = [
     [0.8, 1.05, 1.0],
     [0.8, 0.9, 1.0],
     [0.8, 1.1, 1.0],
+    [0.1, 0.9, 1.0],
+    [0.1, 1.1, 1.0],
     [0.8, 0.8, 0.8],
     [0.8, 0.5, 0.5],
     [-0.1, 1.0, 1.0],

@@ -14,6 +14,9 @@ use crate::report::Report;
 use crate::window::Window;
 use frames::magnitude;
 
+/// Speeds below this share of the synchronous one are a standstill.
+const STANDSTILL: f32 = 0.1;
+
 impl Monitor {
     /// Time has passed since the last report, and current has heated the winding.
     pub(crate) fn let_winding_warm(&self, state: &mut MonitorState, window: Option<&Window>) {
@@ -99,6 +102,11 @@ impl Monitor {
         self.conditions(window).map(|at| range.beyond(&at))
     }
 
+    /// Whether the shaft turns: near standstill a torque is no friction (37).
+    fn turns(&self, measured: &Corrected, omega_sync: f32) -> bool {
+        (measured.omega_mech * self.config.mechanics.n_p).abs() > STANDSTILL * omega_sync
+    }
+
     fn conditions_of(&self, measured: &Corrected, omega_sync: f32) -> Conditions {
         let config = &self.config;
         let rated = [
@@ -148,7 +156,8 @@ impl Monitor {
             directions,
             unsteadiness,
             rise: near,
-            torque_known: self.config.load == LoadKind::Friction || tau_load.is_some(),
+            torque_known: self.turns(&measured, window.omega_sync)
+                && (self.config.load == LoadKind::Friction || tau_load.is_some()),
         };
         let at = self.conditions_of(&measured, window.omega_sync);
         let n_p = self.config.mechanics.n_p;
@@ -157,7 +166,8 @@ impl Monitor {
         let beyond = range.map_or(Beyond::default(), |range| range.beyond(&at));
         if !beyond.is_within() {
             let saturating = measured.params.l_m != self.config.params.l_m;
-            evidence.go_beyond(&beyond, saturating);
+            let rated_torque = self.model.rated_torque_share(window.omega_sync);
+            evidence.go_beyond(&beyond, saturating, rated_torque);
         }
         Some(evidence)
     }

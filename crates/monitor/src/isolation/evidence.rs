@@ -137,12 +137,13 @@ impl Evidence {
 
     /// The same where the calibration saw nothing of the kind.
     ///
-    /// `saturating`: the motor file's inductance follows the flux, so none of its saturation is to be expected.
+    /// `saturating`: the motor file's inductance follows the flux, so none of its saturation is to be expected. `rated_torque`: on the scale
+    /// of the torque balance.
     #[inline(never)]
-    pub(crate) fn go_beyond(&mut self, beyond: &Beyond, saturating: bool) {
+    pub(crate) fn go_beyond(&mut self, beyond: &Beyond, saturating: bool, rated_torque: f32) {
         self.beyond = *beyond;
         let [torque, ..] = &mut self.scatter;
-        let more = beyond.torque();
+        let more = beyond.torque() * rated_torque;
         *torque = processor::sqrtf(*torque * *torque + more * more);
         if !saturating {
             let expected = beyond.saturation();

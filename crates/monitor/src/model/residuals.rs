@@ -115,6 +115,12 @@ impl ResidualModel {
         relative(b_t * omega_mech * self.mechanics.n_p, scale * omega_sync)
     }
 
+    /// Rated torque on the scale of `r2`.
+    pub fn rated_torque_share(&self, omega_sync: f32) -> f32 {
+        let scale = self.friction_scale(omega_sync, 0.0);
+        relative(self.rated_torque * self.mechanics.n_p, scale * omega_sync)
+    }
+
     /// Rotor and load speeding up: the inertia's term of (36) row 2, on the scale of `r2`.
     pub fn acceleration_share(&self, omega_sync: f32, mech_rate: f32) -> f32 {
         let scale = self.friction_scale(omega_sync, 0.0) * omega_sync / self.mechanics.n_p;
