@@ -40,6 +40,9 @@ pub struct Conditions {
 /// (5 Hz) the current fills bars of copper as deep as 30 mm.
 const SLIP_OF_LOADS: f32 = 0.1;
 
+/// Share of the rated power that losses take before a load that drives the shaft feeds anything back.
+const LOSSES: f32 = 0.15;
+
 /// What counts as the same conditions, a share: the standard band of a large grid is 50 Hz within 0.2 Hz, 0.4 %. The same for the voltage is an
 /// assumption: by half a per cent of flux even a saturated motor's `L_m` moves by 1 % at most.
 const WANDERING: f32 = 0.005;
@@ -54,7 +57,7 @@ pub struct Beyond {
     pub volt_per_hertz: f32,
     /// Supply frequency.
     pub frequency: f32,
-    /// Active current fed back beyond what the calibration saw, of rated current; never below 0.
+    /// Active current fed back beyond what the calibration saw, of rated current, and what the losses take of it; never below 0.
     pub fed_back: f32,
     /// Frequency in the cage beyond that of any load, of the rated frequency: nearly 1 where a motor stands; never below 0.
     pub slip: f32,
@@ -139,7 +142,10 @@ impl CalibratedRange {
             current: farther(at.current, [0.0, self.current]),
             volt_per_hertz: farther(at.volt_per_hertz, self.volt_per_hertz),
             frequency: farther(at.frequency, self.frequency),
-            fed_back: more(at.fed_back, self.fed_back + WANDERING),
+            fed_back: match more(at.fed_back, self.fed_back + WANDERING) {
+                more if more > 0.0 => more + LOSSES,
+                _ => 0.0,
+            },
             slip: more(at.slip, SLIP_OF_LOADS),
         }
     }
@@ -200,7 +206,7 @@ impl Beyond {
             }
         };
         let fed_back = if self.fed_back > 0.0 {
-            self.fed_back + WANDERING
+            self.fed_back - LOSSES + WANDERING
         } else {
             0.0
         };

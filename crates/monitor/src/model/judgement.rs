@@ -13,6 +13,11 @@ use crate::window::Window;
 
 /// A residual is too noisy when it must exceed so many thresholds to be seen.
 const NOISY: f32 = 10.0;
+/// Speeds below this share of the synchronous one are a standstill.
+pub(crate) const STANDSTILL: f32 = 0.1;
+/// Impedance of a motor whose shaft is held, over that of its circuit short-circuited at the most: at rated load it is four to six times as
+/// much, at the breakdown torque 1.5 to 2.
+const HELD: f32 = 1.5;
 
 impl Monitor {
     /// What lights the lamps in this window, or the reason why it is not judged.
@@ -112,8 +117,26 @@ impl Monitor {
         normalised
     }
 
+    /// Whether the shaft stands and the motor takes the current of a motor whose shaft is held. Next to nothing is then left of the rotor
+    /// flux, and leakage that has saturated makes of it any slip.
+    fn is_held(&self, window: &Window) -> bool {
+        let p = &self.config.params;
+        let resistance = p.r_s + p.r_r;
+        let reactance = window.omega_sync * (p.l_ls + p.l_lr);
+        let short_circuit = resistance * resistance + reactance * reactance;
+        let (u, i) = (window.u_s.positive, window.i_s.positive);
+        let omega_el = window
+            .omega_mech
+            .map(|omega| omega * self.config.mechanics.n_p);
+        omega_el.is_some_and(|omega| omega.abs() < STANDSTILL * window.omega_sync)
+            && u.norm_sqr() < HELD * HELD * short_circuit * i.norm_sqr()
+    }
+
     /// In the rotor-flux frame whatever frame is shown: only there do voltages and currents imply a speed.
     fn check_speed(&self, rehearsal: &Rehearsal, window: &Window) -> Option<SensorFinding> {
+        if self.is_held(window) {
+            return None;
+        }
         let point = self.operating_point(Frame::RotorFlux, rehearsal, window)?;
         let implied = self.model.implied_speed(&point);
         let [_, rotor_resistance, ..] = self.config.doubt.circuit;
