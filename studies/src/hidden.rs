@@ -153,22 +153,27 @@ impl Machine {
     }
 
     /// What a calibration makes of the motor file: at three loads or (`one`) the largest alone, and (`start`) at a start.
-    /// `None` where a recording is not possible or the calibration refuses.
-    pub fn calibrated(&self, one: bool, start: bool, random: &mut Pcg64) -> Option<MotorFile> {
+    ///
+    /// # Errors
+    ///
+    /// Where a recording is not possible or the calibration refuses.
+    pub fn calibrated(
+        &self,
+        one: bool,
+        start: bool,
+        random: &mut Pcg64,
+    ) -> Result<MotorFile, Box<dyn Error>> {
         let shares = if one { &CALIBRATED[2..] } else { &CALIBRATED };
         let recorded = |share| {
             let at = [share * self.highest, 1.0, 1.0];
-            self.recorded(at, None, random.random()).ok()
+            self.recorded(at, None, random.random())
         };
-        let mut recordings = shares.iter().map(recorded).collect::<Option<Vec<_>>>()?;
+        let mut recordings = shares.iter().map(recorded).collect::<Result<Vec<_>, _>>()?;
         if start {
-            recordings.push(
-                self.moved(Drive::DirectStart, 1.0, None, random.random())
-                    .ok()?,
-            );
+            recordings.push(self.moved(Drive::DirectStart, 1.0, None, random.random())?);
         }
-        let calibrated = calibrate(&self.motor, &recordings, &Surroundings::default());
-        Some(calibrated.ok()?.motor)
+        let calibrated = calibrate(&self.motor, &recordings, &Surroundings::default())?;
+        Ok(calibrated.motor)
     }
 
     /// What is hidden.

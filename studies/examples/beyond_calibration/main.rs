@@ -155,8 +155,18 @@ type Told = (Machine, Option<Vec<Judged>>);
 fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
     let mut random = Pcg64::seed_from_u64(seed);
     let machine = Machine::draw(&mut random, asked.hard)?;
-    let Some(mut calibrated) = machine.calibrated(asked.one, asked.start, &mut random) else {
-        return Ok((machine, None));
+    let mut calibrated = match machine.calibrated(asked.one, asked.start, &mut random) {
+        Ok(calibrated) => calibrated,
+        Err(refusal) => {
+            if asked.list {
+                eprintln!(
+                    "{}, hidden {}: {refusal}",
+                    machine.motor.name,
+                    machine.names()
+                );
+            }
+            return Ok((machine, None));
+        }
     };
     let in_motion = calibrated.healthy.as_ref().map(|h| h.in_motion);
     if asked.without
@@ -169,12 +179,7 @@ fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
         false => vec![None],
     };
     let mut all = Vec::new();
-    if std::env::var("DBG").is_ok() {
-        eprintln!(
-            "{seed} warmth {:?}\n{:?}\n{:?}",
-            machine, machine.motor.parameters, calibrated.parameters
-        );
-    }
+    if std::env::var("DBG").is_ok() { std::fs::write(format!("/tmp/bm/new-{seed}.toml"), calibrated.to_toml())?; }
     for at in Condition::all(asked.moving) {
         for broken in &broken {
             let fault = broken.as_ref().map(|broken| broken.1.clone());
