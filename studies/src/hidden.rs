@@ -35,7 +35,6 @@ const UNBALANCE: f64 = 0.01;
 /// Of full scale.
 const NOISE: f64 = 0.001;
 
-#[derive(Debug)]
 /// A machine, and what its motor file does not know.
 pub struct Machine {
     /// What its motor file says, which is the machine but for what is hidden.

@@ -179,7 +179,6 @@ fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
         false => vec![None],
     };
     let mut all = Vec::new();
-    if std::env::var("DBG").is_ok() { std::fs::write(format!("/tmp/bm/new-{seed}.toml"), calibrated.to_toml())?; }
     for at in Condition::all(asked.moving) {
         for broken in &broken {
             let fault = broken.as_ref().map(|broken| broken.1.clone());

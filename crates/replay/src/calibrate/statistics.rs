@@ -1,6 +1,6 @@
 //! What the calibrated motor still shows: means, scatter, thresholds.
 
-use monitor::{Conditions, Evidence, Healthy, Monitor, ROWS, Rehearsal, Row};
+use monitor::{Cause, Conditions, Evidence, Healthy, Monitor, ROWS, Rehearsal, Row};
 use motor::MotorFile;
 use motor::motor_file::{CalibratedRange, HealthySettings};
 use num_complex::Complex64;
@@ -153,7 +153,18 @@ fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
             *place = place.hypot(100.0 * error).min(LARGEST_SHARE_PERCENT);
         }
     }
+    let causes = Fitted::causes().zip(&fitted.changes);
+    let leakage = causes.filter(|(cause, _)| *cause == Cause::Leakage);
+    for (_, change) in leakage {
+        let doubt = 100.0 * EFFECT_IN_LEAKAGE * change;
+        let place = &mut settings.negative_impedance_percent;
+        *place = place.hypot(doubt).min(LARGEST_SHARE_PERCENT);
+    }
 }
+
+/// Share of a leakage's change that may be an effect which the file lacks: the impedance to the negative sequence, which is mostly leakage,
+/// then stays as it was.
+const EFFECT_IN_LEAKAGE: f64 = 0.5;
 
 fn set_current_unbalance(settings: &mut HealthySettings, observed: &[Observed]) {
     let ratio = |o: &Observed| {
