@@ -151,7 +151,7 @@ impl Machine {
         Ok(record(&scenario, |_| ())?)
     }
 
-    /// What a calibration makes of the motor file: at three loads or (`one`) the largest alone, and (`start`) at a start.
+    /// What a calibration makes of the motor file: at three loads or (`one`) the largest alone, and (`moved`) at a start and at a press.
     ///
     /// # Errors
     ///
@@ -159,7 +159,7 @@ impl Machine {
     pub fn calibrated(
         &self,
         one: bool,
-        start: bool,
+        moved: bool,
         random: &mut Pcg64,
     ) -> Result<MotorFile, Box<dyn Error>> {
         let shares = if one { &CALIBRATED[2..] } else { &CALIBRATED };
@@ -168,8 +168,10 @@ impl Machine {
             self.recorded(at, None, random.random())
         };
         let mut recordings = shares.iter().map(recorded).collect::<Result<Vec<_>, _>>()?;
-        if start {
-            recordings.push(self.moved(Drive::DirectStart, 1.0, None, random.random())?);
+        if moved {
+            for drive in [Drive::DirectStart, Drive::Press] {
+                recordings.push(self.moved(drive, 1.0, None, random.random())?);
+            }
         }
         let calibrated = calibrate(&self.motor, &recordings, &Surroundings::default())?;
         Ok(calibrated.motor)

@@ -1,12 +1,15 @@
 //! Motors beyond what their calibration saw, with effects that their motor files do not know: how often FAULT lights.
 //!
-//! `cargo run --release -p studies --example beyond_calibration -- MACHINES SEED [one] [moving] [start] [hard] [without] [faults] [list] [save]` draws
-//! motors around those that ship, hides up to two effects in each, calibrates it as docs/calibrate.md asks at three loads up to a part of
-//! the rated one, and judges it at other loads, voltages and frequencies. `one`: one recording at the largest load is all that the
-//! calibration gets. `moving`: judged while it starts, is loaded or slowed. `start`: the calibration gets a start beside its loads. `hard`:
-//! iron and leakage saturate harder than commonly. `without`: the motor file forgets what the calibration saw. `faults`: the motors have
-//! faults, and FAULT is right. `list`: every FAULT. `save`: its
-//! recording and motor file, in the working folder.
+//! `cargo run --release -p studies --example beyond_calibration -- MACHINES SEED [WORD...]` draws motors around those that ship, hides up to
+//! two effects in each, calibrates it as docs/calibrate.md asks at three loads up to a part of the rated one, and judges it at other
+//! loads, voltages and frequencies. The words:
+//!
+//! - `one`: one recording at the largest load is all that the calibration gets; `moved`: it gets a start and a press beside its loads.
+//! - `moving`: judged while it starts, is loaded or slowed.
+//! - `hard`: iron and leakage saturate harder than commonly.
+//! - `without`: the motor file forgets what the calibration saw.
+//! - `faults`: the motors have faults, and FAULT is right.
+//! - `list`: every FAULT; `save`: its recording and motor file, in the working folder.
 
 use std::error::Error;
 
@@ -129,7 +132,7 @@ fn faults() -> Vec<Broken> {
 struct Asked {
     one: bool,
     moving: bool,
-    start: bool,
+    moved: bool,
     hard: bool,
     without: bool,
     faults: bool,
@@ -155,7 +158,7 @@ type Told = (Machine, Option<Vec<Judged>>);
 fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
     let mut random = Pcg64::seed_from_u64(seed);
     let machine = Machine::draw(&mut random, asked.hard)?;
-    let mut calibrated = match machine.calibrated(asked.one, asked.start, &mut random) {
+    let mut calibrated = match machine.calibrated(asked.one, asked.moved, &mut random) {
         Ok(calibrated) => calibrated,
         Err(refusal) => {
             if asked.list {
@@ -224,7 +227,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let asked = Asked {
         one: has("one"),
         moving: has("moving"),
-        start: has("start"),
+        moved: has("moved"),
         hard: has("hard"),
         without: has("without"),
         faults: has("faults"),
