@@ -15,6 +15,7 @@ use std::error::Error;
 
 use audit::{Expectation, audit};
 use monitor::Monitor;
+use motor::InMotion;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -144,7 +145,7 @@ struct Asked {
 struct Judged {
     at: Condition,
     /// How it said that it moves, by its calibration.
-    in_motion: motor::InMotion,
+    in_motion: InMotion,
     /// Whether what was raised was raised in motion.
     alarms: usize,
     fault: &'static str,
@@ -238,7 +239,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let all: Result<Vec<Told>, String> = (0..machines).into_par_iter().map(one).collect();
     let all = all?;
     let refused = all.iter().filter(|(_, judged)| judged.is_none()).count();
-    println!("{machines} machines, {refused} not calibrated\n");
+    let in_motion = |seen| {
+        let judged = all
+            .iter()
+            .filter_map(|(_, judged)| judged.as_ref()?.first());
+        judged.filter(|judged| judged.in_motion == seen).count()
+    };
+    println!(
+        "{machines} machines, {refused} not calibrated; in motion {} fit, {} differ\n",
+        in_motion(InMotion::Fits),
+        in_motion(InMotion::Differs)
+    );
     print(&all, &asked);
     Ok(())
 }

@@ -15,6 +15,8 @@ use crate::window::Window;
 const NOISY: f32 = 10.0;
 /// Speeds below this share of the synchronous one are a standstill.
 pub(crate) const STANDSTILL: f32 = 0.1;
+/// Speeds below this share of the synchronous one are slow: beyond the breakdown slip of any cage.
+const SLOW: f32 = 0.5;
 /// Impedance of a motor whose shaft is held, over that of its circuit short-circuited at the most: at rated load it is four to six times as
 /// much, at the breakdown torque 1.5 to 2.
 const HELD: f32 = 1.5;
@@ -117,7 +119,7 @@ impl Monitor {
         normalised
     }
 
-    /// Whether the shaft stands and the motor takes the current of a motor whose shaft is held. Next to nothing is then left of the rotor
+    /// Whether the shaft stands or is slow and the motor takes the current of a motor whose shaft is held. Next to nothing is then left of the rotor
     /// flux, and leakage that has saturated makes of it any slip.
     fn is_held(&self, window: &Window) -> bool {
         let p = &self.config.params;
@@ -128,7 +130,7 @@ impl Monitor {
         let omega_el = window
             .omega_mech
             .map(|omega| omega * self.config.mechanics.n_p);
-        omega_el.is_some_and(|omega| omega.abs() < STANDSTILL * window.omega_sync)
+        omega_el.is_some_and(|omega| omega.abs() < SLOW * window.omega_sync)
             && u.norm_sqr() < HELD * HELD * short_circuit * i.norm_sqr()
     }
 

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::drive::{AMPLITUDE, Bench, Drive, PARAMS, T_SAMPLE, config, last, point_of};
+use super::drive::{AMPLITUDE, Bench, Drive, PARAMS, T_SAMPLE, config, last, phases, point_of};
 use crate::{
     Lamp, LoadKind, MonitorConfig, NotJudged, Phase, Rehearsal, Report, Sample, SensorFinding,
     SpeedSample, SupplyFinding,
@@ -173,6 +173,32 @@ fn a_dead_channel_and_a_false_speed_are_sensors() {
     assert_eq!(report.sensor, Some(SensorFinding::SpeedImplausible));
     let report = changed(|_, s| s.u_s_abc = Some(Default::default()));
     assert_eq!(report.sensor, Some(SensorFinding::VoltagesMissing));
+}
+
+/// The shaft held, or turning slowly, and leakage that saturates at the current of a stall: what is left of the rotor flux implies any speed.
+#[test]
+fn a_held_shaft_is_no_dead_encoder() {
+    for (leakage, rotor, slip) in [
+        (1.0, 1.0, 1.0),
+        (0.7, 1.0, 1.0),
+        (0.6, 2.0, 1.0),
+        (0.6, 1.5, 0.6),
+    ] {
+        let omega = core::f64::consts::TAU * 50.0;
+        let reactance = |l: f64| Complex64::new(0.0, omega * l);
+        let cage = reactance(leakage * PARAMS.l_lr) + rotor * PARAMS.r_r / slip;
+        let main = reactance(PARAMS.l_m);
+        let stator = reactance(leakage * PARAMS.l_ls) + PARAMS.r_s;
+        let u = Complex64::from(AMPLITUDE);
+        let held = Drive {
+            u: phases(u),
+            i: phases(u / (stator + cage * main / (cage + main))),
+            omega_mech: (1.0 - slip) * omega / 2.0,
+        };
+        let report = last(config(), |t| held.sample(t));
+        assert_eq!(report.sensor, None, "leakage {leakage}, slip {slip}");
+        assert_eq!(report.lamps.sensor, Lamp::Off);
+    }
 }
 
 /// A motor that runs up from a stall draws currents beyond full scale: what is left of them implies any speed.
