@@ -162,6 +162,28 @@ fn a_ramp_that_is_too_fast_is_not_followed_and_then_found_again() {
     }
 }
 
+/// A ramp of f' Hz/s asks for a phase error of 2 pi f' T^2/FREQUENCY_GAIN at a period T, which may be CAPTURE_RANGE at the most: f' below
+/// 0.0076 f^2.
+#[test]
+fn a_slow_ramp_is_followed_all_the_way() {
+    for (share, follows) in [(0.7, true), (1.4, false)] {
+        let limit = f64::from(CAPTURE_RANGE * FREQUENCY_GAIN) / core::f64::consts::TAU;
+        let mut state = SyncState::default();
+        let (mut phase, mut hertz) = (0.0_f64, 12.0_f64);
+        let mut always = true;
+        for k in 0..150_000 {
+            if k > 10_000 && hertz < 60.0 {
+                hertz += share * limit * hertz * hertz * 1e-4;
+            }
+            phase += core::f64::consts::TAU * hertz * 1e-4;
+            config().update(&mut state, (100.0 * phase.sin()) as f32);
+            always &= k < 10_000 || state.is_locked();
+        }
+        assert!(hertz > 59.9);
+        assert_eq!(always, follows, "{share} of the limit");
+    }
+}
+
 fn sine(hertz: f64, amplitude: f64) -> impl Fn(u64) -> f32 {
     move |k| (amplitude * (core::f64::consts::TAU * hertz * k as f64 * 1e-4 - 1.0).sin()) as f32
 }
