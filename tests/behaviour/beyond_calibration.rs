@@ -32,13 +32,15 @@ fn calibrated() -> MotorFile {
 }
 
 /// Voltage and load beyond those of the calibration, percent.
-const BEYOND: [(f64, f64); 6] = [
+const BEYOND: [(f64, f64); 8] = [
     (95.0, 80.0),
     (105.0, 80.0),
     (90.0, 50.0),
     (110.0, 50.0),
     (100.0, 150.0),
     (108.0, 10.0),
+    (100.0, -60.0),
+    (105.0, -100.0),
 ];
 
 #[test]
@@ -62,6 +64,9 @@ fn a_healthy_motor_is_healthy_where_its_calibration_saw_nothing_and_that_is_told
             assert!((timeline.beyond.volt_per_hertz_percent - off).abs() < 0.3);
         }
     }
+    let (_, lowering) = monitored(&recorded(100.0, -60.0, "", 31), &motor);
+    let fed_back = lowering.beyond.fed_back_percent;
+    assert!((30.0..60.0).contains(&fed_back), "{:?}", lowering.beyond);
     let (_, within) = monitored(&recorded(100.0, 80.0, "", 30), &motor);
     assert_eq!(within.beyond.windows, 0, "{:?}", within.beyond);
 }

@@ -10,3 +10,4 @@ mod missing_effect;
 mod recorded;
 mod rotor_bars;
 mod rotor_unrest;
+mod temperatures;

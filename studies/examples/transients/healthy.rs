@@ -11,6 +11,7 @@ use studies::drive::{DRIVES, Doubts, Drive, run};
 struct Cell {
     runs: usize,
     alarms: usize,
+    at_rest: usize,
     largest: f32,
     cycles: u32,
     judged: u32,
@@ -20,6 +21,7 @@ impl Cell {
     fn add(&mut self, outcome: &Outcome) {
         self.runs += 1;
         self.alarms += usize::from(outcome.alarm_s.is_some());
+        self.at_rest += usize::from(outcome.at_rest);
         self.largest = self.largest.max(outcome.largest);
         self.cycles += outcome.cycles;
         self.judged += outcome.judged;
@@ -28,6 +30,7 @@ impl Cell {
     fn merge(&mut self, other: &Cell) {
         self.runs += other.runs;
         self.alarms += other.alarms;
+        self.at_rest += other.at_rest;
         self.largest = self.largest.max(other.largest);
         self.cycles += other.cycles;
         self.judged += other.judged;
@@ -72,8 +75,8 @@ pub fn table(draws: u64, doubts: &Doubts) {
     }
     let judged = 100.0 * f64::from(all.judged) / f64::from(all.cycles.max(1));
     println!(
-        "\n{} of {} runs with an alarm; largest T in two cycles running {:.1}; {judged:.0} % of {} cycles judged",
-        all.alarms, all.runs, all.largest, all.cycles
+        "\n{} of {} runs with an alarm, {} with FAULT at rest; largest T in two cycles running {:.1}; {judged:.0} % of {} cycles judged",
+        all.alarms, all.runs, all.at_rest, all.largest, all.cycles
     );
 }
 
