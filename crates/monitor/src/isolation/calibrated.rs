@@ -11,7 +11,7 @@ use crate::model::residuals::{FieldCurrent, ResidualModel, Residuals};
 use crate::monitor::{Monitor, MonitorState};
 use crate::noise::allowance::Allowance;
 use crate::rehearsal::Rehearsal;
-use crate::report::Report;
+use crate::report::{NotJudged, Report};
 use crate::window::Window;
 use frames::magnitude;
 
@@ -42,7 +42,9 @@ impl Monitor {
     ) -> f32 {
         let calibrated = self.config.healthy.as_ref();
         let Some(healthy) = calibrated.filter(|_| report.not_judged.is_none()) else {
-            state.temperature.interrupt(self.config.window_cycles);
+            if report.not_judged == Some(NotJudged::Transient) {
+                state.temperature.interrupt(self.config.window_cycles);
+            }
             return 0.0;
         };
         let [voltages, currents] = state.measured;

@@ -12,7 +12,7 @@
 //! was known until it tells as much. An hour at light load says little of the winding, which cools meanwhile.
 //!
 //! The first windows after a change count as steady while the rotor's flux still settles, and would show a temperature of their own: only
-//! a window that was judged as long as it is teaches.
+//! a window teaches before which as many were judged as held the change.
 
 use super::Isolation;
 use super::healthy::Healthy;
@@ -138,9 +138,9 @@ impl Temperature {
         self.latest
     }
 
-    /// A window of so many cycles was not judged: the next ones hold what came before.
+    /// A window of so many cycles held a transient: as many that follow hold what is left of it, at the most its cycles.
     pub fn interrupt(&mut self, cycles: usize) {
-        self.settling = cycles;
+        self.settling = (self.settling + 1).min(cycles);
     }
 
     /// Follows a window that was judged; `fault`: FAULT was lit when it came.
