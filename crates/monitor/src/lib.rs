@@ -94,10 +94,9 @@ pub use monitor::{Monitor, MonitorState};
 pub use motor::{FaultId, InMotion};
 #[cfg(feature = "motor-file")]
 pub use of_board::{BOARD_CONVERSIONS, BOARD_T_SAMPLE};
+pub use pll::{Supply, SyncConfig, SyncState, SyncTick, renormalise, small_rotation};
 pub use rehearsal::Rehearsal;
 pub use report::{NotJudged, Reason, Report};
 pub use sync::encoder::{EncoderConfig, EncoderState, SpeedReading};
 pub use sync::phasor::{ChannelCycle, CyclePhasors};
-pub use sync::pll::{Supply, SyncConfig, SyncState, SyncTick};
-pub use sync::rotation::{renormalise, small_rotation};
 pub use window::{Cycle, CycleNoise, MAX_WINDOW_CYCLES, RateNoise, Rates, Window};

@@ -24,8 +24,8 @@ use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
 use crate::sync::encoder::{EncoderConfig, EncoderState};
 use crate::sync::phasor::{CyclePhasors, PhasorState, Unit};
-use crate::sync::pll::{Supply, SyncConfig, SyncState, SyncTick};
 use crate::window::{Cycle, Window, WindowState};
+use pll::{Supply, SyncConfig, SyncState, SyncTick};
 
 /// The monitor's configuration in the form that the sample path uses. Shared, never changed.
 #[derive(Clone, Copy, Debug, PartialEq)]

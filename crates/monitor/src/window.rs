@@ -14,8 +14,8 @@ use crate::input::torque::TorqueReading;
 use crate::noise::trend::Trend;
 use crate::sync::encoder::SpeedReading;
 use crate::sync::phasor::{ChannelCycle, CyclePhasors};
-use crate::sync::rotation::arcsine;
 use frames::{Sequence, magnitude};
+use pll::arcsine;
 
 /// Longest window, in supply cycles.
 pub const MAX_WINDOW_CYCLES: usize = 10;

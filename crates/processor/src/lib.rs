@@ -1,4 +1,4 @@
-//! What the board's processor does in one instruction and `libm` in a hundred: the square root.
+//! What the board's processor does in one instruction and `libm` in a hundred: the square root; and comparisons that need not care for NaN.
 //!
 //! IEEE 754 asks for the nearest number, so both give the same bits, and a host's results are the board's.
 //!
@@ -16,6 +16,20 @@ pub fn sqrtf(x: f32) -> f32 {
     return instruction(x);
     #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
     return libm::sqrtf(x);
+}
+
+/// The larger of both, `a` where `b` is no number. Not `max`, which has to care for NaN.
+#[inline(always)]
+#[must_use]
+pub fn higher(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
+
+/// The smaller of both, `b` where `a` is no number.
+#[inline(always)]
+#[must_use]
+pub fn lower(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// `core` has no square root, and `libm` 0.2.16 computes it bit by bit.

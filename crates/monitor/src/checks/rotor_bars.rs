@@ -12,7 +12,7 @@ use core::f32::consts::TAU;
 use num_complex::Complex32;
 
 use crate::checks::speed_swing::Driven;
-use crate::sync::rotation::{renormalise, small_rotation};
+use pll::{renormalise, small_rotation};
 
 /// Turns of twice the slip angle in one block: load steps and other pulsations cancel the better, the more there are.
 const TURNS: f32 = 4.0;

@@ -12,7 +12,7 @@ use crate::input::validity::IntakeState;
 use crate::monitor::{Monitor, MonitorState};
 use crate::report::Report;
 use crate::sync::encoder::EncoderState;
-use crate::sync::pll::{SyncState, SyncTick};
+use pll::{SyncState, SyncTick};
 
 impl Monitor {
     /// Takes one instant in ADC codes. See [`Monitor::update`] and, for many instants, [`Monitor::update_block`].

@@ -3,7 +3,7 @@
 use num_complex::Complex32;
 
 use crate::input::sample::CHANNELS;
-use crate::sync::rotation::small_rotation;
+use pll::small_rotation;
 
 /// Delay and roll-off of the way from the motor's terminals to the codes: filter, order of conversion, isolation.
 ///

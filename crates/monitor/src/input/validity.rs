@@ -5,9 +5,8 @@ use core::f32::consts::TAU;
 use crate::input::sample::{ClippedChannels, Sample};
 use crate::input::torque::{TorqueReading, TorqueTally};
 use frames::Abc;
+use processor::higher;
 
-/// Share of a peak that is forgotten per second.
-pub(crate) const PEAK_DECAY_PER_SECOND: f32 = 5.0;
 /// Corner of the low pass before the supply's crossings are looked for, Hz: it leaves a tenth of an inverter's ripple at 2 kHz,
 /// which may be half as high as the fundamental.
 const CORNER_HZ: f32 = 200.0;
@@ -42,7 +41,7 @@ impl ReferenceFilter {
     pub fn new(t_sample: f32) -> Self {
         let per_corner = TAU * CORNER_HZ * t_sample;
         ReferenceFilter {
-            keep: 1.0 - PEAK_DECAY_PER_SECOND * t_sample,
+            keep: 1.0 - pll::PEAK_DECAY_PER_SECOND * t_sample,
             share: per_corner / (1.0 + per_corner),
         }
     }
@@ -174,18 +173,6 @@ pub(crate) fn reference_scales(rated: [f32; 2]) -> [f32; 2] {
     rated.map(|rated| 1.0 / (3.0 * rated))
 }
 
-/// Not `max`, which has to care for NaN: neither can be one here.
-#[inline(always)]
-pub(crate) fn higher(a: f32, b: f32) -> f32 {
-    if b > a { b } else { a }
-}
-
-/// The same of the other one; `b` if `a` is no number.
-#[inline(always)]
-pub(crate) fn lower(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Quality {
     Good,
@@ -213,7 +200,7 @@ const LARGEST: f32 = 1e6;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sync::pll::{SyncConfig, SyncState};
+    use pll::{SyncConfig, SyncState};
 
     fn sample(u: f32, i: f32) -> Sample {
         Sample {

@@ -8,7 +8,7 @@
 //! Noise that begins: what was seen while the samples were quieter is scaled as what the samples let expect has grown
 //! since, and counts for as many differences less.
 
-use crate::input::validity::{higher, lower};
+use processor::{higher, lower};
 
 /// Quantities that are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]

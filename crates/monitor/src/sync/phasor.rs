@@ -7,8 +7,8 @@
 use num_complex::Complex32;
 
 use crate::input::sample::CHANNELS;
-use crate::sync::pll::SyncTick;
-use crate::sync::rotation::arcsine;
+use pll::SyncTick;
+use pll::arcsine;
 
 /// Running sums over one cycle, in V and A or in whatever [`Unit`] says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

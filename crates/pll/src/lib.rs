@@ -4,12 +4,19 @@
 //! samples; a second-order tracking loop steers an oscillator whose phase never jumps while locked,
 //! so that windows cut at its turns hold whole cycles.
 
+#![cfg_attr(not(test), no_std)]
+
+mod rotation;
+
+pub use rotation::{arcsine, renormalise, small_rotation};
+
 use core::f32::consts::{PI, TAU};
 
 use num_complex::Complex32;
+use processor::higher;
 
-use crate::input::validity::{PEAK_DECAY_PER_SECOND, higher};
-use crate::sync::rotation::{renormalise, small_rotation};
+/// Share of a peak that is forgotten per second.
+pub const PEAK_DECAY_PER_SECOND: f32 = 5.0;
 
 /// Limits and gains of the synchronisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
