@@ -98,7 +98,7 @@ pub(super) fn fit(
         let evidence = evidence(&motor_of, observed, monitor_of)?;
         misfit = root_mean_square(&evidence, observed);
         let relative = beliefs.relative(z.as_slice());
-        let along = |(e, o): (&Evidence, &Observed)| directions(e, o, &relative, &warmths);
+        let along = |e: &Evidence, o: &Observed| directions(e, o, &relative, &warmths);
         let (step, posterior) = step(&evidence, observed, &misfit, &z, &along, &priors);
         z += &step;
         covariance = posterior;
@@ -248,13 +248,16 @@ fn root_mean_square(evidence: &[Option<Evidence>], observed: &[Observed]) -> [f6
     sum.map(|sum| (sum / votes.max(f64::MIN_POSITIVE)).sqrt().max(FLOOR))
 }
 
+/// How the rows of a window move per coordinate.
+type Along<'a> = dyn Fn(&Evidence, &Observed) -> Vec<DVector<f64>> + 'a;
+
 /// One step in the coordinates, and their posterior covariance; `along` gives [`directions`].
 fn step(
     evidence: &[Option<Evidence>],
     observed: &[Observed],
     misfit: &[f64; ROWS],
     z: &DVector<f64>,
-    along: &dyn Fn((&Evidence, &Observed)) -> Vec<DVector<f64>>,
+    along: &Along<'_>,
     priors: &[f64],
 ) -> (DVector<f64>, DMatrix<f64>) {
     let n = z.len();
@@ -266,7 +269,7 @@ fn step(
     }
     for (evidence, o) in evidence.iter().zip(observed) {
         let Some(evidence) = evidence else { continue };
-        let rows = along((evidence, o)).into_iter().zip(misfit);
+        let rows = along(evidence, o).into_iter().zip(misfit);
         for (row, (along, misfit)) in rows.enumerate() {
             let weight = o.weight / (misfit * misfit);
             right += &along * (weight * f64::from(evidence.departure[row]));

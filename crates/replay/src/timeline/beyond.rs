@@ -107,4 +107,21 @@ mod tests {
             "beside half a per cent that a grid wanders by"
         );
     }
+
+    #[test]
+    fn a_load_that_drives_and_a_shaft_that_is_held_are_told() {
+        let mut beyond = BeyondCalibration::default();
+        beyond.add(&Beyond {
+            fed_back: 0.545,
+            slip: 0.8,
+            ..Beyond::default()
+        });
+        assert_eq!(
+            beyond.words().as_deref(),
+            Some(
+                "fed back up to 40 % of the rated current, frequency in the cage up to 80 % above"
+            ),
+            "without 15 % that losses take, and half a per cent"
+        );
+    }
 }
