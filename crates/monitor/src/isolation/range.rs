@@ -118,10 +118,9 @@ impl Conditions {
             0.0
         };
         let drop = measured.i_s * (measured.params.r_s * raised);
-        let voltage_amplitude = magnitude(measured.u_s);
         let active = measured.i_s.re * measured.u_s.re + measured.i_s.im * measured.u_s.im;
-        let fed_back = if active < 0.0 && voltage_amplitude > 0.0 {
-            -active / (voltage_amplitude * current)
+        let fed_back = if active < 0.0 {
+            -active / (magnitude(measured.u_s) * current)
         } else {
             0.0
         };
