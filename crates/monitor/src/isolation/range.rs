@@ -67,7 +67,7 @@ pub struct Beyond {
 /// with the first: `d ln L_m/d ln psi` lies between -2 and 0.
 const SATURATION: f32 = -1.0;
 /// Its standard deviation; where an effect or a law of the motor file makes the inductance follow the flux, that of what is left.
-const SATURATION_DEVIATION: f32 = 0.35;
+const SATURATION_DEVIATION: f32 = 0.3;
 /// Standard deviation of the magnetizing inductance per square of the current beyond, and per frequency: resistance and leakage take
 /// 0.05 to 0.15 of the main flux at rated current, of which the calibration has seen the straight part; at half the frequency the
 /// resistance takes twice as much.
