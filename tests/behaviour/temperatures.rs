@@ -26,11 +26,11 @@ fn warmed(mut parameters: TParams<f64>, load: f64) -> TParams<f64> {
     parameters
 }
 
-fn recorded(load: f64, seed: u32) -> Recording {
+fn recorded(load: f64, torque: bool, seed: u32) -> Recording {
     let text = format!(
         "motor = \"motors/peer-2k2.toml\"\nduration_s = 1.6\nstart = \"running\"\nseed = {seed}\nsample_rate_hz = 5000\n\
          [load]\nconstant_percent = {:?}\nfriction_percent = 0\nactive = true\n\
-         [sensors]\nnoise_sigma_fraction_of_full_scale = 0.001\ntorque = true\n",
+         [sensors]\nnoise_sigma_fraction_of_full_scale = 0.001\ntorque = {torque}\n",
         100.0 * load
     );
     let mut scenario = Scenario::parse(&text, "warm.toml", &in_project(".")).expect("valid");
@@ -40,7 +40,8 @@ fn recorded(load: f64, seed: u32) -> Recording {
 
 fn calibrated(kind: LoadKind) -> Calibrated {
     let loads = [(0.1, 1), (0.5, 2), (1.0, 3)];
-    let recordings = loads.map(|(load, seed)| recorded(load, seed));
+    let torque = kind == LoadKind::Measured;
+    let recordings = loads.map(|(load, seed)| recorded(load, torque, seed));
     let calibrated = calibrate(&machine(kind), &recordings, &Surroundings::default());
     calibrated.expect("healthy")
 }

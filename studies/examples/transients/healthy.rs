@@ -1,4 +1,5 @@
-//! Healthy transients: FAULT must stay dark.
+//! Healthy transients: FAULT must stay dark in motion. What windows at rest say is not counted: parameters are farther off here than the
+//! motor files say; the study `beyond_calibration` counts it.
 
 use rayon::prelude::*;
 
@@ -11,7 +12,6 @@ use studies::drive::{DRIVES, Doubts, Drive, run};
 struct Cell {
     runs: usize,
     alarms: usize,
-    at_rest: usize,
     largest: f32,
     cycles: u32,
     judged: u32,
@@ -21,7 +21,6 @@ impl Cell {
     fn add(&mut self, outcome: &Outcome) {
         self.runs += 1;
         self.alarms += usize::from(outcome.alarm_s.is_some());
-        self.at_rest += usize::from(outcome.at_rest);
         self.largest = self.largest.max(outcome.largest);
         self.cycles += outcome.cycles;
         self.judged += outcome.judged;
@@ -30,7 +29,6 @@ impl Cell {
     fn merge(&mut self, other: &Cell) {
         self.runs += other.runs;
         self.alarms += other.alarms;
-        self.at_rest += other.at_rest;
         self.largest = self.largest.max(other.largest);
         self.cycles += other.cycles;
         self.judged += other.judged;
@@ -75,8 +73,8 @@ pub fn table(draws: u64, doubts: &Doubts) {
     }
     let judged = 100.0 * f64::from(all.judged) / f64::from(all.cycles.max(1));
     println!(
-        "\n{} of {} runs with an alarm, {} with FAULT at rest; largest T in two cycles running {:.1}; {judged:.0} % of {} cycles judged",
-        all.alarms, all.runs, all.at_rest, all.largest, all.cycles
+        "\n{} of {} runs with an alarm; largest T in two cycles running {:.1}; {judged:.0} % of {} cycles judged",
+        all.alarms, all.runs, all.largest, all.cycles
     );
 }
 

@@ -1,6 +1,6 @@
 //! One run through the core as the board samples it: windows at rest and cycles in motion side by side.
 
-use monitor::{Abc, Lamp, Monitor, MonitorConfig, MonitorState, RawSample, Sample};
+use monitor::{Abc, Monitor, MonitorConfig, MonitorState, RawSample, Sample};
 use motion::{Motion, MotionCycle, MotionSample, MotionState, Named};
 use motor::MotorFile;
 use scenario::simulate::{SimSample, Simulation};
@@ -15,8 +15,6 @@ pub struct Outcome {
     /// Alarm before the fault.
     pub early: bool,
     pub named: Option<Named>,
-    /// FAULT was lit by windows at rest.
-    pub at_rest: bool,
     /// Largest statistic in two cycles running, while no fault was there.
     pub largest: f32,
     /// Cycles after the supply came on, and those that were judged.
@@ -46,8 +44,7 @@ pub fn judge(
     for sample in simulation {
         let shown = shown(&monitor, &sample, run.torque_gain, doubts.backwards);
         let shown = delayed(shown, &mut before, late);
-        let report = monitor.update(&mut state, &shown);
-        outcome.at_rest |= report.is_some_and(|report| report.lamps.fault == Lamp::On);
+        monitor.update(&mut state, &shown);
         let supply = state.supply();
         let both = MotionSample {
             sample: shown,

@@ -257,7 +257,7 @@ fn print_statistics(result: &Calibration) {
 fn print_loads(stator_resistance_percent: f64) {
     if stator_resistance_percent > LOADS_ALIKE_PERCENT {
         say!(
-            "  {} too few or too alike: the stator resistance is known to {stator_resistance_percent:.0} % only, and FAULT waits for larger faults. Record three loads from idle to the largest, or two at a second voltage too",
+            "  {} too few or too alike: the stator resistance is known to {stator_resistance_percent:.0} % only, and FAULT waits for larger faults. Record three loads from idle to the largest, or two at a second voltage too; without a torque channel each load may have warmed the winding, and nothing tells how far",
             paint::caution("loads:")
         );
     }
