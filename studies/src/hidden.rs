@@ -117,9 +117,7 @@ impl Machine {
             faults: fault.into_iter().collect(),
             sample_rate_hz: 5000.0,
             start: Start::Running,
-            sensors: SensorSpec {
-                ..SensorSpec::of(&motor)
-            },
+            sensors: SensorSpec::of(&motor),
             ..Scenario::of(motor, SECONDS)
         };
         Ok(record(&scenario, |_| ())?)

@@ -67,6 +67,10 @@ fn parameters_are_right_within_their_errors_whatever_warmed() {
                 100.0 * error
             );
         }
+        let [(_, _, stator), ..] = calibrated.changes[..] else {
+            panic!("fitted");
+        };
+        eprintln!("{kind:?}: stator resistance +- {:.1} %", 100.0 * stator);
         let healthy = calibrated.healthy;
         // Per sample 0.1 % of full scale, hundreds of samples a window; the rest is what the fit leaves.
         assert!(

@@ -144,9 +144,9 @@ struct Asked {
 /// What was said of a machine under a condition.
 struct Judged {
     at: Condition,
-    /// How it said that it moves, by its calibration.
+    /// How its calibration says that it moves.
     in_motion: InMotion,
-    /// Whether what was raised was raised in motion.
+    /// Alarms that were raised in motion.
     alarms: usize,
     fault: &'static str,
     state: VerdictState,

@@ -165,7 +165,7 @@ fn swings(window: &Window) -> [f32; 3] {
     let [a, b, c, ..] = window.channels;
     [a, b, c].map(|channel| {
         let square = channel.mean_square - channel.offset * channel.offset;
-        libm::sqrtf(2.0 * square.max(0.0))
+        processor::sqrtf(2.0 * processor::higher(square, 0.0))
     })
 }
 

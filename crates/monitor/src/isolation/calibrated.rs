@@ -5,7 +5,6 @@ use crate::isolation::{
     Bench, Beyond, Conditions, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS,
 };
 use crate::model::effects::Corrected;
-use crate::model::judgement::STANDSTILL;
 use crate::model::movement::DERIVATIVE_DOUBT;
 use crate::model::residuals::{FieldCurrent, ResidualModel, Residuals};
 use crate::monitor::{Monitor, MonitorState};
@@ -14,6 +13,10 @@ use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
 use crate::window::Window;
 use frames::magnitude;
+
+/// Speeds below this share of the synchronous one are a standstill: a torque over such a speed is a friction of ten times the rated one
+/// and more.
+const STANDSTILL: f32 = 0.1;
 
 impl Monitor {
     /// Time has passed since the last report, and current has heated the winding.

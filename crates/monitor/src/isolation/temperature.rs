@@ -11,8 +11,8 @@
 //! in the same way. So they are not averaged: a window that tells less than what is known teaches nothing, and time widens what
 //! was known until it tells as much. An hour at light load says little of the winding, which cools meanwhile.
 //!
-//! The first windows after a change count as steady while the rotor's flux still settles, and would show a temperature of their own: only
-//! a window teaches before which as many were judged as held the change.
+//! The first windows after a change count as steady while the rotor's flux still settles, and would show a temperature of their own. So
+//! after a change as many judged windows teach nothing as were unsteady, at the most the cycles of one.
 
 use super::Isolation;
 use super::healthy::Healthy;

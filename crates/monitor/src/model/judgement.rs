@@ -13,8 +13,6 @@ use crate::window::Window;
 
 /// A residual is too noisy when it must exceed so many thresholds to be seen.
 const NOISY: f32 = 10.0;
-/// Speeds below this share of the synchronous one are a standstill.
-pub(crate) const STANDSTILL: f32 = 0.1;
 /// Speeds below this share of the synchronous one are slow: beyond the breakdown slip of any cage.
 const SLOW: f32 = 0.5;
 /// Impedance of a motor whose shaft is held, over that of its circuit short-circuited at the most: at rated load it is four to six times as

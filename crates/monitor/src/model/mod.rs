@@ -3,7 +3,7 @@
 pub(crate) mod doubt;
 mod doubted;
 pub(crate) mod effects;
-pub(crate) mod judgement;
+mod judgement;
 mod measured;
 pub(crate) mod movement;
 pub(crate) mod operating_point;

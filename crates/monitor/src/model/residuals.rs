@@ -202,6 +202,23 @@ mod tests {
     const B: f32 = 0.0008;
     const B_L: f32 = 0.0035;
 
+    /// Rated torque over what the declared friction takes at synchronous speed, 377/2 rad/s: 4.3 mN m s of it.
+    #[test]
+    fn rated_torque_is_told_on_the_scale_of_the_torque_balance() {
+        let expected = MODEL.rated_torque / ((B + B_L) * OMEGA_SYNC / N_P);
+        let got = MODEL.rated_torque_share(OMEGA_SYNC);
+        assert!((got / expected - 1.0).abs() < 1e-6, "{got} {expected}");
+        let free = ResidualModel {
+            mechanics: Mechanics {
+                friction: 0.0,
+                load_friction: 0.0,
+                ..MODEL.mechanics
+            },
+            ..MODEL
+        };
+        assert!((free.rated_torque_share(OMEGA_SYNC) - 1.0).abs() < 1e-6);
+    }
+
     const MODEL: ResidualModel = ResidualModel {
         mechanics: Mechanics {
             n_p: N_P,

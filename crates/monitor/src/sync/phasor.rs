@@ -7,8 +7,7 @@
 use num_complex::Complex32;
 
 use crate::input::sample::CHANNELS;
-use pll::SyncTick;
-use pll::arcsine;
+use pll::{SyncTick, arcsine};
 
 /// Running sums over one cycle, in V and A or in whatever [`Unit`] says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -222,11 +222,14 @@ fn directions(
     relative: &[f64],
     warmths: &Warmths,
 ) -> Vec<DVector<f64>> {
+    let fitted = FITTED.map(|(cause, _)| evidence.direction(cause));
+    let resistances =
+        [Cause::StatorResistance, Cause::RotorResistance].map(|cause| evidence.direction(cause));
     let of_row = |row: usize| {
-        let direction = |cause| f64::from(evidence.direction(cause)[row]);
-        let fitted = FITTED.iter().zip(relative);
-        let fitted = fitted.map(|((cause, _), per)| direction(*cause) * per);
-        let resistances = [Cause::StatorResistance, Cause::RotorResistance].map(direction);
+        let at_row = |direction: [f32; monitor::ROWS]| f64::from(direction[row]);
+        let fitted = fitted.iter().zip(relative);
+        let fitted = fitted.map(|(direction, per)| at_row(*direction) * per);
+        let resistances = resistances.map(at_row);
         let along: Vec<f64> = fitted
             .chain(warmths.directions(resistances, o.recording))
             .collect();

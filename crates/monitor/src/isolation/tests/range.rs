@@ -157,6 +157,22 @@ fn what_is_fed_back_is_the_active_current() {
     assert!((at(&driving).fed_back - active).abs() < 1e-5, "{active}");
 }
 
+/// Near standstill a torque is no friction: the balance says nothing.
+#[test]
+fn a_shaft_that_hardly_turns_has_no_torque_balance() {
+    let window = Plant::healthy().window();
+    let known = |share: f32| {
+        let mut window = window;
+        window.omega_mech = window.omega_mech.map(|omega| share * omega);
+        let evidence = monitor().evidence(&statistics(), &window);
+        let [torque, e_d, ..] = *evidence.expect("speed").known();
+        assert!(e_d);
+        torque
+    };
+    assert!(known(1.0) && known(0.2) && known(-0.2));
+    assert!(!known(0.05) && !known(-0.05) && !known(0.0));
+}
+
 #[test]
 fn ranges_that_are_none_are_refused() {
     let refused = |change: fn(&mut CalibratedRange)| {
