@@ -5,8 +5,8 @@ use motor::MotorFile;
 use recording::Recording;
 use replay::VerdictState;
 use replay::calibrate::{Surroundings, calibrate};
-use scenario::Scenario;
 use scenario::simulate::record;
+use scenario::{LoadSpec, Piecewise, Scenario, Start};
 
 /// Of the rated voltage and torque; percent.
 fn recorded(volt: f64, load: f64, fault: &str, seed: u32) -> Recording {
@@ -80,6 +80,37 @@ fn without_its_range_the_same_calibration_lights_fault() {
     }
     let (_, timeline) = monitored(&recorded(108.0, 10.0, "", 15), &motor);
     assert_eq!(timeline.verdict(&[]).state, VerdictState::Fault);
+}
+
+/// A drive's start, faster than the oscillator follows: what it shows meanwhile is no dead sensor.
+#[test]
+fn a_ramp_that_the_oscillator_loses_is_no_fault() {
+    let motor = motor("motors/assumed-300w-calibrated.toml");
+    let plate = &motor.nameplate;
+    for seed in 0_u32..40 {
+        let phase_rad = 0.157 * f64::from(seed);
+        let mut scenario = Scenario::of(motor.clone(), 2.7);
+        let (volt, hertz) = (plate.phase_voltage_amplitude(), plate.frequency_hz);
+        let low = 8.0 / hertz;
+        scenario.supply.amplitude_volt = Piecewise::constant(volt * (low + 0.04));
+        scenario.supply.frequency_hz = Piecewise::constant(8.0);
+        scenario.supply.amplitude_volt.change(0.3, volt, 2.0);
+        scenario.supply.frequency_hz.change(0.3, hertz, 2.0);
+        scenario.supply.phase_rad = phase_rad;
+        scenario.start = Start::Standstill;
+        scenario.seed = u64::from(seed);
+        scenario.sample_rate_hz = 5000.0;
+        scenario.supply.switch_on_s = 0.1;
+        scenario.load = LoadSpec::constant(0.45 * plate.torque_nm, false);
+        let recording = record(&scenario, |_| ()).expect("a motor that starts");
+        let (_, timeline) = monitored(&recording, &motor);
+        let verdict = timeline.verdict(&[]);
+        assert_ne!(
+            verdict.state,
+            VerdictState::Fault,
+            "{phase_rad} rad: {verdict:?}"
+        );
+    }
 }
 
 /// Single channels and phases, and all voltage channels: a voltage that is only shown too low is no lower flux.
