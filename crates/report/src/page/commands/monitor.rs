@@ -73,18 +73,27 @@ fn answer(result: &Place<'_>) -> Markup {
 /// How much lies beyond the calibration, where little is known.
 fn beyond(result: &Place<'_>) -> Markup {
     let windows = result.number("beyond_calibration/windows");
-    let percent = |key: &str| {
-        let path = format!("beyond_calibration/{key}_percent");
-        shown(result, &path, decimals(0))
-    };
+    let path = |key: &str| format!("beyond_calibration/{key}_percent");
+    let parts = [
+        ("current", " % above its largest current"),
+        ("volt_per_hertz", " % off its voltages over frequency"),
+        ("frequency", " % off its frequencies"),
+        ("fed_back", " % of the rated current fed back"),
+        ("slip", " % more frequency in the cage than loads bring"),
+    ];
+    // As in the words of the timeline: less is not worth one.
+    let told = parts
+        .into_iter()
+        .filter(|(key, _)| result.number(&path(key)).is_some_and(|x| x >= 1.0));
     html! {
         @if windows.is_some_and(|windows| windows > 0.0) {
             p.subtle {
-                (shown(result, "beyond_calibration/windows", decimals(0))) " of them lie beyond the calibration (at most "
-                (percent("current")) " % above its largest current, " (percent("volt_per_hertz")) " % off its voltages over frequency, "
-                (percent("frequency")) " % off its frequencies, " (percent("fed_back")) " % of the rated current fed back, "
-                (percent("slip")) " % more frequency in the cage than loads bring): small faults stay dark there. Record the motor in good order there, and "
-                "calibrate with it."
+                (shown(result, "beyond_calibration/windows", decimals(0))) " of them lie beyond the calibration ("
+                @for (k, (key, words)) in told.enumerate() {
+                    @if k > 0 { ", " }
+                    "up to " (shown(result, &path(key), decimals(0))) (words)
+                }
+                "): small faults stay dark there. Record the motor in good order there, and calibrate with it."
             }
         }
     }
