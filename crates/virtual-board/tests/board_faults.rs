@@ -253,7 +253,7 @@ fn a_storm_of_encoder_edges_costs_neither_samples_nor_time() {
     );
 }
 
-/// Whether lamps differ from the host's within five seconds of interruptions at every place of the arithmetic.
+/// Whether lamps differ from the host's within five seconds of interruptions at every place of the arithmetic, or none are judged.
 fn is_disturbed_by_interrupts(stacks_floats: bool) -> bool {
     let mut board = board(&scenario(10.0));
     if !stacks_floats {
@@ -267,7 +267,10 @@ fn is_disturbed_by_interrupts(stacks_floats: bool) -> bool {
         let levels = board.lamps();
         let host = host_lamps(board.taken());
         // The board shows a window some milliseconds after its last sample: lamps that have just changed tell nothing.
-        let (last, before) = host.split_last().expect("samples");
+        let Some((last, before)) = host.split_last() else {
+            // The arithmetic of the start was destroyed: the board refuses to judge and takes no sample.
+            return true;
+        };
         let settled =
             host.len() > 5_000 && before.iter().rev().take(300).all(|lamps| lamps == last);
         settled && !common::shows(levels, last)
