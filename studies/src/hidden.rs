@@ -30,7 +30,7 @@ const HIGHEST: [f64; 3] = [0.5, 0.75, 1.0];
 const CALIBRATED: [f64; 3] = [0.1, 0.5, 1.0];
 /// A motor that runs; longer than FAULT needs.
 const SECONDS: f64 = 1.6;
-/// Largest negative over positive sequence of the supply; it wanders from recording to recording.
+/// Largest negative over positive sequence of the supply.
 const UNBALANCE: f64 = 0.01;
 /// Of full scale.
 const NOISE: f64 = 0.001;
@@ -95,16 +95,8 @@ impl Machine {
         motor.parameters.r_s *= warmed[0];
         motor.parameters.r_r *= warmed[1];
         let torque = load * motor.nameplate.torque_nm;
-        let mut random = Pcg64::seed_from_u64(seed);
-        let unbalance = Harmonic {
-            order: -1.0,
-            amplitude: Complex64::from_polar(
-                random.random_range(0.0..UNBALANCE),
-                random.random_range(0.0..TAU),
-            ),
-        };
         let supply = SupplySpec {
-            components: vec![unbalance],
+            components: vec![unbalance(seed)],
             amplitude_volt: Piecewise::constant(volt * motor.nameplate.phase_voltage_amplitude()),
             frequency_hz: Piecewise::constant(hertz * motor.nameplate.frequency_hz),
             ..SupplySpec::rated(&motor.nameplate)
@@ -185,8 +177,20 @@ impl Machine {
     }
 }
 
-/// Up to two effects, as small or large as they are in motors.
-fn hidden(motor: &MotorFile, random: &mut Pcg64, hard: bool) -> Vec<EffectEntry> {
+/// A negative sequence of the supply; it wanders from recording to recording.
+pub fn unbalance(seed: u64) -> Harmonic {
+    let mut random = Pcg64::seed_from_u64(seed);
+    Harmonic {
+        order: -1.0,
+        amplitude: Complex64::from_polar(
+            random.random_range(0.0..UNBALANCE),
+            random.random_range(0.0..TAU),
+        ),
+    }
+}
+
+/// Up to two effects, as small or large as they are in motors; `hard`: larger ones than motors commonly have.
+pub fn hidden(motor: &MotorFile, random: &mut Pcg64, hard: bool) -> Vec<EffectEntry> {
     let drop = if hard { 0.25..0.4 } else { 0.02..0.25 };
     let iron = if hard { 0.25..0.45 } else { 0.02..0.25 };
     let exponent = if hard {

@@ -139,6 +139,8 @@ pub struct Learner {
     products: [f32; COVARIANCES],
     halfway: [f32; RESIDUALS],
     offsets: [f32; CHANNELS],
+    /// Mean of what the monitor adds to each threshold of a motor whose parameters are in doubt.
+    added: [f32; RESIDUALS],
     /// Residuals that are compared at all; of a free load only r1 is.
     compared: [bool; RESIDUALS],
 }
@@ -155,6 +157,7 @@ impl Learner {
             products: [0.0; COVARIANCES],
             halfway: [0.0; RESIDUALS],
             offsets: [0.0; CHANNELS],
+            added: [0.0; RESIDUALS],
             compared: [true; RESIDUALS],
         }
     }
@@ -177,7 +180,7 @@ impl Learner {
         }
         self.seen += 1;
         self.moving += u32::from(report.not_judged == Some(NotJudged::Transient));
-        self.count(report);
+        self.count(report, present);
         if self.judged >= LEARN_WINDOWS {
             return match self.calibration(present, factory) {
                 Ok(calibration) => Progress::Learnt(calibration),
@@ -195,7 +198,7 @@ impl Learner {
         })
     }
 
-    fn count(&mut self, report: &Report) {
+    fn count(&mut self, report: &Report, present: &MonitorConfig) {
         let judged = report.is_judged();
         let (Some(window), Some(residuals), Some(normalised), true) =
             (report.window, report.residuals, report.normalised, judged)
@@ -207,6 +210,9 @@ impl Learner {
         let share = 1.0 / self.judged as f32;
         for (mean, channel) in self.offsets.iter_mut().zip(&window.channels) {
             *mean += (channel.offset - *mean) * share;
+        }
+        for (mean, added) in self.added.iter_mut().zip(added(report, present)) {
+            *mean += (added - *mean) * share;
         }
         self.accumulate(&residuals.r, share);
         if self.judged == LEARN_WINDOWS / 2 {
@@ -263,8 +269,8 @@ impl Learner {
     ) -> Result<[f32; RESIDUALS], Refusal> {
         let mut thresholds = *factory;
         let statistics = healthy.mean.iter().zip(healthy.deviation());
-        let compared = self.compared.iter().zip(&self.halfway);
-        for ((threshold, (mean, deviation)), (compared, halfway)) in
+        let compared = self.compared.iter().zip(&self.added).zip(&self.halfway);
+        for ((threshold, (mean, deviation)), ((compared, added), halfway)) in
             thresholds.iter_mut().zip(statistics).zip(compared)
         {
             if *compared {
@@ -273,7 +279,8 @@ impl Learner {
                 if drift > DRIFT_SHARE * *threshold {
                     return Err(Refusal::Unsteady);
                 }
-                *threshold = propose(*threshold, *mean, deviation)?;
+                let shown = mean.abs() + DEVIATIONS * deviation;
+                *threshold = propose(*threshold, shown - added)?;
             }
         }
         Ok(thresholds)
@@ -290,10 +297,21 @@ fn lit(report: &Report) -> Option<Refusal> {
     }
 }
 
-/// Beyond everything that the healthy motor showed, within bounds.
-fn propose(factory: f32, mean: f32, deviation: f32) -> Result<f32, Refusal> {
+/// What the monitor adds to the thresholds of a motor known by its plate, in this window: what the plate leaves open, above all. It goes on
+/// adding it, so a threshold need not hold that part of what the motor shows.
+fn added(report: &Report, present: &MonitorConfig) -> [f32; RESIDUALS] {
+    let mut added = [0.0; RESIDUALS];
+    let visible = report.visible.filter(|_| present.doubt.is_any());
+    let visible = visible.iter().flatten().zip(&present.thresholds);
+    for (added, (visible, threshold)) in added.iter_mut().zip(visible) {
+        *added = visible - threshold;
+    }
+    added
+}
+
+/// A threshold of at least `wanted`, within bounds.
+fn propose(factory: f32, wanted: f32) -> Result<f32, Refusal> {
     let [least, most] = SHARES.map(|share| share * factory);
-    let wanted = mean.abs() + DEVIATIONS * deviation;
     // Written so that NaN is refused too.
     if wanted <= most {
         Ok(wanted.max(least))

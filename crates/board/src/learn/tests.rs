@@ -120,6 +120,35 @@ fn thresholds_lie_beyond_what_was_seen_and_within_bounds() {
     assert!((thresholds[0] - 0.004).abs() < 0.000_3, "{}", thresholds[0]);
 }
 
+/// Of a motor known by its plate the monitor leaves open what the plate leaves open; learning neither refuses that nor counts it twice.
+#[test]
+fn what_a_plate_leaves_open_is_no_fault_while_learning() {
+    let mut config = present();
+    let factory = config.thresholds;
+    // A residual of six times its threshold, of which five and a half are in doubt.
+    let shown = factory.map(|threshold| 6.0 * threshold);
+    let visible = factory.map(|threshold| 6.5 * threshold);
+    let report = Report {
+        visible: Some(visible),
+        ..judged(shown, [0.0; CHANNELS])
+    };
+    let learn = |config: &MonitorConfig| {
+        let mut learner = Learner::new(77);
+        let all = (0..LEARN_WINDOWS).map(|_| learner.observe(&report, config, &factory));
+        all.last()
+    };
+    let refused = Some(Progress::Refused(Refusal::TooLarge));
+    assert_eq!(learn(&config), refused, "nothing is in doubt");
+    config.doubt.circuit[0] = 0.2;
+    let Some(Progress::Learnt(calibration)) = learn(&config) else {
+        panic!("a healthy motor was refused");
+    };
+    for (learnt, factory) in calibration.thresholds.iter().zip(factory) {
+        // Six less five and a half is the floor too; a mean of 600 equal numbers rounds some of the last bits.
+        assert!((learnt - 0.5 * factory).abs() < 1e-4 * factory, "{learnt}");
+    }
+}
+
 #[test]
 fn offsets_are_added_to_those_that_hold() {
     let shown = [1.5, -2.0, 0.0, 0.05, -0.1, 0.2];
