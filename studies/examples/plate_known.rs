@@ -216,7 +216,7 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
     };
     let names: Vec<&str> = machine.hidden.iter().map(|e| e.name.as_str()).collect();
     let mut told = Told {
-        name: format!("{}, hidden {}", of.truth.name, names.join(" ")),
+        name: format!("{seed} {}, hidden {}", of.truth.name, names.join(" ")),
         knowledge: Knowledge::AsGiven,
         refused: None,
         said: Vec::new(),
@@ -229,6 +229,12 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
         told.name += &format!(", {:?} {:?}", learnt.knowledge, learnt.notes);
         told.knowledge = learnt.knowledge;
         known = learnt.motor;
+        if let Ok(folder) = std::env::var("SAVE") {
+            std::fs::write(format!("{folder}/{seed}-truth.toml"), of.truth.to_toml())?;
+            std::fs::write(format!("{folder}/{seed}-plate.toml"), of.known.to_toml())?;
+            std::fs::write(format!("{folder}/{seed}-known.toml"), known.to_toml())?;
+            formats::write_recording(format!("{folder}/{seed}.parquet").as_ref(), &recording)?;
+        }
     }
     if asked.learnt {
         let recording = machine.recorded([LEARNT_AT, 1.0, 1.0], LEARNT_SECONDS, random.random())?;
@@ -275,8 +281,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         learnt: has("learnt"),
         healthy: has("healthy"),
     };
-    let one =
-        |k| judged(&motors, 1_000_003 * seed + k, asked).map_err(|error| error.to_string());
+    let one = |k| judged(&motors, 1_000_003 * seed + k, asked).map_err(|error| error.to_string());
     let all: Result<Vec<Told>, String> = (0..machines).into_par_iter().map(one).collect();
     let all = all?;
     let refused: Vec<&String> = all

@@ -29,7 +29,7 @@ pub const IMAGE_WORDS: usize = 42
 const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 
 /// Words of the healthy motor's statistics.
-const HEALTHY_WORDS: usize = 7 + 2 * ROWS + 10 + RANGE_WORDS;
+const HEALTHY_WORDS: usize = 9 + 2 * ROWS + 10 + RANGE_WORDS;
 
 /// Words of where the calibration saw the motor: current, voltage over frequency, frequency.
 const RANGE_WORDS: usize = 6;
@@ -41,7 +41,7 @@ const CHAIN_WORDS: usize = CHANNELS + 1;
 const CAGE_WORDS: usize = 6;
 
 /// Layout of the words; a different one gets a different number.
-const SCHEMA: u32 = 0x444D_000C;
+const SCHEMA: u32 = 0x444D_000D;
 
 /// The monitor's configuration as words for flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,6 +201,7 @@ fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
     w.numbers(&h.mean);
     w.numbers(&h.scatter);
     w.numbers(&h.current_unbalance);
+    w.numbers(&h.negative_drop);
     w.number(h.current_unbalance_scatter);
     w.numbers(&h.turns_axis);
     w.numbers(&[u.stator_resistance, u.rotor_resistance, u.heating]);
@@ -221,6 +222,7 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
         mean: r.numbers(),
         scatter: r.numbers(),
         current_unbalance: r.numbers(),
+        negative_drop: r.numbers(),
         current_unbalance_scatter: r.number(),
         turns_axis: r.numbers(),
         uncertainty: Uncertainty {

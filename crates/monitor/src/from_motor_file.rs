@@ -229,6 +229,7 @@ fn healthy(settings: &HealthySettings) -> Healthy {
         scatter: settings.scatter_percent.map(share),
         current_unbalance: settings.current_unbalance_percent.map(share),
         current_unbalance_scatter: share(settings.current_unbalance_scatter_percent),
+        negative_drop: settings.negative_drop_percent.map(share),
         turns_axis: {
             let (im, re) = settings.turns_angle_deg.to_radians().sin_cos();
             [re as f32, im as f32]

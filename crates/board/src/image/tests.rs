@@ -105,6 +105,7 @@ fn calibrated() -> MonitorConfig {
         mean: [(); ROWS].map(|()| -number()),
         scatter: [(); ROWS].map(|()| number()),
         current_unbalance: [number(), -number()],
+        negative_drop: [-number(), number()],
         current_unbalance_scatter: number(),
         turns_axis: [number(), number()],
         uncertainty: Uncertainty {

@@ -181,6 +181,14 @@ impl Evidence {
         }
     }
 
+    /// What the supply's negative sequence drops over the motor's impedance, `Z_2 I_2/V_1`, as the channels a, b, c show it.
+    pub fn negative_drop(&self) -> Complex32 {
+        match self.backwards {
+            true => self.negative.drop.conj(),
+            false => self.negative.drop,
+        }
+    }
+
     /// The departure as the channels a, b, c show it: what a calibration keeps, in whichever direction the motor ran.
     pub fn in_channels(&self) -> Rows {
         if self.backwards {
@@ -357,15 +365,23 @@ impl Evidence {
             let in_phase = self.masked(assemble(&self.positive.turns, no, [no, no]));
             covariance.add(&in_phase, self.beyond.iron_loss());
         }
-        self.add_negative_impedance(&mut covariance, u.negative_impedance);
+        self.add_negative_impedance(&mut covariance, healthy);
         covariance
     }
 
-    /// The drop over the negative sequence's impedance may be wrong in size and in angle.
-    fn add_negative_impedance(&self, covariance: &mut Covariance<ROWS>, deviation: f32) {
+    /// The drop over the negative sequence's impedance may be wrong in size and in angle. What the calibration saw of that error is in the mean.
+    fn add_negative_impedance(&self, covariance: &mut Covariance<ROWS>, healthy: &Healthy) {
         let no = Complex32::ZERO;
+        let [re, im] = healthy.negative_drop;
+        // Of a motor that runs the other way the mean is known in size only, and widened by it.
+        let seen = if self.backwards {
+            no
+        } else {
+            Complex32::new(re, im)
+        };
+        let deviation = healthy.uncertainty.negative_impedance;
         for turn in [Complex32::ONE, Complex32::I] {
-            let rows = assemble(&[0.0; 3], self.negative.drop * turn, [no, no]);
+            let rows = assemble(&[0.0; 3], (self.negative.drop - seen) * turn, [no, no]);
             covariance.add(&self.masked(rows), deviation);
         }
     }

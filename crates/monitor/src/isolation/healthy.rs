@@ -63,6 +63,9 @@ pub struct Healthy {
     pub current_unbalance: [f32; 2],
     /// Its scatter; 0 if it was not calibrated.
     pub current_unbalance_scatter: f32,
+    /// What the supply's negative sequence dropped over the motor's impedance where the mean was learnt, `Z_2 I_2/V_1`: real and imaginary
+    /// part.
+    pub negative_drop: [f32; 2],
     /// Direction of a shorted turn's current seen from the motor's current, real and imaginary part, of length 1: it leads
     /// by the angle that the motor's current lags its voltage.
     pub turns_axis: [f32; 2],
@@ -115,7 +118,7 @@ impl Healthy {
         let unbalance_scatter = [self.current_unbalance_scatter];
         let uncertainty = self.uncertainty.shares();
         let significance = [self.significance];
-        let all: [(&str, &[f32], [f32; 2]); 7] = [
+        let all: [(&str, &[f32], [f32; 2]); 8] = [
             ("healthy.mean", &self.mean, signed),
             ("healthy.scatter", &self.scatter, share),
             ("healthy.current_unbalance", &self.current_unbalance, signed),
@@ -124,6 +127,7 @@ impl Healthy {
                 &unbalance_scatter,
                 share,
             ),
+            ("healthy.negative_drop", &self.negative_drop, signed),
             ("healthy.turns_axis", &self.turns_axis, [-1.01, 1.01]),
             ("healthy.uncertainty", &uncertainty, share),
             ("healthy.significance", &significance, [1.0, 1000.0]),
@@ -147,6 +151,7 @@ impl Healthy {
             scatter: [1.0; ROWS],
             current_unbalance: [0.0; 2],
             current_unbalance_scatter: 1.0,
+            negative_drop: [0.0; 2],
             turns_axis: [1.0, 0.0],
             uncertainty: Uncertainty::default(),
             range: None,

@@ -43,6 +43,8 @@ pub struct HealthySettings {
     pub current_unbalance_percent: [f64; 2],
     /// Scatter of `I_2/I_1`; 0: not calibrated.
     pub current_unbalance_scatter_percent: f64,
+    /// What the supply's negative sequence dropped over the motor's impedance, `Z_2 I_2/V_1`: real and imaginary part.
+    pub negative_drop_percent: [f64; 2],
     /// Angle by which the current of shorted turns leads the motor's, degrees.
     pub turns_angle_deg: f64,
     /// Standard uncertainty of the stator resistance, off the direction of heating.
@@ -84,6 +86,7 @@ impl Default for HealthySettings {
             scatter_percent: [0.0; EVIDENCE_ROWS],
             current_unbalance_percent: [0.0; 2],
             current_unbalance_scatter_percent: 0.0,
+            negative_drop_percent: [0.0; 2],
             turns_angle_deg: TURNS_ANGLE_DEG,
             stator_resistance_percent: 1.0,
             rotor_resistance_percent: 1.0,
@@ -133,6 +136,7 @@ fn read_values(section: &Section<'_>) -> Option<HealthySettings> {
     let mean = rows("mean_percent", &MEAN);
     let scatter = rows("scatter_percent", &SHARE);
     let unbalance = section.optional_numbers::<2>("current_unbalance_percent", &MEAN);
+    let drop = section.optional_numbers::<2>("negative_drop_percent", &MEAN);
     let numbers = base.shares().map(|(key, default)| share(key, default));
     let angle = section.number_or("turns_angle_deg", &ANGLE, base.turns_angle_deg);
     let significance = section.number_or("significance", &SIGNIFICANCE, base.significance);
@@ -143,6 +147,7 @@ fn read_values(section: &Section<'_>) -> Option<HealthySettings> {
         mean_percent: mean?,
         scatter_percent: scatter?,
         current_unbalance_percent: unbalance?.unwrap_or_default(),
+        negative_drop_percent: drop?.unwrap_or_default(),
         turns_angle_deg: angle?,
         significance: significance?,
         rotor: rotor?,

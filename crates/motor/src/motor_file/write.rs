@@ -167,6 +167,7 @@ fn healthy(text: &mut Text, settings: &HealthySettings) {
         "current_unbalance_percent",
         &settings.current_unbalance_percent,
     );
+    text.numbers("negative_drop_percent", &settings.negative_drop_percent);
     for (key, share) in settings.shares() {
         text.number(key, share);
     }

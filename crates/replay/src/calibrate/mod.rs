@@ -5,6 +5,7 @@
 
 mod fit;
 mod gains;
+mod negative;
 mod pieces;
 mod refuse;
 mod rotor;

@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::fit::Fitted;
+use super::negative;
 use super::windows::Observed;
 use super::{MonitorOf, Refusal};
 
@@ -73,6 +74,9 @@ pub fn healthy(
         settings.scatter_percent = scatter;
         take_uncertainty(&mut settings, fitted);
         settings.range = range(observed.iter().filter_map(conditions));
+        settings.negative_drop_percent = negative::drop_percent(&evidence);
+        let error = negative::impedance_error_percent(&evidence, &settings);
+        doubt_negative_impedance(&mut settings, error);
     } else {
         let zero = Row::ZeroCurrent as usize;
         for row in [zero, zero + 1] {
@@ -156,10 +160,13 @@ fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
     let causes = Fitted::causes().zip(&fitted.changes);
     let leakage = causes.filter(|(cause, _)| *cause == Cause::Leakage);
     for (_, change) in leakage {
-        let doubt = 100.0 * EFFECT_IN_LEAKAGE * change;
-        let place = &mut settings.negative_impedance_percent;
-        *place = place.hypot(doubt).min(LARGEST_SHARE_PERCENT);
+        doubt_negative_impedance(settings, 100.0 * EFFECT_IN_LEAKAGE * change);
     }
+}
+
+fn doubt_negative_impedance(settings: &mut HealthySettings, percent: f64) {
+    let place = &mut settings.negative_impedance_percent;
+    *place = place.hypot(percent).min(LARGEST_SHARE_PERCENT);
 }
 
 /// Share of a leakage's change that may be an effect which the file lacks: the impedance to the negative sequence, which is mostly leakage,

@@ -134,6 +134,7 @@ pub fn statistics() -> Healthy {
         mean: [0.0; ROWS],
         scatter: [5e-4; ROWS],
         current_unbalance: [0.0; 2],
+        negative_drop: [0.0; 2],
         current_unbalance_scatter: 5e-4,
         turns_axis: [0.342, 0.94],
         uncertainty: Uncertainty {
