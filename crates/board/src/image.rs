@@ -29,9 +29,9 @@ pub const IMAGE_WORDS: usize = 42
 const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 
 /// Words of the healthy motor's statistics.
-const HEALTHY_WORDS: usize = 9 + 2 * ROWS + 10 + RANGE_WORDS;
+const HEALTHY_WORDS: usize = 9 + 2 * ROWS + 11 + RANGE_WORDS;
 
-/// Words of where the calibration saw the motor: current, voltage over frequency, frequency.
+/// Words of where the calibration saw the motor: current, voltage over frequency, frequency, active current.
 const RANGE_WORDS: usize = 6;
 
 /// Words of the analogue chain: delays and roll-off.
@@ -207,7 +207,7 @@ fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
     w.numbers(&[u.stator_resistance, u.rotor_resistance, u.heating]);
     w.numbers(&[u.magnetizing_inductance, u.leakage, u.friction]);
     w.numbers(&[u.current_gain, u.voltage_gain, u.speed]);
-    w.number(u.negative_impedance);
+    w.numbers(&[u.iron_loss, u.negative_impedance]);
     write_range(w, h.range.as_ref());
     w.word(match h.in_motion {
         InMotion::Unseen => 0,
@@ -235,6 +235,7 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
             current_gain: r.number(),
             voltage_gain: r.number(),
             speed: r.number(),
+            iron_loss: r.number(),
             negative_impedance: r.number(),
         },
         range: read_range(r),
@@ -258,7 +259,7 @@ fn write_range(w: &mut Writer, range: Option<&CalibratedRange>) {
     w.number(range.current);
     w.numbers(&range.volt_per_hertz);
     w.numbers(&range.frequency);
-    w.number(range.fed_back);
+    w.number(range.active);
 }
 
 fn read_range(r: &mut Reader<'_>) -> Option<CalibratedRange> {
@@ -266,7 +267,7 @@ fn read_range(r: &mut Reader<'_>) -> Option<CalibratedRange> {
         current: r.number(),
         volt_per_hertz: r.numbers(),
         frequency: r.numbers(),
-        fed_back: r.number(),
+        active: r.number(),
     };
     let [_, highest] = range.frequency;
     (highest > 0.0).then_some(range)

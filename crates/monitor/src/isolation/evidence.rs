@@ -363,7 +363,7 @@ impl Evidence {
         if !self.beyond.is_within() {
             let no = Complex32::ZERO;
             let in_phase = self.masked(assemble(&self.positive.turns, no, [no, no]));
-            covariance.add(&in_phase, self.beyond.iron_loss());
+            covariance.add(&in_phase, self.beyond.iron_loss(u.iron_loss));
         }
         self.add_negative_impedance(&mut covariance, healthy);
         covariance

@@ -48,6 +48,8 @@ pub struct Uncertainty {
     pub voltage_gain: f32,
     /// Speed measurement.
     pub speed: f32,
+    /// Current that feeds the losses of the iron at rated voltage, of rated current.
+    pub iron_loss: f32,
     /// Impedance of the negative sequence: deep bars make it differ from the T model's.
     pub negative_impedance: f32,
 }
@@ -94,7 +96,7 @@ impl Uncertainty {
         }
     }
 
-    fn shares(&self) -> [f32; 10] {
+    fn shares(&self) -> [f32; 11] {
         [
             self.stator_resistance,
             self.rotor_resistance,
@@ -105,6 +107,7 @@ impl Uncertainty {
             self.current_gain,
             self.voltage_gain,
             self.speed,
+            self.iron_loss,
             self.negative_impedance,
         ]
     }

@@ -17,8 +17,8 @@ pub struct CalibratedRange {
     pub volt_per_hertz: [f32; 2],
     /// Lowest and highest supply frequency.
     pub frequency: [f32; 2],
-    /// Largest active current that the motor fed back, as a hoist does when it lowers; 0 where the motor always drove.
-    pub fed_back: f32,
+    /// Smallest active current; below 0 the motor fed it back, as a hoist does when it lowers.
+    pub active: f32,
 }
 
 /// What a window was measured at, shares of the rated values as in [`CalibratedRange`].
@@ -30,8 +30,8 @@ pub struct Conditions {
     pub volt_per_hertz: f32,
     /// Supply frequency.
     pub frequency: f32,
-    /// Active current that the motor feeds back, 0 where it drives.
-    pub fed_back: f32,
+    /// Active current; below 0 the motor feeds it back.
+    pub active: f32,
     /// Frequency in the cage: the slip's.
     pub slip: f32,
 }
@@ -60,6 +60,11 @@ pub struct Beyond {
     pub frequency: f32,
     /// Active current fed back beyond what the calibration saw, of rated current, and what the losses take of it; never below 0.
     pub fed_back: f32,
+    /// Active current below the smallest that the calibration saw, of rated current; never below 0.
+    pub lighter: f32,
+    /// How much of what a fit at that smallest one took for resistance appears again as a current, of 1 at no active current at all; per
+    /// current of the motor, of rated current.
+    pub regained: f32,
     /// Frequency in the cage beyond that of any load, of the rated frequency: nearly 1 where a motor stands; never below 0.
     pub slip: f32,
 }
@@ -82,9 +87,6 @@ const RESISTANCE_PER_CURRENT: f32 = 0.03;
 /// Standard deviation of the torque balance per square of the current beyond, of rated torque: stray-load loss is 0.5 to 2 % of
 /// the rated power (IEC 60034-2-1) and follows the square of the current.
 const TORQUE_PER_CURRENT: f32 = 0.03;
-/// Standard deviation of the current in phase with the voltage, a share of the motor's, per voltage over frequency or frequency beyond:
-/// iron losses are 1 to 3 % of the rated power.
-const IRON_LOSS: f32 = 0.015;
 
 /// Standard deviation of the magnetizing inductance per rated active current fed back: the drop over the resistance, 0.03 to 0.08 of the
 /// voltage, now adds to the flux what it took, and a saturated inductance falls by up to twice as much.
@@ -120,16 +122,11 @@ impl Conditions {
         };
         let drop = measured.i_s * (measured.params.r_s * raised);
         let active = measured.i_s.re * measured.u_s.re + measured.i_s.im * measured.u_s.im;
-        let fed_back = if active < 0.0 {
-            -active / (magnitude(measured.u_s) * current)
-        } else {
-            0.0
-        };
         Conditions {
             current: magnitude(measured.i_s) / current,
             volt_per_hertz: magnitude(measured.u_s - drop) / (voltage * frequency),
             frequency,
-            fed_back,
+            active: active / (magnitude(measured.u_s) * current),
             slip: (omega_sync - n_p * measured.omega_mech).abs() / omega,
         }
     }
@@ -138,11 +135,17 @@ impl Conditions {
 impl CalibratedRange {
     /// How far `at` lies beyond.
     pub fn beyond(&self, at: &Conditions) -> Beyond {
+        let lighter = more(self.active.max(0.0) - WANDERING, at.active.max(0.0));
         Beyond {
             current: farther(at.current, [0.0, self.current]),
             volt_per_hertz: farther(at.volt_per_hertz, self.volt_per_hertz),
             frequency: farther(at.frequency, self.frequency),
-            fed_back: match more(at.fed_back, self.fed_back + WANDERING) {
+            lighter,
+            regained: match lighter {
+                lighter if lighter > 0.0 => lighter / (self.active * at.current),
+                _ => 0.0,
+            },
+            fed_back: match more(-at.active, (-self.active).max(0.0) + WANDERING) {
                 more if more > 0.0 => more + LOSSES,
                 _ => 0.0,
             },
@@ -154,7 +157,7 @@ impl CalibratedRange {
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
         let share = [0.0, 100.0];
         check_range(("healthy.range.current", self.current, share))?;
-        check_range(("healthy.range.fed_back", self.fed_back, share))?;
+        check_range(("healthy.range.active", self.active, [-100.0, 100.0]))?;
         for (name, [low, high]) in [
             ("healthy.range.volt_per_hertz", self.volt_per_hertz),
             ("healthy.range.frequency", self.frequency),
@@ -195,7 +198,7 @@ impl Beyond {
     }
 
     /// How far the window lies from what the calibration saw itself: current, voltage over frequency and frequency as shares of it; what is
-    /// fed back and the slip as they are.
+    /// fed back, what is lighter and the slip as they are.
     pub fn from_seen(&self) -> Beyond {
         let seen = |share: f32| {
             let wandering = if share > 0.0 { WANDERING } else { -WANDERING };
@@ -210,12 +213,17 @@ impl Beyond {
         } else {
             0.0
         };
+        let lighter = match self.lighter {
+            lighter if lighter > 0.0 => lighter + WANDERING,
+            _ => 0.0,
+        };
         Beyond {
+            lighter,
             current: seen(self.current),
             volt_per_hertz: seen(self.volt_per_hertz),
             frequency: seen(self.frequency),
             fed_back,
-            slip: self.slip,
+            ..*self
         }
     }
 
@@ -248,9 +256,12 @@ impl Beyond {
             + TORQUE_PER_SLIP * self.slip
     }
 
-    /// Standard deviation of the current that feeds the iron's losses, a share of the motor's.
-    pub(super) fn iron_loss(&self) -> f32 {
-        IRON_LOSS * (self.volt_per_hertz.abs() + self.frequency.abs())
+    /// Standard deviation of the current that feeds the iron's losses, a share of the motor's; `uncertain`: at rated voltage, of rated
+    /// current.
+    ///
+    /// At one load a fit takes it for resistance of the rotor, which then is that load's own.
+    pub(super) fn iron_loss(&self, uncertain: f32) -> f32 {
+        uncertain * (self.volt_per_hertz.abs() + self.frequency.abs() + self.regained)
             + IRON_LOSS_PER_FED_BACK * self.fed_back
     }
 }

@@ -28,8 +28,8 @@ pub struct CalibratedRange {
     pub volt_per_hertz_percent: [f64; 2],
     /// Lowest and highest supply frequency, percent of the rated one.
     pub frequency_percent: [f64; 2],
-    /// Largest active current that the motor fed back, percent of the rated current; 0 where it always drove.
-    pub fed_back_percent: f64,
+    /// Smallest active current, percent of the rated current; below 0 the motor fed it back, as a hoist does when it lowers.
+    pub active_percent: f64,
 }
 
 /// Statistics of the healthy motor, percent of each row's scale or of each quantity's value.
@@ -65,6 +65,8 @@ pub struct HealthySettings {
     pub voltage_gain_percent: f64,
     /// Standard uncertainty of the speed.
     pub speed_percent: f64,
+    /// Standard uncertainty of the current that feeds the losses of the iron at rated voltage, percent of the rated current.
+    pub iron_loss_percent: f64,
     /// Standard uncertainty of the negative sequence's impedance.
     pub negative_impedance_percent: f64,
     /// Where the calibration saw the motor; `None`: nothing says.
@@ -79,7 +81,7 @@ pub struct HealthySettings {
 
 impl Default for HealthySettings {
     /// Nothing calibrated; what drifts in a careful installation: winding temperatures of stator and rotor apart by 2.5 K,
-    /// inductances hardly, bearings and seals, dividers and transformers of class 0.2, a quartz.
+    /// inductances hardly, bearings and seals, dividers and transformers of class 0.2, a quartz; iron losses are 1 to 3 % of the rated power.
     fn default() -> Self {
         HealthySettings {
             mean_percent: [0.0; EVIDENCE_ROWS],
@@ -97,6 +99,7 @@ impl Default for HealthySettings {
             current_gain_percent: 0.2,
             voltage_gain_percent: 0.2,
             speed_percent: 0.01,
+            iron_loss_percent: 1.5,
             negative_impedance_percent: 10.0,
             range: None,
             significance: 5.5,
@@ -187,9 +190,7 @@ fn read_range(section: &Section<'_>) -> Option<Option<CalibratedRange>> {
     let current_percent = section.optional_number(current, &SHARE);
     let volt_per_hertz_percent = section.optional_numbers::<2>(volt_per_hertz, &SHARE);
     let frequency_percent = section.optional_numbers::<2>(frequency, &SHARE);
-    let fed_back_percent = section
-        .optional_number(FED_BACK_KEY, &SHARE)?
-        .unwrap_or(0.0);
+    let active_percent = section.optional_number(ACTIVE_KEY, &MEAN)?.unwrap_or(0.0);
     let ordered = |[low, high]: [f64; 2]| [low.min(high), low.max(high)];
     match (
         current_percent?,
@@ -202,7 +203,7 @@ fn read_range(section: &Section<'_>) -> Option<Option<CalibratedRange>> {
                 current_percent,
                 volt_per_hertz_percent: ordered(volt_per_hertz),
                 frequency_percent: ordered(frequency),
-                fed_back_percent,
+                active_percent,
             }))
         }
         _ => {
@@ -228,11 +229,11 @@ pub(super) const RANGE_KEYS: [&str; 3] = [
     "calibrated_frequency_percent",
 ];
 
-/// Key of what a motor fed back, which may be absent.
-pub(super) const FED_BACK_KEY: &str = "calibrated_fed_back_percent";
+/// Key of the smallest active current, which may be absent.
+pub(super) const ACTIVE_KEY: &str = "calibrated_active_percent";
 
 /// How many plain shares there are.
-const SHARES: usize = 11;
+const SHARES: usize = 12;
 
 impl HealthySettings {
     /// The plain shares by their keys, in the order of the file.
@@ -248,6 +249,7 @@ impl HealthySettings {
             "current_gain_percent",
             "voltage_gain_percent",
             "speed_percent",
+            "iron_loss_percent",
             "negative_impedance_percent",
         ];
         let mut copy = *self;
@@ -267,6 +269,7 @@ impl HealthySettings {
             &mut self.current_gain_percent,
             &mut self.voltage_gain_percent,
             &mut self.speed_percent,
+            &mut self.iron_loss_percent,
             &mut self.negative_impedance_percent,
         ]
     }

@@ -25,10 +25,11 @@ friction_percent = 3.6
 current_gain_percent = 3.7
 voltage_gain_percent = 3.8
 speed_percent = 3.9
+iron_loss_percent = 4.0
 negative_impedance_percent = 4.1
 calibrated_current_percent = 102.0
 calibrated_volt_per_hertz_percent = [91.0, 96.0]
-calibrated_fed_back_percent = 37.0
+calibrated_active_percent = -37.0
 calibrated_frequency_percent = [80.0, 100.0]
 significance = 6.5
 rotor_active_percent = [90.0, 40.0]
@@ -169,12 +170,13 @@ fn a_healthy_section_is_read_key_by_key() {
         current_gain_percent: 3.7,
         voltage_gain_percent: 3.8,
         speed_percent: 3.9,
+        iron_loss_percent: 4.0,
         negative_impedance_percent: 4.1,
         range: Some(CalibratedRange {
             current_percent: 102.0,
             volt_per_hertz_percent: [91.0, 96.0],
             frequency_percent: [80.0, 100.0],
-            fed_back_percent: 37.0,
+            active_percent: -37.0,
         }),
         significance: 6.5,
         rotor: Some(HealthyRotor {

@@ -1,6 +1,6 @@
 //! A motor as the text of a motor file.
 
-use super::healthy::{FED_BACK_KEY, RANGE_KEYS};
+use super::healthy::{ACTIVE_KEY, RANGE_KEYS};
 use super::monitor::{FIELD_CURRENTS, FRAMES, LOADS};
 use super::sensors::MICROSECOND;
 use super::{
@@ -176,9 +176,7 @@ fn healthy(text: &mut Text, settings: &HealthySettings) {
         text.number(current, range.current_percent);
         text.numbers(volt_per_hertz, &range.volt_per_hertz_percent);
         text.numbers(frequency, &range.frequency_percent);
-        if range.fed_back_percent > 0.0 {
-            text.number(FED_BACK_KEY, range.fed_back_percent);
-        }
+        text.number(ACTIVE_KEY, range.active_percent);
     }
     text.number("turns_angle_deg", settings.turns_angle_deg);
     text.number("significance", settings.significance);

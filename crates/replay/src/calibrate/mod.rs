@@ -5,6 +5,7 @@
 
 mod fit;
 mod gains;
+mod losses;
 mod negative;
 mod pieces;
 mod refuse;

@@ -7,9 +7,9 @@ use num_complex::Complex64;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::fit::Fitted;
-use super::negative;
 use super::windows::Observed;
 use super::{MonitorOf, Refusal};
+use super::{losses, negative};
 
 /// Least scatter of a row, percent: linearity of transformers and dividers.
 const LEAST_SCATTER_PERCENT: f64 = 0.02;
@@ -74,6 +74,10 @@ pub fn healthy(
         settings.scatter_percent = scatter;
         take_uncertainty(&mut settings, fitted);
         settings.range = range(observed.iter().filter_map(conditions));
+        let uncertain =
+            |o: &Observed| losses::uncertain_current_percent(&monitors[o.recording], &o.window);
+        let place = &mut settings.iron_loss_percent;
+        *place = place.hypot(observed.first().map_or(0.0, uncertain));
         settings.negative_drop_percent = negative::drop_percent(&evidence);
         let error = negative::impedance_error_percent(&evidence, &settings);
         doubt_negative_impedance(&mut settings, error);
@@ -98,7 +102,7 @@ fn range(all: impl Iterator<Item = Conditions>) -> Option<CalibratedRange> {
             current_percent: current,
             volt_per_hertz_percent: [volt_per_hertz; 2],
             frequency_percent: [frequency; 2],
-            fed_back_percent: 100.0 * f64::from(at.fed_back),
+            active_percent: 100.0 * f64::from(at.active),
         }
     };
     let both = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
@@ -106,7 +110,7 @@ fn range(all: impl Iterator<Item = Conditions>) -> Option<CalibratedRange> {
         current_percent: a.current_percent.max(b.current_percent),
         volt_per_hertz_percent: both(a.volt_per_hertz_percent, b.volt_per_hertz_percent),
         frequency_percent: both(a.frequency_percent, b.frequency_percent),
-        fed_back_percent: a.fed_back_percent.max(b.fed_back_percent),
+        active_percent: a.active_percent.min(b.active_percent),
     })
 }
 

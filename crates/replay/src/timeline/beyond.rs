@@ -4,7 +4,7 @@ use monitor::Beyond;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Windows beyond the currents, voltages, frequencies and slips of the calibration, or feeding back where it always drove; there less is known of the motor, and smaller faults
+/// Windows beyond the currents, voltages, frequencies and slips of the calibration, loaded more lightly or feeding back where it always drove; there less is known of the motor, and smaller faults
 /// stay dark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct BeyondCalibration {
@@ -16,6 +16,8 @@ pub struct BeyondCalibration {
     pub volt_per_hertz_percent: f64,
     /// Farthest supply frequency from those of the calibration, percent of the nearest.
     pub frequency_percent: f64,
+    /// Farthest active current below the smallest of the calibration, percent of the rated current.
+    pub lighter_percent: f64,
     /// Largest active current fed back beyond the calibration, percent of the rated current.
     pub fed_back_percent: f64,
     /// Highest frequency in the cage beyond that of loads, percent of the rated frequency.
@@ -32,6 +34,7 @@ impl BeyondCalibration {
             seen.current,
             seen.volt_per_hertz,
             seen.frequency,
+            seen.lighter,
             seen.fed_back,
             seen.slip,
         ]
@@ -44,6 +47,7 @@ impl BeyondCalibration {
             &mut self.current_percent,
             &mut self.volt_per_hertz_percent,
             &mut self.frequency_percent,
+            &mut self.lighter_percent,
             &mut self.fed_back_percent,
             &mut self.slip_percent,
         ];
@@ -62,6 +66,11 @@ impl BeyondCalibration {
                 "off",
             ),
             ("frequency up to", self.frequency_percent, "off"),
+            (
+                "active current up to",
+                self.lighter_percent,
+                "of the rated current below",
+            ),
             (
                 "fed back up to",
                 self.fed_back_percent,

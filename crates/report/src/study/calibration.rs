@@ -118,8 +118,8 @@ pub struct CalibrationRange {
     pub volt_per_hertz_percent: [f64; 2],
     /// Lowest and highest supply frequency.
     pub frequency_percent: [f64; 2],
-    /// Largest active current that the motor fed back; 0 where it always drove.
-    pub fed_back_percent: f64,
+    /// Smallest active current; below 0 the motor fed it back.
+    pub active_percent: f64,
 }
 
 /// The healthy cage, percent of the active current; loads in percent of the rated current.
@@ -204,7 +204,7 @@ fn healthy(settings: &HealthySettings) -> HealthyStatistics {
             current_percent: range.current_percent,
             volt_per_hertz_percent: range.volt_per_hertz_percent,
             frequency_percent: range.frequency_percent,
-            fed_back_percent: range.fed_back_percent,
+            active_percent: range.active_percent,
         }),
         in_motion: settings.in_motion,
     }

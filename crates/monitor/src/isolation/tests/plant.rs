@@ -147,6 +147,7 @@ pub fn statistics() -> Healthy {
             current_gain: 0.002,
             voltage_gain: 0.002,
             speed: 1e-4,
+            iron_loss: 0.015,
             negative_impedance: 0.1,
         },
         range: None,

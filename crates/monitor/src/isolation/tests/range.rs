@@ -20,7 +20,7 @@ fn seen(voltage: f32) -> CalibratedRange {
         current: 1.5 * at.current,
         volt_per_hertz: [voltage * at.volt_per_hertz; 2],
         frequency: [at.frequency; 2],
-        fed_back: 0.0,
+        active: 0.0,
     }
 }
 
@@ -87,14 +87,14 @@ fn distances_are_shares_of_the_nearer_end() {
         current: 0.8,
         volt_per_hertz: [0.95, 1.0],
         frequency: [0.5, 1.0],
-        fed_back: 0.2,
+        active: -0.2,
     };
     let at = |current, volt_per_hertz, frequency| {
         range.beyond(&Conditions {
             current,
             volt_per_hertz,
             frequency,
-            fed_back: 0.2,
+            active: -0.2,
             slip: 0.1,
         })
     };
@@ -120,9 +120,9 @@ fn distances_are_shares_of_the_nearer_end() {
 #[test]
 fn what_is_fed_back_and_the_slip_count_from_where_loads_end() {
     let range = seen(1.0);
-    let at = |fed_back, slip| {
+    let at = |fed_back: f32, slip| {
         range.beyond(&Conditions {
-            fed_back,
+            active: -fed_back,
             slip,
             ..conditions()
         })
@@ -134,11 +134,11 @@ fn what_is_fed_back_and_the_slip_count_from_where_loads_end() {
     near(beyond.slip, 0.8);
     near(beyond.from_seen().fed_back, 0.6);
     let lowering = Conditions {
-        fed_back: 0.6,
+        active: -0.6,
         ..conditions()
     };
     let learnt = CalibratedRange {
-        fed_back: 0.6,
+        active: -0.6,
         ..range
     };
     assert!(learnt.beyond(&lowering).is_within());
@@ -149,12 +149,12 @@ fn what_is_fed_back_and_the_slip_count_from_where_loads_end() {
 fn what_is_fed_back_is_the_active_current() {
     let driven = Plant::healthy().window();
     let at = |window| monitor().conditions(window).expect("voltages and speed");
-    assert_eq!(at(&driven).fed_back, 0.0);
+    assert!(at(&driven).active > 0.0);
     let mut driving = driven;
     driving.i_s.positive = -driving.i_s.positive;
     let (u, i) = (driven.u_s.positive, driven.i_s.positive);
     let active = (u.conj() * i).re / u.norm() / monitor().config().rated_current;
-    assert!((at(&driving).fed_back - active).abs() < 1e-5, "{active}");
+    assert!((at(&driving).active + active).abs() < 1e-5, "{active}");
 }
 
 /// Near standstill a torque is no friction: the balance says nothing.
@@ -187,5 +187,5 @@ fn ranges_that_are_none_are_refused() {
     refused(|range| range.current = f32::NAN);
     refused(|range| range.volt_per_hertz = [1.0, 0.9]);
     refused(|range| range.frequency = [-0.1, 1.0]);
-    refused(|range| range.fed_back = -0.1);
+    refused(|range| range.active = f32::NAN);
 }

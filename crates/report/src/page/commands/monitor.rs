@@ -78,6 +78,10 @@ fn beyond(result: &Place<'_>) -> Markup {
         ("current", " % above its largest current"),
         ("volt_per_hertz", " % off its voltages over frequency"),
         ("frequency", " % off its frequencies"),
+        (
+            "lighter",
+            " % of the rated current below its smallest active current",
+        ),
         ("fed_back", " % of the rated current fed back"),
         ("slip", " % more frequency in the cage than loads bring"),
     ];

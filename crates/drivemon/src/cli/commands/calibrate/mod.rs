@@ -267,12 +267,12 @@ fn print_loads(stator_resistance_percent: f64) {
 fn print_range(range: &CalibrationRange) {
     let [low, high] = range.volt_per_hertz_percent;
     let [slow, fast] = range.frequency_percent;
-    let fed_back = match range.fed_back_percent {
-        percent if percent >= 1.0 => format!(" (fed back: {percent:.0} %)"),
-        _ => String::new(),
+    let active = match range.active_percent {
+        percent if percent <= -1.0 => format!("fed back up to {:.0} %", -percent),
+        percent => format!("active current from {percent:.0} %"),
     };
     say!(
-        "  seen up to {:.0} % of the rated current{fed_back}, at {low:.0} to {high:.0} % of the rated voltage over frequency and {slow:.0} to {fast:.0} % of the rated frequency; beyond, small faults stay dark",
+        "  seen up to {:.0} % of the rated current ({active}), at {low:.0} to {high:.0} % of the rated voltage over frequency and {slow:.0} to {fast:.0} % of the rated frequency; beyond, small faults stay dark",
         range.current_percent
     );
 }
