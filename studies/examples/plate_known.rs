@@ -6,13 +6,14 @@
 //! - `learnt`: the board has learnt thresholds at one load before (docs/firmware.md).
 //! - `healthy`: a recording in good order at that load has taught parameters and what is normal, as `drivemon check --healthy` does.
 //! - `ratios`: the plate has breakdown and locked-rotor values too.
-//! - `list`: every FAULT.
+//! - `faults`: the motors have faults, and FAULT is right.
+//! - `list`: every FAULT of a healthy motor; with SAVE=FOLDER in the environment its recording and motor file are kept.
 
 use std::error::Error;
 
 use audit::{Expectation, audit};
 use board::{Learner, Progress};
-use monitor::{Monitor, MonitorConfig, MonitorState};
+use monitor::{Monitor, MonitorState, RESIDUALS};
 use motor::MotorFile;
 use motor::motor_file::EffectEntry;
 use nameplate::plate::PlateFile;
@@ -25,7 +26,8 @@ use recording::Recording;
 use replay::check::Knowledge;
 use replay::{Samples, VerdictState};
 use scenario::simulate::record;
-use scenario::{LoadSpec, Piecewise, Scenario, SensorSpec, Start, SupplySpec};
+use scenario::{Fault, LoadSpec, Piecewise, Scenario, SensorSpec, Start, SupplySpec};
+use studies::broken::{Broken, faults};
 use studies::hidden;
 
 /// Load, share of the rated one, voltage and frequency, shares of the rated ones.
@@ -57,9 +59,11 @@ const CONDITIONS: [[f64; 3]; 24] = [
 ];
 /// Seconds that are judged.
 const SECONDS: f64 = 1.5;
+/// Seconds in good order that `check --healthy` is given.
+const HEALTHY_SECONDS: f64 = 4.0;
 /// Seconds that a board learns from, at 50 Hz.
 const LEARNT_SECONDS: f64 = 14.0;
-/// Load at which a board learns.
+/// Load at which the motor in good order is seen.
 const LEARNT_AT: f64 = 0.7;
 /// Of full scale.
 const NOISE: f64 = 0.001;
@@ -122,11 +126,24 @@ struct Machine<'a> {
     warmth: [f64; 2],
 }
 
-impl Machine<'_> {
+impl<'a> Machine<'a> {
+    fn draw(motors: &'a [Known], random: &mut Pcg64) -> Self {
+        let of = motors.choose(random).expect("not empty");
+        let is_new = |e: &EffectEntry| of.truth.effects.iter().all(|known| known.name != e.name);
+        let mut hidden = hidden::hidden(&of.truth, random, false);
+        hidden.retain(is_new);
+        Machine {
+            of,
+            hidden,
+            warmth: [(); 2].map(|()| random.random_range(0.0..0.15)),
+        }
+    }
+
     fn recorded(
         &self,
         [load, volt, hertz]: [f64; 3],
         seconds: f64,
+        fault: Option<Fault>,
         seed: u64,
     ) -> Result<Recording, Box<dyn Error>> {
         let mut motor = self.of.truth.clone();
@@ -152,6 +169,7 @@ impl Machine<'_> {
             },
             load: LoadSpec::constant(torque, true),
             effects,
+            faults: fault.into_iter().collect(),
             sample_rate_hz: 5000.0,
             start: Start::Running,
             sensors: SensorSpec::of(&motor),
@@ -160,32 +178,33 @@ impl Machine<'_> {
         Ok(record(&scenario, |_| ())?)
     }
 
-    /// What the board does with the motor file after it has learnt, or what it says against learning.
-    fn learnt(
-        &self,
-        config: MonitorConfig,
-        recording: &Recording,
-    ) -> Result<MonitorConfig, String> {
-        let audit = audit(recording, &Expectation::from(&self.of.known));
-        let samples = Samples::new(recording, &audit);
-        let monitor = Monitor::new(config).map_err(|e| e.to_string())?;
-        let (mut state, mut learner) = (MonitorState::default(), Learner::new(1));
-        for timed in samples.iter() {
-            let Some(report) = monitor.update(&mut state, &timed.sample) else {
-                continue;
-            };
-            match learner.observe(&report, &config, &config.thresholds) {
-                Progress::Learning => {}
-                Progress::Learnt(calibration) => {
-                    let mut learnt = config;
-                    learnt.thresholds = calibration.thresholds;
-                    return Ok(learnt);
-                }
-                Progress::Refused(refusal) => return Err(refusal.label().to_owned()),
-            }
-        }
-        Err(format!("{} windows only", learner.windows()))
+    fn name(&self) -> String {
+        let names: Vec<&str> = self.hidden.iter().map(|e| e.name.as_str()).collect();
+        format!("{}, hidden {}", self.of.truth.name, names.join(" "))
     }
+}
+
+/// The thresholds that the board learns, or what it says against learning.
+fn learnt(
+    known: &MotorFile,
+    recording: &Recording,
+) -> Result<Result<[f32; RESIDUALS], String>, Box<dyn Error>> {
+    let config = replay::config_for(known, recording)?;
+    let audit = audit(recording, &Expectation::from(known));
+    let samples = Samples::new(recording, &audit);
+    let monitor = Monitor::new(config)?;
+    let (mut state, mut learner) = (MonitorState::default(), Learner::new(1));
+    for timed in samples.iter() {
+        let Some(report) = monitor.update(&mut state, &timed.sample) else {
+            continue;
+        };
+        match learner.observe(&report, &config, &config.thresholds) {
+            Progress::Learning => {}
+            Progress::Learnt(calibration) => return Ok(Ok(calibration.thresholds)),
+            Progress::Refused(refusal) => return Ok(Err(refusal.label().to_owned())),
+        }
+    }
+    Ok(Err(format!("{} windows only", learner.windows())))
 }
 
 /// What is asked.
@@ -193,79 +212,110 @@ impl Machine<'_> {
 struct Asked {
     learnt: bool,
     healthy: bool,
+    faults: bool,
 }
 
-/// What was said of one machine at each condition.
+/// What was said under a condition.
+struct Judged {
+    /// Place of the condition.
+    at: usize,
+    fault: &'static str,
+    state: VerdictState,
+    first: String,
+}
+
+/// What was said of one machine.
 struct Told {
     name: String,
     knowledge: Knowledge,
+    /// Why the board did not learn.
     refused: Option<String>,
-    said: Vec<(usize, VerdictState, String)>,
+    said: Vec<Judged>,
 }
 
 fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Error>> {
     let mut random = Pcg64::seed_from_u64(seed);
-    let of = motors.choose(&mut random).expect("not empty");
-    let machine = Machine {
-        of,
-        hidden: hidden::hidden(&of.truth, &mut random, false)
-            .into_iter()
-            .filter(|e| of.truth.effects.iter().all(|known| known.name != e.name))
-            .collect(),
-        warmth: [(); 2].map(|()| random.random_range(0.0..0.15)),
-    };
-    let names: Vec<&str> = machine.hidden.iter().map(|e| e.name.as_str()).collect();
+    let machine = Machine::draw(motors, &mut random);
     let mut told = Told {
-        name: format!("{seed} {}, hidden {}", of.truth.name, names.join(" ")),
+        name: format!("{seed} {}", machine.name()),
         knowledge: Knowledge::AsGiven,
         refused: None,
         said: Vec::new(),
     };
-    let mut thresholds = None;
-    let mut known = of.known.clone();
+    let mut known = machine.of.known.clone();
     if asked.healthy {
-        let recording = machine.recorded([LEARNT_AT, 1.0, 1.0], 4.0, random.random())?;
+        let recording = machine.recorded(
+            [LEARNT_AT, 1.0, 1.0],
+            HEALTHY_SECONDS,
+            None,
+            random.random(),
+        )?;
         let learnt = replay::check::learn(&known, &[&recording], &mut |_, _| {});
         told.name += &format!(", {:?} {:?}", learnt.knowledge, learnt.notes);
         told.knowledge = learnt.knowledge;
         known = learnt.motor;
-        if let Ok(folder) = std::env::var("SAVE") {
-            std::fs::write(format!("{folder}/{seed}-truth.toml"), of.truth.to_toml())?;
-            std::fs::write(format!("{folder}/{seed}-plate.toml"), of.known.to_toml())?;
-            std::fs::write(format!("{folder}/{seed}-known.toml"), known.to_toml())?;
-            formats::write_recording(format!("{folder}/{seed}.parquet").as_ref(), &recording)?;
-        }
+        save(seed, "healthy", &known, &recording)?;
     }
+    let mut thresholds = None;
     if asked.learnt {
-        let recording = machine.recorded([LEARNT_AT, 1.0, 1.0], LEARNT_SECONDS, random.random())?;
-        let config = replay::config_for(&of.known, &recording)?;
-        match machine.learnt(config, &recording) {
-            Ok(config) => thresholds = Some(config.thresholds),
+        let at = [LEARNT_AT, 1.0, 1.0];
+        let recording = machine.recorded(at, LEARNT_SECONDS, None, random.random())?;
+        match learnt(&known, &recording)? {
+            Ok(learnt) => thresholds = Some(learnt),
             Err(refusal) => {
                 told.refused = Some(refusal);
                 return Ok(told);
             }
         }
     }
-    for (place, at) in CONDITIONS.into_iter().enumerate() {
-        // Beyond the breakdown torque no motor runs.
-        let Ok(recording) = machine.recorded(at, SECONDS, random.random()) else {
-            continue;
-        };
-        let audit = audit(&recording, &Expectation::from(&known));
-        let mut config = replay::config_for(&known, &recording)?;
-        config.thresholds = thresholds.unwrap_or(config.thresholds);
-        let monitor = Monitor::new(config)?;
-        let timeline = replay::replay(&monitor, &Samples::new(&recording, &audit), &mut |_| {});
-        let verdict = timeline.verdict(&[]);
-        let first = verdict
-            .candidates
-            .first()
-            .map(|first| format!("{:?} {:?}", first.fault, first.size_percent));
-        told.said
-            .push((place, verdict.state, first.unwrap_or_default()));
+    let broken: Vec<Option<Broken>> = match asked.faults {
+        true => faults().into_iter().map(Some).collect(),
+        false => vec![None],
+    };
+    for (at, condition) in CONDITIONS.into_iter().enumerate() {
+        for broken in &broken {
+            let fault = broken.as_ref().map(|broken| broken.1.clone());
+            // Beyond the breakdown torque no motor runs.
+            let Ok(recording) = machine.recorded(condition, SECONDS, fault, random.random()) else {
+                continue;
+            };
+            let audit = audit(&recording, &Expectation::from(&known));
+            let mut config = replay::config_for(&known, &recording)?;
+            config.thresholds = thresholds.unwrap_or(config.thresholds);
+            let monitor = Monitor::new(config)?;
+            let samples = Samples::new(&recording, &audit);
+            let verdict = replay::replay(&monitor, &samples, &mut |_| {}).verdict(&[]);
+            if verdict.state == VerdictState::Fault && broken.is_none() {
+                save(seed, &at.to_string(), &known, &recording)?;
+            }
+            let first = verdict.candidates.first();
+            let first = first.map(|first| format!("{:?} {:?}", first.fault, first.size_percent));
+            told.said.push(Judged {
+                at,
+                fault: broken.as_ref().map_or("healthy", |broken| broken.0),
+                state: verdict.state,
+                first: first.unwrap_or_default(),
+            });
+        }
     }
     Ok(told)
+}
+
+/// Keeps a recording and the motor file that judged it where `SAVE` names a folder.
+fn save(
+    seed: u64,
+    what: &str,
+    motor: &MotorFile,
+    recording: &Recording,
+) -> Result<(), Box<dyn Error>> {
+    if let Ok(folder) = std::env::var("SAVE") {
+        std::fs::write(format!("{folder}/{seed}-motor.toml"), motor.to_toml())?;
+        formats::write_recording(
+            format!("{folder}/{seed}-{what}.parquet").as_ref(),
+            recording,
+        )?;
+    }
+    Ok(())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -276,61 +326,66 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (machines, seed) = (number(0, 60), number(1, 1));
     let has = |word: &str| words.iter().any(|given| given == word);
-    let motors = motors(has("ratios"))?;
     let asked = Asked {
         learnt: has("learnt"),
         healthy: has("healthy"),
+        faults: has("faults"),
     };
+    let motors = motors(has("ratios"))?;
     let one = |k| judged(&motors, 1_000_003 * seed + k, asked).map_err(|error| error.to_string());
     let all: Result<Vec<Told>, String> = (0..machines).into_par_iter().map(one).collect();
     let all = all?;
-    let refused: Vec<&String> = all
-        .iter()
-        .filter_map(|told| told.refused.as_ref())
-        .collect();
     let of = |knowledge| {
         all.iter()
             .filter(|told| told.knowledge == knowledge)
             .count()
     };
     println!(
-        "identified {}, calibrated {}",
-        of(Knowledge::Identified),
-        of(Knowledge::Calibrated)
-    );
-    println!(
-        "{} motors, {machines} machines, {} not learnt",
+        "{machines} machines of {} motors: {} calibrated, {} refused by the board\n",
         motors.len(),
-        refused.len()
+        of(Knowledge::Calibrated),
+        all.iter().filter(|told| told.refused.is_some()).count()
     );
-    println!("| load | voltage | frequency | FAULT | healthy | not judged | other |");
-    println!("|---|---|---|---|---|---|---|");
-    for (place, [load, volt, hertz]) in CONDITIONS.into_iter().enumerate() {
-        let here = || {
-            let said = all.iter().flat_map(|told| &told.said);
-            said.filter(|(at, _, _)| *at == place)
-        };
-        let count = |state| here().filter(|(_, is, _)| *is == state).count();
-        let [fault, healthy, not] = [
-            VerdictState::Fault,
-            VerdictState::Healthy,
-            VerdictState::NotJudged,
-        ]
-        .map(count);
-        let other = here().count() - fault - healthy - not;
-        println!("| {load} | {volt} | {hertz} | {fault} | {healthy} | {not} | {other} |");
-    }
+    print(&all, asked.faults);
     if has("list") {
-        for told in &all {
-            for (place, state, first) in &told.said {
-                if *state == VerdictState::Fault {
-                    println!("{}: {:?}: {first}", told.name, CONDITIONS[*place]);
-                }
-            }
-            if let Some(refused) = &told.refused {
-                println!("{}: {refused}", told.name);
-            }
-        }
+        list(&all);
     }
     Ok(())
+}
+
+fn print(all: &[Told], broken: bool) {
+    let names: Vec<&str> = match broken {
+        true => faults().into_iter().map(|broken| broken.0).collect(),
+        false => vec!["healthy"],
+    };
+    println!(
+        "| load | voltage | frequency | FAULT: {} | not judged |",
+        names.join(" | ")
+    );
+    println!("|---|---|---|{}---|", "---|".repeat(names.len()));
+    let said = || all.iter().flat_map(|told| &told.said);
+    for (place, [load, volt, hertz]) in CONDITIONS.into_iter().enumerate() {
+        print!("| {load} | {volt} | {hertz} |");
+        for name in &names {
+            let here = || said().filter(|j| j.at == place && j.fault == *name);
+            let lit = here().filter(|j| j.state == VerdictState::Fault);
+            print!(" {} of {} |", lit.count(), here().count());
+        }
+        let judged = [VerdictState::Healthy, VerdictState::Fault];
+        let not = said().filter(|j| j.at == place && !judged.contains(&j.state));
+        println!(" {} |", not.count());
+    }
+}
+
+/// Every FAULT of a healthy motor, and every refusal of a board.
+fn list(all: &[Told]) {
+    for told in all {
+        let lit = |j: &&Judged| j.state == VerdictState::Fault && j.fault == "healthy";
+        for j in told.said.iter().filter(lit) {
+            println!("{}: {:?}: {}", told.name, CONDITIONS[j.at], j.first);
+        }
+        if let Some(refused) = &told.refused {
+            println!("{}: {refused}", told.name);
+        }
+    }
 }

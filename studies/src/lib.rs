@@ -2,5 +2,6 @@
 
 #![allow(missing_docs)]
 
+pub mod broken;
 pub mod drive;
 pub mod hidden;

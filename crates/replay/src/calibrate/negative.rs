@@ -19,10 +19,17 @@ pub fn drop_percent(evidence: &[(Evidence, f64)]) -> [f64; 2] {
     [mean.re, mean.im]
 }
 
-/// Size of the error that explains the windows best, percent of the impedance.
-///
-/// Least squares over `balance = gains + error drop`, with what is believed of gains and error beforehand.
-pub fn impedance_error_percent(evidence: &[(Evidence, f64)], settings: &HealthySettings) -> f64 {
+/// Error of the impedance, shares of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpedanceError {
+    /// Size of the one that explains the windows best.
+    pub size: f64,
+    /// Standard deviation that the windows leave it.
+    pub deviation: f64,
+}
+
+/// The error by least squares over `balance = gains + error drop`, with what is believed of gains and error beforehand.
+pub fn impedance_error(evidence: &[(Evidence, f64)], settings: &HealthySettings) -> ImpedanceError {
     // Three channels whose gains are off by themselves leave their root mean square in each sequence.
     let gains = settings.voltage_gain_percent / 100.0 / 3_f64.sqrt();
     let error = BEFORE.hypot(settings.leakage_percent / 100.0);
@@ -43,7 +50,10 @@ pub fn impedance_error_percent(evidence: &[(Evidence, f64)], settings: &HealthyS
     }
     let determinant = ones * squares - mixed.norm_sqr();
     let error = (of_error * ones - mixed.conj() * of_gains) / determinant;
-    100.0 * error.norm()
+    ImpedanceError {
+        size: error.norm(),
+        deviation: (ones / determinant).sqrt(),
+    }
 }
 
 fn drop(evidence: &Evidence) -> Complex64 {

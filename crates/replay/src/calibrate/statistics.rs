@@ -79,8 +79,11 @@ pub fn healthy(
         let place = &mut settings.iron_loss_percent;
         *place = place.hypot(observed.first().map_or(0.0, uncertain));
         settings.negative_drop_percent = negative::drop_percent(&evidence);
-        let error = negative::impedance_error_percent(&evidence, &settings);
-        doubt_negative_impedance(&mut settings, error);
+        let error = negative::impedance_error(&evidence, &settings);
+        doubt_negative_impedance(&mut settings, 100.0 * error.size);
+        if fitted.motor.uncertainty.is_some() {
+            doubt_negative_impedance(&mut settings, 100.0 * error.deviation);
+        }
     } else {
         let zero = Row::ZeroCurrent as usize;
         for row in [zero, zero + 1] {
