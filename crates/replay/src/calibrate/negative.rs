@@ -7,9 +7,13 @@ use monitor::{Evidence, Row};
 use motor::motor_file::HealthySettings;
 use num_complex::Complex64;
 
-/// Standard deviation of the impedance's error before anything was seen, a share of it: at a slip of nearly 2 the bars of a cage have 1.2 to 3
-/// times the resistance that they have under load, and a tenth to a third less leakage.
-const BEFORE: f64 = 0.3;
+/// Standard deviation of the impedance's error before anything was seen, a share of it, of a circuit that was measured.
+const MEASURED: f64 = 0.1;
+/// Of a circuit that a plate tells: at a slip of nearly 2 the bars of a cage have 1.2 to 3 times the resistance that they have under load, and a
+/// tenth to a third less leakage.
+const OF_A_PLATE: f64 = 0.3;
+/// What recordings teach at best: leakage follows the current, resistances follow the temperature.
+const LEAST: f64 = 0.05;
 
 /// Mean of what the supply's negative sequence dropped over the modelled impedance, percent of the positive sequence's voltage.
 pub fn drop_percent(evidence: &[(Evidence, f64)]) -> [f64; 2] {
@@ -19,20 +23,18 @@ pub fn drop_percent(evidence: &[(Evidence, f64)]) -> [f64; 2] {
     [mean.re, mean.im]
 }
 
-/// Error of the impedance, shares of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ImpedanceError {
-    /// Size of the one that explains the windows best.
-    pub size: f64,
-    /// Standard deviation that the windows leave it.
-    pub deviation: f64,
-}
-
-/// The error by least squares over `balance = gains + error drop`, with what is believed of gains and error beforehand.
-pub fn impedance_error(evidence: &[(Evidence, f64)], settings: &HealthySettings) -> ImpedanceError {
+/// How far the impedance may be off, a share of it: the root mean square of an error that is not corrected.
+///
+/// Its mean and its standard deviation by least squares over `balance = gains + error drop`, with what is believed of gains and error
+/// beforehand. `of_a_plate`: a plate alone tells the circuit.
+pub fn impedance_error(
+    evidence: &[(Evidence, f64)],
+    settings: &HealthySettings,
+    of_a_plate: bool,
+) -> f64 {
     // Three channels whose gains are off by themselves leave their root mean square in each sequence.
     let gains = settings.voltage_gain_percent / 100.0 / 3_f64.sqrt();
-    let error = BEFORE.hypot(settings.leakage_percent / 100.0);
+    let error = if of_a_plate { OF_A_PLATE } else { MEASURED };
     let row = Row::Negative as usize;
     let [re, im] = [row, row + 1].map(|row| settings.scatter_percent[row] / 100.0);
     let precision = 1.0 / (re * re + im * im);
@@ -50,10 +52,8 @@ pub fn impedance_error(evidence: &[(Evidence, f64)], settings: &HealthySettings)
     }
     let determinant = ones * squares - mixed.norm_sqr();
     let error = (of_error * ones - mixed.conj() * of_gains) / determinant;
-    ImpedanceError {
-        size: error.norm(),
-        deviation: (ones / determinant).sqrt(),
-    }
+    let deviation = (ones / determinant).sqrt();
+    error.norm().hypot(deviation).max(LEAST)
 }
 
 fn drop(evidence: &Evidence) -> Complex64 {

@@ -79,11 +79,10 @@ pub fn healthy(
         let place = &mut settings.iron_loss_percent;
         *place = place.hypot(observed.first().map_or(0.0, uncertain));
         settings.negative_drop_percent = negative::drop_percent(&evidence);
-        let error = negative::impedance_error(&evidence, &settings);
-        doubt_negative_impedance(&mut settings, 100.0 * error.size);
-        if fitted.motor.uncertainty.is_some() {
-            doubt_negative_impedance(&mut settings, 100.0 * error.deviation);
-        }
+        let of_a_plate = fitted.motor.uncertainty.is_some();
+        settings.negative_impedance_percent =
+            100.0 * negative::impedance_error(&evidence, &settings, of_a_plate);
+        doubt_half_of_leakage(&mut settings, fitted);
     } else {
         let zero = Row::ZeroCurrent as usize;
         for row in [zero, zero + 1] {
@@ -164,16 +163,17 @@ fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
             *place = place.hypot(100.0 * error).min(LARGEST_SHARE_PERCENT);
         }
     }
-    let causes = Fitted::causes().zip(&fitted.changes);
-    let leakage = causes.filter(|(cause, _)| *cause == Cause::Leakage);
-    for (_, change) in leakage {
-        doubt_negative_impedance(settings, 100.0 * EFFECT_IN_LEAKAGE * change);
-    }
 }
 
-fn doubt_negative_impedance(settings: &mut HealthySettings, percent: f64) {
+/// What a fit has put down to leakage may be an effect, which leaves the negative sequence's impedance as it was.
+fn doubt_half_of_leakage(settings: &mut HealthySettings, fitted: &Fitted) {
+    let causes = Fitted::causes().zip(&fitted.changes);
+    let leakage = causes.filter(|(cause, _)| *cause == Cause::Leakage);
     let place = &mut settings.negative_impedance_percent;
-    *place = place.hypot(percent).min(LARGEST_SHARE_PERCENT);
+    for (_, change) in leakage {
+        let doubt = 100.0 * EFFECT_IN_LEAKAGE * change;
+        *place = place.hypot(doubt).min(LARGEST_SHARE_PERCENT);
+    }
 }
 
 /// Share of a leakage's change that may be an effect which the file lacks: the impedance to the negative sequence, which is mostly leakage,

@@ -154,6 +154,49 @@ fn the_mean_of_the_healthy_motor_is_taken_off() {
     }
 }
 
+/// The error of the negative sequence's impedance that a calibration saw is in its mean: on the same supply nothing of it is in doubt.
+#[test]
+fn the_drop_that_a_calibration_saw_is_in_no_doubt() {
+    let unbalance = Complex32::new(0.006, -0.008);
+    let plant = Plant {
+        unbalance: Complex64::new(0.006, -0.008),
+        ..Plant::healthy()
+    };
+    let window = plant.window();
+    let variance = |healthy: &Healthy, row: usize| {
+        let evidence = monitor()
+            .evidence(healthy, &window)
+            .expect("all is measured");
+        let along = evidence.resistances();
+        let covariance = evidence.covariance(healthy, &along, [0.0; 2]).factorise();
+        covariance.variances().nth(row).expect("a row")
+    };
+    let known = Healthy {
+        uncertainty: Uncertainty::default(),
+        ..statistics()
+    };
+    let mut doubted = known;
+    doubted.uncertainty.negative_impedance = 0.3;
+    let drop = monitor()
+        .evidence(&known, &window)
+        .expect("all")
+        .negative_drop();
+    assert!((drop - unbalance).norm() < 1e-4, "{drop}");
+    let seen = Healthy {
+        negative_drop: [drop.re, drop.im],
+        ..doubted
+    };
+    for row in [Row::Negative as usize, Row::Negative as usize + 1] {
+        let [own, open, closed] = [&known, &doubted, &seen].map(|h| variance(h, row));
+        assert!((closed - own).abs() < 1e-3 * own, "{closed} {own}");
+        let expected = own + 0.09 * drop.norm_sqr();
+        assert!(
+            (open - expected).abs() < 1e-3 * expected,
+            "{open} {expected}"
+        );
+    }
+}
+
 /// A window that shows currents only; `i_2` and `i_0` over the positive sequence of 5 A.
 fn currents(i_2: Complex32, i_0: Complex32) -> Window {
     let positive = Complex32::from_polar(5.0, 0.8);

@@ -144,6 +144,33 @@ fn what_is_fed_back_and_the_slip_count_from_where_loads_end() {
     assert!(learnt.beyond(&lowering).is_within());
 }
 
+/// A load lighter than any that the calibration saw: of a current that its fit took for resistance there, the share that is lacking appears again.
+#[test]
+fn a_lighter_load_shows_again_what_a_fit_took_for_resistance() {
+    let range = CalibratedRange {
+        active: 0.4,
+        ..seen(1.0)
+    };
+    let at = |active| {
+        range.beyond(&Conditions {
+            active,
+            current: 0.5,
+            ..conditions()
+        })
+    };
+    assert!(at(0.4).is_within() && at(0.396).is_within() && at(0.9).is_within());
+    let near = |x: f32, y: f32| assert!((x - y).abs() < 1e-6, "{x} {y}");
+    let idle = at(0.05);
+    near(idle.lighter, 0.345);
+    near(idle.from_seen().lighter, 0.35);
+    // 86 % of it, and half of the rated current in all.
+    near(idle.regained, 0.345 / 0.4 / 0.5);
+    near(idle.iron_loss(0.02), 0.02 * idle.regained);
+    // A load that drives leaves all of it, and what is fed back comes on top.
+    near(at(-0.3).lighter, 0.395);
+    near(at(-0.3).fed_back, 0.445);
+}
+
 /// A window of a motor that drives feeds nothing back; the same motor with its currents turned round does.
 #[test]
 fn what_is_fed_back_is_the_active_current() {
