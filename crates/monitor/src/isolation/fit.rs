@@ -184,8 +184,12 @@ impl Fit {
             return IMPOSSIBLE;
         }
         let size = self.size().abs();
-        let spread = size.max(self.cause.typical_size());
-        let rarity = ln(spread / self.cause.typical_size());
+        let typical = self.cause.typical_size();
+        let (spread, rarity) = if size > typical {
+            (size, ln(size / typical))
+        } else {
+            (typical, 0.0)
+        };
         let along = wider(self.information * spread * spread, self.square);
         let across = self.across.map_or(0.0, |across| {
             if self.cause.adds_across() {

@@ -141,11 +141,13 @@ pub fn probabilities(scores: &[f32; CAUSES], unknown: f32) -> ([f32; CAUSES], f3
 
 /// Departures of an unknown kind are held to be this many standard deviations long in every row.
 const UNKNOWN_SPREAD: f32 = 100.0;
+/// Logarithm of `1 + UNKNOWN_SPREAD^2`.
+const LN_UNKNOWN: f32 = 9.210_44;
 
 /// Logarithm of the Bayes factor of a departure of this squared length in any direction.
 fn score_of_anything(square: f32, known: f32) -> f32 {
     let k = UNKNOWN_SPREAD * UNKNOWN_SPREAD;
-    0.5 * square * (k / (1.0 + k)) - 0.5 * known * ln(1.0 + k)
+    0.5 * square * (k / (1.0 + k)) - 0.5 * known * LN_UNKNOWN
 }
 
 /// The squared length as an equally rare standard deviation (Wilson and Hilferty, doi:10.1073/pnas.17.12.684).

@@ -8,11 +8,13 @@ use super::fit::{Departure, Direction, Fit, Total};
 use super::gauss::{Cholesky, dot};
 use super::{Cause, Evidence, ROWS, Row, Rows, ln, score_of_anything, significance_of_anything};
 
-/// How often a supply's neutral has moved since the calibration, against all other times: a belief, as the next one.
-const DISPLACED: f32 = 0.1;
+/// Logarithm of how often a supply's neutral has moved since the calibration, against all other times: one in ten, a belief as the next one.
+const LN_DISPLACED: f32 = -core::f32::consts::LN_10;
 /// A displacement that is usual, as a share of the voltage; a larger one is rare in proportion. As large as the negative sequence
 /// that EN 50160 allows a public supply; it sets the zero sequence no limit.
-const USUAL_DISPLACEMENT: f32 = 0.02;
+pub(super) const USUAL_DISPLACEMENT: f32 = 0.02;
+/// Logarithm of [`USUAL_DISPLACEMENT`].
+pub(super) const LN_USUAL_DISPLACEMENT: f32 = -3.912_023;
 /// The zero sequence of the voltages is the end of the rows: without it a white vector is its beginning.
 const BEFORE_ZERO_VOLTAGE: usize = Row::ZeroVoltage as usize;
 
@@ -154,14 +156,14 @@ impl Neutral {
         };
         let displacement = square_of_end(departure);
         let spread = processor::sqrtf(displacement).max(USUAL_DISPLACEMENT);
-        let rarity = ln(spread / USUAL_DISPLACEMENT);
         let own: f32 = cholesky
             .deviations()
             .skip(BEFORE_ZERO_VOLTAGE)
             .map(ln)
             .sum();
-        let there = -0.5 * displacement / (spread * spread) - 2.0 * ln(spread);
-        let against = rarity - there - own - ln(DISPLACED);
+        // Rare in proportion to its size, in two rows of that spread.
+        let there = -0.5 * displacement / (spread * spread) - 3.0 * ln(spread);
+        let against = -there - own - LN_DISPLACED - LN_USUAL_DISPLACEMENT;
         let variance: f32 = cholesky.variances().skip(BEFORE_ZERO_VOLTAGE).sum();
         Neutral {
             better: 0.5 * square_of_end(white) - against,

@@ -6,10 +6,19 @@ use super::plant::{Plant, evidence, statistics};
 use crate::checks::sensors::Phase;
 use crate::isolation::fit::{Departure, Direction, Fit, IMPOSSIBLE, Total};
 use crate::isolation::gauss::dot;
+use crate::isolation::weighing::{LN_USUAL_DISPLACEMENT, USUAL_DISPLACEMENT};
 use crate::isolation::{
-    ALL_CAUSES, Cause, Heating, Isolation, ROWS, Warmth, probabilities, score_of_anything,
-    significance_of_anything,
+    ALL_CAUSES, Cause, Heating, Isolation, LN_UNKNOWN, ROWS, UNKNOWN_SPREAD, Warmth, probabilities,
+    score_of_anything, significance_of_anything,
 };
+
+#[test]
+fn logarithms_that_are_written_out_are_those_of_their_numbers() {
+    // Single precision keeps seven digits.
+    let close = |x: f32, y: f64| assert!((f64::from(x) - y).abs() < 1e-6 * y.abs(), "{x} {y}");
+    close(LN_USUAL_DISPLACEMENT, f64::from(USUAL_DISPLACEMENT).ln());
+    close(LN_UNKNOWN, (1.0 + f64::from(UNKNOWN_SPREAD).powi(2)).ln());
+}
 
 /// Density of a normal distribution of this variance.
 fn normal(x: f64, variance: f64) -> f64 {
