@@ -5,6 +5,7 @@
 //!
 //! - `learnt`: the board has learnt thresholds at one load before (docs/firmware.md).
 //! - `healthy`: a recording in good order at that load has taught parameters and what is normal, as `drivemon check --healthy` does.
+//! - `blind`: no recording has a speed; it is estimated, as `drivemon check` does. `clamps`: nor voltages.
 //! - `ratios`: the plate has breakdown and locked-rotor values too.
 //! - `faults`: the motors have faults, and FAULT is right.
 //! - `list`: every FAULT of a healthy motor; with SAVE=FOLDER in the environment its recording and motor file are kept.
@@ -22,8 +23,9 @@ use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
-use recording::Recording;
+use recording::{Channel, Recording};
 use replay::check::Knowledge;
+use replay::speed::with_estimated_speed;
 use replay::{Samples, VerdictState};
 use scenario::simulate::record;
 use scenario::{Fault, LoadSpec, Piecewise, Scenario, SensorSpec, Start, SupplySpec};
@@ -56,6 +58,16 @@ const CONDITIONS: [[f64; 3]; 24] = [
     [0.6, 1.0, 1.2],
     [-0.5, 1.0, 1.0],
     [-1.0, 1.0, 1.0],
+];
+/// Three voltages, three currents, speed.
+const CHANNELS: [Channel; 7] = [
+    Channel::VOLTAGES[0],
+    Channel::VOLTAGES[1],
+    Channel::VOLTAGES[2],
+    Channel::CURRENTS[0],
+    Channel::CURRENTS[1],
+    Channel::CURRENTS[2],
+    Channel::SPEED,
 ];
 /// Seconds that are judged.
 const SECONDS: f64 = 1.5;
@@ -213,6 +225,7 @@ struct Asked {
     learnt: bool,
     healthy: bool,
     faults: bool,
+    channels: &'static [Channel],
 }
 
 /// What was said under a condition.
@@ -250,6 +263,7 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
             None,
             random.random(),
         )?;
+        let recording = only(&recording, asked.channels)?;
         let learnt = replay::check::learn(&known, &[&recording], &mut |_, _| {});
         told.name += &format!(", {:?} {:?}", learnt.knowledge, learnt.notes);
         told.knowledge = learnt.knowledge;
@@ -279,6 +293,9 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
             let Ok(recording) = machine.recorded(condition, SECONDS, fault, random.random()) else {
                 continue;
             };
+            let recording = only(&recording, asked.channels)?;
+            let estimated = with_estimated_speed(&recording, &known);
+            let recording = estimated.map_or(recording, |(shown, _)| shown);
             let audit = audit(&recording, &Expectation::from(&known));
             let mut config = replay::config_for(&known, &recording)?;
             config.thresholds = thresholds.unwrap_or(config.thresholds);
@@ -299,6 +316,18 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
         }
     }
     Ok(told)
+}
+
+/// What a recorder with these channels alone would have recorded.
+fn only(recording: &Recording, channels: &[Channel]) -> Result<Recording, Box<dyn Error>> {
+    let name = recording.name();
+    let mut seen = Recording::new(name, recording.t().to_vec(), recording.metadata.clone())?;
+    for channel in channels {
+        if let Some(values) = recording.channel(*channel) {
+            seen = seen.with_channel(*channel, values.to_vec())?;
+        }
+    }
+    Ok(seen)
 }
 
 /// Keeps a recording and the motor file that judged it where `SAVE` names a folder.
@@ -330,6 +359,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         learnt: has("learnt"),
         healthy: has("healthy"),
         faults: has("faults"),
+        channels: match (has("blind"), has("clamps")) {
+            (_, true) => &CHANNELS[3..6],
+            (true, _) => &CHANNELS[..6],
+            _ => &CHANNELS,
+        },
     };
     let motors = motors(has("ratios"))?;
     let one = |k| judged(&motors, 1_000_003 * seed + k, asked).map_err(|error| error.to_string());

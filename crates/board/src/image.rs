@@ -29,7 +29,7 @@ pub const IMAGE_WORDS: usize = 42
 const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
 
 /// Words of the healthy motor's statistics.
-const HEALTHY_WORDS: usize = 9 + 2 * ROWS + 11 + RANGE_WORDS;
+const HEALTHY_WORDS: usize = 10 + 2 * ROWS + 12 + RANGE_WORDS;
 
 /// Words of where the calibration saw the motor: current, voltage over frequency, frequency, active current.
 const RANGE_WORDS: usize = 6;
@@ -202,12 +202,12 @@ fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
     w.numbers(&h.scatter);
     w.numbers(&h.current_unbalance);
     w.numbers(&h.negative_drop);
-    w.number(h.current_unbalance_scatter);
+    w.numbers(&[h.current_unbalance_scatter, h.current_unbalance_at]);
     w.numbers(&h.turns_axis);
     w.numbers(&[u.stator_resistance, u.rotor_resistance, u.heating]);
     w.numbers(&[u.magnetizing_inductance, u.leakage, u.friction]);
     w.numbers(&[u.current_gain, u.voltage_gain, u.speed]);
-    w.numbers(&[u.iron_loss, u.negative_impedance]);
+    w.numbers(&[u.iron_loss, u.supply_unbalance, u.negative_impedance]);
     write_range(w, h.range.as_ref());
     w.word(match h.in_motion {
         InMotion::Unseen => 0,
@@ -224,6 +224,7 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
         current_unbalance: r.numbers(),
         negative_drop: r.numbers(),
         current_unbalance_scatter: r.number(),
+        current_unbalance_at: r.number(),
         turns_axis: r.numbers(),
         uncertainty: Uncertainty {
             stator_resistance: r.number(),
@@ -236,6 +237,7 @@ fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
             voltage_gain: r.number(),
             speed: r.number(),
             iron_loss: r.number(),
+            supply_unbalance: r.number(),
             negative_impedance: r.number(),
         },
         range: read_range(r),

@@ -229,6 +229,7 @@ fn healthy(settings: &HealthySettings) -> Healthy {
         scatter: settings.scatter_percent.map(share),
         current_unbalance: settings.current_unbalance_percent.map(share),
         current_unbalance_scatter: share(settings.current_unbalance_scatter_percent),
+        current_unbalance_at: share(settings.current_unbalance_at_percent),
         negative_drop: settings.negative_drop_percent.map(share),
         turns_axis: {
             let (im, re) = settings.turns_angle_deg.to_radians().sin_cos();
@@ -245,6 +246,7 @@ fn healthy(settings: &HealthySettings) -> Healthy {
             voltage_gain: share(settings.voltage_gain_percent),
             speed: share(settings.speed_percent),
             iron_loss: share(settings.iron_loss_percent),
+            supply_unbalance: share(settings.supply_unbalance_percent),
             negative_impedance: share(settings.negative_impedance_percent),
         },
         range: settings.range.as_ref().map(|range| CalibratedRange {

@@ -105,6 +105,7 @@ fn calibrated() -> MonitorConfig {
         mean: [(); ROWS].map(|()| -number()),
         scatter: [(); ROWS].map(|()| number()),
         current_unbalance: [number(), -number()],
+        current_unbalance_at: number(),
         negative_drop: [-number(), number()],
         current_unbalance_scatter: number(),
         turns_axis: [number(), number()],
@@ -119,6 +120,7 @@ fn calibrated() -> MonitorConfig {
             voltage_gain: number(),
             speed: number(),
             iron_loss: number(),
+            supply_unbalance: number(),
             negative_impedance: number(),
         },
         range: Some(CalibratedRange {

@@ -3,6 +3,7 @@
 use crate::config::LoadKind;
 use crate::isolation::{
     Bench, Beyond, Conditions, Evidence, Healthy, Heating, Isolation, PositiveEvidence, ROWS,
+    impedance, length,
 };
 use crate::model::effects::Corrected;
 use crate::model::movement::DERIVATIVE_DOUBT;
@@ -13,10 +14,14 @@ use crate::rehearsal::Rehearsal;
 use crate::report::{NotJudged, Report};
 use crate::window::Window;
 use frames::magnitude;
+use num_complex::Complex32;
 
 /// Speeds below this share of the synchronous one are a standstill: a torque over such a speed is a friction of ten times the rated one
 /// and more.
 const STANDSTILL: f32 = 0.1;
+
+/// As much of `I_2/I_1` as any supply makes: a motor that hardly draws anything shows nothing.
+const MOST_SUPPLIED: f32 = 10.0;
 
 impl Monitor {
     /// Time has passed since the last report, and current has heated the winding.
@@ -56,7 +61,7 @@ impl Monitor {
             let near = temperature.latest();
             self.evidence_of_all(healthy, &state.rehearsal, near, window, &noise.rows)
         } else {
-            currents.then(|| Evidence::of_currents(healthy, window, &noise.rows))
+            currents.then(|| self.evidence_of_currents(healthy, window, &noise.rows))
         };
         let Some(evidence) = evidence else {
             return 0.0;
@@ -74,8 +79,34 @@ impl Monitor {
         if window.u_s.positive.norm_sqr() > 0.0 {
             self.evidence_of_all(healthy, &Rehearsal::default(), 0.0, window, &[0.0; ROWS])
         } else {
-            Some(Evidence::of_currents(healthy, window, &[0.0; ROWS]))
+            Some(self.evidence_of_currents(healthy, window, &[0.0; ROWS]))
         }
+    }
+
+    /// Nothing tells what the unseen supply does: its unbalance wanders, and what it draws of one stays the same where the load, and
+    /// with it the current that it is compared with, changes.
+    #[inline(never)]
+    fn evidence_of_currents(
+        &self,
+        healthy: &Healthy,
+        window: &Window,
+        noise: &[f32; ROWS],
+    ) -> Evidence {
+        let config = &self.config;
+        let current = magnitude(window.i_s.positive).max(f32::MIN_POSITIVE);
+        let standing = magnitude(impedance(&config.params, config.rated_omega, 2.0));
+        let drawn =
+            healthy.uncertainty.supply_unbalance * config.rated_voltage / (standing * current);
+        let learnt = healthy.current_unbalance_at * config.rated_current;
+        let [re, im] = healthy.current_unbalance;
+        let away = if learnt > 0.0 {
+            (learnt - current).abs() / current
+        } else {
+            0.0
+        };
+        let moved = magnitude(Complex32::new(re, im)) * away;
+        let supplied = length([drawn, moved]).min(MOST_SUPPLIED);
+        Evidence::of_currents(healthy, window, noise, supplied)
     }
 
     /// The residuals of a window at the winding temperature that it implies, where voltages, currents and speed allow

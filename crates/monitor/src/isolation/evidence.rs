@@ -7,7 +7,7 @@ use super::directions::{Directions, Positive};
 use super::gauss::Covariance;
 use super::healthy::{Healthy, ROWS, Row};
 use super::negative::Negative;
-use super::range::Beyond;
+use super::range::{Beyond, length};
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
@@ -87,8 +87,13 @@ impl Evidence {
         evidence
     }
 
-    /// From currents alone: their negative and zero sequence.
-    pub(crate) fn of_currents(healthy: &Healthy, window: &Window, noise: &Rows) -> Self {
+    /// From currents alone: their negative and zero sequence. `supplied`: standard deviation of what the supply may make of `I_2/I_1`.
+    pub(crate) fn of_currents(
+        healthy: &Healthy,
+        window: &Window,
+        noise: &Rows,
+        supplied: f32,
+    ) -> Self {
         let value = window.i_s.unbalance();
         let [re, im] = healthy.turns_axis;
         let negative = Negative {
@@ -106,7 +111,8 @@ impl Evidence {
             (Row::Negative as usize + 1, im),
         ] {
             set(&mut mean, row, m);
-            set(&mut scatter, row, healthy.current_unbalance_scatter);
+            let own = healthy.current_unbalance_scatter;
+            set(&mut scatter, row, length([own, supplied]));
             set(&mut known, row, healthy.current_unbalance_scatter > 0.0);
         }
         // What a calibration has learnt of the currents' unrest holds whole windows; changes from cycle to cycle, which mostly

@@ -50,6 +50,8 @@ pub struct Uncertainty {
     pub speed: f32,
     /// Current that feeds the losses of the iron at rated voltage, of rated current.
     pub iron_loss: f32,
+    /// Unbalance of the supply from one time to another, where no voltages are measured.
+    pub supply_unbalance: f32,
     /// Impedance of the negative sequence: deep bars make it differ from the T model's.
     pub negative_impedance: f32,
 }
@@ -65,6 +67,8 @@ pub struct Healthy {
     pub current_unbalance: [f32; 2],
     /// Its scatter; 0 if it was not calibrated.
     pub current_unbalance_scatter: f32,
+    /// Positive sequence of the currents at which it was learnt, of rated current; 0: not said.
+    pub current_unbalance_at: f32,
     /// What the supply's negative sequence dropped over the motor's impedance where the mean was learnt, `Z_2 I_2/V_1`: real and imaginary
     /// part.
     pub negative_drop: [f32; 2],
@@ -96,7 +100,7 @@ impl Uncertainty {
         }
     }
 
-    fn shares(&self) -> [f32; 11] {
+    fn shares(&self) -> [f32; 12] {
         [
             self.stator_resistance,
             self.rotor_resistance,
@@ -108,6 +112,7 @@ impl Uncertainty {
             self.voltage_gain,
             self.speed,
             self.iron_loss,
+            self.supply_unbalance,
             self.negative_impedance,
         ]
     }
@@ -118,18 +123,14 @@ impl Healthy {
     pub(crate) fn validate(&self) -> Result<(), ConfigError> {
         let signed = [-10.0, 10.0];
         let share = [0.0, 10.0];
-        let unbalance_scatter = [self.current_unbalance_scatter];
+        let unbalance = [self.current_unbalance_scatter, self.current_unbalance_at];
         let uncertainty = self.uncertainty.shares();
         let significance = [self.significance];
         let all: [(&str, &[f32], [f32; 2]); 8] = [
             ("healthy.mean", &self.mean, signed),
             ("healthy.scatter", &self.scatter, share),
             ("healthy.current_unbalance", &self.current_unbalance, signed),
-            (
-                "healthy.current_unbalance_scatter",
-                &unbalance_scatter,
-                share,
-            ),
+            ("healthy.current_unbalance", &unbalance, share),
             ("healthy.negative_drop", &self.negative_drop, signed),
             ("healthy.turns_axis", &self.turns_axis, [-1.01, 1.01]),
             ("healthy.uncertainty", &uncertainty, share),
@@ -154,6 +155,7 @@ impl Healthy {
             scatter: [1.0; ROWS],
             current_unbalance: [0.0; 2],
             current_unbalance_scatter: 1.0,
+            current_unbalance_at: 0.0,
             negative_drop: [0.0; 2],
             turns_axis: [1.0, 0.0],
             uncertainty: Uncertainty::default(),

@@ -21,6 +21,7 @@ mod tests;
 
 pub use cause::{ALL_CAUSES, CAUSES, Cause};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
+pub(crate) use range::length;
 pub use range::{Beyond, CalibratedRange, Conditions};
 pub use temperature::Heating;
 

@@ -280,6 +280,6 @@ pub(super) struct Added {
 }
 
 /// Root of the sum of squares.
-pub(super) fn length([x, y]: [f32; 2]) -> f32 {
+pub(crate) fn length([x, y]: [f32; 2]) -> f32 {
     processor::sqrtf(x * x + y * y)
 }

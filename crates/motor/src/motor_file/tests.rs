@@ -14,6 +14,8 @@ mean_percent = [0.0, 0.0, 0.0, -0.1, 0.2, 0.3, -0.4, 0.5, 0.6]
 scatter_percent = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9]
 current_unbalance_percent = [2.1, -2.2]
 current_unbalance_scatter_percent = 2.3
+current_unbalance_at_percent = 71.0
+supply_unbalance_percent = 0.7
 negative_drop_percent = [0.4, -0.6]
 turns_angle_deg = 65.0
 stator_resistance_percent = 3.1
@@ -159,6 +161,8 @@ fn a_healthy_section_is_read_key_by_key() {
         scatter_percent: [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9],
         current_unbalance_percent: [2.1, -2.2],
         current_unbalance_scatter_percent: 2.3,
+        current_unbalance_at_percent: 71.0,
+        supply_unbalance_percent: 0.7,
         negative_drop_percent: [0.4, -0.6],
         turns_angle_deg: 65.0,
         stator_resistance_percent: 3.1,

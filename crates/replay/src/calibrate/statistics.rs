@@ -90,8 +90,11 @@ pub fn healthy(
             settings.scatter_percent[row] = scatter[row];
         }
         settings.current_gain_percent = TRANSFORMER_REPEATABILITY_PERCENT;
+        settings.supply_unbalance_percent *= left_open(observed);
     }
     set_current_unbalance(&mut settings, observed);
+    let rated = fitted.motor.nameplate.current_amplitude();
+    settings.current_unbalance_at_percent = 100.0 * mean_current(observed) / rated;
     Ok(settings)
 }
 
@@ -179,6 +182,24 @@ fn doubt_half_of_leakage(settings: &mut HealthySettings, fitted: &Fitted) {
 /// Share of a leakage's change that may be an effect which the file lacks: the impedance to the negative sequence, which is mostly leakage,
 /// then stays as it was.
 const EFFECT_IN_LEAKAGE: f64 = 0.5;
+
+/// What recordings leave of a belief about how the unseen supply changes: they count beside [`BELIEVED_CHANGES`], and what they show of its
+/// changes is in their scatter.
+fn left_open(observed: &[Observed]) -> f64 {
+    let recordings = observed.iter().map(|o| o.recording + 1).max().unwrap_or(1);
+    let changes = (recordings - 1) as f64;
+    (BELIEVED_CHANGES / (BELIEVED_CHANGES + changes)).sqrt()
+}
+
+/// Changes between recordings that weigh as much as what is believed beforehand.
+const BELIEVED_CHANGES: f64 = 2.0;
+
+/// Mean of the positive sequence of the currents, A.
+fn mean_current(observed: &[Observed]) -> f64 {
+    let votes: f64 = observed.iter().map(|o| o.weight).sum();
+    let current = |o: &Observed| o.weight * f64::from(o.window.i_s.positive.norm());
+    observed.iter().map(current).sum::<f64>() / votes
+}
 
 fn set_current_unbalance(settings: &mut HealthySettings, observed: &[Observed]) {
     let ratio = |o: &Observed| {

@@ -62,6 +62,11 @@ pub fn blind_spots(
         "resistances, inductances and the supply",
         "three voltages",
     );
+    add(
+        currents && !voltages && motor.healthy.is_some(),
+        "an unbalance of the currents no larger than a supply's makes that has changed by 2 %, at the load of the recording in good order; elsewhere more",
+        "three voltages",
+    );
     add(!currents, "unbalance and shorted turns", "three currents");
     add(
         speed_is_estimated || recording.speed().is_none(),

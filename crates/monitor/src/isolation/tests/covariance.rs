@@ -231,8 +231,42 @@ fn currents_alone_show_their_unbalance() {
     assert_eq!(evidence.known(), &known);
     healthy.current_unbalance_scatter = 0.0;
     healthy.scatter = [0.0; ROWS];
-    let nothing = Evidence::of_currents(&healthy, &window, &[0.0; ROWS]);
+    let nothing = Evidence::of_currents(&healthy, &window, &[0.0; ROWS], 0.0);
     assert_eq!(known_rows(&nothing), 0);
+}
+
+/// Without voltages an unbalance of the currents may be the supply's: what it draws by `Z_2`, and, at another current than that of the
+/// calibration, what its share of `I_2/I_1` changes by.
+#[test]
+fn currents_alone_leave_open_what_a_supply_may_draw() {
+    let mut healthy = statistics();
+    healthy.current_unbalance = [0.03, -0.04];
+    healthy.uncertainty = Uncertainty {
+        supply_unbalance: 0.002,
+        ..Uncertainty::default()
+    };
+    let window = currents(Complex32::new(0.03, -0.04), Complex32::ZERO);
+    let config = *monitor().config();
+    let scatter = |learnt: f32| {
+        let mut healthy = healthy;
+        healthy.current_unbalance_at = learnt / config.rated_current;
+        let evidence = monitor().evidence(&healthy, &window).expect("currents");
+        let along = evidence.resistances();
+        let covariance = evidence.covariance(&healthy, &along, [0.0; 2]).factorise();
+        let variance = covariance.variances().nth(Row::Negative as usize);
+        f64::from(variance.expect("a row")).sqrt()
+    };
+    // Both resistances in series with both leakages, the cage's at twice the frequency; the magnetizing branch takes little of it.
+    let p = config.params;
+    let reactance = config.rated_omega * (p.l_ls + p.l_lr);
+    let standing = f64::from(p.r_s + 0.5 * p.r_r).hypot(f64::from(reactance));
+    let drawn = 0.002 * f64::from(config.rated_voltage) / (standing * 5.0);
+    let own = f64::from(healthy.current_unbalance_scatter);
+    let near = |x: f64, y: f64| assert!((x - y).abs() < 0.05 * y, "{x} {y}");
+    near(scatter(5.0), own.hypot(drawn));
+    near(scatter(0.0), own.hypot(drawn));
+    // Calibrated at 8 A: three fifths of 5 %.
+    near(scatter(8.0), own.hypot(drawn).hypot(0.03));
 }
 
 /// Turns shorted in one phase add a current in phase with that phase's voltage, which leads its current by the load's
@@ -246,7 +280,7 @@ fn currents_alone_name_the_phase_of_shorted_turns() {
         // The negative sequence sees phase b a third of a turn ahead, phase c a third behind.
         let axis = Complex32::from_polar(1.0, third * k as f32);
         let window = currents(Complex32::new(re, im) * axis * (0.1 / 3.0), Complex32::ZERO);
-        let evidence = Evidence::of_currents(&healthy, &window, &[0.0; ROWS]);
+        let evidence = Evidence::of_currents(&healthy, &window, &[0.0; ROWS], 0.0);
         let isolation = Isolation::of(&evidence, &healthy, Heating::any(&healthy));
         let place = |cause| {
             crate::ALL_CAUSES
