@@ -7,58 +7,29 @@
 //! - `healthy`: a recording in good order at that load has taught parameters and what is normal, as `drivemon check --healthy` does.
 //! - `blind`: no recording has a speed; it is estimated, as `drivemon check` does. `clamps`: nor voltages.
 //! - `ratios`: the plate has breakdown and locked-rotor values too.
+//! - `moving`: judged while it starts, is loaded or slowed; a start and a press teach beside the load.
 //! - `faults`: the motors have faults, and FAULT is right.
 //! - `list`: every FAULT of a healthy motor; with SAVE=FOLDER in the environment its recording and motor file are kept.
+
+mod machine;
 
 use std::error::Error;
 
 use audit::{Expectation, audit};
 use board::{Learner, Progress};
+use machine::{Condition, Known, Machine, motors};
 use monitor::{Monitor, MonitorState, RESIDUALS};
 use motor::MotorFile;
-use motor::motor_file::EffectEntry;
-use nameplate::plate::PlateFile;
-use nameplate::{Estimate, Plate, catalogue, motor_text};
-use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use recording::{Channel, Recording};
-use replay::check::Knowledge;
+use replay::check::{Knowledge, Reference};
 use replay::speed::with_estimated_speed;
 use replay::{Samples, VerdictState};
-use scenario::simulate::record;
-use scenario::{Fault, LoadSpec, Piecewise, Scenario, SensorSpec, Start, SupplySpec};
 use studies::broken::{Broken, faults};
-use studies::hidden;
+use studies::drive::Drive;
 
-/// Load, share of the rated one, voltage and frequency, shares of the rated ones.
-const CONDITIONS: [[f64; 3]; 24] = [
-    [0.05, 1.0, 1.0],
-    [0.3, 1.0, 1.0],
-    [0.6, 1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [1.3, 1.0, 1.0],
-    [0.05, 0.9, 1.0],
-    [0.6, 0.9, 1.0],
-    [1.0, 0.9, 1.0],
-    [0.05, 0.95, 1.0],
-    [0.6, 0.95, 1.0],
-    [0.05, 1.05, 1.0],
-    [0.6, 1.05, 1.0],
-    [0.05, 1.1, 1.0],
-    [0.6, 1.1, 1.0],
-    [1.0, 1.1, 1.0],
-    [0.6, 0.6, 1.0],
-    [0.6, 0.8, 0.8],
-    [0.6, 0.5, 0.5],
-    [0.6, 0.22, 0.2],
-    [0.05, 0.5, 0.5],
-    [0.3, 1.0, 1.4],
-    [0.6, 1.0, 1.2],
-    [-0.5, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 /// Three voltages, three currents, speed.
 const CHANNELS: [Channel; 7] = [
     Channel::VOLTAGES[0],
@@ -75,126 +46,8 @@ const SECONDS: f64 = 1.5;
 const HEALTHY_SECONDS: f64 = 4.0;
 /// Seconds that a board learns from, at 50 Hz.
 const LEARNT_SECONDS: f64 = 14.0;
-/// Load at which the motor in good order is seen.
-const LEARNT_AT: f64 = 0.7;
-/// Of full scale.
-const NOISE: f64 = 0.001;
-
-/// A motor, and what its plate tells of it.
-struct Known {
-    truth: MotorFile,
-    known: MotorFile,
-}
-
-fn file(plate: &Plate, estimate: &Estimate) -> Result<MotorFile, Box<dyn Error>> {
-    let plate = PlateFile {
-        plate: *plate,
-        ..PlateFile::default()
-    };
-    Ok(MotorFile::parse(
-        &motor_text(&plate, estimate)?,
-        "motor.toml",
-    )?)
-}
-
-/// The catalogue motors that a circuit meets.
-fn motors(ratios: bool) -> Result<Vec<Known>, Box<dyn Error>> {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../crates/nameplate/data/motors.csv"
-    );
-    let (_, rows) = catalogue::read(std::fs::File::open(path)?).map_err(|e| e.to_string())?;
-    let plates = rows.iter().filter_map(|row| row.plate.clone().ok());
-    let mut all = Vec::new();
-    for full in plates {
-        let Ok(truth) = Estimate::of(&full) else {
-            continue;
-        };
-        if truth.fit.worst >= 0.05 {
-            continue;
-        }
-        let bare = Plate {
-            breakdown_torque_ratio: None,
-            locked_rotor_torque_ratio: None,
-            locked_rotor_current_ratio: None,
-            ..full
-        };
-        let told = if ratios { full } else { bare };
-        let Ok(known) = Estimate::of(&told) else {
-            continue;
-        };
-        all.push(Known {
-            truth: file(&full, &truth)?,
-            known: file(&told, &known)?,
-        });
-    }
-    Ok(all)
-}
-
-/// A machine under judgement.
-struct Machine<'a> {
-    of: &'a Known,
-    hidden: Vec<EffectEntry>,
-    warmth: [f64; 2],
-}
-
-impl<'a> Machine<'a> {
-    fn draw(motors: &'a [Known], random: &mut Pcg64) -> Self {
-        let of = motors.choose(random).expect("not empty");
-        let is_new = |e: &EffectEntry| of.truth.effects.iter().all(|known| known.name != e.name);
-        let mut hidden = hidden::hidden(&of.truth, random, false);
-        hidden.retain(is_new);
-        Machine {
-            of,
-            hidden,
-            warmth: [(); 2].map(|()| random.random_range(0.0..0.15)),
-        }
-    }
-
-    fn recorded(
-        &self,
-        [load, volt, hertz]: [f64; 3],
-        seconds: f64,
-        fault: Option<Fault>,
-        seed: u64,
-    ) -> Result<Recording, Box<dyn Error>> {
-        let mut motor = self.of.truth.clone();
-        let warmed = self
-            .warmth
-            .map(|rise| 1.0 + rise * ((load * load).min(1.6) - 1.0));
-        motor.parameters.r_s *= warmed[0];
-        motor.parameters.r_r *= warmed[1];
-        motor.sensors.noise_sigma_fraction_of_full_scale = NOISE;
-        let mut effects = self.hidden.clone();
-        effects.extend(motor.effects.iter().cloned());
-        motor.effects.clear();
-        let torque = load * motor.nameplate.torque_nm;
-        let scenario = Scenario {
-            seed,
-            supply: SupplySpec {
-                amplitude_volt: Piecewise::constant(
-                    volt * motor.nameplate.phase_voltage_amplitude(),
-                ),
-                frequency_hz: Piecewise::constant(hertz * motor.nameplate.frequency_hz),
-                components: vec![hidden::unbalance(seed)],
-                ..SupplySpec::rated(&motor.nameplate)
-            },
-            load: LoadSpec::constant(torque, true),
-            effects,
-            faults: fault.into_iter().collect(),
-            sample_rate_hz: 5000.0,
-            start: Start::Running,
-            sensors: SensorSpec::of(&motor),
-            ..Scenario::of(motor, seconds)
-        };
-        Ok(record(&scenario, |_| ())?)
-    }
-
-    fn name(&self) -> String {
-        let names: Vec<&str> = self.hidden.iter().map(|e| e.name.as_str()).collect();
-        format!("{}, hidden {}", self.of.truth.name, names.join(" "))
-    }
-}
+/// At which the motor in good order is seen.
+const LEARNT_AT: Condition = Condition::AtRest([0.7, 1.0, 1.0]);
 
 /// The thresholds that the board learns, or what it says against learning.
 fn learnt(
@@ -225,13 +78,13 @@ struct Asked {
     learnt: bool,
     healthy: bool,
     faults: bool,
+    moving: bool,
     channels: &'static [Channel],
 }
 
 /// What was said under a condition.
 struct Judged {
-    /// Place of the condition.
-    at: usize,
+    at: Condition,
     fault: &'static str,
     state: VerdictState,
     first: String,
@@ -257,23 +110,23 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
     };
     let mut known = machine.of.known.clone();
     if asked.healthy {
-        let recording = machine.recorded(
-            [LEARNT_AT, 1.0, 1.0],
-            HEALTHY_SECONDS,
-            None,
-            random.random(),
-        )?;
-        let recording = only(&recording, asked.channels)?;
-        let learnt = replay::check::learn(&known, &[&recording], &mut |_, _| {});
+        let moved = [Drive::DirectStart, Drive::Press].map(|drive| Condition::InMotion(drive, 1.0));
+        let moved = if asked.moving { &moved[..] } else { &[] };
+        let mut recordings = Vec::new();
+        for at in [&[LEARNT_AT], moved].concat() {
+            let recording = machine.recorded(at, HEALTHY_SECONDS, None, random.random())?;
+            recordings.push(only(&recording, asked.channels)?);
+        }
+        let healthy: Vec<&dyn Reference> = recordings.iter().map(|one| one as _).collect();
+        let learnt = replay::check::learn(&known, &healthy, &mut |_, _| {});
         told.name += &format!(", {:?} {:?}", learnt.knowledge, learnt.notes);
         told.knowledge = learnt.knowledge;
         known = learnt.motor;
-        save(seed, "healthy", &known, &recording)?;
+        save(seed, "healthy", &known, &recordings[0])?;
     }
     let mut thresholds = None;
     if asked.learnt {
-        let at = [LEARNT_AT, 1.0, 1.0];
-        let recording = machine.recorded(at, LEARNT_SECONDS, None, random.random())?;
+        let recording = machine.recorded(LEARNT_AT, LEARNT_SECONDS, None, random.random())?;
         match learnt(&known, &recording)? {
             Ok(learnt) => thresholds = Some(learnt),
             Err(refusal) => {
@@ -286,11 +139,11 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
         true => faults().into_iter().map(Some).collect(),
         false => vec![None],
     };
-    for (at, condition) in CONDITIONS.into_iter().enumerate() {
+    for (place, at) in Condition::all(asked.moving).into_iter().enumerate() {
         for broken in &broken {
             let fault = broken.as_ref().map(|broken| broken.1.clone());
             // Beyond the breakdown torque no motor runs.
-            let Ok(recording) = machine.recorded(condition, SECONDS, fault, random.random()) else {
+            let Ok(recording) = machine.recorded(at, SECONDS, fault, random.random()) else {
                 continue;
             };
             let recording = only(&recording, asked.channels)?;
@@ -303,7 +156,7 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
             let samples = Samples::new(&recording, &audit);
             let verdict = replay::replay(&monitor, &samples, &mut |_| {}).verdict(&[]);
             if verdict.state == VerdictState::Fault && broken.is_none() {
-                save(seed, &at.to_string(), &known, &recording)?;
+                save(seed, &place.to_string(), &known, &recording)?;
             }
             let first = verdict.candidates.first();
             let first = first.map(|first| format!("{:?} {:?}", first.fault, first.size_percent));
@@ -359,6 +212,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         learnt: has("learnt"),
         healthy: has("healthy"),
         faults: has("faults"),
+        moving: has("moving"),
         channels: match (has("blind"), has("clamps")) {
             (_, true) => &CHANNELS[3..6],
             (true, _) => &CHANNELS[..6],
@@ -380,33 +234,32 @@ fn main() -> Result<(), Box<dyn Error>> {
         of(Knowledge::Calibrated),
         all.iter().filter(|told| told.refused.is_some()).count()
     );
-    print(&all, asked.faults);
+    print(&all, &asked);
     if has("list") {
         list(&all);
     }
     Ok(())
 }
 
-fn print(all: &[Told], broken: bool) {
-    let names: Vec<&str> = match broken {
+fn print(all: &[Told], asked: &Asked) {
+    let names: Vec<&str> = match asked.faults {
         true => faults().into_iter().map(|broken| broken.0).collect(),
         false => vec!["healthy"],
     };
-    println!(
-        "| load | voltage | frequency | FAULT: {} | not judged |",
-        names.join(" | ")
-    );
-    println!("|---|---|---|{}---|", "---|".repeat(names.len()));
+    let head = Condition::head(asked.moving);
+    println!("| {head} | FAULT: {} | not judged |", names.join(" | "));
+    let columns = head.split('|').count() + names.len() + 1;
+    println!("|{}", "---|".repeat(columns));
     let said = || all.iter().flat_map(|told| &told.said);
-    for (place, [load, volt, hertz]) in CONDITIONS.into_iter().enumerate() {
-        print!("| {load} | {volt} | {hertz} |");
+    for at in Condition::all(asked.moving) {
+        print!("| {} |", at.row());
         for name in &names {
-            let here = || said().filter(|j| j.at == place && j.fault == *name);
+            let here = || said().filter(|j| j.at == at && j.fault == *name);
             let lit = here().filter(|j| j.state == VerdictState::Fault);
             print!(" {} of {} |", lit.count(), here().count());
         }
         let judged = [VerdictState::Healthy, VerdictState::Fault];
-        let not = said().filter(|j| j.at == place && !judged.contains(&j.state));
+        let not = said().filter(|j| j.at == at && !judged.contains(&j.state));
         println!(" {} |", not.count());
     }
 }
@@ -416,7 +269,7 @@ fn list(all: &[Told]) {
     for told in all {
         let lit = |j: &&Judged| j.state == VerdictState::Fault && j.fault == "healthy";
         for j in told.said.iter().filter(lit) {
-            println!("{}: {:?}: {}", told.name, CONDITIONS[j.at], j.first);
+            println!("{}: {:?}: {}", told.name, j.at, j.first);
         }
         if let Some(refused) = &told.refused {
             println!("{}: {refused}", told.name);
