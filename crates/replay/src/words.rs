@@ -19,6 +19,9 @@ pub fn not_judged(reason: NotJudged) -> String {
         NotJudged::Transient => "transient: current or speed are changing".to_owned(),
         NotJudged::NoLoadCurrent => "the motor draws no current".to_owned(),
         NotJudged::Noise => "noise hides what the lamps are to show".to_owned(),
+        NotJudged::Held => {
+            "the shaft is held or slow, at a slip that no load brings; only a calibrated motor is judged there".to_owned()
+        }
         NotJudged::Reversing => {
             "the shaft turns against the field: braking or reversing".to_owned()
         }
@@ -70,6 +73,7 @@ pub fn reason(number: u8) -> Option<String> {
         Reason::NoLoadCurrent => not_judged(NotJudged::NoLoadCurrent),
         Reason::Reversing => not_judged(NotJudged::Reversing),
         Reason::Noise => not_judged(NotJudged::Noise),
+        Reason::Held => not_judged(NotJudged::Held),
         Reason::Instrument => "the board doubts its own converters or their supply".to_owned(),
         Reason::DoesNotFit => SOMETHING_IN_MOTION.to_owned(),
     })

@@ -2,6 +2,7 @@
 
 use crate::checks::sensors::SensorFinding;
 use crate::config::LoadKind;
+use crate::isolation::SLIP_OF_LOADS;
 use crate::model::movement::Movement;
 use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::{RESIDUALS, Residuals};
@@ -46,6 +47,9 @@ impl Monitor {
         } else if window.invalid_samples == 0 && !window.clipped.any() {
             // Clipped currents imply no speed: those of a start or a stall are cut where they are largest.
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
+        }
+        if report.sensor.is_none() && self.is_beyond_loads(window) {
+            report.not_judged = report.not_judged.or(Some(NotJudged::Held));
         }
     }
 
@@ -115,6 +119,17 @@ impl Monitor {
             normalised.iter_mut().skip(1).for_each(|x| *x = f32::NAN);
         }
         normalised
+    }
+
+    /// Whether the slip is one that no load brings, of a motor whose parameters nobody has measured there.
+    fn is_beyond_loads(&self, window: &Window) -> bool {
+        let omega_el = window
+            .omega_mech
+            .map(|omega| omega * self.config.mechanics.n_p);
+        self.config.healthy.is_none()
+            && omega_el.is_some_and(|omega| {
+                (window.omega_sync - omega).abs() > SLIP_OF_LOADS * self.config.rated_omega
+            })
     }
 
     /// Whether the shaft stands or is slow and the motor takes the current of a motor whose shaft is held. Next to nothing is then left of the rotor

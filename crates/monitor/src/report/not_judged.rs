@@ -30,6 +30,9 @@ pub enum NotJudged {
     NoLoadCurrent,
     /// The shaft turns against the field, which brakes or reverses it (slip above 1), or the field changes its direction.
     Reversing,
+    /// The shaft is held or slow, at a slip that no load brings: what was never measured there says nothing of bars that are deep and leakage
+    /// that saturates. Only of a motor that was not calibrated.
+    Held,
     /// Noise hides what the lamps are to show: see `visible` of [`crate::Report`].
     Noise,
 }

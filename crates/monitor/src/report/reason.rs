@@ -36,11 +36,13 @@ pub enum Reason {
     Instrument = 14,
     /// Something came in motion that is called no fault.
     DoesNotFit = 15,
+    /// The shaft is held or slow.
+    Held = 16,
 }
 
 impl Reason {
     /// Every reason, in the order of its number.
-    pub const ALL: [Reason; 15] = [
+    pub const ALL: [Reason; 16] = [
         Reason::NotLocked,
         Reason::Settling,
         Reason::Clipped,
@@ -56,6 +58,7 @@ impl Reason {
         Reason::Noise,
         Reason::Instrument,
         Reason::DoesNotFit,
+        Reason::Held,
     ];
 
     /// Number on the wire.
@@ -87,6 +90,7 @@ impl Reason {
             Reason::Noise => "noise",
             Reason::Instrument => "instrument",
             Reason::DoesNotFit => "does not fit in motion",
+            Reason::Held => "shaft held or slow",
         }
     }
 }
@@ -108,6 +112,7 @@ impl NotJudged {
             NotJudged::NoLoadCurrent => Reason::NoLoadCurrent,
             NotJudged::Reversing => Reason::Reversing,
             NotJudged::Noise => Reason::Noise,
+            NotJudged::Held => Reason::Held,
         }
     }
 }
@@ -123,7 +128,7 @@ mod tests {
             assert_eq!(Reason::from_number(number), Some(reason));
         }
         assert_eq!(
-            (Reason::from_number(0), Reason::from_number(16)),
+            (Reason::from_number(0), Reason::from_number(17)),
             (None, None)
         );
     }

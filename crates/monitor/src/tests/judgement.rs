@@ -198,6 +198,8 @@ fn a_held_shaft_is_no_dead_encoder() {
         let report = last(config(), |t| held.sample(t));
         assert_eq!(report.sensor, None, "leakage {leakage}, slip {slip}");
         assert_eq!(report.lamps.sensor, Lamp::Off);
+        assert_eq!(report.lamps.fault, Lamp::Off, "nobody measured it there");
+        assert_eq!(report.not_judged, Some(NotJudged::Held));
     }
 }
 
