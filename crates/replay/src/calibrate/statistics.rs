@@ -83,6 +83,9 @@ pub fn healthy(
         settings.negative_impedance_percent =
             100.0 * negative::impedance_error(&evidence, &settings, of_a_plate);
         doubt_half_of_leakage(&mut settings, fitted);
+        if of_a_plate {
+            doubt_one_inductance(&mut settings);
+        }
     } else {
         let zero = Row::ZeroCurrent as usize;
         for row in [zero, zero + 1] {
@@ -166,6 +169,15 @@ fn take_uncertainty(settings: &mut HealthySettings, fitted: &Fitted) {
             *place = place.hypot(100.0 * error).min(LARGEST_SHARE_PERCENT);
         }
     }
+}
+
+/// Recordings at voltages that differ as their loads do let leakage and resistance take what an iron that saturates does, of which a plate
+/// says nothing: the one inductance of all of them may be half of their difference off.
+fn doubt_one_inductance(settings: &mut HealthySettings) {
+    let Some(range) = &settings.range else { return };
+    let [low, high] = range.volt_per_hertz_percent;
+    let place = &mut settings.magnetizing_inductance_percent;
+    *place = place.hypot(0.5 * (high - low)).min(LARGEST_SHARE_PERCENT);
 }
 
 /// What a fit has put down to leakage may be an effect, which leaves the negative sequence's impedance as it was.
