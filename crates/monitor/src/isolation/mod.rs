@@ -21,8 +21,8 @@ mod tests;
 
 pub use cause::{ALL_CAUSES, CAUSES, Cause};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
+pub(crate) use range::length;
 pub use range::{Beyond, CalibratedRange, Conditions};
-pub(crate) use range::{SLIP_OF_LOADS, length};
 pub use temperature::Heating;
 
 pub(crate) use directions::{Bench, impedance};

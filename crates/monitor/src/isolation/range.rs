@@ -38,7 +38,7 @@ pub struct Conditions {
 
 /// Largest frequency in the cage that steady loads have shown, a share of the rated one: a small motor of 7 % rated slip, hot and overloaded,
 /// reaches 0.15. Below it (10 Hz) the current fills bars of copper as deep as 20 mm.
-pub(crate) const SLIP_OF_LOADS: f32 = 0.2;
+const SLIP_OF_LOADS: f32 = 0.2;
 
 /// Share of the rated power that losses take before a load that drives the shaft feeds anything back: an assumption, 10 % of a large motor and
 /// 20 % of a small one.

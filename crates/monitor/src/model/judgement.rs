@@ -2,7 +2,6 @@
 
 use crate::checks::sensors::SensorFinding;
 use crate::config::LoadKind;
-use crate::isolation::SLIP_OF_LOADS;
 use crate::model::movement::Movement;
 use crate::model::operating_point::{Frame, OperatingPoint};
 use crate::model::residuals::{RESIDUALS, Residuals};
@@ -16,6 +15,9 @@ use crate::window::Window;
 const NOISY: f32 = 10.0;
 /// Speeds below this share of the synchronous one are slow: beyond the breakdown slip of any cage.
 const SLOW: f32 = 0.5;
+/// Frequency in the cage, a share of the rated one, from which on the shaft is held or slow: loads bring 0.15 at the most, and beyond the
+/// breakdown slip no motor stays.
+const HELD_SLIP: f32 = 0.5;
 /// Impedance of a motor whose shaft is held, over that of its circuit short-circuited at the most: at rated load it is four to six times as
 /// much, at the breakdown torque 1.5 to 2.
 const HELD: f32 = 1.5;
@@ -128,7 +130,7 @@ impl Monitor {
             .map(|omega| omega * self.config.mechanics.n_p);
         self.config.healthy.is_none()
             && omega_el.is_some_and(|omega| {
-                (window.omega_sync - omega).abs() > SLIP_OF_LOADS * self.config.rated_omega
+                (window.omega_sync - omega).abs() > HELD_SLIP * self.config.rated_omega
             })
     }
 
