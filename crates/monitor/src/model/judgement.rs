@@ -50,7 +50,7 @@ impl Monitor {
             // Clipped currents imply no speed: those of a start or a stall are cut where they are largest.
             report.sensor = report.sensor.or(self.check_speed(rehearsal, window));
         }
-        if report.sensor.is_none() && self.is_beyond_loads(window) {
+        if report.sensor.is_none() && self.is_slow(window) {
             report.not_judged = report.not_judged.or(Some(NotJudged::Held));
         }
     }
@@ -123,8 +123,8 @@ impl Monitor {
         normalised
     }
 
-    /// Whether the slip is one that no load brings, of a motor whose parameters nobody has measured there.
-    fn is_beyond_loads(&self, window: &Window) -> bool {
+    /// Whether the shaft is held or slow, of a motor whose parameters nobody has measured there.
+    fn is_slow(&self, window: &Window) -> bool {
         let omega_el = window
             .omega_mech
             .map(|omega| omega * self.config.mechanics.n_p);

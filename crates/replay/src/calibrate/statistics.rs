@@ -294,6 +294,23 @@ const MARGIN: f64 = 1.2;
 mod tests {
     use super::*;
 
+    /// 0.2 % as of any sound motor, and half of 6 %.
+    #[test]
+    fn one_inductance_of_two_voltages_may_be_half_of_their_difference_off() {
+        let mut settings = HealthySettings {
+            range: Some(CalibratedRange {
+                current_percent: 100.0,
+                volt_per_hertz_percent: [97.0, 103.0],
+                frequency_percent: [100.0; 2],
+                active_percent: 40.0,
+            }),
+            ..HealthySettings::default()
+        };
+        doubt_one_inductance(&mut settings);
+        let expected = 0.2_f64.hypot(3.0);
+        assert!((settings.magnetizing_inductance_percent - expected).abs() < 1e-12);
+    }
+
     /// Two-sided 42 x 2.4e-8 is the tail beyond 5.46 (tables of the normal distribution: 5.45 leaves 2.5e-8).
     #[test]
     fn a_millionth_over_all_causes_is_five_and_a_half_deviations() {
