@@ -33,7 +33,7 @@ pub(super) const NOT_CALIBRATED: BlindSpot = BlindSpot {
 
 /// A fit holds where it was made.
 pub(super) const BEYOND: BlindSpot = BlindSpot {
-    unseen: "small faults where current, voltage or frequency lie beyond what the recording in good order shows",
+    unseen: "small faults where load, voltage or frequency lie beyond what the recording in good order shows",
     needs: "the motor in good order there, too",
 };
 
