@@ -17,7 +17,7 @@ const HEALTHY: [bool; 9] = [true, false, false, false, false, false, false, fals
 const SENSOR: usize = 5;
 const FAULT: usize = 8;
 /// When the stator's resistance is half as large again, and healthy again, s.
-const FAULTS: [(f64, f64); 2] = [(2.0, 4.0), (12.0, 14.0)];
+const FAULTS: [(f64, f64); 2] = [(2.0, 4.0), (13.0, 15.0)];
 
 fn faulty_twice() -> VirtualBoard {
     let mut scenario = scenario(100.0);
@@ -71,11 +71,11 @@ fn a_board_goes_through_what_the_field_brings_and_keeps_the_story() {
     run_to(&mut board, 8.0);
     assert_eq!((board.lamps(), board.relay()), (HEALTHY, true));
     configure(&mut board, &less_touchy());
-    run_to(&mut board, 11.5);
+    run_to(&mut board, 12.5);
     assert_eq!((board.lamps(), board.relay()), (HEALTHY, true));
     let identification = Master::new(UNIT).long(&mut board, Field::MotorIdentification);
     assert_eq!(identification, less_touchy().identification());
-    run_to(&mut board, 13.0);
+    run_to(&mut board, 14.0);
     assert!(board.lamps()[FAULT] && !board.lamps()[SENSOR]);
     assert_eq!(board.tally().resets, 0);
     board.reset(Cause::Power).expect("a reset");

@@ -48,6 +48,9 @@ const LOSSES: f32 = 0.15;
 /// assumption: by half a per cent of flux even a saturated motor's `L_m` moves by 1 % at most.
 const WANDERING: f32 = 0.005;
 
+/// No motor that runs draws less, of rated current.
+const LEAST_CURRENT: f32 = 0.05;
+
 /// How far a window lies beyond the calibration and what a grid wanders by, 0 within: 0.1 is a tenth more than the largest, -0.1 a tenth
 /// less than the smallest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,8 +65,8 @@ pub struct Beyond {
     pub fed_back: f32,
     /// Active current below the smallest that the calibration saw, of rated current; never below 0.
     pub lighter: f32,
-    /// How much of what a fit at that smallest one took for resistance appears again as a current, of 1 at no active current at all; per
-    /// current of the motor, of rated current.
+    /// Of a loss current that a fit at that smallest one took for resistance, the share that shows at this load, over the motor's current, of
+    /// rated current.
     pub regained: f32,
     /// Frequency in the cage beyond that of any load, of the rated frequency: nearly 1 where a motor stands; never below 0.
     pub slip: f32,
@@ -142,7 +145,7 @@ impl CalibratedRange {
             frequency: farther(at.frequency, self.frequency),
             lighter,
             regained: match lighter {
-                lighter if lighter > 0.0 => lighter / (self.active * at.current),
+                lighter if lighter > 0.0 => lighter / (self.active * at.current.max(LEAST_CURRENT)),
                 _ => 0.0,
             },
             fed_back: match more(-at.active, (-self.active).max(0.0) + WANDERING) {
