@@ -1,12 +1,14 @@
 //! The motor constants as they lie in flash: words with a schema version and a checksum, so that a
 //! corrupted constant is noticed at power-up instead of being computed with.
 
+mod healthy;
+
+use healthy::{HEALTHY_WORDS, read_healthy, write_healthy};
 use heapless::Vec;
 use monitor::{
     Abc, ActiveEffect, ActiveEffects, ActiveLaws, AnalogueChain, CHANNELS, CIRCUIT, Cage,
-    CalibratedRange, ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, Healthy,
-    HealthySidebands, InMotion, LoadKind, MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS,
-    MonitorConfig, ParameterDoubt, ROWS, Uncertainty,
+    ChannelScale, ComparatorConfig, Converter, FieldCurrent, Frame, HealthySidebands, LoadKind,
+    MAX_EFFECT_PARAMETERS, MAX_EFFECTS, MAX_LAWS, MonitorConfig, ParameterDoubt,
 };
 use motor::effect::SteadyEffect;
 use motor::effect::curve::{Action, BOARD_KNOTS, SteadyCurve};
@@ -27,12 +29,6 @@ pub const IMAGE_WORDS: usize = 42
 
 /// Words of a law: where it acts, number of knots, mean, then knots, values and bends.
 const LAW_WORDS: usize = 3 + 3 * BOARD_KNOTS;
-
-/// Words of the healthy motor's statistics.
-const HEALTHY_WORDS: usize = 10 + 2 * ROWS + 12 + RANGE_WORDS;
-
-/// Words of where the calibration saw the motor: current, voltage over frequency, frequency, active current.
-const RANGE_WORDS: usize = 6;
 
 /// Words of the analogue chain: delays and roll-off.
 const CHAIN_WORDS: usize = CHANNELS + 1;
@@ -188,91 +184,6 @@ fn read_doubt(r: &mut Reader<'_>) -> ParameterDoubt {
         *sigmas = r.numbers();
     }
     doubt
-}
-
-/// A significance is positive, so 0 stands for a motor that was not calibrated.
-fn write_healthy(w: &mut Writer, healthy: Option<&Healthy>) {
-    let Some(h) = healthy else {
-        w.numbers(&[0.0; HEALTHY_WORDS]);
-        return;
-    };
-    let u = &h.uncertainty;
-    w.number(h.significance);
-    w.numbers(&h.mean);
-    w.numbers(&h.scatter);
-    w.numbers(&h.current_unbalance);
-    w.numbers(&h.negative_drop);
-    w.numbers(&[h.current_unbalance_scatter, h.current_unbalance_at]);
-    w.numbers(&h.turns_axis);
-    w.numbers(&[u.stator_resistance, u.rotor_resistance, u.heating]);
-    w.numbers(&[u.magnetizing_inductance, u.leakage, u.friction]);
-    w.numbers(&[u.current_gain, u.voltage_gain, u.speed]);
-    w.numbers(&[u.iron_loss, u.supply_unbalance, u.negative_impedance]);
-    write_range(w, h.range.as_ref());
-    w.word(match h.in_motion {
-        InMotion::Unseen => 0,
-        InMotion::Fits => 1,
-        InMotion::Differs => 2,
-    });
-}
-
-fn read_healthy(r: &mut Reader<'_>) -> Option<Healthy> {
-    let significance = r.number();
-    let healthy = Healthy {
-        mean: r.numbers(),
-        scatter: r.numbers(),
-        current_unbalance: r.numbers(),
-        negative_drop: r.numbers(),
-        current_unbalance_scatter: r.number(),
-        current_unbalance_at: r.number(),
-        turns_axis: r.numbers(),
-        uncertainty: Uncertainty {
-            stator_resistance: r.number(),
-            rotor_resistance: r.number(),
-            heating: r.number(),
-            magnetizing_inductance: r.number(),
-            leakage: r.number(),
-            friction: r.number(),
-            current_gain: r.number(),
-            voltage_gain: r.number(),
-            speed: r.number(),
-            iron_loss: r.number(),
-            supply_unbalance: r.number(),
-            negative_impedance: r.number(),
-        },
-        range: read_range(r),
-        significance,
-        in_motion: match r.word() {
-            1 => InMotion::Fits,
-            2 => InMotion::Differs,
-            // A motor that was not calibrated, or was not seen in motion.
-            _ => InMotion::Unseen,
-        },
-    };
-    (significance > 0.0).then_some(healthy)
-}
-
-/// A motor runs at a frequency above 0, so 0 stands for a calibration that does not say what it saw.
-fn write_range(w: &mut Writer, range: Option<&CalibratedRange>) {
-    let Some(range) = range else {
-        w.numbers(&[0.0; RANGE_WORDS]);
-        return;
-    };
-    w.number(range.current);
-    w.numbers(&range.volt_per_hertz);
-    w.numbers(&range.frequency);
-    w.number(range.active);
-}
-
-fn read_range(r: &mut Reader<'_>) -> Option<CalibratedRange> {
-    let range = CalibratedRange {
-        current: r.number(),
-        volt_per_hertz: r.numbers(),
-        frequency: r.numbers(),
-        active: r.number(),
-    };
-    let [_, highest] = range.frequency;
-    (highest > 0.0).then_some(range)
 }
 
 /// A healthy load is positive, so 0 stands for sidebands that were not calibrated.

@@ -1,3 +1,5 @@
+use monitor::{CalibratedRange, Healthy, InMotion, ROWS, Uncertainty};
+
 use super::*;
 use motor::effect::curve::{Coordinate, Place};
 use motor::motor_file::MotorFile;
