@@ -132,6 +132,17 @@ impl Doubts {
         backwards: false,
         volt: 1.0,
     };
+
+    /// A motor and instruments that are as believed but for noise, share of full scale, at a voltage, share of the rated one.
+    pub fn none(noise: f64, volt: f64) -> Doubts {
+        Doubts {
+            wrong: 0.0,
+            bends: false,
+            noise,
+            volt,
+            ..Doubts::USUAL
+        }
+    }
 }
 
 /// A fault, where it begins: at once, or while the machine moves.

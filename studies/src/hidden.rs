@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use motor::MotorFile;
 use motor::dynamic::Harmonic;
-use motor::motor_file::{EffectEntry, LoadKind};
+use motor::motor_file::{EffectEntry, LoadKind, Nameplate};
 use num_complex::Complex64;
 use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, SeedableRng};
@@ -95,12 +95,7 @@ impl Machine {
         motor.parameters.r_s *= warmed[0];
         motor.parameters.r_r *= warmed[1];
         let torque = load * motor.nameplate.torque_nm;
-        let supply = SupplySpec {
-            components: vec![unbalance(seed)],
-            amplitude_volt: Piecewise::constant(volt * motor.nameplate.phase_voltage_amplitude()),
-            frequency_hz: Piecewise::constant(hertz * motor.nameplate.frequency_hz),
-            ..SupplySpec::rated(&motor.nameplate)
-        };
+        let supply = supply(&motor.nameplate, [volt, hertz], seed);
         let scenario = Scenario {
             seed,
             supply,
@@ -127,13 +122,7 @@ impl Machine {
         fault: Option<Fault>,
         seed: u64,
     ) -> Result<Recording, Box<dyn Error>> {
-        let doubts = Doubts {
-            wrong: 0.0,
-            bends: false,
-            noise: NOISE,
-            volt,
-            ..Doubts::USUAL
-        };
+        let doubts = Doubts::none(NOISE, volt);
         let mut scenario = drive::run(&self.motor, drive, &doubts, None, seed).scenario;
         scenario.effects = self.hidden.clone();
         scenario.faults = fault.into_iter().collect();
@@ -177,8 +166,18 @@ impl Machine {
     }
 }
 
+/// A supply of this voltage and frequency, shares of the rated ones, whose unbalance is that of `seed`.
+pub fn supply(plate: &Nameplate, [volt, hertz]: [f64; 2], seed: u64) -> SupplySpec {
+    SupplySpec {
+        components: vec![unbalance(seed)],
+        amplitude_volt: Piecewise::constant(volt * plate.phase_voltage_amplitude()),
+        frequency_hz: Piecewise::constant(hertz * plate.frequency_hz),
+        ..SupplySpec::rated(plate)
+    }
+}
+
 /// A negative sequence of the supply; it wanders from recording to recording.
-pub fn unbalance(seed: u64) -> Harmonic {
+fn unbalance(seed: u64) -> Harmonic {
     let mut random = Pcg64::seed_from_u64(seed);
     Harmonic {
         order: -1.0,

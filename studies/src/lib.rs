@@ -3,5 +3,7 @@
 #![allow(missing_docs)]
 
 pub mod broken;
+pub mod condition;
 pub mod drive;
 pub mod hidden;
+pub mod words;

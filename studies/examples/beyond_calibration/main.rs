@@ -23,8 +23,9 @@ use recording::Recording;
 use replay::{Samples, VerdictState};
 use scenario::Fault;
 use studies::broken::{Broken, faults};
-use studies::drive::{DRIVES, Drive};
+use studies::condition::Condition;
 use studies::hidden::Machine;
+use studies::words::Words;
 
 /// What is judged at rest: load, share of the largest of the calibration, and voltage and frequency, shares of the rated ones.
 const AT_REST: [[f64; 3]; 20] = [
@@ -52,52 +53,22 @@ const AT_REST: [[f64; 3]; 20] = [
 /// What is judged in motion: voltages, shares of the rated one.
 const VOLTAGES: [f64; 3] = [0.93, 1.0, 1.07];
 
-/// Where a machine is judged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Condition {
-    /// Load, share of the largest of the calibration, voltage and frequency.
-    AtRest([f64; 3]),
-    /// Voltage.
-    InMotion(Drive, f64),
+fn conditions(moving: bool) -> Vec<Condition> {
+    Condition::all(moving, &AT_REST, VOLTAGES)
 }
 
-impl Condition {
-    fn all(moving: bool) -> Vec<Condition> {
-        if !moving {
-            return AT_REST.map(Condition::AtRest).to_vec();
+/// Loads are shares of the largest of the calibration.
+fn recorded(
+    machine: &Machine,
+    at: Condition,
+    fault: Option<Fault>,
+    seed: u64,
+) -> Result<Recording, Box<dyn Error>> {
+    match at {
+        Condition::AtRest([ratio, volt, hertz]) => {
+            machine.recorded([ratio * machine.highest, volt, hertz], fault, seed)
         }
-        let of = |drive| VOLTAGES.map(|volt| Condition::InMotion(drive, volt));
-        DRIVES.into_iter().flat_map(of).collect()
-    }
-
-    fn recorded(
-        self,
-        machine: &Machine,
-        fault: Option<Fault>,
-        seed: u64,
-    ) -> Result<Recording, Box<dyn Error>> {
-        match self {
-            Condition::AtRest([ratio, volt, hertz]) => {
-                machine.recorded([ratio * machine.highest, volt, hertz], fault, seed)
-            }
-            Condition::InMotion(drive, volt) => machine.moved(drive, volt, fault, seed),
-        }
-    }
-
-    /// The first columns of its row.
-    fn row(self) -> String {
-        match self {
-            Condition::AtRest([ratio, volt, hertz]) => format!("{ratio} | {volt} | {hertz}"),
-            Condition::InMotion(drive, volt) => format!("{} | {volt}", drive.name()),
-        }
-    }
-
-    /// What heads them.
-    fn head(moving: bool) -> &'static str {
-        match moving {
-            true => "drive | voltage",
-            false => "load, of the largest calibrated | voltage | frequency",
-        }
+        Condition::InMotion(drive, volt) => machine.moved(drive, volt, fault, seed),
     }
 }
 
@@ -156,11 +127,11 @@ fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
         false => vec![None],
     };
     let mut all = Vec::new();
-    for at in Condition::all(asked.moving) {
+    for at in conditions(asked.moving) {
         for broken in &broken {
             let fault = broken.as_ref().map(|broken| broken.1.clone());
             // Beyond the breakdown torque no motor runs.
-            let Ok(recording) = at.recorded(&machine, fault, random.random()) else {
+            let Ok(recording) = recorded(&machine, at, fault, random.random()) else {
                 continue;
             };
             let audit = audit(&recording, &Expectation::from(&calibrated));
@@ -191,13 +162,9 @@ fn judged(seed: u64, asked: &Asked) -> Result<Told, Box<dyn Error>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let number = |k: usize, default: u64| {
-        let word = words.get(k).and_then(|word| word.parse().ok());
-        word.unwrap_or(default)
-    };
-    let (machines, seed) = (number(0, 60), number(1, 1));
-    let has = |word: &str| words.iter().any(|given| given == word);
+    let words = Words::given();
+    let (machines, seed) = (words.number(0, 60), words.number(1, 1));
+    let has = |word| words.has(word);
     let asked = Asked {
         one: has("one"),
         moving: has("moving"),
@@ -232,15 +199,11 @@ fn print(all: &[Told], asked: &Asked) {
         true => faults().into_iter().map(|broken| broken.0).collect(),
         false => vec!["healthy"],
     };
-    println!(
-        "| {} | FAULT: {} |",
-        Condition::head(asked.moving),
-        names.join(" | ")
-    );
-    let lines = Condition::head(asked.moving).split('|').count();
-    println!("|{}{}", "---|".repeat(lines), "---|".repeat(names.len()));
+    let head = Condition::head(asked.moving, "load, of the largest calibrated");
+    println!("| {head} | FAULT: {} |", names.join(" | "));
+    println!("|{}", "---|".repeat(head.split('|').count() + names.len()));
     let said = || all.iter().flat_map(|(_, judged)| judged).flatten();
-    for at in Condition::all(asked.moving) {
+    for at in conditions(asked.moving) {
         print!("| {} |", at.row());
         for name in &names {
             let here = || said().filter(|j| j.at == at && j.fault == *name);

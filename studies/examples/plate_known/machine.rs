@@ -11,8 +11,9 @@ use rand::seq::IndexedRandom;
 use rand_pcg::Pcg64;
 use recording::Recording;
 use scenario::simulate::record;
-use scenario::{Fault, LoadSpec, Piecewise, Scenario, SensorSpec, Start, SupplySpec};
-use studies::drive::{self, DRIVES, Doubts, Drive};
+use scenario::{Fault, LoadSpec, Scenario, SensorSpec, Start};
+use studies::condition::Condition;
+use studies::drive::{self, Doubts};
 use studies::hidden;
 
 /// Load, share of the rated one, voltage and frequency, shares of the rated ones.
@@ -48,39 +49,8 @@ const VOLTAGES: [f64; 3] = [0.95, 1.0, 1.05];
 const NOISE: f64 = 0.001;
 
 /// Where a machine is judged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Condition {
-    /// Load, voltage and frequency, shares of the rated ones.
-    AtRest([f64; 3]),
-    /// Voltage.
-    InMotion(Drive, f64),
-}
-
-impl Condition {
-    /// All of them.
-    pub fn all(moving: bool) -> Vec<Condition> {
-        if !moving {
-            return AT_REST.map(Condition::AtRest).to_vec();
-        }
-        let of = |drive| VOLTAGES.map(|volt| Condition::InMotion(drive, volt));
-        DRIVES.into_iter().flat_map(of).collect()
-    }
-
-    /// What heads the first columns.
-    pub fn head(moving: bool) -> &'static str {
-        match moving {
-            true => "drive | voltage",
-            false => "load | voltage | frequency",
-        }
-    }
-
-    /// The first columns of its row.
-    pub fn row(self) -> String {
-        match self {
-            Condition::AtRest([load, volt, hertz]) => format!("{load} | {volt} | {hertz}"),
-            Condition::InMotion(drive, volt) => format!("{} | {volt}", drive.name()),
-        }
-    }
+pub fn conditions(moving: bool) -> Vec<Condition> {
+    Condition::all(moving, &AT_REST, VOLTAGES)
 }
 
 /// A motor, and what its plate tells of it.
@@ -174,13 +144,7 @@ impl<'a> Machine<'a> {
             Condition::InMotion(drive, volt) => {
                 let mut motor = self.of.truth.clone();
                 motor.effects.clear();
-                let doubts = Doubts {
-                    wrong: 0.0,
-                    bends: false,
-                    noise: NOISE,
-                    volt,
-                    ..Doubts::USUAL
-                };
+                let doubts = Doubts::none(NOISE, volt);
                 drive::run(&motor, drive, &doubts, None, seed).scenario
             }
         };
@@ -204,12 +168,7 @@ impl<'a> Machine<'a> {
         let plate = &motor.nameplate;
         Scenario {
             seed,
-            supply: SupplySpec {
-                amplitude_volt: Piecewise::constant(volt * plate.phase_voltage_amplitude()),
-                frequency_hz: Piecewise::constant(hertz * plate.frequency_hz),
-                components: vec![hidden::unbalance(seed)],
-                ..SupplySpec::rated(plate)
-            },
+            supply: hidden::supply(plate, [volt, hertz], seed),
             load: LoadSpec::constant(load * plate.torque_nm, true),
             start: Start::Running,
             sensors: SensorSpec::of(&motor),

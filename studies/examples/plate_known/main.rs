@@ -17,7 +17,7 @@ use std::error::Error;
 
 use audit::{Expectation, audit};
 use board::{Learner, Progress};
-use machine::{Condition, Known, Machine, motors};
+use machine::{Known, Machine, conditions, motors};
 use monitor::{Monitor, MonitorState, RESIDUALS};
 use motor::MotorFile;
 use rand::{Rng, SeedableRng};
@@ -28,7 +28,9 @@ use replay::check::{Knowledge, Reference};
 use replay::speed::with_estimated_speed;
 use replay::{Samples, VerdictState};
 use studies::broken::{Broken, faults};
+use studies::condition::Condition;
 use studies::drive::Drive;
+use studies::words::Words;
 
 /// Three voltages, three currents, speed.
 const CHANNELS: [Channel; 7] = [
@@ -139,7 +141,7 @@ fn judged(motors: &[Known], seed: u64, asked: Asked) -> Result<Told, Box<dyn Err
         true => faults().into_iter().map(Some).collect(),
         false => vec![None],
     };
-    for (place, at) in Condition::all(asked.moving).into_iter().enumerate() {
+    for (place, at) in conditions(asked.moving).into_iter().enumerate() {
         for broken in &broken {
             let fault = broken.as_ref().map(|broken| broken.1.clone());
             // Beyond the breakdown torque no motor runs.
@@ -201,13 +203,9 @@ fn save(
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let number = |k: usize, default: u64| {
-        let word = words.get(k).and_then(|word| word.parse().ok());
-        word.unwrap_or(default)
-    };
-    let (machines, seed) = (number(0, 60), number(1, 1));
-    let has = |word: &str| words.iter().any(|given| given == word);
+    let words = Words::given();
+    let (machines, seed) = (words.number(0, 60), words.number(1, 1));
+    let has = |word| words.has(word);
     let asked = Asked {
         learnt: has("learnt"),
         healthy: has("healthy"),
@@ -246,12 +244,12 @@ fn print(all: &[Told], asked: &Asked) {
         true => faults().into_iter().map(|broken| broken.0).collect(),
         false => vec!["healthy"],
     };
-    let head = Condition::head(asked.moving);
+    let head = Condition::head(asked.moving, "load");
     println!("| {head} | FAULT: {} | not judged |", names.join(" | "));
     let columns = head.split('|').count() + names.len() + 1;
     println!("|{}", "---|".repeat(columns));
     let said = || all.iter().flat_map(|told| &told.said);
-    for at in Condition::all(asked.moving) {
+    for at in conditions(asked.moving) {
         print!("| {} |", at.row());
         for name in &names {
             let here = || said().filter(|j| j.at == at && j.fault == *name);
