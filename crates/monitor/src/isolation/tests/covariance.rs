@@ -186,6 +186,7 @@ fn the_drop_that_a_calibration_saw_is_in_no_doubt() {
         negative_drop: [drop.re, drop.im],
         ..doubted
     };
+    // Single precision, of sums of a dozen squares.
     for row in [Row::Negative as usize, Row::Negative as usize + 1] {
         let [own, open, closed] = [&known, &doubted, &seen].map(|h| variance(h, row));
         assert!((closed - own).abs() < 1e-3 * own, "{closed} {own}");
@@ -262,6 +263,7 @@ fn currents_alone_leave_open_what_a_supply_may_draw() {
     let standing = f64::from(p.r_s + 0.5 * p.r_r).hypot(f64::from(reactance));
     let drawn = 0.002 * f64::from(config.rated_voltage) / (standing * 5.0);
     let own = f64::from(healthy.current_unbalance_scatter);
+    // What the magnetizing branch takes of a standing motor's impedance: leakage over main inductance, a twentieth.
     let near = |x: f64, y: f64| assert!((x - y).abs() < 0.05 * y, "{x} {y}");
     near(scatter(5.0), own.hypot(drawn));
     near(scatter(0.0), own.hypot(drawn));
