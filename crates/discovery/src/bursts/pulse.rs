@@ -14,6 +14,10 @@ const OF_THE_LARGE: f64 = 0.2;
 const SHORTEST: f64 = 4e-3;
 /// What is left between bursts, root mean square over that inside them.
 const QUIET: f64 = 0.35;
+/// Share of the area of bursts that those have which end before the recording does, and begin after it.
+const THAT_GO: f64 = 0.5;
+/// Share of the area of bursts that has one sign: a contact that opens never closes more than before.
+const OF_ONE_SIGN: f64 = 0.8;
 
 /// One burst.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +34,11 @@ impl Pulse {
     /// Length, s.
     pub fn length(&self) -> f64 {
         self.to - self.from
+    }
+
+    /// Amount times length, in the unit of its place times s.
+    pub fn area(&self) -> f64 {
+        self.size * self.length()
     }
 
     /// Share of it within half a step about `t`, s.
@@ -62,7 +71,10 @@ pub(crate) fn pulses(amount: &[f64], step: f64) -> Vec<Pulse> {
     let mut found = runs(amount, threshold, (SHORTEST / step) as usize);
     found.retain(|run| (run.len() as f64) * step >= SHORTEST);
     let pulses: Vec<Pulse> = found.iter().map(|run| of_run(amount, run, step)).collect();
-    let comes_and_goes = (FEWEST..=MOST).contains(&pulses.len()) && is_quiet(amount, &pulses, step);
+    let end = (amount.len().saturating_sub(1)) as f64 * step;
+    let comes_and_goes = (FEWEST..=MOST).contains(&pulses.len())
+        && is_quiet(amount, &pulses, step)
+        && mostly_go(&pulses, end);
     match comes_and_goes {
         true => pulses,
         false => Vec::new(),
@@ -109,6 +121,25 @@ fn of_run(amount: &[f64], run: &std::ops::Range<usize>, step: f64) -> Pulse {
         to: (run.start + last + 1) as f64 * step,
         size: sign * level,
     }
+}
+
+/// Whether most of what bursts do, amount times length, is known to come and to go: what stays until the recording ends at `end` (s) may be a
+/// step.
+fn mostly_go(pulses: &[Pulse], end: f64) -> bool {
+    let goes = |p: &&Pulse| p.from > SHORTEST && p.to < end - SHORTEST;
+    let area = |of: &mut dyn Iterator<Item = &Pulse>| of.map(|p| p.area().abs()).sum::<f64>();
+    area(&mut pulses.iter().filter(goes)) >= THAT_GO * area(&mut pulses.iter())
+}
+
+/// Whether bursts, of several recordings, are one thing that is there or not: nearly all have one sign.
+pub(crate) fn have_one_sign(pulses: &[Vec<Pulse>]) -> bool {
+    let areas = || pulses.iter().flatten().map(Pulse::area);
+    let (sum, all) = (
+        areas().sum::<f64>().abs(),
+        areas().map(f64::abs).sum::<f64>(),
+    );
+    // Of one sign are `(all + sum) / 2`.
+    all + sum >= 2.0 * OF_ONE_SIGN * all
 }
 
 /// Whether little is left between the bursts, and they are the exception.
@@ -171,6 +202,37 @@ mod tests {
         for amount in [sine, step, two, vec![0.0; 5000]] {
             assert!(pulses(&amount, STEP).is_empty());
         }
+    }
+
+    /// A resistance that begins to rise and stays: the beginning flickers, what counts does not go.
+    #[test]
+    fn a_step_that_flickers_as_it_begins_does_not_come_and_go() {
+        let mut flickers = three();
+        for (k, pulse) in flickers.iter_mut().enumerate() {
+            *pulse = Pulse {
+                from: 0.7 + 0.02 * k as f64,
+                to: 0.71 + 0.02 * k as f64,
+                size: 3.0,
+            };
+        }
+        assert_eq!(pulses(&drawn(&flickers, STEP, 5000), STEP).len(), 3);
+        flickers.push(Pulse {
+            from: 0.77,
+            to: 1.1,
+            size: 5.0,
+        });
+        assert!(pulses(&drawn(&flickers, STEP, 5000), STEP).is_empty());
+    }
+
+    /// A model that is wrong in steps of the load needs torques of either sign there.
+    #[test]
+    fn what_pushes_to_both_sides_is_not_one_thing() {
+        let mut both = three();
+        assert!(have_one_sign(&[both.clone(), three()]));
+        both.iter_mut().for_each(|pulse| pulse.size *= -1.0);
+        assert!(have_one_sign(&[both.clone(), both.clone()]));
+        assert!(!have_one_sign(&[both, three()]));
+        assert!(have_one_sign(&[Vec::new()]));
     }
 
     /// Edges between steps count by their share: the area under a drawn burst is its own.

@@ -1,7 +1,7 @@
 //! Where something comes and goes: the place that the bursts of all recordings have in common.
 
 use super::fit::{Fitted, Scene};
-use super::pulse::Pulse;
+use super::pulse::{Pulse, have_one_sign};
 use super::smoother::Wander;
 use super::trace::{action, places};
 use crate::laws::search::{LawStep, Refitted};
@@ -57,6 +57,7 @@ pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
     let least = WANDERS * study.excess(&base.fit);
     let suspected = scene.suspected(&asked, FITTED, least);
     let mut all: Vec<Candidate> = suspected.par_iter().filter_map(one).collect();
+    all.retain(|candidate| have_one_sign(&candidate.pulses));
     let error = |c: &Candidate| study.fold_error(&c.trial.folds) * study.proof_error(&c.trial);
     all.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let best = all.first()?;
