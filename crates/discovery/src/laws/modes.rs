@@ -2,8 +2,8 @@
 //!
 //! Ten cubic B-splines at equal distances with a penalty on second differences (Eilers and Marx, 1996,
 //! doi:10.1214/ss/1038425655), turned to the penalty's own axes, so that each mode has a prior of its own. Where a
-//! coordinate passes zero the knots crowd there by an inverse hyperbolic sine. Over an angle the modes are a
-//! constant and harmonics.
+//! coordinate passes zero the knots crowd there by an inverse hyperbolic sine; elsewhere they do where that is asked
+//! for. Over an angle the modes are a constant and harmonics.
 
 use motor::effect::curve::{Action, Coordinate, Law, tabulated};
 use motor::effect::{
@@ -20,16 +20,21 @@ pub(crate) const SPLINES: usize = 10;
 const HARMONICS: usize = 8;
 /// Modes of a curve over an angle.
 pub(crate) const TURN_MODES: usize = 1 + 2 * HARMONICS;
-/// Parameters before the sizes: lowest and highest coordinate, width of the crowded knots (0: none), stiffness.
-const SHAPES: usize = 4;
+/// Parameters before the sizes: lowest and highest coordinate, width of the crowded knots (0: none) and their centre, stiffness.
+const SHAPES: usize = 5;
 const WARP: usize = 2;
-const STIFFNESS: usize = 3;
+const CENTRE: usize = 3;
+const STIFFNESS: usize = 4;
+/// Places at which one curve is redrawn with the modes of another.
+const DRAWN: usize = 200;
+/// Weight of each mode when a curve is redrawn: it decides where modes hardly differ.
+const REDRAWN: f64 = 1e-6;
 /// Share of the range within which knots crowd about zero.
 const CROWDED: f64 = 0.12;
 /// Prior weight of each mode beside its stiffness: one over the square of four typical sizes, as an effect's size.
 const RIDGE: f64 = 1.0 / 16.0;
 
-/// A law with its modes. Its values: the four shapes, then the size of each mode.
+/// A law with its modes. Its values: the five shapes, then the size of each mode.
 #[derive(Debug)]
 pub(crate) struct Modes {
     /// Where it acts, over what.
@@ -103,9 +108,38 @@ impl Modes {
     pub fn absent(action: Action, [low, high]: [f64; 2]) -> EffectConfig {
         let law = LAWS.iter().find(|law| law.action == action);
         let effect = law.unwrap_or(&LAWS[0]);
-        let mut values = vec![low, high, crowded(action.coordinate, [low, high]), 0.0];
+        let crowd = crowded(action.coordinate, [low, high]);
+        let mut values = vec![low, high, crowd, 0.0, 0.0];
         values.resize(SHAPES + count(action.coordinate), 0.0);
         EffectConfig { effect, values }
+    }
+
+    /// The law of a config without its curve, with knots that crowd about a share of the way from end to end, `width` as a share of that
+    /// way; `None` over an angle.
+    pub fn crowded_about(config: &EffectConfig, place: f64, width: f64) -> Option<EffectConfig> {
+        let action = Self::of(config)?.action;
+        let [low, high] = [config.values[0], config.values[1]];
+        let mut crowd = Self::absent(action, [low, high]);
+        crowd.values[WARP] = width * (high - low);
+        crowd.values[CENTRE] = low + place * (high - low);
+        (!action.coordinate.is_angle()).then_some(crowd)
+    }
+
+    /// Draws the curve of one config of this law with the modes of another, as nearly as they can (least squares).
+    pub fn redrawn(&self, from: &EffectConfig, to: &mut EffectConfig) {
+        let [low, high] = [from.values[0], from.values[1]];
+        let at = |k: usize| low + (high - low) * k as f64 / (DRAWN - 1) as f64;
+        let n = count(self.action.coordinate);
+        let mut gram = DMatrix::identity(n, n) * REDRAWN;
+        let mut moment = DVector::zeros(n);
+        for x in (0..DRAWN).map(at) {
+            let shares = DVector::from_vec(self.shares(&to.values, x));
+            gram += &shares * shares.transpose();
+            moment += shares * self.value(&from.values, x);
+        }
+        if let Some(sizes) = gram.cholesky().map(|gram| gram.solve(&moment)) {
+            to.values[SHAPES..].copy_from_slice(sizes.as_slice());
+        }
     }
 
     /// A law of one value everywhere.
@@ -219,20 +253,24 @@ fn crowded(coordinate: Coordinate, [low, high]: [f64; 2]) -> f64 {
 
 /// Place of `x` between the ends, 0 to 1, on the axis of the splines.
 fn place(p: &[f64], x: f64) -> f64 {
-    let warped = |x: f64| match p[WARP] > 0.0 {
-        true => (x / p[WARP]).asinh(),
+    let (low, high) = (warped(p, p[0]), warped(p, p[1]));
+    ((warped(p, x) - low) / (high - low)).clamp(0.0, 1.0)
+}
+
+/// `x` on the axis on which knots have equal distances.
+fn warped(p: &[f64], x: f64) -> f64 {
+    match p[WARP] > 0.0 {
+        true => ((x - p[CENTRE]) / p[WARP]).asinh(),
         false => x,
-    };
-    let (low, high) = (warped(p[0]), warped(p[1]));
-    ((warped(x) - low) / (high - low)).clamp(0.0, 1.0)
+    }
 }
 
 fn from_place(p: &[f64], place: f64) -> f64 {
     if p[WARP] <= 0.0 {
         return p[0] + place * (p[1] - p[0]);
     }
-    let (low, high) = ((p[0] / p[WARP]).asinh(), (p[1] / p[WARP]).asinh());
-    p[WARP] * (low + place * (high - low)).sinh()
+    let (low, high) = (warped(p, p[0]), warped(p, p[1]));
+    p[CENTRE] + p[WARP] * (low + place * (high - low)).sinh()
 }
 
 /// The four cubic B-splines that are not zero at `place`, with their values.

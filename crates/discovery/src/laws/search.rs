@@ -4,6 +4,7 @@ use crate::bursts::pulse::Pulse;
 use crate::laws::formula::prove::{Curve, Proven};
 use crate::laws::menu::menu;
 use crate::laws::modes::{self, Modes};
+use crate::laws::refine::refined;
 use crate::laws::screen::{Screened, best_stiffness, screen};
 use crate::laws::sensitivity::Sensitivities;
 use crate::search::refit::combined;
@@ -148,6 +149,11 @@ impl<'a> LawSearch<'a> {
         let mut refitted: Vec<Refitted> = rest.collect();
         refitted.extend(first);
         refitted.sort_by(|a, b| a.error.total_cmp(&b.error));
+        if let Some(best) = refitted.first_mut()
+            && let Some(finer) = refined(self.study, self.base, best)
+        {
+            *best = finer;
+        }
         Laws {
             refitted,
             promised: self.promised(),

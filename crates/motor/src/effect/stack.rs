@@ -1,10 +1,13 @@
 //! Several effects at work in one dynamic model.
 
+mod air_gap;
+
 use crate::TParams;
 use crate::dynamic::{DynamicState, Extra, Flow, Hooks, Linear, Terminal, Winding};
 use crate::effect::effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
 use crate::effect::steady::length;
 use crate::effect::{EffectConfig, Rated};
+use air_gap::{Guesses, Star};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -113,6 +116,7 @@ pub struct EffectStack<const N: usize> {
     timeline: Arc<Timeline>,
     parameters: Vec<Active>,
     magnetizing: Vec<Active>,
+    guesses: Option<Arc<Guesses>>,
     held_voltage: Vec<Active>,
     terminal: Vec<Active>,
     finish: Vec<Active>,
@@ -145,12 +149,21 @@ impl<const N: usize> EffectStack<N> {
             let uses = |a: &&Active| a.effect.hooks().contains(&hook);
             active.iter().filter(uses).cloned().collect()
         };
+        let magnetizing = with(Hook::Magnetizing);
+        let star = Star {
+            admittance: 1.0 / motor.l_ls + 1.0 / motor.l_lr,
+            l_m: motor.l_m,
+            flux_rated: rated.flux(),
+        };
+        let guesses = (!magnetizing.is_empty())
+            .then(|| Arc::new(Guesses::of(&star, &|x| factor_of(&magnetizing, x))));
         Self {
             rated: *rated,
             motor: *motor,
             timeline,
             parameters: with(Hook::Parameters),
-            magnetizing: with(Hook::Magnetizing),
+            magnetizing,
+            guesses,
             held_voltage: with(Hook::HeldVoltage),
             terminal: with(Hook::Terminal),
             finish: with(Hook::Finish),
@@ -195,34 +208,20 @@ impl<const N: usize> EffectStack<N> {
         now
     }
 
-    /// Factor on the magnetizing current at air-gap flux `x` (over rated), and its derivative.
-    fn magnetizing_factor(&self, x: f64) -> (f64, f64) {
-        let add = |(f, slope), active: &Active| {
-            let (g, dg) = active.effect.magnetizing(&active.p, x);
-            (f + g - 1.0, slope + dg)
-        };
-        self.magnetizing.iter().fold((1.0, 0.0), add)
-    }
-
     /// Air-gap flux of a star of branches: `psi (a + f(|psi|)/L_m) = sum`, solved for its magnitude.
     fn air_gap_flux(&self, sum: Complex64, admittance: f64, l_m: f64) -> Complex64 {
-        let (drive, flux_rated) = (length(sum), self.rated.flux());
-        let linear = drive / (admittance + 1.0 / l_m);
-        if self.magnetizing.is_empty() || drive == 0.0 {
+        let star = Star {
+            admittance,
+            l_m,
+            flux_rated: self.rated.flux(),
+        };
+        let drive = length(sum);
+        let linear = star.linear(drive);
+        let Some(guesses) = self.guesses.as_ref().filter(|_| drive > 0.0) else {
             return sum * (linear / drive.max(f64::MIN_POSITIVE));
-        }
-        let mut x = linear;
-        for _ in 0..12 {
-            let (f, slope) = self.magnetizing_factor(x / flux_rated);
-            let excess = x * (admittance + f / l_m) - drive;
-            let gradient = admittance + (f + x * slope / flux_rated) / l_m;
-            let step = excess / gradient;
-            x = (x - step).max(0.0);
-            if step.abs() < 1e-9 * flux_rated {
-                break;
-            }
-        }
-        sum * (x / drive)
+        };
+        let factor = |x: f64| factor_of(&self.magnetizing, x);
+        sum * (star.solve(factor, drive, guesses.at(linear)) / drive)
     }
 
     /// Currents of a T model with magnetizing branch, two leakages and perhaps a second cage.
@@ -239,6 +238,15 @@ impl<const N: usize> EffectStack<N> {
             r_r: m.r_r,
         }
     }
+}
+
+/// Factor on the magnetizing current at air-gap flux `x` (over rated), and its derivative.
+fn factor_of(magnetizing: &[Active], x: f64) -> (f64, f64) {
+    let add = |(f, slope), active: &Active| {
+        let (g, dg) = active.effect.magnetizing(&active.p, x);
+        (f + g - 1.0, slope + dg)
+    };
+    magnetizing.iter().fold((1.0, 0.0), add)
 }
 
 fn cage_share(cage: Cage) -> (f64, Complex64) {

@@ -1,0 +1,81 @@
+//! A curve whose knots go where it bends.
+//!
+//! Ten splines at equal distances show no bump that is narrower than some of them. Where a refitted law leaves something, the model with it is linearised
+//! once, and the same law is screened again with knots that crowd about one place after the other. The place that promises most is refitted.
+
+use super::formula::prove::law_of;
+use super::modes::{self, Modes};
+use super::screen::best_stiffness;
+use super::search::Refitted;
+use super::sensitivity::Sensitivities;
+use crate::search::refit::combined;
+use estimation::data::study::{Study, Trial};
+use estimation::fit::normal_equations;
+use estimation::fit::output_error::Effort;
+use estimation::proof::accept::{adequate, beats};
+use motor::effect::EffectConfig;
+use rayon::prelude::*;
+
+/// Places about which knots may crowd, at equal distances from end to end.
+const PLACES: usize = 13;
+/// Widths of the crowd, shares of the range.
+const WIDTHS: [f64; 2] = [0.04, 0.12];
+/// Share of the excess over the noise that a crowd must promise to explain: a smaller one is not worth a refit.
+const WORTH_IT: f64 = 0.1;
+/// Iterations of the refit.
+const ITERATIONS: usize = 8;
+
+/// The law with knots where they are needed; `None` where it is good as it is, or no crowd makes it better.
+pub(super) fn refined(study: &Study, base: &Trial, law: &Refitted) -> Option<Refitted> {
+    if adequate(study, &law.trial) {
+        return None;
+    }
+    let (_, config) = law_of(study, &law.trial)?;
+    let crowd = best_crowd(study, &law.trial, &config)?;
+    let mut start = base.fit.hypothesis.clone();
+    let there = law.trial.fit.hypothesis.z.get(..start.z.len())?;
+    start.z.copy_from_slice(there);
+    let effort = Effort {
+        iterations: ITERATIONS,
+        ..Effort::FULL
+    };
+    let trial = study.trial(&start.with(crowd, &study.prior.plant.rated), effort);
+    beats(&trial, &law.trial).then(|| Refitted {
+        action: law.action,
+        error: combined(study, &trial),
+        trial,
+    })
+}
+
+/// The same curve with the crowd of knots that promises most on top of it.
+fn best_crowd(study: &Study, trial: &Trial, config: &EffectConfig) -> Option<EffectConfig> {
+    let (case, fit) = (&study.fitted.case, &trial.fit);
+    let rows = case.blocks();
+    let sensitivities = Sensitivities::of(case.waveform()?, &study.prior, fit);
+    let promise = |crowd: EffectConfig| {
+        let columns = sensitivities.columns(&crowd)?;
+        let blocks =
+            normal_equations::extended(&fit.blocks, &rows, &fit.residual, &fit.jacobian, &columns);
+        let (stiffness, held_out) = best_stiffness(fit.free.len(), &fit.penalty, &crowd, &blocks);
+        Some((study.fold_error(&held_out), stiffness, crowd))
+    };
+    let crowds = crowds(config);
+    let all = crowds.into_par_iter().filter_map(promise);
+    let (error, stiffness, mut crowd) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let own = study.fold_error(&trial.folds);
+    let excess = |error: f64| error * error - 1.0;
+    if excess(error) > (1.0 - WORTH_IT) * excess(own) {
+        return None;
+    }
+    modes::stiffen(&mut crowd, stiffness);
+    Modes::of(config)?.redrawn(config, &mut crowd);
+    Some(crowd)
+}
+
+/// The law of a config without its curve, with knots about one place after the other; none of a turn, whose modes are harmonics.
+fn crowds(config: &EffectConfig) -> Vec<EffectConfig> {
+    let widths = |k: usize| WIDTHS.map(|width| (k as f64 / (PLACES - 1) as f64, width));
+    let all = (0..PLACES).flat_map(widths);
+    all.filter_map(|(place, width)| Modes::crowded_about(config, place, width))
+        .collect()
+}
