@@ -20,14 +20,14 @@ use rayon::prelude::*;
 const PLACES: usize = 13;
 /// Widths of the crowd, shares of the range.
 const WIDTHS: [f64; 2] = [0.04, 0.12];
-/// Share of the excess over the noise that a crowd must promise to explain: a smaller one is not worth a refit.
+/// Share of the excess over the noise that a crowd must promise to explain of the fitted recording: a smaller one is not worth a refit.
 const WORTH_IT: f64 = 0.1;
 /// Iterations of the refit.
 const ITERATIONS: usize = 8;
 
 /// The law with knots where they are needed; `None` where it is good as it is, or no crowd makes it better.
 pub(super) fn refined(study: &Study, base: &Trial, law: &Refitted) -> Option<Refitted> {
-    if adequate(study, &law.trial) {
+    if adequate(study, &law.trial) || study.fold_error(&law.trial.folds) < 1.0 {
         return None;
     }
     let (_, config) = law_of(study, &law.trial)?;

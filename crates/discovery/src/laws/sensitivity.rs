@@ -58,6 +58,11 @@ impl<'a> Sensitivities<'a> {
         &self.motion
     }
 
+    /// What the run visits, without the run.
+    pub fn into_motion(self) -> Motion {
+        self.motion
+    }
+
     /// The fit that was linearised.
     pub fn fit(&self) -> &Fit {
         self.fit
@@ -191,7 +196,7 @@ mod tests {
         let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
         let waveform = specimen::waveform_of(&study);
         let sensitivities = Sensitivities::of(waveform, prior, &fit);
-        let laws = menu(waveform, sensitivities.plant(), sensitivities.motion());
+        let laws = menu(waveform, sensitivities.plant(), sensitivities.motion(), &[]);
         assert!(laws.len() > 20, "{}", laws.len());
         let rated = &prior.plant.rated;
         for law in &laws {
