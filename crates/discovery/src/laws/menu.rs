@@ -74,3 +74,34 @@ fn varies(motion: &Motion, plant: &Plant, action: Action, [low, high]: [f64; 2])
         _ => change > LEAST_RANGE * high.abs().max(low.abs()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A curve goes on to where the other recordings go, by half of its own range at most; over time and angles it does not.
+    #[test]
+    fn a_range_goes_on_to_where_other_recordings_go() {
+        let place = Place::Torque;
+        let over = |coordinate, range, elsewhere: &[Motion]| {
+            continued(Action { place, coordinate }, range, elsewhere)
+        };
+        let to = |high: f64| Motion::of_frequencies(vec![10.0, high, high, high]);
+        let range = [20.0, 50.0];
+        assert_eq!(over(Coordinate::Frequency, range, &[]), range);
+        assert_eq!(
+            over(Coordinate::Frequency, range, &[to(40.0)]),
+            [10.0, 50.0]
+        );
+        assert_eq!(
+            over(Coordinate::Frequency, range, &[to(40.0), to(57.0)]),
+            [10.0, 57.0]
+        );
+        assert_eq!(
+            over(Coordinate::Frequency, range, &[to(100.0)]),
+            [10.0, 65.0]
+        );
+        assert_eq!(over(Coordinate::Time, range, &[to(57.0)]), range);
+        assert_eq!(over(Coordinate::Angle, range, &[to(57.0)]), range);
+    }
+}

@@ -377,6 +377,59 @@ mod tests {
         }
     }
 
+    /// A bump of a second and a half in ten, in the middle of an interval of splines at equal distances: a crowd about it draws it.
+    #[test]
+    fn a_crowd_of_knots_draws_a_bump_that_equal_distances_do_not() {
+        let law = law(Place::Torque, Coordinate::Time, [0.0, 10.0]);
+        let modes = Modes::of(&law).expect("a law");
+        let bump = |x: f64| (-((x - 5.0) / 0.4).powi(2)).exp();
+        let xs = || (0..1000).map(|k| 0.01 * f64::from(k));
+        let left = |of: &EffectConfig| {
+            let n = count(Coordinate::Time);
+            let mut gram = DMatrix::identity(n, n) * 1e-9;
+            let mut moment = DVector::zeros(n);
+            for x in xs() {
+                let shares = DVector::from_vec(modes.shares(&of.values, x));
+                gram += &shares * shares.transpose();
+                moment += shares * bump(x);
+            }
+            let sizes = gram.cholesky().expect("positive").solve(&moment);
+            let mut drawn = of.clone();
+            drawn.values[SHAPES..].copy_from_slice(sizes.as_slice());
+            let squares = xs().map(|x| (modes.value(&drawn.values, x) - bump(x)).powi(2));
+            let all: f64 = xs().map(|x| bump(x).powi(2)).sum();
+            (squares.sum::<f64>() / all).sqrt()
+        };
+        let crowd = Modes::crowded_about(&law, 0.5, 0.04).expect("no angle");
+        assert!(left(&law) > 0.3, "{}", left(&law));
+        assert!(left(&crowd) < 0.12, "{}", left(&crowd));
+        // A neighbouring place of the thirteen that are tried does nearly as well.
+        let beside = Modes::crowded_about(&law, 0.5 - 1.0 / 24.0, 0.04).expect("no angle");
+        assert!(left(&beside) < 0.2, "{}", left(&beside));
+    }
+
+    /// A curve drawn with other knots is the same curve; over an angle there are no knots to crowd.
+    #[test]
+    fn a_curve_drawn_with_other_knots_is_the_same() {
+        let mut from = law(Place::Torque, Coordinate::Speed, [-10.0, 157.0]);
+        for (mode, k) in sizes(&from).enumerate() {
+            // The smooth modes are the last ones.
+            from.values[k] = if mode + 3 >= SPLINES { 1.0 } else { 0.0 };
+        }
+        let modes = Modes::of(&from).expect("a law");
+        let mut to = Modes::crowded_about(&from, 0.5, 0.5).expect("no angle");
+        modes.redrawn(&from, &mut to);
+        let size = (0..=100).map(|k| modes.value(&from.values, 1.67 * f64::from(k) - 10.0));
+        let size = size.fold(0.0f64, |a, y| a.max(y.abs()));
+        for k in 0..=100 {
+            let x = 1.67 * f64::from(k) - 10.0;
+            let (a, b) = (modes.value(&from.values, x), modes.value(&to.values, x));
+            assert!((a - b).abs() < 0.05 * size, "{x}: {a} {b}");
+        }
+        let turn = law(Place::Torque, Coordinate::Angle, [0.0, TAU]);
+        assert!(Modes::crowded_about(&turn, 0.5, 0.04).is_none());
+    }
+
     /// The prepared table, the sum over modes and the curve of knots are one curve.
     #[test]
     fn a_table_and_knots_are_the_curve_of_the_modes() {

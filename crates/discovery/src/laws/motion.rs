@@ -125,6 +125,19 @@ impl Motion {
 }
 
 #[cfg(test)]
+impl Motion {
+    /// A motion of which only the supply frequency (Hz) is known, one value per second.
+    pub fn of_frequencies(frequency: Vec<f64>) -> Self {
+        Self {
+            duration: frequency.len() as f64,
+            frequency,
+            t_step: 1.0,
+            ..Self::default()
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
