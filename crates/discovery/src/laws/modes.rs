@@ -403,8 +403,8 @@ mod tests {
         let crowd = Modes::crowded_about(&law, 0.5, 0.04).expect("no angle");
         assert!(left(&law) > 0.3, "{}", left(&law));
         assert!(left(&crowd) < 0.12, "{}", left(&crowd));
-        // A neighbouring place of the thirteen that are tried does nearly as well.
-        let beside = Modes::crowded_about(&law, 0.5 - 1.0 / 24.0, 0.04).expect("no angle");
+        // Half a distance of the places that are tried beside it does nearly as well.
+        let beside = Modes::crowded_about(&law, 0.5 - 1.0 / 48.0, 0.04).expect("no angle");
         assert!(left(&beside) < 0.2, "{}", left(&beside));
     }
 

@@ -17,7 +17,7 @@ use motor::effect::EffectConfig;
 use rayon::prelude::*;
 
 /// Places about which knots may crowd, at equal distances from end to end.
-const PLACES: usize = 13;
+const PLACES: usize = 25;
 /// Widths of the crowd, shares of the range.
 const WIDTHS: [f64; 2] = [0.04, 0.12];
 /// Share of the excess over the noise that a crowd must promise to explain of the fitted recording: a smaller one is not worth a refit.
