@@ -8,9 +8,12 @@ use super::{Explanation, STRAINED, Step, behind, mostly_explained};
 use crate::laws::formula::prove::law_of;
 use crate::laws::search::{LawStep, Laws};
 use estimation::data::study::{Study, Trial};
-use estimation::proof::accept::{adequate, beats, even, helps};
+use estimation::proof::accept::{adequate, beats, even, explained, helps};
 use estimation::proof::off::strains;
 use motor::effect::EffectConfig;
+
+/// Share of the excess that effects explain, one on top of the other, which are no pair that hides each other.
+const HIDES_NOTHING: f64 = 0.97;
 
 /// Completes an explanation of the library's with what it does not hold.
 ///
@@ -55,6 +58,10 @@ pub(super) fn complete(
             put_on_top(study, found, law);
             return;
         }
+    }
+    let hides_nothing = |last: &Trial| explained(study, &found.baseline, last) > HIDES_NOTHING;
+    if found.nameable && last.as_ref().is_some_and(hides_nothing) {
+        return;
     }
     progress("looking for pairs that hide each other", 0.75);
     if take_pair(study, found, &alone, excluded, last.as_ref()) {

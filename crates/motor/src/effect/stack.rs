@@ -7,7 +7,7 @@ use crate::dynamic::{DynamicState, Extra, Flow, Hooks, Linear, Terminal, Winding
 use crate::effect::effect::{At, Cage, Effect, Hook, Instantaneous, Rates};
 use crate::effect::steady::length;
 use crate::effect::{EffectConfig, Rated};
-use air_gap::{Guesses, Star};
+use air_gap::{Solutions, Star};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -116,7 +116,7 @@ pub struct EffectStack<const N: usize> {
     timeline: Arc<Timeline>,
     parameters: Vec<Active>,
     magnetizing: Vec<Active>,
-    guesses: Option<Arc<Guesses>>,
+    solutions: Option<Arc<Solutions>>,
     held_voltage: Vec<Active>,
     terminal: Vec<Active>,
     finish: Vec<Active>,
@@ -155,15 +155,15 @@ impl<const N: usize> EffectStack<N> {
             l_m: motor.l_m,
             flux_rated: rated.flux(),
         };
-        let guesses = (!magnetizing.is_empty())
-            .then(|| Arc::new(Guesses::of(&star, &|x| factor_of(&magnetizing, x))));
+        let solutions = (!magnetizing.is_empty())
+            .then(|| Arc::new(Solutions::of(&star, &|x| factor_of(&magnetizing, x))));
         Self {
             rated: *rated,
             motor: *motor,
             timeline,
             parameters: with(Hook::Parameters),
             magnetizing,
-            guesses,
+            solutions,
             held_voltage: with(Hook::HeldVoltage),
             terminal: with(Hook::Terminal),
             finish: with(Hook::Finish),
@@ -216,12 +216,11 @@ impl<const N: usize> EffectStack<N> {
             flux_rated: self.rated.flux(),
         };
         let drive = length(sum);
-        let linear = star.linear(drive);
-        let Some(guesses) = self.guesses.as_ref().filter(|_| drive > 0.0) else {
-            return sum * (linear / drive.max(f64::MIN_POSITIVE));
+        let flux = match &self.solutions {
+            Some(solutions) => solutions.flux(&star, |x| factor_of(&self.magnetizing, x), drive),
+            None => star.linear(drive),
         };
-        let factor = |x: f64| factor_of(&self.magnetizing, x);
-        sum * (star.solve(factor, drive, guesses.at(linear)) / drive)
+        sum * (flux / drive.max(f64::MIN_POSITIVE))
     }
 
     /// Currents of a T model with magnetizing branch, two leakages and perhaps a second cage.
