@@ -59,8 +59,7 @@ pub(super) fn complete(
             return;
         }
     }
-    let hides_nothing = |last: &Trial| explained(study, &found.baseline, last) > HIDES_NOTHING;
-    if found.nameable && last.as_ref().is_some_and(hides_nothing) {
+    if found.nameable && hides_nothing(study, found) {
         return;
     }
     progress("looking for pairs that hide each other", 0.75);
@@ -81,6 +80,12 @@ pub(super) fn complete(
             ..law
         }));
     }
+}
+
+/// Whether the accepted effects, one on top of the other, leave nothing of which two that hide each other could be.
+pub(super) fn hides_nothing(study: &Study, found: &Explanation) -> bool {
+    let all = |last: &Step| explained(study, &found.baseline, &last.trial) > HIDES_NOTHING;
+    found.steps.last().is_some_and(all)
 }
 
 /// Progress that moves on by a little with each thing that is told.

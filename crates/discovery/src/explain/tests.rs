@@ -1,3 +1,4 @@
+use super::complete::hides_nothing;
 use super::contests::contest;
 use super::*;
 use estimation::data::case::Case;
@@ -40,17 +41,35 @@ fn with(name: &'static str, size: f64) -> impl Fn(&mut Plant) {
     move |plant| plant.effects.push(specimen::effect(name, size))
 }
 
-#[test]
-fn the_last_model_is_that_of_the_last_step() {
-    let study = specimen::table_study(|_| ());
-    let mut found = Explanation {
-        baseline: bare(&study, 3.0),
+/// Nothing found on top of a model with this error.
+fn nothing_found(study: &Study, error: f64) -> Explanation {
+    Explanation {
+        baseline: bare(study, error),
         first: Round::empty(),
         steps: Vec::new(),
         laws: Vec::new(),
         contests: Vec::new(),
         nameable: true,
-    };
+    }
+}
+
+/// Two effects hide each other where neither explains much alone: not beside what explains nearly all.
+#[test]
+fn effects_that_explain_all_but_three_per_cent_are_no_pair_that_hides() {
+    let study = specimen::table_study(|_| ());
+    let mut found = nothing_found(&study, 8.0);
+    assert!(!hides_nothing(&study, &found));
+    // Of an excess of 63 two per cent are 1.26, four 2.52.
+    for (left, expected) in [(2.26f64, true), (3.52, false)] {
+        found.steps = steps(&study, &[8.0, left.sqrt()]);
+        assert_eq!(hides_nothing(&study, &found), expected, "{left}");
+    }
+}
+
+#[test]
+fn the_last_model_is_that_of_the_last_step() {
+    let study = specimen::table_study(|_| ());
+    let mut found = nothing_found(&study, 3.0);
     let error = |found: &Explanation| study.fold_error(&found.last().folds);
     assert!((error(&found) - 3.0).abs() < 1e-9);
     found.steps = steps(&study, &[3.0, 2.0, 1.0]);
