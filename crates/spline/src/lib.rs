@@ -1,4 +1,4 @@
-//! Cubic splines through knots: bends from the knots, and one piece at a time.
+//! Cubic splines through knots: bends from the knots, and one piece at a time. On hosts dense tables, too, for inner loops.
 //!
 //! ```
 //! let straight = spline::piece([0.0, 2.0], [1.0, 5.0], [0.0, 0.0], 0.5);
@@ -9,9 +9,17 @@
 
 #[cfg(any(test, feature = "std"))]
 mod curve;
+#[cfg(any(test, feature = "std"))]
+mod hermite;
+#[cfg(any(test, feature = "std"))]
+mod table;
 
 #[cfg(any(test, feature = "std"))]
 pub use curve::{Spline, bends};
+#[cfg(any(test, feature = "std"))]
+pub use hermite::Hermite;
+#[cfg(any(test, feature = "std"))]
+pub use table::{TABLE_POINTS, Table, tabulated, traced};
 
 use num_traits::Float;
 

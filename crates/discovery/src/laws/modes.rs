@@ -328,16 +328,14 @@ impl Law for Modes {
 
     fn table(&self, p: &[f64], rated: &Rated<f64>) -> Vec<f64> {
         let per_unit = self.action.per_unit(rated);
-        let range = [p[0], p[1]];
+        let range = self.action.coordinate.ends([p[0], p[1]]);
         if self.action.coordinate.is_angle() {
-            return tabulated(self.action.coordinate, range, per_unit, |x| {
-                self.value(p, x)
-            });
+            return tabulated(range, per_unit, |x| self.value(p, x));
         }
         // The sum over modes once for each spline, not once for each point of the table.
         let sizes = DVector::from_column_slice(&p[SHAPES..]);
         let of_spline = &AXES.1 * sizes;
-        tabulated(self.action.coordinate, range, per_unit, |x| {
+        tabulated(range, per_unit, |x| {
             let near = splines(place(p, x));
             near.iter().map(|&(k, weight)| weight * of_spline[k]).sum()
         })

@@ -6,9 +6,7 @@
 use super::formula::prove::law_of;
 use super::modes::{self, Modes};
 use super::screen::best_stiffness;
-use super::search::Refitted;
 use super::sensitivity::Sensitivities;
-use crate::search::refit::combined;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::normal_equations;
 use estimation::fit::output_error::Effort;
@@ -25,26 +23,22 @@ const WORTH_IT: f64 = 0.1;
 /// Iterations of the refit.
 const ITERATIONS: usize = 8;
 
-/// The law with knots where they are needed; `None` where it is good as it is, or no crowd makes it better.
-pub(super) fn refined(study: &Study, base: &Trial, law: &Refitted) -> Option<Refitted> {
-    if adequate(study, &law.trial) || study.fold_error(&law.trial.folds) < 1.0 {
+/// The law of a trial on top of `base` with knots where they are needed; `None` where it is good as it is, or no crowd makes it better.
+pub(super) fn refined(study: &Study, base: &Trial, law: &Trial) -> Option<Trial> {
+    if adequate(study, law) || study.fold_error(&law.folds) < 1.0 {
         return None;
     }
-    let (_, config) = law_of(study, &law.trial)?;
-    let crowd = best_crowd(study, &law.trial, &config)?;
+    let (_, config) = law_of(study, law)?;
+    let crowd = best_crowd(study, law, &config)?;
     let mut start = base.fit.hypothesis.clone();
-    let there = law.trial.fit.hypothesis.z.get(..start.z.len())?;
+    let there = law.fit.hypothesis.z.get(..start.z.len())?;
     start.z.copy_from_slice(there);
     let effort = Effort {
         iterations: ITERATIONS,
         ..Effort::FULL
     };
     let trial = study.trial(&start.with(crowd, &study.prior.plant.rated), effort);
-    beats(&trial, &law.trial).then(|| Refitted {
-        action: law.action,
-        error: combined(study, &trial),
-        trial,
-    })
+    beats(&trial, law).then_some(trial)
 }
 
 /// The same curve with the crowd of knots that promises most on top of it.

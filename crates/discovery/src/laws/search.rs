@@ -157,9 +157,10 @@ impl<'a> LawSearch<'a> {
         refitted.extend(first);
         refitted.sort_by(|a, b| a.error.total_cmp(&b.error));
         if let Some(best) = refitted.first_mut()
-            && let Some(finer) = refined(self.study, self.base, best)
+            && let Some(finer) = refined(self.study, self.base, &best.trial)
         {
-            *best = finer;
+            best.error = combined(self.study, &finer);
+            best.trial = finer;
         }
         Laws {
             refitted,

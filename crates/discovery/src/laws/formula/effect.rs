@@ -147,7 +147,7 @@ impl Law for Formula {
         let (reach, amplitudes, coordinates) = self.split(p);
         let value = |x: f64| self.shape.value(amplitudes, coordinates, &reach, x);
         let per_unit = self.action.per_unit(rated);
-        tabulated(self.action.coordinate, reach.range, per_unit, value)
+        tabulated(self.action.coordinate.ends(reach.range), per_unit, value)
     }
 
     fn deviation(&self, _p: &[f64], _parameter: usize) -> Option<f64> {

@@ -98,4 +98,12 @@ impl Coordinate {
     pub fn is_angle(self) -> bool {
         matches!(self, Coordinate::Angle | Coordinate::AngleElectrical)
     }
+
+    /// Ends of a curve over it whose knots reach over `range`: over an angle the whole turn.
+    pub fn ends(self, range: [f64; 2]) -> [f64; 2] {
+        match self.is_angle() {
+            true => [0.0, core::f64::consts::TAU],
+            false => range,
+        }
+    }
 }

@@ -185,7 +185,7 @@ impl Law for Curve {
         let spline = self.spline(p);
         let range = [p[0], p[self.knots - 1]];
         let action = self.action;
-        tabulated(action.coordinate, range, action.per_unit(rated), |x| {
+        tabulated(action.coordinate.ends(range), action.per_unit(rated), |x| {
             spline.at(x)
         })
     }

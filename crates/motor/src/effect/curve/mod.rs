@@ -22,8 +22,6 @@ mod hooks;
 mod law;
 mod place;
 mod steady;
-#[cfg(feature = "file")]
-mod table;
 #[cfg(all(test, feature = "file"))]
 mod tests;
 
@@ -36,9 +34,9 @@ pub use hooks::Law;
 #[cfg(feature = "file")]
 pub use law::{FEWEST_KNOTS, MOST_KNOTS, MOST_KNOTS_OF_A_TURN, curve, knots_and_values};
 pub use place::{Place, Quantity};
-pub use steady::{BOARD_KNOTS, SteadyCurve};
 #[cfg(feature = "file")]
-pub use table::{TABLE_POINTS, Table, tabulated, traced};
+pub use spline::{TABLE_POINTS, Table, tabulated, traced};
+pub use steady::{BOARD_KNOTS, SteadyCurve};
 
 /// Name of the effect in motor files.
 pub const NAME: &str = "curve";

@@ -1,5 +1,7 @@
 //! The air-gap flux of a star of branches whose magnetizing one saturates.
 
+use spline::Hermite;
+
 /// What the magnetizing current is multiplied by at a flux (over rated), and its derivative.
 pub(super) type Factor<'a> = &'a dyn Fn(f64) -> (f64, f64);
 
@@ -59,17 +61,12 @@ impl Star {
     }
 }
 
-/// Fluxes of one star, solved beforehand at equal distances, with cubic polynomials between them that have their slopes.
-///
-/// Between two of them the flux is off by `h^4/384` of its fourth derivative: less than 1e-9 of the rated flux for the
-/// powers of the library, up to 16.
+/// Fluxes of one star over the flux without saturation, solved beforehand: off by less than 1e-9 of the rated flux for the powers of the
+/// library, up to 16.
 #[derive(Clone, Debug)]
 pub(super) struct Solutions {
     star: Star,
-    /// Flux (V s), and what it changes over a distance (V s).
-    solved: Vec<[f64; 2]>,
-    /// One over the distance, 1/(V s) of the flux without saturation.
-    per_flux: f64,
+    flux: Hermite,
 }
 
 impl Solutions {
@@ -77,16 +74,15 @@ impl Solutions {
     pub fn of(star: &Star, factor: Factor<'_>) -> Self {
         let distance = HIGHEST * star.flux_rated / (SOLUTIONS - 1) as f64;
         let per_drive = star.admittance + 1.0 / star.l_m;
-        let mut last = [0.0, distance];
-        let mut one = |k: usize| {
-            let drive = distance * k as f64 * per_drive;
-            let x = star.solve(factor, drive, last[0] + last[1]);
-            last = [x, distance * per_drive / star.gradient(factor, x)];
-            last
+        let mut guess = 0.0;
+        let solved = |linear: f64| {
+            let x = star.solve(factor, linear * per_drive, guess);
+            let slope = per_drive / star.gradient(factor, x);
+            guess = x + slope * distance;
+            [x, slope]
         };
         Self {
-            solved: (0..SOLUTIONS).map(&mut one).collect(),
-            per_flux: 1.0 / distance,
+            flux: Hermite::of(SOLUTIONS, distance, solved),
             star: *star,
         }
     }
@@ -95,23 +91,10 @@ impl Solutions {
     #[inline]
     pub fn flux(&self, star: &Star, factor: impl Fn(f64) -> (f64, f64), drive: f64) -> f64 {
         let linear = star.linear(drive);
-        match self.between(linear) {
+        match self.flux.at(linear) {
             Some(flux) if *star == self.star => flux,
             guess => star.solve(factor, drive, guess.unwrap_or(linear)),
         }
-    }
-
-    /// The flux of the star that was solved where it would be `linear` (V s) without saturation; `None` above the highest.
-    #[inline]
-    fn between(&self, linear: f64) -> Option<f64> {
-        let place = linear * self.per_flux;
-        let k = place as usize;
-        let &[[x0, d0], [x1, d1]] = self.solved.get(k..k + 2)? else {
-            return None;
-        };
-        let t = place - k as f64;
-        let rise = x1 - x0;
-        Some(x0 + t * (d0 + t * ((3.0 * rise - 2.0 * d0 - d1) + t * (d0 + d1 - 2.0 * rise))))
     }
 }
 

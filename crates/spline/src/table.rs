@@ -1,6 +1,5 @@
-//! A curve as a dense table, for the inner loop of a simulation.
+//! A curve as a dense table, for inner loops.
 
-use super::Coordinate;
 use core::f64::consts::TAU;
 
 /// Points of a dense table.
@@ -10,22 +9,8 @@ pub const TABLE_POINTS: usize = 513;
 #[derive(Clone, Copy, Debug)]
 pub struct Table<'a>(&'a [f64]);
 
-/// Ends of a curve over `coordinate` whose knots reach from `low` to `high`.
-fn ends(coordinate: Coordinate, [low, high]: [f64; 2]) -> [f64; 2] {
-    match coordinate.is_angle() {
-        true => [0.0, TAU],
-        false => [low, high],
-    }
-}
-
-/// Writes the table of `value` between `range`; `per_unit` of the coordinate is one on the table's axis.
-pub fn tabulated(
-    coordinate: Coordinate,
-    range: [f64; 2],
-    per_unit: f64,
-    value: impl Fn(f64) -> f64,
-) -> Vec<f64> {
-    let [low, high] = ends(coordinate, range);
+/// Writes the table of `value` between `low` and `high`; `per_unit` of the coordinate is one on the table's axis.
+pub fn tabulated([low, high]: [f64; 2], per_unit: f64, value: impl Fn(f64) -> f64) -> Vec<f64> {
     let last = (TABLE_POINTS - 1) as f64;
     let at = |k: usize| value(low + (high - low) * k as f64 / last);
     let mut table = vec![low / per_unit, last * per_unit / (high - low)];
@@ -106,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_table_gives_the_curve_and_its_slope_and_stays_beyond_its_ends() {
-        let written = tabulated(Coordinate::Speed, [-10.0, 150.0], 1.0, |x| 0.01 * x * x);
+        let written = tabulated([-10.0, 150.0], 1.0, |x| 0.01 * x * x);
         let table = Table::of(&written);
         // Linear interpolation errs by h^2/8 times the second derivative.
         let bound = (160.0f64 / 512.0).powi(2) / 8.0 * 0.02;
@@ -129,7 +114,7 @@ mod tests {
 
     #[test]
     fn an_angle_repeats_and_has_a_mean() {
-        let written = tabulated(Coordinate::Angle, [0.0, 1.0], 1.0, |x| 2.0 + x.sin());
+        let written = tabulated([0.0, TAU], 1.0, |x| 2.0 + x.sin());
         let table = Table::of(&written);
         assert!((table.at_angle(7.0 * TAU + 1.0) - table.at_angle(1.0)).abs() < 1e-9);
         assert!((table.at_angle(-1.0) - (2.0 - 1f64.sin())).abs() < 1e-4);
@@ -138,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_table_over_another_unit_reads_in_that_unit() {
-        let written = tabulated(Coordinate::Flux, [0.2, 1.2], 0.5, |x| 3.0 * x);
+        let written = tabulated([0.2, 1.2], 0.5, |x| 3.0 * x);
         assert!((Table::of(&written).at(1.4) - 2.1).abs() < 1e-12);
     }
 }
