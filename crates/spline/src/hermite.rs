@@ -27,7 +27,7 @@ impl Hermite {
     pub fn at(&self, x: f64) -> Option<f64> {
         let place = x * self.per_unit;
         let k = place as usize;
-        let &[[y0, d0], [y1, d1]] = self.points.get(k..k + 2)? else {
+        let &[[y0, d0], [y1, d1]] = self.points.get(k..k.saturating_add(2))? else {
             return None;
         };
         let (t, rise) = (place - k as f64, y1 - y0);
