@@ -1,6 +1,9 @@
 //! Reports in a sentence.
 
-use crate::report::types::{BurstsReport, ExplainReport, LawReport, Unexplained, Verdict};
+use crate::report::types::{
+    BurstsReport, ExplainReport, FitReport, LawReport, Unexplained, Verdict,
+};
+use estimation::proof::accept::ADEQUATE;
 
 /// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
 const FAR_BELOW: f64 = 0.3;
@@ -34,7 +37,7 @@ fn finding(report: &ExplainReport) -> String {
     let effects: Vec<String> = report.steps.iter().map(named).collect();
     match report.verdict {
         Verdict::Law => format!("{}{moved}", laws(report, &effects)),
-        Verdict::Adequate => format!("The model explains the recording.{moved}"),
+        Verdict::Adequate => format!("The model explains the recording{}.{moved}", as_far(report)),
         Verdict::Effect => format!("Missing: {}.{moved}", effects.join("; ")),
         Verdict::Ambiguous => {
             let test = report.steps.iter().find(|s| !s.tied_with.is_empty());
@@ -53,6 +56,18 @@ fn finding(report: &ExplainReport) -> String {
             .map_or_else(String::new, |rest| unknown(report, rest)),
         Verdict::Unsupported => "The recording cannot be judged.".to_owned(),
     }
+}
+
+/// Where a model counts as adequate because the noise is hardly known: what it leaves.
+fn as_far(report: &ExplainReport) -> String {
+    let error = |f: &FitReport| f.held_out_error_over_noise.max(f.fold_error_over_noise);
+    let left = report.final_.as_ref().map(error);
+    left.filter(|error| *error >= ADEQUATE)
+        .map_or_else(String::new, |error| {
+            format!(
+                " as far as its noise is known: {error:.2} x noise are left, and the noise is not known well enough to call that more"
+            )
+        })
 }
 
 /// What is said of an error that nothing was proven to explain.

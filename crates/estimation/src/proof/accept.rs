@@ -12,8 +12,8 @@ const LESSER_GAIN: f64 = 0.004;
 const P_LIMIT: f64 = 0.005;
 /// Least share of the excess over the floor that must be explained.
 const SHARE: f64 = 0.2;
-/// Error over noise below which a model is adequate.
-const ADEQUATE: f64 = 1.02;
+/// Error over noise below which a model is adequate where the noise is known.
+pub const ADEQUATE: f64 = 1.02;
 /// Error over noise of a single channel from which something may be left there.
 const EVEN: f64 = 1.05;
 /// Least size, in typical sizes.

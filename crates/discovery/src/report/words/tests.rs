@@ -89,6 +89,25 @@ fn an_adequate_model_is_said_to_explain_with_what_moved() {
     );
 }
 
+/// What is left over counts as noise only because the noise is hardly known: that is said.
+#[test]
+fn a_model_that_is_adequate_for_want_of_a_known_noise_is_said_to_be_so() {
+    let mut report = report(Verdict::Adequate, &moved(), &[]);
+    for (folds, held_out, is_more) in [(1.019, 1.019, false), (1.0, 1.11, true), (1.11, 1.0, true)]
+    {
+        if let Some(last) = &mut report.final_ {
+            (last.fold_error_over_noise, last.held_out_error_over_noise) = (folds, held_out);
+        }
+        let said = summary(&report);
+        assert_eq!(
+            said.contains("as far as its noise is known: 1.11 x noise are left"),
+            is_more,
+            "{said}"
+        );
+        assert!(said.ends_with(OFF), "{said}");
+    }
+}
+
 #[test]
 fn effects_are_named_in_their_order() {
     let steps = [step("windage", &[], "x"), step("core-loss", &[], "y")];
