@@ -156,7 +156,7 @@ impl<const N: usize> EffectStack<N> {
             flux_rated: rated.flux(),
         };
         let solutions = (!magnetizing.is_empty())
-            .then(|| Arc::new(Solutions::of(&star, &|x| factor_of(&magnetizing, x))));
+            .then(|| Arc::new(Solutions::of(&star, |x| factor_of(&magnetizing, x))));
         Self {
             rated: *rated,
             motor: *motor,
