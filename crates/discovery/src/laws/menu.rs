@@ -20,23 +20,18 @@ const LEAST_RANGE: f64 = 1e-3;
 /// Share of what a recording visits by which a curve is continued at each end where other recordings go on.
 const CONTINUED: f64 = 0.5;
 
-/// Laws of nothing over what the recording visits, and on to where the motor is `elsewhere`: a curve ends in a straight line there.
-pub(crate) fn menu(
-    waveform: &Waveform,
-    plant: &Plant,
-    motion: &Motion,
-    elsewhere: &[Motion],
-) -> Vec<EffectConfig> {
+/// Laws of nothing over what the recording visits.
+pub(crate) fn menu(waveform: &Waveform, plant: &Plant, motion: &Motion) -> Vec<EffectConfig> {
     let ask = |action: Action| {
         let range = motion.range(action.place, action.coordinate);
         let asked = is_judged(waveform, action) && varies(motion, plant, action, range);
-        asked.then(|| Modes::absent(action, continued(action, range, elsewhere)))
+        asked.then(|| Modes::absent(action, range))
     };
     Action::all().filter_map(ask).collect()
 }
 
-/// A range on to where other recordings go. Time is not continued: what rises in one recording need not rise in the next.
-fn continued(action: Action, [low, high]: [f64; 2], elsewhere: &[Motion]) -> [f64; 2] {
+/// A range on to where the motor is `elsewhere`. Time is not continued: what rises in one recording need not rise in the next.
+pub(super) fn continued(action: Action, [low, high]: [f64; 2], elsewhere: &[Motion]) -> [f64; 2] {
     if action.coordinate.is_angle() || action.coordinate == Coordinate::Time {
         return [low, high];
     }

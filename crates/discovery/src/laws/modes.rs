@@ -231,6 +231,11 @@ pub(crate) fn stiffen(config: &mut EffectConfig, stiffness: f64) {
     config.values[STIFFNESS] = stiffness;
 }
 
+/// How dear the bending modes are.
+pub(crate) fn stiffness_of(config: &EffectConfig) -> f64 {
+    config.values[STIFFNESS]
+}
+
 /// Indices of the sizes among the values.
 #[cfg(test)]
 pub(crate) fn sizes(config: &EffectConfig) -> std::ops::Range<usize> {

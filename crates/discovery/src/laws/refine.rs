@@ -1,16 +1,20 @@
-//! A curve whose knots go where it bends.
+//! A curve whose knots go where it bends, or that goes on where the proving recordings do.
 //!
 //! Ten splines at equal distances show no bump that is narrower than some of them. Where a refitted law leaves something, the model with it is linearised
 //! once, and the same law is screened again with knots that crowd about one place after the other. The place that promises most is refitted.
+//! Where a law is good for the fitted recording alone, its curve is continued over what the others visit: its stiffness makes it a straight line there.
 
 use super::formula::prove::law_of;
+use super::menu::continued;
 use super::modes::{self, Modes};
+use super::motion::Motion;
 use super::screen::best_stiffness;
 use super::sensitivity::Sensitivities;
+use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::normal_equations;
 use estimation::fit::output_error::Effort;
-use estimation::proof::accept::{adequate, beats};
+use estimation::proof::accept::{ADEQUATE, adequate, beats, surpasses};
 use motor::effect::EffectConfig;
 use rayon::prelude::*;
 
@@ -23,13 +27,26 @@ const WORTH_IT: f64 = 0.1;
 /// Iterations of the refit.
 const ITERATIONS: usize = 8;
 
-/// The law of a trial on top of `base` with knots where they are needed; `None` where it is good as it is, or no crowd makes it better.
+/// The law of a trial on top of `base` with knots where they are needed, or over more; `None` where it is good as it is, or that makes it no better.
 pub(super) fn refined(study: &Study, base: &Trial, law: &Trial) -> Option<Trial> {
-    if adequate(study, law) || study.fold_error(&law.folds) < 1.0 {
+    if adequate(study, law) {
         return None;
     }
     let (_, config) = law_of(study, law)?;
-    let crowd = best_crowd(study, law, &config)?;
+    match study.fold_error(&law.folds) < ADEQUATE {
+        true => {
+            let trial = refitted(study, base, law, further(study, law, &config)?)?;
+            surpasses(study, &trial, law).then_some(trial)
+        }
+        false => {
+            let trial = refitted(study, base, law, best_crowd(study, law, &config)?)?;
+            beats(&trial, law).then_some(trial)
+        }
+    }
+}
+
+/// Another law in the place of that of a trial, with all parameters free.
+fn refitted(study: &Study, base: &Trial, law: &Trial, other: EffectConfig) -> Option<Trial> {
     let mut start = base.fit.hypothesis.clone();
     let there = law.fit.hypothesis.z.get(..start.z.len())?;
     start.z.copy_from_slice(there);
@@ -37,8 +54,21 @@ pub(super) fn refined(study: &Study, base: &Trial, law: &Trial) -> Option<Trial>
         iterations: ITERATIONS,
         ..Effort::FULL
     };
-    let trial = study.trial(&start.with(crowd, &study.prior.plant.rated), effort);
-    beats(&trial, law).then_some(trial)
+    Some(study.trial(&start.with(other, &study.prior.plant.rated), effort))
+}
+
+/// The same curve on to where the motor is in the recordings that prove; `None` where it is nowhere else.
+fn further(study: &Study, trial: &Trial, config: &EffectConfig) -> Option<EffectConfig> {
+    let law = Modes::of(config)?;
+    let waveforms = study.proofs.iter().filter_map(|s| s.case.waveform());
+    let visits = |w: &Waveform| Sensitivities::of(w, &study.prior, &trial.fit).into_motion();
+    let elsewhere: Vec<Motion> = waveforms.map(visits).collect();
+    let own = [config.values[0], config.values[1]];
+    let range = continued(law.action, own, &elsewhere);
+    let mut further = Modes::absent(law.action, range);
+    modes::stiffen(&mut further, modes::stiffness_of(config));
+    law.redrawn(config, &mut further);
+    (range != own).then_some(further)
 }
 
 /// The same curve with the crowd of knots that promises most on top of it.

@@ -4,7 +4,6 @@ use crate::bursts::pulse::Pulse;
 use crate::laws::formula::prove::{Curve, Proven};
 use crate::laws::menu::menu;
 use crate::laws::modes::{self, Modes};
-use crate::laws::motion::Motion;
 use crate::laws::refine::refined;
 use crate::laws::screen::{Screened, best_stiffness, screen};
 use crate::laws::sensitivity::Sensitivities;
@@ -97,13 +96,7 @@ impl<'a> LawSearch<'a> {
         let waveform = case.waveform()?;
         tell("screening laws that no library holds");
         let sensitivities = Sensitivities::of(waveform, &study.prior, &base.fit);
-        let elsewhere = elsewhere(study, base);
-        let menu = menu(
-            waveform,
-            sensitivities.plant(),
-            sensitivities.motion(),
-            &elsewhere,
-        );
+        let menu = menu(waveform, sensitivities.plant(), sensitivities.motion());
         Some(Self {
             screened: screen(case, &base.fit, &sensitivities, &menu),
             sensitivities,
@@ -213,13 +206,6 @@ impl Laws {
             bursts: Vec::new(),
         })
     }
-}
-
-/// What the model visits in the recordings that prove.
-fn elsewhere(study: &Study, base: &Trial) -> Vec<Motion> {
-    let waveforms = study.proofs.iter().filter_map(|s| s.case.waveform());
-    let visits = |w: &Waveform| Sensitivities::of(w, &study.prior, &base.fit).into_motion();
-    waveforms.map(visits).collect()
 }
 
 fn action(law: &Screened) -> Option<Action> {

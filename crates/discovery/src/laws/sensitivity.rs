@@ -196,7 +196,7 @@ mod tests {
         let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
         let waveform = specimen::waveform_of(&study);
         let sensitivities = Sensitivities::of(waveform, prior, &fit);
-        let laws = menu(waveform, sensitivities.plant(), sensitivities.motion(), &[]);
+        let laws = menu(waveform, sensitivities.plant(), sensitivities.motion());
         assert!(laws.len() > 20, "{}", laws.len());
         let rated = &prior.plant.rated;
         for law in &laws {
