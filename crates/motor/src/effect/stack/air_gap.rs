@@ -154,13 +154,13 @@ mod tests {
             true => (1.0 + 2.0 * (x - 0.9003), 2.0),
             false => (1.0, 0.0),
         };
-        let solutions = Solutions::of(&STAR, &corner);
+        let solutions = Solutions::of(&STAR, corner);
         assert!(!solutions.are_exact && Solutions::of(&STAR, &power(7.0)).are_exact);
         for k in 0..2000 {
             let drive = 0.43 * f64::from(k);
             let x = solutions.flux(&STAR, corner, drive);
             let excess = x * (STAR.admittance + corner(x).0 / STAR.l_m) - drive;
-            let error = excess / STAR.gradient(&corner, x);
+            let error = excess / STAR.gradient(corner, x);
             assert!(error.abs() < 1e-9, "{drive}: {error:e}");
         }
     }
@@ -173,7 +173,7 @@ mod tests {
             asked.set(asked.get() + 1);
             power(7.0)(x)
         };
-        let solutions = Solutions::of(&STAR, &factor);
+        let solutions = Solutions::of(&STAR, factor);
         asked.set(0);
         for k in 0..100 {
             solutions.flux(&STAR, factor, 7.0 * f64::from(k));
