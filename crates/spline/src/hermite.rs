@@ -10,7 +10,7 @@ pub struct Hermite {
 }
 
 impl Hermite {
-    /// Of `count` points `distance` apart; `point` gives value and slope at each, from zero on.
+    /// Of `count` points, two or more, `distance` apart, above zero; `point` gives value and slope at each, from zero on.
     pub fn of(count: usize, distance: f64, mut point: impl FnMut(f64) -> [f64; 2]) -> Self {
         let mut one = |k: usize| {
             let [value, slope] = point(distance * k as f64);

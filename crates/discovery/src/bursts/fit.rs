@@ -1,6 +1,6 @@
 //! Bursts of one recording at one place, fitted with the parameters.
 
-use super::pulse::{Pulse, drawn, have_one_sign, pulses};
+use super::pulse::{Pulse, drawn, pulses};
 use super::smoother::{Measured, Smoothed, Wander, smooth};
 use super::trace::{action, trace};
 use crate::laws::sensitivity::Sensitivities;
@@ -89,10 +89,8 @@ impl Scene<'_> {
         let ask = |&place: &Place| (place, self.smoothed(&of, place, self.wander(place, 1)));
         let mut all: Vec<(Place, Smoothed)> = places.iter().map(ask).collect();
         all.sort_by(|a, b| b.1.evidence.total_cmp(&a.1.evidence));
-        let comes_and_goes = |(_, found): &(Place, Smoothed)| {
-            let pulses = pulses(&found.amount, self.t_step());
-            !pulses.is_empty() && have_one_sign(&[pulses])
-        };
+        let comes_and_goes =
+            |(_, found): &(Place, Smoothed)| !pulses(&found.amount, self.t_step()).is_empty();
         if !all.first().is_some_and(comes_and_goes) {
             return Vec::new();
         }
@@ -155,8 +153,7 @@ impl Scene<'_> {
             h.z.clone_from(&fit.hypothesis.z);
         }
         let pulses = pulses(&amount, self.t_step());
-        let are_bursts = !pulses.is_empty() && have_one_sign(std::slice::from_ref(&pulses));
-        are_bursts.then(|| self.refined(place, h, pulses))
+        (!pulses.is_empty()).then(|| self.refined(place, h, pulses))
     }
 
     /// Sizes and edges of bursts, fitted together with the parameters: Gauss-Newton, each step halved until it helps.

@@ -57,7 +57,7 @@ pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
     let least = WANDERS * study.excess(&base.fit);
     let suspected = scene.suspected(&asked, FITTED, least);
     let mut all: Vec<Candidate> = suspected.par_iter().filter_map(one).collect();
-    all.retain(|candidate| have_one_sign(&candidate.pulses));
+    all.retain(|candidate| have_one_sign(candidate.pulses.iter().flatten()));
     let error = |c: &Candidate| study.fold_error(&c.trial.folds) * study.proof_error(&c.trial);
     all.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let best = all.first()?;

@@ -12,7 +12,7 @@ use estimation::proof::accept::{adequate, beats, even, explained, helps};
 use estimation::proof::off::strains;
 use motor::effect::EffectConfig;
 
-/// Share of the excess that effects explain, one on top of the other, which are no pair that hides each other.
+/// Share of the excess that accepted effects explain, above which no pair of effects is looked for.
 const HIDES_NOTHING: f64 = 0.97;
 
 /// Completes an explanation of the library's with what it does not hold.
@@ -82,7 +82,7 @@ pub(super) fn complete(
     }
 }
 
-/// Whether the accepted effects, one on top of the other, leave nothing of which two that hide each other could be.
+/// Whether the accepted effects leave too little for a pair of effects that hide each other.
 pub(super) fn hides_nothing(study: &Study, found: &Explanation) -> bool {
     let all = |last: &Step| explained(study, &found.baseline, &last.trial) > HIDES_NOTHING;
     found.steps.last().is_some_and(all)

@@ -14,7 +14,7 @@ use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::normal_equations;
 use estimation::fit::output_error::Effort;
-use estimation::proof::accept::{ADEQUATE, adequate, beats, surpasses};
+use estimation::proof::accept::{adequate, adequate_on_folds, beats, surpasses};
 use motor::effect::EffectConfig;
 use rayon::prelude::*;
 
@@ -33,7 +33,7 @@ pub(super) fn refined(study: &Study, base: &Trial, law: &Trial) -> Option<Trial>
         return None;
     }
     let (_, config) = law_of(study, law)?;
-    match study.fold_error(&law.folds) < ADEQUATE {
+    match adequate_on_folds(study, &law.folds) {
         true => {
             let trial = refitted(study, base, law, further(study, law, &config)?)?;
             surpasses(study, &trial, law).then_some(trial)
@@ -67,7 +67,7 @@ fn further(study: &Study, trial: &Trial, config: &EffectConfig) -> Option<Effect
     let range = continued(law.action, own, &elsewhere);
     let mut further = Modes::absent(law.action, range);
     modes::stiffen(&mut further, modes::stiffness_of(config));
-    law.redrawn(config, &mut further);
+    law.draw(&mut further, |x| law.value(&config.values, x));
     (range != own).then_some(further)
 }
 
@@ -92,7 +92,8 @@ fn best_crowd(study: &Study, trial: &Trial, config: &EffectConfig) -> Option<Eff
         return None;
     }
     modes::stiffen(&mut crowd, stiffness);
-    Modes::of(config)?.redrawn(config, &mut crowd);
+    let law = Modes::of(config)?;
+    law.draw(&mut crowd, |x| law.value(&config.values, x));
     Some(crowd)
 }
 

@@ -65,7 +65,7 @@ fn as_far(report: &ExplainReport) -> String {
     left.filter(|error| *error >= ADEQUATE)
         .map_or_else(String::new, |error| {
             format!(
-                " as far as its noise is known: {error:.2} x noise are left, and the noise is not known well enough to call that more"
+                " as far as its noise is known: the error is {error:.2} x noise, no more than the noise is uncertain"
             )
         })
 }

@@ -76,8 +76,8 @@ pub fn explained(study: &Study, before: &Trial, after: &Trial) -> f64 {
 /// Whether a model with these held-out squared errors of the fitted recording may be adequate, or explain this share of the excess
 /// over the floor, whatever the proving recordings say.
 pub fn may_explain(study: &Study, before: &Trial, folds: &[f64], least: f64) -> bool {
-    let (before, after) = (study.fold_error(&before.folds), study.fold_error(folds));
-    after < adequacy(study) || share(before, after) > least
+    let explained = share(study.fold_error(&before.folds), study.fold_error(folds));
+    adequate_on_folds(study, folds) || explained > least
 }
 
 /// Whether the last effect of `after` is proven over `before`.
@@ -172,8 +172,12 @@ fn adequacy(study: &Study) -> f64 {
 
 /// Whether nothing provable is left.
 pub fn adequate(study: &Study, trial: &Trial) -> bool {
-    let gate = adequacy(study);
-    study.proof_error(trial) < gate && study.fold_error(&trial.folds) < gate
+    study.proof_error(trial) < adequacy(study) && adequate_on_folds(study, &trial.folds)
+}
+
+/// Whether nothing provable is left of the fitted recording, by the held-out squared errors of its blocks.
+pub fn adequate_on_folds(study: &Study, folds: &[f64]) -> bool {
+    study.fold_error(folds) < adequacy(study)
 }
 
 #[cfg(test)]

@@ -100,7 +100,7 @@ fn a_model_that_is_adequate_for_want_of_a_known_noise_is_said_to_be_so() {
         }
         let said = summary(&report);
         assert_eq!(
-            said.contains("as far as its noise is known: 1.11 x noise are left"),
+            said.contains("as far as its noise is known: the error is 1.11 x noise"),
             is_more,
             "{said}"
         );

@@ -4,9 +4,9 @@ use spline::Hermite;
 
 /// Most steps of Newton.
 const STEPS: usize = 12;
-/// Newton's step, over the rated flux, that is the last: the next one is this one squared, times some ten for exponents up to 16.
+/// Newton's step, over the rated flux, at which the iteration ends: the next one is its square, times some ten for exponents up to 16.
 const SOLVED: f64 = 1e-6;
-/// Error over the rated flux of what is between two solutions, half way, where it is as good as a solution.
+/// Largest error of a flux between two solutions, over the rated flux, half way.
 const EXACT: f64 = 1e-9;
 /// Fluxes that are solved beforehand ...
 const SOLUTIONS: usize = 1024;
