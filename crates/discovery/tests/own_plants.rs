@@ -9,7 +9,7 @@ use discovery::{LAW, Laws, Verdict, adopt_with, compare, explain};
 use foreign::cases::single;
 use foreign::evidence::{Answer, Question, Setting, double, with_twins};
 use foreign::laws::Law;
-use foreign::{DRIVE, DRIVE_B, Hidden, LOADS, MACHINES, Machine, STEPS, priors, record};
+use foreign::{Course, DRIVE, DRIVE_B, Hidden, LOADS, MACHINES, Machine, STEPS, priors, record};
 use recording::Sensors;
 
 /// Seeds of this file; the table uses others.
@@ -189,4 +189,38 @@ fn one_recording_gives_a_lead_and_no_law() {
     println!("{}", report.summary);
     assert_eq!(report.verdict, Verdict::Unknown);
     assert!(report.laws.len() == 1 && !report.laws[0].proven);
+}
+
+/// A pump that lifts from 45 % of the speed on, fitted up to 70 %: a straight line from there on is no pump.
+#[test]
+fn a_recording_that_goes_on_where_the_law_is_not_known_is_to_be_named_first() {
+    const SLOW: Course = Course {
+        steps: &[
+            (0.0, 0.1, 0.7),
+            (1.4, 0.7, 0.7),
+            (2.0, 0.3, 0.5),
+            (2.6, 0.8, 0.6),
+            (3.2, 0.2, 0.3),
+        ],
+        end: 4.0,
+        ..DRIVE
+    };
+    let machine = MACHINES[0];
+    let hidden = Hidden {
+        law: Some(Law::Pump),
+        ..Hidden::default()
+    };
+    let source =
+        |course, seed| recording::Source::Recording(record(&machine, &hidden, course, seed));
+    let sources = [source(&SLOW, SEED), source(&DRIVE, SEED + 1)];
+    let report = explain(&sources, &priors(&machine, SEED), &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    assert_eq!(report.verdict, Verdict::Unknown);
+    let law = &report.laws[0];
+    assert_eq!(law.place, "torque");
+    let beyond = law.beyond.as_ref().expect("goes on");
+    assert_eq!(beyond.recording, 2);
+    // The drives reach 0.7 and 1.2 times 50 Hz.
+    assert!((beyond.fitted[1] - 35.0).abs() < 1.0 && (beyond.other[1] - 60.0).abs() < 1.0);
+    assert!(report.summary.contains("name recording 2 first"));
 }

@@ -1,13 +1,13 @@
 //! Bursts of one recording at one place, fitted with the parameters.
 
 use super::pulse::{Pulse, drawn, pulses};
-use super::smoother::{Measured, Smoothed, Wander, smooth};
 use super::trace::{action, trace};
 use crate::laws::sensitivity::Sensitivities;
 use estimation::data::case::{Case, Waveform};
 use estimation::data::channels::N_CHANNELS;
 use estimation::fit::normal_equations::{self, Penalty};
 use estimation::fit::output_error::{Effort, Fit, fit};
+use estimation::fit::smoother::{Measured, Smoothed, Wander, smooth};
 use estimation::model::prior::{Hypothesis, Prior};
 use motor::effect::curve::Place;
 use motor::effect::tangent::Addition;

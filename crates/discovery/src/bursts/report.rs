@@ -2,7 +2,7 @@
 
 use super::pulse::Pulse;
 use super::trace::action;
-use crate::report::types::{BurstReport, BurstsReport, LawCurve};
+use crate::report::law::{BurstReport, BurstsReport, LawCurve};
 use estimation::data::study::{Study, Trial};
 use motor::effect::curve::Place;
 

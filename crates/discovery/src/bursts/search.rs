@@ -2,13 +2,13 @@
 
 use super::fit::{Fitted, Scene};
 use super::pulse::{Pulse, have_one_sign};
-use super::smoother::Wander;
 use super::trace::{action, places};
 use crate::laws::search::{LawStep, Refitted};
 use crate::search::refit::combined;
 use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Subject, Trial};
 use estimation::fit::normal_equations;
+use estimation::fit::smoother::Wander;
 use estimation::model::prior::Hypothesis;
 use estimation::proof::accept::{adequate, beats, explained, may_explain};
 use motor::effect::curve::Place;

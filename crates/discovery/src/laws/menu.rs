@@ -1,5 +1,6 @@
 //! Which laws can be asked about in a recording.
 
+use crate::laws::beyond::goes_on;
 use crate::laws::modes::Modes;
 use crate::laws::motion::Motion;
 use estimation::data::case::Waveform;
@@ -30,9 +31,9 @@ pub(crate) fn menu(waveform: &Waveform, plant: &Plant, motion: &Motion) -> Vec<E
     Action::all().filter_map(ask).collect()
 }
 
-/// A range on to where the motor is `elsewhere`. Time is not continued: what rises in one recording need not rise in the next.
+/// A range on to where the motor is `elsewhere`, of a coordinate that goes on.
 pub(super) fn continued(action: Action, [low, high]: [f64; 2], elsewhere: &[Motion]) -> [f64; 2] {
-    if action.coordinate.is_angle() || action.coordinate == Coordinate::Time {
+    if !goes_on(action) {
         return [low, high];
     }
     let most = CONTINUED * (high - low);

@@ -4,13 +4,13 @@
 //! once, and the same law is screened again with knots that crowd about one place after the other. The place that promises most is refitted.
 //! Where a law is good for the fitted recording alone, its curve is continued over what the others visit: its stiffness makes it a straight line there.
 
+use super::beyond::elsewhere;
 use super::formula::prove::law_of;
 use super::menu::continued;
 use super::modes::{self, Modes};
 use super::motion::Motion;
 use super::screen::best_stiffness;
 use super::sensitivity::Sensitivities;
-use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::normal_equations;
 use estimation::fit::output_error::Effort;
@@ -60,9 +60,7 @@ fn refitted(study: &Study, base: &Trial, law: &Trial, other: EffectConfig) -> Op
 /// The same curve on to where the motor is in the recordings that prove; `None` where it is nowhere else.
 fn further(study: &Study, trial: &Trial, config: &EffectConfig) -> Option<EffectConfig> {
     let law = Modes::of(config)?;
-    let waveforms = study.proofs.iter().filter_map(|s| s.case.waveform());
-    let visits = |w: &Waveform| Sensitivities::of(w, &study.prior, &trial.fit).into_motion();
-    let elsewhere: Vec<Motion> = waveforms.map(visits).collect();
+    let elsewhere: Vec<Motion> = elsewhere(study, trial).into_iter().flatten().collect();
     let own = [config.values[0], config.values[1]];
     let range = continued(law.action, own, &elsewhere);
     let mut further = Modes::absent(law.action, range);

@@ -1,6 +1,7 @@
 //! From fits to the numbers of a report.
 
-use crate::report::types::{FitReport, NominalReport, ParameterReport};
+use crate::report::parameter::{NominalReport, ParameterReport};
+use crate::report::types::FitReport;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::uncertainty::coordinate_error;
 use estimation::model::prior::{FRICTION, N_NOMINAL, NOMINALS};

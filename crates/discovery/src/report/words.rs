@@ -1,8 +1,7 @@
 //! Reports in a sentence.
 
-use crate::report::types::{
-    BurstsReport, ExplainReport, FitReport, LawReport, Unexplained, Verdict,
-};
+use crate::report::law::{BurstsReport, LawReport};
+use crate::report::types::{ExplainReport, FitReport, Unexplained, Verdict};
 use estimation::proof::accept::ADEQUATE;
 
 /// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
@@ -72,6 +71,9 @@ fn as_far(report: &ExplainReport) -> String {
 
 /// What is said of an error that nothing was proven to explain.
 fn unknown(report: &ExplainReport, rest: &Unexplained) -> String {
+    if let Some(known) = report.laws.iter().find_map(LawReport::known_so_far) {
+        return format!("Something is missing. {known} {}", rest.description);
+    }
     if let Some(lead) = rest.sufficient_lead() {
         return format!(
             "Something is missing, but too few moments of the recording show it to prove what: {lead} would explain it. Record more starts and more steps of load and voltage. {}",

@@ -5,4 +5,5 @@ pub mod nuisance;
 pub mod output_error;
 pub mod polish;
 pub mod readings;
+pub mod smoother;
 pub mod uncertainty;

@@ -1,13 +1,12 @@
 //! Which physical effect a model misses.
 
-use discovery::{Asked, Error, ExplainReport, Progress, Verdict};
+use discovery::{Asked, Error, ExplainReport, LAW, Progress, Verdict};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::places::{Place, furthest_off, worst};
 use super::{Inputs, PARAMETERS, shown};
 use crate::overlay::{Model, Overlay, TableOverlay};
-use discovery::LAW;
 
 /// Share of the work that the search takes; the rest goes into the worst places.
 const SEARCH: f64 = 0.9;
@@ -132,7 +131,7 @@ impl Next {
                 "Take over the refitted parameters:".to_owned(),
                 Some(PARAMETERS.to_owned()),
             ),
-            (verdict, _) => (nothing_to_adopt(verdict).to_owned(), None),
+            _ => (nothing_to_adopt(report), None),
         };
         Next {
             command: adopt.as_deref().and_then(command),
@@ -148,8 +147,14 @@ fn comes_and_goes(report: &ExplainReport) -> bool {
     last.is_some_and(|law| law.bursts.is_some())
 }
 
-fn nothing_to_adopt(verdict: Verdict) -> &'static str {
-    match verdict {
+fn nothing_to_adopt(report: &ExplainReport) -> String {
+    if let Some(further) = report.laws.iter().find_map(|law| law.beyond.as_ref()) {
+        let k = further.recording;
+        return format!(
+            "Ask again and name recording {k} first: the law is fitted to the first one, and {k} shows more of it."
+        );
+    }
+    let advice = match report.verdict {
         Verdict::Adequate => "Nothing to do: the model is adequate.",
         Verdict::Unsupported => "Record again as the audit says.",
         Verdict::Implausible => {
@@ -159,7 +164,8 @@ fn nothing_to_adopt(verdict: Verdict) -> &'static str {
             "Record more of what the description names, with a second load and a second voltage. \
              If you suspect what it is, write it as a formula into the motor file: docs/adding-an-effect.md."
         }
-    }
+    };
+    advice.to_owned()
 }
 
 /// Whether a refitted parameter is far from what was believed.

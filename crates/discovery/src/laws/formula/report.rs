@@ -3,7 +3,8 @@
 use super::effect::Formula;
 use super::prove::{Proven, coordinates_of};
 use super::write::{Number, as_written, numbers, text};
-use crate::report::types::{FormulaReport, ParameterReport};
+use crate::report::law::FormulaReport;
+use crate::report::parameter::ParameterReport;
 use estimation::data::study::Study;
 use motor::effect::to_entry;
 

@@ -37,10 +37,25 @@ fn one(law: &Place<'_>, k: usize) -> Markup {
             p {
                 @if law.get("bursts").is_some() { "With these bursts" } @else { "With this curve" } " the error falls from " (shown(law, "held_out_error_over_noise_without", decimals(2)))
                 " to " (shown(law, "held_out_error_over_noise", decimals(2))) " × noise"
-                @if law.is_true("proven") { " on the recording that was not fitted." } @else { ". A second recording with other loads and speeds can prove it." }
+                (proof(law))
             }
             @if law.get("bursts").is_some() { (bursts(law)) (curve(law)) } @else { (curve(law)) (formulas(law)) }
             @if !ties.is_empty() { p { strong { "As likely: " } @for (n, tie) in ties.iter().enumerate() { @if n > 0 { ", " } (name(tie)) } "." } }
+        }
+    }
+}
+
+/// What proves the law, or would.
+fn proof(law: &Place<'_>) -> Markup {
+    let beyond = law.get("beyond");
+    let number = |beyond: &Place<'_>, path: &str| shown(beyond, path, significant(3));
+    html! {
+        @if law.is_true("proven") { " on the recording that was not fitted." }
+        @else if beyond.is_none() { ". A second recording with other loads and speeds can prove it." }
+        @if let Some(beyond) = &beyond {
+            ". The first recording goes from " (number(beyond, "fitted/0")) " to " (number(beyond, "fitted/1"))
+            ", recording " (shown(beyond, "recording", decimals(0))) " from " (number(beyond, "other/0")) " to " (number(beyond, "other/1"))
+            " " (law.text("curve/x_unit")) ": name that one first."
         }
     }
 }

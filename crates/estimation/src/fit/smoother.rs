@@ -8,7 +8,7 @@ use motor::effect::tangent::{Push, Tangent};
 
 /// How an amount wanders.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Wander {
+pub struct Wander {
     /// Its standard deviation, in the unit of its place.
     pub deviation: f64,
     /// Time over which it forgets, s.
@@ -17,7 +17,7 @@ pub(crate) struct Wander {
 
 /// What is measured beside a linearised run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Measured<'a> {
+pub struct Measured<'a> {
     /// Measurement minus model of the three currents and of the speed, row after row.
     pub residual: &'a [[f64; 4]],
     /// One over the standard deviation of each; zero where it is not judged.
@@ -30,7 +30,7 @@ pub(crate) struct Measured<'a> {
 
 /// The amount of an addition.
 #[derive(Clone, Debug)]
-pub(crate) struct Smoothed {
+pub struct Smoothed {
     /// Smoothed amount at the beginning of each step.
     pub amount: Vec<f64>,
     /// Twice the logarithm of the likelihood over that of a run without the addition.
@@ -38,12 +38,7 @@ pub(crate) struct Smoothed {
 }
 
 /// Filters and smooths.
-pub(crate) fn smooth(
-    tangent: &Tangent,
-    push: &Push,
-    measured: &Measured<'_>,
-    wander: Wander,
-) -> Smoothed {
+pub fn smooth(tangent: &Tangent, push: &Push, measured: &Measured<'_>, wander: Wander) -> Smoothed {
     // Widths of the arrays: the motor with its amount, and with the states of any effects.
     match tangent.states() {
         0..8 => Filter::<8>::new(tangent, push, measured, wander).smoothed(),
@@ -233,75 +228,9 @@ fn add<const W: usize>(to: &mut Vector<W>, factor: f64, from: &Vector<W>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bursts::pulse::{Pulse, drawn};
-    use crate::bursts::trace::{action, trace};
-    use crate::laws::sensitivity::Sensitivities;
-    use estimation::fit::output_error::{Effort, fit};
-    use estimation::model::prediction::{SpeedObserver, outputs};
-    use estimation::specimen;
-    use motor::effect::curve::Place;
-
-    /// A torque that comes for 40 ms in a simulation without noise: the smoothed amount is there when it is, and no other
-    /// place explains it as well.
-    #[test]
-    fn the_amount_is_found_where_and_when_it_was() {
-        let study = specimen::study(1.0, |_| 1.0);
-        let (case, prior) = (&study.fitted.case, &study.prior);
-        let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
-        let waveform = specimen::waveform_of(&study);
-        let of = Sensitivities::of(waveform, prior, &fit);
-        let t_step = waveform.t_step();
-        let torque = 0.1 * prior.plant.rated.torque;
-        let pulse = Pulse {
-            from: 0.5,
-            to: 0.54,
-            size: torque,
-        };
-        let hidden = drawn(&[pulse], t_step, of.tangent().len() + 1);
-        let h = fit
-            .hypothesis
-            .with(trace(Place::Torque, t_step, &hidden), &prior.plant.rated);
-        let there = outputs(case, prior, &h, SpeedObserver::Off);
-        let row = |(k, w): (usize, &[f64; 5])| -> [f64; 4] {
-            core::array::from_fn(|c| match w[c] > 0.0 {
-                true => (there[5 * k + c] - fit.outputs[5 * k + c]) / w[c],
-                false => 0.0,
-            })
-        };
-        let residual: Vec<[f64; 4]> = waveform.weight.iter().enumerate().map(row).collect();
-        let weight: Vec<[f64; 4]> = waveform
-            .weight
-            .iter()
-            .map(|w| [w[0], w[1], w[2], w[3]])
-            .collect();
-        let measured = Measured {
-            residual: &residual,
-            weight: &weight,
-            decimation: waveform.decimation,
-            t_step,
-        };
-        let asked = |place: Place, deviation: f64| {
-            let wander = Wander {
-                deviation,
-                memory: 0.01,
-            };
-            smooth(of.tangent(), &of.push(action(place)), &measured, wander)
-        };
-        let found = asked(Place::Torque, torque);
-        let mean = |from: f64, to: f64| {
-            let range = (from / t_step) as usize..(to / t_step) as usize;
-            found.amount[range.clone()].iter().sum::<f64>() / range.len() as f64
-        };
-        // Noise that is assumed but not there: the amount leaks some milliseconds over the edges.
-        assert!(
-            (mean(0.51, 0.53) / torque - 1.0).abs() < 0.15,
-            "{}",
-            mean(0.51, 0.53) / torque
-        );
-        assert!(mean(0.3, 0.45).abs() < 0.05 * torque && mean(0.6, 0.9).abs() < 0.05 * torque);
-        let elsewhere = asked(Place::Rotor, 1.0);
-        assert!(found.evidence > elsewhere.evidence + 1000.0);
-    }
+    use crate::fit::output_error::{Effort, fit};
+    use crate::model::prediction::{Drive, driven};
+    use crate::specimen;
 
     /// Wider arrays hold zeros that nothing adds to: the same numbers, bit for bit.
     #[test]
@@ -310,8 +239,16 @@ mod tests {
         let (case, prior) = (&study.fitted.case, &study.prior);
         let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
         let waveform = specimen::waveform_of(&study);
-        let of = Sensitivities::of(waveform, prior, &fit);
-        let push = of.push(action(Place::Torque));
+        let plant = fit.hypothesis.plant(prior);
+        let mut with = plant.clone();
+        with.effects.push(specimen::effect("coulomb-friction", 1.0));
+        let drive = Drive::of(waveform);
+        let tangent = driven(waveform, &plant, &drive, fit.observer, 1, |run| {
+            Tangent::new(&plant, run)
+        });
+        let push = driven(waveform, &with, &drive, fit.observer, 1, |run| {
+            tangent.push(&with, run, 1.0)
+        });
         let rows = waveform.weight.len();
         let residual: Vec<[f64; 4]> = (0..rows).map(|k| [(k as f64).sin(); 4]).collect();
         let measured = Measured {
@@ -324,12 +261,12 @@ mod tests {
             deviation: 1.0,
             memory: 0.01,
         };
-        let narrow = Filter::<8>::new(of.tangent(), &push, &measured, wander).smoothed();
+        let narrow = Filter::<8>::new(&tangent, &push, &measured, wander).smoothed();
         assert!(narrow.amount.iter().any(|amount| amount.abs() > 1e-3));
         let others = [
-            Filter::<12>::new(of.tangent(), &push, &measured, wander).smoothed(),
-            Filter::<16>::new(of.tangent(), &push, &measured, wander).smoothed(),
-            Filter::<32>::new(of.tangent(), &push, &measured, wander).smoothed(),
+            Filter::<12>::new(&tangent, &push, &measured, wander).smoothed(),
+            Filter::<16>::new(&tangent, &push, &measured, wander).smoothed(),
+            Filter::<32>::new(&tangent, &push, &measured, wander).smoothed(),
         ];
         for wide in others {
             assert_eq!(wide.evidence, narrow.evidence);

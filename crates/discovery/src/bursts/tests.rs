@@ -1,0 +1,72 @@
+//! The smoothed amount of what comes and goes, held against a simulation.
+
+use super::pulse::{Pulse, drawn};
+use super::trace::{action, trace};
+use crate::laws::sensitivity::Sensitivities;
+use estimation::fit::output_error::{Effort, fit};
+use estimation::fit::smoother::{Measured, Wander, smooth};
+use estimation::model::prediction::{SpeedObserver, outputs};
+use estimation::specimen;
+use motor::effect::curve::Place;
+
+/// A torque that comes for 40 ms in a simulation without noise: the smoothed amount is there when it is, and no other
+/// place explains it as well.
+#[test]
+fn the_amount_is_found_where_and_when_it_was() {
+    let study = specimen::study(1.0, |_| 1.0);
+    let (case, prior) = (&study.fitted.case, &study.prior);
+    let fit = fit(case, prior, &study.at_prior(), Effort::NONE);
+    let waveform = specimen::waveform_of(&study);
+    let of = Sensitivities::of(waveform, prior, &fit);
+    let t_step = waveform.t_step();
+    let torque = 0.1 * prior.plant.rated.torque;
+    let pulse = Pulse {
+        from: 0.5,
+        to: 0.54,
+        size: torque,
+    };
+    let hidden = drawn(&[pulse], t_step, of.tangent().len() + 1);
+    let h = fit
+        .hypothesis
+        .with(trace(Place::Torque, t_step, &hidden), &prior.plant.rated);
+    let there = outputs(case, prior, &h, SpeedObserver::Off);
+    let row = |(k, w): (usize, &[f64; 5])| -> [f64; 4] {
+        core::array::from_fn(|c| match w[c] > 0.0 {
+            true => (there[5 * k + c] - fit.outputs[5 * k + c]) / w[c],
+            false => 0.0,
+        })
+    };
+    let residual: Vec<[f64; 4]> = waveform.weight.iter().enumerate().map(row).collect();
+    let weight: Vec<[f64; 4]> = waveform
+        .weight
+        .iter()
+        .map(|w| [w[0], w[1], w[2], w[3]])
+        .collect();
+    let measured = Measured {
+        residual: &residual,
+        weight: &weight,
+        decimation: waveform.decimation,
+        t_step,
+    };
+    let asked = |place: Place, deviation: f64| {
+        let wander = Wander {
+            deviation,
+            memory: 0.01,
+        };
+        smooth(of.tangent(), &of.push(action(place)), &measured, wander)
+    };
+    let found = asked(Place::Torque, torque);
+    let mean = |from: f64, to: f64| {
+        let range = (from / t_step) as usize..(to / t_step) as usize;
+        found.amount[range.clone()].iter().sum::<f64>() / range.len() as f64
+    };
+    // Noise that is assumed but not there: the amount leaks some milliseconds over the edges.
+    assert!(
+        (mean(0.51, 0.53) / torque - 1.0).abs() < 0.15,
+        "{}",
+        mean(0.51, 0.53) / torque
+    );
+    assert!(mean(0.3, 0.45).abs() < 0.05 * torque && mean(0.6, 0.9).abs() < 0.05 * torque);
+    let elsewhere = asked(Place::Rotor, 1.0);
+    assert!(found.evidence > elsewhere.evidence + 1000.0);
+}
