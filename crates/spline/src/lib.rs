@@ -12,12 +12,16 @@ mod curve;
 #[cfg(any(test, feature = "std"))]
 mod hermite;
 #[cfg(any(test, feature = "std"))]
+mod solved;
+#[cfg(any(test, feature = "std"))]
 mod table;
 
 #[cfg(any(test, feature = "std"))]
 pub use curve::{Spline, bends};
 #[cfg(any(test, feature = "std"))]
 pub use hermite::Hermite;
+#[cfg(any(test, feature = "std"))]
+pub use solved::{Known, Solved};
 #[cfg(any(test, feature = "std"))]
 pub use table::{TABLE_POINTS, Table, tabulated, traced};
 

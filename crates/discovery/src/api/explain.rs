@@ -7,7 +7,9 @@ use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
 use crate::report::frame;
-use crate::report::present::{effect_parameters, fit_report, kind_word, loss_watt};
+use crate::report::present::{
+    effect_parameters, fit_report, inadequate_report, kind_word, loss_watt,
+};
 use crate::report::types::FrameReport;
 use crate::report::types::{ExplainReport, RankReport, StepReport, Unexplained, Verdict};
 use crate::report::unexplained;
@@ -162,13 +164,14 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
     } else {
         Vec::new()
     };
-    let mut last = fit_report(study, found.last());
-    let mut baseline = fit_report(study, &found.baseline);
-    if !found.nameable {
-        // An inadequate model has no parameter findings.
-        let all = baseline.parameters.iter_mut().chain(&mut last.parameters);
-        all.for_each(|p| p.off = false);
-    }
+    let last = match found.nameable {
+        true => fit_report(study, found.last()),
+        false => inadequate_report(study, found.last()),
+    };
+    let baseline = match std::ptr::eq(found.last(), &found.baseline) {
+        true => last.clone(),
+        false => inadequate_report(study, &found.baseline),
+    };
     let verdict = verdict(study, found, &steps);
     let laws = found
         .laws

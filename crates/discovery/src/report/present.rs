@@ -7,9 +7,18 @@ use estimation::fit::uncertainty::coordinate_error;
 use estimation::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
 use motor::effect::{Kind, Role};
 
-/// Errors and nominal parameters of a trial.
+/// Errors and nominal parameters of a model that explains the recording: beside the errors of the channels, and which are off.
 pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
-    let polished = study.polished(trial);
+    with_parameters(study, trial, study.polished(trial), study.off(trial))
+}
+
+/// Errors and nominal parameters of a model that does not explain the recording: as they were fitted, and none is off. What is missing
+/// moves them further than errors of the channels do.
+pub(crate) fn inadequate_report(study: &Study, trial: &Trial) -> FitReport {
+    with_parameters(study, trial, trial, &[])
+}
+
+fn with_parameters(study: &Study, trial: &Trial, polished: &Trial, off: &[usize]) -> FitReport {
     let covariance = study.covariance(polished);
     let nominal = |k: usize| {
         let z = polished.fit.hypothesis.z[k];
@@ -21,7 +30,7 @@ pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
             value: study.prior.nominal_value(k, z),
             std_error: study.prior.nominal_error(k, z, error),
             unit: NOMINALS[k].unit.to_owned(),
-            off: study.off(trial).contains(&k),
+            off: off.contains(&k),
             change_percent: change,
         }
     };
