@@ -80,7 +80,7 @@ impl Scene<'_> {
         fit(self.case, self.prior, h, effort)
     }
 
-    /// The likeliest places of something that wanders, best first; empty where nothing comes and goes at the best one.
+    /// The likeliest places of something that wanders, best first; empty where nothing comes and goes at any of them.
     ///
     /// Where an amount free to wander takes less than `least` of the squared error, bursts take even less.
     pub fn suspected(&self, places: &[Place], count: usize, least: f64) -> Vec<(Place, Wander)> {
@@ -89,14 +89,13 @@ impl Scene<'_> {
         let ask = |&place: &Place| (place, self.smoothed(&of, place, self.wander(place, 1)));
         let mut all: Vec<(Place, Smoothed)> = places.iter().map(ask).collect();
         all.sort_by(|a, b| b.1.evidence.total_cmp(&a.1.evidence));
-        let comes_and_goes =
-            |(_, found): &(Place, Smoothed)| !pulses(&found.amount, self.t_step()).is_empty();
-        if !all.first().is_some_and(comes_and_goes) {
+        let enough = |(_, found): &&(Place, Smoothed)| found.evidence > least;
+        let likeliest: Vec<&(Place, Smoothed)> = all.iter().filter(enough).take(count).collect();
+        let comes_and_goes = |found: &Smoothed| !pulses(&found.amount, self.t_step()).is_empty();
+        if !likeliest.iter().any(|(_, found)| comes_and_goes(found)) {
             return Vec::new();
         }
-        let enough = |(_, found): &&(Place, Smoothed)| found.evidence > least;
-        let likeliest = all.iter().filter(enough).take(count);
-        let likeliest = likeliest.map(|(place, _)| *place);
+        let likeliest = likeliest.into_iter().map(|(place, _)| *place);
         likeliest
             .map(|place| (place, self.suited(&of, place)))
             .collect()
