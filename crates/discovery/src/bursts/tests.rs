@@ -1,7 +1,8 @@
 //! The smoothed amount of what comes and goes, held against a simulation.
 
+use super::fit::Scene;
 use super::pulse::{Pulse, drawn};
-use super::trace::{action, trace};
+use super::trace::{action, places, trace};
 use crate::laws::sensitivity::Sensitivities;
 use estimation::fit::output_error::{Effort, fit};
 use estimation::fit::smoother::{Measured, Wander, smooth};
@@ -69,4 +70,45 @@ fn the_amount_is_found_where_and_when_it_was() {
     assert!(mean(0.3, 0.45).abs() < 0.05 * torque && mean(0.6, 0.9).abs() < 0.05 * torque);
     let elsewhere = asked(Place::Rotor, 1.0);
     assert!(found.evidence > elsewhere.evidence + 1000.0);
+}
+
+/// A contact of phase b that opens to four times the winding's resistance: a model that was linearised without it makes no clean bursts of it at
+/// its own place, but at a less likely one.
+#[test]
+fn a_contact_that_opens_far_is_suspected_where_a_less_likely_place_shows_bursts() {
+    let study = specimen::study(1.0, |_| 1.0);
+    let (case, prior) = (&study.fitted.case, &study.prior);
+    let believed = fit(case, prior, &study.at_prior(), Effort::NONE);
+    let waveform = specimen::waveform_of(&study);
+    let t_step = waveform.t_step();
+    let pulse = |k: u32| Pulse {
+        from: 0.3 + 0.08 * f64::from(k),
+        to: 0.33 + 0.08 * f64::from(k),
+        size: 3.0 * prior.plant.motor.r_s,
+    };
+    let pulses: Vec<Pulse> = (0..7).map(pulse).collect();
+    let steps = waveform.inputs.u_s.len() / waveform.between.stride() + 1;
+    let hidden = drawn(&pulses, t_step, steps);
+    let opened = believed.hypothesis.with(
+        trace(Place::StatorPhaseB, t_step, &hidden),
+        &prior.plant.rated,
+    );
+    let there = outputs(case, prior, &opened, SpeedObserver::Off);
+    let mut measured = case.clone();
+    let weights = waveform.weight.clone();
+    for (k, row) in specimen::measured_of(&mut measured).iter_mut().enumerate() {
+        for c in (0..4).filter(|&c| weights[k][c] > 0.0) {
+            row[c] += (there[5 * k + c] - believed.outputs[5 * k + c]) / weights[k][c];
+        }
+    }
+    let scene = Scene {
+        waveform: measured.waveform().expect("samples"),
+        case: &measured,
+        prior,
+        without: believed.hypothesis.clone(),
+        free: true,
+    };
+    let suspected = scene.suspected(&places().collect::<Vec<_>>(), 3, 0.0);
+    let places: Vec<Place> = suspected.iter().map(|(place, _)| *place).collect();
+    assert!(places.contains(&Place::StatorPhaseB), "{places:?}");
 }
