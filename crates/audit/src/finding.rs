@@ -150,12 +150,15 @@ impl Finding {
     }
 }
 
+/// Decimals to which a number is rounded at most: ten to that power is one.
+const MOST_DECIMALS: i32 = 300;
+
 /// A number to so many significant digits, without powers of ten where it is near 1.
 pub fn digits(x: f64, significant: i32) -> String {
     let decimals = significant - 1 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
-    let scale = 10_f64.powi(decimals);
+    let scale = 10_f64.powi(decimals.min(MOST_DECIMALS));
     let rounded = (x * scale).round() / scale;
-    match (1e-4..1e7).contains(&rounded.abs()) {
+    match rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
         true => format!("{rounded}"),
         false => format!("{rounded:e}"),
     }
@@ -183,6 +186,7 @@ mod tests {
     fn numbers_are_short() {
         let told = [817.2, 0.1192, 1.0, 0.002_004, 12_345.0, 3.2e-9].map(|x| digits(x, 3));
         assert_eq!(told, ["817", "0.119", "1", "0.002", "12300", "3.2e-9"]);
+        assert_eq!([0.0, 1e-310].map(|x| digits(x, 3)), ["0", "0"]);
         assert_eq!(digits(4.999_999_999_998_863, 6), "5");
         assert_eq!([count(1, "gap"), count(3, "gap")], ["1 gap", "3 gaps"]);
     }
