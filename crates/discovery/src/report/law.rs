@@ -107,7 +107,7 @@ impl LawReport {
         let range =
             |[from, to]: [f64; 2]| format!("{} to {} {unit}", digits(from, 3), digits(to, 3));
         Some(format!(
-            "{} explains the first recording ({:.2} x noise), which goes from {}; recording {k} goes from {} and is not explained: \
+            "With {} the model explains the first recording ({:.2} x noise), which goes from {}; recording {k} goes from {} and is not explained: \
              name recording {k} first.",
             self.name(),
             self.fold_error_over_noise,

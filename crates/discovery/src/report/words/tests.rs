@@ -202,7 +202,7 @@ fn a_law_that_another_recording_goes_beyond_asks_for_that_one_first() {
     }];
     assert_eq!(
         summary(&report),
-        "Something is missing. torque over frequency explains the first recording (0.99 x noise), which goes from 2.41 to 35.1 Hz; \
+        "Something is missing. With torque over frequency the model explains the first recording (0.99 x noise), which goes from 2.41 to 35.1 Hz; \
          recording 3 goes from 2.6 to 60 Hz and is not explained: name recording 3 first. It is loud."
     );
 }
