@@ -8,7 +8,6 @@ use super::beyond::elsewhere;
 use super::formula::prove::law_of;
 use super::menu::continued;
 use super::modes::{self, Modes};
-use super::motion::Motion;
 use super::screen::best_stiffness;
 use super::sensitivity::Sensitivities;
 use estimation::data::study::{Study, Trial};
@@ -60,9 +59,8 @@ fn refitted(study: &Study, base: &Trial, law: &Trial, other: EffectConfig) -> Op
 /// The same curve on to where the motor is in the recordings that prove; `None` where it is nowhere else.
 fn further(study: &Study, trial: &Trial, config: &EffectConfig) -> Option<EffectConfig> {
     let law = Modes::of(config)?;
-    let elsewhere: Vec<Motion> = elsewhere(study, trial).into_iter().flatten().collect();
     let own = [config.values[0], config.values[1]];
-    let range = continued(law.action, own, &elsewhere);
+    let range = continued(law.action, own, &elsewhere(study, trial));
     let mut further = Modes::absent(law.action, range);
     modes::stiffen(&mut further, modes::stiffness_of(config));
     law.draw(&mut further, |x| law.value(&config.values, x));

@@ -80,7 +80,7 @@ pub struct LawReport {
     pub held_out_error_over_noise_without: f64,
     /// Whether a recording that was not fitted proves it; one recording alone gives a lead.
     pub proven: bool,
-    /// The recording that goes on furthest to where the fitted one does not show the law, of a law that is as good as the noise there alone.
+    /// Of a law that is as good as the noise of the fitted recording alone: how far it goes, and how much further the one that proves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beyond: Option<BeyondReport>,
     /// What comes and goes instead of following a curve.
@@ -100,31 +100,29 @@ impl LawReport {
         }
     }
 
-    /// From where to where the law is known, and which recording goes on from there.
+    /// From where to where the law is known, and that the other recording goes on from there.
     pub fn known_so_far(&self) -> Option<String> {
-        let beyond = self.beyond.as_ref()?;
-        let (unit, k) = (&self.curve.x_unit, beyond.recording);
+        let BeyondReport { fitted, other } = self.beyond.as_ref()?;
+        let unit = &self.curve.x_unit;
         let range =
-            |[from, to]: [f64; 2]| format!("{} to {} {unit}", digits(from, 3), digits(to, 3));
+            |[from, to]: &[f64; 2]| format!("{} to {} {unit}", digits(*from, 3), digits(*to, 3));
         Some(format!(
-            "With {} the model explains the first recording ({:.2} x noise), which goes from {}; recording {k} goes from {} and is not explained: \
-             name recording {k} first.",
+            "With {} the model explains the first recording ({:.2} x noise), which goes from {}; the second one goes from {} and is not \
+             explained: name the second one first.",
             self.name(),
             self.fold_error_over_noise,
-            range(beyond.fitted),
-            range(beyond.other)
+            range(fitted),
+            range(other)
         ))
     }
 }
 
-/// A recording that goes on to where the fitted one does not show a law.
+/// How far two recordings go, the second further than the first.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BeyondReport {
-    /// Number of the recording, from 1.
-    pub recording: usize,
     /// Lowest and highest value of the coordinate in the fitted recording, in the curve's `x_unit` ...
     pub fitted: [f64; 2],
-    /// ... and in this one.
+    /// ... and in the one that proves.
     pub other: [f64; 2],
 }
 

@@ -148,11 +148,8 @@ fn comes_and_goes(report: &ExplainReport) -> bool {
 }
 
 fn nothing_to_adopt(report: &ExplainReport) -> String {
-    if let Some(further) = report.laws.iter().find_map(|law| law.beyond.as_ref()) {
-        let k = further.recording;
-        return format!(
-            "Ask again and name recording {k} first: the law is fitted to the first one, and {k} shows more of it."
-        );
+    if report.laws.iter().any(|law| law.beyond.is_some()) {
+        return "Ask again and name the second recording first: it shows more of the law, which is fitted to the first one.".to_owned();
     }
     let advice = match report.verdict {
         Verdict::Adequate => "Nothing to do: the model is adequate.",

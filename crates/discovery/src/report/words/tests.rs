@@ -193,7 +193,6 @@ fn a_law_that_another_recording_goes_beyond_asks_for_that_one_first() {
         held_out_error_over_noise_without: 6.18,
         proven: false,
         beyond: Some(BeyondReport {
-            recording: 3,
             fitted: [2.412, 35.06],
             other: [2.6, 60.0],
         }),
@@ -203,6 +202,6 @@ fn a_law_that_another_recording_goes_beyond_asks_for_that_one_first() {
     assert_eq!(
         summary(&report),
         "Something is missing. With torque over frequency the model explains the first recording (0.99 x noise), which goes from 2.41 to 35.1 Hz; \
-         recording 3 goes from 2.6 to 60 Hz and is not explained: name recording 3 first. It is loud."
+         the second one goes from 2.6 to 60 Hz and is not explained: name the second one first. It is loud."
     );
 }

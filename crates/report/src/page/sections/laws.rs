@@ -54,7 +54,7 @@ fn proof(law: &Place<'_>) -> Markup {
         @else if beyond.is_none() { ". A second recording with other loads and speeds can prove it." }
         @if let Some(beyond) = &beyond {
             ". The first recording goes from " (number(beyond, "fitted/0")) " to " (number(beyond, "fitted/1"))
-            ", recording " (shown(beyond, "recording", decimals(0))) " from " (number(beyond, "other/0")) " to " (number(beyond, "other/1"))
+            ", the second one from " (number(beyond, "other/0")) " to " (number(beyond, "other/1"))
             " " (law.text("curve/x_unit")) ": name that one first."
         }
     }
