@@ -19,9 +19,9 @@ use report::study::{Explained, Inputs, anything_off};
 
 /// Find out which physical effect the model misses, and prove it on data that was not fitted.
 ///
-/// The first recording is fitted, the second proves; of more, the first, third, ... are fitted together. A single one
-/// is proven by folds of 40 ms blocks. Every candidate is refitted together with all parameters. Nothing is claimed that
-/// the recordings cannot show: the answer may be "adequate", a tie with the test that breaks it, or "unknown".
+/// The first recording is fitted, the second proves: name the one first that goes through more speeds, loads and currents. Of more, the
+/// first, third, ... are fitted together. A single one is proven by folds of 40 ms blocks. Every candidate is refitted together with all
+/// parameters. Nothing is claimed that the recordings cannot show: "adequate", a tie with the test that breaks it, and "unknown" are answers.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Explain {
