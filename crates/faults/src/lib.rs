@@ -176,7 +176,7 @@ impl FaultId {
                 "rule out heat: is the motor hotter than its motor file says? Warm windings have a larger resistance",
             ),
             FaultId::RotorInductance => Some(
-                "is it this motor's file? A file that is not, several faults at once, broken bars and shorted turns light all four residuals, too",
+                "is it this motor's file? A file that is not, one that lacks an effect (drivemon explain says which), several faults at once, broken bars and shorted turns light all four residuals, too",
             ),
             _ => None,
         }
