@@ -150,7 +150,7 @@ fn adopted_law(
         laws: found
             .laws
             .iter()
-            .map(|law| law_report(study, law))
+            .map(|law| law_report(question, law))
             .collect(),
         speed_scale: speed_scale_report(study, after),
         cannot_be_concluded: inconclusive::list(study, after, &[]),

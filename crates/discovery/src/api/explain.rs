@@ -6,9 +6,7 @@ use crate::design::search::design;
 use crate::explain::{self, Explanation, nominal_name, stands_for};
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
-use crate::laws::search::LawStep;
 use crate::report::frame;
-use crate::report::law::LawReport;
 use crate::report::present::{
     effect_parameters, fit_report, inadequate_report, kind_word, loss_watt,
 };
@@ -175,16 +173,8 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
         false => inadequate_report(study, &found.baseline),
     };
     let verdict = verdict(study, found, &steps);
-    // Stretches of a long recording prove what others of it show: no recording goes on further.
-    let are_whole = question.stretches.is_empty();
-    let law = |step: &LawStep| {
-        let report = law_report(study, step);
-        LawReport {
-            beyond: report.beyond.filter(|_| are_whole),
-            ..report
-        }
-    };
-    let laws = found.laws.iter().map(law).collect();
+    let laws = found.laws.iter();
+    let laws = laws.map(|law| law_report(question, law)).collect();
     let unexplained = (!found.nameable).then(|| unexplained(study, found));
     let mut report = ExplainReport {
         audit: question.audit.clone(),

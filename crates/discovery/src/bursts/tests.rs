@@ -4,11 +4,22 @@ use super::fit::Scene;
 use super::pulse::{Pulse, drawn};
 use super::trace::{action, places, trace};
 use crate::laws::sensitivity::Sensitivities;
-use estimation::fit::output_error::{Effort, fit};
+use estimation::data::study::Study;
+use estimation::fit::output_error::{Effort, Fit, fit};
 use estimation::fit::smoother::{Measured, Wander, smooth};
 use estimation::model::prediction::{SpeedObserver, outputs};
 use estimation::specimen;
 use motor::effect::curve::Place;
+
+/// Outputs of a model in which something comes at a place, one row of the case after the other.
+fn shown(study: &Study, model: &Fit, place: Place, pulses: &[Pulse]) -> Vec<f64> {
+    let waveform = specimen::waveform_of(study);
+    let steps = waveform.inputs.u_s.len() / waveform.between.stride() + 1;
+    let hidden = drawn(pulses, waveform.t_step(), steps);
+    let there = trace(place, waveform.t_step(), &hidden);
+    let h = model.hypothesis.with(there, &study.prior.plant.rated);
+    outputs(&study.fitted.case, &study.prior, &h, SpeedObserver::Off)
+}
 
 /// A torque that comes for 40 ms in a simulation without noise: the smoothed amount is there when it is, and no other
 /// place explains it as well.
@@ -26,11 +37,7 @@ fn the_amount_is_found_where_and_when_it_was() {
         to: 0.54,
         size: torque,
     };
-    let hidden = drawn(&[pulse], t_step, of.tangent().len() + 1);
-    let h = fit
-        .hypothesis
-        .with(trace(Place::Torque, t_step, &hidden), &prior.plant.rated);
-    let there = outputs(case, prior, &h, SpeedObserver::Off);
+    let there = shown(&study, &fit, Place::Torque, &[pulse]);
     let row = |(k, w): (usize, &[f64; 5])| -> [f64; 4] {
         core::array::from_fn(|c| match w[c] > 0.0 {
             true => (there[5 * k + c] - fit.outputs[5 * k + c]) / w[c],
@@ -80,20 +87,13 @@ fn a_contact_that_opens_far_is_suspected_where_a_less_likely_place_shows_bursts(
     let (case, prior) = (&study.fitted.case, &study.prior);
     let believed = fit(case, prior, &study.at_prior(), Effort::NONE);
     let waveform = specimen::waveform_of(&study);
-    let t_step = waveform.t_step();
     let pulse = |k: u32| Pulse {
         from: 0.3 + 0.08 * f64::from(k),
         to: 0.33 + 0.08 * f64::from(k),
         size: 3.0 * prior.plant.motor.r_s,
     };
     let pulses: Vec<Pulse> = (0..7).map(pulse).collect();
-    let steps = waveform.inputs.u_s.len() / waveform.between.stride() + 1;
-    let hidden = drawn(&pulses, t_step, steps);
-    let opened = believed.hypothesis.with(
-        trace(Place::StatorPhaseB, t_step, &hidden),
-        &prior.plant.rated,
-    );
-    let there = outputs(case, prior, &opened, SpeedObserver::Off);
+    let there = shown(&study, &believed, Place::StatorPhaseB, &pulses);
     let mut measured = case.clone();
     let weights = waveform.weight.clone();
     for (k, row) in specimen::measured_of(&mut measured).iter_mut().enumerate() {

@@ -1,9 +1,10 @@
 //! Which laws can be asked about in a recording.
 
-use crate::laws::beyond::goes_on;
 use crate::laws::modes::Modes;
 use crate::laws::motion::Motion;
+use crate::laws::sensitivity::Sensitivities;
 use estimation::data::case::Waveform;
+use estimation::data::study::{Study, Trial};
 use motor::effect::curve::{Action, Coordinate, Place};
 use motor::effect::{EffectConfig, Plant};
 
@@ -29,6 +30,23 @@ pub(crate) fn menu(waveform: &Waveform, plant: &Plant, motion: &Motion) -> Vec<E
         asked.then(|| Modes::absent(action, range))
     };
     Action::all().filter_map(ask).collect()
+}
+
+/// Motions of the recordings that prove, as a trial predicts them; none of load tables.
+pub(super) fn elsewhere(study: &Study, trial: &Trial) -> Vec<Motion> {
+    let waveforms = study.proofs.iter().filter_map(|s| s.case.waveform());
+    waveforms.map(|w| motion(study, trial, w)).collect()
+}
+
+/// What the motor does in a recording, as a trial predicts it.
+pub(super) fn motion(study: &Study, trial: &Trial, waveform: &Waveform) -> Motion {
+    Sensitivities::of(waveform, &study.prior, &trial.fit).into_motion()
+}
+
+/// Whether a curve over this coordinate can be continued: a turn is whole, and what rises over time in one recording need not rise in
+/// the next.
+pub(super) fn goes_on(action: Action) -> bool {
+    !action.coordinate.is_angle() && action.coordinate != Coordinate::Time
 }
 
 /// A range on to where the motor is `elsewhere`, of a coordinate that goes on.

@@ -4,9 +4,8 @@
 //! once, and the same law is screened again with knots that crowd about one place after the other. The place that promises most is refitted.
 //! Where a law is good for the fitted recording alone, its curve is continued over what the others visit: its stiffness makes it a straight line there.
 
-use super::beyond::elsewhere;
 use super::formula::prove::law_of;
-use super::menu::continued;
+use super::menu::{continued, elsewhere};
 use super::modes::{self, Modes};
 use super::screen::best_stiffness;
 use super::sensitivity::Sensitivities;

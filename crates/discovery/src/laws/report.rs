@@ -8,6 +8,7 @@ use crate::laws::formula::report::formula_report;
 use crate::laws::modes::{self, Modes};
 use crate::laws::search::LawStep;
 use crate::report::law::{LawCurve, LawPlace, LawReport};
+use estimation::data::question::Question;
 use estimation::data::study::{Study, Trial};
 use estimation::proof::accept::explained;
 use motor::effect::curve::{Action, Coordinate, Place};
@@ -20,9 +21,9 @@ const POINTS: usize = 61;
 const BAND: f64 = 1.96;
 
 /// The report of a law.
-pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
+pub(crate) fn law_report(question: &Question, step: &LawStep) -> LawReport {
+    let study = &question.study;
     let at = named(step.action);
-    let is_curve = step.bursts.is_empty();
     let formulas = step.formulas.iter();
     let formulas: Vec<_> = formulas.filter_map(|f| formula_report(study, f)).collect();
     let first = formulas.first().cloned();
@@ -51,9 +52,7 @@ pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
         fold_error_over_noise: study.fold_error(&step.trial.folds),
         held_out_error_over_noise_without: study.proof_error(&step.before),
         proven: step.proven,
-        beyond: is_curve
-            .then(|| beyond(study, step.action, &step.trial))
-            .flatten(),
+        beyond: beyond(question, step),
         entry: law_of(study, &step.trial)
             .and_then(|(_, config)| as_knots(&config))
             .map(|config| to_entry(&config)),
