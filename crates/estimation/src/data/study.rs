@@ -3,7 +3,7 @@
 use crate::data::case::Case;
 use crate::data::noise_floor::{Floor, by_channel, floor, judged_of};
 use crate::fit::normal_equations;
-use crate::fit::output_error::{Effort, Fit, fit, fit_near};
+use crate::fit::output_error::{Effort, Fit, fit};
 use crate::model::free_scale::{self, FreeScale};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, Prior};
@@ -115,12 +115,6 @@ impl Study {
     /// Fits a hypothesis and measures it.
     pub fn trial(&self, start: &Hypothesis, effort: Effort) -> Trial {
         self.measured(fit(&self.fitted.case, &self.prior, start, effort))
-    }
-
-    /// Fits and measures a hypothesis that is near another one's fit: fewer simulations.
-    pub fn trial_near(&self, start: &Hypothesis, other: &Trial, effort: Effort) -> Trial {
-        let case = &self.fitted.case;
-        self.measured(fit_near(case, &self.prior, start, &other.fit, effort))
     }
 
     /// Measures a fit on what it has not seen.

@@ -3,7 +3,7 @@
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
 use crate::fit::uncertainty::coordinate_error;
-use crate::model::prior::{FRICTION, Hypothesis, MAGNETIZING, N_NOMINAL, NOMINALS};
+use crate::model::prior::{FRICTION, MAGNETIZING, N_NOMINAL, NOMINALS};
 use crate::proof::accept::worse;
 use motor::effect::Nominal;
 
@@ -21,12 +21,6 @@ const IMPLAUSIBLE: f64 = 3.0;
 /// ... but copper at 150 degC has 1.51 times its resistance at 20 degC: ln 1.51 more upwards.
 const HOT_COPPER: f64 = 0.41;
 
-/// Refit that only decides whether a held parameter is needed: on 50 recordings of another simulator it decides as a full one.
-const HELD: Effort = Effort {
-    iterations: 3,
-    ..Effort::FULL
-};
-
 /// 95 % of a normal distribution lie within so many standard deviations.
 const TWO_SIDED_95: f64 = 1.96;
 
@@ -39,7 +33,7 @@ pub fn nominals(study: &Study, trial: &Trial) -> Vec<usize> {
         .filter(|&k| moved(study, trial, k));
     let deviations = &study.prior.deviations;
     let needed = |&k: &usize| {
-        let held = study.trial_near(&frozen(trial, k), trial, HELD);
+        let held = held(study, trial, k);
         worse(study, &held, trial)
             || strains(&held, deviations) > strains(trial, deviations) + SIGNIFICANT.powi(2)
     };
@@ -73,15 +67,10 @@ pub fn implausible(study: &Study, trial: &Trial) -> Vec<usize> {
 
 /// The trial with one nominal held at its prior and everything else refitted.
 pub fn held(study: &Study, trial: &Trial, k: usize) -> Trial {
-    study.trial(&frozen(trial, k), Effort::FULL)
-}
-
-/// The hypothesis of a trial with one nominal held at its prior.
-fn frozen(trial: &Trial, k: usize) -> Hypothesis {
     let mut frozen = trial.fit.hypothesis.clone();
     frozen.z[k] = 0.0;
     frozen.free[k] = false;
-    frozen
+    study.trial(&frozen, Effort::FULL)
 }
 
 /// Whether nominal `k` moved relevantly and significantly, and is known from the recording.
