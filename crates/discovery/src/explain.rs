@@ -87,15 +87,14 @@ impl Explanation {
     }
 }
 
-/// Explains a study. `excluded` effects are not asked about, curves are held against `shapes`; `progress` hears what is being done.
+/// Explains a study, from the model with its parameters refitted on. `excluded` effects are not asked about, curves are held against `shapes`; `progress` hears what is being done.
 pub(crate) fn explain(
     study: &Study,
+    baseline: Trial,
     excluded: &[&str],
     shapes: Shapes,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
-    progress("refitting the parameters", 0.1);
-    let baseline = study.trial(&study.at_prior(), Effort::FULL);
     let mut answered = Answered::of(study);
     let mut explanation = library(&mut answered, baseline, excluded, progress);
     if !explanation.steps.is_empty()

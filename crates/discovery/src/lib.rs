@@ -50,9 +50,7 @@ pub use estimation::model::prediction::{carried_speed, simulations};
 pub use estimation::model::scale_report::{AtRest, ErrorSource, SpeedScaleReport};
 pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use laws::formula::dictionary::{Laws, Shapes};
-pub use report::law::{
-    BeyondReport, BurstReport, BurstsReport, FormulaReport, LawCurve, LawPlace, LawReport,
-};
+pub use report::law::{BurstReport, BurstsReport, FormulaReport, LawCurve, LawPlace, LawReport};
 pub use report::parameter::{NominalReport, ParameterReport};
 pub use report::types::{
     AdoptReport, BandReport, CompareReport, ErrorReport, ExplainReport, FitReport, FrameBand,

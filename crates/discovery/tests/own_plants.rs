@@ -5,11 +5,13 @@
 #[expect(dead_code, reason = "the examples use the rest")]
 mod foreign;
 
-use discovery::{LAW, Laws, Verdict, adopt_with, compare, explain};
+use discovery::{LAW, Laws, PARAMETERS, Verdict, adopt, adopt_with, compare, explain};
 use foreign::cases::single;
 use foreign::evidence::{Answer, Question, Setting, double, with_twins};
 use foreign::laws::Law;
-use foreign::{Course, DRIVE, DRIVE_B, Hidden, LOADS, MACHINES, Machine, STEPS, priors, record};
+use foreign::{
+    Course, DRIVE, DRIVE_B, Hidden, LOADS, MACHINES, Machine, STEADY, STEPS, priors, record,
+};
 use recording::Sensors;
 
 /// Seeds of this file; the table uses others.
@@ -191,9 +193,10 @@ fn one_recording_gives_a_lead_and_no_law() {
     assert!(report.laws.len() == 1 && !report.laws[0].proven);
 }
 
-/// A pump that lifts from 45 % of the speed on, fitted up to 70 %: a straight line from there on is no pump.
+/// A pump that lifts from 45 % of the speed on, fitted up to 70 %: a straight line from there on is no pump. The recording that goes on
+/// shows it all.
 #[test]
-fn a_recording_that_goes_on_where_the_law_is_not_known_is_to_be_named_first() {
+fn of_two_recordings_the_one_is_fitted_that_leaves_nothing() {
     const SLOW: Course = Course {
         steps: &[
             (0.0, 0.1, 0.7),
@@ -215,11 +218,33 @@ fn a_recording_that_goes_on_where_the_law_is_not_known_is_to_be_named_first() {
     let sources = [source(&SLOW, SEED), source(&DRIVE, SEED + 1)];
     let report = explain(&sources, &priors(&machine, SEED), &mut |_, _| {}).expect("judged");
     println!("{}", report.summary);
-    assert_eq!(report.verdict, Verdict::Unknown);
-    let law = &report.laws[0];
-    assert_eq!(law.place, "torque");
-    let beyond = law.beyond.as_ref().expect("goes on");
-    // The drives reach 0.7 and 1.2 times 50 Hz.
-    assert!((beyond.fitted[1] - 35.0).abs() < 1.0 && (beyond.other[1] - 60.0).abs() < 1.0);
-    assert!(report.summary.contains("name the second one first"));
+    assert_eq!(report.verdict, Verdict::Law);
+    assert!(report.other_order);
+    assert!(report.summary.contains("The second recording is fitted"));
+    assert_eq!(report.laws[0].place, "torque");
+}
+
+/// A motor that runs at one speed and load shows little of its parameters.
+#[test]
+fn parameters_are_taken_from_the_recording_that_shows_them() {
+    let machine = MACHINES[0];
+    let source = |course, seed| {
+        recording::Source::Recording(record(&machine, &Hidden::default(), course, seed))
+    };
+    let mut sources = [source(&STEADY, SEED), source(&LOADS, SEED + 1)];
+    let believed = priors(&machine, SEED);
+    let adopted = |sources: &[recording::Source]| {
+        let (report, motor) =
+            adopt(PARAMETERS, sources, &believed, &mut |_, _| {}).expect("judged");
+        println!("{} {:?}", report.other_order, report.after);
+        assert!(report.proven);
+        (report.other_order, motor)
+    };
+    let explained = explain(&sources, &believed, &mut |_, _| {}).expect("judged");
+    println!("{}", explained.summary);
+    assert!(explained.verdict == Verdict::Adequate && explained.other_order);
+    let (turned, taken) = adopted(&sources);
+    sources.reverse();
+    let (as_given, same) = adopted(&sources);
+    assert!(turned && !as_given && taken == same);
 }

@@ -203,9 +203,11 @@ fn ask_explain(
                 recording::quoted(&path.display().to_string())
             )
         });
-        let adopt = |name: &str| {
+        let adopt = |name: &str, names: &[String]| {
             let more = if name == LAW { more.as_str() } else { "" };
-            asked.typed().map(|typed| typed.adopt(name, more))
+            asked
+                .typed()
+                .map(|typed| Typed { names, ..typed }.adopt(name, more))
         };
         let inputs = Inputs {
             laws,

@@ -15,14 +15,15 @@ use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
 use estimation::fit::polish::with_nominals;
-use estimation::proof::accept::{gained, proven};
+use estimation::proof::accept::{adequate, gained, proven};
 use motor::MotorFile;
 use motor::effect::{EffectConfig, expression, to_entry};
 use motor::effects::{find, names};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
 use signal::dot;
 
-use super::explain::{judged_frame, speed_scale_report};
+use super::explain::{explains, judged_frame, speed_scale_report};
+use super::order::{Answer, Explains, in_either_order};
 use super::{LAW, PARAMETERS, Progress};
 
 /// Adds an effect, refits, and shows the error before and after; the new motor file comes with the report.
@@ -58,37 +59,50 @@ pub fn adopt_with<'a>(
         );
         return Err(Error::UnknownEffect(message));
     }
-    let question = Question::new(sources, motor, progress)?;
-    let study = &question.study;
-    progress("refitting the parameters", 0.2);
-    let refitted = study.trial(&study.at_prior(), Effort::FULL);
-    if effect == LAW {
-        return adopted_law(&question, motor, laws, progress);
+    match effect {
+        LAW => adopted_law(sources.into(), motor, laws, progress),
+        frame::NAME => adopted_frame(sources.into(), motor, progress),
+        _ => adopted_effect(effect, sources.into(), motor, progress),
     }
-    if effect == frame::NAME {
-        return adopted_frame(&question, motor, &refitted);
-    }
-    progress("fitting the effect", 0.5);
+}
+
+/// An effect of the library, or the refitted parameters alone.
+fn adopted_effect(
+    effect: &str,
+    sources: Sources<'_>,
+    motor: &MotorFile,
+    progress: &mut Progress<'_>,
+) -> Result<(AdoptReport, MotorFile), Error> {
     let is_new = effect != PARAMETERS;
-    let (before, after) = match is_new {
+    let ask = |study: &Study, refitted: Trial, progress: &mut Progress<'_>| match is_new {
         true => {
-            let after = fitted(study, &refitted, effect)?;
-            (refitted, after)
+            progress("fitting the effect", 0.5);
+            fitted(study, &refitted, effect).map(|after| (refitted, after))
         }
-        false => (as_believed(study), refitted),
+        false => Ok((as_believed(study), refitted)),
     };
+    let is_proven = |study: &Study, before: &Trial, after: &Trial| match is_new {
+        true => proven(study, before, after),
+        false => gained(before, after),
+    };
+    let explains = |study: &Study, found: &Result<(Trial, Trial), Error>| match found {
+        Ok((_, after)) if adequate(study, after) => Explains::All,
+        Ok((before, after)) if is_proven(study, before, after) => Explains::Part,
+        _ => Explains::Nothing,
+    };
+    let answer = in_either_order(sources, motor, ask, explains, progress)?;
+    let (question, (before, after)) = (answer.question, answer.found?);
+    let study = &question.study;
     progress("done", 1.0);
     let nominals = fit_report(study, &after).parameters;
     let report = AdoptReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
+        other_order: answer.other_order,
         effect: effect.to_owned(),
         before: errors(study, &before),
         after: errors(study, &after),
-        proven: match is_new {
-            true => proven(study, &before, &after),
-            false => gained(&before, &after),
-        },
+        proven: is_proven(study, &before, &after),
         parameters: if is_new {
             effect_parameters(study, &after, study.given_effects())
         } else {
@@ -113,13 +127,20 @@ pub(crate) fn as_believed(study: &Study) -> Trial {
 
 /// Everything that was found, if a law is part of it.
 fn adopted_law(
-    question: &Question,
+    sources: Sources<'_>,
     motor: &MotorFile,
     laws: Laws,
     progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
+    let ask = |study: &Study, baseline: Trial, progress: &mut Progress<'_>| {
+        explain::explain(study, baseline, &[], laws.shapes, progress)
+    };
+    let Answer {
+        question,
+        found,
+        other_order,
+    } = in_either_order(sources, motor, ask, explains, progress)?;
     let study = &question.study;
-    let found = explain::explain(study, &[], laws.shapes, progress);
     progress("done", 1.0);
     let Some(law) = found.laws.last() else {
         let message = "no law explains these recordings better than the library does: `drivemon explain` says what is missing";
@@ -139,6 +160,7 @@ fn adopted_law(
     let report = AdoptReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
+        other_order,
         effect: LAW.to_owned(),
         before: errors(study, &found.baseline),
         after: errors(study, after),
@@ -150,7 +172,7 @@ fn adopted_law(
         laws: found
             .laws
             .iter()
-            .map(|law| law_report(question, law))
+            .map(|law| law_report(study, law))
             .collect(),
         speed_scale: speed_scale_report(study, after),
         cannot_be_concluded: inconclusive::list(study, after, &[]),
@@ -172,11 +194,15 @@ fn chosen_formula(law: &LawStep, number: usize) -> Result<&Trial, Error> {
 
 /// Changes nothing but the frame in which the monitor forms its residuals.
 fn adopted_frame(
-    question: &Question,
+    sources: Sources<'_>,
     motor: &MotorFile,
-    trial: &Trial,
+    progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
-    let Some(frame) = judged_frame(question, motor, trial) else {
+    let question = Question::new(sources, motor, progress)?;
+    let study = &question.study;
+    progress("refitting the parameters", 0.2);
+    let trial = study.trial(&study.at_prior(), Effort::FULL);
+    let Some(frame) = judged_frame(&question, motor, &trial) else {
         let message = "the motor file already asks for the rotor-flux frame with live field current, \
                        or the recordings hold less than ten windows of steady running";
         return Err(Error::UnknownEffect(message.to_owned()));
@@ -188,6 +214,7 @@ fn adopted_frame(
     let report = AdoptReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
+        other_order: false,
         effect: frame::NAME.to_owned(),
         before: errors(frame.fitted_before, frame.held_out_before),
         after: errors(frame.fitted_after, frame.held_out_after),
@@ -197,8 +224,8 @@ fn adopted_frame(
         motor_file: String::new(),
         frame: Some(frame),
         laws: Vec::new(),
-        speed_scale: speed_scale_report(&question.study, trial),
-        cannot_be_concluded: inconclusive::list(&question.study, trial, &[]),
+        speed_scale: speed_scale_report(study, &trial),
+        cannot_be_concluded: inconclusive::list(study, &trial, &[]),
     };
     let mut file = motor.clone();
     file.monitor.frame = Frame::RotorFlux;

@@ -3,7 +3,7 @@
 use crate::design::limits::NextRun;
 use crate::design::report::{DesignReport, design_report};
 use crate::design::search::design;
-use crate::explain::{self, Explanation, nominal_name, stands_for};
+use crate::explain::{self, Explanation, Step, nominal_name, stands_for};
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
 use crate::report::frame;
@@ -14,20 +14,22 @@ use crate::report::types::FrameReport;
 use crate::report::types::{ExplainReport, RankReport, StepReport, Unexplained, Verdict};
 use crate::report::unexplained;
 use crate::search::inconclusive::{self, Uncertainty};
+use crate::search::refit::Candidate;
 use estimation::data::case::Case;
 use estimation::data::given::Sources;
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::model::scale_report::SpeedScaleReport;
-use estimation::proof::accept::explained;
+use estimation::proof::accept::{adequate, explained};
 use estimation::proof::off::implausible;
 use motor::MotorFile;
 use motor::effect::Descriptor;
 
 use super::Progress;
+use super::order::{Explains, in_either_order};
 
-/// Which effect is missing. The first source is fitted, the second proves; of more, the first, third, ... are fitted
-/// together. With one source block folds prove.
+/// Which effect is missing. The first source is fitted, the second proves; where that leaves something of two recordings, the other way
+/// round. Of more, the first, third, ... are fitted together. With one source block folds prove.
 ///
 /// # Errors
 /// Wrong effects in the motor file or no usable set of sources. A recording that cannot be judged is a report
@@ -83,22 +85,26 @@ fn explained_by(
     asked: Asked,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    match Question::new(sources, motor, progress) {
-        Ok(question) => {
-            let found = explain::explain(&question.study, excluded, asked.laws.shapes, progress);
-            let frame = judged_frame(&question, motor, found.last());
+    let ask = |study: &Study, baseline: Trial, progress: &mut Progress<'_>| {
+        explain::explain(study, baseline, excluded, asked.laws.shapes, progress)
+    };
+    match in_either_order(sources, motor, ask, explains, progress) {
+        Ok(answer) => {
+            let (question, found) = (&answer.question, &answer.found);
+            let frame = judged_frame(question, motor, found.last());
             let next_run = asked.next_run;
             let next_run =
-                next_run.and_then(|asked| designed(&question, motor, &found, asked, progress));
+                next_run.and_then(|asked| designed(question, motor, found, asked, progress));
             progress("done", 1.0);
             Ok(ExplainReport {
                 next_run,
-                ..report(&question, &found, frame)
+                ..report(question, found, frame, answer.other_order)
             })
         }
         Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
             audit: *audit,
             stretches: Vec::new(),
+            other_order: false,
             verdict: Verdict::Unsupported,
             summary: format!("{}; {}", why.reason, why.remedy),
             baseline: None,
@@ -113,6 +119,15 @@ fn explained_by(
             next_run: None,
         }),
         Err(error) => Err(error),
+    }
+}
+
+/// What the model with all that was found explains, with parameters that such motors have.
+pub(super) fn explains(study: &Study, found: &Explanation) -> Explains {
+    match found.nameable && is_plausible(study, found) {
+        true if adequate(study, found.last()) => Explains::All,
+        true => Explains::Part,
+        false => Explains::Nothing,
     }
 }
 
@@ -157,7 +172,12 @@ pub(crate) fn speed_scale_report(study: &Study, trial: &Trial) -> Option<SpeedSc
     ))
 }
 
-fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) -> ExplainReport {
+fn report(
+    question: &Question,
+    found: &Explanation,
+    frame: Option<FrameReport>,
+    other_order: bool,
+) -> ExplainReport {
     let study = &question.study;
     let steps = if found.nameable {
         steps(study, found)
@@ -174,11 +194,12 @@ fn report(question: &Question, found: &Explanation, frame: Option<FrameReport>) 
     };
     let verdict = verdict(study, found, &steps);
     let laws = found.laws.iter();
-    let laws = laws.map(|law| law_report(question, law)).collect();
+    let laws = laws.map(|law| law_report(study, law)).collect();
     let unexplained = (!found.nameable).then(|| unexplained(study, found));
     let mut report = ExplainReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
+        other_order,
         verdict,
         summary: String::new(),
         baseline: Some(baseline),
@@ -235,12 +256,7 @@ fn verdict(study: &Study, found: &Explanation, steps: &[StepReport]) -> Verdict 
     if found.laws.iter().any(|law| law.proven) {
         return Verdict::Law;
     }
-    let stands_for_an_effect = |k: &usize| {
-        let mut tied = steps.iter().flat_map(|step| &step.tied_with);
-        tied.any(|name| name == nominal_name(*k))
-    };
-    let impossible = implausible(study, found.last());
-    if !impossible.iter().all(stands_for_an_effect) {
+    if !is_plausible(study, found) {
         return Verdict::Implausible;
     }
     if steps.iter().any(|s| !s.tied_with.is_empty()) {
@@ -251,6 +267,24 @@ fn verdict(study: &Study, found: &Explanation, steps: &[StepReport]) -> Verdict 
     } else {
         Verdict::Effect
     }
+}
+
+/// Whether such motors have these parameters, but for those that stand for an effect.
+fn is_plausible(study: &Study, found: &Explanation) -> bool {
+    let tied: Vec<String> = found.steps.iter().flat_map(Step::tied).collect();
+    let contested = found.contests.iter();
+    let stand_ins = contested.filter_map(|(k, candidates)| stand_in(*k, candidates).map(|_| *k));
+    let stand_ins: Vec<usize> = stand_ins.collect();
+    let stands_for_an_effect =
+        |k: &usize| stand_ins.contains(k) || tied.iter().any(|name| name == nominal_name(*k));
+    implausible(study, found.last())
+        .iter()
+        .all(stands_for_an_effect)
+}
+
+/// The effect that a parameter which moved may stand for.
+fn stand_in(k: usize, candidates: &[Candidate]) -> Option<&Candidate> {
+    candidates.iter().find(|c| stands_for(k, c))
 }
 
 /// Accepted effects, and the effects that explain a moved parameter as well.
@@ -269,7 +303,7 @@ fn steps(study: &Study, found: &Explanation) -> Vec<StepReport> {
         report
     });
     let contested = found.contests.iter().filter_map(|(k, candidates)| {
-        let best = candidates.iter().find(|c| stands_for(*k, c))?;
+        let best = stand_in(*k, candidates)?;
         let index = best.trial.fit.hypothesis.effects.len() - 1;
         let before = found.last();
         let mut report = step_report(study, before, &best.trial, &best.trial, index);

@@ -35,17 +35,13 @@ pub(crate) fn menu(waveform: &Waveform, plant: &Plant, motion: &Motion) -> Vec<E
 /// Motions of the recordings that prove, as a trial predicts them; none of load tables.
 pub(super) fn elsewhere(study: &Study, trial: &Trial) -> Vec<Motion> {
     let waveforms = study.proofs.iter().filter_map(|s| s.case.waveform());
-    waveforms.map(|w| motion(study, trial, w)).collect()
-}
-
-/// What the motor does in a recording, as a trial predicts it.
-pub(super) fn motion(study: &Study, trial: &Trial, waveform: &Waveform) -> Motion {
-    Sensitivities::of(waveform, &study.prior, &trial.fit).into_motion()
+    let motion = |waveform| Sensitivities::of(waveform, &study.prior, &trial.fit).into_motion();
+    waveforms.map(motion).collect()
 }
 
 /// Whether a curve over this coordinate can be continued: a turn is whole, and what rises over time in one recording need not rise in
 /// the next.
-pub(super) fn goes_on(action: Action) -> bool {
+fn goes_on(action: Action) -> bool {
     !action.coordinate.is_angle() && action.coordinate != Coordinate::Time
 }
 

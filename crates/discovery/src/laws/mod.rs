@@ -5,7 +5,6 @@
 //! ([`screen`]); the best are refitted with all parameters free, get knots where the best one bends ([`refine`]), and must
 //! prove themselves as an effect must ([`search`]).
 
-mod beyond;
 pub(crate) mod curve;
 pub(crate) mod formula;
 pub(crate) mod menu;

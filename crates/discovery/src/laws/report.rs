@@ -1,14 +1,12 @@
 //! A law as a report shows it.
 
 use crate::bursts::report::{bursts_report, corners};
-use crate::laws::beyond::beyond;
 use crate::laws::curve::as_knots;
 use crate::laws::formula::prove::{coordinates_of, law_of};
 use crate::laws::formula::report::formula_report;
 use crate::laws::modes::{self, Modes};
 use crate::laws::search::LawStep;
 use crate::report::law::{LawCurve, LawPlace, LawReport};
-use estimation::data::question::Question;
 use estimation::data::study::{Study, Trial};
 use estimation::proof::accept::explained;
 use motor::effect::curve::{Action, Coordinate, Place};
@@ -21,8 +19,7 @@ const POINTS: usize = 61;
 const BAND: f64 = 1.96;
 
 /// The report of a law.
-pub(crate) fn law_report(question: &Question, step: &LawStep) -> LawReport {
-    let study = &question.study;
+pub(crate) fn law_report(study: &Study, step: &LawStep) -> LawReport {
     let at = named(step.action);
     let formulas = step.formulas.iter();
     let formulas: Vec<_> = formulas.filter_map(|f| formula_report(study, f)).collect();
@@ -52,7 +49,6 @@ pub(crate) fn law_report(question: &Question, step: &LawStep) -> LawReport {
         fold_error_over_noise: study.fold_error(&step.trial.folds),
         held_out_error_over_noise_without: study.proof_error(&step.before),
         proven: step.proven,
-        beyond: beyond(question, step),
         entry: law_of(study, &step.trial)
             .and_then(|(_, config)| as_knots(&config))
             .map(|config| to_entry(&config)),

@@ -1,7 +1,6 @@
 //! Laws that no library holds, with the stable keys of the JSON interface.
 
 use crate::report::parameter::ParameterReport;
-use audit::digits;
 use motor::motor_file::EffectEntry;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -80,9 +79,6 @@ pub struct LawReport {
     pub held_out_error_over_noise_without: f64,
     /// Whether a recording that was not fitted proves it; one recording alone gives a lead.
     pub proven: bool,
-    /// Of a law that is as good as the noise of the fitted recording alone: how far it goes, and how much further the one that proves.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub beyond: Option<BeyondReport>,
     /// What comes and goes instead of following a curve.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bursts: Option<BurstsReport>,
@@ -99,31 +95,6 @@ impl LawReport {
             None => format!("{} over {}", self.place, self.coordinate),
         }
     }
-
-    /// From where to where the law is known, and that the other recording goes on from there.
-    pub fn known_so_far(&self) -> Option<String> {
-        let BeyondReport { fitted, other } = self.beyond.as_ref()?;
-        let unit = &self.curve.x_unit;
-        let range =
-            |[from, to]: &[f64; 2]| format!("{} to {} {unit}", digits(*from, 3), digits(*to, 3));
-        Some(format!(
-            "With {} the model explains the first recording ({:.2} x noise), which goes from {}; the second one goes from {} and is not \
-             explained: name the second one first.",
-            self.name(),
-            self.fold_error_over_noise,
-            range(fitted),
-            range(other)
-        ))
-    }
-}
-
-/// How far two recordings go, the second further than the first.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct BeyondReport {
-    /// Lowest and highest value of the coordinate in the fitted recording, in the curve's `x_unit` ...
-    pub fitted: [f64; 2],
-    /// ... and in the one that proves.
-    pub other: [f64; 2],
 }
 
 /// What comes and goes: all bursts of all recordings.

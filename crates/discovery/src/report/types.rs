@@ -138,6 +138,9 @@ pub struct ExplainReport {
     /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stretches: Vec<StretchReport>,
+    /// Whether the second of two recordings is fitted and the first one proves, because in the given order something is left over.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub other_order: bool,
     /// The answer.
     pub verdict: Verdict,
     /// One sentence that says it.
@@ -303,6 +306,9 @@ pub struct AdoptReport {
     /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stretches: Vec<StretchReport>,
+    /// Whether the second of two recordings is fitted and the first one proves, because in the given order something is left over.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub other_order: bool,
     /// The effect.
     pub effect: String,
     /// The refitted model without it.

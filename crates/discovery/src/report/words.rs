@@ -9,7 +9,13 @@ const FAR_BELOW: f64 = 0.3;
 
 /// What was found, in a sentence or two.
 pub(crate) fn summary(report: &ExplainReport) -> String {
-    let found = finding(report);
+    let order = match report.other_order {
+        true => {
+            " The second recording is fitted here and the first one proves: in the given order something is left over."
+        }
+        false => "",
+    };
+    let found = format!("{}{order}", finding(report));
     let error = report.final_.as_ref().map(|f| f.held_out_error_over_noise);
     match error {
         Some(error) if error < FAR_BELOW => format!(
@@ -71,9 +77,6 @@ fn as_far(report: &ExplainReport) -> String {
 
 /// What is said of an error that nothing was proven to explain.
 fn unknown(report: &ExplainReport, rest: &Unexplained) -> String {
-    if let Some(known) = report.laws.iter().find_map(LawReport::known_so_far) {
-        return format!("Something is missing. {known} {}", rest.description);
-    }
     if let Some(lead) = rest.sufficient_lead() {
         return format!(
             "Something is missing, but too few moments of the recording show it to prove what: {lead} would explain it. Record more starts and more steps of load and voltage. {}",

@@ -28,6 +28,8 @@ pub enum Sources<'a> {
     Whole(&'a [Source]),
     /// As read.
     Given(&'a [Given]),
+    /// In an order of their own.
+    Listed(&'a [One<'a>]),
 }
 
 impl<'a> Sources<'a> {
@@ -36,10 +38,12 @@ impl<'a> Sources<'a> {
         let number = match self {
             Sources::Whole(all) => all.len(),
             Sources::Given(all) => all.len(),
+            Sources::Listed(all) => all.len(),
         };
         (0..number).map(move |k| match self {
             Sources::Whole(all) => One::Source(&all[k]),
             Sources::Given(all) => One::from(&all[k]),
+            Sources::Listed(all) => all[k],
         })
     }
 
@@ -49,6 +53,7 @@ impl<'a> Sources<'a> {
         match self {
             Sources::Whole(all) => Sources::Whole(&all[..all.len().min(1)]),
             Sources::Given(all) => Sources::Given(&all[..all.len().min(1)]),
+            Sources::Listed(all) => Sources::Listed(&all[..all.len().min(1)]),
         }
     }
 }

@@ -235,7 +235,7 @@ impl Work {
                 stays(Subject::Compare, &compared.map_err(plainly)?)
             }
             Kind::Explain => {
-                let explained = Explained::new(inputs, &|_| None, &mut progress);
+                let explained = Explained::new(inputs, &|_, _| None, &mut progress);
                 stays(Subject::Explain, &explained.map_err(plainly)?)
             }
             Kind::Adopt => {

@@ -11,7 +11,7 @@ use crate::overlay::{Model, Overlay, TableOverlay};
 /// Everything that an adoption says.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Adopted {
-    /// The recordings.
+    /// The recordings, the fitted one first.
     pub recordings: Vec<String>,
     /// The motor's name.
     pub motor: String,
@@ -37,23 +37,22 @@ impl Adopted {
         progress: &mut Progress<'_>,
     ) -> Result<(Self, MotorFile), Error> {
         let Inputs {
-            names,
             sources,
             motor,
             laws,
             ..
         } = inputs;
         let (report, adopted) = discovery::adopt_with(effect, sources, motor, laws, progress)?;
+        let (names, sources) = inputs.as_answered(report.other_order);
         let models = [
             Model::believed(motor),
             Model::new(format!("with {effect}"), &adopted),
         ];
         let scale = report.speed_scale.as_ref();
-        let last = sources.iter().next_back();
+        let last = sources.last().copied();
         let last = last.and_then(|source| shown(source, scale, 0.0));
         let last = last.as_deref();
         let result = Adopted {
-            recordings: names.to_vec(),
             motor: motor.name.clone(),
             next_command: String::new(),
             overlay: last
@@ -62,6 +61,7 @@ impl Adopted {
             table_overlay: last
                 .and_then(|source| TableOverlay::new(source, motor, &models))
                 .map(|overlay| overlay.named(names.last())),
+            recordings: names,
             report,
         };
         Ok((result, adopted))

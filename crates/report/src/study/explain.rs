@@ -1,6 +1,6 @@
 //! Which physical effect a model misses.
 
-use discovery::{Asked, Error, ExplainReport, LAW, Progress, Verdict};
+use discovery::{Asked, Error, ExplainReport, LAW, Progress, Sources, Verdict};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -14,13 +14,13 @@ const SEARCH: f64 = 0.9;
 /// Everything that an explanation says.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Explained {
-    /// The recordings.
+    /// The recordings, the fitted one first.
     pub recordings: Vec<String>,
     /// The motor's name.
     pub motor: String,
     /// What to do next.
     pub next: Next,
-    /// The worst places of the first recording, with the model as the motor file says.
+    /// The worst places of the fitted recording, with the model as the motor file says.
     pub where_it_fails: Vec<Place>,
     /// The explanation itself.
     #[serde(flatten)]
@@ -43,21 +43,21 @@ pub struct Next {
 }
 
 impl Explained {
-    /// Searches the missing effect; `command` gives what to type for adopting a name.
+    /// Searches the missing effect; `command` gives what to type for adopting a name from recordings in this order.
     ///
     /// # Errors
     /// As [`discovery::explain`].
     pub fn new(
         inputs: Inputs<'_>,
-        command: &dyn Fn(&str) -> Option<String>,
+        command: &dyn Fn(&str, &[String]) -> Option<String>,
         progress: &mut Progress<'_>,
     ) -> Result<Self, Error> {
         let Inputs {
-            names,
             sources,
             motor,
             laws,
             next_run,
+            ..
         } = inputs;
         let asked = Asked {
             laws,
@@ -67,6 +67,8 @@ impl Explained {
             progress(what, SEARCH * share)
         });
         let report = searched?;
+        let (names, sources) = inputs.as_answered(report.other_order);
+        let sources = Sources::Listed(&sources);
         let scale = report.speed_scale.as_ref();
         let models = Model::of_explanation(motor, &report);
         let is_judged = report.baseline.is_some();
@@ -77,7 +79,7 @@ impl Explained {
             false => Vec::new(),
         };
         let last = sources.iter().next_back().filter(|_| is_judged);
-        // The worst places are the first recording's.
+        // The worst places are the fitted recording's.
         let at_s = match names.len() {
             1 => furthest_off(&where_it_fails),
             _ => 0.0,
@@ -85,9 +87,8 @@ impl Explained {
         let last = last.and_then(|source| shown(source, scale, at_s));
         let judged = last.as_deref();
         Ok(Explained {
-            recordings: names.to_vec(),
             motor: motor.name.clone(),
-            next: Next::new(&report, command),
+            next: Next::new(&report, &|name| command(name, &names)),
             where_it_fails,
             overlay: judged
                 .and_then(|source| Overlay::new(source, &models))
@@ -95,17 +96,18 @@ impl Explained {
             table_overlay: judged
                 .and_then(|source| TableOverlay::new(source, motor, &models))
                 .map(|overlay| overlay.named(names.last())),
+            recordings: names,
             report,
         })
     }
 }
 
 impl Explained {
-    /// Heading of the worst places, which are those of the first recording.
+    /// Heading of the worst places, which are those of the fitted recording.
     pub fn title_of_the_worst(&self) -> &'static str {
         match self.recordings.len() {
             0 | 1 => "The model of the motor file is furthest off",
-            _ => "The model of the motor file is furthest off in the first recording",
+            _ => "The model of the motor file is furthest off in the fitted recording",
         }
     }
 }
@@ -148,9 +150,6 @@ fn comes_and_goes(report: &ExplainReport) -> bool {
 }
 
 fn nothing_to_adopt(report: &ExplainReport) -> String {
-    if report.laws.iter().any(|law| law.beyond.is_some()) {
-        return "Ask again and name the second recording first: it shows more of the law, which is fitted to the first one.".to_owned();
-    }
     let advice = match report.verdict {
         Verdict::Adequate => "Nothing to do: the model is adequate.",
         Verdict::Unsupported => "Record again as the audit says.",

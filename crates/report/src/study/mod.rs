@@ -41,7 +41,8 @@ use recording::Source;
 pub struct Inputs<'a> {
     /// The recordings' names as people know them, in the order of `sources`.
     pub names: &'a [String],
-    /// The first is fitted, the second proves; of more, the first, third, ... are fitted together.
+    /// The first is fitted, the second proves, or the other way round where that explains more; of more, the first, third, ... are
+    /// fitted together.
     pub sources: Sources<'a>,
     /// What is believed of the motor.
     pub motor: &'a MotorFile,
@@ -49,6 +50,19 @@ pub struct Inputs<'a> {
     pub laws: Laws,
     /// The next experiment, where an explanation is asked for one.
     pub next_run: Option<&'a NextRun>,
+}
+
+impl<'a> Inputs<'a> {
+    /// Names and sources as an answer is about them, the fitted one first.
+    fn as_answered(&self, other_order: bool) -> (Vec<String>, Vec<One<'a>>) {
+        let (mut names, mut sources) =
+            (self.names.to_vec(), self.sources.iter().collect::<Vec<_>>());
+        if other_order {
+            names.reverse();
+            sources.reverse();
+        }
+        (names, sources)
+    }
 }
 
 /// A source as figures show it: a speed of unknown scale in the scale that was fitted, of a long recording the stretch at

@@ -1,5 +1,4 @@
 use super::*;
-use crate::report::law::{BeyondReport, LawCurve};
 use crate::report::parameter::NominalReport;
 use crate::report::types::{FitReport, StepReport, Unexplained};
 use audit::Audit;
@@ -40,6 +39,7 @@ fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) ->
 fn report(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) -> ExplainReport {
     ExplainReport {
         stretches: Vec::new(),
+        other_order: false,
         audit: Audit {
             supported: true,
             findings: Vec::new(),
@@ -169,39 +169,4 @@ fn what_few_moments_show_is_asked_for_once_more() {
          Record more starts and more steps of load and voltage. It is loud."
     );
     assert_eq!(with_lead(60.0), said(Verdict::Unknown, &[], &[]));
-}
-
-/// A law that is good for the fitted recording alone says how far it is known: another order of the recordings may prove it.
-#[test]
-fn a_law_that_another_recording_goes_beyond_asks_for_that_one_first() {
-    let mut report = report(Verdict::Unknown, &[], &[]);
-    report.laws = vec![LawReport {
-        place: "torque".to_owned(),
-        coordinate: "frequency".to_owned(),
-        meaning: "braking torque".to_owned(),
-        tied_with: Vec::new(),
-        curve: LawCurve {
-            x_unit: "Hz".to_owned(),
-            ..LawCurve::default()
-        },
-        formula: None,
-        formula_parameters: Vec::new(),
-        formulas: Vec::new(),
-        explained_percent: 89.0,
-        held_out_error_over_noise: 2.25,
-        fold_error_over_noise: 0.991,
-        held_out_error_over_noise_without: 6.18,
-        proven: false,
-        beyond: Some(BeyondReport {
-            fitted: [2.412, 35.06],
-            other: [2.6, 60.0],
-        }),
-        bursts: None,
-        entry: None,
-    }];
-    assert_eq!(
-        summary(&report),
-        "Something is missing. With torque over frequency the model explains the first recording (0.99 x noise), which goes from 2.41 to 35.1 Hz; \
-         the second one goes from 2.6 to 60 Hz and is not explained: name the second one first. It is loud."
-    );
 }

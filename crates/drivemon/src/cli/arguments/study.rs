@@ -147,10 +147,10 @@ impl StudyArgs {
             .with(motor)
     }
 
-    /// What adds `addition` to the motor file; `more` are further flags.
-    pub fn adopt(&self, addition: &str, more: &str) -> String {
-        let (names, flags) = (self.names(), self.input.typed());
-        self.as_typed(&names, &flags).adopt(addition, more)
+    /// What adds `addition` to the motor file, from recordings in this order; `more` are further flags.
+    pub fn adopt(&self, addition: &str, names: &[String], more: &str) -> String {
+        let flags = self.input.typed();
+        self.as_typed(names, &flags).adopt(addition, more)
     }
 
     fn as_typed<'a>(&'a self, names: &'a [String], flags: &'a str) -> Typed<'a> {

@@ -181,7 +181,7 @@ fn where_it_fails(result: &Place<'_>) -> Markup {
         @if !places.is_empty() {
             section aria-labelledby="fails" {
                 h2 id="fails" { "Where the model of the motor file is furthest off" }
-                @if recordings.len() > 1 { p.subtle { "In the first recording, " (recordings[0].as_text()) "." } }
+                @if recordings.len() > 1 { p.subtle { "In the fitted recording, " (recordings[0].as_text()) "." } }
                 div.wide tabindex="0" { table.bars.plain {
                     thead { tr { th scope="col" { "place" } @if timed { th scope="col" { "from, s" } th scope="col" { "to, s" } } th scope="col" { "error, × noise" } th.word scope="col" { "" } } }
                     tbody { @for place in &places { tr {

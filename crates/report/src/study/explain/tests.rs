@@ -21,7 +21,6 @@ fn law(bursts: bool) -> LawReport {
         fold_error_over_noise: 1.0,
         held_out_error_over_noise_without: 6.0,
         proven: true,
-        beyond: None,
         bursts: bursts.then(|| BurstsReport {
             count: 0,
             share_of_time_percent: 11.0,
@@ -43,6 +42,7 @@ fn report(law: LawReport) -> ExplainReport {
     };
     ExplainReport {
         stretches: Vec::new(),
+        other_order: false,
         audit: Audit {
             supported: true,
             findings: Vec::new(),

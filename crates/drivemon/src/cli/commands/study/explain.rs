@@ -19,9 +19,8 @@ use report::study::{Explained, Inputs, anything_off};
 
 /// Find out which physical effect the model misses, and prove it on data that was not fitted.
 ///
-/// The first recording is fitted, the second proves: name the one first that goes through more speeds, loads and currents. Of more, the
-/// first, third, ... are fitted together. A single one is proven by folds of 40 ms blocks. Every candidate is refitted together with all
-/// parameters. Nothing is claimed that the recordings cannot show: "adequate", a tie with the test that breaks it, and "unknown" are answers.
+/// The first recording is fitted, the second proves; where that leaves something, the other way round. Of more, the first, third, ... are
+/// fitted together. A single one is proven by folds of 40 ms blocks. Every candidate is refitted together with all parameters. Nothing is claimed that the recordings cannot show: "adequate", a tie with the test that breaks it, and "unknown" are answers.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Explain {
@@ -72,7 +71,7 @@ impl Explain {
             next_run: next_run.as_ref(),
             ..self.study.inputs(&names, &sources, &motor)
         };
-        let adopt = |name: &str| Some(self.adopt(name));
+        let adopt = |name: &str, names: &[String]| Some(self.adopt(name, names));
         let result = with_progress(|progress| Explained::new(inputs, &adopt, progress))?;
         let designed = result.report.next_run.as_ref();
         let written = self.next_run.write(designed)?;
@@ -85,12 +84,12 @@ impl Explain {
         Ok(finding(&result.report))
     }
 
-    fn adopt(&self, name: &str) -> String {
+    fn adopt(&self, name: &str, names: &[String]) -> String {
         let shapes = match name {
             LAW => self.shapes.typed(),
             _ => String::new(),
         };
-        self.study.adopt(name, &shapes)
+        self.study.adopt(name, names, &shapes)
     }
 }
 
