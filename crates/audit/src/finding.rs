@@ -60,6 +60,8 @@ pub enum Code {
     LostSamples,
     /// The supply's frequency is not the rated one, by an inverter or a wrong sampling rate; value: the frequency, Hz.
     SupplyFrequency,
+    /// The motor turns where the recording is said to begin at standstill; value: the speed, rad/s.
+    StartsFrom,
 }
 
 /// One finding.

@@ -17,13 +17,14 @@ pub use expectation::{Circuit, Expectation};
 pub use finding::{Audit, Code, Finding, digits};
 pub use merged::Merger;
 pub use wiring::probes::with_sound_probes;
+pub use wiring::start::turns_from_the_start;
 
 use context::Context;
 use levels::{clipping, offset, rms_values, scale, sensor, spikes, unit};
 use recording::Recording;
 use silent::{frozen, held, missing, stuck};
 use timing::{clock, drift, gap, lost, not_locked, skew};
-use wiring::{frequency, phases, speed, supply, zero_sequence};
+use wiring::{frequency, phases, speed, start, supply, zero_sequence};
 
 /// Audits a recording against what the nameplate lets one expect.
 ///
@@ -92,6 +93,7 @@ fn of_wiring(context: &mut Context<'_>, findings: &mut Vec<Finding>) {
     findings.extend(supply::check(context));
     if findings.iter().all(|finding| finding.code != Code::Unit) {
         findings.extend(speed::check(context));
+        findings.extend(start::check(context));
     }
 }
 

@@ -46,6 +46,29 @@ fn clipping_below_an_unknown_full_scale() {
     assert_one(&audit, Code::Clipping, "ib", 5.0, 0.01, "larger range");
 }
 
+/// A sidecar from a recording of a start, beside one of a motor that runs already.
+#[test]
+fn a_standstill_that_the_speed_denies() {
+    let declared = |s: &mut Signals| s.metadata.starts_from = recording::StartsFrom::Standstill;
+    let audit = audited(declared);
+    let speed = Signals::healthy(1).speed[0];
+    assert_one(
+        &audit,
+        Code::StartsFrom,
+        "speed",
+        speed,
+        0.02 * speed,
+        "starts_from",
+    );
+    assert!(audit.supported);
+    let stands = audited(|s| {
+        declared(s);
+        // The first 10 ms of a start.
+        s.speed[..50].fill(0.0);
+    });
+    assert!(stands.findings.iter().all(|f| f.code != Code::StartsFrom));
+}
+
 /// Twelve bits over 60 A leave steps of 0.03 A on peaks of 4 A; eight bits steps of 0.5 A.
 #[test]
 fn coarse_steps_on_smooth_peaks_are_not_clipping() {
@@ -425,6 +448,7 @@ fn the_json_is_stable() {
         (Code::ClockDrift, "clock-drift"),
         (Code::LostSamples, "lost-samples"),
         (Code::SupplyFrequency, "supply-frequency"),
+        (Code::StartsFrom, "starts-from"),
     ];
     for (code, name) in codes {
         assert_eq!(serde_json::to_value(code).unwrap(), name);

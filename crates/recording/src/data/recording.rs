@@ -2,7 +2,7 @@
 
 use crate::data::channel::Channel;
 use crate::data::column::Column;
-use crate::data::metadata::Metadata;
+use crate::data::metadata::{Metadata, StartsFrom};
 use crate::data::units::Unit;
 use crate::error::Error;
 use crate::mapping::Mapping;
@@ -289,6 +289,9 @@ impl Recording {
             return Err(Error::bad(&self.name, message, "choose a range inside it"));
         };
         let mut cut = Recording::new(&self.name, t.to_vec(), self.metadata.clone())?;
+        if range.start > 0 {
+            cut.metadata.starts_from = StartsFrom::Unknown;
+        }
         for (channel, values) in self.channels() {
             cut.set(channel, values[range.clone()].to_vec())?;
         }

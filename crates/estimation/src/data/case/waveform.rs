@@ -7,6 +7,7 @@ use crate::data::inputs::{InputNoise, Load, measured_speed};
 use crate::data::unsupported::{Unsupported, check_clock, check_size};
 use crate::fit::nuisance::Nuisance;
 use crate::model::speed_gain::gain_of;
+use audit::turns_from_the_start;
 use motor::dynamic::clarke;
 use motor::effect::{Between, Inputs, Plant, Rated, Timeline};
 use num_complex::Complex64;
@@ -378,7 +379,9 @@ pub fn running_at(rec: &Recording, rated: &Rated<f64>) -> Option<f64> {
         .speed()
         .map_or(rated.speed(), |speed| first(speed, 0.02));
     match rec.metadata.starts_from {
-        StartsFrom::Standstill => None,
+        StartsFrom::Standstill => turns_from_the_start(rec, rated.speed())
+            .is_some()
+            .then_some(initial),
         StartsFrom::Running => Some(initial),
         StartsFrom::Unknown => {
             let quiet = (currents[0][0].abs()).max(currents[1][0].abs()) < 0.1 * rated.current;
