@@ -53,7 +53,7 @@ pub use laws::formula::dictionary::{Laws, Shapes};
 pub use report::law::{BurstReport, BurstsReport, FormulaReport, LawCurve, LawPlace, LawReport};
 pub use report::parameter::{NominalReport, ParameterReport};
 pub use report::types::{
-    AdoptReport, BandReport, CompareReport, ErrorReport, ExplainReport, FitReport, FrameBand,
-    FrameReport, Inconclusive, OrderReport, Overall, RankReport, RegionReport, SignalReport,
-    StepReport, Unexplained, Verdict,
+    AdoptReport, BandReport, CompareReport, ErrorReport, ExplainReport, FitReport, Fitted,
+    FrameBand, FrameReport, Inconclusive, OrderReport, Overall, RankReport, RegionReport,
+    SignalReport, StepReport, Unexplained, Verdict,
 };

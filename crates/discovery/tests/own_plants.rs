@@ -5,7 +5,7 @@
 #[expect(dead_code, reason = "the examples use the rest")]
 mod foreign;
 
-use discovery::{LAW, Laws, PARAMETERS, Verdict, adopt, adopt_with, compare, explain};
+use discovery::{Fitted, LAW, Laws, PARAMETERS, Verdict, adopt, adopt_with, compare, explain};
 use foreign::cases::single;
 use foreign::evidence::{Answer, Question, Setting, double, with_twins};
 use foreign::laws::Law;
@@ -219,7 +219,7 @@ fn of_two_recordings_the_one_is_fitted_that_leaves_nothing() {
     let report = explain(&sources, &priors(&machine, SEED), &mut |_, _| {}).expect("judged");
     println!("{}", report.summary);
     assert_eq!(report.verdict, Verdict::Law);
-    assert!(report.other_order);
+    assert_eq!(report.fitted, Fitted::Second);
     assert!(report.summary.contains("The second recording is fitted"));
     assert_eq!(report.laws[0].place, "torque");
 }
@@ -236,15 +236,19 @@ fn parameters_are_taken_from_the_recording_that_shows_them() {
     let adopted = |sources: &[recording::Source]| {
         let (report, motor) =
             adopt(PARAMETERS, sources, &believed, &mut |_, _| {}).expect("judged");
-        println!("{} {:?}", report.other_order, report.after);
+        println!("{:?} {:?}", report.fitted, report.after);
         assert!(report.proven);
-        (report.other_order, motor)
+        (report.fitted, motor)
     };
     let explained = explain(&sources, &believed, &mut |_, _| {}).expect("judged");
     println!("{}", explained.summary);
-    assert!(explained.verdict == Verdict::Adequate && explained.other_order);
+    assert_eq!(
+        (explained.verdict, explained.fitted),
+        (Verdict::Adequate, Fitted::Second)
+    );
     let (turned, taken) = adopted(&sources);
     sources.reverse();
     let (as_given, same) = adopted(&sources);
-    assert!(turned && !as_given && taken == same);
+    assert_eq!((turned, as_given), (Fitted::Second, Fitted::AsGiven));
+    assert!(taken == same);
 }

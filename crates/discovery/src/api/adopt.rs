@@ -7,7 +7,7 @@ use crate::laws::report::law_report;
 use crate::laws::search::LawStep;
 use crate::report::frame;
 use crate::report::present::{effect_parameters, fit_report};
-use crate::report::types::{AdoptReport, ErrorReport};
+use crate::report::types::{AdoptReport, ErrorReport, Fitted};
 use crate::search::inconclusive::{self};
 use crate::search::refit::{best_of, only};
 use estimation::data::given::Sources;
@@ -98,7 +98,7 @@ fn adopted_effect(
     let report = AdoptReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
-        other_order: answer.other_order,
+        fitted: answer.fitted,
         effect: effect.to_owned(),
         before: errors(study, &before),
         after: errors(study, &after),
@@ -138,7 +138,7 @@ fn adopted_law(
     let Answer {
         question,
         found,
-        other_order,
+        fitted,
     } = in_either_order(sources, motor, ask, explains, progress)?;
     let study = &question.study;
     progress("done", 1.0);
@@ -160,7 +160,7 @@ fn adopted_law(
     let report = AdoptReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
-        other_order,
+        fitted,
         effect: LAW.to_owned(),
         before: errors(study, &found.baseline),
         after: errors(study, after),
@@ -214,7 +214,7 @@ fn adopted_frame(
     let report = AdoptReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
-        other_order: false,
+        fitted: Fitted::AsGiven,
         effect: frame::NAME.to_owned(),
         before: errors(frame.fitted_before, frame.held_out_before),
         after: errors(frame.fitted_after, frame.held_out_after),

@@ -11,7 +11,7 @@ use crate::report::present::{
     effect_parameters, fit_report, inadequate_report, kind_word, loss_watt,
 };
 use crate::report::types::FrameReport;
-use crate::report::types::{ExplainReport, RankReport, StepReport, Unexplained, Verdict};
+use crate::report::types::{ExplainReport, Fitted, RankReport, StepReport, Unexplained, Verdict};
 use crate::report::unexplained;
 use crate::search::inconclusive::{self, Uncertainty};
 use crate::search::refit::Candidate;
@@ -98,13 +98,13 @@ fn explained_by(
             progress("done", 1.0);
             Ok(ExplainReport {
                 next_run,
-                ..report(question, found, frame, answer.other_order)
+                ..report(question, found, frame, answer.fitted)
             })
         }
         Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
             audit: *audit,
             stretches: Vec::new(),
-            other_order: false,
+            fitted: Fitted::AsGiven,
             verdict: Verdict::Unsupported,
             summary: format!("{}; {}", why.reason, why.remedy),
             baseline: None,
@@ -176,7 +176,7 @@ fn report(
     question: &Question,
     found: &Explanation,
     frame: Option<FrameReport>,
-    other_order: bool,
+    fitted: Fitted,
 ) -> ExplainReport {
     let study = &question.study;
     let steps = if found.nameable {
@@ -199,7 +199,7 @@ fn report(
     let mut report = ExplainReport {
         audit: question.audit.clone(),
         stretches: question.stretches.clone(),
-        other_order,
+        fitted,
         verdict,
         summary: String::new(),
         baseline: Some(baseline),

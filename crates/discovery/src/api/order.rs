@@ -12,6 +12,7 @@ use estimation::proof::accept::{adequate, adequate_on_folds};
 use motor::MotorFile;
 
 use super::Progress;
+use crate::report::types::Fitted;
 
 /// An answer, and the question that it answers.
 pub(super) struct Answer<T> {
@@ -19,8 +20,8 @@ pub(super) struct Answer<T> {
     pub question: Question,
     /// What was found.
     pub found: T,
-    /// Whether the second of the two recordings is the fitted one.
-    pub other_order: bool,
+    /// Which of them are fitted.
+    pub fitted: Fitted,
 }
 
 /// What an answer explains of the recordings.
@@ -41,7 +42,8 @@ struct Begun {
 }
 
 /// Asks about the recordings as they are given. Where that leaves something of two whole ones, asks also with the second one fitted,
-/// which is the answer if it explains more; it is so without asking where the first one shows nothing but too little of the parameters.
+/// which is the answer if it explains more. Where recordings show too little of the parameters, and the second one or both together
+/// are explained without anything that is missing, nothing is.
 /// What is asked gets the study, and the model with its parameters refitted.
 ///
 /// # Errors
@@ -55,29 +57,33 @@ pub(super) fn in_either_order<T>(
 ) -> Result<Answer<T>, Error> {
     let given = Begun::of(sources, motor, progress)?;
     if !are_two_wholes(&given.question) {
-        return Ok(given.asked(&ask, false, progress));
+        return Ok(given.asked(&ask, Fitted::AsGiven, progress));
     }
     let turned: Vec<One<'_>> = sources.iter().rev().collect();
+    let begin_other =
+        |progress: &mut Progress<'_>| Begun::of(Sources::Listed(&turned), motor, progress).ok();
     let mut other = None;
     if given.shows_too_little() {
-        other = Begun::of(Sources::Listed(&turned), motor, progress).ok();
+        other = begin_other(progress);
         if let Some(other) = other.take_if(|other| other.is_adequate()) {
-            return Ok(other.asked(&ask, true, progress));
+            return Ok(other.asked(&ask, Fitted::Second, progress));
+        }
+        let both = other.as_ref().filter(|other| other.shows_too_little());
+        let both = both.and_then(|_| given.together());
+        if let Some(both) = both.filter(Begun::is_adequate) {
+            return Ok(both.asked(&ask, Fitted::Both, progress));
         }
     }
     let explained = |answer: &Answer<T>| explains(&answer.question.study, &answer.found);
-    let given = given.asked(&ask, false, progress);
+    let given = given.asked(&ask, Fitted::AsGiven, progress);
     let so_far = explained(&given);
     if so_far == Explains::All {
         return Ok(given);
     }
     let mut tell =
         |what: &str, share| progress(&format!("{what}, the second recording fitted"), share);
-    let other = match other {
-        Some(other) => Some(other),
-        None => Begun::of(Sources::Listed(&turned), motor, &mut tell).ok(),
-    };
-    let other = other.map(|other| other.asked(&ask, true, &mut tell));
+    let other = other.or_else(|| begin_other(&mut tell));
+    let other = other.map(|other| other.asked(&ask, Fitted::Second, &mut tell));
     let better = other.filter(|other| explained(other) > so_far);
     Ok(better.unwrap_or(given))
 }
@@ -90,11 +96,25 @@ impl Begun {
     ) -> Result<Self, Error> {
         let question = Question::new(sources, motor, progress)?;
         progress("refitting the parameters", 0.1);
+        Ok(Self::about(question))
+    }
+
+    fn about(question: Question) -> Self {
         let study = &question.study;
-        Ok(Self {
+        Self {
             baseline: study.trial(&study.at_prior(), Effort::FULL),
             question,
-        })
+        }
+    }
+
+    /// All recordings fitted together.
+    fn together(&self) -> Option<Self> {
+        let study = self.question.study.together()?;
+        Some(Self::about(Question {
+            audit: self.question.audit.clone(),
+            stretches: Vec::new(),
+            study,
+        }))
     }
 
     /// Whether nothing is missing.
@@ -110,13 +130,13 @@ impl Begun {
     fn asked<T>(
         self,
         ask: &impl Fn(&Study, Trial, &mut Progress<'_>) -> T,
-        other_order: bool,
+        fitted: Fitted,
         progress: &mut Progress<'_>,
     ) -> Answer<T> {
         Answer {
             found: ask(&self.question.study, self.baseline, progress),
             question: self.question,
-            other_order,
+            fitted,
         }
     }
 }

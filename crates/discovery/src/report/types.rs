@@ -130,6 +130,39 @@ pub struct Inconclusive {
     pub why: String,
 }
 
+/// Which recordings are fitted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fitted {
+    /// The first one, of more the first, third, ...; the others prove.
+    #[default]
+    AsGiven,
+    /// The second of two, and the first one proves: in the given order something is left over.
+    Second,
+    /// Both of two, by folds: each alone shows too little of the parameters to explain the other one.
+    Both,
+}
+
+impl Fitted {
+    /// Whether the recordings are used in the order in which they were given.
+    pub fn is_as_given(&self) -> bool {
+        *self == Fitted::AsGiven
+    }
+
+    /// In words, where it is not as given.
+    pub(crate) fn told(self) -> &'static str {
+        match self {
+            Fitted::AsGiven => "",
+            Fitted::Second => {
+                " The second recording is fitted here and the first one proves: in the given order something is left over."
+            }
+            Fitted::Both => {
+                " Both recordings are fitted together: each alone shows too little of the parameters to explain the other one."
+            }
+        }
+    }
+}
+
 /// The report of `explain`.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExplainReport {
@@ -138,9 +171,9 @@ pub struct ExplainReport {
     /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stretches: Vec<StretchReport>,
-    /// Whether the second of two recordings is fitted and the first one proves, because in the given order something is left over.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub other_order: bool,
+    /// Which of two recordings are fitted, where it is not the first one alone.
+    #[serde(default, skip_serializing_if = "Fitted::is_as_given")]
+    pub fitted: Fitted,
     /// The answer.
     pub verdict: Verdict,
     /// One sentence that says it.
@@ -306,9 +339,9 @@ pub struct AdoptReport {
     /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stretches: Vec<StretchReport>,
-    /// Whether the second of two recordings is fitted and the first one proves, because in the given order something is left over.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub other_order: bool,
+    /// Which of two recordings are fitted, where it is not the first one alone.
+    #[serde(default, skip_serializing_if = "Fitted::is_as_given")]
+    pub fitted: Fitted,
     /// The effect.
     pub effect: String,
     /// The refitted model without it.

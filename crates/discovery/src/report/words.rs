@@ -9,13 +9,7 @@ const FAR_BELOW: f64 = 0.3;
 
 /// What was found, in a sentence or two.
 pub(crate) fn summary(report: &ExplainReport) -> String {
-    let order = match report.other_order {
-        true => {
-            " The second recording is fitted here and the first one proves: in the given order something is left over."
-        }
-        false => "",
-    };
-    let found = format!("{}{order}", finding(report));
+    let found = format!("{}{}", finding(report), report.fitted.told());
     let error = report.final_.as_ref().map(|f| f.held_out_error_over_noise);
     match error {
         Some(error) if error < FAR_BELOW => format!(

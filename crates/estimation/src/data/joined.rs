@@ -28,6 +28,13 @@ pub fn shared(cases: Vec<Case>) -> Option<(Case, Vec<Case>)> {
     Some((fitted, proofs))
 }
 
+/// All recordings as one case that is fitted; `None` where they do not suit.
+pub fn together(cases: impl IntoIterator<Item = Case>) -> Option<Case> {
+    let mut cases = cases.into_iter();
+    let first = cases.next()?;
+    cases.try_fold(first, |fitted, case| fitted.joined(case).ok())
+}
+
 impl Case {
     /// This recording and another one behind it; as they are where they do not suit, or where one is a load table.
     fn joined(self, other: Case) -> Result<Case, Box<(Case, Case)>> {

@@ -1,6 +1,7 @@
 //! The recordings of one question: the first is fitted, the others prove.
 
 use crate::data::case::Case;
+use crate::data::joined::together;
 use crate::data::noise_floor::{Floor, by_channel, floor, judged_of};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, Fit, fit};
@@ -92,6 +93,14 @@ impl Study {
             prior,
             speed_scale,
         }
+    }
+
+    /// All recordings fitted together, so that none proves; `None` where they do not suit.
+    pub fn together(&self) -> Option<Self> {
+        let all = std::iter::once(&self.fitted).chain(&self.proofs);
+        let cases = all.map(|subject| subject.case.clone());
+        let (prior, scale) = (self.prior.clone(), self.speed_scale);
+        together(cases).map(|fitted| Self::new(prior, fitted, Vec::new(), scale))
     }
 
     /// Nothing added, priors as they are; an unknown scale of the speed is free from the start.

@@ -43,7 +43,7 @@ impl Adopted {
             ..
         } = inputs;
         let (report, adopted) = discovery::adopt_with(effect, sources, motor, laws, progress)?;
-        let (names, sources) = inputs.as_answered(report.other_order);
+        let (names, sources) = inputs.as_answered(report.fitted);
         let models = [
             Model::believed(motor),
             Model::new(format!("with {effect}"), &adopted),

@@ -67,7 +67,7 @@ impl Explained {
             progress(what, SEARCH * share)
         });
         let report = searched?;
-        let (names, sources) = inputs.as_answered(report.other_order);
+        let (names, sources) = inputs.as_answered(report.fitted);
         let sources = Sources::Listed(&sources);
         let scale = report.speed_scale.as_ref();
         let models = Model::of_explanation(motor, &report);

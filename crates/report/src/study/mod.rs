@@ -31,7 +31,7 @@ pub use typed::Typed;
 use std::borrow::Cow;
 
 pub use discovery::PARAMETERS;
-use discovery::{Laws, NextRun, One, Sources, SpeedScaleReport};
+use discovery::{Fitted, Laws, NextRun, One, Sources, SpeedScaleReport};
 use monitor::MonitorConfig;
 use motor::MotorFile;
 use recording::Source;
@@ -53,11 +53,11 @@ pub struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// Names and sources as an answer is about them, the fitted one first.
-    fn as_answered(&self, other_order: bool) -> (Vec<String>, Vec<One<'a>>) {
+    /// Names and sources as an answer is about them, what is fitted first.
+    fn as_answered(&self, fitted: Fitted) -> (Vec<String>, Vec<One<'a>>) {
         let (mut names, mut sources) =
             (self.names.to_vec(), self.sources.iter().collect::<Vec<_>>());
-        if other_order {
+        if fitted == Fitted::Second {
             names.reverse();
             sources.reverse();
         }

@@ -192,7 +192,7 @@ fn the_parameters_of_an_unknown_are_those_of_the_baseline() {
     let mut found = stepwise(&question.study, &["core-loss"], &[3.0, 2.0], &[]);
     found.steps[0].trial.fit.hypothesis.z[0] = 0.3;
     found.nameable = false;
-    let report = report(&question, &found, None, false);
+    let report = report(&question, &found, None, Fitted::AsGiven);
     assert_eq!(report.verdict, Verdict::Unknown);
     let values = |fit: &Option<crate::report::types::FitReport>| {
         let parameters = &fit.as_ref().expect("fitted").parameters;
@@ -324,7 +324,7 @@ fn a_wrong_frame_comes_before_all_physics() {
     found.steps[0].trial.fit.hypothesis.z[0] = 0.2;
     found.steps[0].trial = specimen::known_to(&found.steps[0].trial, &[0.01; 5]);
     found.steps[0].trial.off = std::sync::OnceLock::from(vec![0]);
-    let plain = report(&question, &found, None, false);
+    let plain = report(&question, &found, None, Fitted::AsGiven);
     assert_eq!((plain.verdict, plain.steps.len()), (Verdict::Effect, 1));
     assert!(plain.unexplained.is_none());
     let off = |fit: &Option<crate::report::types::FitReport>| {
@@ -333,11 +333,11 @@ fn a_wrong_frame_comes_before_all_physics() {
     };
     assert_eq!((off(&plain.baseline), off(&plain.final_)), (0, 1));
     assert_eq!(
-        report(&question, &found, Some(frame(false)), false),
+        report(&question, &found, Some(frame(false)), Fitted::AsGiven),
         plain,
         "not proven"
     );
-    let framed = report(&question, &found, Some(frame(true)), false);
+    let framed = report(&question, &found, Some(frame(true)), Fitted::AsGiven);
     assert_eq!(framed.verdict, Verdict::Effect);
     assert!(
         framed
@@ -366,14 +366,19 @@ fn a_wrong_frame_comes_before_all_physics() {
         "nothing is left over the noise"
     );
 
-    let adequate = report(&question, &nothing(study, 1.0), Some(frame(true)), false);
+    let adequate = report(
+        &question,
+        &nothing(study, 1.0),
+        Some(frame(true)),
+        Fitted::AsGiven,
+    );
     assert_eq!(
         adequate.verdict,
         Verdict::Effect,
         "the monitor's model is wrong"
     );
     found.nameable = false;
-    let unknown = report(&question, &found, Some(frame(true)), false);
+    let unknown = report(&question, &found, Some(frame(true)), Fitted::AsGiven);
     assert_eq!(
         (unknown.verdict, unknown.steps.len()),
         (Verdict::Unknown, 1)

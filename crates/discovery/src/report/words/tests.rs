@@ -1,6 +1,6 @@
 use super::*;
 use crate::report::parameter::NominalReport;
-use crate::report::types::{FitReport, StepReport, Unexplained};
+use crate::report::types::{FitReport, Fitted, StepReport, Unexplained};
 use audit::Audit;
 
 fn nominal(name: &str, off: bool, change_percent: f64) -> NominalReport {
@@ -39,7 +39,7 @@ fn said(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) ->
 fn report(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) -> ExplainReport {
     ExplainReport {
         stretches: Vec::new(),
-        other_order: false,
+        fitted: Fitted::AsGiven,
         audit: Audit {
             supported: true,
             findings: Vec::new(),

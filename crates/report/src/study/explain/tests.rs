@@ -2,7 +2,7 @@
 
 use super::*;
 use audit::Audit;
-use discovery::{BurstsReport, FitReport, LawCurve, LawReport};
+use discovery::{BurstsReport, FitReport, Fitted, LawCurve, LawReport};
 use motor::MotorFile;
 
 /// A proven law at one phase; `bursts`: it comes and goes.
@@ -42,7 +42,7 @@ fn report(law: LawReport) -> ExplainReport {
     };
     ExplainReport {
         stretches: Vec::new(),
-        other_order: false,
+        fitted: Fitted::AsGiven,
         audit: Audit {
             supported: true,
             findings: Vec::new(),
