@@ -252,3 +252,34 @@ fn parameters_are_taken_from_the_recording_that_shows_them() {
     assert_eq!((turned, as_given), (Fitted::Second, Fitted::AsGiven));
     assert!(taken == same);
 }
+
+/// One load each: what explains the one alone explains the other badly, and one set of parameters explains both.
+#[test]
+fn recordings_of_one_load_each_are_fitted_together() {
+    const IDLE: Course = Course {
+        steps: &[(0.0, 0.0, 1.0)],
+        end: 3.4,
+        ..STEADY
+    };
+    const LOADED: Course = Course {
+        steps: &[(0.0, 0.0, 1.0), (0.9, 1.0, 0.9)],
+        end: 3.4,
+        ..STEADY
+    };
+    let machine = MACHINES[0];
+    let source = |course, seed| {
+        recording::Source::Recording(record(&machine, &Hidden::default(), course, seed))
+    };
+    let sources = [source(&IDLE, SEED), source(&LOADED, SEED + 1)];
+    let mut believed = priors(&machine, SEED);
+    believed.parameters.r_r *= 1.2;
+    believed.parameters.l_ls *= 1.25;
+    believed.parameters.l_lr *= 1.25;
+    let report = explain(&sources, &believed, &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    assert_eq!(
+        (report.verdict, report.fitted),
+        (Verdict::Adequate, Fitted::Both)
+    );
+    assert!(report.summary.contains("fitted together"));
+}
