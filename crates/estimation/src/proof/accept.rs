@@ -10,6 +10,9 @@ const GAIN: f64 = 0.02;
 const LESSER_GAIN: f64 = 0.004;
 /// Largest probability of the pairs if there were no advantage.
 const P_LIMIT: f64 = 0.005;
+/// The same where the folds of one recording alone prove: some thirty effects are asked of the same blocks, and by chance one of them
+/// passes (Bonferroni). Less than 0.7 s proves nothing then.
+const LONE_P_LIMIT: f64 = P_LIMIT / 30.0;
 /// Least share of the excess over the floor that must be explained.
 const SHARE: f64 = 0.2;
 /// Error over noise below which a model is adequate where the noise is known.
@@ -82,7 +85,7 @@ pub fn may_explain(study: &Study, before: &Trial, folds: &[f64], least: f64) -> 
 
 /// Whether the last effect of `after` is proven over `before`.
 pub fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
-    if !large_enough(after) {
+    if !large_enough(after) || may_be_chance(study, before, after) {
         return false;
     }
     if beats(after, before) {
@@ -92,6 +95,12 @@ pub fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
         && fold_share(study, before, after) > SHARE
         && study.proof_is_silent(before, after)
         && !worse_on_proof(before, after)
+}
+
+/// Whether one recording alone is too short to tell the last effect of `after` from the best of many that are not there.
+fn may_be_chance(study: &Study, before: &Trial, after: &Trial) -> bool {
+    let is_alone = study.proofs.is_empty() && !study.fitted.case.is_table();
+    is_alone && wilcoxon(&before.folds, &after.folds) > LONE_P_LIMIT
 }
 
 /// Whether the data tell `better` from `worse`: it beats it, or it does so on the recordings that tell the two apart while

@@ -182,6 +182,23 @@ fn where_the_proof_is_silent_the_folds_prove() {
     );
 }
 
+/// Blocks of 40 ms: a Wilcoxon test of which all fall reaches 0.005 / 30 with 17 of them. A table has other rules.
+#[test]
+fn a_short_recording_alone_proves_nothing() {
+    let is_proven = |study: &Study| {
+        let before = without_effect(study, 3.0, 1.0);
+        proven(
+            study,
+            &before,
+            &with_effect(study, "core-loss", 1.0, 2.0, 1.0),
+        )
+    };
+    assert!(!is_proven(&specimen::study(0.6, |_| 1.0)));
+    assert!(is_proven(&specimen::study(0.8, |_| 1.0)));
+    let table = specimen::table_study(|_| ());
+    assert!(table.fitted.case.blocks().len() < 17 && is_proven(&table));
+}
+
 #[test]
 fn the_folds_prove_alone_from_two_per_cent_on() {
     let study = specimen::proven_table_study(|_| ());
