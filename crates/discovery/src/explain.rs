@@ -29,6 +29,8 @@ const NAMED_SHARE: f64 = 0.85;
 
 /// Relative error of a fit from another start that shows the first one to have been in a local minimum.
 const DEEPER: f64 = 0.98;
+/// The same above which no pair of effects hides in what is left, and no other order of the recordings tells more.
+const NEARLY_ALL: f64 = 0.97;
 /// Error over noise above which nothing is named, however large the explained share.
 const NAMED_ERROR: f64 = 1.25;
 /// Sum of squares of the nominals' distances from their priors, in standard deviations, by which an explanation is stranger
@@ -84,6 +86,11 @@ impl Explanation {
         }
         let named = self.steps.last().filter(|_| self.nameable);
         named.map_or(&self.baseline, |s| &s.trial)
+    }
+
+    /// Whether what was found and may be named explains all but a few per cent of the excess.
+    pub fn explains_nearly_all(&self, study: &Study) -> bool {
+        explained(study, &self.baseline, self.last()) > NEARLY_ALL
     }
 }
 

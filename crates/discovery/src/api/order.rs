@@ -31,7 +31,7 @@ pub(super) enum Explains {
     Nothing,
     /// What is proven leaves something.
     Part,
-    /// Nothing provable is left.
+    /// Nothing provable is left, or hardly anything.
     All,
 }
 

@@ -8,12 +8,9 @@ use super::{Explanation, STRAINED, Step, behind, mostly_explained};
 use crate::laws::formula::prove::law_of;
 use crate::laws::search::{LawStep, Laws};
 use estimation::data::study::{Study, Trial};
-use estimation::proof::accept::{adequate, beats, even, explained, helps};
+use estimation::proof::accept::{adequate, beats, even, helps};
 use estimation::proof::off::strains;
 use motor::effect::EffectConfig;
-
-/// Share of the excess that accepted effects explain, above which no pair of effects is looked for.
-const HIDES_NOTHING: f64 = 0.97;
 
 /// Completes an explanation of the library's with what it does not hold.
 ///
@@ -59,7 +56,7 @@ pub(super) fn complete(
             return;
         }
     }
-    if found.nameable && hides_nothing(study, found) {
+    if found.nameable && found.explains_nearly_all(study) {
         return;
     }
     progress("looking for pairs that hide each other", 0.75);
@@ -80,12 +77,6 @@ pub(super) fn complete(
             ..law
         }));
     }
-}
-
-/// Whether the accepted effects leave too little for a pair of effects that hide each other.
-pub(super) fn hides_nothing(study: &Study, found: &Explanation) -> bool {
-    let all = |last: &Step| explained(study, &found.baseline, &last.trial) > HIDES_NOTHING;
-    found.steps.last().is_some_and(all)
 }
 
 /// Progress that moves on by a little with each thing that is told.

@@ -1,4 +1,3 @@
-use super::complete::hides_nothing;
 use super::contests::contest;
 use super::*;
 use estimation::data::case::Case;
@@ -68,11 +67,11 @@ fn nothing_found(study: &Study, error: f64) -> Explanation {
 fn effects_that_explain_all_but_three_per_cent_are_no_pair_that_hides() {
     let study = specimen::table_study(|_| ());
     let mut found = nothing_found(&study, 8.0);
-    assert!(!hides_nothing(&study, &found));
+    assert!(!found.explains_nearly_all(&study));
     // Of an excess of 63 two per cent are 1.26, four 2.52.
     for (left, expected) in [(2.26f64, true), (3.52, false)] {
         found.steps = steps(&study, &[8.0, left.sqrt()]);
-        assert_eq!(hides_nothing(&study, &found), expected, "{left}");
+        assert_eq!(found.explains_nearly_all(&study), expected, "{left}");
     }
 }
 
