@@ -1,4 +1,4 @@
-//! Two recordings, asked about in the order that explains more.
+//! Recordings, asked about in the order that explains more.
 //!
 //! Only what the fitted recording visits can be learnt from it: a pump's torque up to 35 Hz says little of 60 Hz, and a motor that
 //! stands on one load leaves half of its parameters open. Which of two recordings shows more of a thing that nobody knows yet is
@@ -8,7 +8,7 @@ use estimation::data::given::{One, Sources};
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
-use estimation::proof::accept::{adequate, adequate_on_folds};
+use estimation::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
 use motor::MotorFile;
 
 use super::Progress;
@@ -41,9 +41,9 @@ struct Begun {
     baseline: Trial,
 }
 
-/// Asks about the recordings as they are given. Where that leaves something of two whole ones, asks also with the second one fitted,
-/// which is the answer if it explains more. Where recordings show too little of the parameters, and the second one or both together
-/// are explained without anything that is missing, nothing is.
+/// Asks about the recordings as they are given. Where that leaves something of two, asks also with the second one fitted, which is the
+/// answer if it explains more. Where the fitted recording shows too little of the parameters, and the second one or all together are
+/// explained without anything that is missing, nothing is.
 /// What is asked gets the study, and the model with its parameters refitted.
 ///
 /// # Errors
@@ -56,22 +56,22 @@ pub(super) fn in_either_order<T>(
     progress: &mut Progress<'_>,
 ) -> Result<Answer<T>, Error> {
     let given = Begun::of(sources, motor, progress)?;
-    if !are_two_wholes(&given.question) {
+    if !are_wholes(&given.question) {
         return Ok(given.asked(&ask, Fitted::AsGiven, progress));
     }
     let turned: Vec<One<'_>> = sources.iter().rev().collect();
-    let begin_other =
-        |progress: &mut Progress<'_>| Begun::of(Sources::Listed(&turned), motor, progress).ok();
+    let begin_other = |progress: &mut Progress<'_>| match turned.len() {
+        2 => Begun::of(Sources::Listed(&turned), motor, progress).ok(),
+        _ => None,
+    };
     let mut other = None;
     if given.shows_too_little() {
         other = begin_other(progress);
         if let Some(other) = other.take_if(|other| other.is_adequate()) {
             return Ok(other.asked(&ask, Fitted::Second, progress));
         }
-        let both = other.as_ref().filter(|other| other.shows_too_little());
-        let both = both.and_then(|_| given.together());
-        if let Some(both) = both.filter(Begun::is_adequate) {
-            return Ok(both.asked(&ask, Fitted::Both, progress));
+        if let Some(all) = given.explained_together() {
+            return Ok(all.asked(&ask, Fitted::All, progress));
         }
     }
     let explained = |answer: &Answer<T>| explains(&answer.question.study, &answer.found);
@@ -107,14 +107,16 @@ impl Begun {
         }
     }
 
-    /// All recordings fitted together.
-    fn together(&self) -> Option<Self> {
-        let study = self.question.study.together()?;
-        Some(Self::about(Question {
+    /// All recordings fitted together, where nothing is missing in any of them then.
+    fn explained_together(&self) -> Option<Self> {
+        let each = &self.question.study;
+        let together = Self::about(Question {
             audit: self.question.audit.clone(),
             stretches: Vec::new(),
-            study,
-        }))
+            study: each.together()?,
+        });
+        let explains_each = adequate_in_each(each, &together.baseline.fit.hypothesis);
+        (together.is_adequate() && explains_each).then_some(together)
     }
 
     /// Whether nothing is missing.
@@ -141,10 +143,11 @@ impl Begun {
     }
 }
 
-/// Two recordings over time, neither too long to be taken whole.
-fn are_two_wholes(question: &Question) -> bool {
+/// Recordings over time of which some prove, none too long to be taken whole.
+fn are_wholes(question: &Question) -> bool {
     let study = &question.study;
     let fitted = study.fitted.case.waveform();
-    let is_whole = fitted.is_some_and(|waveform| waveform.timeline.cuts.is_empty());
-    is_whole && study.proofs.len() == 1 && question.stretches.is_empty()
+    let is_whole =
+        fitted.is_some_and(|waveform| waveform.timeline.cuts.iter().all(|cut| cut.is_new));
+    is_whole && !study.proofs.is_empty() && question.stretches.is_empty()
 }

@@ -139,8 +139,8 @@ pub enum Fitted {
     AsGiven,
     /// The second of two, and the first one proves: in the given order something is left over.
     Second,
-    /// Both of two, by folds: each alone shows too little of the parameters to explain the other one.
-    Both,
+    /// All together, by folds: alone they show too little of the parameters to explain each other.
+    All,
 }
 
 impl Fitted {
@@ -156,8 +156,8 @@ impl Fitted {
             Fitted::Second => {
                 " The second recording is fitted here and the first one proves: in the given order something is left over."
             }
-            Fitted::Both => {
-                " Both recordings are fitted together: each alone shows too little of the parameters to explain the other one."
+            Fitted::All => {
+                " All recordings are fitted together: alone they show too little of the parameters to explain each other."
             }
         }
     }
@@ -171,7 +171,7 @@ pub struct ExplainReport {
     /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stretches: Vec<StretchReport>,
-    /// Which of two recordings are fitted, where it is not the first one alone.
+    /// Which recordings are fitted, where it is not as they are given.
     #[serde(default, skip_serializing_if = "Fitted::is_as_given")]
     pub fitted: Fitted,
     /// The answer.
@@ -339,7 +339,7 @@ pub struct AdoptReport {
     /// Of recordings that were too long to be kept: what of them is fitted, and what proves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stretches: Vec<StretchReport>,
-    /// Which of two recordings are fitted, where it is not the first one alone.
+    /// Which recordings are fitted, where it is not as they are given.
     #[serde(default, skip_serializing_if = "Fitted::is_as_given")]
     pub fitted: Fitted,
     /// The effect.

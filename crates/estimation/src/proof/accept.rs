@@ -1,6 +1,7 @@
 //! When an effect counts as proven, and when two cannot be told apart.
 
-use crate::data::study::{Study, Trial};
+use crate::data::study::{Study, Subject, Trial};
+use crate::model::prior::Hypothesis;
 use crate::proof::pairs::wilcoxon;
 use motor::effect::Role;
 
@@ -182,6 +183,16 @@ fn adequacy(study: &Study) -> f64 {
 /// Whether nothing provable is left.
 pub fn adequate(study: &Study, trial: &Trial) -> bool {
     study.proof_error(trial) < adequacy(study) && adequate_on_folds(study, &trial.folds)
+}
+
+/// Whether a model leaves nothing provable of any single recording.
+pub fn adequate_in_each(study: &Study, h: &Hypothesis) -> bool {
+    let error = |subject: &Subject| {
+        let sum = subject.errors(&study.prior, h).iter().sum();
+        subject.floor.error_over_noise(sum, subject.case.judged())
+    };
+    let mut all = std::iter::once(&study.fitted).chain(&study.proofs);
+    all.all(|subject| error(subject) < adequacy(study))
 }
 
 /// Whether nothing provable is left of the fitted recording, by the held-out squared errors of its blocks.

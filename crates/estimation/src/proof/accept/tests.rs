@@ -265,3 +265,15 @@ fn blocks_that_lose_by_less_than_the_lesser_gain_are_not_worse() {
     after.proof[0] += 1e-3;
     assert!(worse_on_proof(&before, &after));
 }
+
+/// What one of several recordings leaves does not vanish in the mean of all.
+#[test]
+fn a_model_is_adequate_in_each_recording() {
+    let mut study = specimen::proven_table_study(|_| ());
+    let h = specimen::trial(&study).fit.hypothesis;
+    assert!(adequate_in_each(&study, &h));
+    let rows = study.proofs[0].case.judged();
+    let far = (2.0 * study.proofs[0].floor.mean * rows).sqrt();
+    specimen::measured_of(&mut study.proofs[0].case)[0][0] += far;
+    assert!(!adequate_in_each(&study, &h));
+}
