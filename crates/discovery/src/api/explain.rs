@@ -125,7 +125,8 @@ fn explained_by(
 /// What the model with all that was found explains, with parameters that such motors have.
 pub(super) fn explains(study: &Study, found: &Explanation) -> Explains {
     match found.nameable && is_plausible(study, found) {
-        true if adequate(study, found.last()) || found.explains_nearly_all(study) => Explains::All,
+        true if adequate(study, found.last()) => Explains::All,
+        true if found.explains_nearly_all(study) => Explains::Most,
         true => Explains::Part,
         false => Explains::Nothing,
     }

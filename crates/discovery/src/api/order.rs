@@ -1,4 +1,4 @@
-//! Recordings, asked about in the order that explains more.
+//! Recordings, asked about in the order that leaves nothing.
 //!
 //! Only what the fitted recording visits can be learnt from it: a pump's torque up to 35 Hz says little of 60 Hz, and a motor that
 //! stands on one load leaves half of its parameters open. Which of two recordings shows more of a thing that nobody knows yet is
@@ -31,7 +31,9 @@ pub(super) enum Explains {
     Nothing,
     /// What is proven leaves something.
     Part,
-    /// Nothing provable is left, or hardly anything.
+    /// What is proven leaves hardly anything.
+    Most,
+    /// Nothing provable is left.
     All,
 }
 
@@ -42,7 +44,7 @@ struct Begun {
 }
 
 /// Asks about the recordings as they are given. Where that leaves something of two, asks also with the second one fitted, which is the
-/// answer if it explains more. Where the fitted recording shows too little of the parameters, and the second one or all together are
+/// answer if it leaves nothing: two recordings of a motor that was cold in the one and hot in the other are explained by neither. Where the fitted recording shows too little of the parameters, and the second one or all together are
 /// explained without anything that is missing, nothing is.
 /// What is asked gets the study, and the model with its parameters refitted.
 ///
@@ -77,14 +79,14 @@ pub(super) fn in_either_order<T>(
     let explained = |answer: &Answer<T>| explains(&answer.question.study, &answer.found);
     let given = given.asked(&ask, Fitted::AsGiven, progress);
     let so_far = explained(&given);
-    if so_far == Explains::All {
+    if so_far >= Explains::Most {
         return Ok(given);
     }
     let mut tell =
         |what: &str, share| progress(&format!("{what}, the second recording fitted"), share);
     let other = other.or_else(|| begin_other(&mut tell));
     let other = other.map(|other| other.asked(&ask, Fitted::Second, &mut tell));
-    let better = other.filter(|other| explained(other) > so_far);
+    let better = other.filter(|other| explained(other) == Explains::All);
     Ok(better.unwrap_or(given))
 }
 
