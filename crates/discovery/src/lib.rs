@@ -37,7 +37,7 @@ pub use design::report::{
     Certainty, DecidesReport, DesignGoal, DesignReport, LevelReport, RunReport,
 };
 pub use estimation::data::case::running_at;
-pub use estimation::data::given::{Given, One, Sources};
+pub use estimation::data::given::{Fitted, Given, One, Sources};
 pub use estimation::data::instrument_class;
 pub use estimation::data::load_table::table_values;
 pub use estimation::data::question::Error;
@@ -53,7 +53,7 @@ pub use laws::formula::dictionary::{Laws, Shapes};
 pub use report::law::{BurstReport, BurstsReport, FormulaReport, LawCurve, LawPlace, LawReport};
 pub use report::parameter::{NominalReport, ParameterReport};
 pub use report::types::{
-    AdoptReport, BandReport, CompareReport, ErrorReport, ExplainReport, FitReport, Fitted,
-    FrameBand, FrameReport, Inconclusive, OrderReport, Overall, RankReport, RegionReport,
-    SignalReport, StepReport, Unexplained, Verdict,
+    AdoptReport, BandReport, CompareReport, DifferenceReport, ErrorReport, ExplainReport,
+    FitReport, FrameBand, FrameReport, Inconclusive, OrderReport, Overall, RankReport,
+    RegionReport, SignalReport, StepReport, Unexplained, Verdict,
 };

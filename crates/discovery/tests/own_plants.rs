@@ -288,3 +288,29 @@ fn recordings_of_one_load_each_are_fitted_together() {
         assert!(report.summary.contains("fitted together"));
     }
 }
+
+/// The resistances of a winding 26 K and a cage 50 K warmer.
+#[test]
+fn recordings_of_a_cold_and_a_warm_motor_are_explained_each_alone() {
+    let cold = MACHINES[0];
+    let warm = Machine {
+        r_s: 1.1 * cold.r_s,
+        r_r: 1.2 * cold.r_r,
+        ..cold
+    };
+    let source = |machine: &Machine, course, seed| {
+        recording::Source::Recording(record(machine, &Hidden::default(), course, seed))
+    };
+    let sources = [source(&cold, &LOADS, SEED), source(&warm, &STEPS, SEED + 1)];
+    let report = explain(&sources, &priors(&cold, SEED), &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    assert_eq!(report.verdict, Verdict::Unknown);
+    let each_alone = report.unexplained.expect("unknown").each_alone;
+    let changes = each_alone.expect("each recording alone is explained");
+    let of = |name: &str| {
+        let found = changes.iter().find(|change| change.name == name);
+        found.map(|change| change.change_percent).expect(name)
+    };
+    assert!((of("stator_resistance_ohm") - 10.0).abs() < 1.5);
+    assert!((of("rotor_resistance_ohm") - 20.0).abs() < 1.5);
+}

@@ -7,10 +7,10 @@ use crate::laws::report::law_report;
 use crate::laws::search::LawStep;
 use crate::report::frame;
 use crate::report::present::{effect_parameters, fit_report};
-use crate::report::types::{AdoptReport, ErrorReport, Fitted};
+use crate::report::types::{AdoptReport, ErrorReport};
 use crate::search::inconclusive::{self};
 use crate::search::refit::{best_of, only};
-use estimation::data::given::Sources;
+use estimation::data::given::{Fitted, Sources};
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
@@ -139,6 +139,7 @@ fn adopted_law(
         question,
         found,
         fitted,
+        ..
     } = in_either_order(sources, motor, ask, explains, progress)?;
     let study = &question.study;
     progress("done", 1.0);

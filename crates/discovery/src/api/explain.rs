@@ -11,12 +11,12 @@ use crate::report::present::{
     effect_parameters, fit_report, inadequate_report, kind_word, loss_watt,
 };
 use crate::report::types::FrameReport;
-use crate::report::types::{ExplainReport, Fitted, RankReport, StepReport, Unexplained, Verdict};
-use crate::report::unexplained;
+use crate::report::types::{ExplainReport, RankReport, StepReport, Unexplained, Verdict};
+use crate::report::unexplained::{self, apart};
 use crate::search::inconclusive::{self, Uncertainty};
 use crate::search::refit::Candidate;
 use estimation::data::case::Case;
-use estimation::data::given::Sources;
+use estimation::data::given::{Fitted, Sources};
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::model::scale_report::SpeedScaleReport;
@@ -96,10 +96,14 @@ fn explained_by(
             let next_run =
                 next_run.and_then(|asked| designed(question, motor, found, asked, progress));
             progress("done", 1.0);
-            Ok(ExplainReport {
-                next_run,
-                ..report(question, found, frame, answer.fitted)
-            })
+            let mut report = report(question, found, frame, answer.fitted);
+            report.next_run = next_run;
+            if let (Verdict::Unknown, Some(differences)) = (report.verdict, answer.each_alone) {
+                report.unexplained = Some(apart(differences));
+                report.laws.clear();
+                report.summary = crate::report::words::summary(&report);
+            }
+            Ok(report)
         }
         Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
             audit: *audit,

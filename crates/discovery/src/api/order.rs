@@ -4,7 +4,7 @@
 //! stands on one load leaves half of its parameters open. Which of two recordings shows more of a thing that nobody knows yet is
 //! seen when it was asked for.
 
-use estimation::data::given::{One, Sources};
+use estimation::data::given::{Fitted, One, Sources};
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
@@ -12,7 +12,7 @@ use estimation::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
 use motor::MotorFile;
 
 use super::Progress;
-use crate::report::types::Fitted;
+use crate::report::types::DifferenceReport;
 
 /// An answer, and the question that it answers.
 pub(super) struct Answer<T> {
@@ -22,6 +22,8 @@ pub(super) struct Answer<T> {
     pub found: T,
     /// Which of them are fitted.
     pub fitted: Fitted,
+    /// Where each of two alone is explained with nothing missing, but not both by the same parameters: which differ.
+    pub each_alone: Option<Vec<DifferenceReport>>,
 }
 
 /// What an answer explains of the recordings.
@@ -58,7 +60,7 @@ pub(super) fn in_either_order<T>(
     progress: &mut Progress<'_>,
 ) -> Result<Answer<T>, Error> {
     let given = Begun::of(sources, motor, progress)?;
-    if !are_wholes(&given.question) {
+    if !given.question.is_of_wholes() {
         return Ok(given.asked(&ask, Fitted::AsGiven, progress));
     }
     let turned: Vec<One<'_>> = sources.iter().rev().collect();
@@ -77,9 +79,14 @@ pub(super) fn in_either_order<T>(
         }
     }
     let explained = |answer: &Answer<T>| explains(&answer.question.study, &answer.found);
-    let given = given.asked(&ask, Fitted::AsGiven, progress);
+    let alone = other.as_ref().filter(|other| other.shows_too_little());
+    let each_alone = alone.map(|other| given.differences(other));
+    let given = Answer {
+        each_alone,
+        ..given.asked(&ask, Fitted::AsGiven, progress)
+    };
     let so_far = explained(&given);
-    if so_far >= Explains::Most {
+    if so_far >= Explains::Most || given.each_alone.is_some() {
         return Ok(given);
     }
     let mut tell =
@@ -111,14 +118,21 @@ impl Begun {
 
     /// All recordings fitted together, where nothing is missing in any of them then.
     fn explained_together(&self) -> Option<Self> {
-        let each = &self.question.study;
-        let together = Self::about(Question {
-            audit: self.question.audit.clone(),
-            stretches: Vec::new(),
-            study: each.together()?,
-        });
-        let explains_each = adequate_in_each(each, &together.baseline.fit.hypothesis);
+        let together = Self::about(self.question.together()?);
+        let explains_each =
+            adequate_in_each(&self.question.study, &together.baseline.fit.hypothesis);
         (together.is_adequate() && explains_each).then_some(together)
+    }
+
+    /// The parameters that this and another recording ask for differently, each fitted alone.
+    fn differences(&self, other: &Begun) -> Vec<DifferenceReport> {
+        let study = &self.question.study;
+        let told = |(name, change): (&str, f64)| DifferenceReport {
+            name: name.to_owned(),
+            change_percent: 100.0 * change.exp_m1(),
+        };
+        let all = study.differences(&self.baseline, &other.question.study, &other.baseline);
+        all.into_iter().map(told).collect()
     }
 
     /// Whether nothing is missing.
@@ -141,15 +155,7 @@ impl Begun {
             found: ask(&self.question.study, self.baseline, progress),
             question: self.question,
             fitted,
+            each_alone: None,
         }
     }
-}
-
-/// Recordings over time of which some prove, none too long to be taken whole.
-fn are_wholes(question: &Question) -> bool {
-    let study = &question.study;
-    let fitted = study.fitted.case.waveform();
-    let is_whole =
-        fitted.is_some_and(|waveform| waveform.timeline.cuts.iter().all(|cut| cut.is_new));
-    is_whole && !study.proofs.is_empty() && question.stretches.is_empty()
 }

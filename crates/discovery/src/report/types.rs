@@ -4,6 +4,7 @@ use crate::design::report::DesignReport;
 use crate::report::law::LawReport;
 use crate::report::parameter::{NominalReport, ParameterReport};
 use audit::Audit;
+use estimation::data::given::Fitted;
 use estimation::data::stretches::StretchReport;
 use estimation::model::scale_report::SpeedScaleReport;
 use schemars::JsonSchema;
@@ -97,6 +98,18 @@ pub struct Unexplained {
     pub best_lead: Option<String>,
     /// Share of the excess that the best lead explains, percent.
     pub best_lead_explains_percent: f64,
+    /// Where each of two recordings alone is explained with nothing missing: parameters that differ from the first to the second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub each_alone: Option<Vec<DifferenceReport>>,
+}
+
+/// A parameter that two recordings ask for differently.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct DifferenceReport {
+    /// Name of the parameter.
+    pub name: String,
+    /// From the first recording to the second, percent.
+    pub change_percent: f64,
 }
 
 /// Share of the excess, percent, from which an effect that is not proven leaves nothing to look for outside the library.
@@ -128,39 +141,6 @@ pub struct Inconclusive {
     pub correlation_with_scale: Option<f64>,
     /// The same in words.
     pub why: String,
-}
-
-/// Which recordings are fitted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Fitted {
-    /// The first one, of more the first, third, ...; the others prove.
-    #[default]
-    AsGiven,
-    /// The second of two, and the first one proves: in the given order something is left over.
-    Second,
-    /// All together, by folds: alone they show too little of the parameters to explain each other.
-    All,
-}
-
-impl Fitted {
-    /// Whether the recordings are used in the order in which they were given.
-    pub fn is_as_given(&self) -> bool {
-        *self == Fitted::AsGiven
-    }
-
-    /// In words, where it is not as given.
-    pub(crate) fn told(self) -> &'static str {
-        match self {
-            Fitted::AsGiven => "",
-            Fitted::Second => {
-                " The second recording is fitted here and the first one proves: in the given order something is left over."
-            }
-            Fitted::All => {
-                " All recordings are fitted together: alone they show too little of the parameters to explain each other."
-            }
-        }
-    }
 }
 
 /// The report of `explain`.

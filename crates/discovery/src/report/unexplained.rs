@@ -1,6 +1,6 @@
 //! Describes what is left: where, in which channel, with what it grows.
 
-use crate::report::types::Unexplained;
+use crate::report::types::{DifferenceReport, Unexplained};
 use estimation::data::case::Case;
 use estimation::data::channels::N_CHANNELS;
 use estimation::data::study::{Study, Trial};
@@ -41,6 +41,29 @@ pub(crate) fn describe(
             .collect(),
         best_lead,
         best_lead_explains_percent: share,
+        each_alone: None,
+    }
+}
+
+/// What is said of two recordings of which each alone is explained.
+pub(crate) fn apart(differences: Vec<DifferenceReport>) -> Unexplained {
+    let told: Vec<String> = differences
+        .iter()
+        .map(|d| format!("{} {:+.1} %", d.name, d.change_percent))
+        .collect();
+    let told = match told.is_empty() {
+        true => String::new(),
+        false => format!(" ({} from the first to the second)", told.join(", ")),
+    };
+    Unexplained {
+        description: format!(
+            "The model explains each recording alone, but not both with the same parameters{told}. A motor that was warmer in one of them looks \
+             so, and one that was changed between them."
+        ),
+        correlates_with: Vec::new(),
+        best_lead: None,
+        best_lead_explains_percent: 0.0,
+        each_alone: Some(differences),
     }
 }
 

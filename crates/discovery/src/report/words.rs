@@ -71,6 +71,9 @@ fn as_far(report: &ExplainReport) -> String {
 
 /// What is said of an error that nothing was proven to explain.
 fn unknown(report: &ExplainReport, rest: &Unexplained) -> String {
+    if rest.each_alone.is_some() {
+        return rest.description.clone();
+    }
     if let Some(lead) = rest.sufficient_lead() {
         return format!(
             "Something is missing, but too few moments of the recording show it to prove what: {lead} would explain it. Record more starts and more steps of load and voltage. {}",

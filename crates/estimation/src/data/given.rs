@@ -2,6 +2,8 @@
 
 use crate::data::stretches::Excerpt;
 use recording::Source;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// What was read: all of it, or stretches of a recording that does not fit into memory.
 #[derive(Clone, Debug)]
@@ -30,6 +32,39 @@ pub enum Sources<'a> {
     Given(&'a [Given]),
     /// In an order of their own.
     Listed(&'a [One<'a>]),
+}
+
+/// Which recordings are fitted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fitted {
+    /// The first one, of more the first, third, ...; the others prove.
+    #[default]
+    AsGiven,
+    /// The second of two, and the first one proves: in the given order something is left over.
+    Second,
+    /// All together, by folds: alone they show too little of the parameters to explain each other.
+    All,
+}
+
+impl Fitted {
+    /// Whether the recordings are used in the order in which they were given.
+    pub fn is_as_given(&self) -> bool {
+        *self == Fitted::AsGiven
+    }
+
+    /// In words, where it is not as given.
+    pub fn told(self) -> &'static str {
+        match self {
+            Fitted::AsGiven => "",
+            Fitted::Second => {
+                " The second recording is fitted here and the first one proves: in the given order something is left over."
+            }
+            Fitted::All => {
+                " All recordings are fitted together: alone they show too little of the parameters to explain each other."
+            }
+        }
+    }
 }
 
 impl<'a> Sources<'a> {

@@ -134,6 +134,24 @@ impl Question {
     }
 }
 
+impl Question {
+    /// Whether it is about recordings over time of which some prove, none too long to be taken whole.
+    pub fn is_of_wholes(&self) -> bool {
+        let fitted = self.study.fitted.case.waveform();
+        let is_whole = |waveform: &Waveform| waveform.timeline.cuts.iter().all(|cut| cut.is_new);
+        fitted.is_some_and(is_whole) && !self.study.proofs.is_empty() && self.stretches.is_empty()
+    }
+
+    /// The same recordings, all fitted together; `None` where they do not suit.
+    pub fn together(&self) -> Option<Self> {
+        Some(Self {
+            audit: self.audit.clone(),
+            stretches: self.stretches.clone(),
+            study: self.study.together()?,
+        })
+    }
+}
+
 /// Whether a recording holds the torque at the shaft.
 fn measures_torque(source: One<'_>) -> bool {
     match source {

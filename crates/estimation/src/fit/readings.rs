@@ -1,7 +1,9 @@
 //! What is read off a trial when it is asked for, once.
 
 use crate::data::study::{Study, Trial};
+use crate::fit::uncertainty::coordinate_error;
 use crate::fit::{polish, uncertainty};
+use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
 use crate::proof::off;
 use nalgebra::DMatrix;
 
@@ -27,5 +29,29 @@ impl Study {
         trial
             .off
             .get_or_init(|| off::nominals(self, self.polished(trial)))
+    }
+
+    /// Names and moves (logarithm) of the nominals but friction that two studies of one motor read differently, beyond the errors of both.
+    pub fn differences(
+        &self,
+        here: &Trial,
+        other: &Self,
+        there: &Trial,
+    ) -> Vec<(&'static str, f64)> {
+        let read = |study: &Self, trial: &Trial, k: usize| {
+            let error = coordinate_error(trial, study.covariance(trial), k);
+            (trial.fit.hypothesis.z[k], error)
+        };
+        let difference = |k: usize| {
+            let (from, error) = read(self, here, k);
+            let (to, other_error) = read(other, there, k);
+            let is_far = (to - from).abs() > off::SIGNIFICANT * error.hypot(other_error);
+            is_far.then_some((NOMINALS[k].name, to - from))
+        };
+        let is_free = |&k: &usize| here.fit.free.contains(&k) && k != FRICTION;
+        (0..N_NOMINAL)
+            .filter(is_free)
+            .filter_map(difference)
+            .collect()
     }
 }

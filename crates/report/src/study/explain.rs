@@ -156,12 +156,21 @@ fn nothing_to_adopt(report: &ExplainReport) -> String {
         Verdict::Implausible => {
             "Check nameplate, connection and scales of the sensors before anything else."
         }
+        _ if is_explained_each_alone(report) => {
+            "Record both at one temperature, or ask about each alone."
+        }
         _ => {
             "Record more of what the description names, with a second load and a second voltage. \
              If you suspect what it is, write it as a formula into the motor file: docs/adding-an-effect.md."
         }
     };
     advice.to_owned()
+}
+
+/// Whether two recordings ask for other parameters, and nothing is missing in either of them.
+fn is_explained_each_alone(report: &ExplainReport) -> bool {
+    let rest = report.unexplained.as_ref();
+    rest.is_some_and(|rest| rest.each_alone.is_some())
 }
 
 /// Whether a refitted parameter is far from what was believed.

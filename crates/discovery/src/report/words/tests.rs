@@ -1,7 +1,9 @@
 use super::*;
 use crate::report::parameter::NominalReport;
-use crate::report::types::{FitReport, Fitted, StepReport, Unexplained};
+use crate::report::types::{DifferenceReport, FitReport, StepReport, Unexplained};
+use crate::report::unexplained::apart;
 use audit::Audit;
+use estimation::data::given::Fitted;
 
 fn nominal(name: &str, off: bool, change_percent: f64) -> NominalReport {
     NominalReport {
@@ -63,6 +65,7 @@ fn report(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) 
             correlates_with: Vec::new(),
             best_lead: None,
             best_lead_explains_percent: 0.0,
+            each_alone: None,
         }),
         speed_scale: None,
         cannot_be_concluded: Vec::new(),
@@ -169,4 +172,26 @@ fn what_few_moments_show_is_asked_for_once_more() {
          Record more starts and more steps of load and voltage. It is loud."
     );
     assert_eq!(with_lead(60.0), said(Verdict::Unknown, &[], &[]));
+}
+
+/// Nothing is missing where two recordings ask for other parameters.
+#[test]
+fn recordings_that_are_explained_one_by_one_say_what_differs() {
+    let told = |differences: Vec<DifferenceReport>| {
+        let mut report = report(Verdict::Unknown, &[], &[]);
+        report.unexplained = Some(apart(differences));
+        summary(&report)
+    };
+    let rest =
+        ". A motor that was warmer in one of them looks so, and one that was changed between them.";
+    let both = "The model explains each recording alone, but not both with the same parameters";
+    assert_eq!(told(Vec::new()), format!("{both}{rest}"));
+    let warmer = DifferenceReport {
+        name: "rotor_resistance_ohm".to_owned(),
+        change_percent: 19.96,
+    };
+    assert_eq!(
+        told(vec![warmer]),
+        format!("{both} (rotor_resistance_ohm +20.0 % from the first to the second){rest}")
+    );
 }

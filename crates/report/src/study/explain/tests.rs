@@ -2,7 +2,7 @@
 
 use super::*;
 use audit::Audit;
-use discovery::{BurstsReport, FitReport, Fitted, LawCurve, LawReport};
+use discovery::{BurstsReport, FitReport, Fitted, LawCurve, LawReport, Unexplained};
 use motor::MotorFile;
 
 /// A proven law at one phase; `bursts`: it comes and goes.
@@ -72,6 +72,26 @@ fn a_law_is_adopted_and_what_comes_and_goes_is_mended() {
     let bursts = Next::new(&report(law(true)), &command);
     assert_eq!((bursts.adopt, bursts.command), (None, None));
     assert!(bursts.why.contains("mend it"), "{}", bursts.why);
+}
+
+/// Nothing is missing in either of two recordings: no third one would show more.
+#[test]
+fn recordings_of_two_temperatures_are_asked_about_alone() {
+    let mut apart = report(law(false));
+    (apart.verdict, apart.laws) = (Verdict::Unknown, Vec::new());
+    apart.unexplained = Some(Unexplained {
+        description: String::new(),
+        correlates_with: Vec::new(),
+        best_lead: None,
+        best_lead_explains_percent: 0.0,
+        each_alone: Some(Vec::new()),
+    });
+    let next = Next::new(&apart, &|name| Some(name.to_owned()));
+    assert_eq!(next.command, None);
+    assert_eq!(
+        next.why,
+        "Record both at one temperature, or ask about each alone."
+    );
 }
 
 /// No motor file holds it, and a curve without it would be no model of what was found.
