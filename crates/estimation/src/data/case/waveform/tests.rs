@@ -299,7 +299,9 @@ fn a_motor_runs_at_the_start_if_it_is_declared_or_seen() {
         rec.metadata.starts_from = starts_from;
         running_at(&rec, &rated)
     };
-    assert_eq!(at(StartsFrom::Standstill, 1.0, true), None);
+    assert_eq!(at(StartsFrom::Standstill, 1.0, false), None);
+    // An offset of the sensor.
+    assert_eq!(at(StartsFrom::Standstill, 0.15, true), None);
     let close = |got: Option<f64>, expected: f64| {
         assert!(
             (got.expect("running") - expected).abs() < 1e-9,
@@ -307,6 +309,8 @@ fn a_motor_runs_at_the_start_if_it_is_declared_or_seen() {
         );
     };
     close(at(StartsFrom::Running, 1.0, true), omega);
+    // What the speed denies.
+    close(at(StartsFrom::Standstill, 1.0, true), omega);
     close(at(StartsFrom::Unknown, 1.0, true), omega);
     assert_eq!(
         at(StartsFrom::Unknown, 0.01, true),
