@@ -219,7 +219,11 @@ fn of_two_recordings_the_one_is_fitted_that_leaves_nothing() {
     println!("{}", report.summary);
     assert_eq!(report.verdict, Verdict::Law);
     assert_eq!(report.fitted, Fitted::Second);
-    assert!(report.summary.contains("The second recording is fitted"));
+    assert!(
+        report
+            .summary
+            .contains("The recording named second is fitted")
+    );
     assert_eq!(report.laws[0].place, "torque");
 }
 

@@ -58,7 +58,7 @@ impl Fitted {
         match self {
             Fitted::AsGiven => "",
             Fitted::Second => {
-                " The second recording is fitted here and the first one proves: in the given order something is left over."
+                " The recording named second is fitted, and the first one proves: in the given order something is left over."
             }
             Fitted::All => {
                 " All recordings are fitted together: alone they show too little of the parameters to explain each other."

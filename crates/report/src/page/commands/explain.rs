@@ -52,6 +52,10 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
             ),
         ),
         Verdict::Law => (Mood::Bad, format!("Missing: {}", missing(result, &names))),
+        Verdict::Unknown if result.get("unexplained/each_alone").is_some() => (
+            Mood::Caution,
+            "Each recording alone is explained, both together are not".to_owned(),
+        ),
         Verdict::Unknown => (
             Mood::Caution,
             "Something is missing that the library does not hold".to_owned(),
@@ -70,13 +74,14 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
         .iter()
         .map(Place::as_text)
         .collect();
+    let are_all_fitted = result.text("fitted") == "all";
     let proof = match recordings.split_first() {
-        Some((first, rest)) if !rest.is_empty() => {
+        Some((first, rest)) if !rest.is_empty() && !are_all_fitted => {
             format!("fitted on {first}, proven on {}", rest.join(" and "))
         }
         _ => format!(
             "fitted on {}, proven by {} that were left out",
-            recordings.join(""),
+            recordings.join(" and "),
             match result.get("table_overlay") {
                 Some(_) => "points",
                 None => "interleaved blocks",
