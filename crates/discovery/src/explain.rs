@@ -26,11 +26,11 @@ use estimation::proof::off::{SIGNIFICANT, held, implausible, strains};
 const MOST_EFFECTS: usize = 3;
 /// Share of the excess that accepted effects must explain to be named without adequacy.
 const NAMED_SHARE: f64 = 0.85;
+/// The same, above which no pair of effects hides in what is left, and no other order of the recordings tells more.
+const NEARLY_ALL: f64 = 0.97;
 
 /// Relative error of a fit from another start that shows the first one to have been in a local minimum.
 const DEEPER: f64 = 0.98;
-/// The same above which no pair of effects hides in what is left, and no other order of the recordings tells more.
-const NEARLY_ALL: f64 = 0.97;
 /// Error over noise above which nothing is named, however large the explained share.
 const NAMED_ERROR: f64 = 1.25;
 /// Sum of squares of the nominals' distances from their priors, in standard deviations, by which an explanation is stranger
@@ -94,7 +94,8 @@ impl Explanation {
     }
 }
 
-/// Explains a study, from the model with its parameters refitted on. `excluded` effects are not asked about, curves are held against `shapes`; `progress` hears what is being done.
+/// Explains a study, from the model with its parameters refitted on. `excluded` effects are not asked about, curves are held against
+/// `shapes`; `progress` hears what is being done.
 pub(crate) fn explain(
     study: &Study,
     baseline: Trial,

@@ -13,7 +13,6 @@ use estimation::data::given::Sources;
 use estimation::data::question::{Error, Question};
 use estimation::data::stretches::StretchReport;
 use estimation::data::study::{Study, Trial};
-use estimation::fit::output_error::Effort;
 use estimation::model::prior::{FRICTION, LEAKAGE, NOMINALS};
 
 /// Parameters before and after, and what would tell those that the recordings did not.
@@ -84,7 +83,7 @@ pub fn identify<'a>(
     let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
     progress("refitting the parameters", 0.3);
-    let trial = study.trial(&study.at_prior(), Effort::FULL);
+    let trial = study.refitted();
     progress("standard errors", 0.8);
     let parameters = parameters(study, &trial);
     let mut file = updated(study, &trial, motor);

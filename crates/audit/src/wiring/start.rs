@@ -4,8 +4,6 @@ use crate::context::Context;
 use crate::finding::{Code, Finding};
 use recording::{Channel, Recording, StartsFrom};
 
-/// A motor that is switched on with the first sample still stands for so long.
-const STILL_S: f64 = 0.002;
 /// Share of the rated synchronous speed from which on a speed is no offset of its channel.
 const TURNS: f64 = 0.2;
 
@@ -13,12 +11,9 @@ const TURNS: f64 = 0.2;
 /// speed of the rated frequency, rad/s. A speed of unknown scale says nothing.
 pub fn turns_from_the_start(recording: &Recording, synchronous: f64) -> Option<f64> {
     let declared = recording.metadata.starts_from == StartsFrom::Standstill;
-    let speed = recording
-        .speed()
-        .filter(|_| declared && recording.unknown_speed_scale.is_none())?;
-    let first = ((STILL_S / recording.t_sample()) as usize).clamp(1, speed.len());
-    let mean = speed[..first].iter().sum::<f64>() / first as f64;
-    (mean.abs() > TURNS * synchronous).then_some(mean)
+    let is_known = recording.unknown_speed_scale.is_none();
+    let speed = recording.speed_at_first()?;
+    (declared && is_known && speed.abs() > TURNS * synchronous).then_some(speed)
 }
 
 pub(crate) fn check(context: &Context<'_>) -> Option<Finding> {

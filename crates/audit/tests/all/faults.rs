@@ -52,6 +52,7 @@ fn a_standstill_that_the_speed_denies() {
     let declared = |s: &mut Signals| s.metadata.starts_from = recording::StartsFrom::Standstill;
     let audit = audited(declared);
     let speed = Signals::healthy(1).speed[0];
+    // One sample against the mean of some: the noise is 0.2 % of full scale.
     assert_one(
         &audit,
         Code::StartsFrom,

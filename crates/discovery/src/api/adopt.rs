@@ -81,14 +81,9 @@ fn adopted_effect(
         }
         false => Ok((as_believed(study), refitted)),
     };
-    let is_proven = |study: &Study, before: &Trial, after: &Trial| match is_new {
-        true => proven(study, before, after),
-        false => gained(before, after),
-    };
     let explains = |study: &Study, found: &Result<(Trial, Trial), Error>| match found {
         Ok((_, after)) if adequate(study, after) => Explains::All,
-        Ok((before, after)) if is_proven(study, before, after) => Explains::Part,
-        _ => Explains::Nothing,
+        _ => Explains::Part,
     };
     let answer = in_either_order(sources, motor, ask, explains, progress)?;
     let (question, (before, after)) = (answer.question, answer.found?);
@@ -102,7 +97,10 @@ fn adopted_effect(
         effect: effect.to_owned(),
         before: errors(study, &before),
         after: errors(study, &after),
-        proven: is_proven(study, &before, &after),
+        proven: match is_new {
+            true => proven(study, &before, &after),
+            false => gained(&before, &after),
+        },
         parameters: if is_new {
             effect_parameters(study, &after, study.given_effects())
         } else {
@@ -202,7 +200,7 @@ fn adopted_frame(
     let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
     progress("refitting the parameters", 0.2);
-    let trial = study.trial(&study.at_prior(), Effort::FULL);
+    let trial = study.refitted();
     let Some(frame) = judged_frame(&question, motor, &trial) else {
         let message = "the motor file already asks for the rotor-flux frame with live field current, \
                        or the recordings hold less than ten windows of steady running";

@@ -131,8 +131,7 @@ pub(super) fn explains(study: &Study, found: &Explanation) -> Explains {
     match found.nameable && is_plausible(study, found) {
         true if adequate(study, found.last()) => Explains::All,
         true if found.explains_nearly_all(study) => Explains::Most,
-        true => Explains::Part,
-        false => Explains::Nothing,
+        _ => Explains::Part,
     }
 }
 

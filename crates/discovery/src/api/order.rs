@@ -7,7 +7,6 @@
 use estimation::data::given::{Fitted, One, Sources};
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
-use estimation::fit::output_error::Effort;
 use estimation::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
 use motor::MotorFile;
 
@@ -29,9 +28,7 @@ pub(super) struct Answer<T> {
 /// What an answer explains of the recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Explains {
-    /// Nothing is proven.
-    Nothing,
-    /// What is proven leaves something.
+    /// Something is left, or nothing is proven.
     Part,
     /// What is proven leaves hardly anything.
     Most,
@@ -46,9 +43,9 @@ struct Begun {
 }
 
 /// Asks about the recordings as they are given. Where that leaves something of two, asks also with the second one fitted, which is the
-/// answer if it leaves nothing: two recordings of a motor that was cold in the one and hot in the other are explained by neither. Where the fitted recording shows too little of the parameters, and the second one or all together are
-/// explained without anything that is missing, nothing is.
-/// What is asked gets the study, and the model with its parameters refitted.
+/// answer if it leaves nothing: two recordings of a motor that was cold in the one and hot in the other are explained by neither.
+/// Where the fitted recording shows too little of the parameters, and the second one or all together are explained without anything
+/// that is missing, nothing is. What is asked gets the study, and the model with its parameters refitted.
 ///
 /// # Errors
 /// As [`Question::new`] of the recordings as they are given.
@@ -68,15 +65,12 @@ pub(super) fn in_either_order<T>(
         2 => Begun::of(Sources::Listed(&turned), motor, progress).ok(),
         _ => None,
     };
-    let mut other = None;
-    if given.shows_too_little() {
-        other = begin_other(progress);
-        if let Some(other) = other.take_if(|other| other.is_adequate()) {
-            return Ok(other.asked(&ask, Fitted::Second, progress));
-        }
-        if let Some(all) = given.explained_together() {
-            return Ok(all.asked(&ask, Fitted::All, progress));
-        }
+    let mut other = match given.shows_too_little() {
+        true => begin_other(progress),
+        false => None,
+    };
+    if let Some((begun, fitted)) = explained_by_more(&given, &mut other) {
+        return Ok(begun.asked(&ask, fitted, progress));
     }
     let explained = |answer: &Answer<T>| explains(&answer.question.study, &answer.found);
     let alone = other.as_ref().filter(|other| other.shows_too_little());
@@ -97,6 +91,16 @@ pub(super) fn in_either_order<T>(
     Ok(better.unwrap_or(given))
 }
 
+/// The second recording or all together, where the first one shows too little and nothing is missing then.
+fn explained_by_more(given: &Begun, other: &mut Option<Begun>) -> Option<(Begun, Fitted)> {
+    if !given.shows_too_little() {
+        return None;
+    }
+    let second = other.take_if(|other| other.is_adequate());
+    let second = second.map(|second| (second, Fitted::Second));
+    second.or_else(|| Some((given.explained_together()?, Fitted::All)))
+}
+
 impl Begun {
     fn of(
         sources: Sources<'_>,
@@ -109,9 +113,8 @@ impl Begun {
     }
 
     fn about(question: Question) -> Self {
-        let study = &question.study;
         Self {
-            baseline: study.trial(&study.at_prior(), Effort::FULL),
+            baseline: question.study.refitted(),
             question,
         }
     }

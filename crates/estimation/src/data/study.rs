@@ -126,6 +126,11 @@ impl Study {
         self.measured(fit(&self.fitted.case, &self.prior, start, effort))
     }
 
+    /// The model with its parameters refitted and nothing added.
+    pub fn refitted(&self) -> Trial {
+        self.trial(&self.at_prior(), Effort::FULL)
+    }
+
     /// Measures a fit on what it has not seen.
     pub fn measured(&self, fit: Fit) -> Trial {
         let errors = |s: &Subject| s.errors(&self.prior, &fit.hypothesis);

@@ -9,6 +9,9 @@ use crate::mapping::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+/// A recorder that is triggered by the switch begins with it, and a small motor is far from standing still after a cycle, s.
+const STILL_S: f64 = 0.002;
+
 /// A channel that is right up to a factor, and up to an offset if none was given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnknownScale {
@@ -277,6 +280,13 @@ impl Recording {
         let channels = self.channels.values_mut();
         channels.for_each(|values| values.cut(&range));
         Ok(self)
+    }
+
+    /// Speed at the first sample, rad/s: the mean of 2 ms, in which a motor that is switched on there still stands.
+    pub fn speed_at_first(&self) -> Option<f64> {
+        let speed = self.speed()?;
+        let first = ((STILL_S / self.t_sample()) as usize).clamp(1, speed.len());
+        Some(speed[..first].iter().sum::<f64>() / first as f64)
     }
 
     /// The samples of a range, with the same clock, metadata and assumptions.

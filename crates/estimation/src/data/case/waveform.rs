@@ -365,19 +365,14 @@ fn measured_angle(rec: &Recording) -> Vec<f64> {
         .collect()
 }
 
-/// A recorder that is triggered by the switch begins with it, and a small motor is far from standing still after a cycle.
-const STILL_S: f64 = 0.002;
-
 /// Speed at the first sample, rad/s, if the motor already runs: the mean of 20 ms, or rated speed where none was recorded.
 pub fn running_at(rec: &Recording, rated: &Rated<f64>) -> Option<f64> {
     let currents = rec.currents()?;
-    let first = |x: &[f64], seconds: f64| {
-        let n = ((seconds / rec.t_sample()) as usize).clamp(1, x.len());
-        x[..n].iter().sum::<f64>() / n as f64
+    let first_period = |speed: &[f64]| {
+        let n = ((0.02 / rec.t_sample()) as usize).clamp(1, speed.len());
+        speed[..n].iter().sum::<f64>() / n as f64
     };
-    let initial = rec
-        .speed()
-        .map_or(rated.speed(), |speed| first(speed, 0.02));
+    let initial = rec.speed().map_or(rated.speed(), first_period);
     match rec.metadata.starts_from {
         StartsFrom::Standstill => turns_from_the_start(rec, rated.speed())
             .is_some()
@@ -386,8 +381,8 @@ pub fn running_at(rec: &Recording, rated: &Rated<f64>) -> Option<f64> {
         StartsFrom::Unknown => {
             let quiet = (currents[0][0].abs()).max(currents[1][0].abs()) < 0.1 * rated.current;
             let still = rec
-                .speed()
-                .is_none_or(|speed| first(speed, STILL_S).abs() < 0.05 * rated.speed());
+                .speed_at_first()
+                .is_none_or(|speed| speed.abs() < 0.05 * rated.speed());
             (!(quiet && still)).then_some(initial)
         }
     }

@@ -3,7 +3,7 @@
 use audit::{Audit, Expectation, Merger, audit, with_sound_probes};
 use motor::MotorFile;
 use motor::effect::{Cut, Rated};
-use recording::{LoadTorque, Recording, StartsFrom};
+use recording::{LoadTorque, Recording};
 
 use super::Stretch;
 use super::cells::Cells;
@@ -236,12 +236,8 @@ impl Part {
         begin_s: f64,
         rated: &Rated<f64>,
     ) -> Result<(Waveform, Cut), Unsupported> {
-        let mut recording = with_sound_probes(&self.recording, audit);
+        let recording = with_sound_probes(&self.recording, audit);
         let t = recording.t()[self.stretch.samples.start];
-        if recording.t()[0] > begin_s {
-            // What the recording began with is long past.
-            recording.metadata.starts_from = StartsFrom::Unknown;
-        }
         let whole = Waveform::new(&recording, rated)?;
         let mut case = cut(&whole, rated, std::slice::from_ref(&self.stretch));
         if case.measured.is_empty() {
