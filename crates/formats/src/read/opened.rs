@@ -7,9 +7,7 @@ use super::samples::{Extent, Piece, gather};
 use super::table::{self, Kind};
 use super::table_file::TableFile;
 use super::text::source::Progress;
-use recording::{
-    Error, Follows, Mapping, Metadata, Recording, Sidecar, Source, StartsFrom, Target,
-};
+use recording::{Error, Follows, Mapping, Metadata, Recording, Sidecar, Source, Target};
 
 /// An open file.
 pub(super) struct Opened {
@@ -67,8 +65,6 @@ impl Opened {
         let mut failed = None;
         let mut give = |piece: Piece| {
             let piece = finish::piece(&name, piece, plan.clone(), self.metadata.clone())?;
-            // The next piece begins where this one ends.
-            self.metadata.starts_from = StartsFrom::Unknown;
             take(&piece, Follows::Piece).map_err(|error| {
                 failed = Some(error);
                 // Ends the reading; `failed` is what is told.

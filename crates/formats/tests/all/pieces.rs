@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, gzip, quiet};
 use formats::{read_in_pieces, read_recording, write_recording};
-use recording::{Error, Follows, Mapping, Recording, Source};
+use recording::{Error, Follows, Mapping, Recording, Source, StartsFrom};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -91,6 +91,31 @@ fn text_in_pieces_is_the_text_as_a_whole() {
     assert_eq!(lengths, [PIECE, PIECE, PIECE, ROWS - 1 - 3 * PIECE]);
     assert!(pieces[0].bridged().any(|(_, it)| it.samples == 1));
     assert_same(&packed, &flags());
+}
+
+/// A later piece, and what is cut out later, begins where the motor runs.
+#[test]
+fn what_begins_later_claims_no_standstill() {
+    let folder = Folder::new("pieces-start");
+    let path = folder.file("x.csv", table().as_bytes());
+    folder.file("x.toml", b"starts_from = \"standstill\"\n");
+    let starts = |recording: &Recording| recording.metadata.starts_from;
+    let plain = Mapping {
+        skip_missing: Some(true),
+        ..Mapping::default()
+    };
+    for flags in [flags(), plain] {
+        let pieces = pieces(&path, &flags);
+        let told: Vec<StartsFrom> = pieces.iter().map(starts).collect();
+        let mut expected = vec![StartsFrom::Unknown; pieces.len()];
+        expected[0] = StartsFrom::Standstill;
+        assert_eq!(told, expected);
+        let cut = |from: usize| starts(&pieces[0].slice(from..from + 9).unwrap());
+        assert_eq!(
+            [cut(0), cut(1)],
+            [StartsFrom::Standstill, StartsFrom::Unknown]
+        );
+    }
 }
 
 #[test]

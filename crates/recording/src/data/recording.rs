@@ -276,10 +276,18 @@ impl Recording {
             let message = format!("samples {range:?} of {}", self.t.len());
             return Err(Error::bad(&self.name, message, "choose a range inside it"));
         }
+        self.begin_at(range.start);
         self.t.cut(&range);
         let channels = self.channels.values_mut();
         channels.for_each(|values| values.cut(&range));
         Ok(self)
+    }
+
+    /// What begins later is said to begin at standstill no more.
+    fn begin_at(&mut self, sample: usize) {
+        if sample > 0 {
+            self.metadata.starts_from = StartsFrom::Unknown;
+        }
     }
 
     /// Speed at the first sample, rad/s: the mean of 2 ms, in which a motor that is switched on there still stands.
@@ -299,9 +307,7 @@ impl Recording {
             return Err(Error::bad(&self.name, message, "choose a range inside it"));
         };
         let mut cut = Recording::new(&self.name, t.to_vec(), self.metadata.clone())?;
-        if range.start > 0 {
-            cut.metadata.starts_from = StartsFrom::Unknown;
-        }
+        cut.begin_at(range.start);
         for (channel, values) in self.channels() {
             cut.set(channel, values[range.clone()].to_vec())?;
         }
