@@ -30,7 +30,7 @@ pub struct Simulate {
 
 const EXAMPLES: &str = "\
 Examples:
-  drivemon simulate sim-host/scenarios/direct-start.toml -o start.csv.gz
+  drivemon simulate sim-host/scenarios/direct-on-line-start.toml -o start.csv.gz
   drivemon monitor start.csv.gz --motor motors/assumed-300w.toml";
 
 /// Steps of the progress bar.
