@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::explain::proof;
 use crate::page::elements::number::{decimals, shown};
 use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, next, verdict};
@@ -55,7 +56,7 @@ fn answer(result: &Place<'_>) -> Markup {
     let file = result.text("motor_file");
     let more = html! {
         p.subtle {
-            (result.text("motor")) ". Errors on data that was not fitted. "
+            (result.text("motor")) ", " (proof(result)) ". Errors on data that was not fitted. "
             @if file.is_empty() { "No motor file is written." } @else { "Motor file: " code { (file) } }
         }
     };

@@ -69,13 +69,22 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
             "The data do not support an answer".to_owned(),
         ),
     };
+    let more = html! {
+        @if result.text("summary").trim_end_matches('.') != text { p { (result.text("summary")) } }
+        p.subtle { (result.text("motor")) ", " (proof(result)) "." }
+    };
+    verdict(mood, &html! { (text) }, &more)
+}
+
+/// What was fitted, and what proves.
+pub(super) fn proof(result: &Place<'_>) -> String {
     let recordings: Vec<&str> = result
         .items("recordings")
         .iter()
         .map(Place::as_text)
         .collect();
     let are_all_fitted = result.text("fitted") == "all";
-    let proof = match recordings.split_first() {
+    match recordings.split_first() {
         Some((first, rest)) if !rest.is_empty() && !are_all_fitted => {
             format!("fitted on {first}, proven on {}", rest.join(" and "))
         }
@@ -87,12 +96,7 @@ fn answer(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
                 None => "interleaved blocks",
             }
         ),
-    };
-    let more = html! {
-        @if result.text("summary").trim_end_matches('.') != text { p { (result.text("summary")) } }
-        p.subtle { (result.text("motor")) ", " (proof) "." }
-    };
-    verdict(mood, &html! { (text) }, &more)
+    }
 }
 
 /// Effects and laws that are missing.
@@ -228,7 +232,9 @@ fn effect(step: &Place<'_>, k: usize) -> Markup {
 }
 
 fn unexplained(result: &Place<'_>) -> Markup {
-    let Some(rest) = result.get("unexplained") else {
+    // That each recording alone is explained stands above.
+    let rest = result.get("unexplained");
+    let Some(rest) = rest.filter(|rest| rest.get("each_alone").is_none()) else {
         return html! {};
     };
     html! {

@@ -31,7 +31,7 @@ pub struct Simulate {
 const EXAMPLES: &str = "\
 Examples:
   drivemon simulate sim-host/scenarios/direct-on-line-start.toml -o start.csv.gz
-  drivemon monitor start.csv.gz --motor motors/assumed-300w.toml";
+  drivemon monitor start.csv.gz --motor motors/peer-2k2.toml";
 
 /// Steps of the progress bar.
 const STEPS: u64 = 1000;
