@@ -83,7 +83,7 @@ pub fn identify<'a>(
     let question = Question::new(sources, motor, progress)?;
     let study = &question.study;
     progress("refitting the parameters", 0.3);
-    let trial = study.refitted();
+    let trial = study.at_one_temperature(study.refitted());
     progress("standard errors", 0.8);
     let parameters = parameters(study, &trial);
     let mut file = updated(study, &trial, motor);

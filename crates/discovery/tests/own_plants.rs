@@ -5,7 +5,9 @@
 #[expect(dead_code, reason = "the examples use the rest")]
 mod foreign;
 
-use discovery::{Fitted, LAW, Laws, PARAMETERS, Verdict, adopt, adopt_with, compare, explain};
+use discovery::{
+    ExplainReport, Fitted, LAW, Laws, PARAMETERS, Verdict, adopt, adopt_with, compare, explain,
+};
 use foreign::cases::single;
 use foreign::evidence::{Answer, Question, Setting, double, with_twins};
 use foreign::laws::Law;
@@ -293,29 +295,93 @@ fn recordings_of_one_load_each_are_fitted_together() {
     }
 }
 
+/// What `explain` says of a recording of one machine and one of another, in this order.
+fn explained_of_two(first: &Machine, second: &Machine, hidden: &Hidden) -> ExplainReport {
+    let source = |machine: &Machine, course, seed| {
+        recording::Source::Recording(record(machine, hidden, course, seed))
+    };
+    let sources = [
+        source(first, &LOADS, SEED),
+        source(second, &STEPS, SEED + 1),
+    ];
+    let report = explain(&sources, &priors(first, SEED), &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    report
+}
+
 /// The resistances of a winding 26 K and a cage 50 K warmer.
 #[test]
-fn recordings_of_a_cold_and_a_warm_motor_are_explained_each_alone() {
+fn a_motor_that_was_warmer_in_the_recording_that_proves_is_explained_and_told_so() {
     let cold = MACHINES[0];
     let warm = Machine {
         r_s: 1.1 * cold.r_s,
         r_r: 1.2 * cold.r_r,
         ..cold
     };
-    let source = |machine: &Machine, course, seed| {
-        recording::Source::Recording(record(machine, &Hidden::default(), course, seed))
+    for (first, second, [stator, rotor], word) in [
+        (cold, warm, [10.0, 20.0], "warmer"),
+        (warm, cold, [-9.09, -16.67], "colder"),
+    ] {
+        let report = explained_of_two(&first, &second, &Hidden::default());
+        assert_eq!(report.verdict, Verdict::Adequate);
+        assert!(report.summary.contains(word));
+        let windings = report.final_.expect("fitted").windings;
+        assert!(windings.len() == 1 && windings[0].is_temperature);
+        // Each recording knows them to 0.26 %: three standard errors of the difference.
+        assert!((windings[0].stator_resistance_change_percent - stator).abs() < 1.2);
+        assert!((windings[0].rotor_resistance_change_percent - rotor).abs() < 1.2);
+    }
+}
+
+/// What is missing is proven on a recording of the motor 40 K warmer.
+#[test]
+fn a_law_is_proven_on_a_recording_of_a_motor_that_was_warmer() {
+    let cold = Machine::of(SEED);
+    let warm = Machine {
+        r_s: 1.16 * cold.r_s,
+        r_r: 1.14 * cold.r_r,
+        ..cold
     };
-    let sources = [source(&cold, &LOADS, SEED), source(&warm, &STEPS, SEED + 1)];
-    let report = explain(&sources, &priors(&cold, SEED), &mut |_, _| {}).expect("judged");
-    println!("{}", report.summary);
+    let hidden = Hidden {
+        law: Some(Law::Jaws),
+        ..Hidden::default()
+    };
+    let report = explained_of_two(&cold, &warm, &hidden);
+    assert_eq!(report.verdict, Verdict::Law);
+    assert!(Law::Jaws.is_named(&report.laws[0]));
+    let windings = report.final_.expect("fitted").windings;
+    assert!((windings[0].stator_resistance_change_percent - 16.0).abs() < 1.2);
+    assert!((windings[0].rotor_resistance_change_percent - 14.0).abs() < 1.2);
+}
+
+/// A third of its bars open between the recordings: the cage's resistance rises, and no temperature leaves the winding as it was.
+#[test]
+fn a_cage_that_changed_alone_was_no_warmer() {
+    let whole = MACHINES[0];
+    let broken = Machine {
+        r_r: 1.25 * whole.r_r,
+        ..whole
+    };
+    let report = explained_of_two(&whole, &broken, &Hidden::default());
+    assert_eq!(report.verdict, Verdict::Adequate);
+    let windings = report.final_.expect("fitted").windings;
+    assert!(windings.len() == 1 && !windings[0].is_temperature);
+    assert!(report.summary.contains("something else was changed"));
+}
+
+/// A flywheel is coupled between the recordings.
+#[test]
+fn recordings_of_a_motor_that_was_changed_between_them_are_explained_each_alone() {
+    let light = MACHINES[0];
+    let heavy = Machine {
+        j: 1.3 * light.j,
+        ..light
+    };
+    let report = explained_of_two(&light, &heavy, &Hidden::default());
     assert_eq!(report.verdict, Verdict::Unknown);
     let each_alone = report.unexplained.expect("unknown").each_alone;
     let changes = each_alone.expect("each recording alone is explained");
-    let of = |name: &str| {
-        let found = changes.iter().find(|change| change.name == name);
-        found.map(|change| change.change_percent).expect(name)
-    };
-    // Each fit knows them to 0.26 %: three standard errors of the difference.
-    assert!((of("stator_resistance_ohm") - 10.0).abs() < 1.2);
-    assert!((of("rotor_resistance_ohm") - 20.0).abs() < 1.2);
+    let inertia = changes.iter().find(|change| change.name == "inertia_kg_m2");
+    let change = inertia.expect("changed").change_percent;
+    assert!((change - 30.0).abs() < 2.0, "{change}");
 }

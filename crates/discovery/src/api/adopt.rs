@@ -79,7 +79,7 @@ fn adopted_effect(
             progress("fitting the effect", 0.5);
             fitted(study, &refitted, effect).map(|after| (refitted, after))
         }
-        false => Ok((as_believed(study), refitted)),
+        false => Ok((as_believed(study), study.at_one_temperature(refitted))),
     };
     let explains = |study: &Study, found: &Result<(Trial, Trial), Error>| match found {
         Ok((_, after)) if adequate(study, after) => Explains::All,
@@ -120,7 +120,7 @@ fn adopted_effect(
 pub(crate) fn as_believed(study: &Study) -> Trial {
     let mut priors = study.at_prior();
     priors.free.fill(false);
-    study.trial(&priors, Effort::NONE)
+    study.at_one_temperature(study.trial(&priors, Effort::NONE))
 }
 
 /// Everything that was found, if a law is part of it.

@@ -130,12 +130,7 @@ impl Begun {
     /// The parameters that this and another recording ask for differently, each fitted alone.
     fn differences(&self, other: &Begun) -> Vec<DifferenceReport> {
         let study = &self.question.study;
-        let told = |(name, change): (&str, f64)| DifferenceReport {
-            name: name.to_owned(),
-            change_percent: 100.0 * change.exp_m1(),
-        };
-        let all = study.differences(&self.baseline, &other.question.study, &other.baseline);
-        all.into_iter().map(told).collect()
+        study.differences(&self.baseline, &other.question.study, &other.baseline)
     }
 
     /// Whether nothing is missing.

@@ -7,6 +7,7 @@ use crate::laws::search::{LawStep, Refitted};
 use crate::search::refit::combined;
 use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Subject, Trial};
+use estimation::data::subject::{AS_WARM, warmed};
 use estimation::fit::normal_equations;
 use estimation::fit::smoother::Wander;
 use estimation::model::prior::Hypothesis;
@@ -101,17 +102,26 @@ fn everywhere(study: &Study, place: Place, fitted: Fitted) -> Option<Candidate> 
     let mut parameters = fitted.fit.hypothesis.clone();
     parameters.effects.pop();
     let mut pulses = vec![fitted.pulses];
-    let mut proof = Vec::new();
+    let (mut proof, mut warmth) = (Vec::new(), Vec::new());
     for subject in &study.proofs {
-        let scene = scene(study, subject, &parameters, false)?;
-        let there = scene.bursts(place, scene.wandering(place))?;
+        let bursts = |h: &Hypothesis| {
+            let scene = scene(study, subject, h, false)?;
+            scene.bursts(place, scene.wandering(place))
+        };
+        let there = bursts(&parameters)?;
+        let warm = subject.seen(&study.prior, &there.fit.hypothesis).warmth;
+        let there = match warm == AS_WARM {
+            true => there,
+            false => bursts(&warmed(&parameters, warm))?,
+        };
+        warmth.push(warm);
         let rows = subject.case.blocks();
         let blocks = normal_equations::blocks(&rows, &there.fit.residual, &[]);
         proof.extend(blocks.iter().map(|block| block.sse));
         pulses.push(there.pulses);
     }
     let mut trial = study.measured(fitted.fit);
-    trial.proof = proof;
+    (trial.proof, trial.warmth) = (proof, warmth);
     Some(Candidate {
         place,
         trial,

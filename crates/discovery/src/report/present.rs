@@ -9,7 +9,10 @@ use motor::effect::{Kind, Role};
 
 /// Errors and nominal parameters of a model that explains the recording: beside the errors of the channels, and which are off.
 pub(crate) fn fit_report(study: &Study, trial: &Trial) -> FitReport {
-    with_parameters(study, trial, study.polished(trial), study.off(trial))
+    FitReport {
+        windings: study.windings(trial),
+        ..with_parameters(study, trial, study.polished(trial), study.off(trial))
+    }
 }
 
 /// Errors and nominal parameters of a model that does not explain the recording: as they were fitted, and none is off. What is missing
@@ -38,6 +41,7 @@ fn with_parameters(study: &Study, trial: &Trial, polished: &Trial, off: &[usize]
         held_out_error_over_noise: study.proof_error(trial),
         fold_error_over_noise: study.fold_error(&trial.folds),
         parameters: (0..N_NOMINAL).map(nominal).collect(),
+        windings: Vec::new(),
     }
 }
 

@@ -6,7 +6,9 @@ use crate::report::parameter::{NominalReport, ParameterReport};
 use audit::Audit;
 use estimation::data::given::Fitted;
 use estimation::data::stretches::StretchReport;
+pub use estimation::fit::readings::DifferenceReport;
 use estimation::model::scale_report::SpeedScaleReport;
+use estimation::proof::windings::WindingsReport;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -70,6 +72,9 @@ pub struct FitReport {
     pub fold_error_over_noise: f64,
     /// Nominal parameters.
     pub parameters: Vec<NominalReport>,
+    /// Recordings that prove in which the windings had other resistances.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub windings: Vec<WindingsReport>,
 }
 
 /// An effect in the ranking of the first screen.
@@ -101,15 +106,6 @@ pub struct Unexplained {
     /// Where each of two recordings alone is explained with nothing missing: parameters that differ from the first to the second.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub each_alone: Option<Vec<DifferenceReport>>,
-}
-
-/// A parameter that two recordings ask for differently.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct DifferenceReport {
-    /// Name of the parameter.
-    pub name: String,
-    /// From the first recording to the second, percent.
-    pub change_percent: f64,
 }
 
 /// Share of the excess, percent, from which an effect that is not proven leaves nothing to look for outside the library.

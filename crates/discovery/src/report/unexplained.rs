@@ -57,8 +57,8 @@ pub(crate) fn apart(differences: Vec<DifferenceReport>) -> Unexplained {
     };
     Unexplained {
         description: format!(
-            "The model explains each recording alone, but not both with the same parameters{told}. A motor that was warmer in one of them looks \
-             so, and one that was changed between them."
+            "The model explains each recording alone, but not both with the same parameters{told}. A motor looks so that was changed between \
+             them, or what it drives."
         ),
         correlates_with: Vec::new(),
         best_lead: None,

@@ -3,13 +3,20 @@
 use crate::report::law::{BurstsReport, LawReport};
 use crate::report::types::{ExplainReport, FitReport, Unexplained, Verdict};
 use estimation::proof::accept::ADEQUATE;
+use estimation::proof::windings::told;
 
 /// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
 const FAR_BELOW: f64 = 0.3;
 
 /// What was found, in a sentence or two.
 pub(crate) fn summary(report: &ExplainReport) -> String {
-    let found = format!("{}{}", finding(report), report.fitted.told());
+    let windings = report.final_.as_ref().map_or(&[][..], |f| &f.windings);
+    let found = format!(
+        "{}{}{}",
+        finding(report),
+        told(windings),
+        report.fitted.told()
+    );
     let error = report.final_.as_ref().map(|f| f.held_out_error_over_noise);
     match error {
         Some(error) if error < FAR_BELOW => format!(

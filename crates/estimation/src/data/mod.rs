@@ -11,4 +11,5 @@ pub mod noise_floor;
 pub mod question;
 pub mod stretches;
 pub mod study;
+pub mod subject;
 pub mod unsupported;

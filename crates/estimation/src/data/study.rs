@@ -2,31 +2,19 @@
 
 use crate::data::case::Case;
 use crate::data::joined::together;
-use crate::data::noise_floor::{Floor, by_channel, floor, judged_of};
-use crate::fit::normal_equations;
+use crate::data::noise_floor::{by_channel, judged_of};
+pub use crate::data::subject::Subject;
+use crate::data::subject::{AS_WARM, Warmth, warmed};
 use crate::fit::output_error::{Effort, Fit, fit};
 use crate::model::free_scale::{self, FreeScale};
-use crate::model::prediction::{SpeedObserver, outputs, residual};
+use crate::model::prediction::{SpeedObserver, outputs};
 use crate::model::prior::{Hypothesis, Prior};
-use crate::model::unknown_state::unknown_state;
 use nalgebra::DMatrix;
 use std::sync::OnceLock;
-
-/// Seed of the propagated noise: the same input gives the same bytes.
-const SEED: u64 = 20_220_913;
 
 /// Mean squared difference of two predictions, in units of the floor, that no proof can resolve: a hundredth moves the
 /// error by half a per cent.
 const SILENT: f64 = 0.01;
-
-/// A recording with its noise floor.
-#[derive(Clone, Debug)]
-pub struct Subject {
-    /// The prepared recording.
-    pub case: Case,
-    /// Its floor.
-    pub floor: Floor,
-}
 
 /// Everything that stays the same while hypotheses come and go.
 #[derive(Clone, Debug)]
@@ -50,32 +38,14 @@ pub struct Trial {
     pub folds: Vec<f64>,
     /// Squared error of each block of the proving recordings, one after the other.
     pub proof: Vec<f64>,
+    /// By how much the windings' resistances differ in each proving recording.
+    pub warmth: Vec<Warmth>,
     /// Covariance of the fitted coordinates, once it was asked for.
     pub covariance: OnceLock<DMatrix<f64>>,
     /// Nominals that are off, once they were asked for.
     pub off: OnceLock<Vec<usize>>,
     /// The same beside the errors of the voltage channels, once it was asked for.
     pub polished: OnceLock<Option<Box<Trial>>>,
-}
-
-impl Subject {
-    fn new(mut case: Case, prior: &Prior) -> Self {
-        if let Some(waveform) = case.waveform_mut() {
-            waveform.nuisance = unknown_state(waveform, &prior.plant);
-        }
-        let floor = floor(&case, &prior.plant, SEED);
-        Self { case, floor }
-    }
-
-    /// Squared error of each block of a hypothesis.
-    pub fn errors(&self, prior: &Prior, h: &Hypothesis) -> Vec<f64> {
-        let r = residual(
-            &self.case,
-            &outputs(&self.case, prior, h, SpeedObserver::Off),
-        );
-        let blocks = normal_equations::blocks(&self.case.blocks(), &r, &[]);
-        blocks.iter().map(|b| b.sse).collect()
-    }
 }
 
 impl Study {
@@ -133,14 +103,29 @@ impl Study {
 
     /// Measures a fit on what it has not seen.
     pub fn measured(&self, fit: Fit) -> Trial {
-        let errors = |s: &Subject| s.errors(&self.prior, &fit.hypothesis);
+        let seen = self
+            .proofs
+            .iter()
+            .map(|s| s.seen(&self.prior, &fit.hypothesis));
+        let (proof, warmth): (Vec<_>, _) = seen.map(|seen| (seen.errors, seen.warmth)).unzip();
         Trial {
             folds: fit.held_out(),
-            proof: self.proofs.iter().flat_map(errors).collect(),
+            proof: proof.concat(),
+            warmth,
             covariance: OnceLock::new(),
             off: OnceLock::new(),
             polished: OnceLock::new(),
             fit,
+        }
+    }
+
+    /// The trial as a motor file has it, which holds one resistance for each winding: the fitted ones prove, too.
+    pub fn at_one_temperature(&self, trial: Trial) -> Trial {
+        let errors = |s: &Subject| s.errors(&self.prior, &trial.fit.hypothesis);
+        Trial {
+            proof: self.proofs.iter().flat_map(errors).collect(),
+            warmth: vec![AS_WARM; self.proofs.len()],
+            ..trial
         }
     }
 
@@ -164,16 +149,23 @@ impl Study {
 
     /// Whether the proving recordings cannot tell two trials apart: their predictions there differ by too little.
     pub fn proof_is_silent(&self, one: &Trial, other: &Trial) -> bool {
-        let difference = |s: &Subject| {
-            let run =
-                |t: &Trial| outputs(&s.case, &self.prior, &t.fit.hypothesis, SpeedObserver::Off);
+        let difference = |(k, s): (usize, &Subject)| {
+            let run = |t: &Trial| {
+                let there = warmed(&t.fit.hypothesis, t.warmth[k]);
+                outputs(&s.case, &self.prior, &there, SpeedObserver::Off)
+            };
             let squares = run(one)
                 .into_iter()
                 .zip(run(other))
                 .map(|(a, b)| (a - b).powi(2));
             squares.sum::<f64>() / (s.floor.mean * s.case.judged())
         };
-        !self.proofs.is_empty() && self.proofs.iter().all(|s| difference(s) < SILENT)
+        !self.proofs.is_empty()
+            && self
+                .proofs
+                .iter()
+                .enumerate()
+                .all(|one| difference(one) < SILENT)
     }
 
     /// Squared error of a fit over the floor of the fitted recording.

@@ -6,6 +6,17 @@ use crate::fit::{polish, uncertainty};
 use crate::model::prior::{FRICTION, N_NOMINAL, NOMINALS};
 use crate::proof::off;
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// A parameter that two recordings ask for differently.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct DifferenceReport {
+    /// Name of the parameter.
+    pub name: String,
+    /// From the first recording to the second, percent.
+    pub change_percent: f64,
+}
 
 impl Study {
     /// Covariance of the fitted coordinates of a trial, in their order.
@@ -31,13 +42,8 @@ impl Study {
             .get_or_init(|| off::nominals(self, self.polished(trial)))
     }
 
-    /// Names and moves (logarithm) of the nominals but friction that two studies of one motor read differently, beyond the errors of both.
-    pub fn differences(
-        &self,
-        here: &Trial,
-        other: &Self,
-        there: &Trial,
-    ) -> Vec<(&'static str, f64)> {
+    /// The nominals but friction that two studies of one motor read differently, beyond the errors of both.
+    pub fn differences(&self, here: &Trial, other: &Self, there: &Trial) -> Vec<DifferenceReport> {
         let read = |study: &Self, trial: &Trial, k: usize| {
             let error = coordinate_error(trial, study.covariance(trial), k);
             (trial.fit.hypothesis.z[k], error)
@@ -46,7 +52,10 @@ impl Study {
             let (from, error) = read(self, here, k);
             let (to, other_error) = read(other, there, k);
             let is_far = (to - from).abs() > off::SIGNIFICANT * error.hypot(other_error);
-            is_far.then_some((NOMINALS[k].name, to - from))
+            is_far.then(|| DifferenceReport {
+                name: NOMINALS[k].name.to_owned(),
+                change_percent: 100.0 * (to - from).exp_m1(),
+            })
         };
         let is_free = |&k: &usize| here.fit.free.contains(&k) && k != FRICTION;
         (0..N_NOMINAL)

@@ -18,6 +18,8 @@ pub const NOMINALS: [Nominal; 6] = [
 ];
 /// Number of nominal parameters.
 pub const N_NOMINAL: usize = NOMINALS.len();
+/// Indices of the stator's and the rotor's resistance.
+pub const RESISTANCES: [usize; 2] = [0, 1];
 /// Index of the leakages.
 pub const LEAKAGE: usize = 2;
 /// Index of the magnetizing inductance.

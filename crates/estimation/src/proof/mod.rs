@@ -3,3 +3,4 @@
 pub mod accept;
 pub mod off;
 pub mod pairs;
+pub mod windings;

@@ -56,6 +56,7 @@ fn report(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) 
             held_out_error_over_noise: 1.0,
             fold_error_over_noise: 1.0,
             parameters: parameters.to_vec(),
+            windings: Vec::new(),
         }),
         ranking: Vec::new(),
         not_testable: Vec::new(),

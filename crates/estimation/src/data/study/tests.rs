@@ -93,7 +93,11 @@ fn the_proof_is_measured_against_the_floors_of_all_that_proves() {
 #[test]
 fn a_proof_is_silent_below_a_hundredth_of_its_floor() {
     let mut study = specimen::proven_table_study(|_| ());
-    let trials = [0.0, 0.1].map(|size| specimen::trial_with(&study, &[("core-loss", size)]));
+    let mut trials = [0.0, 0.1].map(|size| specimen::trial_with(&study, &[("core-loss", size)]));
+    // Another proof is added below.
+    trials
+        .iter_mut()
+        .for_each(|trial| trial.warmth.push(AS_WARM));
     let subject = &study.proofs[0];
     let predicted = trials.clone().map(|t| {
         outputs(

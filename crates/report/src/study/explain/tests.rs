@@ -39,6 +39,7 @@ fn report(law: LawReport) -> ExplainReport {
         held_out_error_over_noise: 1.0,
         fold_error_over_noise: 1.0,
         parameters: Vec::new(),
+        windings: Vec::new(),
     };
     ExplainReport {
         stretches: Vec::new(),
