@@ -354,6 +354,41 @@ fn a_law_is_proven_on_a_recording_of_a_motor_that_was_warmer() {
     assert!((windings[0].rotor_resistance_change_percent - 14.0).abs() < 1.2);
 }
 
+/// The first and the third of three recordings are fitted together, unless the motor was warmer in one of them.
+#[test]
+fn of_three_recordings_at_three_temperatures_the_first_is_fitted() {
+    let cold = Machine::of(SEED);
+    let warmer = |by: f64| Machine {
+        r_s: (1.0 + by) * cold.r_s,
+        r_r: (1.0 + by) * cold.r_r,
+        ..cold
+    };
+    for (law, verdict) in [(None, Verdict::Adequate), (Some(Law::Jaws), Verdict::Law)] {
+        let hidden = Hidden {
+            law,
+            ..Hidden::default()
+        };
+        let source = |by: f64, course, seed| {
+            recording::Source::Recording(record(&warmer(by), &hidden, course, seed))
+        };
+        let sources = [
+            source(0.0, &LOADS, SEED),
+            source(0.08, &STEPS, SEED + 1),
+            source(0.16, &LOADS, SEED + 2),
+        ];
+        let report = explain(&sources, &priors(&cold, SEED), &mut |_, _| {}).expect("judged");
+        println!("{}", report.summary);
+        assert_eq!((report.verdict, report.fitted), (verdict, Fitted::First));
+        let windings = report.final_.expect("fitted").windings;
+        let proofs: Vec<usize> = windings.iter().map(|w| w.proof).collect();
+        assert_eq!(proofs, [1, 2]);
+        for (windings, truth) in windings.iter().zip([8.0, 16.0]) {
+            assert!((windings.stator_resistance_change_percent - truth).abs() < 1.2);
+            assert!((windings.rotor_resistance_change_percent - truth).abs() < 1.2);
+        }
+    }
+}
+
 /// A third of its bars open between the recordings: the cage's resistance rises, and no temperature leaves the winding as it was.
 #[test]
 fn a_cage_that_changed_alone_was_no_warmer() {

@@ -4,7 +4,7 @@
 //! stands on one load leaves half of its parameters open. Which of two recordings shows more of a thing that nobody knows yet is
 //! seen when it was asked for.
 
-use estimation::data::given::{Fitted, One, Sources};
+use estimation::data::given::{Fitted, Sources};
 use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
@@ -39,13 +39,13 @@ pub(super) enum Explains {
 /// A question, and the model with its parameters refitted and nothing added.
 struct Begun {
     question: Question,
+    fitted: Fitted,
     baseline: Trial,
 }
 
-/// Asks about the recordings as they are given. Where that leaves something of two, asks also with the second one fitted, which is the
-/// answer if it leaves nothing: two recordings of a motor that was cold in the one and hot in the other are explained by neither.
-/// Where the fitted recording shows too little of the parameters, and the second one or all together are explained without anything
-/// that is missing, nothing is. What is asked gets the study, and the model with its parameters refitted.
+/// Asks about the recordings as they are given. Where that leaves something, asks also with the second of two fitted, or the first alone of
+/// more, which is the answer if it leaves nothing: those that are fitted together may be of a motor that was cold in the one and hot in the
+/// other. Where one of them or all together are explained without anything that is missing, nothing is. What is asked gets the study, and the model with its parameters refitted.
 ///
 /// # Errors
 /// As [`Question::new`] of the recordings as they are given.
@@ -56,72 +56,72 @@ pub(super) fn in_either_order<T>(
     explains: impl Fn(&Study, &T) -> Explains,
     progress: &mut Progress<'_>,
 ) -> Result<Answer<T>, Error> {
-    let given = Begun::of(sources, motor, progress)?;
+    let given = Begun::of(sources, motor, Fitted::AsGiven, progress)?;
     if !given.question.is_of_wholes() {
-        return Ok(given.asked(&ask, Fitted::AsGiven, progress));
+        return Ok(given.asked(&ask, progress));
     }
-    let turned: Vec<One<'_>> = sources.iter().rev().collect();
-    let begin_other = |progress: &mut Progress<'_>| match turned.len() {
-        2 => Begun::of(Sources::Listed(&turned), motor, progress).ok(),
-        _ => None,
-    };
-    let mut other = match given.shows_too_little() {
-        true => begin_other(progress),
+    let another = Fitted::another_of(sources.iter().len());
+    let begin_other = |progress: &mut Progress<'_>| Begun::of(sources, motor, another, progress);
+    let are_unlike = another == Fitted::First && !given.is_adequate();
+    let mut other = match given.shows_too_little() || are_unlike {
+        true => begin_other(progress).ok(),
         false => None,
     };
-    if let Some((begun, fitted)) = explained_by_more(&given, &mut other) {
-        return Ok(begun.asked(&ask, fitted, progress));
+    if let Some(begun) = explained_by_more(&given, &mut other) {
+        return Ok(begun.asked(&ask, progress));
     }
     let explained = |answer: &Answer<T>| explains(&answer.question.study, &answer.found);
     let alone = other.as_ref().filter(|other| other.shows_too_little());
-    let each_alone = alone.map(|other| given.differences(other));
+    let each_alone = alone.filter(|_| another == Fitted::Second);
+    let each_alone = each_alone.map(|other| given.differences(other));
     let given = Answer {
         each_alone,
-        ..given.asked(&ask, Fitted::AsGiven, progress)
+        ..given.asked(&ask, progress)
     };
     let so_far = explained(&given);
     if so_far >= Explains::Most || given.each_alone.is_some() {
         return Ok(given);
     }
     let mut tell =
-        |what: &str, share| progress(&format!("{what}, the second recording fitted"), share);
-    let other = other.or_else(|| begin_other(&mut tell));
-    let other = other.map(|other| other.asked(&ask, Fitted::Second, &mut tell));
+        |what: &str, share| progress(&format!("{what}, another recording fitted"), share);
+    let other = other.or_else(|| begin_other(&mut tell).ok());
+    let other = other.map(|other| other.asked(&ask, &mut tell));
     let better = other.filter(|other| explained(other) == Explains::All);
     Ok(better.unwrap_or(given))
 }
 
-/// The second recording or all together, where the first one shows too little and nothing is missing then.
-fn explained_by_more(given: &Begun, other: &mut Option<Begun>) -> Option<(Begun, Fitted)> {
-    if !given.shows_too_little() {
-        return None;
-    }
-    let second = other.take_if(|other| other.is_adequate());
-    let second = second.map(|second| (second, Fitted::Second));
-    second.or_else(|| Some((given.explained_together()?, Fitted::All)))
+/// Another recording or all together, where nothing is missing then.
+fn explained_by_more(given: &Begun, other: &mut Option<Begun>) -> Option<Begun> {
+    let other = other.take_if(|other| other.is_adequate());
+    other.or_else(|| given.explained_together())
 }
 
 impl Begun {
     fn of(
         sources: Sources<'_>,
         motor: &MotorFile,
+        fitted: Fitted,
         progress: &mut Progress<'_>,
     ) -> Result<Self, Error> {
-        let question = Question::new(sources, motor, progress)?;
+        let question = Question::with(sources, motor, fitted, progress)?;
         progress("refitting the parameters", 0.1);
-        Ok(Self::about(question))
+        Ok(Self::about(question, fitted))
     }
 
-    fn about(question: Question) -> Self {
+    fn about(question: Question, fitted: Fitted) -> Self {
         Self {
             baseline: question.study.refitted(),
             question,
+            fitted,
         }
     }
 
     /// All recordings fitted together, where nothing is missing in any of them then.
     fn explained_together(&self) -> Option<Self> {
-        let together = Self::about(self.question.together()?);
+        if !self.shows_too_little() {
+            return None;
+        }
+        let together = Self::about(self.question.together()?, Fitted::All);
         let explains_each =
             adequate_in_each(&self.question.study, &together.baseline.fit.hypothesis);
         (together.is_adequate() && explains_each).then_some(together)
@@ -146,13 +146,12 @@ impl Begun {
     fn asked<T>(
         self,
         ask: &impl Fn(&Study, Trial, &mut Progress<'_>) -> T,
-        fitted: Fitted,
         progress: &mut Progress<'_>,
     ) -> Answer<T> {
         Answer {
             found: ask(&self.question.study, self.baseline, progress),
             question: self.question,
-            fitted,
+            fitted: self.fitted,
             each_alone: None,
         }
     }

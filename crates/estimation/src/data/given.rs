@@ -41,6 +41,8 @@ pub enum Fitted {
     /// The first one, of more the first, third, ...; the others prove.
     #[default]
     AsGiven,
+    /// The first of three or more, and all others prove: fitted together they leave something.
+    First,
     /// The second of two, and the first one proves: in the given order something is left over.
     Second,
     /// All together, by folds: alone they show too little of the parameters to explain each other.
@@ -48,6 +50,14 @@ pub enum Fitted {
 }
 
 impl Fitted {
+    /// What is fitted of so many recordings where as they are given something is left.
+    pub fn another_of(recordings: usize) -> Self {
+        match recordings {
+            2 => Fitted::Second,
+            _ => Fitted::First,
+        }
+    }
+
     /// Whether the recordings are used in the order in which they were given.
     pub fn is_as_given(&self) -> bool {
         *self == Fitted::AsGiven
@@ -57,6 +67,9 @@ impl Fitted {
     pub fn told(self) -> &'static str {
         match self {
             Fitted::AsGiven => "",
+            Fitted::First => {
+                " The recording named first is fitted alone, and the others prove: fitted together they leave something."
+            }
             Fitted::Second => {
                 " The recording named second is fitted, and the first one proves: in the given order something is left over."
             }

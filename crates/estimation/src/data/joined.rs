@@ -28,6 +28,12 @@ pub fn shared(cases: Vec<Case>) -> Option<(Case, Vec<Case>)> {
     Some((fitted, proofs))
 }
 
+/// The first recording alone, which is fitted, and all others, which prove.
+pub fn first_alone(cases: Vec<Case>) -> Option<(Case, Vec<Case>)> {
+    let mut cases = cases.into_iter();
+    Some((cases.next()?, cases.collect()))
+}
+
 /// All recordings as one case that is fitted; `None` where they do not suit.
 pub fn together(cases: impl IntoIterator<Item = Case>) -> Option<Case> {
     let mut cases = cases.into_iter();

@@ -1,8 +1,8 @@
 //! From files to a study: audit, preparation, errors.
 
 use crate::data::case::{Case, Waveform};
-use crate::data::given::{One, Sources};
-use crate::data::joined::shared;
+use crate::data::given::{Fitted, One, Sources};
+use crate::data::joined::{first_alone, shared};
 use crate::data::stretches::{Excerpt, Role, StretchReport, cut, stretches, told};
 use crate::data::study::Study;
 use crate::data::unsupported::Unsupported;
@@ -67,12 +67,33 @@ impl Question {
         motor: &MotorFile,
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Self, Error> {
-        Self::about(sources.into(), motor, progress)
+        Self::with(sources.into(), motor, Fitted::AsGiven, progress)
+    }
+
+    /// As [`Question::new`], with other recordings fitted; all together are fitted by [`Question::together`].
+    ///
+    /// # Errors
+    /// As [`Question::new`].
+    pub fn with(
+        sources: Sources<'_>,
+        motor: &MotorFile,
+        fitted: Fitted,
+        progress: &mut dyn FnMut(&str, f64),
+    ) -> Result<Self, Error> {
+        match fitted {
+            Fitted::AsGiven | Fitted::All => Self::about(sources, motor, shared, progress),
+            Fitted::First => Self::about(sources, motor, first_alone, progress),
+            Fitted::Second => {
+                let turned: Vec<One<'_>> = sources.iter().rev().collect();
+                Self::about(Sources::Listed(&turned), motor, shared, progress)
+            }
+        }
     }
 
     fn about(
         sources: Sources<'_>,
         motor: &MotorFile,
+        shared: impl Fn(Vec<Case>) -> Option<(Case, Vec<Case>)>,
         progress: &mut dyn FnMut(&str, f64),
     ) -> Result<Self, Error> {
         let Some(first) = sources.iter().next() else {

@@ -4,6 +4,7 @@ use crate::report::types::{DifferenceReport, FitReport, StepReport, Unexplained}
 use crate::report::unexplained::apart;
 use audit::Audit;
 use estimation::data::given::Fitted;
+use estimation::proof::windings::WindingsReport;
 
 fn nominal(name: &str, off: bool, change_percent: f64) -> NominalReport {
     NominalReport {
@@ -183,16 +184,32 @@ fn recordings_that_are_explained_one_by_one_say_what_differs() {
         report.unexplained = Some(apart(differences));
         summary(&report)
     };
-    let rest =
-        ". A motor that was warmer in one of them looks so, and one that was changed between them.";
+    let rest = ". A motor looks so that was changed between them, or what it drives.";
     let both = "The model explains each recording alone, but not both with the same parameters";
     assert_eq!(told(Vec::new()), format!("{both}{rest}"));
-    let warmer = DifferenceReport {
-        name: "rotor_resistance_ohm".to_owned(),
+    let heavier = DifferenceReport {
+        name: "inertia_kg_m2".to_owned(),
         change_percent: 19.96,
     };
     assert_eq!(
-        told(vec![warmer]),
-        format!("{both} (rotor_resistance_ohm +20.0 % from the first to the second){rest}")
+        told(vec![heavier]),
+        format!("{both} (inertia_kg_m2 +20.0 % from the first to the second){rest}")
+    );
+}
+
+/// What is found of a motor that was warmer in the recording that proves says so; what is missing unnamed moves resistances, too.
+#[test]
+fn a_motor_that_was_warmer_is_told_so_where_the_model_explains_it() {
+    let mut report = report(Verdict::Adequate, &[], &[]);
+    let warmer = WindingsReport {
+        proof: 1,
+        stator_resistance_change_percent: 8.04,
+        rotor_resistance_change_percent: 7.96,
+        is_temperature: true,
+    };
+    report.final_.as_mut().expect("fitted").windings = vec![warmer];
+    assert_eq!(
+        summary(&report),
+        "The model explains the recording. The motor was warmer in the recording that proves (stator resistance +8.0 %, rotor resistance +8.0 %)."
     );
 }

@@ -83,14 +83,22 @@ pub(super) fn proof(result: &Place<'_>) -> String {
         .iter()
         .map(Place::as_text)
         .collect();
-    let are_all_fitted = result.text("fitted") == "all";
-    match recordings.split_first() {
-        Some((first, rest)) if !rest.is_empty() && !are_all_fitted => {
-            format!("fitted on {first}, proven on {}", rest.join(" and "))
-        }
+    let is_fitted = |k: usize| match result.text("fitted") {
+        "all" => true,
+        "first" => k == 0,
+        _ => k % 2 == 0,
+    };
+    let of = |fitted: bool| {
+        let all = recordings.iter().enumerate();
+        let these = all.filter(|(k, _)| is_fitted(*k) == fitted);
+        let names: Vec<&str> = these.map(|(_, name)| *name).collect();
+        names.join(" and ")
+    };
+    match of(false) {
+        proofs if !proofs.is_empty() => format!("fitted on {}, proven on {proofs}", of(true)),
         _ => format!(
             "fitted on {}, proven by {} that were left out",
-            recordings.join(" and "),
+            of(true),
             match result.get("table_overlay") {
                 Some(_) => "points",
                 None => "interleaved blocks",
