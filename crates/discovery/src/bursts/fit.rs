@@ -38,10 +38,8 @@ pub(crate) struct Scene<'a> {
     pub waveform: &'a Waveform,
     /// What is believed.
     pub prior: &'a Prior,
-    /// The model without bursts.
+    /// The model without bursts: its free parameters are fitted with them.
     pub without: Hypothesis,
-    /// Whether its parameters are fitted with the bursts.
-    pub free: bool,
 }
 
 /// Bursts and the fit with them.
@@ -70,9 +68,6 @@ impl Scene<'_> {
     fn with(&self, h: &Hypothesis, place: Place, amount: &[f64]) -> Hypothesis {
         let mut there = self.without.clone();
         there.z.clone_from(&h.z);
-        if !self.free {
-            there.free.fill(false);
-        }
         there.with(trace(place, self.t_step(), amount), &self.prior.plant.rated)
     }
 
@@ -141,7 +136,7 @@ impl Scene<'_> {
         for round in 0..ROUNDS {
             let there = self.with(&h, place, &amount);
             let effort = Effort {
-                iterations: if self.free { round } else { 0 },
+                iterations: round,
                 ..Effort::FULL
             };
             let fit = self.fitted(&there, effort);

@@ -7,7 +7,7 @@ use crate::laws::search::{LawStep, Refitted};
 use crate::search::refit::combined;
 use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Subject, Trial};
-use estimation::data::subject::{AS_WARM, warmed};
+use estimation::data::subject::{warmth_of, with_free_windings};
 use estimation::fit::normal_equations;
 use estimation::fit::smoother::Wander;
 use estimation::model::prior::Hypothesis;
@@ -46,7 +46,7 @@ pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
     if !waveform.timeline.cuts.is_empty() {
         return None;
     }
-    let scene = scene(study, &study.fitted, &base.fit.hypothesis, true)?;
+    let scene = scene(study, &study.fitted, &base.fit.hypothesis)?;
     let asked: Vec<Place> = places()
         .filter(|place| is_judged(waveform, *place))
         .collect();
@@ -80,13 +80,12 @@ pub(crate) fn bursts(study: &Study, base: &Trial) -> Option<LawStep> {
 }
 
 /// A recording with a model; `None` of a load table.
-fn scene<'a>(study: &'a Study, of: &'a Subject, h: &Hypothesis, free: bool) -> Option<Scene<'a>> {
+fn scene<'a>(study: &'a Study, of: &'a Subject, h: &Hypothesis) -> Option<Scene<'a>> {
     Some(Scene {
         case: &of.case,
         waveform: of.case.waveform()?,
         prior: &study.prior,
         without: h.clone(),
-        free,
     })
 }
 
@@ -97,24 +96,17 @@ fn is_judged(waveform: &Waveform, place: Place) -> bool {
     }
 }
 
-/// The same place in the recordings that prove: the parameters are those of the fitted one, the bursts their own.
+/// The same place in the recordings that prove: the parameters are those of the fitted one, bursts and resistances their own.
 fn everywhere(study: &Study, place: Place, fitted: Fitted) -> Option<Candidate> {
     let mut parameters = fitted.fit.hypothesis.clone();
     parameters.effects.pop();
     let mut pulses = vec![fitted.pulses];
     let (mut proof, mut warmth) = (Vec::new(), Vec::new());
     for subject in &study.proofs {
-        let bursts = |h: &Hypothesis| {
-            let scene = scene(study, subject, h, false)?;
-            scene.bursts(place, scene.wandering(place))
-        };
-        let there = bursts(&parameters)?;
-        let warm = subject.seen(&study.prior, &there.fit.hypothesis).warmth;
-        let there = match warm == AS_WARM {
-            true => there,
-            false => bursts(&warmed(&parameters, warm))?,
-        };
-        warmth.push(warm);
+        let as_warm = subject.seen(&study.prior, &parameters).warmth;
+        let scene = scene(study, subject, &with_free_windings(&parameters, as_warm))?;
+        let there = scene.bursts(place, scene.wandering(place))?;
+        warmth.push(warmth_of(&there.fit.hypothesis, &parameters)?);
         let rows = subject.case.blocks();
         let blocks = normal_equations::blocks(&rows, &there.fit.residual, &[]);
         proof.extend(blocks.iter().map(|block| block.sse));

@@ -106,7 +106,6 @@ fn a_contact_that_opens_far_is_suspected_where_a_less_likely_place_shows_bursts(
         case: &measured,
         prior,
         without: believed.hypothesis.clone(),
-        free: true,
     };
     let suspected = scene.suspected(&places().collect::<Vec<_>>(), 3, 0.0);
     let places: Vec<Place> = suspected.iter().map(|(place, _)| *place).collect();

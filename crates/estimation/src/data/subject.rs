@@ -159,5 +159,20 @@ pub fn warmed(h: &Hypothesis, warmth: Warmth) -> Hypothesis {
     warm
 }
 
+/// A hypothesis of a recording that proves, with windings so much warmer: nothing but their resistances is fitted.
+pub fn with_free_windings(h: &Hypothesis, warmth: Warmth) -> Hypothesis {
+    let mut free = warmed(h, warmth);
+    free.free.fill(false);
+    RESISTANCES.into_iter().for_each(|k| free.free[k] = true);
+    free
+}
+
+/// By how much a hypothesis' windings are warmer than another one's; `None` beyond what a temperature makes of them.
+pub fn warmth_of(h: &Hypothesis, other: &Hypothesis) -> Option<Warmth> {
+    let warmth = RESISTANCES.map(|k| h.z[k] - other.z[k]);
+    let is_possible = warmth.iter().all(|change| change.abs() <= FURTHEST);
+    is_possible.then_some(warmth)
+}
+
 #[cfg(test)]
 mod tests;

@@ -72,3 +72,16 @@ fn other_parameters_stay_wrong() {
     let floor = study.fitted.floor.mean * study.fitted.case.judged();
     assert!(sum(&seen) > 10.0 * floor, "{} of {floor}", sum(&seen));
 }
+
+/// Only the resistances are fitted, from where they are; further than a temperature moves them they are another motor's.
+#[test]
+fn windings_are_warmer_by_what_they_differ() {
+    let study = specimen::study(1.0, |_| 1.0);
+    let h = warmed(&study.at_prior(), [0.02, -0.01]);
+    let free = with_free_windings(&h, [0.1, 0.2]);
+    let number = free.free.iter().filter(|free| **free).count();
+    assert!(number == 2 && RESISTANCES.iter().all(|&k| free.free[k]));
+    let warmth = warmth_of(&free, &h).expect("possible");
+    assert!((warmth[0] - 0.1).abs() < 1e-12 && (warmth[1] - 0.2).abs() < 1e-12);
+    assert!(warmth_of(&warmed(&h, [0.0, 1.001 * FURTHEST]), &h).is_none());
+}

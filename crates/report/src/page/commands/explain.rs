@@ -86,7 +86,7 @@ pub(super) fn proof(result: &Place<'_>) -> String {
     let is_fitted = |k: usize| match result.text("fitted") {
         "all" => true,
         "first" => k == 0,
-        _ => k % 2 == 0,
+        _ => k.is_multiple_of(2),
     };
     let of = |fitted: bool| {
         let all = recordings.iter().enumerate();
