@@ -158,12 +158,7 @@ fn library(
         let mut begun = begin(study, &base, excluded, &mut tell);
         begun.lead(&at_prior(&base));
         let rival = begun.proven().map_or(&base, |c| &c.trial);
-        if let Some(law) = decisive_bursts(answered, &base, rival, &mut tell) {
-            first.get_or_insert(begun.enough());
-            laws.push(law);
-            break;
-        }
-        if let Some(law) = decisive_law(answered, &base, rival, &mut tell) {
+        if let Some(law) = decisive(answered, &base, rival, &mut tell) {
             let begun = begun.enough();
             match behind(study, &base, &law, &begun, excluded) {
                 Some(effect) => steps.push(effect),
@@ -242,37 +237,17 @@ fn may_decide(study: &Study, rival: &Trial) -> bool {
     over_time && !study.proofs.is_empty() && !adequate(study, rival)
 }
 
-/// What comes and goes on top of `base`, and makes the model adequate where `rival` does not.
-fn decisive_bursts(
+/// A law or what comes and goes on top of `base` that makes the model adequate where `rival` does not, and beats it.
+fn decisive(
     answered: &mut Answered<'_>,
     base: &Trial,
     rival: &Trial,
     tell: &mut dyn FnMut(&str),
 ) -> Option<LawStep> {
     let study = answered.study;
-    if !may_decide(study, rival) {
-        return None;
-    }
-    let law = answered.bursts(base, tell)?;
-    (adequate(study, &law.trial) && beats(&law.trial, rival)).then_some(law)
-}
-
-/// A law on top of `base` that makes the model adequate where `rival` does not, and beats it.
-fn decisive_law(
-    answered: &mut Answered<'_>,
-    base: &Trial,
-    rival: &Trial,
-    tell: &mut dyn FnMut(&str),
-) -> Option<LawStep> {
-    let study = answered.study;
-    if !may_decide(study, rival) {
-        return None;
-    }
-    let law = answered
-        .laws_better_than(base, rival, tell)?
-        .best(study, base)?;
-    let wins = law.proven && adequate(study, &law.trial) && beats(&law.trial, rival);
-    wins.then_some(law)
+    let wins =
+        |law: &LawStep| law.proven && adequate(study, &law.trial) && beats(&law.trial, rival);
+    may_decide(study, rival).then(|| answered.decisive(base, rival, wins, tell))?
 }
 
 /// Whether effects were accepted with parameters that are far from what is believed: another explanation may need less.

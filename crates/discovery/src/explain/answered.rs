@@ -9,6 +9,9 @@ use estimation::data::study::{Study, Trial};
 use estimation::model::prior::Hypothesis;
 use std::rc::Rc;
 
+/// Share of the excess that the screen of a law leaves at most to be asked before bursts.
+const HARDLY_ANY: f64 = 0.15;
+
 /// Answers about the models of one study.
 pub(super) struct Answered<'a> {
     /// The study.
@@ -45,19 +48,41 @@ impl<'a> Answered<'a> {
         }
     }
 
-    /// The same if the screen promises more of the best law than another model explains.
-    pub fn laws_better_than(
+    /// A law on top of a model, or what comes and goes, that decides. A law is fitted where its screen promises more than a rival explains;
+    /// before bursts where that is nearly all, because no curve does as much for what comes and goes.
+    pub fn decisive(
         &mut self,
         base: &Trial,
         rival: &Trial,
+        decides: impl Fn(&LawStep) -> bool,
         tell: &mut dyn FnMut(&str),
-    ) -> Option<Rc<Laws>> {
-        let limit = self.study.fold_error(&rival.folds);
-        if let Some(laws) = known(&self.laws, base) {
-            return (laws.promised < limit).then(|| laws.clone());
+    ) -> Option<LawStep> {
+        let study = self.study;
+        let search = match known(&self.laws, base) {
+            None => LawSearch::new(study, base, tell),
+            Some(_) => None,
+        };
+        let promised = match &search {
+            None => known(&self.laws, base)?.promised,
+            Some(search) => search.promised(),
+        };
+        let law = |answered: &mut Self, tell: &mut dyn FnMut(&str)| {
+            let laws = match search {
+                None => known(&answered.laws, base)?.clone(),
+                Some(search) => answered.keep(base, search.refitted(tell)),
+            };
+            laws.best(study, base).filter(&decides)
+        };
+        let error = |trial: &Trial| study.fold_error(&trial.folds);
+        let excess = |error: f64| error * error - 1.0;
+        if promised >= error(rival) {
+            return self.bursts(base, tell).filter(&decides);
         }
-        let search = LawSearch::new(self.study, base, tell)?;
-        (search.promised() < limit).then(|| self.keep(base, search.refitted(tell)))
+        if excess(promised) < HARDLY_ANY * excess(error(base)) {
+            return law(self, tell).or_else(|| self.bursts(base, tell).filter(&decides));
+        }
+        let bursts = self.bursts(base, tell).filter(&decides);
+        bursts.or_else(|| law(self, tell))
     }
 
     fn keep(&mut self, base: &Trial, laws: Laws) -> Rc<Laws> {
@@ -95,17 +120,18 @@ mod tests {
         assert!(Rc::ptr_eq(&laws, &again));
         // What the screen promised is known with the laws.
         let than = |error: f64| specimen::with_errors(&study, &base, error, error);
-        let kept = answered.laws_better_than(&base, &than(1.01 * laws.promised), &mut tell);
-        assert!(kept.is_some_and(|kept| Rc::ptr_eq(&laws, &kept)));
-        let none = answered.laws_better_than(&base, &than(0.99 * laws.promised), &mut tell);
-        assert!(none.is_none());
+        let mut asked_again = |error: f64| {
+            answered.decisive(&base, &than(error), |_| false, &mut tell);
+        };
+        asked_again(0.99 * laws.promised);
+        asked_again(1.01 * laws.promised);
         let bursts = answered.bursts(&base, &mut tell).is_some();
         assert_eq!(answered.bursts(&base, &mut tell).is_some(), bursts);
         assert_eq!(told, 3, "screened, refitted, bursts: once each");
         // Another model is another question.
         let mut other = base.clone();
         other.fit.hypothesis.z[0] += 1e-9;
-        answered.laws_better_than(&other, &than(0.0), &mut |_| told += 1);
-        assert_eq!(told, 4);
+        answered.decisive(&other, &than(0.0), |_| true, &mut |_| told += 1);
+        assert_eq!(told, 5, "screened and asked for bursts");
     }
 }
