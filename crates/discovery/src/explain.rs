@@ -12,7 +12,7 @@ use crate::laws::formula::prove::formulas;
 use crate::laws::search::LawStep;
 use crate::search::refit::{Candidate, Round, begin, combined};
 use answered::Answered;
-use complete::{complete, put_on_top};
+use complete::{complete, hidden, put_on_top};
 use contests::contests;
 pub(crate) use contests::stands_for;
 use disguise::disguised;
@@ -76,6 +76,8 @@ pub(crate) struct Explanation {
     pub laws: Vec<LawStep>,
     /// Whether what was found may be named.
     pub nameable: bool,
+    /// What was asked, where it was not looked for what hides yet.
+    pub open: Option<Answered>,
 }
 
 impl Explanation {
@@ -103,8 +105,8 @@ pub(crate) fn explain(
     shapes: Shapes,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
-    let mut answered = Answered::of(study);
-    let mut explanation = library(&mut answered, baseline, excluded, progress);
+    let mut answered = Answered::default();
+    let mut explanation = library(study, &mut answered, baseline, excluded, progress);
     if !explanation.steps.is_empty()
         && let Some(law) = explanation.laws.pop()
     {
@@ -112,8 +114,37 @@ pub(crate) fn explain(
     }
     prefer_plausible(study, &mut explanation);
     if laws_are_asked(study, &explanation) {
-        complete(&mut answered, &mut explanation, excluded, progress);
+        complete(study, answered, &mut explanation, excluded, progress);
     }
+    match explanation.open {
+        Some(_) => explanation,
+        None => finished(study, explanation, excluded, shapes, progress),
+    }
+}
+
+/// Looks for what hides each other where an explanation is open.
+pub(crate) fn go_on(
+    study: &Study,
+    mut explanation: Explanation,
+    excluded: &[&str],
+    shapes: Shapes,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Explanation {
+    let Some(answered) = explanation.open.take() else {
+        return explanation;
+    };
+    hidden(study, answered, &mut explanation, excluded, progress);
+    finished(study, explanation, excluded, shapes, progress)
+}
+
+/// Formulas of the laws, and the parameters that may stand for an effect.
+fn finished(
+    study: &Study,
+    mut explanation: Explanation,
+    excluded: &[&str],
+    shapes: Shapes,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Explanation {
     let proven = |law: &&mut LawStep| law.proven && law.bursts.is_empty();
     for law in explanation.laws.iter_mut().filter(proven) {
         progress("holding formulas against the curve", 0.9);
@@ -142,12 +173,12 @@ fn prefer_plausible(study: &Study, found: &mut Explanation) {
 /// One effect of the library after the other, each proven, until the model is adequate; a law that makes it adequate
 /// where the library's best effect does not comes first.
 fn library(
-    answered: &mut Answered<'_>,
+    study: &Study,
+    answered: &mut Answered,
     mut baseline: Trial,
     excluded: &[&str],
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
-    let study = answered.study;
     let mut steps: Vec<Step> = Vec::new();
     let mut laws = Vec::new();
     let mut first = None;
@@ -158,7 +189,7 @@ fn library(
         let mut begun = begin(study, &base, excluded, &mut tell);
         begun.lead(&at_prior(&base));
         let rival = begun.proven().map_or(&base, |c| &c.trial);
-        if let Some(law) = decisive(answered, &base, rival, &mut tell) {
+        if let Some(law) = decisive(study, answered, &base, rival, &mut tell) {
             let begun = begun.enough();
             match behind(study, &base, &law, &begun, excluded) {
                 Some(effect) => steps.push(effect),
@@ -204,6 +235,7 @@ fn library(
         first: first.unwrap_or_else(Round::empty),
         contests: Vec::new(),
         nameable: named || !laws.is_empty(),
+        open: None,
         laws,
         baseline,
         steps,
@@ -239,15 +271,15 @@ fn may_decide(study: &Study, rival: &Trial) -> bool {
 
 /// A law or what comes and goes on top of `base` that makes the model adequate where `rival` does not, and beats it.
 fn decisive(
-    answered: &mut Answered<'_>,
+    study: &Study,
+    answered: &mut Answered,
     base: &Trial,
     rival: &Trial,
     tell: &mut dyn FnMut(&str),
 ) -> Option<LawStep> {
-    let study = answered.study;
     let wins =
         |law: &LawStep| law.proven && adequate(study, &law.trial) && beats(&law.trial, rival);
-    may_decide(study, rival).then(|| answered.decisive(base, rival, wins, tell))?
+    may_decide(study, rival).then(|| answered.decisive(study, base, rival, wins, tell))?
 }
 
 /// Whether effects were accepted with parameters that are far from what is believed: another explanation may need less.

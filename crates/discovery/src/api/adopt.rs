@@ -1,6 +1,5 @@
 //! Taking over what was found: the motor file with an effect, with refitted parameters, or with a law.
 
-use crate::explain;
 use crate::laws::curve::as_knots;
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
@@ -16,14 +15,14 @@ use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
 use estimation::fit::polish::with_nominals;
 use estimation::proof::accept::{adequate, gained, proven};
+use estimation::proof::order::{Answer, Ask, Explains, in_either_order};
 use motor::MotorFile;
 use motor::effect::{EffectConfig, expression, to_entry};
 use motor::effects::{find, names};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
 use signal::dot;
 
-use super::explain::{explains, judged_frame, speed_scale_report};
-use super::order::{Answer, Explains, in_either_order};
+use super::explain::{Missing, judged_frame, speed_scale_report};
 use super::{LAW, PARAMETERS, Progress};
 
 /// Adds an effect, refits, and shows the error before and after; the new motor file comes with the report.
@@ -66,7 +65,28 @@ pub fn adopt_with<'a>(
     }
 }
 
-/// An effect of the library, or the refitted parameters alone.
+/// An effect of the library, or the refitted parameters alone: the model without and with it.
+struct Named<'a>(&'a str);
+
+impl Ask for Named<'_> {
+    type Found = Result<(Trial, Trial), Error>;
+
+    fn ask(&self, study: &Study, refitted: Trial, progress: &mut Progress<'_>) -> Self::Found {
+        if self.0 == PARAMETERS {
+            return Ok((as_believed(study), study.at_one_temperature(refitted)));
+        }
+        progress("fitting the effect", 0.5);
+        fitted(study, &refitted, self.0).map(|after| (refitted, after))
+    }
+
+    fn explains(&self, study: &Study, found: &Self::Found) -> Explains {
+        match found {
+            Ok((_, after)) if adequate(study, after) => Explains::All,
+            _ => Explains::Part,
+        }
+    }
+}
+
 fn adopted_effect(
     effect: &str,
     sources: Sources<'_>,
@@ -74,18 +94,7 @@ fn adopted_effect(
     progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
     let is_new = effect != PARAMETERS;
-    let ask = |study: &Study, refitted: Trial, progress: &mut Progress<'_>| match is_new {
-        true => {
-            progress("fitting the effect", 0.5);
-            fitted(study, &refitted, effect).map(|after| (refitted, after))
-        }
-        false => Ok((as_believed(study), study.at_one_temperature(refitted))),
-    };
-    let explains = |study: &Study, found: &Result<(Trial, Trial), Error>| match found {
-        Ok((_, after)) if adequate(study, after) => Explains::All,
-        _ => Explains::Part,
-    };
-    let answer = in_either_order(sources, motor, ask, explains, progress)?;
+    let answer = in_either_order(&Named(effect), sources, motor, progress)?;
     let (question, (before, after)) = (answer.question, answer.found?);
     let study = &question.study;
     progress("done", 1.0);
@@ -130,15 +139,16 @@ fn adopted_law(
     laws: Laws,
     progress: &mut Progress<'_>,
 ) -> Result<(AdoptReport, MotorFile), Error> {
-    let ask = |study: &Study, baseline: Trial, progress: &mut Progress<'_>| {
-        explain::explain(study, baseline, &[], laws.shapes, progress)
+    let missing = Missing {
+        excluded: &[],
+        shapes: laws.shapes,
     };
     let Answer {
         question,
         found,
         fitted,
         ..
-    } = in_either_order(sources, motor, ask, explains, progress)?;
+    } = in_either_order(&missing, sources, motor, progress)?;
     let study = &question.study;
     progress("done", 1.0);
     let Some(law) = found.laws.last() else {

@@ -4,7 +4,7 @@ use crate::design::limits::NextRun;
 use crate::design::report::{DesignReport, design_report};
 use crate::design::search::design;
 use crate::explain::{self, Explanation, Step, nominal_name, stands_for};
-use crate::laws::formula::dictionary::Laws;
+use crate::laws::formula::dictionary::{Laws, Shapes};
 use crate::laws::report::law_report;
 use crate::report::frame;
 use crate::report::present::{
@@ -22,11 +22,11 @@ use estimation::data::study::{Study, Trial};
 use estimation::model::scale_report::SpeedScaleReport;
 use estimation::proof::accept::{adequate, explained};
 use estimation::proof::off::implausible;
+use estimation::proof::order::{Ask, Explains, in_either_order};
 use motor::MotorFile;
 use motor::effect::Descriptor;
 
 use super::Progress;
-use super::order::{Explains, in_either_order};
 
 /// Which effect is missing. The first source is fitted, the second proves; where that leaves something of two recordings, the other way
 /// round. Of more, the first, third, ... are fitted together. With one source block folds prove.
@@ -85,10 +85,11 @@ fn explained_by(
     asked: Asked,
     progress: &mut Progress<'_>,
 ) -> Result<ExplainReport, Error> {
-    let ask = |study: &Study, baseline: Trial, progress: &mut Progress<'_>| {
-        explain::explain(study, baseline, excluded, asked.laws.shapes, progress)
+    let what = Missing {
+        excluded,
+        shapes: asked.laws.shapes,
     };
-    match in_either_order(sources, motor, ask, explains, progress) {
+    match in_either_order(&what, sources, motor, progress) {
         Ok(answer) => {
             let (question, found) = (&answer.question, &answer.found);
             let frame = judged_frame(question, motor, found.last());
@@ -126,12 +127,29 @@ fn explained_by(
     }
 }
 
-/// What the model with all that was found explains, with parameters that such motors have.
-pub(super) fn explains(study: &Study, found: &Explanation) -> Explains {
-    match found.nameable && is_plausible(study, found) {
-        true if adequate(study, found.last()) => Explains::All,
-        true if found.explains_nearly_all(study) => Explains::Most,
-        _ => Explains::Part,
+/// Which effect or law is missing, but for effects that are not asked about; curves are held against shapes.
+pub(super) struct Missing<'a> {
+    pub excluded: &'a [&'a str],
+    pub shapes: Shapes,
+}
+
+impl Ask for Missing<'_> {
+    type Found = Explanation;
+
+    fn ask(&self, study: &Study, baseline: Trial, progress: &mut Progress<'_>) -> Explanation {
+        explain::explain(study, baseline, self.excluded, self.shapes, progress)
+    }
+
+    fn go_on(&self, study: &Study, found: Explanation, progress: &mut Progress<'_>) -> Explanation {
+        explain::go_on(study, found, self.excluded, self.shapes, progress)
+    }
+
+    fn explains(&self, study: &Study, found: &Explanation) -> Explains {
+        match found.nameable && is_plausible(study, found) {
+            true if adequate(study, found.last()) => Explains::All,
+            true if found.explains_nearly_all(study) => Explains::Most,
+            _ => Explains::Part,
+        }
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod adopt;
 mod explain;
-mod order;
 
 pub use adopt::{adopt, adopt_with};
 pub use explain::{Asked, explain, explain_with, explain_without};

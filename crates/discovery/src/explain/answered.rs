@@ -13,9 +13,8 @@ use std::rc::Rc;
 const HARDLY_ANY: f64 = 0.15;
 
 /// Answers about the models of one study.
-pub(super) struct Answered<'a> {
-    /// The study.
-    pub study: &'a Study,
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Answered {
     laws: Vec<(Hypothesis, Rc<Laws>)>,
     bursts: Vec<(Hypothesis, Option<LawStep>)>,
 }
@@ -26,22 +25,13 @@ fn known<'a, T>(answers: &'a [(Hypothesis, T)], base: &Trial) -> Option<&'a T> {
     answers.iter().find(same).map(|(_, answer)| answer)
 }
 
-impl<'a> Answered<'a> {
-    /// Nothing was asked yet.
-    pub fn of(study: &'a Study) -> Self {
-        Self {
-            study,
-            laws: Vec::new(),
-            bursts: Vec::new(),
-        }
-    }
-
+impl Answered {
     /// The likeliest laws on top of a model, refitted.
-    pub fn laws(&mut self, base: &Trial, tell: &mut dyn FnMut(&str)) -> Rc<Laws> {
+    pub fn laws(&mut self, study: &Study, base: &Trial, tell: &mut dyn FnMut(&str)) -> Rc<Laws> {
         match known(&self.laws, base) {
             Some(laws) => laws.clone(),
             None => {
-                let search = LawSearch::new(self.study, base, tell);
+                let search = LawSearch::new(study, base, tell);
                 let laws = search.map_or_else(Laws::none, |search| search.refitted(tell));
                 self.keep(base, laws)
             }
@@ -52,12 +42,12 @@ impl<'a> Answered<'a> {
     /// before bursts where that is nearly all, because no curve does as much for what comes and goes.
     pub fn decisive(
         &mut self,
+        study: &Study,
         base: &Trial,
         rival: &Trial,
         decides: impl Fn(&LawStep) -> bool,
         tell: &mut dyn FnMut(&str),
     ) -> Option<LawStep> {
-        let study = self.study;
         let search = match known(&self.laws, base) {
             None => LawSearch::new(study, base, tell),
             Some(_) => None,
@@ -76,12 +66,12 @@ impl<'a> Answered<'a> {
         let error = |trial: &Trial| study.fold_error(&trial.folds);
         let excess = |error: f64| error * error - 1.0;
         if promised >= error(rival) {
-            return self.bursts(base, tell).filter(&decides);
+            return self.bursts(study, base, tell).filter(&decides);
         }
         if excess(promised) < HARDLY_ANY * excess(error(base)) {
-            return law(self, tell).or_else(|| self.bursts(base, tell).filter(&decides));
+            return law(self, tell).or_else(|| self.bursts(study, base, tell).filter(&decides));
         }
-        let bursts = self.bursts(base, tell).filter(&decides);
+        let bursts = self.bursts(study, base, tell).filter(&decides);
         bursts.or_else(|| law(self, tell))
     }
 
@@ -92,12 +82,17 @@ impl<'a> Answered<'a> {
     }
 
     /// What comes and goes on top of a model.
-    pub fn bursts(&mut self, base: &Trial, tell: &mut dyn FnMut(&str)) -> Option<LawStep> {
+    pub fn bursts(
+        &mut self,
+        study: &Study,
+        base: &Trial,
+        tell: &mut dyn FnMut(&str),
+    ) -> Option<LawStep> {
         if let Some(law) = known(&self.bursts, base) {
             return law.clone();
         }
         tell("looking for what comes and goes");
-        let law = bursts(self.study, base);
+        let law = bursts(study, base);
         self.bursts.push((base.fit.hypothesis.clone(), law.clone()));
         law
     }
@@ -112,26 +107,26 @@ mod tests {
     fn what_was_asked_of_a_model_is_not_asked_again() {
         let study = specimen::study(1.0, |_| 1.0);
         let base = specimen::trial(&study);
-        let mut answered = Answered::of(&study);
+        let mut answered = Answered::default();
         let mut told = 0;
         let mut tell = |_: &str| told += 1;
-        let laws = answered.laws(&base, &mut tell);
-        let again = answered.laws(&base.clone(), &mut tell);
+        let laws = answered.laws(&study, &base, &mut tell);
+        let again = answered.laws(&study, &base.clone(), &mut tell);
         assert!(Rc::ptr_eq(&laws, &again));
         // What the screen promised is known with the laws.
         let than = |error: f64| specimen::with_errors(&study, &base, error, error);
         let mut asked_again = |error: f64| {
-            answered.decisive(&base, &than(error), |_| false, &mut tell);
+            answered.decisive(&study, &base, &than(error), |_| false, &mut tell);
         };
         asked_again(0.99 * laws.promised);
         asked_again(1.01 * laws.promised);
-        let bursts = answered.bursts(&base, &mut tell).is_some();
-        assert_eq!(answered.bursts(&base, &mut tell).is_some(), bursts);
+        let bursts = answered.bursts(&study, &base, &mut tell).is_some();
+        assert_eq!(answered.bursts(&study, &base, &mut tell).is_some(), bursts);
         assert_eq!(told, 3, "screened, refitted, bursts: once each");
         // Another model is another question.
         let mut other = base.clone();
         other.fit.hypothesis.z[0] += 1e-9;
-        answered.decisive(&other, &than(0.0), |_| true, &mut |_| told += 1);
+        answered.decisive(&study, &other, &than(0.0), |_| true, &mut |_| told += 1);
         assert_eq!(told, 5, "screened and asked for bursts");
     }
 }

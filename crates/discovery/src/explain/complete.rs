@@ -17,13 +17,13 @@ use motor::effect::EffectConfig;
 /// The law competes with what the library found: on top of the bare motor it must beat the library's effects; on top of
 /// them it must make the model adequate.
 pub(super) fn complete(
-    answered: &mut Answered<'_>,
+    study: &Study,
+    mut answered: Answered,
     found: &mut Explanation,
     excluded: &[&str],
     progress: &mut dyn FnMut(&str, f64),
 ) {
-    let study = answered.study;
-    let alone = answered.laws(&found.baseline, &mut from(0.6, progress));
+    let alone = answered.laws(study, &found.baseline, &mut from(0.6, progress));
     let best = alone.best(study, &found.baseline);
     let last = found.steps.last().map(|step| step.trial.clone());
     if let Some(law) = best
@@ -49,7 +49,7 @@ pub(super) fn complete(
         return;
     }
     if let Some(last) = &last {
-        let more = answered.laws(last, &mut from(0.7, progress));
+        let more = answered.laws(study, last, &mut from(0.7, progress));
         let more = more.best(study, last);
         if let Some(law) = more.filter(|law| law.proven && adequate(study, &law.trial)) {
             put_on_top(study, found, law);
@@ -59,24 +59,35 @@ pub(super) fn complete(
     if found.nameable && found.explains_nearly_all(study) {
         return;
     }
+    found.open = Some(answered);
+}
+
+/// What is left where neither an effect nor a law makes the model adequate: two that hide each other, what comes and goes, or a lead.
+pub(super) fn hidden(
+    study: &Study,
+    mut answered: Answered,
+    found: &mut Explanation,
+    excluded: &[&str],
+    progress: &mut dyn FnMut(&str, f64),
+) {
+    let alone = answered.laws(study, &found.baseline, &mut from(0.7, progress));
+    let last = found.steps.last().map(|step| step.trial.clone());
     progress("looking for pairs that hide each other", 0.75);
-    if take_pair(study, found, &alone, excluded, last.as_ref()) {
-        return;
-    }
-    if found.nameable {
+    if take_pair(study, found, &alone, excluded, last.as_ref()) || found.nameable {
         return;
     }
     let base = last.as_ref().unwrap_or(&found.baseline);
-    let bursts = answered.bursts(base, &mut |what| progress(what, 0.8));
-    if let Some(law) = bursts.filter(|law| law.proven) {
-        found.laws = vec![law];
-        found.nameable = true;
-    } else {
-        found.laws.extend(best.map(|law| LawStep {
+    let law = answered.bursts(study, base, &mut |what| progress(what, 0.8));
+    let law = law.filter(|law| law.proven);
+    found.nameable = law.is_some();
+    let lead = || {
+        let best = alone.best(study, &found.baseline)?;
+        Some(LawStep {
             proven: false,
-            ..law
-        }));
-    }
+            ..best
+        })
+    };
+    found.laws.extend(law.or_else(lead));
 }
 
 /// Progress that moves on by a little with each thing that is told.

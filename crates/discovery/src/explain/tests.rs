@@ -59,6 +59,7 @@ fn nothing_found(study: &Study, error: f64) -> Explanation {
         laws: Vec::new(),
         contests: Vec::new(),
         nameable: true,
+        open: None,
     }
 }
 
@@ -101,6 +102,7 @@ fn a_motor_that_may_exist_is_preferred_where_it_explains_the_recording_too() {
             laws: Vec::new(),
             contests: Vec::new(),
             nameable: true,
+            open: None,
         };
         prefer_plausible(&study, &mut found);
         found.baseline.fit.hypothesis.z[R_S]
@@ -240,6 +242,7 @@ fn friction_and_more_leakage_are_contested() {
             laws: Vec::new(),
             contests: Vec::new(),
             nameable: true,
+            open: None,
         };
         let all = contests(&study, &found, &names());
         assert!(

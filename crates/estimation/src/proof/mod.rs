@@ -2,5 +2,6 @@
 
 pub mod accept;
 pub mod off;
+pub mod order;
 pub mod pairs;
 pub mod windings;

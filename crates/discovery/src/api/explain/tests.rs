@@ -42,6 +42,7 @@ fn nothing(study: &Study, error: f64) -> Explanation {
         laws: Vec::new(),
         contests: Vec::new(),
         nameable: true,
+        open: None,
     }
 }
 

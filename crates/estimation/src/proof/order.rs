@@ -4,17 +4,40 @@
 //! stands on one load leaves half of its parameters open. Which of two recordings shows more of a thing that nobody knows yet is
 //! seen when it was asked for.
 
-use estimation::data::given::{Fitted, Sources};
-use estimation::data::question::{Error, Question};
-use estimation::data::study::{Study, Trial};
-use estimation::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
+use crate::data::given::{Fitted, Sources};
+use crate::data::question::{Error, Question};
+use crate::data::study::{Study, Trial};
+use crate::fit::readings::DifferenceReport;
+use crate::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
 use motor::MotorFile;
 
-use super::Progress;
-use crate::report::types::DifferenceReport;
+/// Hears what is being done, and how much of it is done, 0 to 1.
+type Progress<'a> = dyn FnMut(&str, f64) + 'a;
+
+/// What is asked about recordings.
+pub trait Ask {
+    /// What is found.
+    type Found;
+
+    /// Asks a study, from the model with its parameters refitted on.
+    fn ask(&self, study: &Study, baseline: Trial, progress: &mut Progress<'_>) -> Self::Found;
+
+    /// Looks further where something is left, which takes long.
+    fn go_on(
+        &self,
+        _study: &Study,
+        found: Self::Found,
+        _progress: &mut Progress<'_>,
+    ) -> Self::Found {
+        found
+    }
+
+    /// What the answer explains.
+    fn explains(&self, study: &Study, found: &Self::Found) -> Explains;
+}
 
 /// An answer, and the question that it answers.
-pub(super) struct Answer<T> {
+pub struct Answer<T> {
     /// The recordings as they were asked about.
     pub question: Question,
     /// What was found.
@@ -27,7 +50,7 @@ pub(super) struct Answer<T> {
 
 /// What an answer explains of the recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Explains {
+pub enum Explains {
     /// Something is left, or nothing is proven.
     Part,
     /// What is proven leaves hardly anything.
@@ -45,20 +68,20 @@ struct Begun {
 
 /// Asks about the recordings as they are given. Where that leaves something, asks also with the second of two fitted, or the first alone of
 /// more, which is the answer if it leaves nothing: those that are fitted together may be of a motor that was cold in the one and hot in the
-/// other. Where one of them or all together are explained without anything that is missing, nothing is. What is asked gets the study, and the model with its parameters refitted.
+/// other. Only where both leave something is looked further. Where one of them or all together are explained without anything that is
+/// missing, nothing is.
 ///
 /// # Errors
 /// As [`Question::new`] of the recordings as they are given.
-pub(super) fn in_either_order<T>(
+pub fn in_either_order<A: Ask>(
+    asked: &A,
     sources: Sources<'_>,
     motor: &MotorFile,
-    ask: impl Fn(&Study, Trial, &mut Progress<'_>) -> T,
-    explains: impl Fn(&Study, &T) -> Explains,
     progress: &mut Progress<'_>,
-) -> Result<Answer<T>, Error> {
+) -> Result<Answer<A::Found>, Error> {
     let given = Begun::of(sources, motor, Fitted::AsGiven, progress)?;
     if !given.question.is_of_wholes() {
-        return Ok(given.asked(&ask, progress));
+        return Ok(given.asked(asked, progress).further(asked, progress));
     }
     let another = Fitted::another_of(sources.iter().len());
     let begin_other = |progress: &mut Progress<'_>| Begun::of(sources, motor, another, progress);
@@ -68,26 +91,48 @@ pub(super) fn in_either_order<T>(
         false => None,
     };
     if let Some(begun) = explained_by_more(&given, &mut other) {
-        return Ok(begun.asked(&ask, progress));
+        return Ok(begun.asked(asked, progress));
     }
-    let explained = |answer: &Answer<T>| explains(&answer.question.study, &answer.found);
     let alone = other.as_ref().filter(|other| other.shows_too_little());
     let each_alone = alone.filter(|_| another == Fitted::Second);
     let each_alone = each_alone.map(|other| given.differences(other));
     let given = Answer {
         each_alone,
-        ..given.asked(&ask, progress)
+        ..given.asked(asked, progress)
     };
-    let so_far = explained(&given);
-    if so_far >= Explains::Most || given.each_alone.is_some() {
+    if given.explains(asked) >= Explains::Most || given.each_alone.is_some() {
         return Ok(given);
     }
     let mut tell =
         |what: &str, share| progress(&format!("{what}, another recording fitted"), share);
     let other = other.or_else(|| begin_other(&mut tell).ok());
-    let other = other.map(|other| other.asked(&ask, &mut tell));
-    let better = other.filter(|other| explained(other) == Explains::All);
-    Ok(better.unwrap_or(given))
+    let other = other.map(|other| other.asked(asked, &mut tell));
+    let is_answer = |other: &Answer<A::Found>| other.explains(asked) == Explains::All;
+    let other = match other {
+        Some(other) if is_answer(&other) => return Ok(other),
+        other => other,
+    };
+    let given = given.further(asked, progress);
+    if given.explains(asked) >= Explains::Most {
+        return Ok(given);
+    }
+    let mut tell =
+        |what: &str, share| progress(&format!("{what}, another recording fitted"), share);
+    let other = other.map(|other| other.further(asked, &mut tell));
+    Ok(other.filter(is_answer).unwrap_or(given))
+}
+
+impl<T> Answer<T> {
+    fn explains(&self, asked: &impl Ask<Found = T>) -> Explains {
+        asked.explains(&self.question.study, &self.found)
+    }
+
+    fn further(self, asked: &impl Ask<Found = T>, progress: &mut Progress<'_>) -> Self {
+        Self {
+            found: asked.go_on(&self.question.study, self.found, progress),
+            ..self
+        }
+    }
 }
 
 /// Another recording or all together, where nothing is missing then.
@@ -143,13 +188,9 @@ impl Begun {
         !self.is_adequate() && adequate_on_folds(&self.question.study, &self.baseline.folds)
     }
 
-    fn asked<T>(
-        self,
-        ask: &impl Fn(&Study, Trial, &mut Progress<'_>) -> T,
-        progress: &mut Progress<'_>,
-    ) -> Answer<T> {
+    fn asked<A: Ask>(self, asked: &A, progress: &mut Progress<'_>) -> Answer<A::Found> {
         Answer {
-            found: ask(&self.question.study, self.baseline, progress),
+            found: asked.ask(&self.question.study, self.baseline, progress),
             question: self.question,
             fitted: self.fitted,
             each_alone: None,
