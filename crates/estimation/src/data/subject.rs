@@ -39,7 +39,8 @@ pub struct Subject {
     pub case: Case,
     /// Its floor.
     pub floor: Floor,
-    /// Derivatives of its weighted outputs with respect to both resistances, once they were asked for.
+    /// Derivatives of its weighted outputs with respect to both resistances, at the first model that was held against it: the refitted one
+    /// with nothing added.
     warming: OnceLock<[Vec<f64>; 2]>,
 }
 
@@ -87,7 +88,8 @@ impl Subject {
                 break;
             };
             let there = self.residual(prior, &warmed(h, next));
-            if cost(&there, next) > cost(&left, warmth) {
+            let is_better = cost(&there, next) < cost(&left, warmth);
+            if !is_better {
                 break;
             }
             (warmth, left) = (next, there);

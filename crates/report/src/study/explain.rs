@@ -151,13 +151,16 @@ fn comes_and_goes(report: &ExplainReport) -> bool {
 
 fn nothing_to_adopt(report: &ExplainReport) -> String {
     let advice = match report.verdict {
+        Verdict::Adequate if something_was_changed(report) => {
+            "Find out what was changed: the model is adequate for each recording with its resistances."
+        }
         Verdict::Adequate => "Nothing to do: the model is adequate.",
         Verdict::Unsupported => "Record again as the audit says.",
         Verdict::Implausible => {
             "Check nameplate, connection and scales of the sensors before anything else."
         }
         _ if is_explained_each_alone(report) => {
-            "Record both at one temperature, or ask about each alone."
+            "Record both with the same machine on the shaft, or ask about each alone."
         }
         _ => {
             "Record more of what the description names, with a second load and a second voltage. \
@@ -171,6 +174,12 @@ fn nothing_to_adopt(report: &ExplainReport) -> String {
 fn is_explained_each_alone(report: &ExplainReport) -> bool {
     let rest = report.unexplained.as_ref();
     rest.is_some_and(|rest| rest.each_alone.is_some())
+}
+
+/// Whether a recording that proves asks for resistances that no temperature makes.
+fn something_was_changed(report: &ExplainReport) -> bool {
+    let mut windings = report.final_.iter().flat_map(|fit| &fit.windings);
+    windings.any(|windings| !windings.is_temperature)
 }
 
 /// Whether a refitted parameter is far from what was believed.

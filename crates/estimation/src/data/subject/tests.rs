@@ -85,3 +85,14 @@ fn windings_are_warmer_by_what_they_differ() {
     assert!((warmth[0] - 0.1).abs() < 1e-12 && (warmth[1] - 0.2).abs() < 1e-12);
     assert!(warmth_of(&warmed(&h, [0.0, 1.001 * FURTHEST]), &h).is_none());
 }
+
+/// A model that leaves the finite numbers counts as infinitely wrong, and no warmth mends that.
+#[test]
+fn a_model_without_numbers_stays_without_them() {
+    let study = specimen::study(1.0, |_| 1.0);
+    let mut h = study.at_prior();
+    h.z[crate::model::prior::INERTIA] = f64::NAN;
+    let seen = study.fitted.seen(&study.prior, &h);
+    assert_eq!(seen.warmth, AS_WARM);
+    assert!(!sum(&seen).is_finite());
+}

@@ -2,7 +2,9 @@
 
 use super::*;
 use audit::Audit;
-use discovery::{BurstsReport, FitReport, Fitted, LawCurve, LawReport, Unexplained};
+use discovery::{
+    BurstsReport, FitReport, Fitted, LawCurve, LawReport, Unexplained, WindingsReport,
+};
 use motor::MotorFile;
 
 /// A proven law at one phase; `bursts`: it comes and goes.
@@ -77,7 +79,7 @@ fn a_law_is_adopted_and_what_comes_and_goes_is_mended() {
 
 /// Nothing is missing in either of two recordings: no third one would show more.
 #[test]
-fn recordings_of_two_temperatures_are_asked_about_alone() {
+fn recordings_of_a_motor_that_was_changed_are_asked_about_alone() {
     let mut apart = report(law(false));
     (apart.verdict, apart.laws) = (Verdict::Unknown, Vec::new());
     apart.unexplained = Some(Unexplained {
@@ -91,8 +93,30 @@ fn recordings_of_two_temperatures_are_asked_about_alone() {
     assert_eq!(next.command, None);
     assert_eq!(
         next.why,
-        "Record both at one temperature, or ask about each alone."
+        "Record both with the same machine on the shaft, or ask about each alone."
     );
+}
+
+/// An adequate model is no end where the resistances of a recording show that the motor was changed.
+#[test]
+fn resistances_that_no_temperature_makes_are_followed_up() {
+    let mut adequate = report(law(false));
+    (adequate.verdict, adequate.laws) = (Verdict::Adequate, Vec::new());
+    let why = |report: &ExplainReport| Next::new(report, &|name| Some(name.to_owned())).why;
+    assert!(why(&adequate).starts_with("Nothing to do"));
+    let mut windings = WindingsReport {
+        proof: 1,
+        stator_resistance_change_percent: 8.0,
+        rotor_resistance_change_percent: 8.0,
+        is_temperature: true,
+    };
+    let mut with = |windings: WindingsReport| {
+        adequate.final_.as_mut().expect("fitted").windings = vec![windings];
+        why(&adequate)
+    };
+    assert!(with(windings).starts_with("Nothing to do"));
+    windings.is_temperature = false;
+    assert!(with(windings).starts_with("Find out what was changed"));
 }
 
 /// No motor file holds it, and a curve without it would be no model of what was found.
