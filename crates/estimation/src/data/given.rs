@@ -63,6 +63,17 @@ impl Fitted {
         *self == Fitted::AsGiven
     }
 
+    /// Which proof (from 1) a recording is, counted from 0 in the order in which they were asked about; `None` if it is fitted.
+    pub fn proof_of(self, recording: usize) -> Option<usize> {
+        match self {
+            Fitted::All => None,
+            Fitted::First => (recording > 0).then_some(recording),
+            Fitted::AsGiven | Fitted::Second => {
+                (recording % 2 == 1).then_some(recording.div_ceil(2))
+            }
+        }
+    }
+
     /// In words, where it is not as given.
     pub fn told(self) -> &'static str {
         match self {
@@ -124,5 +135,20 @@ impl<'a> From<&'a Given> for One<'a> {
             Given::Source(source) => One::Source(source),
             Given::Excerpt(excerpt) => One::Excerpt(excerpt),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_second_recording_proves_unless_the_first_alone_is_fitted() {
+        let proofs = |fitted: Fitted| [0, 1, 2, 3].map(|k| fitted.proof_of(k));
+        let every_second = [None, Some(1), None, Some(2)];
+        assert_eq!(proofs(Fitted::AsGiven), every_second);
+        assert_eq!(proofs(Fitted::Second), every_second);
+        assert_eq!(proofs(Fitted::First), [None, Some(1), Some(2), Some(3)]);
+        assert_eq!(proofs(Fitted::All), [None; 4]);
     }
 }

@@ -1,6 +1,6 @@
 //! The models that are laid over a recording.
 
-use discovery::{ExplainReport, FitReport, LawReport};
+use discovery::{ExplainReport, FitReport, LawReport, WindingsReport};
 use motor::MotorFile;
 use motor::effect::{Plant, from_motor_file, rated};
 use motor::motor_file::{EffectEntry, EffectParameter, EffectValue};
@@ -33,8 +33,30 @@ impl Model {
         Model::new("as the motor file says".to_owned(), motor)
     }
 
-    /// As the motor file says, with refitted parameters, and with everything that was found.
-    pub fn of_explanation(motor: &MotorFile, report: &ExplainReport) -> Vec<Self> {
+    /// As the motor file says, with refitted parameters, and with everything that was found; the last two as warm as the motor was in the
+    /// recording that proves of this number (from 1), if it is shown on one.
+    pub fn of_explanation(
+        motor: &MotorFile,
+        report: &ExplainReport,
+        proof: Option<usize>,
+    ) -> Vec<Self> {
+        let mut models = Model::of_answer(motor, report);
+        let mut windings = report.final_.iter().flat_map(|fit| &fit.windings);
+        if let Some(windings) = windings.find(|windings| Some(windings.proof) == proof) {
+            let fitted = models.iter_mut().skip(1);
+            fitted.for_each(|model| model.warm(windings));
+        }
+        models
+    }
+
+    fn warm(&mut self, windings: &WindingsReport) {
+        let factor = |percent: f64| 1.0 + percent / 100.0;
+        self.plant.motor.r_s *= factor(windings.stator_resistance_change_percent);
+        self.plant.motor.r_r *= factor(windings.rotor_resistance_change_percent);
+        self.label.push_str(", as warm as there");
+    }
+
+    fn of_answer(motor: &MotorFile, report: &ExplainReport) -> Vec<Self> {
         let mut models = vec![Model::believed(motor)];
         if let Some(baseline) = &report.baseline {
             let refitted = with_parameters(motor, values(baseline));

@@ -70,7 +70,8 @@ impl Explained {
         let (names, sources) = inputs.as_answered(report.fitted);
         let sources = Sources::Listed(&sources);
         let scale = report.speed_scale.as_ref();
-        let models = Model::of_explanation(motor, &report);
+        let proof = report.fitted.proof_of(names.len().saturating_sub(1));
+        let models = Model::of_explanation(motor, &report, proof);
         let is_judged = report.baseline.is_some();
         let where_it_fails = match is_judged {
             true => worst(&discovery::compare(sources, motor, &mut |what, share| {
@@ -129,7 +130,7 @@ impl Next {
                 None,
             ),
             (Verdict::Law, _) => ("Add the law to the model:".to_owned(), Some(LAW.to_owned())),
-            (Verdict::Adequate, _) if anything_off(report) => (
+            (Verdict::Adequate, _) if something_else_is_off(report) => (
                 "Take over the refitted parameters:".to_owned(),
                 Some(PARAMETERS.to_owned()),
             ),
@@ -153,6 +154,9 @@ fn nothing_to_adopt(report: &ExplainReport) -> String {
     let advice = match report.verdict {
         Verdict::Adequate if something_was_changed(report) => {
             "Find out what was changed: the model is adequate for each recording with its resistances."
+        }
+        Verdict::Adequate if anything_off(report) => {
+            "Nothing to take over: resistances that are off move with the temperature, from one recording to the next."
         }
         Verdict::Adequate => "Nothing to do: the model is adequate.",
         Verdict::Unsupported => "Record again as the audit says.",
@@ -180,6 +184,16 @@ fn is_explained_each_alone(report: &ExplainReport) -> bool {
 fn something_was_changed(report: &ExplainReport) -> bool {
     let mut windings = report.final_.iter().flat_map(|fit| &fit.windings);
     windings.any(|windings| !windings.is_temperature)
+}
+
+/// Whether a refitted parameter is far from what was believed, for another reason than the motor's temperature.
+fn something_else_is_off(report: &ExplainReport) -> bool {
+    let mut last = report.final_.iter();
+    last.any(|fit| {
+        let moves = |name: &str| !fit.windings.is_empty() && name.ends_with("resistance_ohm");
+        let mut parameters = fit.parameters.iter();
+        parameters.any(|parameter| parameter.off && !moves(&parameter.name))
+    })
 }
 
 /// Whether a refitted parameter is far from what was believed.

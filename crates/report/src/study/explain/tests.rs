@@ -124,6 +124,31 @@ fn resistances_that_no_temperature_makes_are_followed_up() {
 fn what_comes_and_goes_is_drawn_by_no_model() {
     let text = include_str!("../../../../../motors/peer-2k2.toml");
     let motor = MotorFile::parse(text, "motor").expect("shipped");
-    let models = Model::of_explanation(&motor, &report(law(true)));
+    let models = Model::of_explanation(&motor, &report(law(true)), None);
     assert_eq!(models.len(), 2, "as believed, and with parameters refitted");
+}
+
+#[test]
+fn a_recording_that_proves_is_drawn_as_warm_as_the_motor_was() {
+    let text = include_str!("../../../../../motors/peer-2k2.toml");
+    let motor = MotorFile::parse(text, "motor").expect("shipped");
+    let mut warm = report(law(false));
+    warm.final_.as_mut().expect("fitted").windings = vec![WindingsReport {
+        proof: 2,
+        stator_resistance_change_percent: 8.0,
+        rotor_resistance_change_percent: -5.0,
+        is_temperature: false,
+    }];
+    let factors = |proof: Option<usize>, k: usize| {
+        let plant = &Model::of_explanation(&motor, &warm, proof)[k].plant.motor;
+        (
+            plant.r_s / motor.parameters.r_s,
+            plant.r_r / motor.parameters.r_r,
+        )
+    };
+    assert_eq!(factors(Some(2), 0), (1.0, 1.0), "the motor file's own");
+    let (stator, rotor) = factors(Some(2), 1);
+    assert!((stator - 1.08).abs() < 1e-12 && (rotor - 0.95).abs() < 1e-12);
+    assert_eq!(factors(Some(1), 1), (1.0, 1.0));
+    assert_eq!(factors(None, 1), (1.0, 1.0));
 }
