@@ -242,7 +242,7 @@ fn library(
     }
 }
 
-/// The effect of the library that a law is in disguise, as a step on `base`.
+/// The effect of the library that a law is in disguise, as a step on `base`; none of them comes and goes.
 fn behind(
     study: &Study,
     base: &Trial,
@@ -250,7 +250,10 @@ fn behind(
     begun: &Round,
     excluded: &[&str],
 ) -> Option<Step> {
-    let effects = disguised(study, base, law, excluded);
+    let effects = match law.bursts.is_empty() {
+        true => disguised(study, base, law, excluded),
+        false => return None,
+    };
     let best = effects.first()?;
     let mut all = begun.candidates.clone();
     all.retain(|c| effects.iter().all(|effect| effect.name != c.name));

@@ -309,25 +309,30 @@ fn explained_of_two(first: &Machine, second: &Machine, hidden: &Hidden) -> Expla
     report
 }
 
-/// The resistances of a winding 26 K and a cage 50 K warmer.
+/// A machine with its resistances changed by these shares.
+fn warmer(machine: &Machine, [stator, rotor]: [f64; 2]) -> Machine {
+    Machine {
+        r_s: (1.0 + stator) * machine.r_s,
+        r_r: (1.0 + rotor) * machine.r_r,
+        ..*machine
+    }
+}
+
+/// Of the 7.5 kW machine the start lasts so much longer in the cold that derivatives from before do not lead there.
 #[test]
 fn a_motor_that_was_warmer_in_the_recording_that_proves_is_explained_and_told_so() {
-    let cold = MACHINES[0];
-    let warm = Machine {
-        r_s: 1.1 * cold.r_s,
-        r_r: 1.2 * cold.r_r,
-        ..cold
-    };
-    for (first, second, [stator, rotor], word) in [
-        (cold, warm, [10.0, 20.0], "warmer"),
-        (warm, cold, [-9.09, -16.67], "colder"),
+    for (machine, by, word) in [
+        (MACHINES[0], [0.1, 0.2], "warmer"),
+        (MACHINES[0], [-0.09, -0.16], "colder"),
+        (MACHINES[2], [-0.2, -0.25], "colder"),
     ] {
-        let report = explained_of_two(&first, &second, &Hidden::default());
+        let report = explained_of_two(&machine, &warmer(&machine, by), &Hidden::default());
         assert_eq!(report.verdict, Verdict::Adequate);
         assert!(report.summary.contains(word));
         let windings = report.final_.expect("fitted").windings;
         assert!(windings.len() == 1 && windings[0].is_temperature);
         // Each recording knows them to 0.26 %: three standard errors of the difference.
+        let [stator, rotor] = by.map(|share| 100.0 * share);
         assert!((windings[0].stator_resistance_change_percent - stator).abs() < 1.2);
         assert!((windings[0].rotor_resistance_change_percent - rotor).abs() < 1.2);
     }
@@ -337,11 +342,7 @@ fn a_motor_that_was_warmer_in_the_recording_that_proves_is_explained_and_told_so
 #[test]
 fn a_law_is_proven_on_a_recording_of_a_motor_that_was_warmer() {
     let cold = Machine::of(SEED);
-    let warm = Machine {
-        r_s: 1.16 * cold.r_s,
-        r_r: 1.14 * cold.r_r,
-        ..cold
-    };
+    let warm = warmer(&cold, [0.16, 0.14]);
     for law in [Law::Jaws, Law::Intermittent] {
         let hidden = Hidden {
             law: Some(law),
@@ -360,34 +361,31 @@ fn a_law_is_proven_on_a_recording_of_a_motor_that_was_warmer() {
 #[test]
 fn of_three_recordings_at_three_temperatures_the_first_is_fitted() {
     let cold = Machine::of(SEED);
-    let warmer = |by: f64| Machine {
-        r_s: (1.0 + by) * cold.r_s,
-        r_r: (1.0 + by) * cold.r_r,
-        ..cold
+    let source = |by: f64, course, seed| {
+        recording::Source::Recording(record(
+            &warmer(&cold, [by; 2]),
+            &Hidden::default(),
+            course,
+            seed,
+        ))
     };
-    for (law, verdict) in [(None, Verdict::Adequate), (Some(Law::Jaws), Verdict::Law)] {
-        let hidden = Hidden {
-            law,
-            ..Hidden::default()
-        };
-        let source = |by: f64, course, seed| {
-            recording::Source::Recording(record(&warmer(by), &hidden, course, seed))
-        };
-        let sources = [
-            source(0.0, &LOADS, SEED),
-            source(0.08, &STEPS, SEED + 1),
-            source(0.16, &LOADS, SEED + 2),
-        ];
-        let report = explain(&sources, &priors(&cold, SEED), &mut |_, _| {}).expect("judged");
-        println!("{}", report.summary);
-        assert_eq!((report.verdict, report.fitted), (verdict, Fitted::First));
-        let windings = report.final_.expect("fitted").windings;
-        let proofs: Vec<usize> = windings.iter().map(|w| w.proof).collect();
-        assert_eq!(proofs, [1, 2]);
-        for (windings, truth) in windings.iter().zip([8.0, 16.0]) {
-            assert!((windings.stator_resistance_change_percent - truth).abs() < 1.2);
-            assert!((windings.rotor_resistance_change_percent - truth).abs() < 1.2);
-        }
+    let sources = [
+        source(0.0, &LOADS, SEED),
+        source(0.08, &STEPS, SEED + 1),
+        source(0.16, &LOADS, SEED + 2),
+    ];
+    let report = explain(&sources, &priors(&cold, SEED), &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    assert_eq!(
+        (report.verdict, report.fitted),
+        (Verdict::Adequate, Fitted::First)
+    );
+    let windings = report.final_.expect("fitted").windings;
+    let proofs: Vec<usize> = windings.iter().map(|w| w.proof).collect();
+    assert_eq!(proofs, [1, 2]);
+    for (windings, truth) in windings.iter().zip([8.0, 16.0]) {
+        assert!((windings.stator_resistance_change_percent - truth).abs() < 1.2);
+        assert!((windings.rotor_resistance_change_percent - truth).abs() < 1.2);
     }
 }
 

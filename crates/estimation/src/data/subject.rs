@@ -3,6 +3,7 @@
 use crate::data::case::Case;
 use crate::data::noise_floor::{Floor, floor};
 use crate::fit::normal_equations;
+use crate::fit::output_error::{Effort, fit};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, Prior, RESISTANCES};
 use crate::model::unknown_state::unknown_state;
@@ -26,6 +27,12 @@ const ROWS_AS_ONE: f64 = 30.0;
 const WORTH: f64 = 0.01;
 /// Most steps with the same derivatives: each leaves a tenth of what the one before left.
 const STEPS: usize = 3;
+
+/// A fit where they do not arrive.
+const ANEW: Effort = Effort {
+    iterations: 4,
+    ..Effort::FULL
+};
 
 /// Changes of the stator's and the rotor's resistance from those of a hypothesis, logarithms.
 pub type Warmth = [f64; 2];
@@ -75,27 +82,47 @@ impl Subject {
     /// A hypothesis with the resistances that the windings had in this recording: nobody waits between two recordings until a motor is as
     /// warm as before. A load table's few points cannot tell them.
     pub fn seen(&self, prior: &Prior, h: &Hypothesis) -> Seen {
-        let (mut warmth, mut left) = (AS_WARM, self.residual(prior, h));
-        if self.case.is_table() {
-            return Seen {
-                errors: self.errors_of(&left),
-                warmth,
-            };
+        let as_warm = self.at(prior, h, AS_WARM);
+        let there = match self.case.is_table() {
+            true => as_warm,
+            false => self.as_warm_as_it_was(prior, h, as_warm),
+        };
+        Seen {
+            errors: self.errors_of(&there.left),
+            warmth: there.warmth,
         }
+    }
+
+    /// Steps with the same derivatives for all hypotheses; where they do not arrive, derivatives are taken anew: a start lasts longer or
+    /// shorter with other resistances.
+    fn as_warm_as_it_was(&self, prior: &Prior, h: &Hypothesis, mut here: Warmed) -> Warmed {
         let columns = self.warming.get_or_init(|| self.derivatives(prior, h));
         for _ in 0..STEPS {
-            let Some(next) = self.next(columns, &left, warmth) else {
-                break;
+            let Some(next) = next(columns, &here) else {
+                return here;
             };
-            let there = self.residual(prior, &warmed(h, next));
-            let is_better = cost(&there, next) < cost(&left, warmth);
+            let there = self.at(prior, h, next);
+            let is_better = there.cost() < here.cost();
             if !is_better {
                 break;
             }
-            (warmth, left) = (next, there);
+            here = there;
         }
-        Seen {
-            errors: self.errors_of(&left),
+        let start = with_free_windings(h, here.warmth);
+        let fit = fit(&self.case, prior, &start, ANEW);
+        let there = warmth_of(&fit.hypothesis, h).map(|warmth| Warmed {
+            warmth,
+            left: fit.residual,
+        });
+        match there {
+            Some(there) if there.cost() < here.cost() => there,
+            _ => here,
+        }
+    }
+
+    fn at(&self, prior: &Prior, h: &Hypothesis, warmth: Warmth) -> Warmed {
+        Warmed {
+            left: self.residual(prior, &warmed(h, warmth)),
             warmth,
         }
     }
@@ -124,32 +151,40 @@ impl Subject {
         let columns: Vec<Vec<f64>> = RESISTANCES.par_iter().map(column).collect();
         columns.try_into().unwrap_or_default()
     }
+}
 
-    /// Where the squared error is least by these derivatives; `None` where that is worth nothing.
-    fn next(&self, columns: &[Vec<f64>; 2], left: &[f64], warmth: Warmth) -> Option<Warmth> {
-        let [s, r] = columns;
-        let dot = signal::dot;
-        let at = Vector2::from(warmth);
-        let normal = Matrix2::new(dot(s, s), dot(s, r), dot(s, r), dot(r, r));
-        let weight = prior_weight();
-        let score = Vector2::new(dot(s, left), dot(r, left)) - weight * at;
-        let step = (normal + weight).try_inverse()? * score;
-        let next = (at + step).map(|x| x.clamp(-FURTHEST, FURTHEST));
-        let gain = score.dot(&(next - at));
-        (gain > WORTH * dot(left, left)).then(|| next.into())
+/// What a hypothesis leaves of a recording with its windings so much warmer.
+struct Warmed {
+    warmth: Warmth,
+    left: Vec<f64>,
+}
+
+impl Warmed {
+    /// Squared residual and the pull of the prior.
+    fn cost(&self) -> f64 {
+        let at = Vector2::from(self.warmth);
+        signal::dot(&self.left, &self.left) + at.dot(&(prior_weight() * at))
     }
+}
+
+/// Where the squared error is least by these derivatives; `None` where that is worth nothing.
+fn next(columns: &[Vec<f64>; 2], here: &Warmed) -> Option<Warmth> {
+    let ([s, r], left) = (columns, &here.left);
+    let dot = signal::dot;
+    let at = Vector2::from(here.warmth);
+    let normal = Matrix2::new(dot(s, s), dot(s, r), dot(s, r), dot(r, r));
+    let weight = prior_weight();
+    let score = Vector2::new(dot(s, left), dot(r, left)) - weight * at;
+    let step = (normal + weight).try_inverse()? * score;
+    let next = (at + step).map(|x| x.clamp(-FURTHEST, FURTHEST));
+    let gain = score.dot(&(next - at));
+    (gain > WORTH * dot(left, left)).then(|| next.into())
 }
 
 /// Weight of the prior: the inverse covariance of both resistances, of so many rows.
 fn prior_weight() -> Matrix2<f64> {
     let [both, alone] = [BOTH, CAGE_ALONE].map(|sd| ROWS_AS_ONE / sd.powi(2));
     Matrix2::new(both + alone, -alone, -alone, alone)
-}
-
-/// Squared residual and the pull of the prior.
-fn cost(left: &[f64], warmth: Warmth) -> f64 {
-    let at = Vector2::from(warmth);
-    signal::dot(left, left) + at.dot(&(prior_weight() * at))
 }
 
 /// A hypothesis with its windings warmer.
