@@ -8,8 +8,10 @@ use crate::proof::off::SIGNIFICANT;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Resistances of both windings move together with the temperature: their changes (logarithms) differ by no more than some 40 K make.
-const TOGETHER: f64 = 0.15;
+/// Windings warm together, though not alike: their changes (logarithms) differ by no more than this share of the larger one ...
+const UNLIKE: f64 = 0.5;
+/// ... and a dozen kelvin.
+const APART: f64 = 0.05;
 
 /// Resistances that a recording which proves asks for, against those of the fitted one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
@@ -25,12 +27,15 @@ pub struct WindingsReport {
 }
 
 impl WindingsReport {
-    fn of(proof: usize, [stator, rotor]: Warmth) -> Self {
+    /// `errors`: standard errors of the fitted resistances.
+    fn of(proof: usize, [stator, rotor]: Warmth, errors: [f64; 2]) -> Self {
+        let known_to = SIGNIFICANT * errors[0].hypot(errors[1]);
+        let most = UNLIKE * stator.abs().max(rotor.abs()) + APART + known_to;
         Self {
             proof,
             stator_resistance_change_percent: 100.0 * stator.exp_m1(),
             rotor_resistance_change_percent: 100.0 * rotor.exp_m1(),
-            is_temperature: stator * rotor >= 0.0 && (stator - rotor).abs() < TOGETHER,
+            is_temperature: (stator - rotor).abs() < most,
         }
     }
 
@@ -77,7 +82,7 @@ impl Study {
         };
         let all = trial.warmth.iter().enumerate();
         let far = all.filter(|(_, warmth)| differs(warmth));
-        far.map(|(k, warmth)| WindingsReport::of(k + 1, *warmth))
+        far.map(|(k, warmth)| WindingsReport::of(k + 1, *warmth, errors))
             .collect()
     }
 }
@@ -109,9 +114,14 @@ mod tests {
     #[test]
     fn one_resistance_without_the_other_is_no_temperature() {
         for warmth in [[0.0, 0.2], [0.2, 0.0], [0.05, -0.05]] {
-            let windings = of(&[warmth], 0.01);
+            let windings = of(&[warmth], 0.001);
             assert!(!windings[0].is_temperature && told(&windings).contains("something else"));
         }
+        for warmth in [[0.0, 0.08], [0.1, 0.2], [0.1, 0.02]] {
+            assert!(of(&[warmth], 0.001)[0].is_temperature, "{warmth:?}");
+        }
+        // A resistance that the fitted recording hardly tells.
+        assert!(of(&[[0.0, 0.2]], 0.02)[0].is_temperature);
     }
 
     #[test]
