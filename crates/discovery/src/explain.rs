@@ -96,15 +96,23 @@ impl Explanation {
     }
 }
 
-/// Explains a study, from the model with its parameters refitted on. `excluded` effects are not asked about, curves are held against
-/// `shapes`; `progress` hears what is being done.
+/// What is missing is asked, but for effects that are not asked about; curves are held against shapes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Missing<'a> {
+    /// Effects that are not asked about.
+    pub excluded: &'a [&'a str],
+    /// Shapes that a curve may have.
+    pub shapes: Shapes,
+}
+
+/// Explains a study, from the model with its parameters refitted on; `progress` hears what is being done.
 pub(crate) fn explain(
     study: &Study,
     baseline: Trial,
-    excluded: &[&str],
-    shapes: Shapes,
+    asked: Missing<'_>,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
+    let excluded = asked.excluded;
     let mut answered = Answered::default();
     let mut explanation = library(study, &mut answered, baseline, excluded, progress);
     if !explanation.steps.is_empty()
@@ -118,7 +126,7 @@ pub(crate) fn explain(
     }
     match explanation.open {
         Some(_) => explanation,
-        None => finished(study, explanation, excluded, shapes, progress),
+        None => finished(study, explanation, asked, progress),
     }
 }
 
@@ -126,33 +134,31 @@ pub(crate) fn explain(
 pub(crate) fn go_on(
     study: &Study,
     mut explanation: Explanation,
-    excluded: &[&str],
-    shapes: Shapes,
+    asked: Missing<'_>,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
     let Some(answered) = explanation.open.take() else {
         return explanation;
     };
-    hidden(study, answered, &mut explanation, excluded, progress);
-    finished(study, explanation, excluded, shapes, progress)
+    hidden(study, answered, &mut explanation, asked.excluded, progress);
+    finished(study, explanation, asked, progress)
 }
 
 /// Formulas of the laws, and the parameters that may stand for an effect.
 fn finished(
     study: &Study,
     mut explanation: Explanation,
-    excluded: &[&str],
-    shapes: Shapes,
+    asked: Missing<'_>,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
     let proven = |law: &&mut LawStep| law.proven && law.bursts.is_empty();
     for law in explanation.laws.iter_mut().filter(proven) {
         progress("holding formulas against the curve", 0.9);
-        law.formulas = formulas(study, shapes, law.as_curve());
+        law.formulas = formulas(study, asked.shapes, law.as_curve());
     }
     if explanation.nameable && explanation.laws.is_empty() {
         progress("contesting the parameters that moved", 0.92);
-        explanation.contests = contests(study, &explanation, excluded);
+        explanation.contests = contests(study, &explanation, asked.excluded);
     }
     explanation
 }

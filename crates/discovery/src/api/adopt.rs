@@ -1,5 +1,6 @@
 //! Taking over what was found: the motor file with an effect, with refitted parameters, or with a law.
 
+use crate::explain::Missing;
 use crate::laws::curve::as_knots;
 use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
@@ -22,7 +23,7 @@ use motor::effects::{find, names};
 use motor::motor_file::{EffectEntry, FieldCurrent, Frame};
 use signal::dot;
 
-use super::explain::{Missing, judged_frame, speed_scale_report};
+use super::explain::{judged_frame, speed_scale_report};
 use super::{LAW, PARAMETERS, Progress};
 
 /// Adds an effect, refits, and shows the error before and after; the new motor file comes with the report.

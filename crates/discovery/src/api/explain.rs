@@ -3,8 +3,8 @@
 use crate::design::limits::NextRun;
 use crate::design::report::{DesignReport, design_report};
 use crate::design::search::design;
-use crate::explain::{self, Explanation, Step, nominal_name, stands_for};
-use crate::laws::formula::dictionary::{Laws, Shapes};
+use crate::explain::{self, Explanation, Missing, Step, nominal_name, stands_for};
+use crate::laws::formula::dictionary::Laws;
 use crate::laws::report::law_report;
 use crate::report::frame;
 use crate::report::present::{
@@ -127,21 +127,15 @@ fn explained_by(
     }
 }
 
-/// Which effect or law is missing, but for effects that are not asked about; curves are held against shapes.
-pub(super) struct Missing<'a> {
-    pub excluded: &'a [&'a str],
-    pub shapes: Shapes,
-}
-
 impl Ask for Missing<'_> {
     type Found = Explanation;
 
     fn ask(&self, study: &Study, baseline: Trial, progress: &mut Progress<'_>) -> Explanation {
-        explain::explain(study, baseline, self.excluded, self.shapes, progress)
+        explain::explain(study, baseline, *self, progress)
     }
 
     fn go_on(&self, study: &Study, found: Explanation, progress: &mut Progress<'_>) -> Explanation {
-        explain::go_on(study, found, self.excluded, self.shapes, progress)
+        explain::go_on(study, found, *self, progress)
     }
 
     fn explains(&self, study: &Study, found: &Explanation) -> Explains {

@@ -103,7 +103,7 @@ fn everywhere(study: &Study, place: Place, fitted: Fitted) -> Option<Candidate> 
     let mut pulses = vec![fitted.pulses];
     let (mut proof, mut warmth) = (Vec::new(), Vec::new());
     for subject in &study.proofs {
-        let as_warm = subject.seen(&study.prior, &parameters).warmth;
+        let as_warm = subject.proof_of(&study.prior, &parameters).warmth;
         let scene = scene(study, subject, &with_free_windings(&parameters, as_warm))?;
         let there = scene.bursts(place, scene.wandering(place))?;
         warmth.push(warmth_of(&there.fit.hypothesis, &parameters)?);

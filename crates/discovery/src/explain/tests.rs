@@ -37,7 +37,11 @@ fn explained_from_prior(
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
     let baseline = study.trial(&study.at_prior(), Effort::FULL);
-    explain(study, baseline, excluded, Shapes::default(), progress)
+    let asked = Missing {
+        excluded,
+        shapes: Shapes::default(),
+    };
+    explain(study, baseline, asked, progress)
 }
 
 fn all_but<'a>(kept: &[&str]) -> Vec<&'a str> {

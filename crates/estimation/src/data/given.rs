@@ -3,7 +3,7 @@
 use crate::data::stretches::Excerpt;
 use recording::Source;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What was read: all of it, or stretches of a recording that does not fit into memory.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub enum Sources<'a> {
 }
 
 /// Which recordings are fitted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fitted {
     /// The first one, of more the first, third, ...; the others prove.

@@ -103,11 +103,11 @@ impl Study {
 
     /// Measures a fit on what it has not seen.
     pub fn measured(&self, fit: Fit) -> Trial {
-        let seen = self
+        let proofs = self
             .proofs
             .iter()
-            .map(|s| s.seen(&self.prior, &fit.hypothesis));
-        let (proof, warmth): (Vec<_>, _) = seen.map(|seen| (seen.errors, seen.warmth)).unzip();
+            .map(|s| s.proof_of(&self.prior, &fit.hypothesis));
+        let (proof, warmth): (Vec<_>, _) = proofs.map(|proof| (proof.errors, proof.warmth)).unzip();
         Trial {
             folds: fit.held_out(),
             proof: proof.concat(),

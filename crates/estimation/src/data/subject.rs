@@ -51,9 +51,9 @@ pub struct Subject {
     warming: OnceLock<[Vec<f64>; 2]>,
 }
 
-/// A hypothesis seen by a recording that was not fitted.
+/// What a recording that was not fitted says of a hypothesis.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct Proof {
     /// Squared error of each block.
     pub errors: Vec<f64>,
     /// By how much the windings' resistances differ there.
@@ -81,13 +81,13 @@ impl Subject {
 
     /// A hypothesis with the resistances that the windings had in this recording: nobody waits between two recordings until a motor is as
     /// warm as before. A load table's few points cannot tell them.
-    pub fn seen(&self, prior: &Prior, h: &Hypothesis) -> Seen {
+    pub fn proof_of(&self, prior: &Prior, h: &Hypothesis) -> Proof {
         let as_warm = self.at(prior, h, AS_WARM);
         let there = match self.case.is_table() {
             true => as_warm,
             false => self.as_warm_as_it_was(prior, h, as_warm),
         };
-        Seen {
+        Proof {
             errors: self.errors_of(&there.left),
             warmth: there.warmth,
         }

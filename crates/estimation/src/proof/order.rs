@@ -85,8 +85,8 @@ pub fn in_either_order<A: Ask>(
     }
     let another = Fitted::another_of(sources.iter().len());
     let begin_other = |progress: &mut Progress<'_>| Begun::of(sources, motor, another, progress);
-    let are_unlike = another == Fitted::First && !given.is_adequate();
-    let mut other = match given.shows_too_little() || are_unlike {
+    let may_be_unlike = another == Fitted::First && !given.is_adequate();
+    let mut other = match given.shows_too_little() || may_be_unlike {
         true => begin_other(progress).ok(),
         false => None,
     };
@@ -103,10 +103,8 @@ pub fn in_either_order<A: Ask>(
     if given.explains(asked) >= Explains::Most || given.each_alone.is_some() {
         return Ok(given);
     }
-    let mut tell =
-        |what: &str, share| progress(&format!("{what}, another recording fitted"), share);
-    let other = other.or_else(|| begin_other(&mut tell).ok());
-    let other = other.map(|other| other.asked(asked, &mut tell));
+    let other = other.or_else(|| begin_other(&mut of_another(progress)).ok());
+    let other = other.map(|other| other.asked(asked, &mut of_another(progress)));
     let is_answer = |other: &Answer<A::Found>| other.explains(asked) == Explains::All;
     let other = match other {
         Some(other) if is_answer(&other) => return Ok(other),
@@ -116,10 +114,13 @@ pub fn in_either_order<A: Ask>(
     if given.explains(asked) >= Explains::Most {
         return Ok(given);
     }
-    let mut tell =
-        |what: &str, share| progress(&format!("{what}, another recording fitted"), share);
-    let other = other.map(|other| other.further(asked, &mut tell));
+    let other = other.map(|other| other.further(asked, &mut of_another(progress)));
     Ok(other.filter(is_answer).unwrap_or(given))
+}
+
+/// Progress of a question with another recording fitted.
+fn of_another(progress: &mut Progress<'_>) -> impl FnMut(&str, f64) {
+    move |what, share| progress(&format!("{what}, another recording fitted"), share)
 }
 
 impl<T> Answer<T> {

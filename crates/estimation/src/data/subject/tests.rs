@@ -8,58 +8,59 @@ fn two_loads(t: f64) -> f64 {
 
 /// What a recording of the believed motor says of a hypothesis that believes other resistances; the squared error of that hypothesis
 /// as it is, and that of the truth, which a closed form without the transient of the step leaves.
-fn seen_of(z: Warmth) -> (Seen, f64, f64) {
+fn asked_of(z: Warmth) -> (Proof, f64, f64) {
     let study = specimen::study(2.0, two_loads);
     let h = warmed(&study.at_prior(), z);
     let plain = |h: &Hypothesis| study.fitted.errors(&study.prior, h).iter().sum();
     (
-        study.fitted.seen(&study.prior, &h),
+        study.fitted.proof_of(&study.prior, &h),
         plain(&h),
         plain(&study.at_prior()),
     )
 }
 
-fn sum(seen: &Seen) -> f64 {
-    seen.errors.iter().sum()
+fn sum(proof: &Proof) -> f64 {
+    proof.errors.iter().sum()
 }
 
 #[test]
 fn a_recording_as_warm_as_the_fitted_one_keeps_its_resistances() {
     let study = specimen::study(2.0, two_loads);
     let (subject, h) = (&study.fitted, study.at_prior());
-    let seen = subject.seen(&study.prior, &h);
-    assert_eq!(seen.warmth, AS_WARM);
-    assert_eq!(seen.errors, subject.errors(&study.prior, &h));
+    let proof = subject.proof_of(&study.prior, &h);
+    assert_eq!(proof.warmth, AS_WARM);
+    assert_eq!(proof.errors, subject.errors(&study.prior, &h));
 }
 
 /// The steady state in closed form is the oracle: the recording has the believed resistances.
 #[test]
 fn the_resistances_of_a_recording_are_found_whatever_the_hypothesis_believes() {
     for believed in [[-0.1, -0.15], [0.12, 0.05], [0.0, -0.2], [-0.3, -0.3]] {
-        let (seen, plain, least) = seen_of(believed);
-        for (found, believed) in seen.warmth.iter().zip(believed) {
+        let (proof, plain, least) = asked_of(believed);
+        for (found, believed) in proof.warmth.iter().zip(believed) {
             // A chord leaves a tenth of what was left, the prior holds the rest back.
-            assert!((found + believed).abs() < 0.02, "{:?}", seen.warmth);
+            assert!((found + believed).abs() < 0.02, "{:?}", proof.warmth);
         }
-        let (left, first) = (sum(&seen) - least, plain - least);
+        let (left, first) = (sum(&proof) - least, plain - least);
+        // Resistances right to a tenth leave a hundredth of the squared error, and less than a hundredth of all is not asked for.
         assert!(left < 0.05 * first && first > 0.0, "{left} of {first}");
     }
 }
 
 #[test]
 fn no_winding_is_a_hundred_kelvin_warmer() {
-    let (seen, plain, _) = seen_of([0.0, -0.8]);
-    assert!(seen.warmth.iter().all(|x| x.abs() <= FURTHEST));
-    assert!(seen.warmth[1] == FURTHEST && sum(&seen) < plain);
+    let (proof, plain, _) = asked_of([0.0, -0.8]);
+    assert!(proof.warmth.iter().all(|x| x.abs() <= FURTHEST));
+    assert!(proof.warmth[1] == FURTHEST && sum(&proof) < plain);
 }
 
 #[test]
 fn a_load_table_has_the_resistances_of_the_hypothesis() {
     let study = specimen::table_study(|_| ());
     let h = warmed(&study.at_prior(), [0.1, 0.1]);
-    let seen = study.fitted.seen(&study.prior, &h);
-    assert_eq!(seen.warmth, AS_WARM);
-    assert_eq!(seen.errors, study.fitted.errors(&study.prior, &h));
+    let proof = study.fitted.proof_of(&study.prior, &h);
+    assert_eq!(proof.warmth, AS_WARM);
+    assert_eq!(proof.errors, study.fitted.errors(&study.prior, &h));
 }
 
 /// What resistances cannot explain is left: the error of a leakage that is a third too large.
@@ -68,9 +69,9 @@ fn other_parameters_stay_wrong() {
     let study = specimen::study(2.0, two_loads);
     let mut h = study.at_prior();
     h.z[crate::model::prior::LEAKAGE] = 0.3;
-    let seen = study.fitted.seen(&study.prior, &h);
+    let proof = study.fitted.proof_of(&study.prior, &h);
     let floor = study.fitted.floor.mean * study.fitted.case.judged();
-    assert!(sum(&seen) > 10.0 * floor, "{} of {floor}", sum(&seen));
+    assert!(sum(&proof) > 10.0 * floor, "{} of {floor}", sum(&proof));
 }
 
 /// Only the resistances are fitted, from where they are; further than a temperature moves them they are another motor's.
@@ -92,7 +93,7 @@ fn a_model_without_numbers_stays_without_them() {
     let study = specimen::study(1.0, |_| 1.0);
     let mut h = study.at_prior();
     h.z[crate::model::prior::INERTIA] = f64::NAN;
-    let seen = study.fitted.seen(&study.prior, &h);
-    assert_eq!(seen.warmth, AS_WARM);
-    assert!(!sum(&seen).is_finite());
+    let proof = study.fitted.proof_of(&study.prior, &h);
+    assert_eq!(proof.warmth, AS_WARM);
+    assert!(!sum(&proof).is_finite());
 }

@@ -7,7 +7,7 @@ use crate::page::elements::place::Place;
 use crate::page::elements::shell::{Mood, cards, next, verdict};
 use crate::page::sections::parameters::{Bar, NOISE, bar, bars, nominals, of_effect};
 use crate::page::sections::{audit, frame, laws, next_run, overlay, scale};
-use discovery::Verdict;
+use discovery::{Fitted, Verdict};
 
 /// Key of the error on data that was not fitted.
 const HELD_OUT: &str = "held_out_error_over_noise";
@@ -83,11 +83,8 @@ pub(super) fn proof(result: &Place<'_>) -> String {
         .iter()
         .map(Place::as_text)
         .collect();
-    let is_fitted = |k: usize| match result.text("fitted") {
-        "all" => true,
-        "first" => k == 0,
-        _ => k.is_multiple_of(2),
-    };
+    let order: Fitted = result.read("fitted").unwrap_or_default();
+    let is_fitted = |k: usize| order.proof_of(k).is_none();
     let of = |fitted: bool| {
         let all = recordings.iter().enumerate();
         let these = all.filter(|(k, _)| is_fitted(*k) == fitted);
