@@ -15,6 +15,7 @@ mod wiring;
 
 pub use expectation::{Circuit, Expectation};
 pub use finding::{Audit, Code, Finding, digits};
+pub use measure::refresh::refreshed_at;
 pub use merged::Merger;
 pub use wiring::probes::with_sound_probes;
 pub use wiring::start::turns_from_the_start;

@@ -48,6 +48,7 @@ pub use estimation::data::stretches::{
 pub use estimation::data::unsupported::Unsupported;
 pub use estimation::model::prediction::{carried_speed, simulations};
 pub use estimation::model::scale_report::{AtRest, ErrorSource, SpeedScaleReport};
+pub use estimation::proof::channels::{ChannelReport, ChannelsReport};
 pub use estimation::proof::windings::WindingsReport;
 pub use identify::{IdentifiedParameter, IdentifyReport, identify};
 pub use laws::formula::dictionary::{Laws, Shapes};

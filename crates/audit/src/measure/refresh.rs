@@ -2,8 +2,10 @@
 
 use crate::measure::statistics::quantile;
 
-/// Rows from which on a value counts as held; a few may be a converter's resolution.
+/// Rows from which on a value counts as held: shorter holds do no harm to a channel that is looked at period by period, ...
 const FEWEST_ROWS: f64 = 10.0;
+/// ... and those from which on they are seen sample by sample. Fewer may be a converter's resolution.
+const FEWEST_SEEN: f64 = 4.0;
 /// Refreshes that must be seen.
 const FEWEST_REFRESHES: usize = 20;
 /// Share of the refreshes that must come after whole multiples of the same number of rows.
@@ -14,9 +16,27 @@ const OFF_ROWS: f64 = 1.0;
 /// Share of the refreshes that must be larger than the smallest change: a slow drift goes on step by step.
 const LARGER: f64 = 0.2;
 
-/// The number of rows for which a channel keeps its value, where it is refreshed regularly.
+/// The number of rows for which a channel keeps its value, where it is refreshed regularly and slowly.
 pub(crate) fn rows(x: &[f64]) -> Option<f64> {
+    let rows = rows_between(&refreshes(x)?, x);
+    rows.filter(|rows| *rows >= FEWEST_ROWS)
+}
+
+/// Rows at which a channel that keeps its values for several rows is refreshed, those between where nothing changed included: a
+/// counter of pulses, a bus. `None` of a channel that shows something new in every row.
+pub fn refreshed_at(x: &[f64]) -> Option<Vec<usize>> {
     let changes = refreshes(x)?;
+    let rows = rows_between(&changes, x).filter(|rows| *rows >= FEWEST_SEEN)?;
+    let ends = changes.iter().skip(1).copied().chain([x.len()]);
+    let held = changes.iter().zip(ends).flat_map(|(&from, to)| {
+        let number = ((to - from) as f64 / rows).round().max(1.0);
+        (0..number as usize).map(move |k| from + (k as f64 * rows).round() as usize)
+    });
+    Some(held.collect())
+}
+
+/// Rows from one refresh to the next, where the changes of a channel are regular.
+fn rows_between(changes: &[usize], x: &[f64]) -> Option<f64> {
     let waits = || changes.windows(2).map(|pair| (pair[1] - pair[0]) as f64);
     let rows = quantile(waits(), 0.1)?;
     let whole = |wait: &f64| {
@@ -28,8 +48,7 @@ pub(crate) fn rows(x: &[f64]) -> Option<f64> {
     let smallest = sizes().fold(f64::INFINITY, f64::min);
     let larger = sizes().filter(|size| *size > 1.5 * smallest).count() as f64;
     let count = changes.len() as f64;
-    (rows >= FEWEST_ROWS && regular >= REGULAR * (count - 1.0) && larger >= LARGER * count)
-        .then_some(rows)
+    (regular >= REGULAR * (count - 1.0) && larger >= LARGER * count).then_some(rows)
 }
 
 /// Where a channel changes: one or two rows in a row, the second where the change was interpolated; `None` where it changes

@@ -98,6 +98,11 @@ fn explained_by(
                 next_run.and_then(|asked| designed(question, motor, found, asked, progress));
             progress("done", 1.0);
             let mut report = report(question, found, frame, answer.fitted);
+            report.channels = answer.channels.map(|beside| {
+                let study = &question.study;
+                study.channels(found.last(), &beside.baseline, beside.before)
+            });
+            report.summary = crate::report::words::summary(&report);
             report.next_run = next_run;
             if let (Verdict::Unknown, Some(differences)) = (report.verdict, answer.each_alone) {
                 report.unexplained = Some(apart(differences));
@@ -112,6 +117,7 @@ fn explained_by(
             fitted: Fitted::AsGiven,
             verdict: Verdict::Unsupported,
             summary: format!("{}; {}", why.reason, why.remedy),
+            channels: None,
             baseline: None,
             steps: Vec::new(),
             final_: None,
@@ -218,6 +224,7 @@ fn report(
         fitted,
         verdict,
         summary: String::new(),
+        channels: None,
         baseline: Some(baseline),
         steps,
         final_: Some(last),

@@ -8,6 +8,7 @@ use estimation::data::given::Fitted;
 use estimation::data::stretches::StretchReport;
 pub use estimation::fit::readings::DifferenceReport;
 use estimation::model::scale_report::SpeedScaleReport;
+use estimation::proof::channels::ChannelsReport;
 use estimation::proof::windings::WindingsReport;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -154,6 +155,9 @@ pub struct ExplainReport {
     pub verdict: Verdict,
     /// One sentence that says it.
     pub summary: String,
+    /// What the recorder's channels are off by, where it is part of the answer: then all models below are beside it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channels: Option<ChannelsReport>,
     /// The model with refitted parameters and nothing added.
     pub baseline: Option<FitReport>,
     /// Effects added, in order.

@@ -3,6 +3,7 @@
 use crate::report::law::{BurstsReport, LawReport};
 use crate::report::types::{ExplainReport, FitReport, Unexplained, Verdict};
 use estimation::proof::accept::ADEQUATE;
+use estimation::proof::channels::ChannelsReport;
 use estimation::proof::windings::told;
 
 /// Error over noise below which the noise cannot be what it is said to be: no model predicts noise that it was not fitted to.
@@ -11,9 +12,11 @@ const FAR_BELOW: f64 = 0.3;
 /// What was found, in a sentence or two.
 pub(crate) fn summary(report: &ExplainReport) -> String {
     let windings = report.final_.as_ref().map_or(&[][..], |f| &f.windings);
+    let channels = report.channels.as_ref();
     let found = format!(
-        "{}{}{}",
+        "{}{}{}{}",
         finding(report),
+        channels.map_or_else(String::new, ChannelsReport::told),
         told(windings),
         report.fitted.told()
     );

@@ -1,5 +1,6 @@
 //! What a model is held against: the waveforms of a recording, or the operating points of a load-test table.
 
+mod judged_speed;
 mod switched_off;
 mod waveform;
 

@@ -165,11 +165,16 @@ impl Question {
 
     /// The same recordings, all fitted together; `None` where they do not suit.
     pub fn together(&self) -> Option<Self> {
-        Some(Self {
+        Some(self.about_study(self.study.together()?))
+    }
+
+    /// The same question about another study of the same recordings.
+    pub fn about_study(&self, study: Study) -> Self {
+        Self {
             audit: self.audit.clone(),
             stretches: self.stretches.clone(),
-            study: self.study.together()?,
-        })
+            study,
+        }
     }
 }
 

@@ -83,12 +83,16 @@ impl Study {
             Some(_) => free_scale::free(&priors, &self.prior),
             None => priors,
         };
-        priors.with_uncertain(&self.prior)
+        priors
+            .with_uncertain(&self.prior)
+            .with_channels(&self.prior)
     }
 
     /// Effects that every hypothesis holds: they are no finding.
     pub fn given_effects(&self) -> usize {
-        usize::from(self.speed_scale.is_some()) + self.prior.uncertain.len()
+        usize::from(self.speed_scale.is_some())
+            + self.prior.uncertain.len()
+            + self.prior.channels.len()
     }
 
     /// Fits a hypothesis and measures it.

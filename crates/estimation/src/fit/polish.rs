@@ -9,7 +9,7 @@
 
 use crate::data::study::{Study, Trial};
 use crate::fit::output_error::Effort;
-use crate::model::prior::N_NOMINAL;
+use crate::model::prior::{Hypothesis, N_NOMINAL};
 use motor::effect::{EffectConfig, Instrument};
 use motor::effects::{gain_of, offset_of};
 
@@ -20,19 +20,37 @@ const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents
 /// holds an unbalance of voltages and currents already. Gains that were found are held to their class, too: the data tell
 /// how they differ, and nothing tells what all three have in common from the impedances of another motor.
 pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
-    let h = &trial.fit.hypothesis;
-    let held = h.effects.iter().chain(&study.prior.plant.effects);
+    let here = beside_channels(study, &trial.fit.hypothesis)?;
+    let mut believed = here.clone();
+    believed.z[..N_NOMINAL].fill(0.0);
+    // A trial whose nominals had to make up for the gains starts far from the minimum; from the prior it takes a few steps.
+    let polished = study.trial(&believed, Effort::FULL);
+    if polished.fit.cost() <= trial.fit.cost() {
+        return Some(polished);
+    }
+    let other = study.trial(&here, Effort::FULL);
+    Some(if other.fit.cost() < polished.fit.cost() {
+        other
+    } else {
+        polished
+    })
+}
+
+/// A hypothesis with gains and offsets of the channels to be refitted, those that it holds already included.
+fn beside_channels(study: &Study, h: &Hypothesis) -> Option<Hypothesis> {
     if study.fitted.case.is_table() {
         return None;
     }
+    let held = h.effects.iter().chain(&study.prior.plant.effects);
     let rated = &study.prior.plant.rated;
-    let mut here = h.clone();
-    let mut any = false;
+    let mut here = h.clone().with_free_instruments();
+    let mut any = !study.prior.channels.is_empty();
     for instrument in INSTRUMENTS {
         let is_gain = |c: &EffectConfig| c.effect.gain_of() == Some(instrument);
         let hides = |c: &EffectConfig| c.effect.hides_gain_of() == Some(instrument);
         let found = h.effects.iter().position(is_gain);
         here = match found {
+            _ if here.refits_instrument(instrument) => continue,
             Some(found) => here.taken_for_instrument(found),
             None if held.clone().any(hides) => continue,
             None => {
@@ -50,26 +68,11 @@ pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
             any = true;
         }
     }
-    if !any {
-        return None;
-    }
-    let mut believed = here.clone();
-    believed.z[..N_NOMINAL].fill(0.0);
-    // A trial whose nominals had to make up for the gains starts far from the minimum; from the prior it takes a few steps.
-    let polished = study.trial(&believed, Effort::FULL);
-    if polished.fit.cost() <= trial.fit.cost() {
-        return Some(polished);
-    }
-    let other = study.trial(&here, Effort::FULL);
-    Some(if other.fit.cost() < polished.fit.cost() {
-        other
-    } else {
-        polished
-    })
+    any.then_some(here)
 }
 
 /// The hypothesis of a trial with the nominals of another one.
-pub fn with_nominals(trial: &Trial, of: &Trial) -> crate::model::prior::Hypothesis {
+pub fn with_nominals(trial: &Trial, of: &Trial) -> Hypothesis {
     let mut h = trial.fit.hypothesis.clone();
     h.z[..N_NOMINAL].copy_from_slice(&of.fit.hypothesis.z[..N_NOMINAL]);
     h

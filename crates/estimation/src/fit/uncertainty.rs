@@ -118,12 +118,12 @@ fn instruments(waveform: &Waveform, plant: &Plant, fit: &Fit) -> DMatrix<f64> {
         )
     };
     let mut sum = DMatrix::zeros(n, n);
-    if !fit.hypothesis.holds_instrument(Instrument::Currents) {
+    if !fit.hypothesis.refits_instrument(Instrument::Currents) {
         for current in 0..3 {
             sum += outer(&measured(current), CHANNEL_GAIN.powi(2));
         }
     }
-    if !fit.hypothesis.holds_instrument(Instrument::Voltages) {
+    if !fit.hypothesis.refits_instrument(Instrument::Voltages) {
         // What all three share of their gains: the rest is unbalance and zero sequence.
         sum += outer(
             &driven(louder_voltage(waveform)),

@@ -71,6 +71,8 @@ pub struct Prior {
     pub deviations: [f64; N_NOMINAL],
     /// Effects of the motor file whose parameters have intervals: every hypothesis refits them.
     pub uncertain: Vec<UncertainEffect>,
+    /// Gains and offsets of the recorder's channels, as they were found: every hypothesis holds them, none refits them.
+    pub channels: Vec<EffectConfig>,
 }
 
 /// An effect of the motor file that was not measured on this motor.
@@ -115,6 +117,7 @@ impl Prior {
             formulas: formulas.iter().map(|e| e.effect).collect(),
             deviations: deviations(file),
             uncertain,
+            channels: Vec::new(),
             plant,
         }
     }
@@ -302,10 +305,38 @@ impl Hypothesis {
         self
     }
 
-    /// Whether gains of this instrument are among the priors.
-    pub fn holds_instrument(&self, instrument: Instrument) -> bool {
-        let mut effects = self.instruments.iter().map(|&k| self.effects[k].effect);
-        effects.any(|effect| effect.gain_of() == Some(instrument))
+    /// The same with the gains and offsets of the recorder's channels as they were found.
+    pub fn with_channels(&self, prior: &Prior) -> Self {
+        let held = |h: Self, config: &EffectConfig| {
+            let mut more = h.with_instrument(config.clone(), &prior.plant.rated);
+            more.free[h.z.len()..].fill(false);
+            more
+        };
+        prior.channels.iter().fold(self.clone(), held)
+    }
+
+    /// The same with the errors of instruments that it holds refitted.
+    pub fn with_free_instruments(mut self) -> Self {
+        for k in N_NOMINAL..self.z.len() {
+            self.free[k] |= self.instruments.contains(&self.effect_of(k));
+        }
+        self
+    }
+
+    /// Whether gains of this instrument are refitted.
+    pub fn refits_instrument(&self, instrument: Instrument) -> bool {
+        let mut free = (N_NOMINAL..self.z.len()).filter(|&k| self.free[k]);
+        free.any(|k| {
+            let effect = self.effect_of(k);
+            self.instruments.contains(&effect)
+                && self.effects[effect].effect.gain_of() == Some(instrument)
+        })
+    }
+
+    /// The errors of instruments that it holds, with their values.
+    pub fn instruments(&self, rated: &Rated<f64>) -> Vec<EffectConfig> {
+        let all = self.configs(rated);
+        self.instruments.iter().map(|&k| all[k].clone()).collect()
     }
 
     /// Whether coordinate `k` is a prior: of the motor file about the motor, or of the class about an instrument.

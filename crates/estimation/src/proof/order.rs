@@ -46,6 +46,17 @@ pub struct Answer<T> {
     pub fitted: Fitted,
     /// Where each of two alone is explained with nothing missing, but not both by the same parameters: which differ.
     pub each_alone: Option<Vec<DifferenceReport>>,
+    /// Where what the recorder's channels are off by is part of the answer.
+    pub channels: Option<Beside>,
+}
+
+/// What the recorder's channels change.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// The model beside them, with its parameters refitted and nothing added.
+    pub baseline: Trial,
+    /// Error over noise of the proving recordings without them.
+    pub before: f64,
 }
 
 /// What an answer explains of the recordings.
@@ -81,7 +92,14 @@ pub fn in_either_order<A: Ask>(
 ) -> Result<Answer<A::Found>, Error> {
     let given = Begun::of(sources, motor, Fitted::AsGiven, progress)?;
     if !given.question.is_of_wholes() {
-        return Ok(given.asked(asked, progress).further(asked, progress));
+        let baseline = given.baseline.clone();
+        let given = given.asked(asked, progress);
+        if given.explains(asked) == Explains::All {
+            return Ok(given);
+        }
+        let beside = given.beside_channels(&baseline, asked, progress);
+        let beside = beside.filter(|beside| beside.explains(asked) > given.explains(asked));
+        return Ok(beside.unwrap_or_else(|| given.further(asked, progress)));
     }
     let another = Fitted::another_of(sources.iter().len());
     let begin_other = |progress: &mut Progress<'_>| Begun::of(sources, motor, another, progress);
@@ -96,6 +114,7 @@ pub fn in_either_order<A: Ask>(
     let alone = other.as_ref().filter(|other| other.shows_too_little());
     let each_alone = alone.filter(|_| another == Fitted::Second);
     let each_alone = each_alone.map(|other| given.differences(other));
+    let baseline = given.baseline.clone();
     let given = Answer {
         each_alone,
         ..given.asked(asked, progress)
@@ -103,6 +122,11 @@ pub fn in_either_order<A: Ask>(
     if given.explains(asked) >= Explains::Most || given.each_alone.is_some() {
         return Ok(given);
     }
+    let beside = given.beside_channels(&baseline, asked, progress);
+    let beside = match beside {
+        Some(beside) if beside.explains(asked) == Explains::All => return Ok(beside),
+        beside => beside.filter(|beside| beside.explains(asked) == Explains::Most),
+    };
     let other = other.or_else(|| begin_other(&mut of_another(progress)).ok());
     let other = other.map(|other| other.asked(asked, &mut of_another(progress)));
     let is_answer = |other: &Answer<A::Found>| other.explains(asked) == Explains::All;
@@ -110,6 +134,9 @@ pub fn in_either_order<A: Ask>(
         Some(other) if is_answer(&other) => return Ok(other),
         other => other,
     };
+    if let Some(beside) = beside {
+        return Ok(beside);
+    }
     let given = given.further(asked, progress);
     if given.explains(asked) >= Explains::Most {
         return Ok(given);
@@ -126,6 +153,31 @@ fn of_another(progress: &mut Progress<'_>) -> impl FnMut(&str, f64) {
 impl<T> Answer<T> {
     fn explains(&self, asked: &impl Ask<Found = T>) -> Explains {
         asked.explains(&self.question.study, &self.found)
+    }
+
+    /// The answer beside what the recorder's channels are off by, where that explains a good part of what is left.
+    fn beside_channels(
+        &self,
+        baseline: &Trial,
+        asked: &impl Ask<Found = T>,
+        progress: &mut Progress<'_>,
+    ) -> Option<Self> {
+        progress("asking what the channels are off by", 0.8);
+        let study = &self.question.study;
+        let (beside, refitted) = study.beside_channels(baseline)?;
+        let channels = Beside {
+            baseline: refitted.clone(),
+            before: study.proof_error(baseline),
+        };
+        let begun = Begun {
+            question: self.question.about_study(beside),
+            fitted: self.fitted,
+            baseline: refitted,
+        };
+        Some(Answer {
+            channels: Some(channels),
+            ..begun.asked(asked, progress)
+        })
     }
 
     fn further(self, asked: &impl Ask<Found = T>, progress: &mut Progress<'_>) -> Self {
@@ -195,6 +247,7 @@ impl Begun {
             question: self.question,
             fitted: self.fitted,
             each_alone: None,
+            channels: None,
         }
     }
 }

@@ -51,6 +51,7 @@ fn report(verdict: Verdict, parameters: &[NominalReport], steps: &[StepReport]) 
         },
         verdict,
         summary: String::new(),
+        channels: None,
         baseline: None,
         steps: steps.to_vec(),
         final_: Some(FitReport {

@@ -1,5 +1,6 @@
 //! A recording made ready for simulation: denoised inputs, weighted outputs, what is known about its start.
 
+use super::judged_speed::JudgedSpeed;
 use super::switched_off::switched_off;
 use super::whole_blocks;
 use crate::data::channels::{N_CHANNELS, SPEED};
@@ -269,7 +270,7 @@ impl Waveform {
         self.block = ((BLOCK / self.t_row()) as usize).max(1);
         let sigma_i = [0, 1, 2].map(|k| sigma(rec, Channel::CURRENTS[k], currents[k]));
         let speed = rec.speed().filter(|_| !self.speed_is_input);
-        let w_speed = speed.map_or(0.0, |x| 1.0 / sigma(rec, Channel::SPEED, x));
+        let speed = speed.map(|x| JudgedSpeed::new(rec, x));
         let w_zero = 3f64.sqrt() / sigma_u;
         let stride = self.samples_per_row() / self.finer;
         let whole = (self.between.stride() / self.finer).max(1);
@@ -287,7 +288,8 @@ impl Waveform {
                 f64::from(u8::from(judged)) / sigma_i[p].hypot(RELATIVE_CURRENT * i[p])
             };
             let zero = (voltages[0][k] + voltages[1][k] + voltages[2][k]) / 3.0;
-            let omega = speed.map_or(0.0, |x| x[k]);
+            let row = (k + 1).saturating_sub(stride)..k + 1;
+            let (omega, w_speed) = speed.as_ref().map_or((0.0, 0.0), |speed| speed.in_row(row));
             self.measured.push([i[0], i[1], i[2], omega, zero]);
             self.weight.push([w_i(0), w_i(1), w_i(2), w_speed, w_zero]);
         }

@@ -117,7 +117,7 @@ fn tables_and_models_with_an_unbalance_are_left_as_they_are() {
     for (voltages, held_to_class) in [("phase-voltage-gain", true), ("voltage-asymmetry", false)] {
         let one = polished(&study, &specimen::trial_with(&study, &[(voltages, 0.1)]));
         let held = one.expect("beside the currents' gains").fit.hypothesis;
-        assert!(held.holds_instrument(Instrument::Currents));
-        assert_eq!(held.holds_instrument(Instrument::Voltages), held_to_class);
+        assert!(held.refits_instrument(Instrument::Currents));
+        assert_eq!(held.refits_instrument(Instrument::Voltages), held_to_class);
     }
 }

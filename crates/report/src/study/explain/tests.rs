@@ -54,6 +54,7 @@ fn report(law: LawReport) -> ExplainReport {
         },
         verdict: Verdict::Law,
         summary: String::new(),
+        channels: None,
         baseline: Some(fit.clone()),
         steps: Vec::new(),
         final_: Some(fit),
