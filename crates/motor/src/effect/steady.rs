@@ -70,6 +70,10 @@ pub trait SteadyEffect: Sync {
 /// Implements [`SteadyEffect`] from one generic function.
 macro_rules! steady_effect {
     ($effect:ident, $descriptor:ident, $correct:ident) => {
+        #[doc = "The effect of this file."]
+        #[derive(Clone, Copy, Debug)]
+        pub struct $effect;
+
         impl $crate::effect::SteadyEffect for $effect {
             fn descriptor(&self) -> &'static $crate::effect::Descriptor {
                 &$descriptor

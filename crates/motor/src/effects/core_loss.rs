@@ -18,10 +18,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a no-load voltage sweep together with a coast-down; one voltage and frequency cannot tell it from friction",
 };
 
-/// Core loss behind the stator resistance: `i = (i_s + g u)/(1 + g R_s)`, `g` one over the loss resistance.
-#[derive(Clone, Copy, Debug)]
-pub struct CoreLoss;
-
 steady_effect!(CoreLoss, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -19,10 +19,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a no-load voltage sweep together with a coast-down; one voltage and frequency cannot tell it from friction",
 };
 
-/// Core loss at the air gap: `i = i_s + g j w_sync psi_m`, `g` one over the loss resistance.
-#[derive(Clone, Copy, Debug)]
-pub struct CoreLossAirGap;
-
 steady_effect!(CoreLossAirGap, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -19,10 +19,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a coast-down: without it Coulomb friction hides in B",
 };
 
-/// Coulomb friction: `T_c sgn(w)`, smoothed over 0.5 % of synchronous speed.
-#[derive(Clone, Copy, Debug)]
-pub struct CoulombFriction;
-
 steady_effect!(CoulombFriction, DESCRIPTOR, correct);
 
 #[inline(always)]

@@ -15,10 +15,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a calibrated ammeter",
 };
 
-/// All current channels show `gain` times the truth.
-#[derive(Clone, Copy, Debug)]
-pub struct CurrentGain;
-
 steady_effect!(CurrentGain, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -18,10 +18,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a segment before the start",
 };
 
-/// Each current channel is shifted by a constant.
-#[derive(Clone, Copy, Debug)]
-pub struct CurrentOffset;
-
 steady_effect!(CurrentOffset, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

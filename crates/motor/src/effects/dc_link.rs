@@ -18,10 +18,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "measure the DC link",
 };
 
-/// DC link that is not what the inverter believes: `u (1 + a + b P)`, `P` the electrical power.
-#[derive(Clone, Copy, Debug)]
-pub struct DcLink;
-
 steady_effect!(DcLink, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -1,4 +1,9 @@
 //! DC link of an inverter that a diode bridge charges.
+//!
+//! DC link of a six-pulse diode bridge, an inductance and a capacitor, the motor's voltage in proportion to it:
+//! `L di/dt = u6(t, phi) - u` (`i >= 0`), `C du/dt = i - P/U`, motor voltage `v u/U`, `U` the bridge's mean voltage.
+//!
+//! The phase counts within a sixth of the grid's period: it and pi/3 more are the same.
 
 use crate::effect::steady::{steady_effect, unchanged};
 use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
@@ -42,13 +47,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     look_alikes: &["voltage-gain"],
     separating_test: "measure the DC link",
 };
-
-/// DC link of a six-pulse diode bridge, an inductance and a capacitor, the motor's voltage in proportion to it:
-/// `L di/dt = u6(t, phi) - u` (`i >= 0`), `C du/dt = i - P/U`, motor voltage `v u/U`, `U` the bridge's mean voltage.
-///
-/// The phase counts within a sixth of the grid's period: it and pi/3 more are the same.
-#[derive(Clone, Copy, Debug)]
-pub struct DcLinkCapacitor;
 
 steady_effect!(DcLinkCapacitor, DESCRIPTOR, unchanged);
 

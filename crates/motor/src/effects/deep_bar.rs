@@ -26,10 +26,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "locked rotor at two frequencies",
 };
 
-/// Skin effect in the rotor bars: `R_r (1 + k_R abs(s)^n)`, `L_lr (1 - k_L abs(s)^n)`.
-#[derive(Clone, Copy, Debug)]
-pub struct DeepBar;
-
 steady_effect!(DeepBar, DESCRIPTOR, correct);
 
 #[inline(always)]

@@ -30,10 +30,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "locked rotor at two frequencies",
 };
 
-/// A second rotor cage, equal to the single cage at low slip: `R_1 = R_r/(1-a)`, `R_2 = R_r/a`, `L_2 = lambda L_lr`.
-#[derive(Clone, Copy, Debug)]
-pub struct DoubleCage;
-
 steady_effect!(DoubleCage, DESCRIPTOR, correct);
 
 /// Both cages: resistances and leakages `(r_1, l_1, r_2, l_2)`.

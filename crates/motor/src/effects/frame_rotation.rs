@@ -14,10 +14,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "harmonics in the supply: a rotation turns all orders alike",
 };
 
-/// The voltages are turned against the currents: `u e^(j delta)`.
-#[derive(Clone, Copy, Debug)]
-pub struct FrameRotation;
-
 steady_effect!(FrameRotation, DESCRIPTOR, correct);
 
 fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {

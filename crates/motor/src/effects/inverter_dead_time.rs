@@ -26,10 +26,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "two current levels at the same frequency: a resistance drop is proportional, dead time is not",
 };
 
-/// Dead time and device drop of an inverter: `-V tanh(i_k/I_0)` per phase, decided once per hold period.
-#[derive(Clone, Copy, Debug)]
-pub struct InverterDeadTime;
-
 steady_effect!(InverterDeadTime, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -32,10 +32,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "two operating frequencies, or a known filter",
 };
 
-/// LC filter: `L_f di/dt = v - u`, `du/dt = (2 pi f_r)^2 L_f (i - i_m)`.
-#[derive(Clone, Copy, Debug)]
-pub struct LcFilter;
-
 steady_effect!(LcFilter, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

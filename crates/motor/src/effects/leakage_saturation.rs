@@ -25,10 +25,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "locked rotor at two voltages",
 };
 
-/// Leakage saturation: both leakages times `1 - k x^2/(1 + x^2)`, `x = abs(i_s)/i_ref`.
-#[derive(Clone, Copy, Debug)]
-pub struct LeakageSaturation;
-
 steady_effect!(LeakageSaturation, DESCRIPTOR, correct);
 
 /// Factor on both leakages at the squared current `i2`, A2.

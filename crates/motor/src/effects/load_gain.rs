@@ -14,10 +14,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a calibrated torque sensor",
 };
 
-/// The torque channel shows `gain` times the truth.
-#[derive(Clone, Copy, Debug)]
-pub struct LoadGain;
-
 steady_effect!(LoadGain, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

@@ -17,10 +17,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "look at the current sidebands: a sensor ripple has none",
 };
 
-/// Torque that pulsates once per turn: `a cos(theta) + b sin(theta)`.
-#[derive(Clone, Copy, Debug)]
-pub struct LoadPulsation;
-
 steady_effect!(LoadPulsation, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

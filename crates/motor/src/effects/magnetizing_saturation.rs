@@ -27,10 +27,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a no-load run at 80 to 110 % of rated voltage",
 };
 
-/// Magnetizing saturation: `i_m = psi/L_m (1 + k((psi/psi_rated)^n - 1))`.
-#[derive(Clone, Copy, Debug)]
-pub struct MagnetizingSaturation;
-
 steady_effect!(MagnetizingSaturation, DESCRIPTOR, correct);
 
 /// Moves part `g` of the stator leakage behind the magnetizing branch; the linear motor stays the same at its

@@ -45,6 +45,7 @@ effects! {
     voltage_gain: VoltageGain,
     current_gain: CurrentGain,
     load_gain: LoadGain,
+    load_delay: LoadDelay,
     phase_voltage_gain: PhaseVoltageGain,
     phase_current_gain: PhaseCurrentGain,
     current_offset: CurrentOffset,

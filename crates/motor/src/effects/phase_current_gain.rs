@@ -18,10 +18,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "the sum of the phase currents names the channel",
 };
 
-/// Each current channel shows its own gain times the truth.
-#[derive(Clone, Copy, Debug)]
-pub struct PhaseCurrentGain;
-
 steady_effect!(PhaseCurrentGain, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

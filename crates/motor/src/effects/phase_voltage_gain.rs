@@ -18,10 +18,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "the sum of the phase voltages names the channel",
 };
 
-/// Each voltage channel shows its own gain times the truth.
-#[derive(Clone, Copy, Debug)]
-pub struct PhaseVoltageGain;
-
 steady_effect!(PhaseVoltageGain, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

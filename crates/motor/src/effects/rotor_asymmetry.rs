@@ -17,10 +17,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a second load: the sidebands move with slip",
 };
 
-/// Broken rotor bar: rotor voltage drop `R_r (i_r + k e^(j 2 theta_el) conj(i_r))`.
-#[derive(Clone, Copy, Debug)]
-pub struct RotorAsymmetry;
-
 steady_effect!(RotorAsymmetry, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

@@ -14,10 +14,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "harmonics in the supply: delay turns each in proportion to its order",
 };
 
-/// The currents are sampled later than the voltages: `i(t - d)`.
-#[derive(Clone, Copy, Debug)]
-pub struct SampleDelay;
-
 steady_effect!(SampleDelay, DESCRIPTOR, correct);
 
 fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -21,10 +21,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "harmonics in the supply: a filter also weakens them",
 };
 
-/// The current channels are low-passed: `1/(1 + tau s)`.
-#[derive(Clone, Copy, Debug)]
-pub struct SensorFilter;
-
 steady_effect!(SensorFilter, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -20,10 +20,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "two operating frequencies, or a known filter: from the terminals it is leakage",
 };
 
-/// Inductance of an output filter or cable between the voltage and the motor.
-#[derive(Clone, Copy, Debug)]
-pub struct SeriesInductance;
-
 steady_effect!(SeriesInductance, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

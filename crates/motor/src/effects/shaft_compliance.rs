@@ -40,10 +40,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "none needed: the ringing frequency is its own",
 };
 
-/// Two masses on an elastic shaft: torsional frequency, damping ratio and the motor's share of the inertia.
-#[derive(Clone, Copy, Debug)]
-pub struct ShaftCompliance;
-
 steady_effect!(ShaftCompliance, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

@@ -14,10 +14,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a fast ramp with the current as reference",
 };
 
-/// The speed channel is late: `w(t - d)`.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedDelay;
-
 steady_effect!(SpeedDelay, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

@@ -1,4 +1,4 @@
-//! The speed channel shows a mean over the last `2 d`: counts of an encoder in a window.
+//! The speed channel shows a mean over the last `2 d`, late by `d`: counts of an encoder in a window.
 
 use crate::effect::steady::{steady_effect, unchanged};
 use crate::effect::{Applies, Descriptor, Kind, Parameter, Scale};
@@ -21,10 +21,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     look_alikes: &["inertia_kg_m2"],
     separating_test: "a direct-on-line start with the current as reference: its torque ripples at the supply's frequency",
 };
-
-/// The speed channel shows a mean over the last `2 d`, late by `d`.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedMean;
 
 steady_effect!(SpeedMean, DESCRIPTOR, unchanged);
 

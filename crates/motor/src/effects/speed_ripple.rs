@@ -17,10 +17,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "look at the current sidebands: a pulsating load has them",
 };
 
-/// The speed channel ripples once per turn.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedRipple;
-
 steady_effect!(SpeedRipple, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

@@ -15,10 +15,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a stroboscope at no load",
 };
 
-/// The speed channel shows `scale` times the truth.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedScale;
-
 steady_effect!(SpeedScale, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

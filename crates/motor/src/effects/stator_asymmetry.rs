@@ -17,10 +17,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a second load",
 };
 
-/// Series resistance or shorted turns in one phase: voltage drop `R_s (i + k conj(i))`.
-#[derive(Clone, Copy, Debug)]
-pub struct StatorAsymmetry;
-
 steady_effect!(StatorAsymmetry, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

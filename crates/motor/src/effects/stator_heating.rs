@@ -25,10 +25,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a longer run at constant load",
 };
 
-/// Heating of the stator: `R (1 + D(1 - e^(-t/tau)))`, `t` from the start of the recording.
-#[derive(Clone, Copy, Debug)]
-pub struct StatorHeating;
-
 steady_effect!(StatorHeating, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

@@ -25,10 +25,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a calibrated torque transducer at several loads: friction stays, this grows with the square of the current",
 };
 
-/// Stray-load loss: a braking torque `T_s (I/I_N)^2`.
-#[derive(Clone, Copy, Debug)]
-pub struct StrayLoadLoss;
-
 steady_effect!(StrayLoadLoss, DESCRIPTOR, correct);
 
 fn torque<F: Real>(p: &[F], rated: &Rated<F>, squared_current: F, omega_mech: F) -> F {

@@ -17,10 +17,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a second load",
 };
 
-/// The motor sees a negative sequence that was not measured: `u + k conj(u)`.
-#[derive(Clone, Copy, Debug)]
-pub struct VoltageAsymmetry;
-
 steady_effect!(VoltageAsymmetry, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

@@ -15,10 +15,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a calibrated voltmeter",
 };
 
-/// All voltage channels show `gain` times the truth.
-#[derive(Clone, Copy, Debug)]
-pub struct VoltageGain;
-
 steady_effect!(VoltageGain, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {

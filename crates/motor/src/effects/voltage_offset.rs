@@ -18,10 +18,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a segment before the start",
 };
 
-/// Each voltage channel is shifted by a constant.
-#[derive(Clone, Copy, Debug)]
-pub struct VoltageOffset;
-
 steady_effect!(VoltageOffset, DESCRIPTOR, unchanged);
 
 #[cfg(feature = "std")]

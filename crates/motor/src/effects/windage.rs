@@ -20,10 +20,6 @@ static DESCRIPTOR: Descriptor = Descriptor {
     separating_test: "a coast-down: without it windage hides in B",
 };
 
-/// Windage: `k w abs(w)`.
-#[derive(Clone, Copy, Debug)]
-pub struct Windage;
-
 steady_effect!(Windage, DESCRIPTOR, correct);
 
 fn correct<F: Float>(p: &[F], point: &mut SteadyPoint<F>) {
