@@ -94,7 +94,9 @@ fn every_descriptor_is_complete() {
 
 #[test]
 fn an_absent_effect_changes_nothing_and_a_typical_one_does() {
-    let inputs = inputs(0.5);
+    let mut inputs = inputs(0.5);
+    let step = inputs.tau_load.len() / 2;
+    inputs.tau_load[step..].fill(15.0);
     let base = outputs(&plant(), &inputs, Between::Held);
     for effect in ALL {
         let d = effect.descriptor();
@@ -115,6 +117,24 @@ fn an_absent_effect_changes_nothing_and_a_typical_one_does() {
             // Star and delta forms of the same circuit round differently.
             assert!(difference(&base, &absent) < 1e-9, "{} {}", d.name, d.form);
         }
+    }
+}
+
+/// A transducer that shows a load 3 ms late: the load was there 3 ms before.
+#[test]
+fn a_torque_that_is_shown_late_is_brought_forward() {
+    let mut inputs = inputs(0.1);
+    let ramp = |k: usize| (k as f64 * T_SAMPLE - 0.05).clamp(0.0, 0.02);
+    inputs.tau_load = (0..inputs.tau_load.len()).map(ramp).collect();
+    let shown = inputs.tau_load.clone();
+    let late = motor::effects::find("load-delay", "").unwrap();
+    late.inputs(&[3e-3], &plant().rated, &mut inputs);
+    let samples = (3e-3 / T_SAMPLE).round() as usize;
+    for k in 0..shown.len() - samples {
+        assert!(
+            (inputs.tau_load[k] - shown[k + samples]).abs() < 1e-4,
+            "{k}"
+        );
     }
 }
 

@@ -184,6 +184,39 @@ pub struct ExplainReport {
     pub next_run: Option<DesignReport>,
 }
 
+impl ExplainReport {
+    /// Error over noise of data that was not fitted, of the refitted model and of each thing that was added to it, in order.
+    pub fn errors(&self) -> Vec<(String, f64)> {
+        let refitted = self.baseline.iter().map(|baseline| {
+            let beside = match self.channels {
+                Some(_) => "with what the channels are off by",
+                None => REFITTED,
+            };
+            (beside.to_owned(), baseline.held_out_error_over_noise)
+        });
+        let channels = self.channels.iter();
+        let without = channels.map(|c| (REFITTED.to_owned(), c.held_out_error_over_noise_without));
+        let steps = self.steps.iter().filter(|step| step.frame.is_none());
+        let steps = steps.map(|step| {
+            (
+                format!("with {}", step.effect),
+                step.held_out_error_over_noise,
+            )
+        });
+        let laws = self.laws.iter().filter(|law| law.proven);
+        let laws = laws.map(|law| {
+            (
+                format!("with {}", law.name()),
+                law.held_out_error_over_noise,
+            )
+        });
+        without.chain(refitted).chain(steps).chain(laws).collect()
+    }
+}
+
+/// The model with nothing added.
+const REFITTED: &str = "all parameters refitted";
+
 /// One signal: model against measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SignalReport {

@@ -1,5 +1,7 @@
 //! The page of `drivemon explain`: what is missing, how sure that is, what to do next.
 
+mod channels;
+
 use maud::{Markup, html};
 
 use crate::page::elements::number::{decimals, shown};
@@ -23,6 +25,7 @@ pub fn content(result: &Place<'_>) -> Markup {
         (where_it_fails(result))
         @for (k, step) in steps.iter().enumerate() { (effect(step, k)) (frame::section(step)) }
         (laws::section(result))
+        (channels::section(result))
         (unexplained(result))
         (overlay::section(result))
         (ranking(result, &steps))
@@ -159,11 +162,13 @@ fn errors(result: &Place<'_>, steps: &[Place<'_>]) -> Markup {
     let Some(baseline) = result.get("baseline") else {
         return html! {};
     };
-    let mut rows = vec![row(
-        "all parameters refitted, nothing added".to_owned(),
-        &baseline,
-        "",
-    )];
+    let channels = result.get("channels");
+    let mut rows: Vec<Bar<'_>> = channels.iter().map(channels::without).collect();
+    let refitted = match rows.is_empty() {
+        true => "all parameters refitted, nothing added",
+        false => channels::WITH,
+    };
+    rows.push(row(refitted.to_owned(), &baseline, ""));
     rows.extend(
         steps
             .iter()

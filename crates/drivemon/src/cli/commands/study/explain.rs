@@ -142,25 +142,13 @@ fn print_answer(report: &ExplainReport) {
 }
 
 fn print_errors(report: &ExplainReport) {
-    let Some(baseline) = &report.baseline else {
+    if report.baseline.is_none() {
         return;
-    };
-    let mut errors = vec![(
-        "all parameters refitted".to_owned(),
-        baseline.held_out_error_over_noise,
-    )];
-    let steps = report.steps.iter().filter(|step| step.frame.is_none());
-    errors.extend(steps.map(|step| {
-        let name = format!("with {}", step.effect);
-        (name, step.held_out_error_over_noise)
-    }));
-    let laws = report.laws.iter().filter(|law| law.proven);
-    errors.extend(laws.map(|law| {
-        let name = format!("with {}", law.name());
-        (name, law.held_out_error_over_noise)
-    }));
+    }
     say!("\nError on data that was not fitted:");
-    errors::print(&errors, baseline.held_out_error_over_noise);
+    let errors = report.errors();
+    let full = errors.iter().map(|(_, error)| *error).fold(0.0, f64::max);
+    errors::print(&errors, full);
     for frame in report.steps.iter().filter_map(|step| step.frame.as_ref()) {
         print_frame_errors(frame);
     }
