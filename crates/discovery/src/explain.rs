@@ -92,7 +92,7 @@ impl Explanation {
 
     /// Whether what was found and may be named explains all but a few per cent of the excess.
     pub fn explains_nearly_all(&self, study: &Study) -> bool {
-        explained(study, &self.baseline, self.last()) > NEARLY_ALL
+        explained(study, unexplained(study, &self.baseline), self.last()) > NEARLY_ALL
     }
 }
 
@@ -236,7 +236,8 @@ fn library(
         drop_patches(study, &baseline, &mut steps);
     }
     let base = steps.last().map_or(&baseline, |s| &s.trial);
-    let named = adequate(study, base) || mostly_explained(study, &baseline, base);
+    let found_most = !steps.is_empty() && mostly_explained(study, &baseline, base);
+    let named = adequate(study, base) || found_most;
     Explanation {
         first: first.unwrap_or_else(Round::empty),
         contests: Vec::new(),
@@ -320,9 +321,15 @@ fn lower_minimum(study: &Study, base: &Trial, found: &Round) -> Option<Trial> {
     (combined(study, &again) < DEEPER * error).then_some(again)
 }
 
+/// The model that explains nothing but parameters: without what the recorder's channels are off by.
+fn unexplained<'a>(study: &'a Study, baseline: &'a Trial) -> &'a Trial {
+    study.plain.as_deref().unwrap_or(baseline)
+}
+
 /// Whether the accepted effects may be named although something small is left over.
 fn mostly_explained(study: &Study, baseline: &Trial, last: &Trial) -> bool {
-    explained(study, baseline, last) > NAMED_SHARE && study.proof_error(last) < NAMED_ERROR
+    explained(study, unexplained(study, baseline), last) > NAMED_SHARE
+        && study.proof_error(last) < NAMED_ERROR
 }
 
 /// Takes back what only patches the form of an earlier effect: later effects that explain little of what was missing

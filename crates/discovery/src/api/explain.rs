@@ -98,11 +98,6 @@ fn explained_by(
                 next_run.and_then(|asked| designed(question, motor, found, asked, progress));
             progress("done", 1.0);
             let mut report = report(question, found, frame, answer.fitted);
-            report.channels = answer.channels.map(|beside| {
-                let study = &question.study;
-                study.channels(found.last(), &beside.baseline, beside.before)
-            });
-            report.summary = crate::report::words::summary(&report);
             report.next_run = next_run;
             if let (Verdict::Unknown, Some(differences)) = (report.verdict, answer.each_alone) {
                 report.unexplained = Some(apart(differences));
@@ -224,7 +219,7 @@ fn report(
         fitted,
         verdict,
         summary: String::new(),
-        channels: None,
+        channels: study.channels(found.last(), &found.baseline),
         baseline: Some(baseline),
         steps,
         final_: Some(last),

@@ -8,9 +8,12 @@ use super::{Explanation, STRAINED, Step, behind, mostly_explained};
 use crate::laws::formula::prove::law_of;
 use crate::laws::search::{LawStep, Laws};
 use estimation::data::study::{Study, Trial};
-use estimation::proof::accept::{adequate, beats, even, helps};
+use estimation::proof::accept::{adequate, beats, even, explained, helps};
 use estimation::proof::off::strains;
 use motor::effect::EffectConfig;
+
+/// Least share of the excess that a law which is not proven explains to be worth a look.
+const LEAST_LEAD: f64 = 0.1;
 
 /// Completes an explanation of the library's with what it does not hold.
 ///
@@ -82,7 +85,8 @@ pub(super) fn hidden(
     found.nameable = law.is_some();
     let lead = || {
         let best = alone.best(study, &found.baseline)?;
-        Some(LawStep {
+        let leads = explained(study, &found.baseline, &best.trial) > LEAST_LEAD;
+        leads.then_some(LawStep {
             proven: false,
             ..best
         })

@@ -27,6 +27,8 @@ pub struct Study {
     pub proofs: Vec<Subject>,
     /// How the speed channel becomes a speed, where its scale is a free parameter.
     pub speed_scale: Option<FreeScale>,
+    /// The refitted model with the recorder's channels taken as they are, where the study knows what they are off by.
+    pub plain: Option<Box<Trial>>,
 }
 
 /// A hypothesis, fitted and measured on data that was not fitted.
@@ -62,6 +64,7 @@ impl Study {
             proofs: proofs.into_iter().map(subject).collect(),
             prior,
             speed_scale,
+            plain: None,
         }
     }
 

@@ -9,8 +9,10 @@ use recording::Channel;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Least share of the excess over the floor that the channels must explain to be part of an answer.
+/// Least share of the excess over the floor that the channels must explain to be part of an answer ...
 const SHARE: f64 = 0.2;
+/// ... and of one that explains no more than the one without them.
+const MOST: f64 = 0.5;
 
 /// Gains and offsets of a recorder's channels that are part of an explanation.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -107,14 +109,22 @@ impl Study {
         }
         let mut study = self.clone();
         study.prior.channels = channels;
+        study.plain = Some(Box::new(trial.clone()));
         let beside = study.refitted();
         let explains = beats(&beside, trial) && explained(&study, trial, &beside) > SHARE;
         explains.then_some((study, beside))
     }
 
-    /// What the recorder's channels are off by, beside a trial of a study that knows; `before`: the error over noise without it, `baseline`:
-    /// the model with nothing else added.
-    pub fn channels(&self, trial: &Trial, baseline: &Trial, before: f64) -> ChannelsReport {
+    /// Whether what the channels are off by explains most of what is left without.
+    pub fn channels_explain_most(&self, baseline: &Trial) -> bool {
+        let plain = self.plain.as_ref();
+        plain.is_some_and(|plain| explained(self, plain, baseline) > MOST)
+    }
+
+    /// What the recorder's channels are off by, beside a trial; `baseline`: the model with nothing else added. `None` of a study that takes
+    /// them as they are.
+    pub fn channels(&self, trial: &Trial, baseline: &Trial) -> Option<ChannelsReport> {
+        let plain = self.plain.as_ref()?;
         let rated = &self.prior.plant.rated;
         let found = self.polished(trial).fit.hypothesis.configs(rated);
         let values = |is: &dyn Fn(&EffectConfig) -> bool| {
@@ -132,10 +142,10 @@ impl Study {
         };
         let voltages = of(Instrument::Voltages, Channel::VOLTAGES, rated.voltage);
         let currents = of(Instrument::Currents, Channel::CURRENTS, rated.current);
-        ChannelsReport {
-            held_out_error_over_noise_without: before,
+        Some(ChannelsReport {
+            held_out_error_over_noise_without: self.proof_error(plain),
             held_out_error_over_noise: self.proof_error(baseline),
             channels: voltages.chain(currents).collect(),
-        }
+        })
     }
 }

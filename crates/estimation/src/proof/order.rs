@@ -46,17 +46,6 @@ pub struct Answer<T> {
     pub fitted: Fitted,
     /// Where each of two alone is explained with nothing missing, but not both by the same parameters: which differ.
     pub each_alone: Option<Vec<DifferenceReport>>,
-    /// Where what the recorder's channels are off by is part of the answer.
-    pub channels: Option<Beside>,
-}
-
-/// What the recorder's channels change.
-#[derive(Clone, Debug)]
-pub struct Beside {
-    /// The model beside them, with its parameters refitted and nothing added.
-    pub baseline: Trial,
-    /// Error over noise of the proving recordings without them.
-    pub before: f64,
 }
 
 /// What an answer explains of the recordings.
@@ -94,12 +83,8 @@ pub fn in_either_order<A: Ask>(
     if !given.question.is_of_wholes() {
         let baseline = given.baseline.clone();
         let given = given.asked(asked, progress);
-        if given.explains(asked) == Explains::All {
-            return Ok(given);
-        }
-        let beside = given.beside_channels(&baseline, asked, progress);
-        let beside = beside.filter(|beside| beside.explains(asked) > given.explains(asked));
-        return Ok(beside.unwrap_or_else(|| given.further(asked, progress)));
+        let given = given.or_beside_channels(&baseline, asked, progress);
+        return Ok(given.further(asked, progress));
     }
     let another = Fitted::another_of(sources.iter().len());
     let begin_other = |progress: &mut Progress<'_>| Begun::of(sources, motor, another, progress);
@@ -122,11 +107,10 @@ pub fn in_either_order<A: Ask>(
     if given.explains(asked) >= Explains::Most || given.each_alone.is_some() {
         return Ok(given);
     }
-    let beside = given.beside_channels(&baseline, asked, progress);
-    let beside = match beside {
-        Some(beside) if beside.explains(asked) == Explains::All => return Ok(beside),
-        beside => beside.filter(|beside| beside.explains(asked) == Explains::Most),
-    };
+    let given = given.or_beside_channels(&baseline, asked, progress);
+    if given.explains(asked) == Explains::All {
+        return Ok(given);
+    }
     let other = other.or_else(|| begin_other(&mut of_another(progress)).ok());
     let other = other.map(|other| other.asked(asked, &mut of_another(progress)));
     let is_answer = |other: &Answer<A::Found>| other.explains(asked) == Explains::All;
@@ -134,9 +118,6 @@ pub fn in_either_order<A: Ask>(
         Some(other) if is_answer(&other) => return Ok(other),
         other => other,
     };
-    if let Some(beside) = beside {
-        return Ok(beside);
-    }
     let given = given.further(asked, progress);
     if given.explains(asked) >= Explains::Most {
         return Ok(given);
@@ -155,29 +136,33 @@ impl<T> Answer<T> {
         asked.explains(&self.question.study, &self.found)
     }
 
-    /// The answer beside what the recorder's channels are off by, where that explains a good part of what is left.
-    fn beside_channels(
-        &self,
+    /// The answer, or the one beside what the recorder's channels are off by: where that explains more, or the channels alone most of what
+    /// is left.
+    fn or_beside_channels(
+        self,
         baseline: &Trial,
         asked: &impl Ask<Found = T>,
         progress: &mut Progress<'_>,
-    ) -> Option<Self> {
+    ) -> Self {
+        let here = self.explains(asked);
+        if here == Explains::All {
+            return self;
+        }
         progress("asking what the channels are off by", 0.8);
-        let study = &self.question.study;
-        let (beside, refitted) = study.beside_channels(baseline)?;
-        let channels = Beside {
-            baseline: refitted.clone(),
-            before: study.proof_error(baseline),
+        let Some((study, refitted)) = self.question.study.beside_channels(baseline) else {
+            return self;
         };
+        let explain_most = study.channels_explain_most(&refitted);
         let begun = Begun {
-            question: self.question.about_study(beside),
+            question: self.question.about_study(study),
             fitted: self.fitted,
             baseline: refitted,
         };
-        Some(Answer {
-            channels: Some(channels),
-            ..begun.asked(asked, progress)
-        })
+        let beside = begun.asked(asked, progress);
+        match explain_most || beside.explains(asked) > here {
+            true => beside,
+            false => self,
+        }
     }
 
     fn further(self, asked: &impl Ask<Found = T>, progress: &mut Progress<'_>) -> Self {
@@ -247,7 +232,6 @@ impl Begun {
             question: self.question,
             fitted: self.fitted,
             each_alone: None,
-            channels: None,
         }
     }
 }
