@@ -129,6 +129,7 @@ pub fn single(seed: u64) -> Vec<Case> {
         &|h, d| h.speed_delay = d.positive(3e-3),
         false,
     );
+    add("load-delay", &|h, d| h.load_delay = d.positive(6e-3), false);
     all
 }
 

@@ -62,6 +62,7 @@ fn sensed(m: &Machine, h: &Hidden, rows: &[Instant], k: usize) -> [f64; 8] {
     };
     let ripple = h.speed_ripple * m.speed() * (rows[k].theta + 1.1).sin();
     let speed = ago(rows, k, h.speed_delay, |r| r.speed);
+    let load = ago(rows, k, h.load_delay, |r| r.load);
     [
         ua,
         ub,
@@ -70,7 +71,7 @@ fn sensed(m: &Machine, h: &Hidden, rows: &[Instant], k: usize) -> [f64; 8] {
         i(1) + h.offset_ib * m.current,
         i(2),
         speed * (1.0 + h.speed_scale) * law.speed(rows[k].theta) + ripple,
-        rows[k].load * (1.0 + h.gain_torque),
+        load * (1.0 + h.gain_torque),
     ]
 }
 

@@ -68,6 +68,8 @@ pub struct Hidden {
     pub speed_ripple: f64,
     /// Delay of the speed channel, s.
     pub speed_delay: f64,
+    /// Delay of the torque channel, s.
+    pub load_delay: f64,
     /// A law that no library holds.
     pub law: Option<laws::Law>,
 }

@@ -149,3 +149,6 @@ impl Study {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -104,11 +104,11 @@ pub fn in_either_order<A: Ask>(
         each_alone,
         ..given.asked(asked, progress)
     };
-    if given.explains(asked) >= Explains::Most || given.each_alone.is_some() {
+    if given.each_alone.is_some() {
         return Ok(given);
     }
     let given = given.or_beside_channels(&baseline, asked, progress);
-    if given.explains(asked) == Explains::All {
+    if given.explains(asked) >= Explains::Most {
         return Ok(given);
     }
     let other = other.or_else(|| begin_other(&mut of_another(progress)).ok());
@@ -152,14 +152,15 @@ impl<T> Answer<T> {
         let Some((study, refitted)) = self.question.study.beside_channels(baseline) else {
             return self;
         };
-        let explain_most = study.channels_explain_most(&refitted);
+        let explain_much = study.channels_explain_most(&refitted);
         let begun = Begun {
             question: self.question.about_study(study),
             fitted: self.fitted,
             baseline: refitted,
         };
         let beside = begun.asked(asked, progress);
-        match explain_most || beside.explains(asked) > here {
+        let there = beside.explains(asked);
+        match there > here || there == here && explain_much {
             true => beside,
             false => self,
         }

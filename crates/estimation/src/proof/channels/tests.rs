@@ -1,0 +1,106 @@
+use super::*;
+use crate::data::case::Case;
+use crate::fit::output_error::Effort;
+use crate::specimen;
+use recording::Recording;
+
+/// Errors of gain and zero (share of the rated amplitude) of va, vb, vc, ia, ib, ic: within class 0.5.
+const ERRORS: [(f64, f64); 6] = [
+    (0.006, 0.008),
+    (-0.004, -0.006),
+    (0.002, 0.004),
+    (0.008, 0.006),
+    (-0.006, 0.002),
+    (0.004, -0.008),
+];
+
+fn electrical() -> [Channel; 6] {
+    let [a, b, c] = Channel::VOLTAGES;
+    let [d, e, f] = Channel::CURRENTS;
+    [a, b, c, d, e, f]
+}
+
+/// Two seconds of the small motor as a recorder with these errors shows it.
+fn shown(errors: [(f64, f64); 6]) -> Recording {
+    let rated = specimen::prior("").plant.rated;
+    let amplitude = [[rated.voltage; 3], [rated.current; 3]].concat();
+    specimen::changed(&specimen::recording(2.0, |_| 1.0), |channel, x| {
+        let place = electrical().iter().position(|known| *known == channel);
+        let Some(k) = place else { return Some(x) };
+        let (gain, zero) = errors[k];
+        let one = |x: f64| (1.0 + gain) * x + zero * amplitude[k];
+        Some(x.into_iter().map(one).collect())
+    })
+}
+
+fn asked(errors: [(f64, f64); 6]) -> (Study, Trial) {
+    let prior = specimen::prior("");
+    let case = Case::new(&shown(errors), &prior.plant.rated).expect("judged");
+    let study = Study::new(prior, case, Vec::new(), None);
+    let trial = study.trial(&study.at_prior(), Effort::FULL);
+    (study, trial)
+}
+
+#[test]
+fn what_all_channels_are_off_by_is_found_together() {
+    let (study, plain) = asked(ERRORS);
+    let (beside, baseline) = study.beside_channels(&plain).expect("channels are off");
+    assert_eq!(beside.given_effects(), study.given_effects() + 4);
+    assert!(beside.channels_explain_most(&baseline));
+    let report = beside
+        .channels(&baseline, &baseline)
+        .expect("a study that knows");
+    assert!(report.held_out_error_over_noise < 1.05);
+    assert!(report.held_out_error_over_noise_without > 1.3 * report.held_out_error_over_noise);
+    let names: Vec<&str> = report.channels.iter().map(|c| c.channel.as_str()).collect();
+    assert_eq!(names, ["va", "vb", "vc", "ia", "ib", "ic"]);
+    assert!(report.channels.iter().all(|c| c.is_within_class));
+    // What three gains have in common is the motor's impedance as well: their differences are told.
+    for group in [0, 3] {
+        for k in [1, 2] {
+            let of = |k: usize| report.channels[group + k].gain_error_percent;
+            let true_of = |k: usize| 100.0 * ERRORS[group + k].0;
+            let off = (of(k) - of(0)) - (true_of(k) - true_of(0));
+            // A tenth of a per cent: a third of the class.
+            assert!(off.abs() < 0.1, "{group} {k}: {off}");
+        }
+    }
+    assert!(study.channels(&plain, &plain).is_none());
+}
+
+#[test]
+fn exact_channels_are_no_part_of_an_answer() {
+    let (study, plain) = asked([(0.0, 0.0); 6]);
+    assert!(study.beside_channels(&plain).is_none());
+    assert!(!study.channels_explain_most(&plain));
+    let table = specimen::table_study(|_| ());
+    assert!(
+        table
+            .beside_channels(&specimen::trial_with(&table, &[]))
+            .is_none()
+    );
+}
+
+#[test]
+fn the_furthest_are_told_and_those_beyond_the_class_named() {
+    let channel = |channel: Channel, gain, zero| ChannelReport::new(channel, gain, zero, 10.0);
+    let told = |channels| {
+        let report = ChannelsReport {
+            held_out_error_over_noise_without: 5.831,
+            held_out_error_over_noise: 1.032,
+            channels,
+        };
+        report.told()
+    };
+    let [ia, ib, _] = Channel::CURRENTS;
+    let within = told(vec![channel(ia, 0.002, -0.05), channel(ib, -0.004, 0.01)]);
+    assert_eq!(
+        within,
+        " The recorder's channels are off, too: gains by up to -0.40 % (ib), zeros by up to -0.50 % (ia) of the rated amplitude; with \
+         that alone the error falls from 5.83 to 1.03 x noise."
+    );
+    let beyond = told(vec![channel(ia, 0.021, 0.0)]);
+    assert!(beyond.ends_with(
+        " Further off than instruments of class 0.5 are: ia gain +2.10 %, zero +0.000 A."
+    ));
+}
