@@ -38,6 +38,10 @@ pub(crate) fn check(context: &mut Context<'_>) -> Vec<Finding> {
 /// Active over apparent power from which on a motor certainly drives its load.
 const MOTORING_POWER: f64 = 0.3;
 
+/// Share of that power which a torque must carry at the shaft to be the load's: less is the zero of a transducer, and the motor drives what
+/// that does not see.
+const CARRIED: f64 = 0.2;
+
 /// A torque that would drive the shaft while the motor takes the power of a load: most steady blocks say so.
 fn inverted_torque(context: &Context<'_>) -> Option<Finding> {
     let sound = [Channel::VOLTAGES, Channel::CURRENTS].map(|three| context.sound(three));
@@ -45,8 +49,9 @@ fn inverted_torque(context: &Context<'_>) -> Option<Finding> {
     let drives = |block: &Block| {
         let power = block.power()?;
         let torque = crate::measure::blocks::mean(&torque[block.range.clone()]);
+        let shaft = torque * block.speed?;
         let loaded = power.re > MOTORING_POWER * power.norm();
-        (loaded && torque != 0.0).then_some(torque * block.speed? < 0.0)
+        (loaded && shaft.abs() > CARRIED * power.re).then_some(shaft < 0.0)
     };
     let settled = context.settled(Channel::CURRENTS);
     let votes: Vec<bool> = settled

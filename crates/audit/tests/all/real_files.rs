@@ -323,4 +323,13 @@ fn spoilt_foreign_recordings_are_named() {
         spoilt(&["torque"], |_, x| 1000.0 * x),
         one(Code::Unit, "torque")
     );
+    assert_eq!(
+        spoilt(&["torque"], |_, x| -x),
+        one(Code::Polarity, "torque")
+    );
+    // The load is on the other side of the transducer, which shows its zero and its noise.
+    assert_eq!(
+        spoilt(&["torque"], |k, _| 1e-3 * (k % 7) as f64 - 0.02),
+        Vec::new()
+    );
 }
