@@ -78,6 +78,8 @@ pub(crate) struct Explanation {
     pub nameable: bool,
     /// What was asked, where it was not looked for what hides yet.
     pub open: Option<Answered>,
+    /// The best law on its own, proven or not, where the library leaves something.
+    pub lead: Option<Trial>,
 }
 
 impl Explanation {
@@ -88,6 +90,16 @@ impl Explanation {
         }
         let named = self.steps.last().filter(|_| self.nameable);
         named.map_or(&self.baseline, |s| &s.trial)
+    }
+
+    /// The best model, proven or not.
+    pub fn best(&self, study: &Study) -> &Trial {
+        let steps = self.steps.iter().map(|step| &step.trial);
+        let laws = self.laws.iter().map(|law| &law.trial).chain(&self.lead);
+        let error = |trial: &&Trial| combined(study, trial);
+        let all = steps.chain(laws);
+        let best = all.min_by(|a, b| error(a).total_cmp(&error(b)));
+        best.unwrap_or(&self.baseline)
     }
 
     /// Whether what was found and may be named explains all but a few per cent of the excess.
@@ -243,6 +255,7 @@ fn library(
         contests: Vec::new(),
         nameable: named || !laws.is_empty(),
         open: None,
+        lead: None,
         laws,
         baseline,
         steps,

@@ -139,6 +139,10 @@ impl Ask for Missing<'_> {
         explain::go_on(study, found, *self, progress)
     }
 
+    fn best<'a>(&self, study: &Study, found: &'a Explanation) -> Option<&'a Trial> {
+        Some(found.best(study))
+    }
+
     fn explains(&self, study: &Study, found: &Explanation) -> Explains {
         match found.nameable && is_plausible(study, found) {
             true if adequate(study, found.last()) => Explains::All,

@@ -63,6 +63,7 @@ pub(super) fn complete(
         return;
     }
     found.open = Some(answered);
+    found.lead = best.map(|law| law.trial);
 }
 
 /// What is left where neither an effect nor a law makes the model adequate: two that hide each other, what comes and goes, or a lead.

@@ -14,7 +14,7 @@ use motor::effect::{EffectConfig, Instrument};
 use motor::effects::{gain_of, offset_of};
 
 /// The instruments whose gains and offsets are fitted.
-const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents];
+pub const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents];
 
 /// The trial refitted beside gains and offsets of the channels; `None` where they cannot be fitted: a load table, or a motor file that
 /// holds an unbalance of voltages and currents already. Gains that were found are held to their class, too: the data tell

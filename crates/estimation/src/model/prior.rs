@@ -333,12 +333,6 @@ impl Hypothesis {
         })
     }
 
-    /// The errors of instruments that it holds, with their values.
-    pub fn instruments(&self, rated: &Rated<f64>) -> Vec<EffectConfig> {
-        let all = self.configs(rated);
-        self.instruments.iter().map(|&k| all[k].clone()).collect()
-    }
-
     /// Whether coordinate `k` is a prior: of the motor file about the motor, or of the class about an instrument.
     pub fn is_prior(&self, k: usize) -> bool {
         k < N_NOMINAL

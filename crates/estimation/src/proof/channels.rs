@@ -2,9 +2,10 @@
 
 use crate::data::instrument_class::{CHANNEL_GAIN, CHANNEL_OFFSET};
 use crate::data::study::{Study, Trial};
+use crate::fit::polish::INSTRUMENTS;
 use crate::proof::accept::{beats, explained};
 use crate::proof::off::SIGNIFICANT;
-use motor::effect::{EffectConfig, Instrument};
+use motor::effect::{Effect, EffectConfig, Instrument};
 use recording::Channel;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -97,22 +98,29 @@ impl ChannelsReport {
     }
 }
 
+/// Whether an effect is the gain or the offset of each channel of an instrument.
+fn is_of_channels(effect: &dyn Effect) -> bool {
+    effect.offset_of().is_some() || INSTRUMENTS.map(Some).contains(&effect.gain_of())
+}
+
 impl Study {
-    /// The study with its recorder's channels off by what this trial says they are, and its model beside them; `None` where that explains
-    /// too little of what is left, or cannot be told.
-    pub fn beside_channels(&self, trial: &Trial) -> Option<(Self, Trial)> {
+    /// The study with its recorder's channels off by what they are beside the best model so far, and its refitted model; `None` where that
+    /// explains too little of what this one leaves, or cannot be told. `plain`: the refitted model with nothing added.
+    pub fn beside_channels(&self, plain: &Trial, best: &Trial) -> Option<(Self, Trial)> {
         let rated = &self.prior.plant.rated;
-        let found = self.polished(trial).fit.hypothesis.clone();
-        let channels = found.instruments(rated);
-        if channels.is_empty() {
+        let beside = self.polished(best);
+        let all = beside.fit.hypothesis.configs(rated).into_iter();
+        let channels: Vec<EffectConfig> =
+            all.filter(|config| is_of_channels(config.effect)).collect();
+        let explains = beats(beside, best) && explained(self, best, beside) > SHARE;
+        if channels.is_empty() || !explains {
             return None;
         }
         let mut study = self.clone();
         study.prior.channels = channels;
-        study.plain = Some(Box::new(trial.clone()));
-        let beside = study.refitted();
-        let explains = beats(&beside, trial) && explained(&study, trial, &beside) > SHARE;
-        explains.then_some((study, beside))
+        study.plain = Some(Box::new(plain.clone()));
+        let refitted = study.refitted();
+        Some((study, refitted))
     }
 
     /// Whether what the channels are off by explains most of what is left without.

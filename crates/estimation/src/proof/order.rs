@@ -32,6 +32,11 @@ pub trait Ask {
         found
     }
 
+    /// The best model so far, proven or not, where something is left.
+    fn best<'a>(&self, _study: &Study, _found: &'a Self::Found) -> Option<&'a Trial> {
+        None
+    }
+
     /// What the answer explains.
     fn explains(&self, study: &Study, found: &Self::Found) -> Explains;
 }
@@ -149,7 +154,9 @@ impl<T> Answer<T> {
             return self;
         }
         progress("asking what the channels are off by", 0.8);
-        let Some((study, refitted)) = self.question.study.beside_channels(baseline) else {
+        let study = &self.question.study;
+        let best = asked.best(study, &self.found).unwrap_or(baseline);
+        let Some((study, refitted)) = study.beside_channels(baseline, best) else {
             return self;
         };
         let explain_much = study.channels_explain_most(&refitted);

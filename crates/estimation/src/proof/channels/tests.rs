@@ -44,7 +44,9 @@ fn asked(errors: [(f64, f64); 6]) -> (Study, Trial) {
 #[test]
 fn what_all_channels_are_off_by_is_found_together() {
     let (study, plain) = asked(ERRORS);
-    let (beside, baseline) = study.beside_channels(&plain).expect("channels are off");
+    let (beside, baseline) = study
+        .beside_channels(&plain, &plain)
+        .expect("channels are off");
     assert_eq!(beside.given_effects(), study.given_effects() + 4);
     assert!(beside.channels_explain_most(&baseline));
     let report = beside
@@ -71,14 +73,11 @@ fn what_all_channels_are_off_by_is_found_together() {
 #[test]
 fn exact_channels_are_no_part_of_an_answer() {
     let (study, plain) = asked([(0.0, 0.0); 6]);
-    assert!(study.beside_channels(&plain).is_none());
+    assert!(study.beside_channels(&plain, &plain).is_none());
     assert!(!study.channels_explain_most(&plain));
     let table = specimen::table_study(|_| ());
-    assert!(
-        table
-            .beside_channels(&specimen::trial_with(&table, &[]))
-            .is_none()
-    );
+    let bare = specimen::trial_with(&table, &[]);
+    assert!(table.beside_channels(&bare, &bare).is_none());
 }
 
 #[test]
