@@ -123,18 +123,20 @@ fn an_absent_effect_changes_nothing_and_a_typical_one_does() {
 /// A transducer that shows a load 3 ms late: the load was there 3 ms before.
 #[test]
 fn a_torque_that_is_shown_late_is_brought_forward() {
+    let rated = plant().rated;
     let mut inputs = inputs(0.1);
     let ramp = |k: usize| (k as f64 * T_SAMPLE - 0.05).clamp(0.0, 0.02);
-    inputs.tau_load = (0..inputs.tau_load.len()).map(ramp).collect();
-    let shown = inputs.tau_load.clone();
+    let load: Vec<f64> = (0..inputs.tau_load.len()).map(ramp).collect();
+    inputs.tau_load.clone_from(&load);
     let late = motor::effects::find("load-delay", "").unwrap();
-    late.inputs(&[3e-3], &plant().rated, &mut inputs);
+    assert!(late.shown_inputs(&[3e-3], &rated, &mut inputs));
     let samples = (3e-3 / T_SAMPLE).round() as usize;
-    for k in 0..shown.len() - samples {
-        assert!(
-            (inputs.tau_load[k] - shown[k + samples]).abs() < 1e-4,
-            "{k}"
-        );
+    for k in samples..load.len() {
+        assert!((inputs.tau_load[k] - load[k - samples]).abs() < 1e-4, "{k}");
+    }
+    late.inputs(&[3e-3], &rated, &mut inputs);
+    for k in 0..load.len() - samples {
+        assert!((inputs.tau_load[k] - load[k]).abs() < 1e-4, "{k}");
     }
 }
 

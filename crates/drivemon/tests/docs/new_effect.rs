@@ -152,7 +152,7 @@ fn the_line_of_the_page_belongs_to_its_file() {
     let (new, line) = new_effect();
     let (file, effect) = entry(&line);
     assert_eq!(new.path, format!("{EFFECTS}/{file}.rs"));
-    assert!(new.text.contains(&format!("pub struct {effect};")));
+    assert!(new.text.contains(&format!("steady_effect!({effect}, ")));
     assert!(
         !root().join(&new.path).exists(),
         "the library has this effect: take another example"

@@ -117,7 +117,11 @@ pub fn in_either_order<A: Ask>(
         return Ok(given);
     }
     let other = other.or_else(|| begin_other(&mut of_another(progress)).ok());
-    let other = other.map(|other| other.asked(asked, &mut of_another(progress)));
+    let other = other.map(|other| {
+        let (baseline, progress) = (other.baseline.clone(), &mut of_another(progress));
+        let other = other.asked(asked, progress);
+        other.or_beside_channels(&baseline, asked, progress)
+    });
     let is_answer = |other: &Answer<A::Found>| other.explains(asked) == Explains::All;
     let other = match other {
         Some(other) if is_answer(&other) => return Ok(other),

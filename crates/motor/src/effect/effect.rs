@@ -215,6 +215,12 @@ pub trait Effect: SteadyEffect {
         hooks.any(|hook| matches!(hook, Hook::Inputs | Hook::Outputs))
     }
 
+    /// Turns true inputs into what the instruments show, where that is more than a few rounds of [`Effect::inputs`] turn around; `false`:
+    /// they do.
+    fn shown_inputs(&self, _p: &[f64], _rated: &Rated<f64>, _inputs: &mut Inputs) -> bool {
+        false
+    }
+
     /// Turns measured inputs into the true ones.
     fn inputs(&self, _p: &[f64], _rated: &Rated<f64>, _inputs: &mut Inputs) {}
 

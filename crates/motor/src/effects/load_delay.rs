@@ -27,6 +27,11 @@ mod dynamic {
             &[Hook::Inputs]
         }
 
+        fn shown_inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) -> bool {
+            inputs.tau_load = delayed(&inputs.tau_load, p[0] / inputs.t_sample);
+            true
+        }
+
         fn inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) {
             inputs.tau_load = delayed(&inputs.tau_load, -p[0] / inputs.t_sample);
         }

@@ -61,13 +61,16 @@ fn true_inputs(truths: &[Truth], t_sample: f64) -> Inputs {
 
 /// The inputs that the effects turn into the true ones.
 fn shown_inputs(effects: &[EffectConfig], rated: &Rated<f64>, truth: &Inputs) -> Inputs {
+    let mut truth = truth.clone();
+    let mut show = |e: &&EffectConfig| e.effect.shown_inputs(&e.values, rated, &mut truth);
+    let others: Vec<&EffectConfig> = uses(effects, Hook::Inputs).filter(|e| !show(e)).collect();
     let mut shown = truth.clone();
     for _ in 0..ROUNDS {
         let mut back = shown.clone();
-        for e in uses(effects, Hook::Inputs) {
+        for e in &others {
             e.effect.inputs(&e.values, rated, &mut back);
         }
-        if step(&mut shown, truth, &back, rated) < CONVERGED {
+        if step(&mut shown, &truth, &back, rated) < CONVERGED {
             break;
         }
     }
