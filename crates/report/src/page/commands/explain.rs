@@ -130,22 +130,22 @@ fn with_ties(step: &Place<'_>) -> String {
 
 fn summary(result: &Place<'_>, steps: &[Place<'_>]) -> Vec<(Markup, Markup)> {
     let error = |path: &str, what: &str| {
-        let path = format!("{path}/{HELD_OUT}");
-        result.get(&path)?;
+        result.get(path)?;
         Some((
-            html! { (shown(result, &path, decimals(3))) " × noise" },
+            html! { (shown(result, path, decimals(3))) " × noise" },
             html! { (what) },
         ))
     };
-    let mut found: Vec<(Markup, Markup)> = error(
-        "baseline",
-        "error on data that was not fitted, all parameters refitted",
-    )
-    .into_iter()
-    .collect();
+    let baseline = match result.get("channels") {
+        Some(_) => format!("channels/{}", channels::WITHOUT),
+        None => format!("baseline/{HELD_OUT}"),
+    };
+    let refitted = "error on data that was not fitted, all parameters refitted";
+    let mut found: Vec<(Markup, Markup)> = error(&baseline, refitted).into_iter().collect();
     let laws = laws::proven(result);
     if !steps.is_empty() || !laws.is_empty() {
-        found.extend(error("final", "the same with what was found"));
+        let last = format!("final/{HELD_OUT}");
+        found.extend(error(&last, "the same with what was found"));
     }
     let share = |place: &Place<'_>, name: &str| {
         (

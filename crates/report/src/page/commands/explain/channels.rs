@@ -9,12 +9,15 @@ use crate::page::sections::parameters::Bar;
 /// The refitted model beside the channels.
 pub const WITH: &str = "beside what the channels are off by";
 
+/// Key of the error without what the channels are off by.
+pub const WITHOUT: &str = "held_out_error_over_noise_without";
+
 /// The error of the refitted model with the channels taken as they are.
 pub fn without<'a>(channels: &Place<'a>) -> Bar<'a> {
     Bar {
         label: "all parameters refitted, nothing added".to_owned(),
         place: channels.clone(),
-        key: "held_out_error_over_noise_without",
+        key: WITHOUT,
         class: "",
     }
 }
@@ -28,7 +31,7 @@ pub fn section(result: &Place<'_>) -> Markup {
     html! {
         section aria-labelledby="channels" {
             h2 id="channels" { "What the recorder's channels are off by" }
-            p.subtle { "Gains and zeros of voltages and currents, fitted together and believed to be right within class 0.5 (0.3 % of the reading and of the rated amplitude, standard deviations). They belong to the recorder: `adopt` leaves them out of the motor file." }
+            p.subtle { "Gains and zeros of voltages and currents, fitted together and believed to be right within class 0.5 (0.3 % of the reading and of the rated amplitude, standard deviations). They belong to the recorder: " code { "adopt" } " leaves them out of the motor file." }
             div.wide tabindex="0" { table {
                 thead { tr { th scope="col" { "channel" } th scope="col" { "gain error, %" } th scope="col" { "zero" } th.word scope="col" { "" } th scope="col" { "zero, % of rated" } th.word scope="col" { "" } } }
                 tbody { @for channel in &channels { tr {
