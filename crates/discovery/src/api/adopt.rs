@@ -80,6 +80,10 @@ impl Ask for Named<'_> {
         fitted(study, &refitted, self.0).map(|after| (refitted, after))
     }
 
+    fn best<'a>(&self, _study: &Study, found: &'a Self::Found) -> Option<&'a Trial> {
+        found.as_ref().ok().map(|(_, after)| after)
+    }
+
     fn explains(&self, study: &Study, found: &Self::Found) -> Explains {
         match found {
             Ok((_, after)) if adequate(study, after) => Explains::All,
