@@ -43,6 +43,7 @@ fn nothing(study: &Study, error: f64) -> Explanation {
         contests: Vec::new(),
         nameable: true,
         open: None,
+        lead: None,
     }
 }
 
