@@ -424,7 +424,7 @@ fn recordings_of_a_motor_that_was_changed_between_them_are_explained_each_alone(
     assert!((change - 30.0).abs() < 2.0, "{change}");
 }
 
-/// A recording as a recorder shows it whose channels are off by up to 0.8 %, and which counts the pulses
+/// A recording as a recorder shows it whose channels are off by up to 0.6 %, and which counts the pulses
 /// of an encoder over 10 ms.
 fn through_a_recorder(
     machine: &Machine,
@@ -434,8 +434,8 @@ fn through_a_recorder(
 ) -> recording::Source {
     const WINDOW: usize = 100;
     let rec = record(machine, hidden, course, seed);
-    let gains = [0.008, -0.006, 0.001, 0.008, -0.008, 0.003];
-    let zeros = [0.008, -0.006, 0.002, 0.008, 0.002, -0.008];
+    let gains = [0.006, -0.005, 0.003, 0.006, -0.006, 0.004];
+    let zeros = [0.006, -0.004, 0.002, 0.006, 0.005, -0.006];
     let counted = |x: &[f64]| {
         let before = |k: usize| (k / WINDOW * WINDOW).saturating_sub(WINDOW);
         let mean = |k: usize| x[before(k)..before(k) + WINDOW].iter().sum::<f64>() / WINDOW as f64;

@@ -160,7 +160,9 @@ impl<T> Answer<T> {
         progress("asking what the channels are off by", 0.8);
         let study = &self.question.study;
         let best = asked.best(study, &self.found).unwrap_or(baseline);
-        let Some((study, refitted)) = study.beside_channels(baseline, best) else {
+        let beside = study.beside_channels(baseline, best);
+        let beside = beside.or_else(|| study.beside_channels(baseline, baseline));
+        let Some((study, refitted)) = beside else {
             return self;
         };
         let explain_much = study.channels_explain_most(&refitted);
