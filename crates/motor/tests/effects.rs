@@ -131,12 +131,13 @@ fn a_torque_that_is_shown_late_is_brought_forward() {
     let late = motor::effects::find("load-delay", "").unwrap();
     assert!(late.shown_inputs(&[3e-3], &rated, &mut inputs));
     let samples = (3e-3 / T_SAMPLE).round() as usize;
-    for k in samples..load.len() {
-        assert!((inputs.tau_load[k] - load[k - samples]).abs() < 1e-4, "{k}");
+    for (shown, load) in inputs.tau_load[samples..].iter().zip(&load) {
+        assert!((shown - load).abs() < 1e-4);
     }
     late.inputs(&[3e-3], &rated, &mut inputs);
-    for k in 0..load.len() - samples {
-        assert!((inputs.tau_load[k] - load[k]).abs() < 1e-4, "{k}");
+    let whole = load.len() - samples;
+    for (back, load) in inputs.tau_load[..whole].iter().zip(&load) {
+        assert!((back - load).abs() < 1e-4);
     }
 }
 
