@@ -118,7 +118,8 @@ static ALL: &[(&str, &str, &(dyn Equations + Sync))] = &[
 ];
 
 /// Effects that work on whole signals of an instrument: delays and filters.
-pub const OF_WHOLE_SIGNALS: [&str; 3] = ["sample-delay", "sensor-filter", "speed-delay"];
+pub const OF_WHOLE_SIGNALS: [&str; 4] =
+    ["load-delay", "sample-delay", "sensor-filter", "speed-delay"];
 
 /// Why an effect without equations has none.
 pub fn without_equations(effect: &str) -> &'static str {
