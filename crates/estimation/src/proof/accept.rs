@@ -15,7 +15,7 @@ const P_LIMIT: f64 = 0.005;
 /// passes (Bonferroni). Less than 0.7 s proves nothing then.
 const LONE_P_LIMIT: f64 = P_LIMIT / 30.0;
 /// Least share of the excess over the floor that must be explained.
-const SHARE: f64 = 0.2;
+pub const SHARE: f64 = 0.2;
 /// Error over noise below which a model is adequate where the noise is known.
 pub const ADEQUATE: f64 = 1.02;
 /// Error over noise of a single channel from which something may be left there.

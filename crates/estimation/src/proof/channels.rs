@@ -3,16 +3,15 @@
 use crate::data::instrument_class::{CHANNEL_GAIN, CHANNEL_OFFSET};
 use crate::data::study::{Study, Trial};
 use crate::fit::polish::INSTRUMENTS;
-use crate::proof::accept::{beats, explained};
+use crate::proof::accept::{SHARE, beats, explained};
 use crate::proof::off::SIGNIFICANT;
 use motor::effect::{Effect, EffectConfig, Instrument};
 use recording::Channel;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Least share of the excess over the floor that the channels must explain to be part of an answer ...
-const SHARE: f64 = 0.2;
-/// ... and of one that explains no more than the one without them.
+/// Share of the excess over the floor from which the channels, not the motor, are most of what is left: then the answer beside them is
+/// taken even where it explains no more than the one without.
 const MOST: f64 = 0.5;
 
 /// Gains and offsets of a recorder's channels that are part of an explanation.

@@ -71,7 +71,7 @@ struct Begun {
     baseline: Trial,
 }
 
-/// Asks about the recordings as they are given. Where that leaves something, asks also with the second of two fitted, or the first alone of
+/// Asks about the recordings as they are given. Where that leaves something, asks beside what the recorder's channels are off by, and with the second of two fitted, or the first alone of
 /// more, which is the answer if it leaves nothing: those that are fitted together may be of a motor that was cold in the one and hot in the
 /// other. Only where both leave something is looked further. Where one of them or all together are explained without anything that is
 /// missing, nothing is.
