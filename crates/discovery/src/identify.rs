@@ -117,7 +117,7 @@ fn parameters(study: &Study, trial: &Trial) -> Vec<IdentifiedParameter> {
             would_tell: WOULD_TELL[k],
         })
     });
-    let first = study.given_effects() - study.prior.uncertain.len();
+    let first = usize::from(study.speed_scale.is_some());
     let effects = study.prior.uncertain.iter().enumerate();
     let of_effects = effects.flat_map(|(k, effect)| {
         let descriptor = effect.config.effect.descriptor();

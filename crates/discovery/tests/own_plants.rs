@@ -461,13 +461,18 @@ fn through_a_recorder(
     recording::Source::Recording(shown)
 }
 
-/// Two recordings of one recorder, what is hidden in the motor, and what is said of them.
+/// Two recordings of one recorder.
+fn two_through_a_recorder(machine: &Machine, hidden: &Hidden) -> [recording::Source; 2] {
+    [
+        through_a_recorder(machine, hidden, &LOADS, SEED),
+        through_a_recorder(machine, hidden, &STEPS, SEED + 1),
+    ]
+}
+
+/// What is said of two recordings of one recorder.
 fn explained_through_a_recorder(hidden: &Hidden) -> ExplainReport {
     let machine = Machine::of(SEED);
-    let sources = [
-        through_a_recorder(&machine, hidden, &LOADS, SEED),
-        through_a_recorder(&machine, hidden, &STEPS, SEED + 1),
-    ];
+    let sources = two_through_a_recorder(&machine, hidden);
     let report = explain(&sources, &priors(&machine, SEED), &mut |_, _| {}).expect("judged");
     println!("{}", report.summary);
     report
@@ -494,4 +499,15 @@ fn a_law_is_found_beside_the_errors_of_a_recorder() {
     assert!(report.channels.is_some());
     assert_eq!(report.verdict, Verdict::Law);
     assert!(report.laws.len() == 1 && Law::Jaws.is_named(&report.laws[0]));
+}
+
+/// An error of one channel is adopted as well, beside which those of all channels would leave nothing to ask for.
+#[test]
+fn an_offset_is_adopted_from_recordings_of_a_recorder() {
+    let machine = Machine::of(SEED);
+    let sources = two_through_a_recorder(&machine, &Hidden::default());
+    let believed = priors(&machine, SEED);
+    let (report, motor) =
+        adopt("voltage-offset", &sources, &believed, &mut |_, _| {}).expect("adopted");
+    assert!(report.proven && motor.effects[0].name == "voltage-offset");
 }

@@ -87,7 +87,8 @@ impl Ask for Named<'_> {
     fn explains(&self, study: &Study, found: &Self::Found) -> Explains {
         match found {
             Ok((_, after)) if adequate(study, after) => Explains::All,
-            _ => Explains::Part,
+            Ok(_) => Explains::Part,
+            Err(_) => Explains::Nothing,
         }
     }
 }

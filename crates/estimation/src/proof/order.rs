@@ -56,6 +56,8 @@ pub struct Answer<T> {
 /// What an answer explains of the recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Explains {
+    /// There is no answer: what was asked cannot be asked of the recordings.
+    Nothing,
     /// Something is left, or nothing is proven.
     Part,
     /// What is proven leaves hardly anything.
