@@ -113,6 +113,8 @@ pub struct Moment {
 pub struct EffectStack<const N: usize> {
     rated: Rated<f64>,
     motor: TParams<f64>,
+    /// One over the leakage inductances of stator and rotor, 1/H.
+    admittances: [f64; 2],
     timeline: Arc<Timeline>,
     parameters: Vec<Active>,
     magnetizing: Vec<Active>,
@@ -160,6 +162,7 @@ impl<const N: usize> EffectStack<N> {
         Self {
             rated: *rated,
             motor: *motor,
+            admittances: [1.0 / motor.l_ls, 1.0 / motor.l_lr],
             timeline,
             parameters: with(Hook::Parameters),
             magnetizing,
@@ -171,7 +174,7 @@ impl<const N: usize> EffectStack<N> {
     }
 
     /// What all effects see at this instant; each one's own states are [`Active::extra`].
-    #[inline]
+    #[inline(always)]
     fn at<'a>(&'a self, moment: &Moment, state: &'a DynamicState<[f64; N]>) -> At<'a> {
         At {
             t: moment.t,
@@ -221,6 +224,41 @@ impl<const N: usize> EffectStack<N> {
             None => star.linear(drive),
         };
         sum * (flux / drive.max(f64::MIN_POSITIVE))
+    }
+
+    /// Currents where parameters change from instant to instant.
+    #[inline(never)]
+    fn changing(
+        &self,
+        linear: &Linear,
+        moment: &Moment,
+        state: &DynamicState<[f64; N]>,
+    ) -> Winding {
+        let winding = linear.winding(state.psi_s, state.psi_r);
+        let now = self.instantaneous(moment, state, winding.i_s);
+        if self.magnetizing.is_empty() && now.cage.is_none() {
+            return Linear::new(&now.motor).winding(state.psi_s, state.psi_r);
+        }
+        self.star(state, &now)
+    }
+
+    /// Currents where only the magnetizing branch is not linear.
+    #[inline(never)]
+    fn saturated(&self, state: &DynamicState<[f64; N]>) -> Winding {
+        let [a_s, a_r] = self.admittances;
+        let sum = state.psi_s * a_s + state.psi_r * a_r + Complex64::ZERO;
+        let drive = length(sum);
+        let flux = match &self.solutions {
+            Some(solutions) => solutions.own_flux(|x| factor_of(&self.magnetizing, x), drive),
+            None => 0.0,
+        };
+        let psi_m = sum * (flux / drive.max(f64::MIN_POSITIVE));
+        Winding {
+            i_s: (state.psi_s - psi_m) * a_s,
+            i_r: (state.psi_r - psi_m) * a_r,
+            r_s: self.motor.r_s,
+            r_r: self.motor.r_r,
+        }
     }
 
     /// Currents of a T model with magnetizing branch, two leakages and perhaps a second cage.
@@ -273,12 +311,12 @@ impl<const N: usize> Hooks for EffectStack<N> {
 
     const HOLDS: bool = true;
 
-    #[inline]
+    #[inline(always)]
     fn moment(&self, t: f64, state: &DynamicState<[f64; N]>) -> Moment {
         self.timeline.moment(t, state.theta_mech)
     }
 
-    #[inline]
+    #[inline(always)]
     fn held_voltage(
         &self,
         linear: &Linear,
@@ -298,20 +336,16 @@ impl<const N: usize> Hooks for EffectStack<N> {
         u
     }
 
-    #[inline]
+    #[inline(always)]
     fn winding(&self, linear: &Linear, moment: &Moment, state: &DynamicState<[f64; N]>) -> Winding {
-        let winding = linear.winding(state.psi_s, state.psi_r);
-        if self.parameters.is_empty() && self.magnetizing.is_empty() {
-            return winding;
+        match (self.parameters.is_empty(), self.magnetizing.is_empty()) {
+            (true, true) => linear.winding(state.psi_s, state.psi_r),
+            (true, false) => self.saturated(state),
+            (false, _) => self.changing(linear, moment, state),
         }
-        let now = self.instantaneous(moment, state, winding.i_s);
-        if self.magnetizing.is_empty() && now.cage.is_none() {
-            return Linear::new(&now.motor).winding(state.psi_s, state.psi_r);
-        }
-        self.star(state, &now)
     }
 
-    #[inline]
+    #[inline(always)]
     fn terminal(
         &self,
         moment: &Moment,
@@ -337,7 +371,7 @@ impl<const N: usize> Hooks for EffectStack<N> {
         terminal
     }
 
-    #[inline]
+    #[inline(always)]
     fn finish(
         &self,
         moment: &Moment,

@@ -65,6 +65,8 @@ impl Star {
 #[derive(Clone, Debug)]
 pub(super) struct Solutions {
     star: Star,
+    /// Current per flux without saturation, A/(V s).
+    per_flux: f64,
     flux: Solved,
 }
 
@@ -78,17 +80,30 @@ impl Solutions {
             let x = star.solve(factor, linear * per_drive, guess);
             [x, per_drive / star.gradient(factor, x)]
         });
-        Self { flux, star: *star }
+        Self {
+            flux,
+            per_flux: per_drive,
+            star: *star,
+        }
+    }
+
+    /// The flux (V s) of the star that was solved, at the current `drive` (A).
+    #[inline]
+    pub fn own_flux(&self, factor: impl Fn(f64) -> (f64, f64), drive: f64) -> f64 {
+        let linear = drive / self.per_flux;
+        match self.flux.at(linear) {
+            Known::Answer(flux) => flux,
+            Known::Guess(guess) => self.star.solve(factor, drive, guess),
+            Known::Nothing => self.star.solve(factor, drive, linear),
+        }
     }
 
     /// The flux of `star` (V s) at the current `drive` (A).
     #[inline]
     pub fn flux(&self, star: &Star, factor: impl Fn(f64) -> (f64, f64), drive: f64) -> f64 {
-        let linear = star.linear(drive);
-        match self.flux.at(linear) {
-            Known::Answer(flux) if *star == self.star => flux,
-            Known::Guess(guess) if *star == self.star => star.solve(factor, drive, guess),
-            _ => star.solve(factor, drive, linear),
+        match *star == self.star {
+            true => self.own_flux(factor, drive),
+            false => star.solve(factor, drive, star.linear(drive)),
         }
     }
 }
