@@ -163,6 +163,9 @@ fn tests_of(causes: impl Iterator<Item = FaultId>) -> Vec<&'static str> {
     tests
 }
 
+/// Name of the channel of the speed.
+const SPEED: &str = "speed";
+
 /// The channels that an audit knows to be wrong all the time from `from_s` to `to_s`; what a channel did for a part of it
 /// the windows of that part say themselves.
 pub fn wrong_channels(findings: &[Finding], [from_s, to_s]: [f64; 2]) -> Vec<Channel> {
@@ -180,9 +183,11 @@ pub fn wrong_channels(findings: &[Finding], [from_s, to_s]: [f64; 2]) -> Vec<Cha
 }
 
 /// Findings that bend what is measured. A neutral that is displaced shifts all three voltages alike, which the monitor
-/// does not see; an offset it subtracts; samples that clip it does not judge.
+/// does not see; an offset it subtracts; samples that clip it does not judge; a counter or a bus holds the speed, which is right while the motor
+/// runs steadily.
 fn wrong_channel(finding: &Finding) -> Option<Channel> {
     match finding.code {
+        Code::Held if finding.channel == SPEED => None,
         Code::ZeroSequence => channel(finding.suspect.as_deref().unwrap_or(&finding.channel))
             .filter(|channel| channel.row == FaultId::CurrentSensor || finding.suspect.is_some()),
         Code::Stuck | Code::Held | Code::Polarity | Code::SpeedImplausible => {
@@ -198,7 +203,7 @@ fn channel(names: &str) -> Option<Channel> {
     let (first, more) = (each.next()?, each.next().is_some());
     let (quantity, phase) = first.split_at_checked(1)?;
     let row = match (first, quantity) {
-        ("speed", _) => FaultId::SpeedSensor,
+        (SPEED, _) => FaultId::SpeedSensor,
         (_, "i") => FaultId::CurrentSensor,
         (_, "v") => FaultId::VoltageSensor,
         _ => return None,
@@ -275,6 +280,26 @@ mod tests {
             (FaultId::CurrentSensor, Some("a"))
         );
         assert_eq!((causes.len(), causes[0].probability), (1, 1.0));
+    }
+
+    /// A counter shows its last count until the next one: the speed is right at rest. A current that is held is a wrong current.
+    #[test]
+    fn a_speed_that_is_held_is_no_wrong_channel() {
+        let held = |channel: &str| Finding {
+            code: Code::Held,
+            channel: channel.to_owned(),
+            suspect: None,
+            value: 50.0,
+            unit: "rows".to_owned(),
+            detail: String::new(),
+            refuses: false,
+            from_s: None,
+            to_s: None,
+            share: None,
+        };
+        let wrong = wrong_channels(&[held("speed"), held("ib")], [0.0, f64::INFINITY]);
+        let rows: Vec<_> = wrong.iter().map(|channel| channel.row).collect();
+        assert_eq!(rows, [FaultId::CurrentSensor]);
     }
 
     #[test]

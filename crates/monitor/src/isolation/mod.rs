@@ -105,7 +105,25 @@ impl Isolation {
             longest = weighed.square.max(longest);
         }
         isolation.significance = processor::sqrtf(longest).max(isolation.significance);
+        isolation.doubt_heating(expected.rise, Heating::any(healthy).deviation);
         isolation
+    }
+
+    /// Where a large rise was taken for heat and one of the two resistances seems to have fallen, the other one has risen alone, from before the
+    /// first window on: a resistance does not fall.
+    fn doubt_heating(&mut self, rise: f32, any: f32) {
+        let [its_stator, its_rotor, ..] = &mut self.scores;
+        let [stator, rotor, ..] = &mut self.sizes;
+        if rise < any {
+            return;
+        }
+        let was = [(*its_stator, *stator), (*its_rotor, *rotor)];
+        for (score, size, fallen) in [(its_stator, stator, was[1]), (its_rotor, rotor, was[0])] {
+            let (other, change) = alone(fallen, rise, any);
+            if fallen.1 < 0.0 && other > *score {
+                (*score, *size) = (other, change);
+            }
+        }
     }
 
     /// Whether the instrument is a likelier cause than the motor.
@@ -126,6 +144,18 @@ impl Isolation {
         probabilities(&self.scores, self.unknown)
     }
 }
+
+/// Score and size of a resistance that has risen alone, where a rise of both and a fall of the other one (`score`, `size`) explain the window: a
+/// winding that is as warm as the other one is likelier by how much nearer to the calibration that is.
+fn alone((score, size): (f32, f32), rise: f32, any: f32) -> (f32, f32) {
+    let heat = rise + size;
+    let likelier = 0.5 * (rise * rise - heat * heat) / (any * any).max(LEAST_INFORMATION);
+    let change = (1.0 + rise) / (1.0 + heat).max(LEAST_LEFT) - 1.0;
+    (score + likelier, change)
+}
+
+/// Least share of a resistance that is left where it seems to have fallen.
+const LEAST_LEFT: f32 = 0.1;
 
 /// Probabilities from logarithmic scores; their sum is 1.
 pub fn probabilities(scores: &[f32; CAUSES], unknown: f32) -> ([f32; CAUSES], f32) {

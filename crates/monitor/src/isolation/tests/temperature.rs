@@ -146,6 +146,31 @@ fn a_cage_that_cools_beside_a_warm_winding_lights_nothing_and_hides_no_jump() {
     }
 }
 
+/// A resistance that was far too large when the monitor was switched on passed for heat: the load that then comes shows the other one as it was. That one has
+/// not fallen, nor is the speed wrong: the first is the cause.
+#[test]
+fn a_resistance_that_rose_before_the_first_window_is_the_cause_when_the_load_comes() {
+    let healthy = statistics();
+    for (k, changed) in [resistances(0.6, 0.0), resistances(0.0, 0.6)]
+        .iter()
+        .enumerate()
+    {
+        let taken_for_heat = Heating {
+            rise: 0.6,
+            deviation: 0.05,
+        };
+        let isolation = Isolation::of(&evidence(changed), &healthy, taken_for_heat);
+        assert!(isolation.significance > healthy.significance);
+        let (causes, _) = isolation.probabilities();
+        assert!(causes[k] > 0.5 && causes[1 - k] < 0.2, "{causes:?}");
+        assert!(
+            (isolation.sizes[k] - 0.6).abs() < 0.1,
+            "{:?}",
+            isolation.sizes
+        );
+    }
+}
+
 /// Without the time that it takes a cage to cool, the same is a fault.
 #[test]
 fn a_cage_cooler_than_its_winding_from_one_window_to_the_next_is_a_fault() {
