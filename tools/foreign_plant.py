@@ -145,6 +145,9 @@ class Run:
 class Sound:
     """A machine in which nothing is wrong, and a plant that does nothing of its own: what a hidden thing or a fault changes of it."""
 
+    def now(self, t):
+        """Hears the time, s, before anything is asked of it."""
+
     def torque(self, t, w, angle, load):
         """N m against positive rotation, beside friction and load."""
         return 0.0
@@ -194,6 +197,7 @@ def simulated(machine, hidden, run):
     plant = InductionMachine(par)
 
     def at(t, x):
+        hidden.now(t)
         par.R_s = machine.r_s * hidden.stator(t)
         plant.state.psi_ss, plant.state.psi_rs = x[0], x[1]
         par.L_s = hidden.inductance(l_s, abs(x[0]))

@@ -114,7 +114,7 @@ impl Isolation {
     fn doubt_heating(&mut self, rise: f32, any: f32) {
         let [its_stator, its_rotor, ..] = &mut self.scores;
         let [stator, rotor, ..] = &mut self.sizes;
-        if rise < any {
+        if rise < DOUBTED * any {
             return;
         }
         let was = [(*its_stator, *stator), (*its_rotor, *rotor)];
@@ -154,6 +154,8 @@ fn alone((score, size): (f32, f32), rise: f32, any: f32) -> (f32, f32) {
     (score + likelier, change)
 }
 
+/// Rise, in deviations of what a calibration foresees, from which it is asked whether it is heat.
+const DOUBTED: f32 = 1.25;
 /// Least share of a resistance that is left where it seems to have fallen.
 const LEAST_LEFT: f32 = 0.1;
 
