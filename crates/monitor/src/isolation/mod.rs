@@ -109,8 +109,8 @@ impl Isolation {
         isolation
     }
 
-    /// Where a large rise was taken for heat and one of the two resistances seems to have fallen, the other one has risen alone, from before the
-    /// first window on: a resistance does not fall.
+    /// Where a large rise was taken for heat and one of the two resistances seems to have fallen by most of it, the other one has risen alone, from
+    /// before the first window on: a resistance does not fall.
     fn doubt_heating(&mut self, rise: f32, any: f32) {
         let [its_stator, its_rotor, ..] = &mut self.scores;
         let [stator, rotor, ..] = &mut self.sizes;
@@ -120,7 +120,7 @@ impl Isolation {
         let was = [(*its_stator, *stator), (*its_rotor, *rotor)];
         for (score, size, fallen) in [(its_stator, stator, was[1]), (its_rotor, rotor, was[0])] {
             let (other, change) = alone(fallen, rise, any);
-            if fallen.1 < 0.0 && other > *score {
+            if fallen.1 < -TAKEN_BACK * rise && other > *score {
                 (*score, *size) = (other, change);
             }
         }
@@ -154,6 +154,8 @@ fn alone((score, size): (f32, f32), rise: f32, any: f32) -> (f32, f32) {
     (score + likelier, change)
 }
 
+/// Share of the rise that the fall takes back at least.
+const TAKEN_BACK: f32 = 0.5;
 /// Rise, in deviations of what a calibration foresees, from which it is asked whether it is heat.
 const DOUBTED: f32 = 1.25;
 /// Least share of a resistance that is left where it seems to have fallen.
