@@ -142,6 +142,8 @@ fn summary(result: &Place<'_>, steps: &[Place<'_>]) -> Vec<(Markup, Markup)> {
     };
     let refitted = "error on data that was not fitted, all parameters refitted";
     let mut found: Vec<(Markup, Markup)> = error(&baseline, refitted).into_iter().collect();
+    let with = format!("channels/{HELD_OUT}");
+    found.extend(error(&with, "the same beside what the channels are off by"));
     let laws = laws::proven(result);
     if !steps.is_empty() || !laws.is_empty() {
         let last = format!("final/{HELD_OUT}");
