@@ -36,14 +36,21 @@ pub struct Candidates {
 /// does not hold (broken bars, shorted turns). The rest is one of the sixteen patterns, each as likely.
 const ALL_LIT: f32 = 0.5;
 const ANY_PATTERN: f32 = (1.0 - ALL_LIT) / 16.0;
+/// Chance that a residual at its threshold is on.
+const HALF: f32 = 0.5;
 
 impl Candidates {
     /// From residuals normalised so that 1 is the threshold. All rows are held equally likely beforehand.
     ///
     /// A row's likelihood is the product over the residuals of the chance that each is on or off as
-    /// the row wants; a residual near its threshold counts half for either.
+    /// the row wants; a residual near its threshold counts half for either. r3 and r4 are combinations of r1 and r2 (theory, after (37)): where
+    /// r2 alone departs they follow from it, and whether they reach thresholds of their own says nothing.
     pub fn from_normalised(normalised: &[f32; RESIDUALS]) -> Self {
-        let on = normalised.map(chance_on);
+        let mut on = normalised.map(chance_on);
+        let [r1, r2, r3, r4] = &mut on;
+        if *r1 < HALF && *r2 > HALF {
+            (*r3, *r4) = (1.0, 1.0);
+        }
         let mut candidates = Candidates {
             faults: [0.0; FAULTS],
             unknown: ALL_LIT * likelihood_of(&[true; RESIDUALS], &on) + ANY_PATTERN,
@@ -133,8 +140,19 @@ mod tests {
 
     #[test]
     fn a_pattern_of_no_row_is_unknown() {
-        let candidates = Candidates::from_normalised(&[0.0, 5.0, 0.0, 0.0]);
+        let candidates = Candidates::from_normalised(&[0.0, 0.0, 5.0, 0.0]);
         assert!(candidates.unknown > 0.99);
+    }
+
+    /// Thresholds of a motor that is known by its plate: r3 and r4 follow r2 and do not reach their own.
+    #[test]
+    fn a_torque_that_is_missing_is_friction_whether_or_not_r3_and_r4_light() {
+        for [r3, r4] in [[0.3, 0.03], [3.0, 0.1], [3.0, 3.0]] {
+            for fault in [FaultId::Friction, FaultId::LoadFriction] {
+                let p = probability([0.05, 1.5, r3, r4], fault);
+                assert!(p > 0.45, "{fault} {r3} {r4}: {p}");
+            }
+        }
     }
 
     #[test]
