@@ -176,6 +176,17 @@ impl Follower {
         }
     }
 
+    /// Judges nothing in motion from here on, for this reason.
+    pub fn stop(&mut self, why: &str) {
+        if self.summary.not_possible.is_none() {
+            self.summary = MotionSummary::impossible(why);
+        }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.summary.not_possible.is_some()
+    }
+
     /// Samples are missing before the next one.
     pub fn resume_after_gap(&mut self) {
         self.companion.resume_after_gap();
@@ -183,6 +194,9 @@ impl Follower {
 
     /// Takes a sample that `monitor` has just taken.
     pub fn update(&mut self, t: f64, sample: &Sample, monitor: &MonitorState) {
+        if self.is_stopped() {
+            return;
+        }
         self.times.push(t);
         let supply = monitor.supply();
         let sample = *sample;
@@ -200,6 +214,9 @@ impl Follower {
 
     /// Takes the window that the sample ended. Of one that is not at rest: whether it was judged in motion.
     pub fn window(&mut self, report: &Report) -> Option<bool> {
+        if self.is_stopped() {
+            return None;
+        }
         let judged = self.companion.judged(report)?;
         self.summary.windows += 1;
         match judged {
@@ -211,7 +228,7 @@ impl Follower {
 
     /// What is said in motion with the latest window; `None` where nothing is judged in motion.
     pub fn moving(&self) -> Option<Moving> {
-        self.companion.moving()
+        self.companion.moving().filter(|_| !self.is_stopped())
     }
 
     fn count(&mut self, reason: NotInMotion) {
@@ -296,21 +313,25 @@ mod tests {
 
     /// The speed is the mean of so many samples, as a counter or a filter shows it: late by half of them.
     fn moved_late(recording: &str, motor: &str, samples: usize) -> MotionSummary {
+        let mean = |speed: &[f64], k: usize| {
+            let seen = &speed[k.saturating_sub(samples)..=k];
+            seen.iter().sum::<f64>() / seen.len() as f64
+        };
+        moved_as(recording, motor, |speed| {
+            (0..speed.len()).map(|k| mean(speed, k)).collect()
+        })
+    }
+
+    /// The speed as an instrument shows it.
+    fn moved_as(recording: &str, motor: &str, shown: impl Fn(&[f64]) -> Vec<f64>) -> MotionSummary {
         let motor = MotorFile::read(format!("../../motors/{motor}.toml")).expect("it ships");
         let file = format!("../../tests/data/peer/{recording}.csv.gz");
         let recording = read_recording(file.as_ref(), &Mapping::default(), &mut |_| {});
         let mut recording = recording.expect("readable");
-        if samples > 0 {
-            let speed = recording.speed().expect("measured");
-            let mean = |k: usize| {
-                let seen = &speed[k.saturating_sub(samples)..=k];
-                seen.iter().sum::<f64>() / seen.len() as f64
-            };
-            let late = (0..speed.len()).map(mean).collect();
-            recording = recording
-                .with_channel(Channel::SPEED, late)
-                .expect("as long");
-        }
+        let late = shown(recording.speed().expect("measured"));
+        recording = recording
+            .with_channel(Channel::SPEED, late)
+            .expect("as long");
         let config = config_for(&motor, &recording).expect("effects of the library");
         let monitor = Monitor::new(config).expect("a valid configuration");
         let audit = audit(&recording, &Expectation::from(&motor));
@@ -347,6 +368,28 @@ mod tests {
                 assert!(!motion.is_fault(), "{samples} {recording}: {motion:?}");
             }
         }
+    }
+
+    /// A counter shows the edges of each window of 5 ms until the next one is over: such a speed jumps when it changes, late. Nothing is judged in motion
+    /// then; one that is refreshed every half millisecond is as good as one that is not.
+    #[test]
+    fn a_speed_that_is_held_is_not_judged_in_motion() {
+        let held = |rows: usize| {
+            moved_as("none/recording", "peer-2k2-calibrated", |speed| {
+                let window = |k: usize| (k / rows).saturating_sub(1) * rows;
+                let mean = |k: usize| {
+                    let seen = &speed[window(k)..window(k) + rows];
+                    seen.iter().sum::<f64>() / seen.len() as f64
+                };
+                (0..speed.len()).map(mean).collect()
+            })
+        };
+        let motion = held(100);
+        let why = motion.not_possible.expect("a reason");
+        assert!(why.contains("held"), "{why}");
+        assert_eq!((motion.judged, motion.alarms.len()), (0, 0));
+        let motion = held(10);
+        assert!(motion.not_possible.is_none() && motion.judged > 0 && !motion.is_fault());
     }
 
     /// A motor file that knows nothing of the saturation, or of one that is not there, is another motor.

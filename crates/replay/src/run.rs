@@ -6,6 +6,10 @@ use crate::moving::Follower;
 use crate::samples::{Before, Samples};
 use crate::timeline::Timeline;
 
+/// Why a recording with such a speed is not judged in motion.
+const SPEED_IS_HELD: &str =
+    "the speed is held until the next value, so while it changes it is shown too late";
+
 /// A replay of a recording that comes in pieces: all that the core remembers goes on from one to the next, so that the
 /// answer is that of the recording as a whole, bit for bit.
 pub struct Replay {
@@ -40,6 +44,9 @@ impl Replay {
             Some(before) => samples.continuing(before),
             None => samples,
         };
+        if samples.shows_speed_late() {
+            self.follower.stop(SPEED_IS_HELD);
+        }
         for (k, timed) in samples.iter().enumerate() {
             if timed.after_gap {
                 self.state.resume_after_gap();

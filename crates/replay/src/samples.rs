@@ -20,6 +20,8 @@ pub struct Samples<'r> {
     speed: Option<&'r [f64]>,
     torque: Option<&'r [f64]>,
     held_voltage: bool,
+    /// The speed is shown too late to be judged while it changes.
+    late_speed: bool,
     rails: Rails,
     t_sample: f64,
     before: Option<Before>,
@@ -45,6 +47,21 @@ pub struct Timed {
     pub sample: Sample,
 }
 
+/// Longest time for which a speed is held that is judged while it changes, s: it is late by half of it, and a counter that counts meanwhile by as much
+/// again. A fitted lag of some 10 ms is known to the model; one that jumps is not.
+const LONGEST_HOLD_S: f64 = 1.5e-3;
+
+/// Whether the audit found that the speed is held for longer than that.
+fn is_late(audit: &Audit, t_sample: f64) -> bool {
+    let speed = Channel::SPEED.to_string();
+    let held = audit
+        .findings
+        .iter()
+        .filter(|finding| finding.code == Code::Held);
+    let mut rows = held.filter(|finding| finding.channel == speed);
+    rows.any(|finding| finding.value * t_sample > LONGEST_HOLD_S)
+}
+
 impl<'r> Samples<'r> {
     /// The samples of a recording; channels that the audit calls unusable are left out.
     pub fn new(recording: &'r Recording, audit: &Audit) -> Self {
@@ -62,10 +79,16 @@ impl<'r> Samples<'r> {
             speed: recording.speed().filter(|_| usable(&[Channel::SPEED])),
             torque: recording.torque().filter(|_| usable(&[Channel::TORQUE])),
             held_voltage: recording.metadata.voltage == VoltageKind::Hold,
+            late_speed: is_late(audit, recording.t_sample()),
             rails: Rails::new(recording, audit),
             t_sample: recording.t_sample(),
             before: None,
         }
+    }
+
+    /// Whether the speed is held, so that it is shown too late to be judged while it changes.
+    pub fn shows_speed_late(&self) -> bool {
+        self.late_speed && self.speed.is_some()
     }
 
     /// The same as what follows a piece.

@@ -24,6 +24,7 @@ use recording::Recording;
 
 pub use gains::Kind;
 pub use pieces::Pieces;
+pub(crate) use statistics::COPPER_PER_KELVIN;
 pub use statistics::Surroundings;
 
 use crate::config_for;

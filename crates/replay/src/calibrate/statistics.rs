@@ -123,7 +123,7 @@ fn range(all: impl Iterator<Item = Conditions>) -> Option<CalibratedRange> {
 }
 
 /// Relative change of copper's resistance per kelvin at 20 degC (IEC 60028).
-const COPPER_PER_KELVIN: f64 = 0.003_93;
+pub(crate) const COPPER_PER_KELVIN: f64 = 0.003_93;
 
 fn monitors(
     motor_of: &dyn Fn(usize) -> MotorFile,

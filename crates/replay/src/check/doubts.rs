@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::balance::{Balance, Jump};
+use crate::calibrate::COPPER_PER_KELVIN;
 use crate::rotor::RotorSummary;
 use crate::{MotionSummary, NotJudgedShare, Timeline, VerdictState};
 
@@ -23,14 +24,18 @@ pub struct CheckDoubt {
 pub struct Doubting {
     /// Zero sequences and unbalance of the motor in good order are known, and the lamps hold them.
     calibrated: bool,
+    /// Rise of the resistances that the calibration foresees, a share.
+    foreseen_rise: Option<f64>,
     balance: Balance,
 }
 
 impl Doubting {
     /// Before the first window.
     pub fn new(motor: &MotorFile) -> Doubting {
+        let healthy = motor.healthy.as_ref();
         Doubting {
-            calibrated: motor.healthy.is_some(),
+            calibrated: healthy.is_some(),
+            foreseen_rise: healthy.map(|healthy| healthy.heating_percent / 100.0),
             balance: Balance::default(),
         }
     }
@@ -55,6 +60,8 @@ impl Doubting {
             let reasons = reasons(timeline);
             found.extend(few.and_then(|few| hardly_judged(few, &reasons)));
             found.extend(timeline.visible_percent().and_then(hardly_visible));
+            let rise = timeline.resistance_rise().zip(self.foreseen_rise);
+            found.extend(rise.and_then(|(rise, foreseen)| beyond_heat(rise, foreseen)));
         }
         match state {
             VerdictState::Healthy if !found.is_empty() => (VerdictState::NotJudged, found),
@@ -130,6 +137,29 @@ fn hardly_judged([judged, running]: [u64; 2], reasons: &[String]) -> Option<Chec
         ),
         remedy: "record ten seconds while load and supply are steady; where they never are, calibrate the motor (--healthy): it is then \
                  judged in motion, too"
+            .to_owned(),
+    })
+}
+
+/// Share of the rise that a calibration foresees beyond which it is not taken for heat: a quarter more than a window is wrong by.
+const BEYOND_HEAT: f64 = 1.25;
+
+/// Resistances that are further from the calibration than temperature takes them: `rise` is a share, as `foreseen`.
+fn beyond_heat(rise: f64, foreseen: f64) -> Option<CheckDoubt> {
+    let kelvin = |share: f64| share.abs() / COPPER_PER_KELVIN;
+    let (side, warmer) = match rise > 0.0 {
+        true => ("above", "warmer"),
+        false => ("below", "colder"),
+    };
+    (rise.abs() > BEYOND_HEAT * foreseen).then(|| CheckDoubt {
+        seen: format!(
+            "the resistances stand {:.0} % {side} those of the calibration, as if the windings were {:.0} K {warmer}; {:.0} K were foreseen",
+            100.0 * rise.abs(),
+            kelvin(rise),
+            kelvin(foreseen)
+        ),
+        remedy: "measure the windings' temperature, or their resistance at standstill: where they are not as hot, a resistance of the stator or of the \
+                 cage has changed before the recording began"
             .to_owned(),
     })
 }
@@ -239,6 +269,22 @@ mod tests {
             "{few:?}"
         );
         assert_eq!(hardly_judged([0, 1193], &reasons), None);
+    }
+
+    /// 75 K are foreseen: 29 % of copper's resistance. What a hot day adds is heat, what twice as much says is not.
+    #[test]
+    fn resistances_beyond_what_temperature_does_are_a_doubt() {
+        let foreseen = 75.0 * COPPER_PER_KELVIN;
+        assert_eq!(beyond_heat(0.33, foreseen), None);
+        assert_eq!(beyond_heat(-0.33, foreseen), None);
+        let seen = |rise| beyond_heat(rise, foreseen).map(|doubt| doubt.seen);
+        let hot = seen(0.585).expect("a doubt");
+        assert!(
+            hot.contains("58 % above") && hot.contains("149 K warmer; 75 K"),
+            "{hot}"
+        );
+        let cold = seen(-0.39).expect("a doubt");
+        assert!(cold.contains("99 K colder"), "{cold}");
     }
 
     #[test]

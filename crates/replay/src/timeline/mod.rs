@@ -7,8 +7,8 @@ mod trace;
 
 use audit::Finding;
 use monitor::{
-    Beyond, Candidates, Channel, FAULTS, Known, Lamp, Lamps, LoadKind, MonitorConfig, NotJudged,
-    Report, Witness,
+    Beyond, Candidates, Channel, FAULTS, Heating, Known, Lamp, Lamps, LoadKind, MonitorConfig,
+    NotJudged, Report, Witness,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -118,6 +118,8 @@ struct Moments {
 
 /// A motor of which less than the fifth part of its running was judged is not called healthy.
 const LEAST_SHARE: u64 = 5;
+/// No window tells the rise of a resistance more surely, a share: its weight stays finite.
+const LEAST_DEVIATION: f64 = 1e-3;
 
 /// Changes of the lamps that are kept.
 pub const MOST_CHANGES: usize = 10_000;
@@ -166,9 +168,9 @@ pub struct Timeline {
     rotor: RotorHistory,
     rated_current: f32,
     load_friction: bool,
-    /// Resistance rise of the judged windows of a calibrated motor.
+    /// Resistance rise of the judged windows of a calibrated motor, weighed by how surely each tells it, and the weights.
     heating_sum: f64,
-    heating_windows: u64,
+    heating_weight: f64,
 }
 
 impl Timeline {
@@ -243,8 +245,10 @@ impl Timeline {
         }
         self.judged += 1;
         if let Some(isolation) = &report.isolation {
-            self.heating_sum += f64::from(isolation.heating.rise);
-            self.heating_windows += 1;
+            let Heating { rise, deviation } = isolation.heating;
+            let weight = f64::from(deviation).max(LEAST_DEVIATION).powi(-2);
+            self.heating_sum += weight * f64::from(rise);
+            self.heating_weight += weight;
         }
         let Some(residuals) = report.residuals else {
             return;
@@ -395,9 +399,10 @@ impl Timeline {
         }
     }
 
-    /// Relative rise of the resistances since the calibration, the mean over the judged windows; `None` without one.
+    /// Relative rise of the resistances since the calibration, the mean over the judged windows, each weighed by how surely it tells it; `None`
+    /// without one.
     pub fn resistance_rise(&self) -> Option<f64> {
-        (self.heating_windows > 0).then(|| self.heating_sum / self.heating_windows as f64)
+        (self.heating_weight > 0.0).then(|| self.heating_sum / self.heating_weight)
     }
 
     /// What the sidebands of the current say about the rotor's bars.
