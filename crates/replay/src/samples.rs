@@ -48,7 +48,7 @@ pub struct Timed {
 }
 
 /// Longest time for which a speed is held that is judged while it changes, s: it is late by half of it, and a counter that counts meanwhile by as much
-/// again. A fitted lag of some 10 ms is known to the model; one that jumps is not.
+/// again.
 const LONGEST_HOLD_S: f64 = 1.5e-3;
 
 /// Whether the audit found that the speed is held for longer than that.
