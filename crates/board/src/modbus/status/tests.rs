@@ -114,7 +114,7 @@ fn a_lit_fault_names_its_likeliest_row() {
     );
     assert!((500..=1000).contains(&word(&image, Field::FaultProbability)));
     // The likeliest is no row at all: it has no number, as before.
-    faulty.candidates = Some(Candidates::from_normalised(&[0.0, 9.0, 0.0, 0.0]));
+    faulty.candidates = Some(Candidates::from_normalised(&[0.0, 0.0, 9.0, 0.0]));
     let image = registers(&faulty);
     assert_eq!(word(&image, Field::LikelyFault), 0);
 }
