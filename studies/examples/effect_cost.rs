@@ -4,11 +4,11 @@
 //! Each set of effects takes turns with the bare motor, so that whatever else the machine does meets both; the shortest of
 //! the runs counts.
 
+use motor::MotorFile;
 use motor::effect::{
-    Between, EffectConfig, Inputs, Plant, Rated, Run, SpeedSource, Timeline, extra_states, simulate,
+    Between, EffectConfig, Inputs, Plant, Run, SpeedSource, Timeline, extra_states, rated, simulate,
 };
 use motor::effects::{ALL, find};
-use motor::{Mechanics, TParams};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -30,33 +30,15 @@ const SETS: [&[&str]; 3] = [
     &["dc-link", "stator-heating", "shaft-compliance"],
 ];
 
-fn plant(effects: Vec<EffectConfig>) -> Plant {
+/// A motor that ships, without its effects.
+fn bare() -> Plant {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../motors/peer-2k2.toml");
+    let motor = MotorFile::read(file).expect("it ships");
     Plant {
-        motor: TParams {
-            r_s: 3.7,
-            r_r: 2.3,
-            l_ls: 0.0107,
-            l_lr: 0.0107,
-            l_m: 0.234,
-        },
-        mechanics: Mechanics {
-            n_p: 2.0,
-            inertia: 0.015,
-            friction: 0.001,
-            load_friction: 0.0,
-        },
-        rated: rated(),
-        effects,
-    }
-}
-
-fn rated() -> Rated<f64> {
-    Rated {
-        voltage: 326.6,
-        current: 7.07,
-        omega_sync: OMEGA,
-        n_p: 2.0,
-        torque: 14.6,
+        motor: motor.parameters,
+        mechanics: motor.mechanics,
+        rated: rated(&motor),
+        effects: Vec::new(),
     }
 }
 
@@ -97,25 +79,27 @@ fn step_ns(plant: &Plant, inputs: &Inputs, timeline: &Arc<Timeline>) -> f64 {
 }
 
 fn main() {
-    let (inputs, timeline) = (inputs(), timeline());
+    let (inputs, timeline, bare) = (inputs(), timeline(), bare());
     let typical = |name: &&str| {
         let effect = find(name, "").expect("an effect of the library");
-        EffectConfig::typical(effect, &rated())
+        EffectConfig::typical(effect, &bare.rated)
     };
     let alone = ALL.iter().map(|effect| {
         let d = effect.descriptor();
         let name = format!("{} {}", d.name, d.form);
-        (name, vec![EffectConfig::typical(*effect, &rated())])
+        (name, vec![EffectConfig::typical(*effect, &bare.rated)])
     });
     let sets = SETS.map(|names| (names.join(" + "), names.iter().map(typical).collect()));
-    let bare = plant(Vec::new());
     println!(
         "{:62} {:>6} {:>9} {:>9}",
         "effects", "states", "ns a step", "/ bare"
     );
     for (name, effects) in alone.chain(sets) {
         let states = extra_states(&effects);
-        let with = plant(effects);
+        let with = Plant {
+            effects,
+            ..bare.clone()
+        };
         let pair = || {
             let both = [&bare, &with];
             both.map(|plant| step_ns(plant, &inputs, &timeline))

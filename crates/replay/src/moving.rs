@@ -178,7 +178,7 @@ impl Follower {
 
     /// Judges nothing in motion from here on, for this reason.
     pub fn stop(&mut self, why: &str) {
-        if self.summary.not_possible.is_none() {
+        if !self.is_stopped() {
             self.summary = MotionSummary::impossible(why);
         }
     }

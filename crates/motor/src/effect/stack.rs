@@ -244,21 +244,13 @@ impl<const N: usize> EffectStack<N> {
 
     /// Currents where only the magnetizing branch is not linear.
     #[inline(never)]
-    fn saturated(&self, state: &DynamicState<[f64; N]>) -> Winding {
+    fn saturated(&self, solutions: &Solutions, state: &DynamicState<[f64; N]>) -> Winding {
         let [a_s, a_r] = self.admittances;
-        let sum = state.psi_s * a_s + state.psi_r * a_r + Complex64::ZERO;
+        let sum = state.psi_s * a_s + state.psi_r * a_r;
         let drive = length(sum);
-        let flux = match &self.solutions {
-            Some(solutions) => solutions.own_flux(|x| factor_of(&self.magnetizing, x), drive),
-            None => 0.0,
-        };
+        let flux = solutions.own_flux(|x| factor_of(&self.magnetizing, x), drive);
         let psi_m = sum * (flux / drive.max(f64::MIN_POSITIVE));
-        Winding {
-            i_s: (state.psi_s - psi_m) * a_s,
-            i_r: (state.psi_r - psi_m) * a_r,
-            r_s: self.motor.r_s,
-            r_r: self.motor.r_r,
-        }
+        around(psi_m, state, self.admittances, &self.motor)
     }
 
     /// Currents of a T model with magnetizing branch, two leakages and perhaps a second cage.
@@ -268,12 +260,23 @@ impl<const N: usize> EffectStack<N> {
         let (a_c, sum_c) = now.cage.map_or((0.0, Complex64::ZERO), cage_share);
         let sum = state.psi_s * a_s + state.psi_r * a_r + sum_c;
         let psi_m = self.air_gap_flux(sum, a_s + a_r + a_c, m.l_m);
-        Winding {
-            i_s: (state.psi_s - psi_m) * a_s,
-            i_r: (state.psi_r - psi_m) * a_r,
-            r_s: m.r_s,
-            r_r: m.r_r,
-        }
+        around(psi_m, state, [a_s, a_r], m)
+    }
+}
+
+/// Currents around the air-gap flux, through leakages of these admittances, 1/H.
+#[inline(always)]
+fn around<X>(
+    psi_m: Complex64,
+    state: &DynamicState<X>,
+    [a_s, a_r]: [f64; 2],
+    motor: &TParams<f64>,
+) -> Winding {
+    Winding {
+        i_s: (state.psi_s - psi_m) * a_s,
+        i_r: (state.psi_r - psi_m) * a_r,
+        r_s: motor.r_s,
+        r_r: motor.r_r,
     }
 }
 
@@ -338,9 +341,9 @@ impl<const N: usize> Hooks for EffectStack<N> {
 
     #[inline(always)]
     fn winding(&self, linear: &Linear, moment: &Moment, state: &DynamicState<[f64; N]>) -> Winding {
-        match (self.parameters.is_empty(), self.magnetizing.is_empty()) {
-            (true, true) => linear.winding(state.psi_s, state.psi_r),
-            (true, false) => self.saturated(state),
+        match (self.parameters.is_empty(), &self.solutions) {
+            (true, None) => linear.winding(state.psi_s, state.psi_r),
+            (true, Some(solutions)) => self.saturated(solutions, state),
             (false, _) => self.changing(linear, moment, state),
         }
     }

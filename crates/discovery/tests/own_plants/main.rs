@@ -3,7 +3,9 @@
 //! A cut of the whole table, which `cargo run --release -p studies --example evidence` prints.
 
 #[expect(dead_code, reason = "the examples use the rest")]
+#[path = "../foreign/mod.rs"]
 mod foreign;
+mod recorders;
 
 use discovery::{
     ExplainReport, Fitted, LAW, Laws, PARAMETERS, Verdict, adopt, adopt_with, compare, explain,
@@ -12,9 +14,9 @@ use foreign::cases::single;
 use foreign::evidence::{Answer, Question, Setting, double, with_twins};
 use foreign::laws::Law;
 use foreign::{
-    Course, DRIVE, DRIVE_B, Hidden, LOADS, MACHINES, Machine, STEADY, STEPS, U, priors, record,
+    Course, DRIVE, DRIVE_B, Hidden, LOADS, MACHINES, Machine, STEADY, STEPS, priors, record,
 };
-use recording::{Channel, Sensors};
+use recording::Sensors;
 
 /// Seeds of this file; the table uses others.
 const SEED: u64 = 11;
@@ -422,92 +424,4 @@ fn recordings_of_a_motor_that_was_changed_between_them_are_explained_each_alone(
     let change = inertia.expect("changed").change_percent;
     // The change is told, not its last per cent: a fifteenth of it.
     assert!((change - 30.0).abs() < 2.0, "{change}");
-}
-
-/// A recording as a recorder shows it whose channels are off by up to 0.6 %, and which counts the pulses
-/// of an encoder over 10 ms.
-fn through_a_recorder(
-    machine: &Machine,
-    hidden: &Hidden,
-    course: &Course,
-    seed: u64,
-) -> recording::Source {
-    const WINDOW: usize = 100;
-    let rec = record(machine, hidden, course, seed);
-    let gains = [0.006, -0.005, 0.003, 0.006, -0.006, 0.004];
-    let zeros = [0.006, -0.004, 0.002, 0.006, 0.005, -0.006];
-    let counted = |x: &[f64]| {
-        let before = |k: usize| (k / WINDOW * WINDOW).saturating_sub(WINDOW);
-        let mean = |k: usize| x[before(k)..before(k) + WINDOW].iter().sum::<f64>() / WINDOW as f64;
-        (0..x.len()).map(mean).collect::<Vec<f64>>()
-    };
-    let empty = recording::Recording::new("shown", rec.t().to_vec(), rec.metadata.clone());
-    let shown = rec
-        .channels()
-        .fold(empty.expect("a clock"), |to, (channel, x)| {
-            let phases = Channel::VOLTAGES.into_iter().chain(Channel::CURRENTS);
-            let shown = match phases.zip(0..6).find(|(known, _)| *known == channel) {
-                Some((_, k)) => {
-                    let rated = if k < 3 { U } else { machine.current };
-                    x.iter()
-                        .map(|x| (1.0 + gains[k]) * x + zeros[k] * rated)
-                        .collect()
-                }
-                None if channel == Channel::SPEED => counted(x),
-                None => x.to_vec(),
-            };
-            to.with_channel(channel, shown).expect("as long")
-        });
-    recording::Source::Recording(shown)
-}
-
-/// Two recordings of one recorder.
-fn two_through_a_recorder(machine: &Machine, hidden: &Hidden) -> [recording::Source; 2] {
-    [
-        through_a_recorder(machine, hidden, &LOADS, SEED),
-        through_a_recorder(machine, hidden, &STEPS, SEED + 1),
-    ]
-}
-
-/// What is said of two recordings of one recorder.
-fn explained_through_a_recorder(hidden: &Hidden) -> ExplainReport {
-    let machine = Machine::of(SEED);
-    let sources = two_through_a_recorder(&machine, hidden);
-    let report = explain(&sources, &priors(&machine, SEED), &mut |_, _| {}).expect("judged");
-    println!("{}", report.summary);
-    report
-}
-
-/// Of a healthy motor nothing is named but what the recorder does.
-#[test]
-fn nothing_of_the_motor_is_named_for_the_errors_of_a_recorder() {
-    let report = explained_through_a_recorder(&Hidden::default());
-    let of_the_recorder = ["voltage-offset", "phase-voltage-gain", "speed-delay"];
-    let named = report.steps.iter().map(|step| step.effect.as_str());
-    assert!(named.eq(of_the_recorder) && report.laws.is_empty());
-    assert!(report.final_.expect("fitted").held_out_error_over_noise < 1.02);
-}
-
-/// What is missing in the motor is found beside them, which are more than an explanation has effects.
-#[test]
-fn a_law_is_found_beside_the_errors_of_a_recorder() {
-    let hidden = Hidden {
-        law: Some(Law::Jaws),
-        ..Hidden::default()
-    };
-    let report = explained_through_a_recorder(&hidden);
-    assert!(report.channels.is_some());
-    assert_eq!(report.verdict, Verdict::Law);
-    assert!(report.laws.len() == 1 && Law::Jaws.is_named(&report.laws[0]));
-}
-
-/// An error of one channel is adopted as well, beside which those of all channels would leave nothing to ask for.
-#[test]
-fn an_offset_is_adopted_from_recordings_of_a_recorder() {
-    let machine = Machine::of(SEED);
-    let sources = two_through_a_recorder(&machine, &Hidden::default());
-    let believed = priors(&machine, SEED);
-    let (report, motor) =
-        adopt("voltage-offset", &sources, &believed, &mut |_, _| {}).expect("adopted");
-    assert!(report.proven && motor.effects[0].name == "voltage-offset");
 }
