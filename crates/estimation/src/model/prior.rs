@@ -2,7 +2,7 @@
 
 use crate::data::instrument_class::{CHANNEL_GAIN, CHANNEL_OFFSET};
 use motor::effect::{
-    Effect, EffectConfig, Instrument, Parameter, Plant, Rated, Role, curve, expression, rated,
+    Effect, EffectConfig, Instrument, Parameter, Plant, Rated, Role, expression, rated,
 };
 use motor::motor_file::Uncertainty;
 use motor::{Mechanics, MotorFile, TParams};
@@ -30,10 +30,11 @@ pub const INERTIA: usize = 4;
 pub const FRICTION: usize = 5;
 /// Effects keep a plain wide prior: so many typical sizes.
 const SIZE_PRIOR: f64 = 4.0;
-/// Longest step of a coordinate in one iteration of a fit ...
+/// Longest step of a logarithm in one iteration of a fit ...
 const LONGEST_STEP: f64 = 1.5;
-/// ... and of the mode of a law: a pump's curve is ten times an ordinary torque, and its modes enter linearly.
-const LONGEST_STEP_OF_A_MODE: f64 = 20.0;
+/// ... and of what enters linearly, in typical sizes: friction, sizes of effects, modes of a law. What a pump takes is ten
+/// times an ordinary friction and more.
+const LONGEST_LINEAR_STEP: f64 = 20.0;
 /// Prior of a shape: a factor of e.
 const SHAPE_PRIOR: f64 = 1.0;
 
@@ -382,9 +383,9 @@ impl Hypothesis {
 
     /// Longest step of a coordinate in one iteration of a fit.
     pub fn longest_step(&self, k: usize) -> f64 {
-        let of_law = |k| self.effects[self.effect_of(k)].effect.descriptor().name == curve::NAME;
-        match k >= N_NOMINAL && of_law(k) {
-            true => LONGEST_STEP_OF_A_MODE,
+        let is_size = |k| k >= N_NOMINAL && self.parameter(k).role == Role::Size;
+        match k == FRICTION || is_size(k) {
+            true => LONGEST_LINEAR_STEP,
             false => LONGEST_STEP,
         }
     }

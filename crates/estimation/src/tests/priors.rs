@@ -1,10 +1,13 @@
 //! Coordinates against the numbers that they stand for.
 
+use crate::data::case::Case;
 use crate::data::study::Study;
+use crate::fit::output_error::{Effort, fit};
 use crate::model::prior::{FRICTION, N_NOMINAL, to_coordinate};
 use crate::specimen;
 use motor::effect::{EffectConfig, Role};
 use motor::effects::find;
+use recording::Channel;
 
 fn study() -> Study {
     specimen::table_study(|_| ())
@@ -155,4 +158,29 @@ fn a_model_is_the_same_to_the_last_bit_or_another() {
     assert!(braked.is_same(&formula("torque", "k * omega")));
     assert!(!braked.is_same(&formula("torque", "k * psi")));
     assert!(!braked.is_same(&formula("voltage_d", "k * omega")));
+}
+
+/// A pump takes ten times an ordinary friction and more: a fit gets there in a few iterations.
+#[test]
+fn what_enters_linearly_goes_far_at_once() {
+    let prior = specimen::prior("");
+    let torque = 0.5 * prior.plant.rated.torque;
+    let recording = specimen::recording(1.0, |_| torque);
+    let unseen = vec![0.0; recording.len()];
+    let recording = recording
+        .with_channel(Channel::TORQUE, unseen)
+        .expect("as long as the clock");
+    let case = Case::new(&recording, &prior.plant.rated).expect("judged");
+    let study = Study::new(prior, case, Vec::new(), None);
+    let effort = Effort {
+        iterations: 3,
+        ..Effort::FULL
+    };
+    let fit = fit(&study.fitted.case, &study.prior, &study.at_prior(), effort);
+    let expected = torque / specimen::point(torque).omega_mech / study.prior.friction_unit;
+    let found = fit.hypothesis.z[FRICTION];
+    assert!(
+        expected > 40.0 && (found / expected - 1.0).abs() < 0.02,
+        "{found} {expected}"
+    );
 }
