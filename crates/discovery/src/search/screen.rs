@@ -3,7 +3,7 @@
 use estimation::data::case::Case;
 use estimation::fit::normal_equations::{self, Block, Penalty};
 use estimation::fit::output_error::Fit;
-use estimation::model::prediction::outputs;
+use estimation::model::differences::Differences;
 use estimation::model::prior::{N_NOMINAL, Prior};
 use estimation::model::speed_gain::is_scale;
 use motor::effect::{Applies, Effect, EffectConfig, Parameter, Role, expression};
@@ -103,8 +103,9 @@ pub(crate) fn screen(case: &Case, prior: &Prior, fit: &Fit, excluded: &[&str]) -
         .flat_map(|e| grid_points(e, prior))
         .collect();
     let rows = case.blocks();
+    let differences = Differences::from(case, prior, &fit.hypothesis, &fit.outputs, fit.observer);
     let one = |config: &EffectConfig| {
-        let columns = columns(case, prior, fit, config);
+        let columns = columns(&differences, prior, fit, config);
         if columns.iter().flatten().any(|x| !x.is_finite()) {
             return None;
         }
@@ -116,17 +117,15 @@ pub(crate) fn screen(case: &Case, prior: &Prior, fit: &Fit, excluded: &[&str]) -
 }
 
 /// Secant columns: one per size, or the whole difference for a resonance.
-fn columns(case: &Case, prior: &Prior, fit: &Fit, config: &EffectConfig) -> Vec<Vec<f64>> {
+fn columns(
+    differences: &Differences<'_>,
+    prior: &Prior,
+    fit: &Fit,
+    config: &EffectConfig,
+) -> Vec<Vec<f64>> {
     let rated = &prior.plant.rated;
-    let difference = |config: EffectConfig, over: f64| {
-        let h = fit.hypothesis.with(config, rated);
-        let mut there = outputs(case, prior, &h, fit.observer);
-        there
-            .iter_mut()
-            .zip(&fit.outputs)
-            .for_each(|(x, b)| *x = (*x - b) / over);
-        there
-    };
+    let difference =
+        |config: EffectConfig, over: f64| differences.of(&fit.hypothesis.with(config, rated), over);
     let descriptor = config.effect.descriptor();
     if descriptor.is_resonance() {
         return vec![difference(config.clone(), 1.0)];

@@ -2,7 +2,8 @@
 
 use crate::data::case::Case;
 use crate::fit::normal_equations::{self, Block, Penalty};
-use crate::model::prediction::{SpeedObserver, jacobian, outputs, residual};
+use crate::model::differences::jacobian;
+use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
 use nalgebra::DVector;
 use std::ops::Range;

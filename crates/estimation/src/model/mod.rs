@@ -1,5 +1,6 @@
 //! What is believed about the motor, and what it predicts.
 
+pub mod differences;
 pub mod free_scale;
 pub mod prediction;
 pub mod prior;

@@ -8,7 +8,6 @@ use motor::dynamic::cycle_components;
 use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, StateOffset, simulate};
 use motor::steady_state::SteadyState;
 use num_complex::Complex64;
-use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -183,32 +182,6 @@ pub fn residual(case: &Case, model: &[f64]) -> Vec<f64> {
     rows
 }
 
-/// Derivatives of the weighted outputs with respect to the free coordinates, in their order.
-pub fn jacobian(
-    case: &Case,
-    prior: &Prior,
-    h: &Hypothesis,
-    base: &[f64],
-    observer: SpeedObserver,
-) -> Vec<Vec<f64>> {
-    let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
-    let column = |&k: &usize| {
-        let mut step = h.step(k);
-        if h.z[k] + step > h.bounds(k, prior)[1] {
-            step = -step;
-        }
-        let mut moved = h.clone();
-        moved.z[k] += step;
-        let mut there = outputs(case, prior, &moved, observer);
-        there
-            .iter_mut()
-            .zip(base)
-            .for_each(|(x, b)| *x = (*x - b) / step);
-        there
-    };
-    free.par_iter().map(column).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -230,51 +203,6 @@ mod tests {
         rows.for_each(|row| row[1] -= 2.0 * std::f64::consts::TAU / 60.0);
         for row in residual(&slower, &model).chunks(N_CHANNELS) {
             assert!((row[1] + 2.0).abs() < 1e-3 && row[0].abs() < 1e-3);
-        }
-    }
-
-    /// Central differences, which err by the square of the step.
-    #[test]
-    fn derivatives_are_those_of_the_outputs() {
-        let study = specimen::table_study(|_| ());
-        let (case, prior) = (&study.fitted.case, &study.prior);
-        let h = study.at_prior();
-        let base = outputs(case, prior, &h, SpeedObserver::Off);
-        let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
-        let columns = jacobian(case, prior, &h, &base, SpeedObserver::Off);
-        assert_eq!(columns.len(), free.len());
-        for (column, k) in columns.iter().zip(free) {
-            let at = |dz: f64| {
-                let mut moved = h.clone();
-                moved.z[k] += dz;
-                outputs(case, prior, &moved, SpeedObserver::Off)
-            };
-            let (up, down) = (at(1e-3), at(-1e-3));
-            let size = column.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-            for (n, got) in column.iter().enumerate() {
-                let expected = (up[n] - down[n]) / 2e-3;
-                assert!(
-                    (got - expected).abs() < 5e-3 * size,
-                    "{k}: {got} {expected}"
-                );
-            }
-        }
-    }
-
-    /// At the upper bound the derivative is taken downwards.
-    #[test]
-    fn derivatives_stay_inside_the_bounds() {
-        let study = specimen::table_study(|_| ());
-        let (case, prior) = (&study.fitted.case, &study.prior);
-        let mut h = study.at_prior();
-        h.z[0] = h.bounds(0, prior)[1];
-        let base = outputs(case, prior, &h, SpeedObserver::Off);
-        let column = &jacobian(case, prior, &h, &base, SpeedObserver::Off)[0];
-        let mut moved = h.clone();
-        moved.z[0] -= h.step(0);
-        let there = outputs(case, prior, &moved, SpeedObserver::Off);
-        for ((got, b), t) in column.iter().zip(&base).zip(&there) {
-            assert!((got - (b - t) / h.step(0)).abs() < 1e-6 * (1.0 + got.abs()));
         }
     }
 

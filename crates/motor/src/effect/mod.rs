@@ -42,7 +42,7 @@ pub use file::{from_entry, from_motor_file, rated, to_entry};
 #[cfg(feature = "std")]
 pub use signals::{Inputs, Outputs};
 #[cfg(feature = "std")]
-pub use simulate::{Between, Plant, Run, SpeedSource, StateOffset, simulate};
+pub use simulate::{Between, Plant, Run, SpeedSource, StateOffset, simulate, simulate_coarsely};
 #[cfg(feature = "std")]
 pub use stack::{Cut, EffectStack, MAX_FILE_STATES, Timeline, extra_states};
 pub use steady::{MAX_PARAMETERS, SteadyEffect, SteadyPoint};

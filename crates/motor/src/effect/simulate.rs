@@ -1,11 +1,14 @@
 //! A motor with effects, driven by measured signals.
 
+mod integrate;
+
 use crate::dynamic::{Dynamic, DynamicState, Hooks, NoEffects, Shaft, cycle_components, phases};
 use crate::effect::{
     Cut, EffectConfig, EffectStack, Hook, Inputs, MAX_FILE_STATES, Outputs, Rated, Timeline,
     extra_states,
 };
 use crate::{Mechanics, TParams};
+use integrate::Integrate;
 use num_complex::Complex64;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -96,8 +99,17 @@ pub struct Run<'a> {
 /// # Panics
 /// If the effects need more than eight extra states or the input signals differ in length.
 pub fn simulate(plant: &Plant, run: &Run<'_>) -> Outputs {
+    simulate_coarsely(plant, run, 1)
+}
+
+/// As [`simulate`], with so many integration steps taken at once (1 or more) and the rows between them interpolated. The difference of
+/// two such runs is off by a share of itself only: enough for a derivative.
+///
+/// # Panics
+/// As [`simulate`].
+pub fn simulate_coarsely(plant: &Plant, run: &Run<'_>, at_once: usize) -> Outputs {
     let (motor, inputs) = (constant_motor(plant), corrected(plant, run.inputs));
-    let mut outputs = with_hooks(plant, &motor, run, &inputs, Integrate);
+    let mut outputs = with_hooks(plant, &motor, run, &inputs, Integrate { at_once });
     outputs.u_zero = vec![0.0; outputs.omega_mech.len()];
     instruments(plant, &mut outputs);
     outputs
@@ -163,6 +175,11 @@ pub(super) trait Task {
     /// What comes out.
     type Result;
 
+    /// Integration steps that are taken at once.
+    fn at_once(&self) -> usize {
+        1
+    }
+
     /// Does it.
     fn on<H: Hooks>(self, ready: &Ready<'_, H>) -> Self::Result;
 }
@@ -175,6 +192,8 @@ pub(super) struct Ready<'a, H: Hooks> {
     restarts: Vec<Restart>,
     run: &'a Run<'a>,
     inputs: &'a Inputs,
+    /// Samples per step.
+    stride: usize,
 }
 
 /// Chooses the cheapest set of hooks that holds the plant's effects.
@@ -195,21 +214,24 @@ pub(super) fn with_hooks<T: Task>(
         ..run.clone()
     };
     let start = begins(plant, motor, run, inputs, 0, run.running_at);
+    let stride = task.at_once() * run.between.stride();
     if !plant.effects.iter().any(inside) {
         let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
-        return task.on(&Ready::new(model, start, plant, motor, run, inputs));
+        let ready = Ready::new(model, start, plant, motor, run, inputs);
+        return task.on(&ready.striding(stride));
     }
     let extra = extra_states(&plant.effects);
     if extra == 0 {
-        return task.on(&stacked::<0>(start, plant, motor, run, inputs));
+        let ready = stacked::<0>(start, plant, motor, run, inputs);
+        return task.on(&ready.striding(stride));
     }
     if extra <= FEW_STATES {
-        return task.on(&stacked::<FEW_STATES>(start, plant, motor, run, inputs));
+        let ready = stacked::<FEW_STATES>(start, plant, motor, run, inputs);
+        return task.on(&ready.striding(stride));
     }
     // Those of a motor file, and the library's once more: what `explain` may add to them.
-    task.on(&stacked::<{ 2 * MAX_FILE_STATES }>(
-        start, plant, motor, run, inputs,
-    ))
+    let ready = stacked::<{ 2 * MAX_FILE_STATES }>(start, plant, motor, run, inputs);
+    task.on(&ready.striding(stride))
 }
 
 fn stacked<'a, const N: usize>(
@@ -256,24 +278,29 @@ impl<'a, H: Hooks> Ready<'a, H> {
             restarts: restarts(plant, motor, run, inputs),
             run,
             inputs,
+            stride: run.between.stride(),
         }
+    }
+
+    fn striding(self, stride: usize) -> Self {
+        Self { stride, ..self }
     }
 
     /// Time of a step, s.
     pub fn t_step(&self) -> f64 {
-        self.inputs.t_sample * self.run.between.stride() as f64
+        self.inputs.t_sample * self.stride as f64
     }
 
     /// Integration steps.
     pub fn steps(&self) -> usize {
-        self.inputs.u_s.len().saturating_sub(1) / self.run.between.stride()
+        self.inputs.u_s.len().saturating_sub(1) / self.stride
     }
 
     /// What happens to the state at the beginning of a step, before anything is seen of it; `restart`: the cut that falls
     /// there.
     #[inline(always)]
     fn begin(&self, state: &mut DynamicState<H::Extra>, step: usize, restart: Option<usize>) {
-        let k = step * self.run.between.stride();
+        let k = step * self.stride;
         if let Some(restart) = restart.map(|cut| &self.restarts[cut]) {
             if restart.is_new {
                 *state = DynamicState::rest();
@@ -283,7 +310,7 @@ impl<'a, H: Hooks> Ready<'a, H> {
             (state.psi_s, state.psi_r) = (there.psi_s, there.psi_r);
             state.omega_mech = there.omega_mech;
         }
-        let step = k..k + self.run.between.stride();
+        let step = k..k + self.stride;
         for offset in self.run.offsets.iter().filter(|x| step.contains(&x.sample)) {
             state.psi_s += offset.psi_s;
             state.psi_r += offset.psi_r;
@@ -305,13 +332,13 @@ impl<'a, H: Hooks> Ready<'a, H> {
         restart: Option<usize>,
     ) -> Shown {
         self.begin(state, step, restart);
-        let k = step * self.run.between.stride();
+        let k = step * self.stride;
         let t = self.inputs.t_sample * k as f64;
         let (omega_mech, theta_mech) = (state.omega_mech, state.theta_mech);
         let i = match step < self.steps() {
             true => {
                 self.turn(state, k);
-                advance(&self.model, state, self.run.between, self.inputs, k)
+                self.advance(state, k)
             }
             false => self.model.current(t, state, self.inputs.u_s[k]),
         };
@@ -322,18 +349,49 @@ impl<'a, H: Hooks> Ready<'a, H> {
         }
     }
 
+    /// One integration step from input sample `k`; the current at its beginning, A.
+    #[inline(always)]
+    fn advance(&self, state: &mut DynamicState<H::Extra>, k: usize) -> Complex64 {
+        let (u, tau) = (&self.inputs.u_s, &self.inputs.tau_load);
+        let (t, h) = (self.inputs.t_sample * k as f64, self.t_step());
+        let end = k + self.stride;
+        match self.run.between {
+            Between::Held => {
+                let n = self.stride as f64;
+                let mean_u = u[k..end].iter().sum::<Complex64>() / n;
+                let mean_tau = tau[k..end].iter().sum::<f64>() / n;
+                self.model.step(state, t, h, |_| mean_u, |_, _| mean_tau)
+            }
+            Between::Smooth => {
+                let half = k + self.stride / 2;
+                let (first, middle, last) = (u[k], u[half], u[end]);
+                let supply = |x: f64| {
+                    if x <= t {
+                        first
+                    } else if x >= t + h {
+                        last
+                    } else {
+                        middle
+                    }
+                };
+                let mean = 0.5 * (tau[k] + tau[half]);
+                self.model.step(state, t, h, supply, |_, _| mean)
+            }
+        }
+    }
+
     /// An imposed speed during the step from sample `k`: the mean of its ends, off by the square of the step.
     #[inline(always)]
     fn turn(&self, state: &mut DynamicState<H::Extra>, k: usize) {
         if let SpeedSource::Imposed(omega) = self.run.speed {
-            state.omega_mech = 0.5 * (omega[k] + omega[k + self.run.between.stride()]);
+            state.omega_mech = 0.5 * (omega[k] + omega[k + self.stride]);
         }
     }
 
     /// The cut that falls on a step, if it is the next one.
     #[inline(always)]
     pub fn restart(&self, step: usize, next: usize) -> Option<usize> {
-        let k = step * self.run.between.stride();
+        let k = step * self.stride;
         let restart = self.restarts.get(next)?;
         (restart.sample <= k).then_some(next)
     }
@@ -374,38 +432,6 @@ fn restarts(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &Inputs)
     cuts.map(at).collect()
 }
 
-/// Integrates over all inputs and records every step.
-struct Integrate;
-
-impl Task for Integrate {
-    type Result = Outputs;
-
-    fn on<H: Hooks>(self, ready: &Ready<'_, H>) -> Outputs {
-        let steps = ready.steps();
-        let mut out = Outputs {
-            t_sample: ready.t_step(),
-            ..Outputs::default()
-        };
-        out.i_s_abc.reserve(steps + 1);
-        out.omega_mech.reserve(steps + 1);
-        out.theta_mech.reserve(steps + 1);
-        let (mut state, mut cuts) = (ready.start, 0);
-        for step in 0..=steps {
-            let restart = ready.restart(step, cuts);
-            cuts += usize::from(restart.is_some());
-            let shown = ready.pass(&mut state, step, restart);
-            out.i_s_abc.push(shown.i_s_abc);
-            out.omega_mech.push(shown.omega_mech);
-            out.theta_mech.push(shown.theta_mech);
-        }
-        let stride = ready.run.between.stride();
-        out.u_measured = (0..=steps)
-            .map(|k| ready.run.inputs.u_s[k * stride])
-            .collect();
-        out
-    }
-}
-
 /// Imposes or draws the speed.
 #[inline(always)]
 fn steer<X>(state: &mut DynamicState<X>, speed: SpeedSource<'_>, k: usize, h: f64) {
@@ -414,37 +440,6 @@ fn steer<X>(state: &mut DynamicState<X>, speed: SpeedSource<'_>, k: usize, h: f6
         SpeedSource::Imposed(omega) => state.omega_mech = omega[k],
         SpeedSource::Observed(omega, rate) => {
             state.omega_mech += (rate * h).min(1.0) * (omega[k] - state.omega_mech);
-        }
-    }
-}
-
-/// One integration step from input sample `k`; the current at its beginning, A.
-#[inline(always)]
-fn advance<H: Hooks>(
-    model: &Dynamic<H>,
-    state: &mut DynamicState<H::Extra>,
-    between: Between,
-    inputs: &Inputs,
-    k: usize,
-) -> Complex64 {
-    let (u, tau) = (&inputs.u_s, &inputs.tau_load);
-    let t = inputs.t_sample * k as f64;
-    match between {
-        Between::Held => model.step(state, t, inputs.t_sample, |_| u[k], |_, _| tau[k]),
-        Between::Smooth => {
-            let h = 2.0 * inputs.t_sample;
-            let (first, middle, last) = (u[k], u[k + 1], u[k + 2]);
-            let supply = |x: f64| {
-                if x <= t {
-                    first
-                } else if x >= t + h {
-                    last
-                } else {
-                    middle
-                }
-            };
-            let mean = 0.5 * (tau[k] + tau[k + 1]);
-            model.step(state, t, h, supply, |_, _| mean)
         }
     }
 }
