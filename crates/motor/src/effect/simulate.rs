@@ -108,8 +108,7 @@ pub fn simulate(plant: &Plant, run: &Run<'_>) -> Outputs {
 /// # Panics
 /// As [`simulate`].
 pub fn simulate_coarsely(plant: &Plant, run: &Run<'_>, at_once: usize) -> Outputs {
-    let (motor, inputs) = (constant_motor(plant), corrected(plant, run.inputs));
-    let mut outputs = with_hooks(plant, &motor, run, &inputs, Integrate { at_once });
+    let mut outputs = with_hooks(plant, run, Integrate { at_once });
     outputs.u_zero = vec![0.0; outputs.omega_mech.len()];
     instruments(plant, &mut outputs);
     outputs
@@ -121,7 +120,7 @@ fn uses(plant: &Plant, hook: Hook) -> impl Iterator<Item = &EffectConfig> {
 }
 
 /// What was there, from what was measured.
-pub(super) fn corrected<'a>(plant: &Plant, measured: &'a Inputs) -> Cow<'a, Inputs> {
+fn corrected<'a>(plant: &Plant, measured: &'a Inputs) -> Cow<'a, Inputs> {
     let mut inputs = Cow::Borrowed(measured);
     for e in uses(plant, Hook::Inputs) {
         e.effect.inputs(&e.values, &plant.rated, inputs.to_mut());
@@ -154,7 +153,7 @@ fn shaft_speed(plant: &Plant, run: &Run<'_>) -> Option<Vec<f64>> {
 }
 
 /// The motor's constant parameters with its effects.
-pub(super) fn constant_motor(plant: &Plant) -> TParams<f64> {
+fn constant_motor(plant: &Plant) -> TParams<f64> {
     let mut motor = plant.motor;
     for e in uses(plant, Hook::Motor) {
         e.effect.motor(&e.values, &plant.rated, &mut motor);
@@ -196,14 +195,19 @@ pub(super) struct Ready<'a, H: Hooks> {
     stride: usize,
 }
 
+/// What a run is about, its plant and its inputs as they are without the instruments.
+#[derive(Clone, Copy)]
+struct Scene<'a> {
+    plant: &'a Plant,
+    motor: &'a TParams<f64>,
+    run: &'a Run<'a>,
+    inputs: &'a Inputs,
+    /// Samples per step.
+    stride: usize,
+}
+
 /// Chooses the cheapest set of hooks that holds the plant's effects.
-pub(super) fn with_hooks<T: Task>(
-    plant: &Plant,
-    motor: &TParams<f64>,
-    run: &Run<'_>,
-    inputs: &Inputs,
-    task: T,
-) -> T::Result {
+pub(super) fn with_hooks<T: Task>(plant: &Plant, run: &Run<'_>, task: T) -> T::Result {
     let inside = |e: &EffectConfig| {
         let outer = [Hook::Inputs, Hook::Motor, Hook::Outputs];
         e.effect.hooks().iter().any(|h| !outer.contains(h))
@@ -213,39 +217,28 @@ pub(super) fn with_hooks<T: Task>(
         speed: speed.as_deref().map_or(run.speed, SpeedSource::Imposed),
         ..run.clone()
     };
-    let start = begins(plant, motor, run, inputs, 0, run.running_at);
-    let stride = task.at_once() * run.between.stride();
+    let scene = Scene {
+        plant,
+        motor: &constant_motor(plant),
+        run,
+        inputs: &corrected(plant, run.inputs),
+        stride: task.at_once() * run.between.stride(),
+    };
     if !plant.effects.iter().any(inside) {
-        let model = Dynamic::with_effects(motor, &plant.mechanics, NoEffects);
-        let ready = Ready::new(model, start, plant, motor, run, inputs);
-        return task.on(&ready.striding(stride));
+        return task.on(&Ready::new(scene, NoEffects));
     }
-    let extra = extra_states(&plant.effects);
-    if extra == 0 {
-        let ready = stacked::<0>(start, plant, motor, run, inputs);
-        return task.on(&ready.striding(stride));
+    match extra_states(&plant.effects) {
+        0 => task.on(&stacked::<0>(scene)),
+        1..=FEW_STATES => task.on(&stacked::<FEW_STATES>(scene)),
+        // Those of a motor file, and the library's once more: what `explain` may add to them.
+        _ => task.on(&stacked::<{ 2 * MAX_FILE_STATES }>(scene)),
     }
-    if extra <= FEW_STATES {
-        let ready = stacked::<FEW_STATES>(start, plant, motor, run, inputs);
-        return task.on(&ready.striding(stride));
-    }
-    // Those of a motor file, and the library's once more: what `explain` may add to them.
-    let ready = stacked::<{ 2 * MAX_FILE_STATES }>(start, plant, motor, run, inputs);
-    task.on(&ready.striding(stride))
 }
 
-fn stacked<'a, const N: usize>(
-    start: DynamicState,
-    plant: &Plant,
-    motor: &TParams<f64>,
-    run: &'a Run<'a>,
-    inputs: &'a Inputs,
-) -> Ready<'a, EffectStack<N>> {
-    let timeline = run.timeline.clone();
-    let stack = EffectStack::<N>::new(&plant.effects, motor, &plant.rated, timeline);
-    let model = Dynamic::with_effects(motor, &plant.mechanics, stack);
-    let start = DynamicState::with_extra(&start);
-    Ready::new(model, start, plant, motor, run, inputs)
+fn stacked<const N: usize>(scene: Scene<'_>) -> Ready<'_, EffectStack<N>> {
+    let (plant, timeline) = (scene.plant, scene.run.timeline.clone());
+    let stack = EffectStack::new(&plant.effects, scene.motor, &plant.rated, timeline);
+    Ready::new(scene, stack)
 }
 
 /// One pass through a step: what the instruments show at its beginning.
@@ -260,30 +253,27 @@ pub(super) struct Shown {
 }
 
 impl<'a, H: Hooks> Ready<'a, H> {
-    fn new(
-        model: Dynamic<H>,
-        start: DynamicState<H::Extra>,
-        plant: &Plant,
-        motor: &TParams<f64>,
-        run: &'a Run<'a>,
-        inputs: &'a Inputs,
-    ) -> Self {
+    fn new(scene: Scene<'a>, effects: H) -> Self {
+        let Scene {
+            plant,
+            run,
+            inputs,
+            stride,
+            ..
+        } = scene;
         let shaft = match run.speed {
             SpeedSource::Imposed(_) => Shaft::Imposed,
             SpeedSource::Free | SpeedSource::Observed(..) => Shaft::Free,
         };
+        let model = Dynamic::with_effects(scene.motor, &plant.mechanics, effects);
         Self {
             model: model.with_shaft(shaft),
-            start,
-            restarts: restarts(plant, motor, run, inputs),
+            start: DynamicState::with_extra(&begins(&scene, 0, run.running_at)),
+            restarts: restarts(&scene),
             run,
             inputs,
-            stride: run.between.stride(),
+            stride,
         }
-    }
-
-    fn striding(self, stride: usize) -> Self {
-        Self { stride, ..self }
     }
 
     /// Time of a step, s.
@@ -398,20 +388,14 @@ impl<'a, H: Hooks> Ready<'a, H> {
 }
 
 /// The state with which a motor begins at sample `k`: settled at this speed (rad/s) on its supply, or at rest.
-fn begins(
-    plant: &Plant,
-    motor: &TParams<f64>,
-    run: &Run<'_>,
-    inputs: &Inputs,
-    k: usize,
-    running_at: Option<f64>,
-) -> DynamicState {
+fn begins(scene: &Scene<'_>, k: usize, running_at: Option<f64>) -> DynamicState {
     let Some(omega_mech) = running_at else {
         return DynamicState::rest();
     };
-    let omega_sync = run.timeline.omega_sync[k];
+    let (inputs, omega_sync) = (scene.inputs, scene.run.timeline.omega_sync[k]);
     let voltages = cycle_components(&inputs.u_s[k..], omega_sync, inputs.t_sample);
-    DynamicState::settled(motor, plant.mechanics.n_p, omega_mech, &voltages)
+    let n_p = scene.plant.mechanics.n_p;
+    DynamicState::settled(scene.motor, n_p, omega_mech, &voltages)
 }
 
 /// The motor at the first sample after a cut.
@@ -422,11 +406,12 @@ struct Restart {
 }
 
 /// The samples after the cuts of a recording, and the state of the motor there.
-fn restarts(plant: &Plant, motor: &TParams<f64>, run: &Run<'_>, inputs: &Inputs) -> Vec<Restart> {
+fn restarts(scene: &Scene<'_>) -> Vec<Restart> {
+    let run = scene.run;
     let cuts = run.timeline.cuts.iter().zip(run.running_at_cuts);
     let at = |(cut, running_at): (&Cut, &Option<f64>)| Restart {
         sample: cut.sample,
-        state: begins(plant, motor, run, inputs, cut.sample, *running_at),
+        state: begins(scene, cut.sample, *running_at),
         is_new: cut.is_new,
     };
     cuts.map(at).collect()

@@ -401,7 +401,7 @@ impl<const N: usize> Hooks for EffectStack<N> {
     }
 }
 
-impl<const N: usize> DynamicState<[f64; N]> {
+impl<X: Extra> DynamicState<X> {
     /// A plain state with all extra states at rest.
     pub fn with_extra(plain: &DynamicState) -> Self {
         Self {

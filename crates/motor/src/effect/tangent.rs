@@ -11,9 +11,7 @@
 //! depends on: an amount that follows a spline of the speed costs some multiplications a step instead of a simulation.
 
 use crate::dynamic::{DynamicState, Extra, Hooks};
-use crate::effect::simulate::{
-    Ready, Shown, Task, constant_motor, corrected, instruments, with_hooks,
-};
+use crate::effect::simulate::{Ready, Shown, Task, instruments, with_hooks};
 use crate::effect::{Outputs, Plant, Run, extra_states};
 use num_complex::Complex64;
 
@@ -70,13 +68,7 @@ impl Tangent {
     /// As [`super::simulate`].
     pub fn new(plant: &Plant, run: &Run<'_>) -> Self {
         let scales = scales(plant);
-        with_hooks(
-            plant,
-            &constant_motor(plant),
-            run,
-            &corrected(plant, run.inputs),
-            Linearise { scales },
-        )
+        with_hooks(plant, run, Linearise { scales })
     }
 
     /// Number of states.
@@ -124,16 +116,8 @@ impl Tangent {
     /// # Panics
     /// As [`super::simulate`].
     pub fn push(&self, with: &Plant, run: &Run<'_>, size: f64) -> Push {
-        with_hooks(
-            with,
-            &constant_motor(with),
-            run,
-            &corrected(with, run.inputs),
-            Pushed {
-                tangent: self,
-                size,
-            },
-        )
+        let tangent = self;
+        with_hooks(with, run, Pushed { tangent, size })
     }
 
     /// Stator flux linkage before each step, V s.
