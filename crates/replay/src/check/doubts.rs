@@ -1,5 +1,7 @@
 //! What contradicts a motor in good order although no lamp lights: then the answer is not "in good order".
 
+mod lit;
+
 use audit::{Code, Finding};
 use monitor::{MonitorConfig, Report};
 use motor::MotorFile;
@@ -10,6 +12,7 @@ use super::balance::{Balance, Jump};
 use crate::calibrate::COPPER_PER_KELVIN;
 use crate::rotor::RotorSummary;
 use crate::{MotionSummary, NotJudgedShare, Timeline, VerdictState};
+use lit::Lit;
 
 /// Something that does not fit a motor in good order.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -27,6 +30,7 @@ pub struct Doubting {
     /// Rise of the resistances that the calibration foresees, a share.
     foreseen_rise: Option<f64>,
     balance: Balance,
+    lit: Lit,
 }
 
 impl Doubting {
@@ -37,12 +41,14 @@ impl Doubting {
             calibrated: healthy.is_some(),
             foreseen_rise: healthy.map(|healthy| healthy.heating_percent / 100.0),
             balance: Balance::default(),
+            lit: Lit::default(),
         }
     }
 
     /// Adds a window that ended at time `t`, s.
     pub fn add(&mut self, t: f64, report: &Report, config: &MonitorConfig) {
         self.balance.add(t, report, config);
+        self.lit.add(report);
     }
 
     /// What does not fit, and the recording's state with it: with a doubt a dark answer is no answer.
@@ -61,7 +67,10 @@ impl Doubting {
             found.extend(few.and_then(|few| hardly_judged(few, &reasons)));
             found.extend(timeline.visible_percent().and_then(hardly_visible));
             let rise = timeline.resistance_rise().zip(self.foreseen_rise);
-            found.extend(rise.and_then(|(rise, foreseen)| beyond_heat(rise, foreseen)));
+            let hot = rise.and_then(|(rise, foreseen)| beyond_heat(rise, foreseen));
+            // What is beyond heat lights lamps, too, and says why.
+            let lit = || self.calibrated.then(|| self.lit.doubt()).flatten();
+            found.extend(hot.or_else(lit));
         }
         match state {
             VerdictState::Healthy if !found.is_empty() => (VerdictState::NotJudged, found),
