@@ -179,6 +179,7 @@ impl Timeline {
         Timeline {
             rated_current: config.rated_current,
             load_friction: config.load == LoadKind::Friction,
+            causes: Causes::new(config.load != LoadKind::Free),
             ..Timeline::default()
         }
     }
