@@ -92,7 +92,7 @@ fn unknown(report: &ExplainReport, rest: &Unexplained) -> String {
     }
     let law = report.laws.first().map_or_else(String::new, |law| {
         format!(
-            " Best lead: {} explains {:.0} % of the excess; a second recording with other loads and speeds can prove it.",
+            " Best lead: {} explains {:.0} % of the excess; a further recording with other loads and speeds can prove it.",
             law.name(),
             law.explained_percent.min(100.0)
         )

@@ -49,7 +49,7 @@ fn one(law: &Place<'_>, k: usize) -> Markup {
 fn proof(law: &Place<'_>) -> Markup {
     html! {
         @if law.is_true("proven") { " on the recording that was not fitted." }
-        @else { ". A second recording with other loads and speeds can prove it." }
+        @else { ". A further recording with other loads and speeds can prove it." }
     }
 }
 
