@@ -198,13 +198,44 @@ impl Fit {
                 wider(across.information * size * size, across.square())
             }
         });
-        let astray = self.cause.looseness() * self.cause.looseness() * self.square();
-        let straight = 0.5 * self.beside * (astray / (1.0 + astray));
-        let beside = straight - 0.5 * self.others * ln(1.0 + astray);
+        let beside = astray(self.cause, self.square(), self.beside, self.others);
         let sign = if self.cause.only_adds() { LN_2 } else { 0.0 };
         along + across + beside + sign - rarity
     }
 }
+
+/// Logarithm of how much better a direction that is only roughly the computed one explains what is left over in other rows: its squared
+/// length, and in how many.
+fn astray(cause: Cause, square: f32, beside: f32, others: f32) -> f32 {
+    let astray = cause.looseness() * cause.looseness() * square;
+    0.5 * beside * (astray / (1.0 + astray)) - 0.5 * others * ln(1.0 + astray)
+}
+
+/// Two causes at once: the logarithm of their Bayes factor against health, and the relative change of the first.
+#[inline(never)]
+pub(super) fn of_both(
+    [first, second]: [Cause; 2],
+    [along, other]: [&[f32]; 2],
+    departure: &Departure<'_>,
+) -> (f32, f32) {
+    let fit = Fit::along(first, along, departure);
+    let across = fit.across(along, other, departure);
+    let size = fit.along - across.overlap * across.change;
+    let spread = |cause: Cause, size: f32| cause.typical_size().max(size.abs());
+    let [its_spread, others_spread] = [spread(first, size), spread(second, across.change)];
+    let own = wider(fit.information * its_spread * its_spread, fit.square);
+    let more = wider(
+        across.information * others_spread * others_spread,
+        across.square(),
+    );
+    let left = (fit.beside - across.square()).max(0.0);
+    let square = fit.square + across.square();
+    let beside = astray(first, square, left, (fit.others - 1.0).max(0.0));
+    (own + more + beside - LN_SECOND, first.change(size))
+}
+
+/// Logarithm of how rarely something else is wrong at the same time: a belief, one in a hundred.
+const LN_SECOND: f32 = 4.605_17;
 
 impl Across {
     /// Squared length of the departure along it.

@@ -89,14 +89,15 @@ impl Isolation {
             heating: along.implied(Heating::any(healthy).deviation, expected),
             apart: parting.implied(MOST_APART, apart),
         };
+        let white = |cause: Cause| match cause {
+            Cause::StatorResistance => resistances.stator,
+            Cause::RotorResistance => resistances.rotor,
+            other => cholesky.whiten(&evidence.direction(other)),
+        };
         let mut longest = 0.0_f32;
         let places = isolation.scores.iter_mut().zip(&mut isolation.sizes);
         for ((score, size), cause) in places.zip(ALL_CAUSES) {
-            let direction = match cause {
-                Cause::StatorResistance => resistances.stator,
-                Cause::RotorResistance => resistances.rotor,
-                other => cholesky.whiten(&evidence.direction(other)),
-            };
+            let direction = white(cause);
             let across = evidence.across(cause);
             let across = across.map(|rows| cholesky.whiten(&rows));
             let weighed = weighing.weigh(cause, &direction, across.as_ref());
@@ -105,8 +106,41 @@ impl Isolation {
             longest = weighed.square.max(longest);
         }
         isolation.significance = processor::sqrtf(longest).max(isolation.significance);
+        if weighing.neutral_has_moved() && isolation.is_in_a_phase() {
+            isolation.doubt_phase(&weighing, white);
+        }
         isolation.doubt_heating(expected.rise, Heating::any(healthy).deviation);
         isolation
+    }
+
+    /// Whether something in one phase of the motor is the likeliest cause.
+    fn is_in_a_phase(&self) -> bool {
+        let mut best = (self.unknown, false);
+        for (score, cause) in self.scores.iter().zip(ALL_CAUSES) {
+            if *score > best.0 {
+                best = (*score, cause.phase().is_some() && !cause.is_sensor());
+            }
+        }
+        best.1
+    }
+
+    /// Where a short or a contact seems to have come together with a neutral that has moved: a voltage's gain beside a change of the whole motor
+    /// shows the same, and says where the neutral is.
+    #[inline(never)]
+    fn doubt_phase(&mut self, weighing: &Weighing, white: impl Fn(Cause) -> Rows) {
+        let channels = self.scores.iter_mut().zip(&mut self.sizes).zip(ALL_CAUSES);
+        for ((score, size), channel) in channels {
+            if !matches!(channel, Cause::VoltageChannel(_)) {
+                continue;
+            }
+            let along = white(channel);
+            for other in ALL_CAUSES.into_iter().filter(|it| it.phase().is_none()) {
+                let both = weighing.weigh_both([channel, other], [&along, &white(other)]);
+                if both.score > *score {
+                    (*score, *size) = (both.score, both.size);
+                }
+            }
+        }
     }
 
     /// Where a large rise was taken for heat and one of the two resistances seems to have fallen by most of it, the other one has risen alone, from

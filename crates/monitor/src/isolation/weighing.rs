@@ -4,7 +4,7 @@
 //! is the supply's affair, not a fault of the motor: FAULT rests on the other rows. A voltage channel moves `V_0` and the negative
 //! sequence together, and is named by both.
 
-use super::fit::{Departure, Direction, Fit, Total};
+use super::fit::{Departure, Direction, Fit, Total, of_both};
 use super::gauss::{Cholesky, dot};
 use super::{Cause, Evidence, ROWS, Row, Rows, ln, score_of_anything, significance_of_anything};
 
@@ -110,6 +110,23 @@ impl Weighing {
         };
         weighed.score -= health;
         weighed
+    }
+
+    /// Whether the voltages show their neutral elsewhere than in the calibration.
+    pub fn neutral_has_moved(&self) -> bool {
+        self.neutral.as_ref().is_some_and(|it| it.has_moved)
+    }
+
+    /// Weighs a voltage channel with another cause beside it, by their white directions: what the neutral shows is the channel's.
+    pub fn weigh_both(&self, causes: [Cause; 2], directions: [&Rows; 2]) -> Weighed {
+        let [all, _] = self.departures();
+        let (score, size) = of_both(causes, directions.map(|rows| first(rows, ROWS)), &all);
+        let better = self.neutral.as_ref().map_or(0.0, |it| it.better.max(0.0));
+        Weighed {
+            score: score - better,
+            size,
+            square: 0.0,
+        }
     }
 
     /// Length of the whole departure as a standard deviation that is as rare.

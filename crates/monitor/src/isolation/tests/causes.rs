@@ -236,6 +236,47 @@ fn shorted_turns_are_named_in_their_phase_however_their_current_lags() {
     }
 }
 
+/// The gain of a voltage beside a change of all phases looks like a short that draws what the change does in all phases, and what the gain makes of
+/// the negative sequence; where the neutral stands tells them apart.
+#[test]
+fn a_voltage_gain_beside_another_change_is_nothing_in_a_phase_of_the_motor() {
+    for (other, by) in [
+        (Cause::MagnetizingInductance, -0.2),
+        (Cause::Friction, 0.25),
+        (Cause::StatorResistance, 0.8),
+    ] {
+        for phase in Phase::ALL {
+            for gain in [0.95, 1.05] {
+                let mut plant = changed(other, by);
+                plant.gains[index(phase)] = gain;
+                let isolation = isolated(&plant);
+                let (named, probability) = likeliest(&isolation);
+                let expected = [Some(Cause::VoltageChannel(phase)), Some(other)];
+                let said = format!("{other:?} beside {phase:?} x {gain}: {named:?} {probability}");
+                assert!(expected.contains(&named), "{said}");
+            }
+        }
+    }
+}
+
+/// A neutral that moves somewhere does not turn a short or a contact into a voltage's gain.
+#[test]
+fn what_is_in_a_phase_beside_a_displaced_neutral_stays_there() {
+    let shorts = of_phases(Cause::Turns).map(|cause| (cause, 0.15));
+    let contacts = of_phases(Cause::SeriesResistance).map(|cause| (cause, 0.5));
+    for (cause, by) in shorts.chain(contacts) {
+        for turn_deg in [0.0_f64, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0] {
+            for lag_deg in [0.0_f64, 60.0] {
+                let mut plant = changed(cause, by);
+                plant.lag = lag_deg.to_radians();
+                plant.neutral = 0.012 * Complex64::cis(turn_deg.to_radians());
+                let (named, _) = likeliest(&isolated(&plant));
+                assert_eq!(named, Some(cause), "{turn_deg} {lag_deg}");
+            }
+        }
+    }
+}
+
 /// No motor without a neutral feels where the supply's neutral is.
 #[test]
 fn a_displaced_neutral_lights_nothing() {
