@@ -106,7 +106,7 @@ impl Isolation {
             longest = weighed.square.max(longest);
         }
         isolation.significance = processor::sqrtf(longest).max(isolation.significance);
-        if weighing.neutral_has_moved() && isolation.is_in_a_phase() {
+        if weighing.zero_sequence_has_moved() && isolation.is_in_a_phase() {
             isolation.doubt_phase(&weighing, white);
         }
         isolation.doubt_heating(expected.rise, Heating::any(healthy).deviation);
@@ -124,13 +124,13 @@ impl Isolation {
         best.1
     }
 
-    /// Where a short or a contact seems to have come together with a neutral that has moved: a voltage's gain beside a change of the whole motor
-    /// shows the same, and says where the neutral is.
+    /// Where a short or a contact seems to have come together with a zero sequence, which neither makes: a channel's gain beside a change of the whole
+    /// motor shows the same, and makes it.
     #[inline(never)]
     fn doubt_phase(&mut self, weighing: &Weighing, white: impl Fn(Cause) -> Rows) {
         let channels = self.scores.iter_mut().zip(&mut self.sizes).zip(ALL_CAUSES);
         for ((score, size), channel) in channels {
-            if !matches!(channel, Cause::VoltageChannel(_)) {
+            if channel.phase().is_none() || !channel.is_sensor() {
                 continue;
             }
             let along = white(channel);

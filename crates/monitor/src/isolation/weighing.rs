@@ -18,6 +18,9 @@ pub(super) const LN_USUAL_DISPLACEMENT: f32 = -3.912_023;
 /// The zero sequence of the voltages is the end of the rows: without it a white vector is its beginning.
 const BEFORE_ZERO_VOLTAGE: usize = Row::ZeroVoltage as usize;
 
+/// Where the zero sequence of the currents begins.
+const ZERO_CURRENT: usize = Row::ZeroCurrent as usize;
+
 /// Beyond so many standard deviations, one window in 3000, the neutral has moved, whatever else has happened.
 const MOVED: f32 = 4.0;
 
@@ -112,12 +115,15 @@ impl Weighing {
         weighed
     }
 
-    /// Whether the voltages show their neutral elsewhere than in the calibration.
-    pub fn neutral_has_moved(&self) -> bool {
+    /// Whether the voltages show their neutral elsewhere than in the calibration, or the currents a zero sequence that three wires do not carry.
+    pub fn zero_sequence_has_moved(&self) -> bool {
+        let current = self.white.get(ZERO_CURRENT..BEFORE_ZERO_VOLTAGE);
+        let current = current.unwrap_or_default();
         self.neutral.as_ref().is_some_and(|it| it.has_moved)
+            || dot(current, current) > MOVED * MOVED
     }
 
-    /// Weighs a voltage channel with another cause beside it, by their white directions: what the neutral shows is the channel's.
+    /// Weighs a channel with another cause beside it, by their white directions: what the zero sequences show is the channel's.
     pub fn weigh_both(&self, causes: [Cause; 2], directions: [&Rows; 2]) -> Weighed {
         let [all, _] = self.departures();
         let (score, size) = of_both(causes, directions.map(|rows| first(rows, ROWS)), &all);
