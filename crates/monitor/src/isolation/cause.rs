@@ -61,6 +61,11 @@ pub const ALL_CAUSES: [Cause; CAUSES] = [
     Cause::VoltageChannel(C),
 ];
 
+/// The first so many causes are in all phases alike.
+pub(super) const OF_ALL_PHASES: usize = 8;
+/// From here on causes are channels of one phase.
+pub(super) const FIRST_CHANNEL: usize = 14;
+
 impl Cause {
     /// The fault of the catalogue that it is, in all phases or in one.
     pub const fn fault(self) -> FaultId {
@@ -149,6 +154,15 @@ mod tests {
     fn every_cause_is_listed_once() {
         for (k, cause) in ALL_CAUSES.iter().enumerate() {
             assert!(!ALL_CAUSES.iter().skip(k + 1).any(|other| other == cause));
+        }
+    }
+
+    #[test]
+    fn causes_of_all_phases_come_first_and_channels_last() {
+        for (k, cause) in ALL_CAUSES.iter().enumerate() {
+            assert_eq!(cause.phase().is_none(), k < OF_ALL_PHASES, "{cause:?}");
+            let is_channel = cause.phase().is_some() && cause.is_sensor();
+            assert_eq!(is_channel, k >= FIRST_CHANNEL, "{cause:?}");
         }
     }
 

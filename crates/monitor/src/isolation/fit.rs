@@ -206,6 +206,7 @@ impl Fit {
 
 /// Logarithm of how much better a direction that is only roughly the computed one explains what is left over in other rows: its squared
 /// length, and in how many.
+#[inline(always)]
 fn astray(cause: Cause, square: f32, beside: f32, others: f32) -> f32 {
     let astray = cause.looseness() * cause.looseness() * square;
     0.5 * beside * (astray / (1.0 + astray)) - 0.5 * others * ln(1.0 + astray)
@@ -215,22 +216,19 @@ fn astray(cause: Cause, square: f32, beside: f32, others: f32) -> f32 {
 #[inline(never)]
 pub(super) fn of_both(
     [first, second]: [Cause; 2],
-    [along, other]: [&[f32]; 2],
+    directions: &Direction<'_>,
     departure: &Departure<'_>,
 ) -> (f32, f32) {
-    let fit = Fit::along(first, along, departure);
-    let across = fit.across(along, other, departure);
+    let fit = Fit::of(first, directions, departure);
+    let Some(across) = fit.across else {
+        return (IMPOSSIBLE, 0.0);
+    };
     let size = fit.along - across.overlap * across.change;
-    let spread = |cause: Cause, size: f32| cause.typical_size().max(size.abs());
-    let [its_spread, others_spread] = [spread(first, size), spread(second, across.change)];
-    let own = wider(fit.information * its_spread * its_spread, fit.square);
-    let more = wider(
-        across.information * others_spread * others_spread,
-        across.square(),
-    );
-    let left = (fit.beside - across.square()).max(0.0);
-    let square = fit.square + across.square();
-    let beside = astray(first, square, left, (fit.others - 1.0).max(0.0));
+    let spread = first.typical_size().max(size.abs());
+    let own = wider(fit.information * spread * spread, fit.square);
+    let spread = second.typical_size().max(across.change.abs());
+    let more = wider(across.information * spread * spread, across.square());
+    let beside = astray(first, fit.square + across.square(), fit.beside, fit.others);
     (own + more + beside - LN_SECOND, first.change(size))
 }
 

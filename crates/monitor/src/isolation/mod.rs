@@ -20,6 +20,7 @@ mod weighing;
 mod tests;
 
 pub use cause::{ALL_CAUSES, CAUSES, Cause};
+use cause::{FIRST_CHANNEL, OF_ALL_PHASES};
 pub use healthy::{Healthy, ROWS, Row, Uncertainty};
 pub(crate) use range::length;
 pub use range::{Beyond, CalibratedRange, Conditions};
@@ -107,7 +108,7 @@ impl Isolation {
         }
         isolation.significance = processor::sqrtf(longest).max(isolation.significance);
         if weighing.zero_sequence_has_moved() && isolation.is_in_a_phase() {
-            isolation.doubt_phase(&weighing, white);
+            isolation.doubt_phase(&weighing, &white);
         }
         isolation.doubt_heating(expected.rise, Heating::any(healthy).deviation);
         isolation
@@ -127,17 +128,14 @@ impl Isolation {
     /// Where a short or a contact seems to have come together with a zero sequence, which neither makes: a channel's gain beside a change of the whole
     /// motor shows the same, and makes it.
     #[inline(never)]
-    fn doubt_phase(&mut self, weighing: &Weighing, white: impl Fn(Cause) -> Rows) {
-        let channels = self.scores.iter_mut().zip(&mut self.sizes).zip(ALL_CAUSES);
-        for ((score, size), channel) in channels {
-            if channel.phase().is_none() || !channel.is_sensor() {
-                continue;
-            }
+    fn doubt_phase(&mut self, weighing: &Weighing, white: &dyn Fn(Cause) -> Rows) {
+        let all = self.scores.iter_mut().zip(&mut self.sizes).zip(ALL_CAUSES);
+        for ((score, size), channel) in all.skip(FIRST_CHANNEL) {
             let along = white(channel);
-            for other in ALL_CAUSES.into_iter().filter(|it| it.phase().is_none()) {
+            for other in ALL_CAUSES.into_iter().take(OF_ALL_PHASES) {
                 let both = weighing.weigh_both([channel, other], [&along, &white(other)]);
-                if both.score > *score {
-                    (*score, *size) = (both.score, both.size);
+                if both.0 > *score {
+                    (*score, *size) = both;
                 }
             }
         }

@@ -123,16 +123,16 @@ impl Weighing {
             || dot(current, current) > MOVED * MOVED
     }
 
-    /// Weighs a channel with another cause beside it, by their white directions: what the zero sequences show is the channel's.
-    pub fn weigh_both(&self, causes: [Cause; 2], directions: [&Rows; 2]) -> Weighed {
+    /// Score of a channel with another cause beside it, by their white directions, and the channel's size: what the zero sequences show is the channel's.
+    pub fn weigh_both(&self, causes: [Cause; 2], [along, other]: [&Rows; 2]) -> (f32, f32) {
         let [all, _] = self.departures();
-        let (score, size) = of_both(causes, directions.map(|rows| first(rows, ROWS)), &all);
+        let directions = Direction {
+            along,
+            across: Some(other),
+        };
+        let (score, size) = of_both(causes, &directions, &all);
         let better = self.neutral.as_ref().map_or(0.0, |it| it.better.max(0.0));
-        Weighed {
-            score: score - better,
-            size,
-            square: 0.0,
-        }
+        (score - better, size)
     }
 
     /// Length of the whole departure as a standard deviation that is as rare.
