@@ -69,12 +69,12 @@ pub use checks::speed_swing::Driven;
 pub use checks::supply::{SupplyConfig, SupplyFinding};
 pub use checks::unbalance::unexplained_current;
 pub use config::{ConfigError, LoadKind, MonitorConfig};
+pub use covariance::{Cholesky, Covariance};
 pub use frames::{Abc, AlphaBeta, Dq, Sequence, magnitude};
 pub use input::chain::AnalogueChain;
 pub use input::converter::{ChannelScale, Converter};
 pub use input::sample::{CHANNELS, ClippedChannels, RawBlock, RawSample, Sample, SpeedSample};
 pub use input::torque::TorqueReading;
-pub use isolation::gauss::{Cholesky, Covariance};
 pub use isolation::{
     ALL_CAUSES, Beyond, CAUSES, CalibratedRange, Cause, Conditions, Evidence, Healthy, Heating,
     Isolation, ROWS, Row, Uncertainty, probabilities,

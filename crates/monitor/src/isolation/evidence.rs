@@ -4,13 +4,13 @@ use num_complex::Complex32;
 
 use super::cause::Cause;
 use super::directions::{Directions, Positive};
-use super::gauss::Covariance;
 use super::healthy::{Healthy, ROWS, Row};
 use super::negative::Negative;
 use super::range::{Beyond, length};
 use crate::checks::sensors::Phase;
 use crate::model::effects::Corrected;
 use crate::window::Window;
+use covariance::Covariance;
 
 /// A vector over the rows of evidence.
 pub type Rows = [f32; ROWS];

@@ -1,9 +1,9 @@
 //! How well one cause explains a departure, all in white rows.
 
 use core::f32::consts::LN_2;
+use covariance::dot;
 
 use super::cause::Cause;
-use super::gauss::dot;
 use super::healthy::Row;
 use super::ln;
 

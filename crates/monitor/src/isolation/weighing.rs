@@ -4,8 +4,9 @@
 //! is the supply's affair, not a fault of the motor: FAULT rests on the other rows. A voltage channel moves `V_0` and the negative
 //! sequence together, and is named by both.
 
+use covariance::{Cholesky, dot};
+
 use super::fit::{Departure, Direction, Fit, Total, of_both};
-use super::gauss::{Cholesky, dot};
 use super::{Cause, Evidence, ROWS, Row, Rows, ln, score_of_anything, significance_of_anything};
 
 /// Logarithm of how often a supply's neutral has moved since the calibration, against all other times: one in ten, a belief as the next one.

@@ -5,12 +5,12 @@ use core::f64::consts::TAU;
 use super::plant::{Plant, evidence, statistics};
 use crate::checks::sensors::Phase;
 use crate::isolation::fit::{Departure, Direction, Fit, IMPOSSIBLE, Total};
-use crate::isolation::gauss::dot;
 use crate::isolation::weighing::{LN_USUAL_DISPLACEMENT, USUAL_DISPLACEMENT};
 use crate::isolation::{
     ALL_CAUSES, Cause, Heating, Isolation, LN_UNKNOWN, ROWS, UNKNOWN_SPREAD, Warmth, probabilities,
     score_of_anything, significance_of_anything,
 };
+use covariance::dot;
 
 #[test]
 fn logarithms_that_are_written_out_are_those_of_their_numbers() {

@@ -1,4 +1,17 @@
 //! A small covariance matrix: its Cholesky factor, and vectors seen in units of their uncertainty.
+//!
+//! ```
+//! use covariance::{Covariance, dot};
+//!
+//! // Two independent errors of 1 and 2, and one of 3 that moves both alike.
+//! let mut errors = Covariance::of_independent(&[1.0, 2.0]);
+//! errors.add(&[1.0, 1.0], 3.0);
+//! let white = errors.factorise().whiten(&[3.0, 3.0]);
+//! // Along what they have in common a departure of 3 is less than one standard deviation.
+//! assert!(dot(&white, &white) < 1.0);
+//! ```
+
+#![no_std]
 
 /// Lower Cholesky factor `L` of a covariance `C = L L'`.
 #[derive(Clone, Copy, Debug, PartialEq)]
