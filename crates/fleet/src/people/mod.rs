@@ -10,9 +10,9 @@ mod users;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use rusqlite::{Connection, TransactionBehavior};
+use rusqlite::{Connection, ErrorCode, TransactionBehavior};
 
 pub use error::PeopleError;
 pub use role::{Role, User};
@@ -22,6 +22,9 @@ pub use trail::{Asked, Outcome, Trail};
 const APPLICATION: i32 = 0x646d_5045;
 /// How long a lock of another program is waited for.
 const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Pause before a lock that SQLite does not wait for is asked for again.
+const AGAIN: Duration = Duration::from_millis(20);
 
 /// Users, what they asked for, and the audit trail of one plant. Several programs may have it open.
 pub struct People {
@@ -48,9 +51,7 @@ impl People {
         };
         let mut connection = Connection::open(&path).map_err(failed)?;
         connection.busy_timeout(PATIENCE).map_err(failed)?;
-        connection
-            .execute_batch("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;")
-            .map_err(failed)?;
+        write_ahead(&connection).map_err(failed)?;
         prepare(&mut connection, &path)?;
         Ok(Self {
             connection: Mutex::new(connection),
@@ -62,6 +63,25 @@ impl People {
         self.connection
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Of two programs that make the file at the same time SQLite refuses one at once instead of letting it wait.
+fn write_ahead(connection: &Connection) -> rusqlite::Result<()> {
+    let end = Instant::now() + PATIENCE;
+    loop {
+        let done =
+            connection.execute_batch("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;");
+        let code = done
+            .as_ref()
+            .err()
+            .and_then(rusqlite::Error::sqlite_error_code);
+        match code {
+            Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) if Instant::now() < end => {
+                std::thread::sleep(AGAIN);
+            }
+            _ => return done,
+        }
     }
 }
 
@@ -79,4 +99,24 @@ fn prepare(connection: &mut Connection, path: &Path) -> Result<(), PeopleError> 
     }
     tx.commit()?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn several_that_make_the_file_at_the_same_time_all_get_it() {
+        for _ in 0..20 {
+            let folder = tempfile::tempdir().expect("a folder");
+            let store = folder.path().join("plant.db");
+            let opened = std::thread::scope(|scope| {
+                let open = |_| scope.spawn(|| People::open(&store).map(|_| ()));
+                let all: Vec<_> = (0..6).map(open).collect();
+                let result = all.into_iter().map(|one| one.join().expect("no panic"));
+                result.collect::<Result<Vec<()>, PeopleError>>()
+            });
+            assert!(opened.is_ok(), "{opened:?}");
+        }
+    }
 }
