@@ -106,17 +106,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn several_that_make_the_file_at_the_same_time_all_get_it() {
-        for _ in 0..20 {
-            let folder = tempfile::tempdir().expect("a folder");
-            let store = folder.path().join("plant.db");
-            let opened = std::thread::scope(|scope| {
-                let open = |_| scope.spawn(|| People::open(&store).map(|_| ()));
-                let all: Vec<_> = (0..6).map(open).collect();
-                let result = all.into_iter().map(|one| one.join().expect("no panic"));
-                result.collect::<Result<Vec<()>, PeopleError>>()
-            });
-            assert!(opened.is_ok(), "{opened:?}");
-        }
+    fn who_makes_the_file_at_the_same_time_is_waited_for() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let store = folder.path().join("plant.db");
+        let other = Connection::open(People::path_of(&store)).expect("a new file");
+        other.execute_batch("BEGIN IMMEDIATE").expect("a lock");
+        let opened = std::thread::scope(|scope| {
+            let opened = scope.spawn(|| People::open(&store).map(|_| ()));
+            std::thread::sleep(10 * AGAIN);
+            other.execute_batch("COMMIT").expect("nothing was written");
+            opened.join().expect("no panic")
+        });
+        assert!(opened.is_ok(), "{opened:?}");
     }
 }
