@@ -427,12 +427,8 @@ mod tests {
             plant.motor.l_lr *= f64::exp(truth[2]);
             plant.motor.l_m *= f64::exp(truth[3]);
         });
-        let fit = fit(
-            &study.fitted.case,
-            &study.prior,
-            &study.at_prior(),
-            Effort::FULL,
-        );
+        let (case, prior) = (&study.fitted.case, &study.prior);
+        let fit = fit(case, prior, &study.at_prior(), Effort::FULL);
         for k in [0, 1, MAGNETIZING] {
             let z = fit.hypothesis.z[k];
             assert!((z - truth[k]).abs() < 0.02, "{k}: {z}");
@@ -440,14 +436,9 @@ mod tests {
         assert_eq!(fit.hypothesis.z[FRICTION], 0.0, "not fitted from a table");
         assert_eq!(fit.free, [0, 1, 2, 3]);
         // What is returned belongs together: residual, outputs and columns at the best coordinates.
-        let out = outputs(
-            &study.fitted.case,
-            &study.prior,
-            &fit.hypothesis,
-            SpeedObserver::Off,
-        );
+        let out = outputs(case, prior, &fit.hypothesis, SpeedObserver::Off);
         assert_eq!(out, fit.outputs);
-        assert_eq!(residual(&study.fitted.case, &out), fit.residual);
+        assert_eq!(residual(case, &out), fit.residual);
         let variance = crate::fit::uncertainty::covariance(&study, &fit);
         assert!((0..4).all(|k| variance[(k, k)] > 0.0 && variance[(k, k)] < 0.11));
         assert_eq!(fit.held_out().len(), 12);

@@ -172,6 +172,7 @@ mod tests {
             assert!((got - (b - t) / h.step(0)).abs() < 1e-6 * (1.0 + got.abs()));
         }
     }
+
     /// Long steps against central differences of short ones. A step of 0.3 rad: its straight line is off by an eighth of its
     /// square, 1.1 %; leakage, whose difference is a quarter of a cycle apart, by twice that.
     #[test]
