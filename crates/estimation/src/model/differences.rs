@@ -4,9 +4,8 @@
 //! residual would be off by a share of the signal. So differences are integrated in longer steps than residuals.
 
 use crate::data::case::{Case, Waveform};
-use crate::model::prediction::{Drive, SpeedObserver, driven, outputs, weighted};
+use crate::model::prediction::{SpeedObserver, coarse_outputs};
 use crate::model::prior::{Hypothesis, Prior};
-use motor::effect::simulate_coarsely;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -69,16 +68,7 @@ impl<'a> Differences<'a> {
     }
 
     fn outputs(&self, h: &Hypothesis) -> Vec<f64> {
-        match self.case.waveform() {
-            Some(waveform) if self.at_once > 1 => {
-                let (plant, drive) = (h.plant(self.prior), Drive::of(waveform));
-                let run = driven(waveform, &plant, &drive, self.observer, 1, |run| {
-                    simulate_coarsely(&plant, run, self.at_once)
-                });
-                weighted(waveform, &run)
-            }
-            _ => outputs(self.case, self.prior, h, self.observer),
-        }
+        coarse_outputs(self.case, self.prior, h, self.observer, self.at_once)
     }
 
     /// What the outputs of another hypothesis differ by, over a step of a coordinate.
@@ -126,6 +116,7 @@ pub fn jacobian(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::prediction::outputs;
     use crate::specimen;
 
     /// Central differences, which err by the square of the step.

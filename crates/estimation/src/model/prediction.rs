@@ -5,7 +5,9 @@ use crate::data::channels::{N_CHANNELS, SPEED};
 use crate::data::load_table::{self, LoadPoints, Point};
 use crate::model::prior::{Hypothesis, Prior};
 use motor::dynamic::cycle_components;
-use motor::effect::{Inputs, Outputs, Plant, Run, SpeedSource, StateOffset, simulate};
+use motor::effect::{
+    Inputs, Outputs, Plant, Run, SpeedSource, StateOffset, simulate, simulate_coarsely,
+};
 use motor::steady_state::SteadyState;
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -157,12 +159,27 @@ fn steady(table: &LoadPoints, plant: &Plant) -> Vec<f64> {
 
 /// Weighted outputs of a hypothesis.
 pub fn outputs(case: &Case, prior: &Prior, h: &Hypothesis, observer: SpeedObserver) -> Vec<f64> {
+    coarse_outputs(case, prior, h, observer, 1)
+}
+
+/// The same with so many integration steps taken at once (1 or more); a load table has none.
+pub(crate) fn coarse_outputs(
+    case: &Case,
+    prior: &Prior,
+    h: &Hypothesis,
+    observer: SpeedObserver,
+    at_once: usize,
+) -> Vec<f64> {
     let plant = h.plant(prior);
     match case {
         Case::LoadTable(table) => steady(table, &plant),
         Case::Waveform(waveform) => {
+            let simulated = |run: &Run<'_>| simulate_coarsely(&plant, run, at_once);
             let drive = Drive::of(waveform);
-            weighted(waveform, &run(waveform, &plant, &drive, observer))
+            weighted(
+                waveform,
+                &driven(waveform, &plant, &drive, observer, 1, simulated),
+            )
         }
     }
 }
