@@ -8,7 +8,7 @@ mod pairs;
 mod rebuilt;
 
 use crate::laws::formula::dictionary::Shapes;
-use crate::laws::formula::prove::formulas;
+use crate::laws::formula::prove::{Curve, formulas};
 use crate::laws::search::LawStep;
 use crate::search::refit::{Candidate, Round, begin, combined};
 use answered::Answered;
@@ -21,6 +21,8 @@ use estimation::fit::output_error::Effort;
 use estimation::model::prior::{N_NOMINAL, NOMINALS};
 use estimation::proof::accept::{adequate, beats, even, explained, proven, surpasses};
 use estimation::proof::off::{SIGNIFICANT, held, implausible, strains};
+use estimation::proof::order::Named;
+use rebuilt::effects_of;
 
 /// Most effects that are added.
 const MOST_EFFECTS: usize = 3;
@@ -78,8 +80,6 @@ pub(crate) struct Explanation {
     pub nameable: bool,
     /// What was asked, where it was not looked for what hides yet.
     pub open: Option<Answered>,
-    /// The best law on its own, proven or not, where the library leaves something.
-    pub lead: Option<Trial>,
 }
 
 impl Explanation {
@@ -92,19 +92,14 @@ impl Explanation {
         named.map_or(&self.baseline, |s| &s.trial)
     }
 
-    /// The best model, proven or not.
-    pub fn best(&self, study: &Study) -> &Trial {
-        let steps = self.steps.iter().map(|step| &step.trial);
-        let laws = self.laws.iter().map(|law| &law.trial).chain(&self.lead);
-        let error = |trial: &&Trial| combined(study, trial);
-        let all = steps.chain(laws);
-        let best = all.min_by(|a, b| error(a).total_cmp(&error(b)));
-        best.unwrap_or(&self.baseline)
+    /// How many things are named of the motor and of the instruments.
+    pub fn named(&self, study: &Study) -> Named {
+        Named::of(&effects_of(study, &self.steps), self.laws.len())
     }
 
     /// Whether what was found and may be named explains all but a few per cent of the excess.
     pub fn explains_nearly_all(&self, study: &Study) -> bool {
-        explained(study, unexplained(study, &self.baseline), self.last()) > NEARLY_ALL
+        explained(study, study.unexplained(&self.baseline), self.last()) > NEARLY_ALL
     }
 }
 
@@ -124,7 +119,7 @@ pub(crate) fn explain(
     asked: Missing<'_>,
     progress: &mut dyn FnMut(&str, f64),
 ) -> Explanation {
-    let excluded = asked.excluded;
+    let excluded = &excluded_of(study, asked.excluded);
     let mut answered = Answered::default();
     let mut explanation = library(study, &mut answered, baseline, excluded, progress);
     if !explanation.steps.is_empty()
@@ -142,6 +137,11 @@ pub(crate) fn explain(
     }
 }
 
+/// Effects that are not asked about: those that are excluded, and of unknown instruments what they may be off by.
+fn excluded_of<'a>(study: &Study, excluded: &[&'a str]) -> Vec<&'a str> {
+    [excluded, &study.unknown_effects()].concat()
+}
+
 /// Looks for what hides each other where an explanation is open.
 pub(crate) fn go_on(
     study: &Study,
@@ -152,7 +152,8 @@ pub(crate) fn go_on(
     let Some(answered) = explanation.open.take() else {
         return explanation;
     };
-    hidden(study, answered, &mut explanation, asked.excluded, progress);
+    let excluded = &excluded_of(study, asked.excluded);
+    hidden(study, answered, &mut explanation, excluded, progress);
     finished(study, explanation, asked, progress)
 }
 
@@ -166,11 +167,19 @@ fn finished(
     let proven = |law: &&mut LawStep| law.proven && law.bursts.is_empty();
     for law in explanation.laws.iter_mut().filter(proven) {
         progress("holding formulas against the curve", 0.9);
-        law.formulas = formulas(study, asked.shapes, law.as_curve());
+        law.formulas = formulas(
+            study,
+            asked.shapes,
+            Curve {
+                before: &law.before,
+                trial: &law.trial,
+            },
+        );
     }
     if explanation.nameable && explanation.laws.is_empty() {
         progress("contesting the parameters that moved", 0.92);
-        explanation.contests = contests(study, &explanation, asked.excluded);
+        let excluded = &excluded_of(study, asked.excluded);
+        explanation.contests = contests(study, &explanation, excluded);
     }
     explanation
 }
@@ -255,7 +264,6 @@ fn library(
         contests: Vec::new(),
         nameable: named || !laws.is_empty(),
         open: None,
-        lead: None,
         laws,
         baseline,
         steps,
@@ -330,18 +338,14 @@ fn lower_minimum(study: &Study, base: &Trial, found: &Round) -> Option<Trial> {
     let mut start = base.fit.hypothesis.clone();
     let nominals = &best.trial.fit.hypothesis.z[..N_NOMINAL];
     start.z[..N_NOMINAL].copy_from_slice(nominals);
-    let again = study.trial(&start, Effort::FULL);
+    let nearby = &best.trial.fit.jacobian[..base.fit.free.len()];
+    let again = study.trial_near(&start, Effort::FULL, nearby);
     (combined(study, &again) < DEEPER * error).then_some(again)
-}
-
-/// The model that explains nothing but parameters: without what the recorder's channels are off by.
-fn unexplained<'a>(study: &'a Study, baseline: &'a Trial) -> &'a Trial {
-    study.plain.as_deref().unwrap_or(baseline)
 }
 
 /// Whether the accepted effects may be named although something small is left over.
 fn mostly_explained(study: &Study, baseline: &Trial, last: &Trial) -> bool {
-    explained(study, unexplained(study, baseline), last) > NAMED_SHARE
+    explained(study, study.unexplained(baseline), last) > NAMED_SHARE
         && study.proof_error(last) < NAMED_ERROR
 }
 

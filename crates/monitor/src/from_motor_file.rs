@@ -180,7 +180,7 @@ fn channel_gain(effects: &[EffectConfig]) -> [f32; CHANNELS] {
         let first = match config.effect.gain_of() {
             Some(Instrument::Voltages) => 0,
             Some(Instrument::Currents) => 3,
-            Some(Instrument::Speed) | None => continue,
+            Some(Instrument::Speed | Instrument::Torque) | None => continue,
         };
         for (gain, value) in gains.iter_mut().skip(first).zip(&config.values) {
             *gain = (1.0 / (1.0 + value)) as f32;

@@ -15,6 +15,7 @@ use estimation::data::question::{Error, Question};
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::Effort;
 use estimation::fit::polish::with_nominals;
+use estimation::model::instruments::is_unnoticed;
 use estimation::proof::accept::{adequate, gained, proven};
 use estimation::proof::order::{Answer, Ask, Explains, in_either_order};
 use motor::MotorFile;
@@ -80,8 +81,8 @@ impl Ask for Named<'_> {
         fitted(study, &refitted, self.0).map(|after| (refitted, after))
     }
 
-    fn best<'a>(&self, _study: &Study, found: &'a Self::Found) -> Option<&'a Trial> {
-        found.as_ref().ok().map(|(_, after)| after)
+    fn is_of_instruments(&self) -> bool {
+        find(self.0, "").is_some_and(is_unnoticed)
     }
 
     fn explains(&self, study: &Study, found: &Self::Found) -> Explains {

@@ -22,7 +22,7 @@ use estimation::data::study::{Study, Trial};
 use estimation::model::scale_report::SpeedScaleReport;
 use estimation::proof::accept::{adequate, explained};
 use estimation::proof::off::implausible;
-use estimation::proof::order::{Ask, Explains, in_either_order};
+use estimation::proof::order::{Ask, Explains, Named, in_either_order};
 use motor::MotorFile;
 use motor::effect::Descriptor;
 
@@ -139,8 +139,12 @@ impl Ask for Missing<'_> {
         explain::go_on(study, found, *self, progress)
     }
 
-    fn best<'a>(&self, study: &Study, found: &'a Explanation) -> Option<&'a Trial> {
-        Some(found.best(study))
+    fn model<'a>(&self, found: &'a Explanation) -> Option<&'a Trial> {
+        Some(found.last())
+    }
+
+    fn named(&self, study: &Study, found: &Explanation) -> Named {
+        found.named(study)
     }
 
     fn explains(&self, study: &Study, found: &Explanation) -> Explains {

@@ -4,11 +4,11 @@
 use super::answered::Answered;
 use super::pairs::pair;
 use super::rebuilt::{effects_of, refitted};
-use super::{Explanation, STRAINED, Step, behind, mostly_explained};
+use super::{Explanation, NAMED_ERROR, STRAINED, Step, behind, mostly_explained};
 use crate::laws::formula::prove::law_of;
 use crate::laws::search::{LawStep, Laws};
 use estimation::data::study::{Study, Trial};
-use estimation::proof::accept::{adequate, beats, even, explained, helps};
+use estimation::proof::accept::{adequate, beats, even, explained, helps, may_be_of_instruments};
 use estimation::proof::off::strains;
 use motor::effect::EffectConfig;
 
@@ -63,7 +63,6 @@ pub(super) fn complete(
         return;
     }
     found.open = Some(answered);
-    found.lead = best.map(|law| law.trial);
 }
 
 /// What is left where neither an effect nor a law makes the model adequate: two that hide each other, what comes and goes, or a lead.
@@ -93,6 +92,11 @@ pub(super) fn hidden(
         })
     };
     found.laws.extend(law.or_else(lead));
+    let is_small = study.proof_error(&found.baseline) < NAMED_ERROR;
+    if !found.nameable && is_small && may_be_of_instruments(study, &found.baseline) {
+        (found.steps, found.laws) = (Vec::new(), Vec::new());
+        found.nameable = true;
+    }
 }
 
 /// Progress that moves on by a little with each thing that is told.

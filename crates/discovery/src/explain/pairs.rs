@@ -9,7 +9,7 @@ use crate::laws::modes::Modes;
 use crate::laws::search::{LawSearch, LawStep, Laws};
 use crate::search::refit::{Round, combined, likely_below, seconds};
 use estimation::data::study::{Study, Trial};
-use estimation::proof::accept::{adequate, beats};
+use estimation::proof::accept::{adequate, beats, may_be_curved};
 use motor::effect::EffectConfig;
 
 /// Single ones on top of which everything is asked again.
@@ -55,7 +55,8 @@ pub(super) fn pair(
         .collect();
     pairs.sort_by(|a, b| error(a).total_cmp(&error(b)));
     let best = pairs.into_iter().next()?;
-    let proven = adequate(study, &best) && beats(&best, baseline);
+    let proven =
+        adequate(study, &best) && beats(&best, baseline) && !may_be_curved(study, baseline, &best);
     proven.then(|| told(study, baseline, &best))?
 }
 

@@ -64,7 +64,6 @@ fn nothing_found(study: &Study, error: f64) -> Explanation {
         contests: Vec::new(),
         nameable: true,
         open: None,
-        lead: None,
     }
 }
 
@@ -108,7 +107,6 @@ fn a_motor_that_may_exist_is_preferred_where_it_explains_the_recording_too() {
             contests: Vec::new(),
             nameable: true,
             open: None,
-            lead: None,
         };
         prefer_plausible(&study, &mut found);
         found.baseline.fit.hypothesis.z[R_S]
@@ -249,7 +247,6 @@ fn friction_and_more_leakage_are_contested() {
             contests: Vec::new(),
             nameable: true,
             open: None,
-            lead: None,
         };
         let all = contests(&study, &found, &names());
         assert!(

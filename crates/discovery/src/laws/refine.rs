@@ -52,7 +52,9 @@ fn refitted(study: &Study, base: &Trial, law: &Trial, other: EffectConfig) -> Op
         iterations: ITERATIONS,
         ..Effort::FULL
     };
-    Some(study.trial(&start.with(other, &study.prior.plant.rated), effort))
+    let start = start.with(other, &study.prior.plant.rated);
+    let nearby = law.fit.jacobian.get(..base.fit.free.len())?;
+    Some(study.trial_near(&start, effort, nearby))
 }
 
 /// The same curve on to where the motor is in the recordings that prove; `None` where it is nowhere else.

@@ -1,7 +1,7 @@
 //! Which law is missing: screened, refitted, proven as an effect must be.
 
 use crate::bursts::pulse::Pulse;
-use crate::laws::formula::prove::{Curve, Proven};
+use crate::laws::formula::prove::Proven;
 use crate::laws::menu::menu;
 use crate::laws::modes::{self, Modes};
 use crate::laws::refine::refined;
@@ -59,16 +59,6 @@ pub(crate) struct LawStep {
     pub formulas: Vec<Proven>,
     /// Bursts of each recording, the fitted one first, where the law comes and goes; empty for a curve.
     pub bursts: Vec<Vec<Pulse>>,
-}
-
-impl LawStep {
-    /// The models that formulas are held against.
-    pub fn as_curve(&self) -> Curve<'_> {
-        Curve {
-            before: &self.before,
-            trial: &self.trial,
-        }
-    }
 }
 
 /// Laws on top of a model, screened.

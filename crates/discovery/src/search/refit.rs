@@ -3,7 +3,7 @@
 use crate::search::screen::{Screened, ranked, screen};
 use estimation::data::case::{Case, Waveform};
 use estimation::data::study::{Study, Trial};
-use estimation::fit::output_error::{Effort, Fit, fit};
+use estimation::fit::output_error::{Effort, Fit, fit, fit_near};
 use estimation::model::prediction::SpeedObserver;
 use estimation::model::prior::Hypothesis;
 use estimation::proof::accept::{adequate, explained, proven};
@@ -65,12 +65,11 @@ impl Round {
     }
 }
 
-/// Where a refit starts: nominals, and the grid points of one effect.
+/// Where a refit starts: the fit on top of which it was screened, and the grid points of one effect.
 #[derive(Clone, Debug)]
-struct Start {
-    hypothesis: Hypothesis,
+struct Start<'a> {
+    fit: &'a Fit,
     group: Vec<Screened>,
-    observer: SpeedObserver,
 }
 
 /// A short refit, to choose between starts.
@@ -88,7 +87,7 @@ pub(crate) struct Begun<'a> {
     base: &'a Trial,
     excluded: &'a [&'a str],
     groups: Vec<Vec<Screened>>,
-    rest: Vec<Start>,
+    rest: Vec<Start<'a>>,
     candidates: Vec<Candidate>,
     led: bool,
 }
@@ -183,13 +182,12 @@ fn may_be_local_minimum(case: &Case, error: f64) -> bool {
 }
 
 /// Effects whose linear estimate has an impossible sign: from a base in a local minimum that is no verdict.
-fn second_chances(fit: &Fit, groups: &[Vec<Screened>]) -> Vec<Start> {
+fn second_chances<'a>(fit: &'a Fit, groups: &[Vec<Screened>]) -> Vec<Start<'a>> {
     let impossible =
         |g: &&Vec<Screened>| !g[0].possible && !g[0].config.effect.descriptor().is_resonance();
     let start = |group: &Vec<Screened>| Start {
-        hypothesis: fit.hypothesis.clone(),
+        fit,
         group: group.clone(),
-        observer: fit.observer,
     };
     groups.iter().filter(impossible).map(start).collect()
 }
@@ -223,14 +221,13 @@ pub(crate) fn seconds(
 ) -> Vec<Candidate> {
     let screened = screen(&study.fitted.case, &study.prior, &base.fit, excluded);
     let start = |group: Vec<Screened>| Start {
-        hypothesis: base.fit.hypothesis.clone(),
+        fit: &base.fit,
         group,
-        observer: base.fit.observer,
     };
     let promises = |group: &Vec<Screened>| study.fold_error(&group[0].held_out) < limit;
     let groups = ranked(&screened, STARTS).into_iter().filter(promises);
     let groups = groups.take(count);
-    let starts: Vec<Start> = groups.map(start).collect();
+    let starts: Vec<Start<'_>> = groups.map(start).collect();
     confirm(study, base, &starts)
 }
 
@@ -253,20 +250,19 @@ fn refitted_with_observer(
 }
 
 /// The first few groups that can still matter: the likely ones and the rest.
-fn promising(
+fn promising<'a>(
     study: &Study,
-    fit: &Fit,
+    fit: &'a Fit,
     groups: &[Vec<Screened>],
     error: f64,
-) -> (Vec<Start>, Vec<Start>) {
+) -> (Vec<Start<'a>>, Vec<Start<'a>>) {
     let start = |group: &Vec<Screened>| Start {
-        hypothesis: fit.hypothesis.clone(),
+        fit,
         group: group.clone(),
-        observer: fit.observer,
     };
-    let screened = |s: &Start| study.fold_error(&s.group[0].held_out);
+    let screened = |s: &Start<'_>| study.fold_error(&s.group[0].held_out);
     // Shapes move during a refit: a bad model may gain more than its secant promises.
-    let matters = |s: &Start| error > POOR || screened(s) < (1.0 - LEAST_GAIN) * error;
+    let matters = |s: &Start<'_>| error > POOR || screened(s) < (1.0 - LEAST_GAIN) * error;
     let starts = groups.iter().map(start).filter(matters).take(CONFIRMED);
     let own = study.fold_error(&[signal::dot(&fit.residual, &fit.residual)]);
     let limit = likely_below(own);
@@ -281,8 +277,8 @@ fn promising(
     (likely, rest)
 }
 
-fn confirm(study: &Study, base: &Trial, starts: &[Start]) -> Vec<Candidate> {
-    let one = |start: &Start| candidate(study, base, start);
+fn confirm(study: &Study, base: &Trial, starts: &[Start<'_>]) -> Vec<Candidate> {
+    let one = |start: &Start<'_>| candidate(study, base, start);
     best_of_each(starts.par_iter().map(one).collect())
 }
 
@@ -294,21 +290,8 @@ fn best_of_each(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     candidates
 }
 
-fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
-    let rated = &study.prior.plant.rated;
-    let at = |s: &Screened| start.hypothesis.with(s.config.clone(), rated);
-    let (case, prior) = (&study.fitted.case, &study.prior);
-    let tried = |s: &Screened| fit(case, prior, &at(s), short(start.observer));
-    let sse = |f: &Fit| signal::dot(&f.residual, &f.residual);
-    let resonance = start.group[0].config.effect.descriptor().is_resonance();
-    let best = if !resonance && start.observer == SpeedObserver::Off {
-        at(&start.group[0])
-    } else {
-        let tries = if resonance { start.group.len() } else { 1 };
-        let fits = start.group[..tries].iter().map(tried);
-        let best = fits.min_by(|a, b| sse(a).total_cmp(&sse(b)));
-        best.map_or_else(|| at(&start.group[0]), |f| f.hypothesis)
-    };
+fn candidate(study: &Study, base: &Trial, start: &Start<'_>) -> Candidate {
+    let chosen = chosen(study, start);
     // On top of a model that already fits nothing improves the error by much: every refit is finished.
     let poor = study.fold_error(&base.folds) > POOR;
     let limit = HOPELESS * signal::dot(&base.fit.residual, &base.fit.residual);
@@ -316,11 +299,46 @@ fn candidate(study: &Study, base: &Trial, start: &Start) -> Candidate {
         abandon_above: if poor { limit } else { f64::INFINITY },
         ..Effort::FULL
     };
-    let trial = study.trial(&best, effort);
+    let trial = match chosen.nearby {
+        Some(nearby) => study.trial_near(&chosen.hypothesis, effort, &nearby),
+        None => study.trial(&chosen.hypothesis, effort),
+    };
     Candidate {
         name: start.group[0].config.effect.descriptor().name,
         error: combined(study, &trial),
         trial,
+    }
+}
+
+/// Where a refit begins, and the derivatives nearby with respect to its first free coordinates, where they are known.
+struct Chosen {
+    hypothesis: Hypothesis,
+    nearby: Option<Vec<Vec<f64>>>,
+}
+
+/// The likeliest point of a group; where the screen cannot tell, the one at which a short refit ends best.
+fn chosen(study: &Study, start: &Start<'_>) -> Chosen {
+    let (case, prior) = (&study.fitted.case, &study.prior);
+    let (observer, nearby) = (start.fit.observer, &start.fit.jacobian);
+    let runs_freely = observer == SpeedObserver::Off;
+    let tries = match start.group[0].config.effect.descriptor().is_resonance() {
+        true => start.group.len(),
+        false => usize::from(!runs_freely),
+    };
+    let here = &start.fit.hypothesis;
+    let at = |point: &Screened| here.with(point.config.clone(), &prior.plant.rated);
+    let tried = |point| fit_near(case, prior, &at(point), short(observer), nearby);
+    let sse = |f: &Fit| signal::dot(&f.residual, &f.residual);
+    let fits = start.group[..tries].iter().map(tried);
+    match fits.min_by(|a, b| sse(a).total_cmp(&sse(b))) {
+        Some(best) => Chosen {
+            hypothesis: best.hypothesis,
+            nearby: runs_freely.then_some(best.jacobian),
+        },
+        None => Chosen {
+            hypothesis: at(&start.group[0]),
+            nearby: Some(nearby.clone()),
+        },
     }
 }
 
@@ -329,24 +347,17 @@ pub(crate) fn only(study: &Study, base: &Trial, effect: &str) -> Vec<Candidate> 
     let (case, prior) = (&study.fitted.case, &study.prior);
     let all = names().into_iter().chain([expression::NAME]);
     let others: Vec<&str> = all.filter(|n| *n != effect).collect();
-    let start = |fit: &Fit| {
+    let start = |fit| {
         let groups = ranked(&screen(case, prior, fit, &others), STARTS);
-        let one = |group: Vec<Screened>| Start {
-            hypothesis: fit.hypothesis.clone(),
-            group,
-            observer: fit.observer,
-        };
+        let one = |group: Vec<Screened>| Start { fit, group };
         groups.into_iter().map(one).collect::<Vec<_>>()
     };
-    let mut starts = start(&base.fit);
-    if may_be_local_minimum(case, study.fold_error(&base.folds)) {
-        starts.extend(start(&fit(
-            case,
-            prior,
-            &study.at_prior(),
-            short(SpeedObserver::On(OBSERVER)),
-        )));
-    }
+    let led = may_be_local_minimum(case, study.fold_error(&base.folds)).then(|| {
+        let observer = SpeedObserver::On(OBSERVER);
+        fit(case, prior, &study.at_prior(), short(observer))
+    });
+    let fits = std::iter::once(&base.fit).chain(&led);
+    let starts: Vec<Start<'_>> = fits.flat_map(start).collect();
     confirm(study, base, &starts)
 }
 

@@ -5,8 +5,9 @@ use crate::data::joined::together;
 use crate::data::noise_floor::{by_channel, judged_of};
 pub use crate::data::subject::Subject;
 use crate::data::subject::{AS_WARM, Warmth, warmed};
-use crate::fit::output_error::{Effort, Fit, fit};
+use crate::fit::output_error::{Effort, Fit, fit, fit_near};
 use crate::model::free_scale::{self, FreeScale};
+use crate::model::instruments::InstrumentError;
 use crate::model::prediction::{SpeedObserver, outputs};
 use crate::model::prior::{Hypothesis, Prior};
 use nalgebra::DMatrix;
@@ -27,8 +28,19 @@ pub struct Study {
     pub proofs: Vec<Subject>,
     /// How the speed channel becomes a speed, where its scale is a free parameter.
     pub speed_scale: Option<FreeScale>,
-    /// The refitted model with the recorder's channels taken as they are, where the study knows what they are off by.
-    pub plain: Option<Box<Trial>>,
+    /// The same with the instruments taken as they are, where this study takes what they are off by as unknown.
+    pub plain: Option<Box<Plain>>,
+}
+
+/// A study that takes the instruments as they are.
+#[derive(Clone, Debug)]
+pub struct Plain {
+    /// The study.
+    pub study: Study,
+    /// Its refitted model.
+    pub refitted: Trial,
+    /// What instruments may be off by, each one standard deviation large.
+    pub errors: Vec<InstrumentError>,
 }
 
 /// A hypothesis, fitted and measured on data that was not fitted.
@@ -48,6 +60,8 @@ pub struct Trial {
     pub off: OnceLock<Vec<usize>>,
     /// The same beside the errors of the voltage channels, once it was asked for.
     pub polished: OnceLock<Option<Box<Trial>>>,
+    /// Squared error over noise that unknown instruments take from it, once it was asked for.
+    pub taken_by_instruments: OnceLock<f64>,
 }
 
 impl Study {
@@ -86,21 +100,23 @@ impl Study {
             Some(_) => free_scale::free(&priors, &self.prior),
             None => priors,
         };
-        priors
-            .with_uncertain(&self.prior)
-            .with_channels(&self.prior)
+        priors.with_uncertain(&self.prior)
     }
 
     /// Effects that every hypothesis holds: they are no finding.
     pub fn given_effects(&self) -> usize {
-        usize::from(self.speed_scale.is_some())
-            + self.prior.uncertain.len()
-            + self.prior.channels.len()
+        usize::from(self.speed_scale.is_some()) + self.prior.uncertain.len()
     }
 
     /// Fits a hypothesis and measures it.
     pub fn trial(&self, start: &Hypothesis, effort: Effort) -> Trial {
         self.measured(fit(&self.fitted.case, &self.prior, start, effort))
+    }
+
+    /// As [`Study::trial`], from a start near a fit with these derivatives with respect to the first free coordinates.
+    pub fn trial_near(&self, start: &Hypothesis, effort: Effort, nearby: &[Vec<f64>]) -> Trial {
+        let (case, prior) = (&self.fitted.case, &self.prior);
+        self.measured(fit_near(case, prior, start, effort, nearby))
     }
 
     /// The model with its parameters refitted and nothing added.
@@ -122,6 +138,7 @@ impl Study {
             covariance: OnceLock::new(),
             off: OnceLock::new(),
             polished: OnceLock::new(),
+            taken_by_instruments: OnceLock::new(),
             fit,
         }
     }

@@ -4,6 +4,7 @@ use crate::data::case::Case;
 use crate::data::noise_floor::{Floor, floor};
 use crate::fit::normal_equations;
 use crate::fit::output_error::{Effort, fit};
+use crate::model::instruments::{InstrumentError, responses, take_as_unknown};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, Prior, RESISTANCES};
 use crate::model::unknown_state::unknown_state;
@@ -72,6 +73,23 @@ impl Subject {
             floor,
             warming: OnceLock::new(),
         }
+    }
+
+    /// The same with the responses of a hypothesis to what its instruments may be off by taken as unknown.
+    pub fn with_unknown_instruments(
+        &self,
+        prior: &Prior,
+        h: &Hypothesis,
+        errors: &[InstrumentError],
+    ) -> Self {
+        let responses = responses(&self.case, prior, h, errors);
+        let mut open = Self {
+            case: self.case.clone(),
+            floor: self.floor.clone(),
+            warming: OnceLock::new(),
+        };
+        take_as_unknown(&mut open.case, errors, &responses);
+        open
     }
 
     /// Squared error of each block of a hypothesis.

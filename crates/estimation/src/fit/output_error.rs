@@ -2,7 +2,7 @@
 
 use crate::data::case::Case;
 use crate::fit::normal_equations::{self, Block, Penalty};
-use crate::model::differences::jacobian;
+use crate::model::differences::{Differences, columns};
 use crate::model::prediction::{SpeedObserver, outputs, residual};
 use crate::model::prior::{Hypothesis, N_NOMINAL, Prior};
 use nalgebra::DVector;
@@ -17,6 +17,12 @@ const INFLATION_TABLE: [f64; 2] = [1.0, 30.0];
 const PATIENCE: usize = 2;
 /// Relative gain of an iteration below which a fit has arrived.
 const ARRIVED: f64 = 3e-5;
+/// Damping of the first step ...
+const DAMPING: f64 = 1e-4;
+/// ... and most steps that are tried, each more damped: with derivatives of this place, ...
+const TRIES: usize = 7;
+/// ... and with those of a place nearby.
+const TRIES_NEARBY: usize = 2;
 /// Most steps that are taken with the same derivatives.
 const CHORDS: usize = 3;
 /// Relative gain of such a step below which new derivatives are worth their price.
@@ -140,6 +146,20 @@ pub fn fit_knowing(
     search.run(effort)
 }
 
+/// As [`fit`], from a start near a place where the derivatives with respect to the first free coordinates are known: they lead
+/// one step, after which all are taken anew.
+pub fn fit_near(
+    case: &Case,
+    prior: &Prior,
+    start: &Hypothesis,
+    effort: Effort,
+    nearby: &[Vec<f64>],
+) -> Fit {
+    let mut search = Search::new(case, prior, start, effort.observer);
+    search.borrow(nearby);
+    search.run(effort)
+}
+
 /// A fit on its way.
 struct Search<'a> {
     case: &'a Case,
@@ -161,7 +181,7 @@ struct Linear {
     jacobian: Vec<Vec<f64>>,
     blocks: Vec<Block>,
     total: Block,
-    /// Whether the last step since then was worth new derivatives.
+    /// Whether new derivatives are worth their price: the last step since then was, or these were taken nearby.
     stale: bool,
 }
 
@@ -189,7 +209,7 @@ impl<'a> Search<'a> {
             hypothesis: start.clone(),
             residual: residual(case, &outputs),
             outputs,
-            damping: 1e-4,
+            damping: DAMPING,
             inflation: limits[0],
             linear: None,
         }
@@ -201,14 +221,12 @@ impl<'a> Search<'a> {
                 self.differentiate();
             }
             let sse = self.sse();
-            let Some(gain) = self.step() else { break };
-            if gain < ARRIVED {
-                break;
-            }
-            for _ in 0..CHORDS {
-                if self.chord().is_none_or(|gain| gain < REFRESH) {
-                    break;
-                }
+            let nearby = self.is_stale();
+            let gain = self.step(if nearby { TRIES_NEARBY } else { TRIES });
+            match gain.is_some_and(|gain| gain >= ARRIVED) {
+                true => self.chords(),
+                false if nearby => self.damping = DAMPING,
+                false => break,
             }
             if iteration >= PATIENCE && sse > effort.abandon_above {
                 break;
@@ -223,10 +241,25 @@ impl<'a> Search<'a> {
 
     /// Derivatives where the fit is.
     fn differentiate(&mut self) {
-        let (case, prior) = (self.case, self.prior);
-        let jacobian = jacobian(case, prior, &self.hypothesis, &self.outputs, self.observer);
+        let jacobian = self.columns(&self.free);
         self.linearise(jacobian);
         self.inflate();
+    }
+
+    /// Derivatives with respect to the first free coordinates as they are nearby, those with respect to the others as they are here.
+    fn borrow(&mut self, nearby: &[Vec<f64>]) {
+        let own = self.columns(&self.free[nearby.len().min(self.free.len())..]);
+        self.linearise([nearby, &own].concat());
+        self.inflate();
+        if let Some(linear) = &mut self.linear {
+            linear.stale = true;
+        }
+    }
+
+    fn columns(&self, coordinates: &[usize]) -> Vec<Vec<f64>> {
+        let (case, prior, h) = (self.case, self.prior, &self.hypothesis);
+        let differences = Differences::from(case, prior, h, &self.outputs, self.observer);
+        columns(&differences, h, coordinates)
     }
 
     /// Takes the inflation from the present derivatives.
@@ -253,15 +286,28 @@ impl<'a> Search<'a> {
         penalty(self.prior, h, &self.free, self.inflation)
     }
 
-    /// A damped step from fresh derivatives: its relative gain, `None` if there is nothing better nearby.
-    fn step(&mut self) -> Option<f64> {
-        let better = self.better(7)?;
+    fn is_stale(&self) -> bool {
+        self.linear.as_ref().is_none_or(|linear| linear.stale)
+    }
+
+    /// A damped step: its relative gain, `None` if none of so many tries leads to anything better.
+    fn step(&mut self, tries: usize) -> Option<f64> {
+        let better = self.better(tries)?;
         let gain = better.gain;
         self.go(better);
         if let Some(linear) = &mut self.linear {
-            linear.stale = gain >= ARRIVED;
+            linear.stale |= gain >= ARRIVED;
         }
         Some(gain)
+    }
+
+    /// Steps from corrected derivatives, as long as they are worth it.
+    fn chords(&mut self) {
+        for _ in 0..CHORDS {
+            if self.chord().is_none_or(|gain| gain < REFRESH) {
+                break;
+            }
+        }
     }
 
     /// A step from corrected derivatives: its relative gain, `None` if it leads nowhere.
@@ -298,7 +344,7 @@ impl<'a> Search<'a> {
     }
 
     fn finish(mut self) -> Fit {
-        if self.linear.as_ref().is_none_or(|linear| linear.stale) {
+        if self.is_stale() {
             let keep = self.inflation;
             self.differentiate();
             self.inflation = keep;
@@ -394,99 +440,4 @@ fn correct(linear: &mut Linear, moves: &[f64], before: &[f64], after: &[f64]) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::prior::{FRICTION, MAGNETIZING};
-    use crate::specimen;
-
-    #[test]
-    fn a_table_of_the_believed_machine_moves_nothing() {
-        let study = specimen::table_study(|_| ());
-        let fit = fit(
-            &study.fitted.case,
-            &study.prior,
-            &study.at_prior(),
-            Effort::FULL,
-        );
-        assert!(
-            fit.hypothesis.z.iter().all(|z| z.abs() < 1e-4),
-            "{:?}",
-            fit.hypothesis.z
-        );
-        assert!(signal::dot(&fit.residual, &fit.residual) < 1e-4);
-    }
-
-    /// Parameters that differ by some per cent are found: the table is exact, the priors are wide.
-    #[test]
-    fn a_fit_finds_the_parameters_behind_a_table() {
-        let truth = [0.06, -0.05, 0.04, 0.03];
-        let study = specimen::table_study(|plant| {
-            plant.motor.r_s *= f64::exp(truth[0]);
-            plant.motor.r_r *= f64::exp(truth[1]);
-            plant.motor.l_ls *= f64::exp(truth[2]);
-            plant.motor.l_lr *= f64::exp(truth[2]);
-            plant.motor.l_m *= f64::exp(truth[3]);
-        });
-        let (case, prior) = (&study.fitted.case, &study.prior);
-        let fit = fit(case, prior, &study.at_prior(), Effort::FULL);
-        for k in [0, 1, MAGNETIZING] {
-            let z = fit.hypothesis.z[k];
-            assert!((z - truth[k]).abs() < 0.02, "{k}: {z}");
-        }
-        assert_eq!(fit.hypothesis.z[FRICTION], 0.0, "not fitted from a table");
-        assert_eq!(fit.free, [0, 1, 2, 3]);
-        // What is returned belongs together: residual, outputs and columns at the best coordinates.
-        let out = outputs(case, prior, &fit.hypothesis, SpeedObserver::Off);
-        assert_eq!(out, fit.outputs);
-        assert_eq!(residual(case, &out), fit.residual);
-        let variance = crate::fit::uncertainty::covariance(&study, &fit);
-        assert!((0..4).all(|k| variance[(k, k)] > 0.0 && variance[(k, k)] < 0.11));
-        assert_eq!(fit.held_out().len(), 12);
-    }
-
-    /// The optimum of squared error and priors: no gradient is left, `J' r + W p = 0`.
-    #[test]
-    fn the_best_coordinates_have_no_gradient() {
-        let study = specimen::table_study(|plant| plant.motor.l_m *= 1.05);
-        let fit = fit(
-            &study.fitted.case,
-            &study.prior,
-            &study.at_prior(),
-            Effort::FULL,
-        );
-        let all = normal_equations::total(&fit.blocks);
-        let gradient = &all.score + fit.penalty.weight.component_mul(&fit.penalty.pull);
-        for (k, g) in gradient.iter().enumerate() {
-            let scale = (all.gram[(k, k)] + fit.penalty.weight[k]).sqrt();
-            assert!(g.abs() < 0.02 * scale, "{k}: {g} {scale}");
-        }
-    }
-
-    /// Priors: one over the squared deviation, `inflation` times for nominals; the pull leads back to the prior.
-    #[test]
-    fn a_penalty_is_the_prior_seen_from_where_one_is() {
-        let study = specimen::table_study(|_| ());
-        let mut h = study.at_prior();
-        h.z[1] = 0.25;
-        let p = penalty(&study.prior, &h, &[0, 1], 30.0);
-        assert!(
-            (p.weight[0] - 30.0 / 0.01).abs() < 1e-9 && (p.weight[1] - 30.0 / 0.01).abs() < 1e-9
-        );
-        assert_eq!((p.pull[0], p.pull[1]), (0.0, -0.25));
-        let expected = 9.0 + 4.0 + 3000.0 * 0.0625;
-        assert!((cost(&[3.0, -2.0], &p) - expected).abs() < 1e-9);
-        assert_eq!(cost(&[f64::NAN], &p), f64::INFINITY);
-    }
-
-    #[test]
-    fn a_step_is_limited_and_stays_inside_the_bounds() {
-        let study = specimen::table_study(|_| ());
-        let mut h = study.at_prior();
-        h.z[0] = 1.0;
-        let step = DVector::from_column_slice(&[1.2, -9.0]);
-        let next = moved(&study.prior, &h, &[0, 1], &step);
-        // A factor of e^1.6 at most, and 1.5 at a time.
-        assert_eq!((next.z[0], next.z[1]), (1.6, -1.5));
-        assert_eq!(next.z[2..], h.z[2..]);
-    }
-}
+mod tests;

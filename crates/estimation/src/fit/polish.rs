@@ -17,7 +17,7 @@ use motor::effects::{gain_of, offset_of};
 pub const INSTRUMENTS: [Instrument; 2] = [Instrument::Voltages, Instrument::Currents];
 
 /// The trial refitted beside gains and offsets of the channels; `None` where they cannot be fitted: a load table, or a motor file that
-/// holds an unbalance of voltages and currents already. Gains that were found are held to their class, too: the data tell
+/// holds an unbalance of voltages and currents already, or a study that takes them as unknown. Gains that were found are held to their class, too: the data tell
 /// how they differ, and nothing tells what all three have in common from the impedances of another motor.
 pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
     let here = beside_channels(study, &trial.fit.hypothesis)?;
@@ -38,19 +38,18 @@ pub fn polished(study: &Study, trial: &Trial) -> Option<Trial> {
 
 /// A hypothesis with gains and offsets of the channels to be refitted, those that it holds already included.
 fn beside_channels(study: &Study, h: &Hypothesis) -> Option<Hypothesis> {
-    if study.fitted.case.is_table() {
+    if study.fitted.case.is_table() || study.plain.is_some() {
         return None;
     }
     let held = h.effects.iter().chain(&study.prior.plant.effects);
     let rated = &study.prior.plant.rated;
-    let mut here = h.clone().with_free_instruments();
-    let mut any = !study.prior.channels.is_empty();
+    let mut here = h.clone();
+    let mut any = false;
     for instrument in INSTRUMENTS {
         let is_gain = |c: &EffectConfig| c.effect.gain_of() == Some(instrument);
         let hides = |c: &EffectConfig| c.effect.hides_gain_of() == Some(instrument);
         let found = h.effects.iter().position(is_gain);
         here = match found {
-            _ if here.refits_instrument(instrument) => continue,
             Some(found) => here.taken_for_instrument(found),
             None if held.clone().any(hides) => continue,
             None => {

@@ -100,17 +100,25 @@ pub fn jacobian(
     observer: SpeedObserver,
 ) -> Vec<Vec<f64>> {
     let free: Vec<usize> = (0..h.z.len()).filter(|&k| h.free[k]).collect();
-    let differences = Differences::from(case, prior, h, base, observer);
+    columns(&Differences::from(case, prior, h, base, observer), h, &free)
+}
+
+/// Those with respect to some coordinates; `differences`: from `h`.
+pub fn columns(
+    differences: &Differences<'_>,
+    h: &Hypothesis,
+    coordinates: &[usize],
+) -> Vec<Vec<f64>> {
     let column = |&k: &usize| {
         let mut step = h.step(k);
-        if h.z[k] + step > h.bounds(k, prior)[1] {
+        if h.z[k] + step > h.bounds(k, differences.prior)[1] {
             step = -step;
         }
         let mut moved = h.clone();
         moved.z[k] += step;
         differences.of(&moved, step)
     };
-    free.par_iter().map(column).collect()
+    coordinates.par_iter().map(column).collect()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub mod differences;
 pub mod free_scale;
+pub mod instruments;
 pub mod prediction;
 pub mod prior;
 pub mod scale_report;

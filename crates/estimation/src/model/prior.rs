@@ -72,8 +72,6 @@ pub struct Prior {
     pub deviations: [f64; N_NOMINAL],
     /// Effects of the motor file whose parameters have intervals: every hypothesis refits them.
     pub uncertain: Vec<UncertainEffect>,
-    /// Gains and offsets of the recorder's channels, as they were found: every hypothesis holds them, none refits them.
-    pub channels: Vec<EffectConfig>,
 }
 
 /// An effect of the motor file that was not measured on this motor.
@@ -118,7 +116,6 @@ impl Prior {
             formulas: formulas.iter().map(|e| e.effect).collect(),
             deviations: deviations(file),
             uncertain,
-            channels: Vec::new(),
             plant,
         }
     }
@@ -303,24 +300,6 @@ impl Hypothesis {
     /// in common is no more uncertain than that.
     pub fn taken_for_instrument(mut self, effect: usize) -> Self {
         self.instruments.push(effect);
-        self
-    }
-
-    /// The same with the gains and offsets of the recorder's channels as they were found.
-    pub fn with_channels(&self, prior: &Prior) -> Self {
-        let held = |h: Self, config: &EffectConfig| {
-            let mut more = h.with_instrument(config.clone(), &prior.plant.rated);
-            more.free[h.z.len()..].fill(false);
-            more
-        };
-        prior.channels.iter().fold(self.clone(), held)
-    }
-
-    /// The same with the errors of instruments that it holds refitted.
-    pub fn with_free_instruments(mut self) -> Self {
-        for k in N_NOMINAL..self.z.len() {
-            self.free[k] |= self.instruments.contains(&self.effect_of(k));
-        }
         self
     }
 

@@ -20,6 +20,10 @@ pub const SHARE: f64 = 0.2;
 pub const ADEQUATE: f64 = 1.02;
 /// Error over noise of a single channel from which something may be left there.
 const EVEN: f64 = 1.05;
+/// Share of what unknown instruments take from a squared error that is left of it because they take it to first order ...
+const CURVED: f64 = 0.004;
+/// ... and the share that may be left of a lag of several milliseconds or of counts that are held for long: less than that names nothing.
+const CURVED_AT_MOST: f64 = 0.025;
 /// Least size, in typical sizes.
 const LEAST_SIZE: f64 = 0.05;
 
@@ -86,7 +90,10 @@ pub fn may_explain(study: &Study, before: &Trial, folds: &[f64], least: f64) -> 
 
 /// Whether the last effect of `after` is proven over `before`.
 pub fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
-    if !large_enough(after) || may_be_chance(study, before, after) {
+    if !large_enough(after)
+        || may_be_chance(study, before, after)
+        || may_be_curved(study, before, after)
+    {
         return false;
     }
     if beats(after, before) {
@@ -96,6 +103,15 @@ pub fn proven(study: &Study, before: &Trial, after: &Trial) -> bool {
         && fold_share(study, before, after) > SHARE
         && study.proof_is_silent(before, after)
         && !worse_on_proof(before, after)
+}
+
+/// Whether unknown instruments do as much beyond the first order as `after` explains.
+pub fn may_be_curved(study: &Study, before: &Trial, after: &Trial) -> bool {
+    if study.plain.is_none() {
+        return false;
+    }
+    let square = |trial: &Trial| study.fold_error(&trial.folds).powi(2);
+    square(before) - square(after) < CURVED_AT_MOST * study.taken_by_instruments(before)
 }
 
 /// Whether one recording alone is too short to tell the last effect of `after` from the best of many that are not there.
@@ -182,7 +198,24 @@ fn adequacy(study: &Study) -> f64 {
 
 /// Whether nothing provable is left.
 pub fn adequate(study: &Study, trial: &Trial) -> bool {
-    study.proof_error(trial) < adequacy(study) && adequate_on_folds(study, &trial.folds)
+    let adds_nothing = trial.fit.hypothesis.effects.len() == study.given_effects();
+    let curved = if adds_nothing { CURVED } else { 0.0 };
+    is_within(study, trial, curved)
+}
+
+/// Whether what a model leaves may be what unknown instruments do beyond the first order.
+pub fn may_be_of_instruments(study: &Study, trial: &Trial) -> bool {
+    study.plain.is_some() && is_within(study, trial, CURVED_AT_MOST)
+}
+
+/// Whether nothing provable is left beside such a share of what unknown instruments take.
+fn is_within(study: &Study, trial: &Trial, curved: f64) -> bool {
+    let left_by_instruments = match study.plain.is_some() && curved > 0.0 {
+        true => curved * study.taken_by_instruments(trial),
+        false => 0.0,
+    };
+    let gate = adequacy(study).hypot(left_by_instruments.sqrt());
+    study.proof_error(trial) < gate && study.fold_error(&trial.folds) < gate
 }
 
 /// Whether a model leaves nothing provable of any single recording.

@@ -1,7 +1,7 @@
 //! Which parameters of the motor file are off.
 
 use crate::data::study::{Study, Trial};
-use crate::fit::output_error::{Effort, Fit, fit, fit_knowing};
+use crate::fit::output_error::{Effort, Fit, fit, fit_near};
 use crate::fit::uncertainty::coordinate_error;
 use crate::model::prior::{FRICTION, Hypothesis, MAGNETIZING, N_NOMINAL, NOMINALS};
 use crate::proof::accept::worse;
@@ -73,27 +73,16 @@ pub fn held(study: &Study, trial: &Trial, k: usize) -> Trial {
     study.measured(fitted_near(study, &trial.fit, &frozen, k))
 }
 
-/// Fits a start that differs from a fit in coordinate `k`, which is free there and held here: the derivatives there lead near the minimum,
-/// where they are taken anew.
+/// Fits a start that differs from a fit in coordinate `k`, which is free there and held here: the derivatives there lead near the minimum.
 fn fitted_near(study: &Study, there: &Fit, start: &Hypothesis, k: usize) -> Fit {
     let (case, prior) = (&study.fitted.case, &study.prior);
-    let anew = || fit(case, prior, start, Effort::FULL);
     let is_alike = there.observer == Effort::FULL.observer;
     let Some(column) = there.free.iter().position(|&f| f == k).filter(|_| is_alike) else {
-        return anew();
+        return fit(case, prior, start, Effort::FULL);
     };
-    let mut known = there.jacobian.clone();
-    known.remove(column);
-    let nearer = Effort {
-        iterations: 1,
-        ..Effort::FULL
-    };
-    let near = fit_knowing(case, prior, start, nearer, known);
-    match near.hypothesis.is_same(start) {
-        // It says nothing here.
-        true => anew(),
-        false => fit_knowing(case, prior, &near.hypothesis, Effort::FULL, near.jacobian),
-    }
+    let mut nearby = there.jacobian.clone();
+    nearby.remove(column);
+    fit_near(case, prior, start, Effort::FULL, &nearby)
 }
 
 /// Whether nominal `k` moved relevantly and significantly, and is known from the recording.

@@ -8,8 +8,13 @@ use crate::data::given::{Fitted, Sources};
 use crate::data::question::{Error, Question};
 use crate::data::study::{Study, Trial};
 use crate::fit::readings::DifferenceReport;
+use crate::model::instruments::is_unnoticed;
 use crate::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
 use motor::MotorFile;
+use motor::effect::EffectConfig;
+
+/// Ratio of two errors over noise that are alike.
+const NO_MORE: f64 = 1.02;
 
 /// Hears what is being done, and how much of it is done, 0 to 1.
 type Progress<'a> = dyn FnMut(&str, f64) + 'a;
@@ -32,13 +37,23 @@ pub trait Ask {
         found
     }
 
-    /// The best model so far, proven or not, where something is left.
-    fn best<'a>(&self, _study: &Study, _found: &'a Self::Found) -> Option<&'a Trial> {
+    /// What the answer explains.
+    fn explains(&self, study: &Study, found: &Self::Found) -> Explains;
+
+    /// Whether an instrument is what is asked about: then none is taken as unknown.
+    fn is_of_instruments(&self) -> bool {
+        false
+    }
+
+    /// The model with everything that is named.
+    fn model<'a>(&self, _found: &'a Self::Found) -> Option<&'a Trial> {
         None
     }
 
-    /// What the answer explains.
-    fn explains(&self, study: &Study, found: &Self::Found) -> Explains;
+    /// What is named of the motor and of the instruments.
+    fn named(&self, _study: &Study, _found: &Self::Found) -> Named {
+        Named::default()
+    }
 }
 
 /// An answer, and the question that it answers.
@@ -66,6 +81,27 @@ pub enum Explains {
     All,
 }
 
+/// How many things an answer names.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Named {
+    /// That are missing in the model of the motor.
+    pub of_the_motor: usize,
+    /// That an instrument in good order may be off by.
+    pub of_instruments: usize,
+}
+
+impl Named {
+    /// Of these effects and so many laws.
+    pub fn of(effects: &[EffectConfig], laws: usize) -> Self {
+        let unnoticed = effects.iter().filter(|e| is_unnoticed(e.effect));
+        let of_instruments = unnoticed.count();
+        Self {
+            of_the_motor: effects.len() - of_instruments + laws,
+            of_instruments,
+        }
+    }
+}
+
 /// A question, and the model with its parameters refitted and nothing added.
 struct Begun {
     question: Question,
@@ -73,7 +109,7 @@ struct Begun {
     baseline: Trial,
 }
 
-/// Asks about the recordings as they are given. Where that leaves something, asks beside what the recorder's channels are off by, and with the second of two fitted, or the first alone of
+/// Asks about the recordings as they are given, with the instruments taken as they are and, where that leaves something, with what they may be off by unknown. Where both leave something, asks with the second of two fitted, or the first alone of
 /// more, which is the answer if it leaves nothing: those that are fitted together may be of a motor that was cold in the one and hot in the
 /// other. Only where both leave something is looked further. Where one of them or all together are explained without anything that is
 /// missing, nothing is.
@@ -88,9 +124,7 @@ pub fn in_either_order<A: Ask>(
 ) -> Result<Answer<A::Found>, Error> {
     let given = Begun::of(sources, motor, Fitted::AsGiven, progress)?;
     if !given.question.is_of_wholes() {
-        let baseline = given.baseline.clone();
-        let given = given.asked(asked, progress);
-        let given = given.or_beside_channels(&baseline, asked, progress);
+        let given = given.asked_of_instruments_too(asked, progress);
         return Ok(given.further(asked, progress));
     }
     let another = Fitted::another_of(sources.iter().len());
@@ -106,24 +140,18 @@ pub fn in_either_order<A: Ask>(
     let alone = other.as_ref().filter(|other| other.shows_too_little());
     let each_alone = alone.filter(|_| another == Fitted::Second);
     let each_alone = each_alone.map(|other| given.differences(other));
-    let baseline = given.baseline.clone();
-    let given = Answer {
-        each_alone,
-        ..given.asked(asked, progress)
-    };
-    if given.each_alone.is_some() {
-        return Ok(given);
+    if each_alone.is_some() {
+        return Ok(Answer {
+            each_alone,
+            ..given.asked(asked, progress)
+        });
     }
-    let given = given.or_beside_channels(&baseline, asked, progress);
+    let given = given.asked_of_instruments_too(asked, progress);
     if given.explains(asked) >= Explains::Most {
         return Ok(given);
     }
     let other = other.or_else(|| begin_other(&mut of_another(progress)).ok());
-    let other = other.map(|other| {
-        let (baseline, progress) = (other.baseline.clone(), &mut of_another(progress));
-        let other = other.asked(asked, progress);
-        other.or_beside_channels(&baseline, asked, progress)
-    });
+    let other = other.map(|other| other.asked_of_instruments_too(asked, &mut of_another(progress)));
     let is_answer = |other: &Answer<A::Found>| other.explains(asked) == Explains::All;
     let other = match other {
         Some(other) if is_answer(&other) => return Ok(other),
@@ -137,6 +165,11 @@ pub fn in_either_order<A: Ask>(
     Ok(other.filter(is_answer).unwrap_or(given))
 }
 
+/// Progress of a question with unknown instruments.
+fn beside_instruments(progress: &mut Progress<'_>) -> impl FnMut(&str, f64) {
+    move |what, share| progress(&format!("{what}, instruments unknown"), share)
+}
+
 /// Progress of a question with another recording fitted.
 fn of_another(progress: &mut Progress<'_>) -> impl FnMut(&str, f64) {
     move |what, share| progress(&format!("{what}, another recording fitted"), share)
@@ -147,38 +180,31 @@ impl<T> Answer<T> {
         asked.explains(&self.question.study, &self.found)
     }
 
-    /// The answer, or the one beside what the recorder's channels are off by: where that explains more, or the channels alone most of what
-    /// is left.
-    fn or_beside_channels(
-        self,
-        baseline: &Trial,
-        asked: &impl Ask<Found = T>,
-        progress: &mut Progress<'_>,
-    ) -> Self {
-        let here = self.explains(asked);
-        if here == Explains::All {
-            return self;
-        }
-        progress("asking what the channels are off by", 0.8);
-        let study = &self.question.study;
-        let best = asked.best(study, &self.found).unwrap_or(baseline);
-        let beside = study.beside_channels(baseline, best);
-        let beside = beside.or_else(|| study.beside_channels(baseline, baseline));
-        let Some((study, refitted)) = beside else {
-            return self;
+    fn named(&self, asked: &impl Ask<Found = T>) -> Named {
+        asked.named(&self.question.study, &self.found)
+    }
+
+    /// Whether a channel is out of order beside everything that is named.
+    fn blames_a_channel(&self, asked: &impl Ask<Found = T>) -> bool {
+        let model = asked.model(&self.found);
+        model.is_some_and(|model| self.question.study.has_a_channel_out_of_order(model))
+    }
+
+    /// Whether this answer, with the instruments as they are, names the one channel that is out of order beside another answer with unknown
+    /// instruments, and leaves no more.
+    fn names_the_channel_instead_of(&self, unknown: &Self, asked: &impl Ask<Found = T>) -> bool {
+        let error = |answer: &Self| {
+            let model = asked.model(&answer.found)?;
+            Some(answer.question.study.proof_error(model))
         };
-        let explain_much = study.channels_explain_most(&refitted);
-        let begun = Begun {
-            question: self.question.about_study(study),
-            fitted: self.fitted,
-            baseline: refitted,
+        let leaves_no_more = match (error(self), error(unknown)) {
+            (Some(plain), Some(unknown)) => plain < NO_MORE * unknown,
+            _ => false,
         };
-        let beside = begun.asked(asked, progress);
-        let there = beside.explains(asked);
-        match there > here || there == here && explain_much {
-            true => beside,
-            false => self,
-        }
+        self.explains(asked) == Explains::All
+            && self.named(asked).of_instruments == 1
+            && leaves_no_more
+            && unknown.blames_a_channel(asked)
     }
 
     fn further(self, asked: &impl Ask<Found = T>, progress: &mut Progress<'_>) -> Self {
@@ -240,6 +266,106 @@ impl Begun {
     /// Whether nothing is missing in the fitted recording, and its parameters do not explain the other one.
     fn shows_too_little(&self) -> bool {
         !self.is_adequate() && adequate_on_folds(&self.question.study, &self.baseline.folds)
+    }
+
+    /// Asks with the instruments taken as they are, and with what they may be off by taken as unknown: that first where it explains most of
+    /// what is left with nothing added.
+    fn asked_of_instruments_too<A: Ask>(
+        self,
+        asked: &A,
+        progress: &mut Progress<'_>,
+    ) -> Answer<A::Found> {
+        match self.with_unknown_instruments(asked, progress) {
+            None => self.asked(asked, progress),
+            Some(unknown) if unknown.explains_most() => self.asked_after(unknown, asked, progress),
+            Some(unknown) => self.asked_before(unknown, asked, progress),
+        }
+    }
+
+    /// `None` where nothing is missing, or the instruments cannot be asked about.
+    fn with_unknown_instruments(
+        &self,
+        asked: &impl Ask,
+        progress: &mut Progress<'_>,
+    ) -> Option<Self> {
+        if self.is_adequate() || asked.is_of_instruments() {
+            return None;
+        }
+        progress("refitting the parameters, instruments unknown", 0.12);
+        let study = &self.question.study;
+        let (study, baseline) = study.with_unknown_instruments(&self.baseline)?;
+        Some(Self {
+            question: self.question.about_study(study),
+            fitted: self.fitted,
+            baseline,
+        })
+    }
+
+    /// Whether what the instruments are off by explains most of what is left without.
+    fn explains_most(&self) -> bool {
+        self.question.study.instruments_explain_most(&self.baseline)
+    }
+
+    /// The instruments' errors explain most: what is missing beside them is the answer. Where nothing is, an answer without them that names
+    /// one of them, or that names the motor where the instruments would have to be out of order.
+    fn asked_after<A: Ask>(
+        self,
+        unknown: Self,
+        asked: &A,
+        progress: &mut Progress<'_>,
+    ) -> Answer<A::Found> {
+        let study = &unknown.question.study;
+        let in_order = study.gains_are_plausible(&unknown.baseline);
+        let unknown = unknown.asked(asked, &mut beside_instruments(progress));
+        let there = unknown.explains(asked);
+        let is_answer = there == Explains::All && unknown.named(asked).of_the_motor > 0;
+        if is_answer && !unknown.blames_a_channel(asked) {
+            return unknown;
+        }
+        let plain = self.asked(asked, progress);
+        if is_answer {
+            return match plain.names_the_channel_instead_of(&unknown, asked) {
+                true => plain,
+                false => unknown,
+            };
+        }
+        let is_simple = plain.named(asked).of_instruments <= 1;
+        match plain.explains(asked) {
+            Explains::All if is_simple || !in_order || there < Explains::All => plain,
+            here if here > there => plain,
+            _ => unknown,
+        }
+    }
+
+    /// The instruments' errors explain little: they are asked about where something is left, or where the answer needs one of them beside
+    /// the motor.
+    fn asked_before<A: Ask>(
+        self,
+        unknown: Self,
+        asked: &A,
+        progress: &mut Progress<'_>,
+    ) -> Answer<A::Found> {
+        let plain = self.asked(asked, progress);
+        let here = plain.explains(asked);
+        let Named {
+            of_the_motor,
+            of_instruments,
+        } = plain.named(asked);
+        let needs_both = of_the_motor > 0 && of_instruments > 0;
+        if here == Explains::All && !needs_both {
+            return plain;
+        }
+        let unknown = unknown.asked(asked, &mut beside_instruments(progress));
+        match unknown.explains(asked) {
+            there if there > here => unknown,
+            Explains::All if needs_both => {
+                match plain.names_the_channel_instead_of(&unknown, asked) {
+                    true => plain,
+                    false => unknown,
+                }
+            }
+            _ => plain,
+        }
     }
 
     fn asked<A: Ask>(self, asked: &A, progress: &mut Progress<'_>) -> Answer<A::Found> {

@@ -152,17 +152,11 @@ impl Parameter {
         typical: f64,
         grid: &'static [f64],
     ) -> Self {
-        Self {
-            name,
-            unit,
-            role: Role::Shape,
-            written: Written::Plain,
-            scale,
-            range,
-            typical,
-            grid,
-            is_resonance: false,
-        }
+        let mut parameter = Self::size(name, unit, scale, typical);
+        parameter.role = Role::Shape;
+        parameter.range = range;
+        parameter.grid = grid;
+        parameter
     }
 
     /// A choice between discrete forms.
@@ -255,6 +249,11 @@ pub struct Descriptor {
 }
 
 impl Descriptor {
+    /// Whether this name and form mean it; an empty form means any.
+    pub fn is_meant(&self, name: &str, form: &str) -> bool {
+        self.name == name && (form.is_empty() || self.form == form)
+    }
+
     /// Whether this effect is a resonance: without sizes, present or absent as a whole.
     pub fn is_resonance(&self) -> bool {
         self.parameters.iter().all(|p| p.role != Role::Size)

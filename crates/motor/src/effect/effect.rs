@@ -89,7 +89,7 @@ pub enum Hook {
     Outputs,
 }
 
-/// Instruments whose gain an effect may be.
+/// Instruments whose gain, offset or lag an effect may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instrument {
     /// Each voltage channel; the parameters are those of the phases a, b, c.
@@ -98,6 +98,8 @@ pub enum Instrument {
     Currents,
     /// The speed channel.
     Speed,
+    /// The torque channel.
+    Torque,
 }
 
 /// Windings whose symmetry may be broken.
@@ -197,8 +199,12 @@ pub trait Effect: SteadyEffect {
         }
     }
 
-    /// Whether it shows the speed as a mean over a window that its first parameter sets, as counts of an encoder do. Of the
-    /// outputs it changes the speed alone, and asks for nothing else.
+    /// The instrument that it makes late by its first parameter, s.
+    fn lag_of(&self) -> Option<Instrument> {
+        None
+    }
+
+    /// Whether it shows the speed as a mean over a window that its first parameter sets (counts of an encoder), and changes nothing else.
     fn averages_speed(&self) -> bool {
         false
     }

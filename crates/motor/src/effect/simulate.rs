@@ -103,10 +103,7 @@ pub fn simulate(plant: &Plant, run: &Run<'_>) -> Outputs {
 }
 
 /// As [`simulate`], with so many integration steps taken at once (1 or more) and the rows between them interpolated. The difference of
-/// two such runs is off by a share of itself only: enough for a derivative.
-///
-/// # Panics
-/// As [`simulate`].
+/// two such runs is off by a share of itself only: enough for a derivative. Panics as [`simulate`] does.
 pub fn simulate_coarsely(plant: &Plant, run: &Run<'_>, at_once: usize) -> Outputs {
     let mut outputs = with_hooks(plant, run, Integrate { at_once });
     outputs.u_zero = vec![0.0; outputs.omega_mech.len()];

@@ -20,11 +20,15 @@ steady_effect!(LoadDelay, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::LoadDelay;
     use crate::effect::signals::delayed;
-    use crate::effect::{Effect, Hook, Inputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Instrument, Rated};
 
     impl Effect for LoadDelay {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Inputs]
+        }
+
+        fn lag_of(&self) -> Option<Instrument> {
+            Some(Instrument::Torque)
         }
 
         fn shown_inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) -> bool {

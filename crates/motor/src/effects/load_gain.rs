@@ -19,11 +19,15 @@ steady_effect!(LoadGain, DESCRIPTOR, unchanged);
 #[cfg(feature = "std")]
 mod dynamic {
     use super::LoadGain;
-    use crate::effect::{Effect, Hook, Inputs, Rated};
+    use crate::effect::{Effect, Hook, Inputs, Instrument, Rated};
 
     impl Effect for LoadGain {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Inputs]
+        }
+
+        fn gain_of(&self) -> Option<Instrument> {
+            Some(Instrument::Torque)
         }
 
         fn inputs(&self, p: &[f64], _rated: &Rated<f64>, inputs: &mut Inputs) {

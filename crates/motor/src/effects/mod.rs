@@ -62,20 +62,14 @@ effects! {
 /// The effect of this name and form; an empty form means the effect's first.
 #[cfg(feature = "std")]
 pub fn find(name: &str, form: &str) -> Option<&'static dyn Effect> {
-    let fits = |e: &&&'static dyn Effect| {
-        let d = e.descriptor();
-        d.name == name && (form.is_empty() || d.form == form)
-    };
-    ALL.iter().find(fits).copied()
+    let mut all = ALL.iter().copied();
+    all.find(|e| e.descriptor().is_meant(name, form))
 }
 
 /// The steady-state term of this name and form; an empty form means the effect's first.
 pub fn find_steady(name: &str, form: &str) -> Option<&'static dyn SteadyEffect> {
-    let fits = |e: &&&'static dyn SteadyEffect| {
-        let d = e.descriptor();
-        d.name == name && (form.is_empty() || d.form == form)
-    };
-    STEADY.iter().find(fits).copied()
+    let mut all = STEADY.iter().copied();
+    all.find(|e| e.descriptor().is_meant(name, form))
 }
 
 /// The effect that is the gain of an instrument; each has exactly one, which the tests of the library hold.

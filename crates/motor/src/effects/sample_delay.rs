@@ -25,11 +25,15 @@ fn correct<F: Real>(p: &[F], point: &mut SteadyPoint<F>) {
 mod dynamic {
     use super::SampleDelay;
     use crate::effect::signals::delayed;
-    use crate::effect::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Instrument, Outputs, Rated};
 
     impl Effect for SampleDelay {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Outputs]
+        }
+
+        fn lag_of(&self) -> Option<Instrument> {
+            Some(Instrument::Currents)
         }
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {

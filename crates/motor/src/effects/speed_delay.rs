@@ -20,11 +20,15 @@ steady_effect!(SpeedDelay, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::SpeedDelay;
     use crate::effect::signals::delayed;
-    use crate::effect::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Instrument, Outputs, Rated};
 
     impl Effect for SpeedDelay {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Outputs]
+        }
+
+        fn lag_of(&self) -> Option<Instrument> {
+            Some(Instrument::Speed)
         }
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {

@@ -28,11 +28,15 @@ steady_effect!(SpeedMean, DESCRIPTOR, unchanged);
 mod dynamic {
     use super::SpeedMean;
     use crate::effect::signals::{averaged, delayed};
-    use crate::effect::{Effect, Hook, Outputs, Rated};
+    use crate::effect::{Effect, Hook, Instrument, Outputs, Rated};
 
     impl Effect for SpeedMean {
         fn hooks(&self) -> &'static [Hook] {
             &[Hook::Outputs]
+        }
+
+        fn lag_of(&self) -> Option<Instrument> {
+            Some(Instrument::Speed)
         }
 
         fn outputs(&self, p: &[f64], _rated: &Rated<f64>, outputs: &mut Outputs) {

@@ -43,7 +43,6 @@ fn nothing(study: &Study, error: f64) -> Explanation {
         contests: Vec::new(),
         nameable: true,
         open: None,
-        lead: None,
     }
 }
 

@@ -122,7 +122,8 @@ fn refitted(study: &Study, step: Curve<'_>, config: &EffectConfig, p: &Proposal)
         iterations: ITERATIONS,
         ..Effort::FULL
     };
-    let trial = study.trial(&bare.with(formula, rated), effort);
+    let nearby = step.trial.fit.jacobian.get(..step.before.fit.free.len())?;
+    let trial = study.trial_near(&bare.with(formula, rated), effort, nearby);
     let numbers = p.shape.numbers();
     let residual = &trial.fit.residual;
     let error = signal::dot(residual, residual) + trial.proof.iter().sum::<f64>();

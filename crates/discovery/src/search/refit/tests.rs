@@ -161,8 +161,8 @@ fn likely_is_the_first_and_what_leaves_little_of_the_excess() {
         .map(|error| vec![screened(&study, "windage", error)])
         .into();
     let (likely, rest) = promising(&study, &fit, &groups, 3.0);
-    let errors = |starts: &[Start]| -> Vec<f64> {
-        let error = |s: &Start| study.fold_error(&s.group[0].held_out);
+    let errors = |starts: &[Start<'_>]| -> Vec<f64> {
+        let error = |s: &Start<'_>| study.fold_error(&s.group[0].held_out);
         starts.iter().map(error).collect()
     };
     let close = |got: Vec<f64>, expected: &[f64]| {
@@ -313,9 +313,8 @@ fn a_resonance_starts_from_the_best_of_its_points() {
     let study = ringing(25.0);
     let base = specimen::trial_with(&study, &[]);
     let start = Start {
-        hypothesis: study.at_prior(),
+        fit: &base.fit,
         group: vec![shaft(110.0), shaft(26.0)],
-        observer: SpeedObserver::Off,
     };
     let found = super::candidate(&study, &base, &start);
     let configs = found.trial.fit.hypothesis.configs(&study.prior.plant.rated);
@@ -329,13 +328,13 @@ fn a_resonance_starts_from_the_best_of_its_points() {
 #[test]
 fn a_hopeless_refit_of_a_poor_model_is_given_up() {
     let study = specimen::table_study(with("core-loss", 3.0));
+    let trial = specimen::trial_with(&study, &[]);
     let start = Start {
-        hypothesis: study.at_prior(),
+        fit: &trial.fit,
         group: vec![Screened {
             config: specimen::effect("leakage-saturation", 1.0),
             ..screened(&study, "windage", 1.0)
         }],
-        observer: SpeedObserver::Off,
     };
     let (case, rated) = (&study.fitted.case, &study.prior.plant.rated);
     let from = study.at_prior().with(start.group[0].config.clone(), rated);
@@ -344,7 +343,7 @@ fn a_hopeless_refit_of_a_poor_model_is_given_up() {
             iterations,
             ..Effort::FULL
         };
-        let found = fit(case, &study.prior, &from, effort);
+        let found = fit_near(case, &study.prior, &from, effort, &trial.fit.jacobian);
         (
             signal::dot(&found.residual, &found.residual),
             found.hypothesis.z,
@@ -354,7 +353,6 @@ fn a_hopeless_refit_of_a_poor_model_is_given_up() {
     let (given_up, finished) = (after(3).1, after(14).1);
     assert_ne!(given_up, finished);
     let refitted = |error: f64, without: f64| {
-        let trial = specimen::trial_with(&study, &[]);
         let mut base = specimen::with_errors(&study, &trial, error, error);
         base.fit.residual = vec![(without * squares / 8.0).sqrt(); 8];
         let found = super::candidate(&study, &base, &start);
