@@ -31,7 +31,7 @@ pub fn section(result: &Place<'_>) -> Markup {
     html! {
         section aria-labelledby="channels" {
             h2 id="channels" { "What the recorder's channels are off by" }
-            p.subtle { "Gains and zeros of voltages and currents, fitted together and believed to be right within class 0.5 (0.3 % of the reading and of the rated amplitude, standard deviations). They belong to the recorder: " code { "adopt" } " leaves them out of the motor file." }
+            p.subtle { "Gains and zeros, taken as unknown: gains are believed to be right within class 0.5 (0.3 % of the reading, standard deviation). They belong to the recorder: " code { "adopt" } " leaves them out of the motor file." }
             div.wide tabindex="0" { table {
                 thead { tr { th scope="col" { "channel" } th scope="col" { "gain error, %" } th scope="col" { "zero" } th.word scope="col" { "" } th scope="col" { "zero, % of rated" } th.word scope="col" { "" } } }
                 tbody { @for channel in &channels { tr {
@@ -43,6 +43,9 @@ pub fn section(result: &Place<'_>) -> Markup {
                     td.word { @if !channel.is_true("is_within_class") { strong { "beyond class 0.5" } } }
                 } } }
             } }
+            @for lag in &result.items("channels/lags") {
+                p { (lag.text("instrument")) ": " (shown(lag, "late_by_second", decimals(1).times(1e3))) " ms late" }
+            }
         }
     }
 }
