@@ -109,10 +109,10 @@ struct Begun {
     baseline: Trial,
 }
 
-/// Asks about the recordings as they are given, with the instruments taken as they are and, where that leaves something, with what they may be off by unknown. Where both leave something, asks with the second of two fitted, or the first alone of
-/// more, which is the answer if it leaves nothing: those that are fitted together may be of a motor that was cold in the one and hot in the
-/// other. Only where both leave something is looked further. Where one of them or all together are explained without anything that is
-/// missing, nothing is.
+/// Asks about the recordings as they are given: with the instruments taken as they are and, where that leaves something, with what they may
+/// be off by taken as unknown. Where both leave something, asks with the second of two fitted, or the first alone of more, which is the
+/// answer if it leaves nothing: those that are fitted together may be of a motor that was cold in the one and hot in the other. Only where
+/// both leave something is looked further. Where one of them or all together are explained without anything that is missing, nothing is.
 ///
 /// # Errors
 /// As [`Question::new`] of the recordings as they are given.

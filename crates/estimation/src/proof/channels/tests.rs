@@ -84,6 +84,7 @@ fn exact_channels_are_no_part_of_an_answer() {
     let report = beside.channels(&baseline, &baseline).expect("a report");
     assert!(report.channels.iter().all(|c| c.is_within_class));
     assert!(beside.gains_are_plausible(&baseline));
+    assert!(!beside.has_a_channel_out_of_order(&baseline));
     let table = specimen::table_study(|_| ());
     let bare = specimen::trial_with(&table, &[]);
     assert!(table.with_unknown_instruments(&bare).is_none());
@@ -98,6 +99,20 @@ fn a_gain_out_of_order_is_not_plausible() {
         .with_unknown_instruments(&plain)
         .expect("samples over time");
     assert!(!beside.gains_are_plausible(&baseline));
+    assert!(beside.has_a_channel_out_of_order(&baseline));
+}
+
+#[test]
+fn a_zero_is_out_of_order_from_three_per_cent_of_the_rated_amplitude_on() {
+    let is_out_of_order = |zero: f64| {
+        let mut errors = [(0.0, 0.0); 6];
+        errors[3].1 = zero;
+        let (study, plain) = asked(errors);
+        let unknown = study.with_unknown_instruments(&plain);
+        let (beside, baseline) = unknown.expect("samples over time");
+        beside.has_a_channel_out_of_order(&baseline)
+    };
+    assert!(is_out_of_order(0.06) && !is_out_of_order(0.015));
 }
 
 #[test]
