@@ -28,6 +28,8 @@ const LATE: [(Instrument, &str); 3] = [
     (Instrument::Speed, "speed"),
     (Instrument::Torque, "torque"),
 ];
+/// Squared error over noise that instruments take at least to be told: 2 % of the error, without which a model is adequate.
+const LEAST_TAKEN: f64 = 0.04;
 /// Least lag that is told in words, s.
 const LEAST_LAG: f64 = 5e-4;
 
@@ -184,6 +186,11 @@ impl Study {
         })
     }
 
+    /// Whether unknown instruments take nothing from a trial worth telling.
+    pub fn instruments_are_exact_beside(&self, trial: &Trial) -> bool {
+        self.taken_by_instruments(trial) < LEAST_TAKEN
+    }
+
     /// Names of the effects that are taken as unknown.
     pub fn unknown_effects(&self) -> Vec<&'static str> {
         let taken = ALL
@@ -231,10 +238,13 @@ impl Study {
         })
     }
 
-    /// What the recorder's channels are off by, beside a trial; `baseline`: the model with nothing else added. `None` of a study that takes
-    /// them as they are.
+    /// What the recorder's channels are off by, beside a trial; `baseline`: the model with nothing else added. `None` where that takes nothing
+    /// from it, and of a study that takes them as they are.
     pub fn channels(&self, trial: &Trial, baseline: &Trial) -> Option<ChannelsReport> {
         let plain = self.plain.as_ref()?;
+        if self.instruments_are_exact_beside(trial) {
+            return None;
+        }
         let found = plain.found(&trial.fit.hypothesis)?;
         let rated = &self.prior.plant.rated;
         let voltages = found.of_phases(Instrument::Voltages, Channel::VOLTAGES, rated.voltage);

@@ -184,6 +184,12 @@ impl<T> Answer<T> {
         asked.named(&self.question.study, &self.found)
     }
 
+    /// Whether the instruments are exact beside everything that is named: what is missing looked like their errors.
+    fn needs_no_instrument(&self, asked: &impl Ask<Found = T>) -> bool {
+        let model = asked.model(&self.found);
+        model.is_some_and(|model| self.question.study.instruments_are_exact_beside(model))
+    }
+
     /// Whether a channel is out of order beside everything that is named.
     fn blames_a_channel(&self, asked: &impl Ask<Found = T>) -> bool {
         let model = asked.model(&self.found);
@@ -306,7 +312,7 @@ impl Begun {
         self.question.study.instruments_explain_most(&self.baseline)
     }
 
-    /// The instruments' errors explain most: what is missing beside them is the answer. Where nothing is, an answer without them that names
+    /// The instruments' errors explain most: what is missing beside them is the answer, unless it needs none of them. Where nothing is, an answer without them that names
     /// one of them, or that names the motor where the instruments would have to be out of order.
     fn asked_after<A: Ask>(
         self,
@@ -319,12 +325,14 @@ impl Begun {
         let unknown = unknown.asked(asked, &mut beside_instruments(progress));
         let there = unknown.explains(asked);
         let is_answer = there == Explains::All && unknown.named(asked).of_the_motor > 0;
-        if is_answer && !unknown.blames_a_channel(asked) {
+        let needs_none = is_answer && unknown.needs_no_instrument(asked);
+        if is_answer && !needs_none && !unknown.blames_a_channel(asked) {
             return unknown;
         }
         let plain = self.asked(asked, progress);
         if is_answer {
-            return match plain.names_the_channel_instead_of(&unknown, asked) {
+            let suffices = needs_none && plain.explains(asked) == Explains::All;
+            return match suffices || plain.names_the_channel_instead_of(&unknown, asked) {
                 true => plain,
                 false => unknown,
             };
