@@ -21,7 +21,7 @@ use estimation::fit::output_error::Effort;
 use estimation::model::prior::{N_NOMINAL, NOMINALS};
 use estimation::proof::accept::{adequate, beats, even, explained, proven, surpasses};
 use estimation::proof::off::{SIGNIFICANT, held, implausible, strains};
-use estimation::proof::order::Named;
+use estimation::proof::order::NamedCounts;
 use rebuilt::effects_of;
 
 /// Most effects that are added.
@@ -93,8 +93,8 @@ impl Explanation {
     }
 
     /// How many things are named of the motor and of the instruments.
-    pub fn named(&self, study: &Study) -> Named {
-        Named::of(&effects_of(study, &self.steps), self.laws.len())
+    pub fn named(&self, study: &Study) -> NamedCounts {
+        NamedCounts::of(&effects_of(study, &self.steps), self.laws.len())
     }
 
     /// Whether what was found and may be named explains all but a few per cent of the excess.

@@ -22,7 +22,7 @@ use estimation::data::study::{Study, Trial};
 use estimation::model::scale_report::SpeedScaleReport;
 use estimation::proof::accept::{adequate, explained};
 use estimation::proof::off::implausible;
-use estimation::proof::order::{Ask, Explains, Named, in_either_order};
+use estimation::proof::order::{Ask, Explains, NamedCounts, in_either_order};
 use motor::MotorFile;
 use motor::effect::Descriptor;
 
@@ -143,7 +143,7 @@ impl Ask for Missing<'_> {
         Some(found.last())
     }
 
-    fn named(&self, study: &Study, found: &Explanation) -> Named {
+    fn named(&self, study: &Study, found: &Explanation) -> NamedCounts {
         found.named(study)
     }
 

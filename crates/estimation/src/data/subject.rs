@@ -83,13 +83,13 @@ impl Subject {
         errors: &[InstrumentError],
     ) -> Self {
         let responses = responses(&self.case, prior, h, errors);
-        let mut open = Self {
+        let mut unknown = Self {
             case: self.case.clone(),
             floor: self.floor.clone(),
             warming: OnceLock::new(),
         };
-        take_as_unknown(&mut open.case, errors, &responses);
-        open
+        take_as_unknown(&mut unknown.case, errors, &responses);
+        unknown
     }
 
     /// Squared error of each block of a hypothesis.

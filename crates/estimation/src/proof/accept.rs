@@ -20,9 +20,11 @@ pub const SHARE: f64 = 0.2;
 pub const ADEQUATE: f64 = 1.02;
 /// Error over noise of a single channel from which something may be left there.
 const EVEN: f64 = 1.05;
-/// Share of what unknown instruments take from a squared error that is left of it because they take it to first order ...
+/// Share of what unknown instruments take from a squared error that is left of it because they take it to first order: with four times as
+/// much a rotor that warms was taken for it ...
 const CURVED: f64 = 0.004;
 /// ... and the share that may be left of a lag of several milliseconds or of counts that are held for long: less than that names nothing.
+/// Laws that two healthy motors of another simulator were given explained 0.4 and 1.1 %, those of true effects 3.3 % and more.
 const CURVED_AT_MOST: f64 = 0.025;
 /// Least size, in typical sizes.
 const LEAST_SIZE: f64 = 0.05;

@@ -15,8 +15,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use signal::dot;
 
-/// Share of the excess over the floor from which the instruments, not the motor, are most of what is left: then the answer beside them is
-/// taken even where it explains no more than the one without.
+/// Share of the excess over the floor from which the instruments, not the motor, are most of what is left: then they are asked about first.
 const MOST: f64 = 0.5;
 
 /// Zero of a channel that is out of order, a share of the rated amplitude: some per mille of a full scale that takes a start is a per cent.
@@ -162,11 +161,11 @@ impl Study {
     /// The study with the responses of this hypothesis taken as unknown.
     fn unknown_at(&self, refitted: &Trial, h: &Hypothesis) -> Self {
         let errors = errors(&self.prior, &h.effects);
-        let open = |subject: &Subject| subject.with_unknown_instruments(&self.prior, h, &errors);
+        let unknown = |subject: &Subject| subject.with_unknown_instruments(&self.prior, h, &errors);
         Self {
             prior: self.prior.clone(),
-            fitted: open(&self.fitted),
-            proofs: self.proofs.iter().map(open).collect(),
+            fitted: unknown(&self.fitted),
+            proofs: self.proofs.iter().map(unknown).collect(),
             speed_scale: self.speed_scale,
             plain: Some(Box::new(Plain {
                 study: self.clone(),
@@ -225,12 +224,10 @@ impl Study {
         };
         let phases = report.channels.chunks_exact(3);
         phases.into_iter().any(|three| {
-            let gains = [0, 1, 2].map(|k| three[k].gain_error_percent);
-            let median = gains.iter().sum::<f64>()
-                - gains.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-                - gains.iter().copied().fold(f64::INFINITY, f64::min);
-            let limit = 100.0 * SIGNIFICANT * CHANNEL_GAIN;
-            let stands_out = gains.iter().any(|gain| (gain - median).abs() > limit);
+            let mut gains = [0, 1, 2].map(|k| three[k].gain_error_percent);
+            gains.sort_by(f64::total_cmp);
+            let apart = (gains[1] - gains[0]).max(gains[2] - gains[1]);
+            let stands_out = apart > 100.0 * SIGNIFICANT * CHANNEL_GAIN;
             stands_out
                 || three
                     .iter()

@@ -51,8 +51,8 @@ pub trait Ask {
     }
 
     /// What is named of the motor and of the instruments.
-    fn named(&self, _study: &Study, _found: &Self::Found) -> Named {
-        Named::default()
+    fn named(&self, _study: &Study, _found: &Self::Found) -> NamedCounts {
+        NamedCounts::default()
     }
 }
 
@@ -83,14 +83,14 @@ pub enum Explains {
 
 /// How many things an answer names.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Named {
+pub struct NamedCounts {
     /// That are missing in the model of the motor.
     pub of_the_motor: usize,
     /// That an instrument in good order may be off by.
     pub of_instruments: usize,
 }
 
-impl Named {
+impl NamedCounts {
     /// Of these effects and so many laws.
     pub fn of(effects: &[EffectConfig], laws: usize) -> Self {
         let unnoticed = effects.iter().filter(|e| is_unnoticed(e.effect));
@@ -180,7 +180,7 @@ impl<T> Answer<T> {
         asked.explains(&self.question.study, &self.found)
     }
 
-    fn named(&self, asked: &impl Ask<Found = T>) -> Named {
+    fn named(&self, asked: &impl Ask<Found = T>) -> NamedCounts {
         asked.named(&self.question.study, &self.found)
     }
 
@@ -355,7 +355,7 @@ impl Begun {
     ) -> Answer<A::Found> {
         let plain = self.asked(asked, progress);
         let here = plain.explains(asked);
-        let Named {
+        let NamedCounts {
             of_the_motor,
             of_instruments,
         } = plain.named(asked);
