@@ -90,3 +90,26 @@ fn a_step_is_limited_and_stays_inside_the_bounds() {
     assert_eq!((next.z[0], next.z[1]), (1.6, -1.5));
     assert_eq!(next.z[2..], h.z[2..]);
 }
+
+/// Derivatives of elsewhere lead one step: where they point the wrong way none is taken, and the parameters are found all the same.
+#[test]
+fn a_fit_arrives_whatever_is_known_nearby() {
+    let truth = [0.06, -0.05, 0.04, 0.03];
+    let study = specimen::table_study(|plant| {
+        plant.motor.r_s *= f64::exp(truth[0]);
+        plant.motor.r_r *= f64::exp(truth[1]);
+        plant.motor.l_ls *= f64::exp(truth[2]);
+        plant.motor.l_lr *= f64::exp(truth[2]);
+        plant.motor.l_m *= f64::exp(truth[3]);
+    });
+    let (case, prior, start) = (&study.fitted.case, &study.prior, study.at_prior());
+    let here = fit(case, prior, &start, Effort::NONE).jacobian;
+    for (factor, count) in [(1.0, 4), (0.7, 2), (-1.0, 4), (0.0, 3)] {
+        let times = |column: &Vec<f64>| column.iter().map(|x| factor * x).collect();
+        let nearby: Vec<Vec<f64>> = here.iter().take(count).map(times).collect();
+        let found = fit_near(case, prior, &start, Effort::FULL, &nearby).hypothesis;
+        for k in [0, 1, MAGNETIZING] {
+            assert!((found.z[k] - truth[k]).abs() < 0.02, "{factor}: {found:?}");
+        }
+    }
+}

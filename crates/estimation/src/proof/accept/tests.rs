@@ -277,3 +277,30 @@ fn a_model_is_adequate_in_each_recording() {
     specimen::measured_of(&mut study.proofs[0].case)[0][0] += far;
     assert!(!adequate_in_each(&study, &h));
 }
+
+/// Instruments that take 100 times the squared noise may leave 2.5 of it: an effect that explains 2 is none, one that explains 3 is.
+#[test]
+fn what_instruments_do_beyond_the_first_order_names_nothing() {
+    let study = specimen::study(1.0, |_| 1.0);
+    let plain = specimen::trial(&study);
+    let (unknown, baseline) = study.with_unknown_instruments(&plain).expect("samples");
+    let leaving = |square: f64, taken: f64| {
+        let mut trial = specimen::with_errors(&unknown, &baseline, square.sqrt(), square.sqrt());
+        trial.taken_by_instruments = taken.into();
+        trial
+    };
+    let before = leaving(4.0, 100.0);
+    assert!(may_be_curved(&unknown, &before, &leaving(2.0, 0.0)));
+    assert!(!may_be_curved(&unknown, &before, &leaving(1.0, 0.0)));
+    assert!(!may_be_curved(&study, &before, &leaving(2.0, 0.0)), "exact");
+    // A motor that leaves no more than that is explained, but not yet where something may still be found.
+    let gate = adequacy(&unknown).powi(2);
+    assert!(may_be_of_instruments(&unknown, &leaving(gate + 2.4, 100.0)));
+    assert!(!may_be_of_instruments(
+        &unknown,
+        &leaving(gate + 2.6, 100.0)
+    ));
+    assert!(!adequate(&unknown, &leaving(gate + 0.5, 100.0)));
+    assert!(adequate(&unknown, &leaving(gate + 0.3, 100.0)));
+    assert!(!may_be_of_instruments(&study, &leaving(gate + 2.4, 100.0)));
+}

@@ -114,6 +114,30 @@ fn a_zero_is_out_of_order_from_three_per_cent_of_the_rated_amplitude_on() {
     assert!(is_out_of_order(0.06) && !is_out_of_order(0.015));
 }
 
+/// A torque that is shown 4 ms late while the load steps.
+#[test]
+fn a_late_torque_is_read_to_a_tenth() {
+    let stepping = |t: f64| if (0.8..1.4).contains(&t) { 1.2 } else { 0.3 };
+    let exact = specimen::recording(2.0, stepping);
+    let late_by = (0.004 / (exact.t()[1] - exact.t()[0])).round() as usize;
+    let shown = specimen::changed(&exact, |channel, x| match channel == Channel::TORQUE {
+        true => Some((0..x.len()).map(|k| x[k.saturating_sub(late_by)]).collect()),
+        false => Some(x),
+    });
+    let prior = specimen::prior("");
+    let case = Case::new(&shown, &prior.plant.rated).expect("judged");
+    let study = Study::new(prior, case, Vec::new(), None);
+    let plain = study.trial(&study.at_prior(), Effort::FULL);
+    let unknown = study.with_unknown_instruments(&plain);
+    let (beside, baseline) = unknown.expect("samples over time");
+    let report = beside
+        .channels(&baseline, &baseline)
+        .expect("a late torque");
+    let torque = report.lags.iter().find(|lag| lag.instrument == "torque");
+    let read = torque.expect("a lag").late_by_second;
+    assert!((read - 0.004).abs() < 0.0004, "{read}");
+}
+
 #[test]
 fn the_furthest_are_told_and_those_beyond_the_class_named() {
     let channel = |channel: Channel, gain, zero| ChannelReport::new(channel, gain, zero, 10.0);
