@@ -58,6 +58,7 @@ pub(super) fn virtual_waveform(plan: &Plan, like: &Waveform, plant: &Plant) -> W
         block: like.block,
         finer: like.finer,
         input_noise: like.input_noise,
+        speed_held_s: 0.0,
         inverter: plan.drive,
         speed_scale_is_free: like.speed_scale_is_free,
         nuisance: Nuisance::default(),

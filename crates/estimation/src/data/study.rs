@@ -90,6 +90,21 @@ impl Study {
         together(cases).map(|fitted| Self::new(prior, fitted, Vec::new(), scale))
     }
 
+    /// The same with the angles as the shaft had them, by a hypothesis; `None` where the measured speeds are in time.
+    pub fn with_angles_in_time(&self, h: &Hypothesis) -> Option<Self> {
+        let in_time = |subject: &Subject| subject.with_angle_in_time(&self.prior, h);
+        let fitted = in_time(&self.fitted);
+        let proofs: Vec<_> = self.proofs.iter().map(in_time).collect();
+        let is_any = fitted.is_some() || proofs.iter().any(Option::is_some);
+        let or_as_is =
+            |(one, as_is): (Option<Subject>, &Subject)| one.unwrap_or_else(|| as_is.clone());
+        is_any.then(|| Self {
+            fitted: or_as_is((fitted, &self.fitted)),
+            proofs: proofs.into_iter().zip(&self.proofs).map(or_as_is).collect(),
+            ..self.clone()
+        })
+    }
+
     /// Nothing added, priors as they are; an unknown scale of the speed is free from the start.
     pub fn at_prior(&self) -> Hypothesis {
         let priors = match &self.fitted.case {

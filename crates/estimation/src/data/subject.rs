@@ -92,6 +92,17 @@ impl Subject {
         unknown
     }
 
+    /// The same with its angle as the shaft had it, by a hypothesis.
+    pub fn with_angle_in_time(&self, prior: &Prior, h: &Hypothesis) -> Option<Self> {
+        let waveform = self.case.waveform()?;
+        let in_time = waveform.with_angle_in_time(&h.plant(prior))?;
+        Some(Self {
+            case: in_time.into(),
+            floor: self.floor.clone(),
+            warming: OnceLock::new(),
+        })
+    }
+
     /// Squared error of each block of a hypothesis.
     pub fn errors(&self, prior: &Prior, h: &Hypothesis) -> Vec<f64> {
         self.errors_of(&self.residual(prior, h))

@@ -7,6 +7,7 @@
 use crate::data::given::{Fitted, Sources};
 use crate::data::question::{Error, Question};
 use crate::data::study::{Study, Trial};
+use crate::fit::output_error::Effort;
 use crate::fit::readings::DifferenceReport;
 use crate::model::instruments::is_unnoticed;
 use crate::proof::accept::{adequate, adequate_in_each, adequate_on_folds};
@@ -240,10 +241,32 @@ impl Begun {
     }
 
     fn about(question: Question, fitted: Fitted) -> Self {
-        Self {
+        let begun = Self {
             baseline: question.study.refitted(),
             question,
             fitted,
+        };
+        match begun.is_adequate() {
+            true => begun,
+            false => begun.with_angles_in_time(),
+        }
+    }
+
+    /// The same with the angles as the shaft had them: the measured speed may be late.
+    fn with_angles_in_time(self) -> Self {
+        let found = &self.baseline.fit.hypothesis;
+        let Some(study) = self.question.study.with_angles_in_time(found) else {
+            return self;
+        };
+        let nearby = &self.baseline.fit.jacobian;
+        let baseline = match study.prior.plant.effects.is_empty() {
+            true => self.baseline.clone(),
+            false => study.trial_near(found, Effort::FULL, nearby),
+        };
+        Self {
+            question: self.question.about_study(study),
+            fitted: self.fitted,
+            baseline,
         }
     }
 

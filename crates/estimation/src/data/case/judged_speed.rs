@@ -32,6 +32,15 @@ impl<'a> JudgedSpeed<'a> {
         }
     }
 
+    /// Samples for which a value is shown; zero where each sample has a new one.
+    pub fn held_for(&self) -> f64 {
+        let at = self.refreshed.as_deref().unwrap_or_default();
+        match at {
+            [first, .., last] => (last - first) as f64 / (at.len() - 1) as f64,
+            _ => 0.0,
+        }
+    }
+
     /// The value and its weight in a row of these samples; nothing is judged in one without a new value.
     pub fn in_row(&self, samples: Range<usize>) -> (f64, f64) {
         let before = |at: &[usize], k: usize| at.partition_point(|&refresh| refresh < k);

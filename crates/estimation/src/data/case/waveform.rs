@@ -84,6 +84,8 @@ pub struct Waveform {
     pub load_windows: Windows,
     /// How the speed was smoothed.
     pub speed_windows: Windows,
+    /// Time for which each value of the speed is shown, s; zero where each sample has a new one.
+    pub speed_held_s: f64,
     /// Whether an inverter feeds the motor.
     pub inverter: bool,
     /// Whether the scale of the speed is a free parameter: the speeds here are right up to a factor near one.
@@ -164,6 +166,7 @@ impl Waveform {
             },
             load_windows: load.torque.windows,
             speed_windows: speed.windows,
+            speed_held_s: 0.0,
             inverter: rec.metadata.supply == SupplyKind::Inverter,
             speed_scale_is_free: false,
             nuisance: Nuisance::default(),
@@ -271,6 +274,8 @@ impl Waveform {
         let sigma_i = [0, 1, 2].map(|k| sigma(rec, Channel::CURRENTS[k], currents[k]));
         let speed = rec.speed().filter(|_| !self.speed_is_input);
         let speed = speed.map(|x| JudgedSpeed::new(rec, x));
+        let held_for = speed.as_ref().map_or(0.0, JudgedSpeed::held_for);
+        self.speed_held_s = held_for * rec.t_sample();
         let w_zero = 3f64.sqrt() / sigma_u;
         let stride = self.samples_per_row() / self.finer;
         let whole = (self.between.stride() / self.finer).max(1);

@@ -101,6 +101,7 @@ fn unchanged(whole: &Waveform) -> Waveform {
         input_noise: whole.input_noise,
         load_windows: signal::Windows::default(),
         speed_windows: signal::Windows::default(),
+        speed_held_s: whole.speed_held_s,
         inverter: whole.inverter,
         speed_scale_is_free: whole.speed_scale_is_free,
         nuisance: Nuisance::default(),
