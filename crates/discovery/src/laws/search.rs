@@ -12,7 +12,7 @@ use estimation::data::case::Waveform;
 use estimation::data::study::{Study, Trial};
 use estimation::fit::output_error::{Effort, fit, fit_knowing};
 use estimation::model::prediction::SpeedObserver;
-use estimation::proof::accept::{explained, proven, surpasses};
+use estimation::proof::accept::{adequate, explained, proven, surpasses};
 use motor::effect::curve::Action;
 use rayon::prelude::*;
 
@@ -28,6 +28,12 @@ const OBSERVER: f64 = 15.0;
 const TIED: f64 = 0.5;
 /// Share of the first law's gain that another one reaches soon, or is given up.
 const HOPEFUL: f64 = 0.3;
+/// Laws whose knots may go where they are needed, as long as what they leave is ...
+const REFINED: usize = 2;
+/// ... at most so many times what the best one leaves.
+const NEARLY: f64 = 1.5;
+/// Times that they may.
+const ROUNDS: usize = 3;
 /// First refit and the one after the stiffness was chosen anew, iterations.
 const ITERATIONS: [usize; 2] = [5, 3];
 
@@ -139,16 +145,32 @@ impl<'a> LawSearch<'a> {
         let mut refitted: Vec<Refitted> = rest.collect();
         refitted.extend(first);
         refitted.sort_by(|a, b| a.error.total_cmp(&b.error));
-        if let Some(best) = refitted.first_mut()
-            && let Some(finer) = refined(self.study, self.base, &best.trial)
-        {
-            best.error = combined(self.study, &finer);
-            best.trial = finer;
-        }
+        self.refine_the_best(&mut refitted);
         Laws {
             refitted,
             promised: self.promised(),
         }
+    }
+
+    /// The best law with knots where they are needed; where that leaves something the next one, too, which may have needed them more.
+    fn refine_the_best(&self, refitted: &mut [Refitted]) {
+        let limit = refitted.first().map_or(0.0, |best| NEARLY * best.error);
+        for law in refitted.iter_mut().take(REFINED) {
+            if law.error > limit {
+                break;
+            }
+            for _ in 0..ROUNDS {
+                let Some(finer) = refined(self.study, self.base, &law.trial) else {
+                    break;
+                };
+                law.error = combined(self.study, &finer);
+                law.trial = finer;
+            }
+            if adequate(self.study, &law.trial) {
+                break;
+            }
+        }
+        refitted.sort_by(|a, b| a.error.total_cmp(&b.error));
     }
 
     /// A second screen, on top of a model that the measured speed leads.
