@@ -42,6 +42,8 @@ pub enum Law {
     Intermittent,
     /// A brake that sticks now and then.
     Sticking,
+    /// A frame that shakes at one speed.
+    Resonance,
 }
 
 /// Something that comes at about every `every` seconds for 10 to 60 ms, 0.33 to 1 of its full size.
@@ -64,6 +66,7 @@ pub struct Where {
 }
 
 impl Law {
+    /// Those of the evidence table.
     pub const ALL: [Law; 18] = [
         Law::Stribeck,
         Law::Ripple,
@@ -88,7 +91,7 @@ impl Law {
     /// Place and coordinate as reports name them.
     pub fn truth(self) -> (&'static str, &'static str) {
         match self {
-            Law::Stribeck | Law::Pump => ("torque", "speed"),
+            Law::Stribeck | Law::Pump | Law::Resonance => ("torque", "speed"),
             Law::Ripple | Law::Piston | Law::Jaws => ("torque", "angle"),
             Law::Bearing | Law::Brake | Law::Sticking => ("torque", "time"),
             Law::Displacement => ("stator", "frequency"),
@@ -140,7 +143,7 @@ impl Law {
             Law::Leakage => &["x2/(x2+w2)"],
             Law::Gear => &["hinge"],
             Law::Ageing => &["step", "tanh"],
-            Law::Brake => &["bump"],
+            Law::Brake | Law::Resonance => &["bump"],
             Law::Saturating => &["quadratic"],
             Law::Magnetizing | Law::Intermittent | Law::Sticking => &[],
         }
@@ -155,6 +158,7 @@ impl Law {
             }
             Law::Ripple => 0.05 * (3.0 * at.theta).cos() + 0.03 * (3.0 * at.theta).sin(),
             Law::Pump => 0.25 * ((w - 0.45).max(0.0) / 0.57).powf(2.6),
+            Law::Resonance => 0.2 * (-((w - 0.7) / 0.06).powi(2)).exp(),
             Law::Bearing => 0.06 * (-at.t / 1.6).exp() * (w / 0.01).tanh(),
             Law::Piston => 0.18 * at.theta.sin().max(0.0),
             Law::Gear => 0.2 * (at.load / m.torque - 0.55).max(0.0),

@@ -124,6 +124,24 @@ fn jaws() -> ([recording::Source; 2], motor::MotorFile) {
     (sources, priors(&machine, SEED))
 }
 
+/// A bump that is narrower than the distance of a curve's knots, and far above the noise.
+#[test]
+fn a_resonance_is_told_from_what_else_changes_with_the_speed() {
+    let machine = Machine::of(SEED);
+    let hidden = Hidden {
+        law: Some(Law::Resonance),
+        ..Hidden::default()
+    };
+    let source =
+        |course, seed| recording::Source::Recording(record(&machine, &hidden, course, seed));
+    let sources = [source(&DRIVE, SEED), source(&DRIVE_B, SEED + 1)];
+    let report = explain(&sources, &priors(&machine, SEED), &mut |_, _| {}).expect("judged");
+    println!("{}", report.summary);
+    assert_eq!(report.verdict, Verdict::Law);
+    assert!(report.laws.len() == 1 && Law::Resonance.is_named(&report.laws[0]));
+    assert!(report.final_.expect("fitted").held_out_error_over_noise < 1.05);
+}
+
 #[test]
 fn a_law_that_no_library_holds_is_found_with_its_curve_and_adopted() {
     let (sources, believed) = jaws();

@@ -91,6 +91,19 @@ fn a_law_is_found_beside_the_errors_of_a_recorder() {
     assert!(report.laws.len() == 1 && Law::Jaws.is_named(&report.laws[0]));
 }
 
+/// A counter of pulses shows the speed late, and the angle that it adds up to. How late that is in a turn changes with the speed.
+#[test]
+fn a_strong_law_over_a_turn_is_found_behind_a_counter() {
+    let hidden = Hidden {
+        law: Some(Law::Piston),
+        ..Hidden::default()
+    };
+    let report = explained_through_a_recorder(&hidden);
+    assert_eq!(report.verdict, Verdict::Law);
+    assert!(report.laws.len() == 1 && Law::Piston.is_named(&report.laws[0]));
+    assert!(report.final_.expect("fitted").held_out_error_over_noise < 1.05);
+}
+
 /// An error of one channel is adopted as well, beside which those of all channels would leave nothing to ask for.
 #[test]
 fn an_offset_is_adopted_from_recordings_of_a_recorder() {

@@ -8,6 +8,7 @@ use crate::data::subject::{AS_WARM, Warmth, warmed};
 use crate::fit::output_error::{Effort, Fit, fit, fit_near};
 use crate::model::free_scale::{self, FreeScale};
 use crate::model::instruments::InstrumentError;
+use crate::model::late_speed::Lateness;
 use crate::model::prediction::{SpeedObserver, outputs};
 use crate::model::prior::{Hypothesis, Prior};
 use nalgebra::DMatrix;
@@ -92,7 +93,13 @@ impl Study {
 
     /// The same with the angles as the shaft had them, by a hypothesis; `None` where the measured speeds are in time.
     pub fn with_angles_in_time(&self, h: &Hypothesis) -> Option<Self> {
-        let in_time = |subject: &Subject| subject.with_angle_in_time(&self.prior, h);
+        let plant = h.plant(&self.prior);
+        let all = std::iter::once(&self.fitted).chain(&self.proofs);
+        let waveforms = all.filter_map(|subject| subject.case.waveform());
+        let lateness: Vec<Lateness> = waveforms.filter_map(|one| one.lateness(&plant)).collect();
+        // One for all: a turn that begins elsewhere in each recording would be a law of its own.
+        let late = Lateness::of_all(&lateness);
+        let in_time = |subject: &Subject| subject.with_angle_in_time(late);
         let fitted = in_time(&self.fitted);
         let proofs: Vec<_> = self.proofs.iter().map(in_time).collect();
         let is_any = fitted.is_some() || proofs.iter().any(Option::is_some);

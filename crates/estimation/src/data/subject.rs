@@ -92,10 +92,9 @@ impl Subject {
         unknown
     }
 
-    /// The same with its angle as the shaft had it, by a hypothesis.
-    pub fn with_angle_in_time(&self, prior: &Prior, h: &Hypothesis) -> Option<Self> {
-        let waveform = self.case.waveform()?;
-        let in_time = waveform.with_angle_in_time(&h.plant(prior))?;
+    /// The same with its angle as the shaft had it, the measured speed being so late, s; `None` where it is in time.
+    pub fn with_angle_in_time(&self, late: f64) -> Option<Self> {
+        let in_time = self.case.waveform()?.with_angle_in_time(late)?;
         Some(Self {
             case: in_time.into(),
             floor: self.floor.clone(),

@@ -28,15 +28,40 @@ struct Judged {
     weight: f64,
 }
 
-impl Waveform {
-    /// The same with the angle as the shaft had it, by a model of the motor; `None` where the measured speed is in time.
-    #[must_use]
-    pub fn with_angle_in_time(&self, plant: &Plant) -> Option<Self> {
-        if !self.judges_speed() {
-            return None;
+/// How late a recording shows its speed to be.
+#[derive(Clone, Copy, Debug)]
+pub struct Lateness {
+    /// Most likely, s.
+    late: f64,
+    /// One over its variance, 1/s2.
+    weight: f64,
+}
+
+impl Lateness {
+    /// What recordings of one instrument show together, s; zero where that is not significant.
+    pub fn of_all(all: &[Self]) -> f64 {
+        let weight: f64 = all.iter().map(|one| one.weight).sum();
+        let late = all.iter().map(|one| one.weight * one.late).sum::<f64>() / weight;
+        match late {
+            late if late > SIGNIFICANT / weight.sqrt() => late.min(LATEST),
+            _ => 0.0,
         }
-        let late = as_held(late_by(&self.judged_speeds(plant)), self.speed_held_s);
-        let late = late + 0.5 * self.speed_held_s;
+    }
+}
+
+impl Waveform {
+    /// How late the measured speed is, by a model of the motor; `None` where nothing shows it.
+    pub fn lateness(&self, plant: &Plant) -> Option<Lateness> {
+        match self.judges_speed() {
+            true => lateness(&self.judged_speeds(plant)),
+            false => None,
+        }
+    }
+
+    /// The same with the angle as the shaft had it, the measured speed being so late, s; `None` where it is in time.
+    #[must_use]
+    pub fn with_angle_in_time(&self, late: f64) -> Option<Self> {
+        let late = as_held(late, self.speed_held_s) + 0.5 * self.speed_held_s;
         (late > 0.0).then(|| self.with_angle_later(late))
     }
 
@@ -83,9 +108,9 @@ fn at(series: &[f64], sample: f64) -> f64 {
     series[k] + slope * (sample - k as f64)
 }
 
-/// How late measured speeds are, s: what they are off by along the model's acceleration, beside what an inertia that is off, a scale and
-/// a zero make of them. Zero where that is not significant.
-fn late_by(speeds: &[Judged]) -> f64 {
+/// How late measured speeds are: what they are off by along the model's acceleration, beside what an inertia that is off, a scale and a
+/// zero make of them.
+fn lateness(speeds: &[Judged]) -> Option<Lateness> {
     let (mut normal, mut score, mut squares) = (Matrix4::zeros(), Vector4::zeros(), 0.0);
     for three in speeds.windows(3) {
         let [before, now, after] = three else {
@@ -98,16 +123,14 @@ fn late_by(speeds: &[Judged]) -> f64 {
         score += shown * error;
         squares += error * error;
     }
-    let Some(covariance) = normal.try_inverse() else {
-        return 0.0;
-    };
+    let covariance = normal.try_inverse()?;
     let found = covariance * score;
     let left = (squares - found.dot(&score)).max(0.0) / speeds.len() as f64;
-    let sd = (values_as_one(speeds) * left.max(1.0) * covariance[(0, 0)]).sqrt();
-    match found[0] {
-        late if late > SIGNIFICANT * sd => late.min(LATEST),
-        _ => 0.0,
-    }
+    let variance = values_as_one(speeds) * left.max(1.0) * covariance[(0, 0)];
+    (variance > 0.0).then(|| Lateness {
+        late: found[0],
+        weight: variance.recip(),
+    })
 }
 
 /// How late a value is where it is shown for so long: that is that of its instant or, of a counter, the mean over the same time. Torques that
@@ -157,13 +180,20 @@ mod tests {
 
     #[test]
     fn a_late_speed_is_told_from_an_inertia_that_is_off() {
+        let late_by = |speeds: &[&[Judged]]| {
+            let all: Vec<Lateness> = speeds.iter().filter_map(|one| lateness(one)).collect();
+            Lateness::of_all(&all)
+        };
         assert_eq!(late_by(&[]), 0.0);
-        assert_eq!(late_by(&start(0.0)), 0.0);
-        let late = late_by(&start(5e-3));
+        assert_eq!(late_by(&[&start(0.0)]), 0.0);
+        let late = late_by(&[&start(5e-3)]);
         assert!((late - 5e-3).abs() < 1e-3, "{late}");
         // A speed that does not change shows nothing.
         let steady: Vec<Judged> = start(5e-3).split_off(80);
-        assert_eq!(late_by(&steady), 0.0);
+        assert_eq!(late_by(&[&steady]), 0.0);
+        // Beside another recording it does not matter.
+        let both = late_by(&[&start(5e-3), &steady]);
+        assert!((both - late).abs() < 1e-4, "{both}");
     }
 
     #[test]
@@ -203,8 +233,12 @@ mod tests {
             "{}",
             late.speed_held_s
         );
-        assert!(truth.with_angle_in_time(&prior.plant).is_none(), "in time");
-        let in_time = late.with_angle_in_time(&prior.plant).expect("late");
+        let put_in_time = |one: &Waveform| {
+            let lateness = one.lateness(&prior.plant).expect("shown");
+            one.with_angle_in_time(Lateness::of_all(&[lateness]))
+        };
+        assert!(put_in_time(&truth).is_none(), "in time");
+        let in_time = put_in_time(&late).expect("late");
         let off = |one: &Waveform| {
             let both = one
                 .timeline

@@ -3,7 +3,7 @@
 pub mod differences;
 pub mod free_scale;
 pub mod instruments;
-mod late_speed;
+pub mod late_speed;
 pub mod prediction;
 pub mod prior;
 pub mod scale_report;
