@@ -94,7 +94,7 @@ pub struct Finding {
 }
 
 /// The audit of one recording.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Audit {
     /// Whether anything trustworthy can be computed from the recording.
     pub supported: bool,

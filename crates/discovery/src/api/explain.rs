@@ -108,21 +108,9 @@ fn explained_by(
         }
         Err(Error::Unsupported(audit, why)) => Ok(ExplainReport {
             audit: *audit,
-            stretches: Vec::new(),
-            fitted: Fitted::AsGiven,
             verdict: Verdict::Unsupported,
             summary: format!("{}; {}", why.reason, why.remedy),
-            channels: None,
-            baseline: None,
-            steps: Vec::new(),
-            final_: None,
-            ranking: Vec::new(),
-            not_testable: Vec::new(),
-            laws: Vec::new(),
-            unexplained: None,
-            speed_scale: None,
-            cannot_be_concluded: Vec::new(),
-            next_run: None,
+            ..ExplainReport::default()
         }),
         Err(error) => Err(error),
     }

@@ -155,16 +155,13 @@ impl<'a> LawSearch<'a> {
     /// The best law with knots where they are needed; where that leaves something the next one, too, which may have needed them more.
     fn refine_the_best(&self, refitted: &mut [Refitted]) {
         let limit = refitted.first().map_or(0.0, |best| NEARLY * best.error);
-        for law in refitted.iter_mut().take(REFINED) {
-            if law.error > limit {
-                break;
-            }
+        let finer = |law: &Refitted| refined(self.study, self.base, &law.trial);
+        let best = refitted.iter_mut().take(REFINED);
+        for law in best.take_while(|law| law.error <= limit) {
             for _ in 0..ROUNDS {
-                let Some(finer) = refined(self.study, self.base, &law.trial) else {
-                    break;
-                };
-                law.error = combined(self.study, &finer);
-                law.trial = finer;
+                let Some(trial) = finer(law) else { break };
+                law.error = combined(self.study, &trial);
+                law.trial = trial;
             }
             if adequate(self.study, &law.trial) {
                 break;

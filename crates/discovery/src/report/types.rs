@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The answer of an explanation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(rename = "ExplainVerdict")]
 pub enum Verdict {
@@ -27,6 +27,7 @@ pub enum Verdict {
     /// Something is missing that the library does not hold.
     Unknown,
     /// The recording cannot be judged.
+    #[default]
     Unsupported,
     /// The recording is explained only by parameters that no such motor has.
     Implausible,
@@ -140,8 +141,8 @@ pub struct Inconclusive {
     pub why: String,
 }
 
-/// The report of `explain`.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+/// The report of `explain`; that of a recording that was not judged holds nothing.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ExplainReport {
     /// Audit of the fitted recording.
     pub audit: Audit,
