@@ -111,31 +111,30 @@ fn without_the_truth_in_the_library_nothing_is_named() {
     }
 }
 
-/// Jaws that brake twice and four times a turn: no effect of the library does.
-fn jaws() -> ([recording::Source; 2], motor::MotorFile) {
+/// Two recordings of a machine with a law, and what is believed of it.
+fn with_law(law: Law, courses: [&Course; 2]) -> ([recording::Source; 2], motor::MotorFile) {
     let machine = Machine::of(SEED);
     let hidden = Hidden {
-        law: Some(Law::Jaws),
+        law: Some(law),
         ..Hidden::default()
     };
     let source =
         |course, seed| recording::Source::Recording(record(&machine, &hidden, course, seed));
-    let sources = [source(&LOADS, SEED), source(&STEPS, SEED + 1)];
+    let [first, second] = courses;
+    let sources = [source(first, SEED), source(second, SEED + 1)];
     (sources, priors(&machine, SEED))
+}
+
+/// Jaws that brake twice and four times a turn: no effect of the library does.
+fn jaws() -> ([recording::Source; 2], motor::MotorFile) {
+    with_law(Law::Jaws, [&LOADS, &STEPS])
 }
 
 /// A bump that is narrower than the distance of a curve's knots, and far above the noise.
 #[test]
 fn a_resonance_is_told_from_what_else_changes_with_the_speed() {
-    let machine = Machine::of(SEED);
-    let hidden = Hidden {
-        law: Some(Law::Resonance),
-        ..Hidden::default()
-    };
-    let source =
-        |course, seed| recording::Source::Recording(record(&machine, &hidden, course, seed));
-    let sources = [source(&DRIVE, SEED), source(&DRIVE_B, SEED + 1)];
-    let report = explain(&sources, &priors(&machine, SEED), &mut |_, _| {}).expect("judged");
+    let (sources, believed) = with_law(Law::Resonance, [&DRIVE, &DRIVE_B]);
+    let report = explain(&sources, &believed, &mut |_, _| {}).expect("judged");
     println!("{}", report.summary);
     assert_eq!(report.verdict, Verdict::Law);
     assert!(report.laws.len() == 1 && Law::Resonance.is_named(&report.laws[0]));

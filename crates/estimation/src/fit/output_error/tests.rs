@@ -1,4 +1,5 @@
 use super::*;
+use crate::data::study::Study;
 use crate::model::prior::{FRICTION, MAGNETIZING};
 use crate::specimen;
 
@@ -19,22 +20,29 @@ fn a_table_of_the_believed_machine_moves_nothing() {
     assert!(signal::dot(&fit.residual, &fit.residual) < 1e-4);
 }
 
+/// By how much the motor of [`study_of_another_motor`] differs from what is believed, logarithms: both resistances, leakage, magnetizing.
+const TRUTH: [f64; 4] = [0.06, -0.05, 0.04, 0.03];
+
+/// A table of a motor whose parameters differ by some per cent.
+fn study_of_another_motor() -> Study {
+    specimen::table_study(|plant| {
+        plant.motor.r_s *= f64::exp(TRUTH[0]);
+        plant.motor.r_r *= f64::exp(TRUTH[1]);
+        plant.motor.l_ls *= f64::exp(TRUTH[2]);
+        plant.motor.l_lr *= f64::exp(TRUTH[2]);
+        plant.motor.l_m *= f64::exp(TRUTH[3]);
+    })
+}
+
 /// Parameters that differ by some per cent are found: the table is exact, the priors are wide.
 #[test]
 fn a_fit_finds_the_parameters_behind_a_table() {
-    let truth = [0.06, -0.05, 0.04, 0.03];
-    let study = specimen::table_study(|plant| {
-        plant.motor.r_s *= f64::exp(truth[0]);
-        plant.motor.r_r *= f64::exp(truth[1]);
-        plant.motor.l_ls *= f64::exp(truth[2]);
-        plant.motor.l_lr *= f64::exp(truth[2]);
-        plant.motor.l_m *= f64::exp(truth[3]);
-    });
+    let study = study_of_another_motor();
     let (case, prior) = (&study.fitted.case, &study.prior);
     let fit = fit(case, prior, &study.at_prior(), Effort::FULL);
     for k in [0, 1, MAGNETIZING] {
         let z = fit.hypothesis.z[k];
-        assert!((z - truth[k]).abs() < 0.02, "{k}: {z}");
+        assert!((z - TRUTH[k]).abs() < 0.02, "{k}: {z}");
     }
     assert_eq!(fit.hypothesis.z[FRICTION], 0.0, "not fitted from a table");
     assert_eq!(fit.free, [0, 1, 2, 3]);
@@ -94,14 +102,7 @@ fn a_step_is_limited_and_stays_inside_the_bounds() {
 /// Derivatives of elsewhere lead one step: where they point the wrong way none is taken, and the parameters are found all the same.
 #[test]
 fn a_fit_arrives_whatever_is_known_nearby() {
-    let truth = [0.06, -0.05, 0.04, 0.03];
-    let study = specimen::table_study(|plant| {
-        plant.motor.r_s *= f64::exp(truth[0]);
-        plant.motor.r_r *= f64::exp(truth[1]);
-        plant.motor.l_ls *= f64::exp(truth[2]);
-        plant.motor.l_lr *= f64::exp(truth[2]);
-        plant.motor.l_m *= f64::exp(truth[3]);
-    });
+    let study = study_of_another_motor();
     let (case, prior, start) = (&study.fitted.case, &study.prior, study.at_prior());
     let here = fit(case, prior, &start, Effort::NONE).jacobian;
     for (factor, count) in [(1.0, 4), (0.7, 2), (-1.0, 4), (0.0, 3)] {
@@ -109,7 +110,7 @@ fn a_fit_arrives_whatever_is_known_nearby() {
         let nearby: Vec<Vec<f64>> = here.iter().take(count).map(times).collect();
         let found = fit_near(case, prior, &start, Effort::FULL, &nearby).hypothesis;
         for k in [0, 1, MAGNETIZING] {
-            assert!((found.z[k] - truth[k]).abs() < 0.02, "{factor}: {found:?}");
+            assert!((found.z[k] - TRUTH[k]).abs() < 0.02, "{factor}: {found:?}");
         }
     }
 }
